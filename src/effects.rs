@@ -22,7 +22,7 @@ use crate::{
     flow::HeldFlow,
     fog::{self, FogUniform, FogView, HeldFog},
     glass::GlassView,
-    gpu::{Device, Shared},
+    gpu::{Device, Shared, blocks::Blocks},
     ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
     light::{Exposure, ToneCurve},
     lightning::{HeldLightning, LightningView},
@@ -256,13 +256,13 @@ impl Effects {
     ///
     /// # Errors
     /// A GPU fault.
-    pub fn new(device: &Arc<Device>, shared: &Arc<Shared>, held: &Held) -> Result<Self> {
+    pub fn new(device: &Arc<Device>, (shared, blocks): (&Arc<Shared>, &Blocks), held: &Held) -> Result<Self> {
         let falling = FallingTexture::default();
         Ok(Self {
             sky: SkyView::new(&held.sky)?,
-            fog: FogView::new(device),
-            ground: GroundView::new(device),
-            rain: RainView::new(device, RainSettings::default(), falling.clone()),
+            fog: FogView::new(device, blocks),
+            ground: GroundView::new(device, blocks),
+            rain: RainView::new(device, blocks, RainSettings::default(), falling.clone()),
             snow: SnowView::new(SnowSettings::default(), falling),
             glass: GlassView::new(shared),
             stars: StarsView::default(),

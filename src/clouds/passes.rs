@@ -16,6 +16,7 @@ use crate::{
     gpu::{
         Device, Layer,
         bind::{self, Slot},
+        blocks::{BlockView, Blocks, UniformBlock},
         pass::{self, FullscreenDesc},
     },
     stage::{FrameUniform, yes},
@@ -131,8 +132,9 @@ impl Pipelines {
 /// The passes of a view.
 pub(super) struct CloudPasses {
     pub tables: CloudTables,
-    block: wgpu::Buffer,
-    picture_block: wgpu::Buffer,
+    pages: Blocks,
+    block: UniformBlock,
+    picture_block: UniformBlock,
     pipelines: Option<Pipelines>,
     picture: Option<Picture>,
     /// What the march is bound to, and with which tables of the sky.
@@ -143,7 +145,7 @@ pub(super) struct CloudPasses {
     shaded: Option<(Option<(wgpu::Texture, u32)>, wgpu::BindGroup)>,
     none: wgpu::TextureView,
     no_layers: wgpu::TextureView,
-    no_block: wgpu::Buffer,
+    no_block: UniformBlock,
     /// Some clouds are elsewhere than their layer's cover says ([`super::placed`]).
     is_placed: bool,
 }
@@ -172,7 +174,7 @@ pub(super) struct CloudFrame<'a> {
     pub clouds: CloudsUniform,
     pub picture: PictureUniform,
     /// The frame's block, and the sky's tables with their layout.
-    pub frame: &'a wgpu::Buffer,
+    pub frame: &'a BlockView,
     pub sky: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
     /// What stands behind the sky's own light.
     pub behind: Option<&'a wgpu::Texture>,
@@ -220,21 +222,22 @@ fn run(
 }
 
 impl CloudPasses {
-    pub fn new(device: &Arc<Device>, seed: u64) -> Result<Self> {
+    pub fn new((device, blocks): (&Arc<Device>, &Blocks), seed: u64) -> Result<Self> {
         let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Ok(Self {
             no_layers: bind::as_layers(none.texture()),
             none,
             tables: CloudTables::new(device, seed)?,
-            block: bind::block(&device.device, "clouds", size_of::<CloudsUniform>()),
-            picture_block: bind::block(&device.device, "clouds of a picture", size_of::<PictureUniform>()),
+            pages: blocks.clone(),
+            block: blocks.block(device, size_of::<CloudsUniform>()),
+            picture_block: blocks.block(device, size_of::<PictureUniform>()),
             pipelines: None,
             picture: None,
             marched_of: None,
             shadows: None,
             round: None,
             shaded: None,
-            no_block: bind::block(&device.device, "no shadows of clouds", size_of::<ShadowUniform>()),
+            no_block: blocks.block(device, size_of::<ShadowUniform>()),
             is_placed: false,
         })
     }
@@ -255,7 +258,7 @@ impl CloudPasses {
 
     /// A map of shadows in a texture.
     fn shadow_map(&self, device: &Device, of: &wgpu::Texture) -> Result<ShadowMap> {
-        ShadowMap::new(device, &self.tables, (&self.block, self.is_placed), of)
+        ShadowMap::new((device, &self.pages), &self.tables, (&self.block, self.is_placed), of)
     }
 
     /// Makes textures for a picture of this size, and answers whether the last one's are kept.
@@ -298,14 +301,14 @@ impl CloudPasses {
             label: Some("clouds marched"),
             layout,
             entries: &[
-                bind::buffer(0, of.frame),
-                bind::buffer(1, &self.block),
+                of.frame.entry(0),
+                self.block.entry(1),
                 bind::view(2, &self.tables.map),
                 bind::view(3, &solid),
                 bind::view(4, &light),
                 bind::sampler(5, &self.tables.repeating),
                 bind::sampler(6, &self.tables.clamping),
-                bind::buffer(7, &self.picture_block),
+                self.picture_block.entry(7),
                 bind::view(8, &self.tables.placed),
             ],
         });
@@ -319,7 +322,7 @@ impl CloudPasses {
         &self,
         device: &Device,
         layout: &wgpu::BindGroupLayout,
-        frame: &wgpu::Buffer,
+        frame: &BlockView,
         picture: &Picture,
     ) -> [wgpu::BindGroup; 3] {
         let none = self.no_past();
@@ -339,15 +342,15 @@ impl CloudPasses {
         &self,
         device: &Device,
         layout: &wgpu::BindGroupLayout,
-        frame: &wgpu::Buffer,
+        frame: &BlockView,
         (marched, [last, least, most, back]): (&[wgpu::TextureView; 2], [&wgpu::TextureView; 4]),
     ) -> wgpu::BindGroup {
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("clouds of a picture"),
             layout,
             entries: &[
-                bind::buffer(0, frame),
-                bind::buffer(1, &self.picture_block),
+                frame.entry(0),
+                self.picture_block.entry(1),
                 bind::view(2, &marched[0]),
                 bind::view(3, &marched[1]),
                 bind::view(4, last),
@@ -373,7 +376,7 @@ impl CloudPasses {
             (self.shadows, self.shaded) = (Some(map), None);
         }
         let passes = match (shaded, &mut self.shadows) {
-            (Some(of), Some(shadows)) => shadows.draw(device, encoder, &of.lie, past),
+            (Some(of), Some(shadows)) => shadows.draw(encoder, &of.lie, past),
             _ => 0,
         };
         let key = shaded.map(|of| (of.depth.texture.clone(), of.depth.index));
@@ -389,7 +392,7 @@ impl CloudPasses {
             layout,
             entries: &[
                 bind::view(0, depth.as_ref().unwrap_or(&self.none)),
-                bind::buffer(1, map.map_or(&self.no_block, |m| &m.block)),
+                map.map_or(&self.no_block, |m| &m.block).entry(1),
                 bind::view(2, map.map_or(&self.none, |m| &m.view)),
                 bind::sampler(3, &self.tables.repeating),
             ],
@@ -411,12 +414,12 @@ impl CloudPasses {
         (clouds, lie, past): (&CloudsUniform, &Lie, Past),
         texture: &wgpu::Texture,
     ) -> Result<()> {
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(clouds));
+        self.block.write(bytemuck::bytes_of(clouds));
         if self.shadows.is_none() {
             self.shadows = Some(self.shadow_map(device, texture)?);
         }
         let Some(map) = &mut self.shadows else { return Ok(()) };
-        map.draw(device, encoder, lie, past);
+        map.draw(encoder, lie, past);
         Ok(())
     }
 
@@ -431,7 +434,7 @@ impl CloudPasses {
             pipelines.march = (march, Pipelines::march(device, &pipelines.march_layouts, march)?);
         }
         let Some(mut picture) = self.picture.take() else { return Ok(0) };
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&of.clouds));
+        self.block.write(bytemuck::bytes_of(&of.clouds));
         let group = self.march_group(device, &pipelines.march_layouts[0], of);
         let (mut passes, mut of_shadows) = (0, 0);
         if of.wanted.march || of.wanted.resolve {
@@ -471,7 +474,7 @@ impl CloudPasses {
         let is_multisampled = has_shadows && of.is_multisampled;
         let kind = Resolve { has_history, has_shadows, is_multisampled, depth_kinds: of.depth_kinds };
         let resolve = pipelines.resolve(device, kind)?;
-        device.queue.write_buffer(&self.picture_block, 0, bytemuck::bytes_of(&of.picture));
+        self.picture_block.write(bytemuck::bytes_of(&of.picture));
         let layout = &pipelines.shadow_layouts[usize::from(is_multisampled)];
         let (shaded, of_shadows) = self.shade(device, encoder, layout, (of.shaded.as_ref(), of.past))?;
         let groups = match &picture.groups {

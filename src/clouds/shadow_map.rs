@@ -16,6 +16,7 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
+        blocks::{BlockView, Blocks, UniformBlock},
         flat_texture,
         pass::{self, FullscreenDesc},
     },
@@ -98,7 +99,7 @@ pub(super) struct Lie {
 /// The map and the passes that make it.
 pub(super) struct ShadowMap {
     pub view: wgpu::TextureView,
-    pub block: wgpu::Buffer,
+    pub block: UniformBlock,
     pipeline: wgpu::RenderPipeline,
     /// The clouds, which both maps are made of.
     clouds: wgpu::BindGroup,
@@ -229,9 +230,9 @@ impl ShadowMap {
 
     /// Of clouds in these tables and this block, in a texture.
     pub fn new(
-        device: &Device,
+        (device, blocks): (&Device, &Blocks),
         tables: &CloudTables,
-        (clouds, is_placed): (&wgpu::Buffer, bool),
+        (clouds, is_placed): (&BlockView, bool),
         of: &wgpu::Texture,
     ) -> Result<Self> {
         let slots = [
@@ -243,17 +244,17 @@ impl ShadowMap {
             (8, Slot::Filtered),
         ];
         let layout = bind::layout(&device.device, "shadows of clouds", wgpu::ShaderStages::FRAGMENT, &slots);
-        let block = bind::block(&device.device, "shadows of clouds", size_of::<ShadowUniform>());
+        let block = blocks.block(device, size_of::<ShadowUniform>());
         let solid = tables.solid.view();
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shadows of clouds"),
             layout: &layout,
             entries: &[
-                bind::buffer(1, clouds),
+                clouds.entry(1),
                 bind::view(2, &tables.map),
                 bind::view(3, &solid),
                 bind::sampler(5, &tables.repeating),
-                bind::buffer(7, &block),
+                block.entry(7),
                 bind::view(8, &tables.placed),
             ],
         });
@@ -274,9 +275,9 @@ impl ShadowMap {
 
     /// Makes some rows anew where enough have grown old, and before them the whole map coarsely where nothing of it holds any more or the picture
     /// is cut; where a frame is a pure function of view and time, all rows. Answers the passes that it took.
-    pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, lie: &Lie, past: Past) -> u32 {
+    pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, lie: &Lie, past: Past) -> u32 {
         let here = lie.standing;
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&lie.uniform()));
+        self.block.write(bytemuck::bytes_of(&lie.uniform()));
         let before = self.standing.replace(here);
         let begins = past == Past::Cut || past == Past::Kept && before.is_none_or(|b| here.leaps_from(&b));
         if begins {

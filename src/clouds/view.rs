@@ -236,7 +236,7 @@ impl DrawnEffect for CloudsView {
         };
         let passes = match &mut self.passes {
             Some(passes) => passes,
-            none => none.insert(Box::new(CloudPasses::new(to.device, at.now.seed)?)),
+            none => none.insert(Box::new(CloudPasses::new((to.device, to.blocks), at.now.seed)?)),
         };
         let cosine = at.now.scene.brighter().direction.z;
         passes.tables.update(to.device, to.encoder, cosine, overhead.liquid_um);

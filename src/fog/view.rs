@@ -3,14 +3,17 @@
 use super::{FogKind, FogModel, FogUniform, FogVariant, Law, candidates};
 use crate::{
     error::Result,
-    gpu::Device,
+    gpu::{
+        Device,
+        blocks::{Blocks, UniformBlock},
+    },
     moment::Moment,
     stage::{Block, Composition, DrawnEffect, PutPart, Shot, Stages, yes},
 };
 
 /// The fog of a view.
 pub(crate) struct FogView {
-    buffer: wgpu::Buffer,
+    block: UniformBlock,
     model: Option<FogModel>,
     /// What shaders must be able to draw of it, if there is any.
     variant: Option<FogVariant>,
@@ -19,9 +22,9 @@ pub(crate) struct FogView {
 }
 
 impl FogView {
-    pub fn new(device: &Device) -> Self {
-        let buffer = crate::gpu::bind::block(&device.device, "fog", size_of::<FogUniform>());
-        Self { buffer, model: None, variant: None, software: device.caps().software }
+    pub fn new(device: &Device, blocks: &Blocks) -> Self {
+        let block = blocks.block(device, size_of::<FogUniform>());
+        Self { block, model: None, variant: None, software: device.caps().software }
     }
 
     /// Takes the fog of a moment, by the host's `law` if it asked for one.
@@ -63,9 +66,9 @@ impl DrawnEffect for FogView {
             to.between(name, whole, least);
         }
         to.block.drawn[1] = share;
-        to.set_block(Block::Between, &self.buffer);
+        to.set_block(Block::Between, &self.block);
         if let (Some(model), true) = (&self.model, self.variant.is_some()) {
-            shot.device.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&model.uniform()));
+            self.block.write(bytemuck::bytes_of(&model.uniform()));
         }
         Ok(())
     }

@@ -9,6 +9,7 @@ use crate::{
     gpu::{
         Device, Layer,
         bind::{self, Slot},
+        blocks::BlockView,
         pass::{self, FullscreenDesc},
         recent::Recent,
     },
@@ -171,7 +172,7 @@ impl Composite {
     pub fn bind(
         &self,
         device: &Device,
-        block: &wgpu::Buffer,
+        block: &BlockView,
         copy: &wgpu::Texture,
         host: &Frame<'_>,
         composition: &Composition,
@@ -191,9 +192,9 @@ impl Composite {
             label: Some("frame"),
             layout: &self.layouts[sampling as usize],
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: block.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 4, resource: between.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 6, resource: on_surfaces.as_entire_binding() },
+                block.entry(0),
+                between.entry(4),
+                on_surfaces.entry(6),
                 entry(1, &color_view),
                 entry(2, depth_view.as_ref().unwrap_or(no_depth)),
                 entry(3, mask_view.as_ref().unwrap_or(&self.none)),

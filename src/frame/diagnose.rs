@@ -42,7 +42,7 @@ impl View {
         let variant = self.variant(&shot, &mut composition)?;
         self.hold_copy(color)?;
         self.bind(&shot, &composition)?;
-        self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&composition.block));
+        self.uniform.write(bytemuck::bytes_of(&composition.block));
         for effect in self.effects.each() {
             let with = Drawing { composition: &composition, block: &self.uniform, surroundings: &self.surroundings };
             effect.draw(&shot, &with, to)?;

@@ -73,7 +73,7 @@ impl View {
         self.hold_copy(color)?;
         self.bind(&shot, &composition)?;
         composition.block.compositions = self.planner.compositions(self.effects.weighs_unseen());
-        self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&composition.block));
+        self.uniform.write(bytemuck::bytes_of(&composition.block));
         for effect in self.effects.each() {
             let with = Drawing { composition: &composition, block: &self.uniform, surroundings: &self.surroundings };
             effect.draw(&shot, &with, to)?;

@@ -7,6 +7,7 @@ use crate::{
     gpu::{
         Device, KeptLayer, Layer,
         bind::{self, Slot},
+        blocks::BlockView,
         is_kept,
     },
     stage::{
@@ -41,7 +42,7 @@ impl OpaqueStep {
     fn bind(
         &mut self,
         device: &Device,
-        block: &wgpu::Buffer,
+        block: &BlockView,
         [color, depth]: [Layer<'_>; 2],
         mask: Option<Layer<'_>>,
     ) -> &Bound {
@@ -55,10 +56,7 @@ impl OpaqueStep {
             let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("opaque"),
                 layout: &self.layout,
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: block.as_entire_binding() },
-                    wgpu::BindGroupEntry { binding: 1, resource },
-                ],
+                entries: &[block.entry(0), wgpu::BindGroupEntry { binding: 1, resource }],
             });
             let views = [color.attached_view(), depth.attached_view()];
             Bound { color: color.kept(), depth: depth.kept(), mask: mask.map(Layer::kept), views, group }
@@ -104,7 +102,7 @@ impl View {
         let attached = self.device.attached_depth(read);
         let depth = Layer { texture: &attached.texture, index: frame.layers.depth };
         let block = uniform(frame, call.now, call.rays, color.texture, call.exposure, false);
-        self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
+        self.uniform.write(bytemuck::bytes_of(&block));
         let step = self.opaque.get_or_insert_with(|| OpaqueStep::new(&self.device.device));
         let layout = step.layout.clone();
         let bound = step.bind(&self.device, &self.uniform, [color, depth], frame.mask_layer());

@@ -32,7 +32,7 @@ impl View {
         let effects: u64 = self.effects.all().iter().map(|effect| effect.bytes()).sum();
         let kinds = self.kinds.as_ref().map_or(0, KindAttachment::bytes);
         let environment = self.environment.as_deref().map_or(0, EnvironmentMap::bytes);
-        copy + kinds + environment + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
+        copy + kinds + environment + self.blocks.bytes() + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
     }
 
     /// Makes the colour copy anew if it does not serve the host's colour; whether it did.

@@ -20,7 +20,10 @@ use crate::{
     context::Context,
     effects::{Effects, PARTS, Unseen},
     error::{Error, Result},
-    gpu::Device,
+    gpu::{
+        Device,
+        blocks::{Blocks, UniformBlock},
+    },
     plan::Planner,
     stage::{
         CostItem, Diagnostic, Frame, FrameFlags, FrameUniform, Prepare, Recording, Report, Stages, can_be_apart,
@@ -34,7 +37,8 @@ use crate::{
 pub struct View {
     pub(crate) device: Arc<Device>,
     pub(super) composite: Arc<SharedComposite>,
-    pub(super) uniform: wgpu::Buffer,
+    pub(super) blocks: Blocks,
+    pub(super) uniform: UniformBlock,
     pub(super) copy: Option<wgpu::Texture>,
     pub(super) bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
     pub(crate) effects: Effects,
@@ -63,9 +67,10 @@ impl View {
     pub fn new(context: &Context) -> Result<Self> {
         let device = context.device().clone();
         let _entered = device.enter()?;
-        let uniform = crate::gpu::bind::block(&device.device, "frame", size_of::<FrameUniform>());
+        let blocks = Blocks::new();
+        let uniform = blocks.block(&device, size_of::<FrameUniform>());
         let composite = context.shared().get(|| SharedComposite::new(&device))?;
-        let effects = Effects::new(&device, context.shared(), &context.held)?;
+        let effects = Effects::new(&device, (context.shared(), &blocks), &context.held)?;
         let planner = Planner::new(PARTS, effects.rebuild_work());
         let surroundings = SurroundingsBlock::new(&device.device);
         device.check_made()?;
@@ -73,6 +78,7 @@ impl View {
         Ok(Self {
             device,
             composite,
+            blocks,
             uniform,
             copy: None,
             bound: None,
@@ -172,7 +178,8 @@ impl View {
     ) -> Result<()> {
         let mut encoder =
             device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
-        let mut to = Recording::new(device, &mut encoder);
+        let blocks = self.blocks.clone();
+        let mut to = Recording::new(device, &mut encoder, &blocks);
         if frame.flags.has(FrameFlags::MEASURE) {
             let so_far = if frame.frame_id == self.report.frame_id { self.report.costs } else { None };
             to.measure(so_far.unwrap_or_default())?;
@@ -224,8 +231,8 @@ impl View {
         self.check_images(frame, stages)?;
         self.check_depth_is_one(frame)?;
         let device = self.device.clone();
-        let recorded = self.recorded_of(frame.frame_id);
-        self.record_stages(context, frame, stages, &mut Recording::new(&device, encoder))
+        let (recorded, blocks) = (self.recorded_of(frame.frame_id), self.blocks.clone());
+        self.record_stages(context, frame, stages, &mut Recording::new(&device, encoder, &blocks))
             .inspect_err(|_| self.take_back(recorded))
     }
 
@@ -271,6 +278,7 @@ impl View {
                 false => self.draw_all(&call, stages, to)?,
             }
         }
+        to.upload();
         self.recorded = self.recorded.with(asked);
         self.report.passes += to.passes;
         self.report.tables_rebuilt += to.tables_rebuilt;

@@ -1,5 +1,7 @@
 //! Layouts of bind groups, slot by slot.
 
+use std::ops::Range;
+
 /// What a shader finds at a binding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Slot {
@@ -109,6 +111,15 @@ pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
 /// A buffer at a binding.
 pub(crate) fn buffer(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
+}
+
+/// A part of a buffer at a binding, from a multiple of 256 on.
+pub(crate) fn part(binding: u32, buffer: &wgpu::Buffer, part: Range<usize>) -> wgpu::BindGroupEntry<'_> {
+    let (offset, size) = (part.start as u64, wgpu::BufferSize::new(part.len() as u64));
+    wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset, size }),
+    }
 }
 
 /// A texture at a binding.

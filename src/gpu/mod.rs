@@ -6,6 +6,7 @@
 
 // wgpu builds its OpenGL backend for Apple hosts only round another library; there the backend is Metal.
 pub(crate) mod bind;
+pub(crate) mod blocks;
 #[cfg(not(any(target_os = "macos", target_os = "ios")))]
 pub mod gl;
 pub mod pass;

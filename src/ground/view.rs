@@ -10,7 +10,10 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::Device,
+    gpu::{
+        Device,
+        blocks::{Blocks, UniformBlock},
+    },
     moment::Moment,
     scene::WorldKind,
     stage::{Block, Composition, DrawnEffect, Frame, FrameFlags, Shot, Stages, Texture, is_float, rounding, yes},
@@ -42,7 +45,7 @@ pub(crate) struct GroundSeen<'a> {
 
 /// The ground of a view.
 pub(crate) struct GroundView {
-    buffer: wgpu::Buffer,
+    uniform: UniformBlock,
     /// Of the frame, where there is any water on surfaces.
     block: Option<GroundUniform>,
     has_terrain: bool,
@@ -54,10 +57,10 @@ pub(crate) struct GroundView {
 }
 
 impl GroundView {
-    pub fn new(device: &Device) -> Self {
-        let buffer = crate::gpu::bind::block(&device.device, "ground", size_of::<GroundUniform>());
+    pub fn new(device: &Device, blocks: &Blocks) -> Self {
+        let uniform = blocks.block(device, size_of::<GroundUniform>());
         let (window, drops) = (TerrainWindow::default(), DropsKept::default());
-        Self { buffer, block: None, has_terrain: false, has_snow: false, views: [None, None], window, drops }
+        Self { uniform, block: None, has_terrain: false, has_snow: false, views: [None, None], window, drops }
     }
 
     /// Takes what there is of a moment for a frame; `fog_depth` is the fog's optical depth straight up. Says whether there is anything
@@ -104,7 +107,7 @@ impl DrawnEffect for GroundView {
         if self.block.is_some() { Stages::SURFACE } else { Stages(0) }
     }
 
-    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+    fn compose(&mut self, _: &Shot<'_>, to: &mut Composition) -> Result<()> {
         let drawn = self.block.as_ref().filter(|_| to.stages.has(Stages::SURFACE));
         let terrain = yes(drawn.is_some() && self.has_terrain);
         to.constant("TERRAIN", terrain, terrain);
@@ -112,9 +115,9 @@ impl DrawnEffect for GroundView {
         to.constant("SNOW", snow, snow);
         to.looks_round |= drawn.is_some();
         if let Some(block) = drawn {
-            shot.device.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(block));
+            self.uniform.write(bytemuck::bytes_of(block));
         }
-        to.set_block(Block::OnSurfaces, &self.buffer);
+        to.set_block(Block::OnSurfaces, &self.uniform);
         let [water, surface] = &self.views;
         to.set_texture(Texture::OnGround, water.clone());
         to.set_texture(Texture::Terrain, surface.clone());

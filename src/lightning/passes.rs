@@ -8,6 +8,7 @@ use crate::{
     gpu::{
         Device, KeptLayer, Layer,
         bind::{self, Slot},
+        blocks::{BlockView, Blocks, UniformBlock},
         is_kept,
         pass::{self, QuadsDesc},
         recent::Recent,
@@ -26,13 +27,13 @@ type DepthKind = (bool, bool);
 
 /// Made when there first is a channel to draw.
 pub(super) struct ChannelPass {
-    block: wgpu::Buffer,
+    block: UniformBlock,
     parts: wgpu::Buffer,
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
     no_layers: wgpu::TextureView,
     pipelines: Recent<(DepthKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
-    bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, wgpu::Buffer, wgpu::BindGroup)>,
+    bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, BlockView, wgpu::BindGroup)>,
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
@@ -48,7 +49,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
 }
 
 impl ChannelPass {
-    pub fn new(device: &Device) -> Self {
+    pub fn new(device: &Device, blocks: &Blocks) -> Self {
         let parts = device.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("flashes"),
             size: (MOST_PARTS * size_of::<PartInstance>()) as u64,
@@ -57,7 +58,7 @@ impl ChannelPass {
         });
         let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Self {
-            block: bind::block(&device.device, "flashes", size_of::<ChannelUniform>()),
+            block: blocks.block(device, size_of::<ChannelUniform>()),
             parts,
             layouts: [false, true].map(|multi| layout(&device.device, multi)),
             no_layers: bind::as_layers(none.texture()),
@@ -69,7 +70,7 @@ impl ChannelPass {
 
     /// Bytes of GPU memory.
     pub fn bytes(&self) -> u64 {
-        self.parts.size() + self.block.size()
+        self.parts.size()
     }
 
     /// Adds parts to the layer `target`, which is cleared first unless something lies in it already (`over`).
@@ -86,7 +87,7 @@ impl ChannelPass {
     ) -> Result<()> {
         let Some((tables_layout, tables)) = &with.composition.tables else { return Ok(()) };
         let device = to.device;
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(block));
+        self.block.write(bytemuck::bytes_of(block));
         device.queue.write_buffer(&self.parts, 0, bytemuck::cast_slice(parts));
         let kind = (depth.is_some_and(Layer::is_multisampled), depth.is_some());
         self.bind(device, with, depth, kind.0);
@@ -129,10 +130,10 @@ impl ChannelPass {
             label: Some("flashes"),
             layout: &self.layouts[usize::from(multi)],
             entries: &[
-                bind::buffer(0, with.block),
+                with.block.entry(0),
                 bind::view(1, view.as_ref().unwrap_or(&self.none)),
-                bind::buffer(4, between),
-                bind::buffer(7, &self.block),
+                between.entry(4),
+                self.block.entry(7),
                 bind::view(11, hung.unwrap_or(&self.no_layers)),
             ],
         });

@@ -297,7 +297,7 @@ impl DrawnEffect for LightningView {
         self.gather_parts(shot);
         let size = shot.color.texture.size();
         let block = ChannelUniform::new(&shot.clip(), [size.width, size.height]);
-        let passes = self.passes.get_or_insert_with(|| Box::new(ChannelPass::new(to.device)));
+        let passes = self.passes.get_or_insert_with(|| Box::new(ChannelPass::new(to.device, to.blocks)));
         passes.draw(to, (&block, &self.parts), with, shot.frame.depth_layer(), (&target, over))?;
         to.passes += 1;
         Ok(())

@@ -11,6 +11,7 @@ use crate::{
     gpu::{
         Device, KeptLayer, Layer,
         bind::{self, Slot},
+        blocks::UniformBlock,
         is_kept,
         pass::{self, QuadsDesc},
         recent::Recent,
@@ -72,7 +73,7 @@ const MOST_PIPELINES: usize = 16;
 
 /// The pass, made when there first are areas.
 pub(super) struct AreaPass {
-    blocks: wgpu::Buffer,
+    blocks: UniformBlock,
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
     no_layers: wgpu::TextureView,
@@ -162,11 +163,11 @@ impl Columns<'_> {
 }
 
 impl AreaPass {
-    pub fn new(device: &Device, counts: bool) -> Self {
+    pub fn new(device: &Device, blocks: &crate::gpu::blocks::Blocks, counts: bool) -> Self {
         let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Self {
             counts,
-            blocks: crate::gpu::bind::block(&device.device, "rain areas", size_of::<Blocks>()),
+            blocks: blocks.block(device, size_of::<Blocks>()),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             no_layers: bind::as_layers(none.texture()),
             none,
@@ -184,7 +185,7 @@ impl AreaPass {
         depth: Option<Layer<'_>>,
     ) -> Option<(wgpu::BindGroupLayout, wgpu::BindGroup)> {
         let (blocks, _) = columns.blocks();
-        device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
+        self.blocks.write(bytemuck::bytes_of(&blocks));
         let multi = depth.is_some_and(Layer::is_multisampled);
         self.bind(device, with, depth, multi);
         self.bound.as_ref().map(|(.., group)| (self.layouts[usize::from(multi)].clone(), group.clone()))
@@ -205,7 +206,7 @@ impl AreaPass {
         let (device, composition) = (to.device, with.composition);
         let Some((tables_layout, tables)) = &composition.tables else { return Ok(()) };
         let (blocks, count) = columns.blocks();
-        device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
+        self.blocks.write(bytemuck::bytes_of(&blocks));
         let kind = ShaftKind {
             multi: depth.is_some_and(Layer::is_multisampled),
             has_depth: depth.is_some(),
@@ -244,24 +245,16 @@ impl AreaPass {
             return;
         }
         let view = depth.map(Layer::view);
-        let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
-            binding,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &self.blocks,
-                offset: offset as u64,
-                size: wgpu::BufferSize::new(size as u64),
-            }),
-        };
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain areas"),
             layout: &self.layouts[usize::from(multi)],
             entries: &[
-                bind::buffer(0, with.block),
+                with.block.entry(0),
                 bind::view(1, view.as_ref().unwrap_or(&self.none)),
-                bind::buffer(4, between),
+                between.entry(4),
                 bind::view(11, hung.unwrap_or(&self.no_layers)),
-                block(7, 0, size_of::<ColumnsUniform>()),
-                block(8, SHAFT_AT, size_of::<ShaftUniform>()),
+                self.blocks.part(7, 0, size_of::<ColumnsUniform>()),
+                self.blocks.part(8, SHAFT_AT, size_of::<ShaftUniform>()),
             ],
         });
         self.bound = Some((depth.map(Layer::kept), hung.cloned(), group));

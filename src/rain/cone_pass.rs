@@ -1,7 +1,5 @@
 //! The cones on the GPU: their texture, their block, one full-screen draw, and before it what keeps rain off them, if anything does.
 
-use std::sync::Arc;
-
 use super::{
     cones::{CONES, ConeUniform, SIDE, texture},
     open_pass::{self, OpenPass},
@@ -11,14 +9,16 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
+        blocks::{BlockView, Blocks, UniformBlock},
         pass::{FullscreenDesc, fullscreen},
     },
+    stage::Recording,
     surroundings::SurroundingsBlock,
 };
 
 /// What a view holds for rain on cones, made when it first draws them.
 pub(super) struct ConePass {
-    block: wgpu::Buffer,
+    block: UniformBlock,
     layout: wgpu::BindGroupLayout,
     streaks: wgpu::TextureView,
     samplers: [wgpu::Sampler; 2],
@@ -31,8 +31,8 @@ pub(super) struct ConePass {
 }
 
 impl ConePass {
-    pub fn new(device: &Device, counts: bool) -> Self {
-        let block = crate::gpu::bind::block(&device.device, "cones", size_of::<ConeUniform>());
+    pub fn new(device: &Device, blocks: &Blocks, counts: bool) -> Self {
+        let block = blocks.block(device, size_of::<ConeUniform>());
         let layout = layout(&device.device);
         let (streaks, bytes) = upload(device);
         let samplers = [wgpu::AddressMode::Repeat, wgpu::AddressMode::ClampToEdge].map(|mode| {
@@ -65,12 +65,12 @@ impl ConePass {
     /// A missing shader file.
     pub fn prepare(
         &mut self,
-        device: &Arc<Device>,
+        device: &Device,
         block: &ConeUniform,
         [frame, around]: [&wgpu::BindGroupLayout; 2],
         kind: ConeKind,
     ) -> Result<()> {
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(block));
+        self.block.write(bytemuck::bytes_of(block));
         let slot = &mut self.pipelines[kind.key()];
         if slot.is_none() {
             *slot = Some(fullscreen(
@@ -103,18 +103,18 @@ impl ConePass {
     /// A missing shader file.
     pub fn shelter(
         &mut self,
-        device: &Arc<Device>,
-        encoder: &mut wgpu::CommandEncoder,
-        (blocks, layout, around): (&wgpu::Buffer, &wgpu::BindGroupLayout, &SurroundingsBlock),
+        to: &mut Recording<'_>,
+        (blocks, layout, around): (&BlockView, &wgpu::BindGroupLayout, &SurroundingsBlock),
         (picture, maps): (wgpu::Extent3d, bool),
     ) -> Result<()> {
+        let device = to.device;
         let first = self.open.is_none();
         let open = self.open.get_or_insert_with(|| OpenPass::new(&device.device, [blocks, &self.block], picture));
         let (grid, anew) = open.fit(&device.device, picture);
         if first || anew {
             self.group = group(&device.device, &self.layout, &self.block, &self.streaks, &self.samplers, grid);
         }
-        open.draw(device, encoder, (layout, around.bind_group()), maps)
+        open.draw(device, to.encoder, (layout, around.bind_group()), maps)
     }
 
     /// Draws what was prepared; the other groups are set.
@@ -159,7 +159,7 @@ fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 fn group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
-    block: &wgpu::Buffer,
+    block: &BlockView,
     streaks: &wgpu::TextureView,
     [repeated, clamped]: &[wgpu::Sampler; 2],
     open: &wgpu::Texture,
@@ -171,7 +171,7 @@ fn group(
         label: Some("cones"),
         layout,
         entries: &[
-            entry(0, block.as_entire_binding()),
+            block.entry(0),
             entry(1, wgpu::BindingResource::TextureView(streaks)),
             entry(2, wgpu::BindingResource::Sampler(repeated)),
             entry(3, wgpu::BindingResource::TextureView(&open)),

@@ -7,7 +7,7 @@
 use super::{
     LocalUniform,
     lattice::SHELLS,
-    passes::{COLUMNS_BYTES, FORMAT, STARTS},
+    passes::{COLUMNS_BYTES, FORMAT, LOCAL},
     uniforms::RainUniform,
 };
 use crate::{
@@ -15,6 +15,7 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
+        blocks::BlockView,
         pass::{self, ComputeDesc, QuadsDesc},
     },
     stage::stepping::{STATE_BYTES, source_layout},
@@ -97,21 +98,13 @@ impl CullPass {
         device.caps().tier > 0
     }
 
-    /// For the drops of `blocks`, the rain's.
-    pub fn new(device: &wgpu::Device, blocks: &wgpu::Buffer, counts: bool) -> Self {
+    /// For the drops of the rain's block, and of its areas'.
+    pub fn new(device: &wgpu::Device, (rain, local): (&BlockView, &wgpu::Buffer), counts: bool) -> Self {
         let [frame, found, streaks] = layouts(device);
         let source = source_layout(device);
         let make = |label, size, usage| {
             let usage = wgpu::BufferUsages::STORAGE | usage;
             device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
-        };
-        let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
-            binding,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: blocks,
-                offset: offset as u64,
-                size: wgpu::BufferSize::new(size as u64),
-            }),
         };
         let group = |layout, entries: &[wgpu::BindGroupEntry<'_>]| {
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("cull"), layout, entries })
@@ -122,9 +115,9 @@ impl CullPass {
             frame: group(
                 &frame,
                 &[
-                    block(0, STARTS[0], size_of::<RainUniform>()),
-                    block(7, STARTS[2], COLUMNS_BYTES),
-                    block(8, STARTS[3], size_of::<LocalUniform>() - COLUMNS_BYTES),
+                    rain.part(0, 0, size_of::<RainUniform>()),
+                    bind::part(7, local, 0..COLUMNS_BYTES),
+                    bind::part(8, local, LOCAL),
                 ],
             ),
             unstepped: group(&source, &[bind::buffer(0, &eyes), bind::buffer(1, &states)]),

@@ -6,12 +6,11 @@ use glam::DVec3;
 use super::{
     Classes,
     lattice::{short_seed, side_m},
-    passes::STARTS,
     uniforms::{MovingAir, RainUniform, StreakCamera},
 };
 pub use crate::falling::drag::step;
 use crate::{
-    gpu::Device,
+    gpu::{Device, blocks::Blocks},
     stage::stepping::{StepPass, Stepped},
     surroundings::{WindMap, WindView},
 };
@@ -20,17 +19,8 @@ use crate::{
 const COMES_IN: u32 = 0x9e37_79b9;
 
 /// What steps drops.
-pub(super) fn pass(device: &Device) -> StepPass {
-    StepPass::new(device, ("rain/step.wgsl", "step_drops"), 64, size_of::<RainUniform>())
-}
-
-/// The drops' own block of the rain's blocks.
-pub(super) fn own_block(blocks: &wgpu::Buffer) -> wgpu::BufferBinding<'_> {
-    wgpu::BufferBinding {
-        buffer: blocks,
-        offset: STARTS[0] as u64,
-        size: wgpu::BufferSize::new(size_of::<RainUniform>() as u64),
-    }
+pub(super) fn pass(device: &Device, blocks: &Blocks) -> StepPass {
+    StepPass::new(device, blocks, ("rain/step.wgsl", "step_drops"), 64, size_of::<RainUniform>())
 }
 
 /// The drops of the lattice that are stepped in a frame.

@@ -12,6 +12,7 @@ use crate::{
     gpu::{
         Device, Layer,
         bind::{self, Slot},
+        blocks::BlockView,
         pass::{FullscreenDesc, fullscreen},
     },
 };
@@ -59,17 +60,15 @@ fn layer(grid: &wgpu::Texture, at: usize) -> wgpu::TextureView {
 
 impl OpenPass {
     /// `blocks` begin with the rain's, `cones` is theirs.
-    pub fn new(device: &wgpu::Device, [blocks, cones]: [&wgpu::Buffer; 2], picture: wgpu::Extent3d) -> Self {
+    pub fn new(device: &wgpu::Device, [blocks, cones]: [&BlockView; 2], picture: wgpu::Extent3d) -> Self {
         let sizes = [size_of::<RainUniform>(), size_of::<ConeUniform>()];
         let layouts = sizes
             .map(|size| bind::layout(device, "open shares", wgpu::ShaderStages::FRAGMENT, &[(0, Slot::Uniform(size))]));
-        let sizes = sizes.map(|s| wgpu::BufferSize::new(s as u64));
-        let groups = [(blocks, 0), (cones, 1)].map(|(buffer, i)| {
-            let block = wgpu::BufferBinding { buffer, offset: 0, size: sizes[i] };
+        let groups = [(blocks, 0), (cones, 1)].map(|(block, i)| {
             device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("open shares"),
                 layout: &layouts[i],
-                entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(block) }],
+                entries: &[block.part(0, 0, sizes[i])],
             })
         });
         let grid = grid(device, cells(picture));

@@ -1,6 +1,6 @@
 //! The layer of drops before a picture: its texture, its pipelines, and the draw.
 
-use std::sync::Arc;
+use std::ops::Range;
 
 use super::{
     LocalUniform, StoneDraw,
@@ -18,11 +18,12 @@ use crate::{
     gpu::{
         Device, KeptLayer, Layer,
         bind::{self, Slot},
+        blocks::{Blocks, UniformBlock},
         is_kept,
         pass::{self, QuadsDesc},
     },
     stage::{
-        FallingTexture,
+        FallingTexture, Recording,
         stepping::{StepPass, Stepped},
     },
     surroundings::{self, SurroundingsBlock},
@@ -32,9 +33,10 @@ pub(super) use crate::stage::LAYER_FORMAT as FORMAT;
 
 /// Drops as one more veil before the picture: premultiplied, one sample a pixel.
 pub(crate) struct RainLayer {
-    /// All blocks one after the other, so that one upload brings them.
-    blocks: wgpu::Buffer,
-    staged: Vec<u8>,
+    /// Of drops, and behind it of splashes.
+    block: UniformBlock,
+    /// Of columns of areas, and behind it of their drops: read and written where a rim of an area is near.
+    local: wgpu::Buffer,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     surroundings: wgpu::BindGroupLayout,
@@ -89,21 +91,24 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
 
 /// The columns of [`LocalUniform`], which are a block of their own.
 pub(super) const COLUMNS_BYTES: usize = std::mem::offset_of!(LocalUniform, counts);
-/// Where each block begins: rain, splashes, columns of areas, drops of areas; and the end.
-pub(super) const STARTS: [usize; 5] = {
-    let splash = size_of::<RainUniform>().next_multiple_of(256);
-    let columns = splash + size_of::<SplashUniform>().next_multiple_of(256);
-    let local = columns + COLUMNS_BYTES.next_multiple_of(256);
-    [0, splash, columns, local, local + size_of::<LocalUniform>() - COLUMNS_BYTES]
+/// Where the splashes begin behind the rain, and where they end.
+pub(super) const SPLASHES: Range<usize> = {
+    let at = size_of::<RainUniform>().next_multiple_of(256);
+    at..at + size_of::<SplashUniform>()
+};
+/// Likewise the drops of areas behind their columns.
+pub(super) const LOCAL: Range<usize> = {
+    let at = COLUMNS_BYTES.next_multiple_of(256);
+    at..at + size_of::<LocalUniform>() - COLUMNS_BYTES
 };
 
 impl RainLayer {
     /// A layer of light, or one that counts how often its pixels are drawn.
-    pub fn new(device: &Device, texture: FallingTexture, counts: bool) -> Self {
+    pub fn new(device: &Device, blocks: &Blocks, texture: FallingTexture, counts: bool) -> Self {
         Self {
             counts,
-            blocks: crate::gpu::bind::block(&device.device, "rain", STARTS[4]),
-            staged: vec![0; STARTS[4]],
+            block: blocks.block(device, SPLASHES.end),
+            local: bind::block(&device.device, "rain areas near", LOCAL.end),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             surroundings: surroundings::layout(&device.device),
             pipelines: [const { [None, None] }; 16],
@@ -137,23 +142,23 @@ impl RainLayer {
     /// Makes stones and cones ready, and what keeps rain off these.
     fn prepare_far(
         &mut self,
-        device: &Arc<Device>,
-        encoder: &mut wgpu::CommandEncoder,
+        to: &mut Recording<'_>,
         drawn: &LayerDraw<'_>,
         (picture, kind): (wgpu::Extent3d, (bool, bool, bool)),
         cone_kind: ConeKind,
     ) -> Result<()> {
+        let (device, blocks) = (to.device, to.blocks);
         let (frame, counts) = ([&self.layouts[usize::from(kind.0)], &self.surroundings], self.counts);
         if let Some(stones) = &drawn.stones {
-            let own = self.stones.get_or_insert_with(|| StonePass::new(device, counts));
+            let own = self.stones.get_or_insert_with(|| StonePass::new(device, blocks, counts));
             own.prepare(device, stones, frame, FORMAT, kind)?;
         }
         if let Some(block) = drawn.cones {
-            let cones = self.cones.get_or_insert_with(|| ConePass::new(device, counts));
+            let cones = self.cones.get_or_insert_with(|| ConePass::new(device, blocks, counts));
             cones.prepare(device, block, frame, cone_kind)?;
             if cone_kind.sheltered {
-                let told = (&self.blocks, &self.surroundings, drawn.surroundings);
-                cones.shelter(device, encoder, told, (picture, drawn.maps))?;
+                let told = (&*self.block, &self.surroundings, drawn.surroundings);
+                cones.shelter(to, told, (picture, drawn.maps))?;
             }
         }
         Ok(())
@@ -165,13 +170,13 @@ impl RainLayer {
     /// A missing shader file.
     pub fn draw(
         &mut self,
-        device: &Arc<Device>,
-        encoder: &mut wgpu::CommandEncoder,
+        to: &mut Recording<'_>,
         drawn: &LayerDraw<'_>,
         color: &wgpu::Texture,
         depth: Option<Layer<'_>>,
     ) -> Result<()> {
-        self.write(device, drawn);
+        let device = to.device;
+        self.write(&device.queue, drawn);
         let multi = depth.is_some_and(Layer::is_multisampled);
         self.bind(device, depth, multi);
         self.texture.view(device, color.size());
@@ -181,9 +186,9 @@ impl RainLayer {
         let cone_kind = ConeKind { multi, has_depth: depth.is_some(), sheltered, areas };
         let key = [areas, drawn.maps, multi, depth.is_some()].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit));
         let over = (drawn.over, drawn.surroundings.bind_group());
-        self.prepare_far(device, encoder, drawn, (color.size(), kind), cone_kind)?;
+        self.prepare_far(to, drawn, (color.size(), kind), cone_kind)?;
         if drawn.rain.shells == 0 {
-            self.draw_into(encoder, over, |pass, layer| {
+            self.draw_into(to.encoder, over, |pass, layer| {
                 if drawn.cones.is_some() {
                     layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
                 }
@@ -192,12 +197,12 @@ impl RainLayer {
             return Ok(());
         }
         if let Some(stepped) = drawn.stepped {
-            let pass = self.stepped.get_or_insert_with(|| Box::new(integrated::pass(device)));
-            pass.step(device, encoder, integrated::own_block(&self.blocks), stepped)?;
+            let pass = self.stepped.get_or_insert_with(|| Box::new(integrated::pass(device, to.blocks)));
+            pass.step(device, to.encoder, self.block.range(0, size_of::<RainUniform>()), stepped)?;
         }
         let splashes = drawn.splashes * u32::from(depth.is_some());
         if CullPass::serves(device) {
-            self.list(device, encoder, drawn, (multi, depth.is_some()), splashes)?;
+            self.list(device, to.encoder, drawn, (multi, depth.is_some()), splashes)?;
         } else {
             for (slot, entries) in self.pipelines[key]
                 .iter_mut()
@@ -209,7 +214,7 @@ impl RainLayer {
                 }
             }
         }
-        self.draw_into(encoder, over, |pass, layer| {
+        self.draw_into(to.encoder, over, |pass, layer| {
             if drawn.cones.is_some() {
                 layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
                 // The drops' layout lacks a group before this one. wgpu 30 does not see that on OpenGL it then lies elsewhere,
@@ -248,7 +253,7 @@ impl RainLayer {
     ) -> Result<()> {
         let frame = [&self.layouts[usize::from(depth.0)], &self.surroundings];
         let (own, counts) = (&device.device, self.counts);
-        let make = || Box::new((CullPass::new(own, &self.blocks, counts), CrownPass::new(own, counts)));
+        let make = || Box::new((CullPass::new(own, (&self.block, &self.local), counts), CrownPass::new(own, counts)));
         let (cull, crowns) = &mut **self.listed.get_or_insert_with(make);
         let around = drawn.surroundings.bind_group();
         let states = self.stepped.as_ref().filter(|_| drawn.stepped.is_some()).and_then(|s| s.states());
@@ -297,20 +302,14 @@ impl RainLayer {
         draw(&mut pass, self);
     }
 
-    fn write(&mut self, device: &Device, drawn: &LayerDraw<'_>) {
-        let staged = &mut self.staged;
-        let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
-        put(STARTS[0], bytemuck::bytes_of(drawn.rain));
-        put(STARTS[1], bytemuck::bytes_of(drawn.splash));
-        // What lies behind them is not read, if no rim of an area is near.
-        let mut end = STARTS[2];
+    fn write(&self, queue: &wgpu::Queue, drawn: &LayerDraw<'_>) {
+        self.block.write(bytemuck::bytes_of(drawn.rain));
+        self.block.write_at(SPLASHES.start, bytemuck::bytes_of(drawn.splash));
         if let Some(local) = drawn.local {
             let (columns, counts) = bytemuck::bytes_of(local).split_at(COLUMNS_BYTES);
-            put(STARTS[2], columns);
-            put(STARTS[3], counts);
-            end = STARTS[4];
+            queue.write_buffer(&self.local, 0, columns);
+            queue.write_buffer(&self.local, LOCAL.start as u64, counts);
         }
-        device.queue.write_buffer(&self.blocks, 0, &self.staged[..end]);
     }
 
     fn bind(&mut self, device: &Device, depth: Option<Layer<'_>>, multi: bool) {
@@ -319,26 +318,15 @@ impl RainLayer {
         }
         let view = depth.map(Layer::view);
         let none = self.none.get_or_insert_with(|| bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm));
-        let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
-            binding,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &self.blocks,
-                offset: offset as u64,
-                size: wgpu::BufferSize::new(size as u64),
-            }),
-        };
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain"),
             layout: &self.layouts[usize::from(multi)],
             entries: &[
-                block(0, 0, size_of::<RainUniform>()),
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(view.as_ref().unwrap_or(none)),
-                },
-                block(3, STARTS[1], size_of::<SplashUniform>()),
-                block(7, STARTS[2], COLUMNS_BYTES),
-                block(8, STARTS[3], size_of::<LocalUniform>() - COLUMNS_BYTES),
+                self.block.part(0, 0, size_of::<RainUniform>()),
+                bind::view(1, view.as_ref().unwrap_or(none)),
+                self.block.part(3, SPLASHES.start, SPLASHES.len()),
+                bind::part(7, &self.local, 0..COLUMNS_BYTES),
+                bind::part(8, &self.local, LOCAL),
             ],
         });
         self.bound = Some((depth.map(Layer::kept), group));

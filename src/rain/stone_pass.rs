@@ -6,6 +6,7 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
+        blocks::{Blocks, UniformBlock},
         pass::{self, QuadsDesc},
     },
 };
@@ -27,7 +28,7 @@ impl StoneDraw {
 
 /// What a view holds for stones, made when the first ones fall.
 pub(super) struct StonePass {
-    block: wgpu::Buffer,
+    block: UniformBlock,
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
     /// Falling and hopping, for each kind of depth.
@@ -43,15 +44,15 @@ fn key((multi, any, maps): Depth) -> usize {
 }
 
 impl StonePass {
-    pub fn new(device: &Device, counts: bool) -> Self {
+    pub fn new(device: &Device, blocks: &Blocks, counts: bool) -> Self {
+        let block = blocks.block(device, size_of::<StoneUniform>());
         let device = &device.device;
-        let block = crate::gpu::bind::block(device, "stones", size_of::<StoneUniform>());
         let slots = [(0, Slot::Uniform(size_of::<StoneUniform>()))];
         let layout = bind::layout(device, "stones", wgpu::ShaderStages::VERTEX, &slots);
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("stones"),
             layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: block.as_entire_binding() }],
+            entries: &[block.entry(0)],
         });
         Self { block, layout, group, pipelines: [const { [None, None] }; 8], counts }
     }
@@ -69,7 +70,7 @@ impl StonePass {
         format: wgpu::TextureFormat,
         depth: Depth,
     ) -> Result<()> {
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&drawn.block));
+        self.block.write(bytemuck::bytes_of(&drawn.block));
         for (slot, vertex) in self.pipelines[key(depth)].iter_mut().zip(["falling_vertex", "hopping_vertex"]) {
             if slot.is_none() {
                 let layouts = [Some(rain), Some(&self.layout), Some(around)];

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     error::Result,
     falling::{FallingLayer, curtain},
-    gpu::Device,
+    gpu::{Device, blocks::Blocks},
     moment::{Moment, Scene},
     stage::{
         Composition, Drawing, DrawnEffect, FallingTexture, PutPart, RainReport, Recording, Report, Shot, Stages,
@@ -30,6 +30,7 @@ use crate::{
 
 /// What a view holds for its drops.
 pub(crate) struct RainView {
+    blocks: Blocks,
     layer: RainLayer,
     pub settings: RainSettings,
     /// Shares of all that falls, and of the drops near the camera, that are drawn: the planner's.
@@ -97,9 +98,10 @@ impl RainPresence {
 }
 
 impl RainView {
-    pub fn new(device: &Device, settings: RainSettings, layer: FallingTexture) -> Self {
+    pub fn new(device: &Device, blocks: &Blocks, settings: RainSettings, layer: FallingTexture) -> Self {
         Self {
-            layer: RainLayer::new(device, layer, false),
+            layer: RainLayer::new(device, blocks, layer, false),
+            blocks: blocks.clone(),
             settings,
             shares: [1.0; 2],
             counted: Vec::new(),
@@ -136,7 +138,7 @@ impl RainView {
     pub fn set_counting(&mut self, device: &Device, counts: bool) {
         if self.layer.counts() != counts {
             let layer = self.layer.texture().clone();
-            (self.layer, self.areas) = (RainLayer::new(device, layer, counts), None);
+            (self.layer, self.areas) = (RainLayer::new(device, &self.blocks, layer, counts), None);
         }
     }
 
@@ -286,7 +288,7 @@ impl RainView {
         let columns = Columns { field: &self.field, scene: &shot.now.scene, clip: shot.clip(), veiled: shot.veiled };
         let counts = self.layer.counts();
         let target = self.layer.texture().view(to.device, shot.color.texture.size());
-        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(to.device, counts)));
+        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(to.device, to.blocks, counts)));
         pass.draw(to, &columns, with, shot.frame.depth_layer(), &target)?;
         Ok(true)
     }
@@ -411,7 +413,7 @@ impl RainView {
             stones: stones
                 .map(|s| StoneDraw::new(&s, s.uniform(camera.position_m, height_m, air.displacement_m, air.time_s))),
         };
-        let done = self.layer.draw(device, to.encoder, &drawn, shot.color.texture, frame.depth_layer());
+        let done = self.layer.draw(to, &drawn, shot.color.texture, frame.depth_layer());
         self.births = births;
         done?;
         let drops = block.shells > 0;
@@ -482,7 +484,8 @@ impl DrawnEffect for RainView {
         }
         self.set_near(shot.device, shot.now);
         let columns = Columns { field: &self.field, scene: &shot.now.scene, clip: shot.clip(), veiled: true };
-        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(shot.device, self.layer.counts())));
+        let pass =
+            self.areas.get_or_insert_with(|| Box::new(AreaPass::new(shot.device, &self.blocks, self.layer.counts())));
         let (layout, group) = pass.bound(shot.device, &columns, with, shot.frame.depth_layer())?;
         Some(("frame/froxels_areas.wgsl", layout, group))
     }

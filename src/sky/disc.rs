@@ -17,7 +17,7 @@ use super::{
 const LIFT: f64 = 0.0105;
 /// Sine of elevation from which on the lift is less than the stretch's room beside the disc.
 const NOT_LIFTED: f64 = 0.2;
-/// How far a stretch reaches beyond a disc on both sides, rad, and how far the lamp may go before it is laid anew.
+/// How far a stretch reaches beyond a disc on both sides, rad, and how far the lamp may go and its size change before it is laid anew.
 const ROOM: (f64, f64) = (2e-3, 1e-3);
 /// Change of altitude after which it is laid anew, of itself and m.
 const CLIMB: (f64, f64) = (1e-3, 1.0);
@@ -61,8 +61,7 @@ impl DiscDepth {
     /// Whether it still serves.
     pub fn serves(&self, air: &AirUniform, altitude_m: f64, sine: f64, radius: f64) -> bool {
         self.air == *air
-            && self.radius == radius
-            && (self.sine - sine).abs() <= ROOM.1
+            && (self.sine - sine).abs() + (self.radius - radius).abs() <= ROOM.1
             && (self.altitude_m - altitude_m).abs() <= CLIMB.0 * altitude_m + CLIMB.1
     }
 
@@ -76,6 +75,17 @@ impl DiscDepth {
 mod tests {
     use super::*;
     use crate::{planet::Planet, sky::reference::medium::Medium};
+
+    /// The distance of sun and moon changes with every moment, and with it their size.
+    #[test]
+    fn a_disc_serves_while_it_hardly_changes() {
+        let air = AirUniform::of(&Planet::earth());
+        let depth = DiscDepth::new(&air, 50.0, 0.5, 0.00465);
+        assert!(depth.serves(&air, 50.0, 0.5, 0.00465 * (1.0 + 1e-11)), "a moment later");
+        assert!(depth.serves(&air, 50.0, 0.5004, 0.005));
+        assert!(!depth.serves(&air, 50.0, 0.5004, 0.0054), "by place and size together");
+        assert!(!depth.serves(&air, 50.0, 0.5, 0.1));
+    }
 
     #[test]
     fn the_air_before_a_disc_is_that_of_its_height() {

@@ -1,18 +1,17 @@
 //! Flakes on the GPU: their block, their step where they are stepped, and their draw into the layer before the picture.
 
-use std::sync::Arc;
-
 use super::{stepped, uniforms::FlakesUniform};
 use crate::{
     error::Result,
     gpu::{
         Device, KeptLayer, Layer,
         bind::{self, Slot},
+        blocks::{Blocks, UniformBlock},
         is_kept,
         pass::{self, QuadsDesc},
     },
     stage::{
-        LAYER_FORMAT,
+        LAYER_FORMAT, Recording,
         stepping::{STATE_BYTES, StepPass, Stepped},
     },
     surroundings::{self, SurroundingsBlock},
@@ -35,7 +34,7 @@ pub(super) struct FlakeDraw<'a> {
 
 /// What a view holds for flakes, made when the first ones fall.
 pub(super) struct SnowPass {
-    block: wgpu::Buffer,
+    block: UniformBlock,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     surroundings: wgpu::BindGroupLayout,
@@ -49,14 +48,14 @@ pub(super) struct SnowPass {
 }
 
 impl SnowPass {
-    pub fn new(device: &Device, counts: bool) -> Self {
+    pub fn new(device: &Device, blocks: &Blocks, counts: bool) -> Self {
         let own = &device.device;
         let layout = |several: bool| {
             let slots = [(0, Slot::Uniform(size_of::<FlakesUniform>())), (1, Slot::texels(several))];
             bind::layout(own, "snow", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
         };
         Self {
-            block: bind::block(own, "snow", size_of::<FlakesUniform>()),
+            block: blocks.block(device, size_of::<FlakesUniform>()),
             layouts: [layout(false), layout(true)],
             surroundings: surroundings::layout(own),
             pipelines: [const { None }; 16],
@@ -74,20 +73,16 @@ impl SnowPass {
 
     /// Bytes of GPU memory that it holds.
     pub fn bytes(&self) -> u64 {
-        self.block.size() + self.step.as_ref().map_or(0, |step| step.bytes())
+        self.step.as_ref().map_or(0, |step| step.bytes())
     }
 
     /// Draws all flakes.
     ///
     /// # Errors
     /// A missing shader file.
-    pub fn draw(
-        &mut self,
-        device: &Arc<Device>,
-        encoder: &mut wgpu::CommandEncoder,
-        drawn: &FlakeDraw<'_>,
-    ) -> Result<()> {
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(drawn.block));
+    pub fn draw(&mut self, to: &mut Recording<'_>, drawn: &FlakeDraw<'_>) -> Result<()> {
+        let device = to.device;
+        self.block.write(bytemuck::bytes_of(drawn.block));
         let several = drawn.depth.is_some_and(Layer::is_multisampled);
         self.bind(device, drawn.depth, several);
         let kind = [several, drawn.depth.is_some(), drawn.maps, drawn.stepped.is_some()];
@@ -97,15 +92,14 @@ impl SnowPass {
         }
         match drawn.stepped {
             Some(by) => {
-                let step = self.step.get_or_insert_with(|| Box::new(stepped::pass(device)));
-                let own = wgpu::BufferBinding { buffer: &self.block, offset: 0, size: None };
-                step.step(device, encoder, own, by)?;
+                let step = self.step.get_or_insert_with(|| Box::new(stepped::pass(device, to.blocks)));
+                step.step(device, to.encoder, self.block.range(0, self.block.bytes()), by)?;
             }
             None => self.step = None,
         }
         let (Some(pipeline), Some((_, group))) = (&self.pipelines[place], &self.bound) else { return Ok(()) };
         let load = if drawn.over { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("snow"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: drawn.target,
@@ -138,10 +132,7 @@ impl SnowPass {
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("snow"),
             layout: &self.layouts[usize::from(several)],
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.block.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: texels },
-            ],
+            entries: &[self.block.entry(0), wgpu::BindGroupEntry { binding: 1, resource: texels }],
         });
         self.bound = Some((depth.map(Layer::kept), group));
     }

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     falling::lattice::short_seed,
-    gpu::Device,
+    gpu::{Device, blocks::Blocks},
     stage::{
         StreakCamera,
         stepping::{StepPass, Stepped},
@@ -18,8 +18,8 @@ use crate::{
 };
 
 /// What steps flakes.
-pub(super) fn pass(device: &Device) -> StepPass {
-    StepPass::new(device, ("snow/step.wgsl", "step_flakes"), 128, size_of::<FlakesUniform>())
+pub(super) fn pass(device: &Device, blocks: &Blocks) -> StepPass {
+    StepPass::new(device, blocks, ("snow/step.wgsl", "step_flakes"), 128, size_of::<FlakesUniform>())
 }
 
 /// What they are stepped by.

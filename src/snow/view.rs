@@ -193,7 +193,7 @@ impl DrawnEffect for SnowView {
         if self.pass.as_ref().is_some_and(|pass| pass.counts() != self.counts) {
             self.pass = None;
         }
-        let pass = self.pass.get_or_insert_with(|| Box::new(SnowPass::new(to.device, self.counts)));
+        let pass = self.pass.get_or_insert_with(|| Box::new(SnowPass::new(to.device, to.blocks, self.counts)));
         let is_pure = shot.frame.is_pure();
         self.is_stepped = u64::from(flakes.drawn) <= StepPass::most(to.device)
             && stepping::is_due(now, to.device, flakes.reach_m(), self.is_stepped, is_pure);
@@ -211,7 +211,7 @@ impl DrawnEffect for SnowView {
             over: self.over,
             depth: shot.frame.depth_layer(),
         };
-        pass.draw(to.device, to.encoder, &drawn)?;
+        pass.draw(to, &drawn)?;
         self.drawn = (shot.frame.frame_id, SnowReport { flakes: flakes.drawn, flakes_to_m: flakes.reach_m() });
         to.passes += 1;
         Ok(())

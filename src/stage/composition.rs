@@ -1,6 +1,7 @@
 //! What the effects add to the one full-screen draw of a call.
 
 use super::{FrameUniform, Stages};
+use crate::gpu::blocks::BlockView;
 
 /// Name and value of an `override` constant.
 pub(crate) type Constant = (&'static str, f64);
@@ -127,7 +128,7 @@ pub(crate) struct Composition {
     /// Those without the parts of which nothing is drawn now: cheaper than a branch on a software driver, which takes both ways.
     pub least: Pipeline,
     /// Buffers by [`Block`].
-    pub blocks: [Option<wgpu::Buffer>; 2],
+    pub blocks: [Option<BlockView>; 2],
     /// Textures by [`Texture`].
     pub textures: [Option<wgpu::TextureView>; 4],
     /// Look-up tables of what lies behind and between (group 1), and their layout.
@@ -175,8 +176,8 @@ impl Composition {
     }
 
     /// Gives a block.
-    pub fn set_block(&mut self, place: Block, buffer: &wgpu::Buffer) {
-        self.blocks[place as usize] = Some(buffer.clone());
+    pub fn set_block(&mut self, place: Block, block: &BlockView) {
+        self.blocks[place as usize] = Some(block.clone());
     }
 
     /// The texture at a place, if an effect has given one.

@@ -7,7 +7,7 @@ use glam::DMat4;
 use super::{ColorSpace, Composition, Frame, FrameFlags, OpaqueDraw, Recording, Report, Stages, Tone};
 use crate::{
     error::Result,
-    gpu::{Device, Layer},
+    gpu::{Device, Layer, blocks::BlockView},
     light::ToneCurve,
     moment::Moment,
     plan::{
@@ -83,7 +83,7 @@ impl Frame<'_> {
 pub(crate) struct Drawing<'a> {
     pub composition: &'a Composition,
     /// The frame's block on the GPU.
-    pub block: &'a wgpu::Buffer,
+    pub block: &'a BlockView,
     pub surroundings: &'a SurroundingsBlock,
 }
 

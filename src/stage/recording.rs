@@ -11,7 +11,11 @@ use std::{
 };
 
 use super::Stages;
-use crate::{error::Result, gpu::Device, plan::Prediction};
+use crate::{
+    error::Result,
+    gpu::{Device, blocks::Blocks},
+    plan::Prediction,
+};
 
 /// What a frame spends time on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,6 +178,8 @@ struct Watch {
 pub(crate) struct Recording<'a> {
     pub device: &'a Arc<Device>,
     pub encoder: &'a mut wgpu::CommandEncoder,
+    /// The view's blocks, which are brought up before every submission.
+    pub blocks: &'a Blocks,
     /// Full-screen draws recorded by this call so far.
     pub passes: u32,
     /// Tables built, refined or faded by this call.
@@ -182,8 +188,8 @@ pub(crate) struct Recording<'a> {
 }
 
 impl<'a> Recording<'a> {
-    pub fn new(device: &'a Arc<Device>, encoder: &'a mut wgpu::CommandEncoder) -> Self {
-        Self { device, encoder, passes: 0, tables_rebuilt: 0, watch: None }
+    pub fn new(device: &'a Arc<Device>, encoder: &'a mut wgpu::CommandEncoder, blocks: &'a Blocks) -> Self {
+        Self { device, encoder, blocks, passes: 0, tables_rebuilt: 0, watch: None }
     }
 
     /// Starts the stopwatch, once all earlier work of the queue is done.
@@ -201,8 +207,14 @@ impl<'a> Recording<'a> {
         self.watch.is_some()
     }
 
+    /// Brings up what blocks hold now, for what was recorded so far.
+    pub fn upload(&mut self) {
+        self.blocks.upload(&self.device.queue);
+    }
+
     /// Submits what was recorded so far.
     pub fn flush(&mut self) {
+        self.upload();
         let next = self.device.device.create_command_encoder(&Default::default());
         self.device.submit(std::mem::replace(self.encoder, next));
     }
@@ -214,6 +226,7 @@ impl<'a> Recording<'a> {
         if ran {
             let next = self.device.device.create_command_encoder(&Default::default());
             let encoder = std::mem::replace(self.encoder, next);
+            self.blocks.upload(&self.device.queue);
             self.device.submit_and_wait(encoder)?;
             watch.costs.add(item, ms_since(watch.last));
         }

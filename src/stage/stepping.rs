@@ -21,6 +21,7 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
+        blocks::{Blocks, UniformBlock},
         pass::{self, ComputeDesc},
     },
     moment::Moment,
@@ -183,7 +184,7 @@ pub(crate) struct StepPass {
     /// Shader and entry point, and threads of one of its groups.
     shader: (&'static str, &'static str),
     group: u32,
-    block: wgpu::Buffer,
+    block: UniformBlock,
     states: Option<(Rooms, wgpu::Buffer)>,
     left: Option<Left>,
     /// The texture of the wind that is bound; one texel where there is none.
@@ -209,7 +210,13 @@ impl StepPass {
     }
 
     /// By an entry point of a shader with groups of so many threads, which reads an own block of so many bytes.
-    pub fn new(device: &Device, shader: (&'static str, &'static str), group: u32, own_bytes: usize) -> Self {
+    pub fn new(
+        device: &Device,
+        blocks: &Blocks,
+        shader: (&'static str, &'static str),
+        group: u32,
+        own_bytes: usize,
+    ) -> Self {
         let own = &device.device;
         let make = |label, slots: &[(u32, Slot)]| bind::layout(own, label, wgpu::ShaderStages::COMPUTE, slots);
         let step = [
@@ -221,7 +228,7 @@ impl StepPass {
         Self {
             shader,
             group,
-            block: bind::block(own, "step", EYES + 16 * SHELLS),
+            block: blocks.block(device, EYES + 16 * SHELLS),
             states: None,
             left: None,
             wind: None,
@@ -267,7 +274,7 @@ impl StepPass {
         let mut bytes = [0; EYES + 16 * SHELLS];
         bytes[..size_of::<StepUniform>()].copy_from_slice(bytemuck::bytes_of(&block));
         bytes[EYES..].copy_from_slice(bytemuck::bytes_of(&block.eye));
-        device.queue.write_buffer(&self.block, 0, &bytes);
+        self.block.write(&bytes);
         let slot = &mut self.steps[usize::from(map.is_some())];
         if slot.is_none() {
             let desc = ComputeDesc {
@@ -357,13 +364,6 @@ impl StepPass {
 
     fn bind(&mut self, device: &Device, own: wgpu::BufferBinding<'_>) {
         let (None, Some((_, states)), Some(wind)) = (&self.groups, &self.states, &self.wind) else { return };
-        let part = |offset: usize, size: usize| {
-            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &self.block,
-                offset: offset as u64,
-                size: wgpu::BufferSize::new(size as u64),
-            })
-        };
         let group = |layout, entries: &[wgpu::BindGroupEntry<'_>]| {
             device.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("step"), layout, entries })
         };
@@ -373,13 +373,13 @@ impl StepPass {
             group(
                 &self.layouts[1],
                 &[
-                    entry(0, part(0, size_of::<StepUniform>())),
+                    self.block.part(0, 0, size_of::<StepUniform>()),
                     entry(1, states.as_entire_binding()),
                     entry(2, wgpu::BindingResource::TextureView(&wind.view)),
                     entry(3, wgpu::BindingResource::Sampler(&self.sampler)),
                 ],
             ),
-            group(&self.layouts[2], &[entry(0, part(EYES, 16 * SHELLS)), entry(1, states.as_entire_binding())]),
+            group(&self.layouts[2], &[self.block.part(0, EYES, 16 * SHELLS), entry(1, states.as_entire_binding())]),
         ]);
     }
 }

@@ -165,11 +165,11 @@ impl<'a> Walk<'a> {
         stretch: &Stretch,
         t: f64,
     ) -> (Blowing, Stir) {
-        let [turned, gust] = self.gusts.velocity(stretch, path).map(|v| v * speed);
-        let stirred = self.gusts.displacement(stretch, path);
-        let drift =
-            Drift { time_s: t, path_m: self.at.path_m + path, displacement_m: self.at.displacement_m + way + stirred };
-        (Blowing { drift, mean_m_s: wind, turned_m_s: turned, gust_m_s: gust }, stretch.stir_after(path))
+        let stirred = self.gusts.over(stretch, path);
+        let displacement_m = self.at.displacement_m + way + stirred.way_m;
+        let drift = Drift { time_s: t, path_m: self.at.path_m + path, displacement_m };
+        let (turned_m_s, gust_m_s) = (stirred.turned * speed, stirred.gust * speed);
+        (Blowing { drift, mean_m_s: wind, turned_m_s, gust_m_s }, stretch.stir_after(path))
     }
 
     /// The wind at `t`, not before what the timeline knows.

@@ -105,16 +105,26 @@ fn turn(angle: f64) -> DVec2 {
     DVec2::new(cos, sin)
 }
 
-/// Integrals of e^(i k y) and of y e^(i k y) over y from 0 to `length`.
-fn wave_integrals(k: f64, length: f64) -> [DVec2; 2] {
+/// e^(i k y) at y = `length`, and the integrals of it and of y e^(i k y) from 0 to there.
+fn wave(k: f64, length: f64) -> [DVec2; 3] {
     if k == 0.0 {
-        return [DVec2::X * length, DVec2::X * (0.5 * length * length)];
+        return [DVec2::X, DVec2::X * length, DVec2::X * (0.5 * length * length)];
     }
-    let (end, half) = (turn(k * length), libm::sin(0.5 * k * length));
-    let plain = DVec2::new(end.y, 2.0 * half * half) / k;
+    let half = turn(0.5 * k * length);
+    // 1 - cos by the half angle keeps its digits in a short stretch.
+    let (sin, versine) = (2.0 * half.x * half.y, 2.0 * half.y * half.y);
+    let (end, plain) = (DVec2::new(1.0 - versine, sin), DVec2::new(sin, versine) / k);
     // By parts: (Y e^(ikY) - plain) / (i k).
     let ramp = end * length - plain;
-    [plain, DVec2::new(ramp.y, -ramp.x) / k]
+    [end, plain, DVec2::new(ramp.y, -ramp.x) / k]
+}
+
+/// What stirring adds to the mean wind at a place of a stretch, per m/s of mean speed: the turning, and the gusts; and how far both
+/// have carried the air since its start, m.
+pub(super) struct Stirred {
+    pub turned: DVec2,
+    pub gust: DVec2,
+    pub way_m: DVec2,
 }
 
 impl Gusts {
@@ -139,45 +149,29 @@ impl Gusts {
         Self { along, across, wander }
     }
 
-    /// Gusts along and across the wind at path `s_m`, in standard deviations.
-    fn at(&self, s_m: f64) -> [f64; 2] {
-        let sum = |tones: &[Tone; TONES]| {
-            tones.iter().map(|t| t.amplitude * libm::cos(t.wavenumber * s_m + t.phase)).sum::<f64>()
-        };
-        [sum(&self.along), sum(&self.across)]
-    }
-
-    /// What the stirring adds to the mean wind at `y_m` on a stretch, per m/s of mean speed: the turning, and the gusts.
-    pub fn velocity(&self, stretch: &Stretch, y_m: f64) -> [DVec2; 2] {
-        let s = stretch.start_m + y_m;
-        let [along, across] = self.at(s);
-        let stir = stretch.stir_after(y_m);
-        let phase = self.wander.wavenumber * s + self.wander.phase;
-        let turned = orders(&stir.turning).map(|(n, c)| turn(n * phase).rotate(c)).sum();
-        [turned, stir.along * along + stir.along.perp() * (ACROSS * across)]
-    }
-
-    /// The integral of both parts of [`Gusts::velocity`] over the first `y_m` of a stretch, m.
-    pub fn displacement(&self, stretch: &Stretch, y_m: f64) -> DVec2 {
-        let (from, rise) = (&stretch.from, &stretch.rise_per_m());
+    /// What the stirring does over the first `y_m` of a stretch.
+    pub fn over(&self, stretch: &Stretch, y_m: f64) -> Stirred {
+        let (from, rise, there) = (&stretch.from, &stretch.rise_per_m(), &stretch.stir_after(y_m));
+        // In standard deviations: now, and the integrals of it and of it times the way.
         let [along, across] = [&self.along, &self.across].map(|tones| {
-            tones.iter().fold([0.0; 2], |[plain, ramp], t| {
+            tones.iter().fold([0.0; 3], |sums, t| {
                 let start = turn(t.wavenumber * stretch.start_m + t.phase) * t.amplitude;
-                let [p, r] = wave_integrals(t.wavenumber, y_m);
-                [plain + start.rotate(p).x, ramp + start.rotate(r).x]
+                let wave = wave(t.wavenumber, y_m);
+                std::array::from_fn(|i| sums[i] + start.rotate(wave[i]).x)
             })
         });
-        let gusts = from.along * along[0] + rise.along * along[1];
-        let aside = from.along.perp() * across[0] + rise.along.perp() * across[1];
+        let gust = |stir: &Stir, i: usize| stir.along * along[i] + stir.along.perp() * (ACROSS * across[i]);
         let phase = self.wander.wavenumber * stretch.start_m + self.wander.phase;
-        let turned = |stir: &Stir, power: usize| -> DVec2 {
-            let waves = orders(&stir.turning).map(|(n, c)| {
-                let wave = wave_integrals(n * self.wander.wavenumber, y_m)[power];
-                turn(n * phase).rotate(wave.rotate(c))
-            });
-            waves.sum()
+        let turned = |stir: &Stir, i: usize| -> DVec2 {
+            let of_order =
+                |(n, c): (f64, DVec2)| turn(n * phase).rotate(wave(n * self.wander.wavenumber, y_m)[i].rotate(c));
+            orders(&stir.turning).map(of_order).sum()
         };
-        gusts + aside * ACROSS + turned(from, 0) + turned(rise, 1)
+        Stirred {
+            turned: turned(there, 0),
+            gust: gust(there, 0),
+            way_m: gust(from, 1) + gust(rise, 2) + turned(from, 1) + turned(rise, 2),
+        }
     }
 }
 

@@ -6,7 +6,10 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::*;
 use crate::{
-    gpu::DeviceOptions,
+    gpu::{
+        DeviceOptions,
+        blocks::{Blocks, UniformBlock},
+    },
     rain::{
         DropLight,
         lattice::{self, Drop, SPEED_UNIT},
@@ -25,7 +28,8 @@ const EXPOSURE_S: f64 = 1.0 / 60.0;
 
 struct Bench {
     device: Arc<Device>,
-    blocks: wgpu::Buffer,
+    blocks: Blocks,
+    block: UniformBlock,
     pass: CullPass,
     surroundings: surroundings::SurroundingsBlock,
     classes: Classes,
@@ -39,16 +43,13 @@ impl Bench {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let precipitation = Precipitation::of(PrecipitationKind::Rain, rate_mm_h);
         let falling = derive(&Weather { precipitation, ..Weather::default() }).unwrap().precipitation;
-        let blocks = device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: STARTS[4] as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let pass = CullPass::new(&device.device, &blocks, false);
+        let blocks = Blocks::new();
+        let block = blocks.block(&device, size_of::<RainUniform>());
+        let local = bind::block(&device.device, "no areas", LOCAL.end);
+        let pass = CullPass::new(&device.device, (&block, &local), false);
         let surroundings = surroundings::SurroundingsBlock::new(&device.device);
         let classes = Classes::new(&falling, 1.0, u32::MAX);
-        Self { device, blocks, pass, surroundings, classes, clip: DMat4::IDENTITY, velocity_m_s: DVec3::ZERO }
+        Self { device, blocks, block, pass, surroundings, classes, clip: DMat4::IDENTITY, velocity_m_s: DVec3::ZERO }
     }
 
     /// Finds what a camera at [`EYE`] sees; answers (vertices, drops, ...) of the draw, and middles and widths of the streaks.
@@ -70,7 +71,8 @@ impl Bench {
             MovingAir { displacement_m: WIND * TIME_S, velocity_m_s: WIND, time_s: TIME_S, extinction_per_m: 0.0 };
         let dark = DropLight { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };
         let block = RainUniform::new(SEED, &self.classes, &dark, &shot, &air);
-        self.device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&block));
+        self.block.write(bytemuck::bytes_of(&block));
+        self.blocks.upload(&self.device.queue);
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         let layout = surroundings::layout(&self.device.device);
         let lattice = Lattice { shells: 4, per_shell: self.classes.per_shell, states: None, areas: false, maps: false };

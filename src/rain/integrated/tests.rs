@@ -6,7 +6,10 @@ use glam::{DMat4, DVec2};
 
 use super::*;
 use crate::{
-    gpu::DeviceOptions,
+    gpu::{
+        DeviceOptions,
+        blocks::{Blocks, UniformBlock},
+    },
     rain::{
         DropLight,
         drops::GRAVITY_M_S2,
@@ -23,7 +26,8 @@ const SEED: u64 = 5;
 
 struct Bench {
     device: Arc<Device>,
-    blocks: wgpu::Buffer,
+    blocks: Blocks,
+    block: UniformBlock,
     pass: StepPass,
     wind: WindTexture,
     classes: Classes,
@@ -51,14 +55,10 @@ fn classes(rate_mm_h: f64, most: u32) -> Classes {
 impl Bench {
     fn new(rate_mm_h: f64, most: u32) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
-        let blocks = device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: STARTS[4] as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let pass = pass(&device);
-        Self { device, blocks, pass, wind: WindTexture::default(), classes: classes(rate_mm_h, most), most }
+        let blocks = Blocks::new();
+        let block = blocks.block(&device, size_of::<RainUniform>());
+        let pass = pass(&device, &blocks);
+        Self { device, blocks, block, pass, wind: WindTexture::default(), classes: classes(rate_mm_h, most), most }
     }
 
     /// Steps to `time_s`; the wind is even but for the grid.
@@ -78,13 +78,15 @@ impl Bench {
         let air = MovingAir { displacement_m: wind * time_s, velocity_m_s: wind, time_s, extinction_per_m: 0.0 };
         let dark = DropLight { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };
         let block = RainUniform::new(SEED, &self.classes, &dark, &shot, &air);
-        self.device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&block));
+        self.block.write(bytemuck::bytes_of(&block));
         let carried = |from| wind * (time_s - from);
         let blown = (self.wind.view(&self.device, grid), grid.map(|g| WindMap::new(g, position_m)));
         let drops = SteppedDrops { seed: SEED, classes: &self.classes, shells: SHELLS, most: self.most };
         let stepped = stepped(&drops, (&shot, &air), &carried, blown);
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        self.pass.step(&self.device, &mut encoder, own_block(&self.blocks), &stepped).unwrap();
+        let own = self.block.range(0, self.block.bytes());
+        self.pass.step(&self.device, &mut encoder, own, &stepped).unwrap();
+        self.blocks.upload(&self.device.queue);
         self.device.submit_and_wait(encoder).unwrap();
     }
 

@@ -7,7 +7,10 @@ use glam::{DMat3, DMat4};
 use super::*;
 use crate::{
     falling::lattice::{fraction, nearest},
-    gpu::DeviceOptions,
+    gpu::{
+        DeviceOptions,
+        blocks::{Blocks, UniformBlock},
+    },
     moment::LightAround,
     scene::{Camera, DepthMapping, ViewRays},
     snow::{
@@ -23,7 +26,8 @@ const SEED: u64 = 11;
 
 struct Bench {
     device: Arc<Device>,
-    block: wgpu::Buffer,
+    blocks: Blocks,
+    block: UniformBlock,
     pass: StepPass,
     wind: WindTexture,
     flakes: Flakes,
@@ -60,9 +64,10 @@ fn even(velocity: [f32; 3], kind: WindGridKind) -> WindVolume {
 impl Bench {
     fn new(rate_mm_h: f64, most: u32) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
-        let block = crate::gpu::bind::block(&device.device, "flakes", size_of::<FlakesUniform>());
-        let pass = pass(&device);
-        Self { device, block, pass, wind: WindTexture::default(), flakes: flakes(rate_mm_h, most) }
+        let blocks = Blocks::new();
+        let block = blocks.block(&device, size_of::<FlakesUniform>());
+        let pass = pass(&device, &blocks);
+        Self { device, blocks, block, pass, wind: WindTexture::default(), flakes: flakes(rate_mm_h, most) }
     }
 
     /// Steps to `time_s`; the weather's wind is even.
@@ -82,13 +87,14 @@ impl Bench {
         let air = MovingAir { displacement_m: wind * time_s, velocity_m_s: wind, time_s, extinction_per_m: 0.0 };
         let dark = LightAround { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };
         let block = FlakesUniform::new(SEED, &self.flakes, &dark, &shot, &air);
-        self.device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
+        self.block.write(bytemuck::bytes_of(&block));
         let carried = |from| wind * (time_s - from);
         let blown = (self.wind.view(&self.device, volume), volume.map(|v| WindMap::new(v, eye)));
         let by = stepped((SEED, &self.flakes), (&shot, &air), &carried, blown);
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        let own = wgpu::BufferBinding { buffer: &self.block, offset: 0, size: None };
+        let own = self.block.range(0, self.block.bytes());
         self.pass.step(&self.device, &mut encoder, own, &by).unwrap();
+        self.blocks.upload(&self.device.queue);
         self.device.submit_and_wait(encoder).unwrap();
     }
 
