@@ -86,7 +86,8 @@ impl Default for ContextDesc {
 }
 
 /// What the effects do to every world.
-pub(crate) const COUPLINGS: Couplings = Couplings { dim: fog::dim, night_lux: stars::night_lux };
+pub(crate) const COUPLINGS: Couplings =
+    Couplings { dim: fog::dim, cloud_over_areas: clouds::cloud_over_areas, night_lux: stars::night_lux };
 
 /// What a context holds of the effects for all its views.
 pub(crate) struct Held {

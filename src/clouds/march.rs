@@ -8,12 +8,12 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec3;
 
 use super::{
+    cells::CLEAR,
     field::{Field, Shape, about, dome},
     halo,
     held::Grown,
     light::{Depths, Sources},
     overhead::{ICE, Overhead, light_on},
-    placed::CLEAR,
     tables::media,
     transport::Transport,
     uniforms::{LayerLight, WIDTH_CELLS},

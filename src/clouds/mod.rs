@@ -7,7 +7,7 @@
 //!   a place. Ice makes a [`halo`]. [`mod@reference`] follows photons through boxes, [`traced`] through the field itself.
 //! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the frame before.
 //! * What mirrors and cube maps show of it: `round`, a small map of all directions.
-//! * A host's map of where clouds stand, and cloud over rain areas: `placed`, `layer_map`.
+//! * A host's map of where clouds stand, and cloud over rain areas: `placed`, `layer_map`, `cells`.
 //! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures and for a host's own materials (`handed`).
 //!
 //! The deck is drawn with the sky (`shaders/between/sky.wgsl`).
@@ -18,6 +18,7 @@
 //! a low sun. Of the cover that is seen: 3 points (`clouds::cover`).
 //!
 pub mod candidates;
+mod cells;
 pub mod cover;
 pub mod field;
 pub mod halo;
@@ -47,6 +48,7 @@ mod view;
 
 use serde::{Deserialize, Serialize};
 
+pub(crate) use cells::over_place as cloud_over_areas;
 pub use handed::{CloudShadows, SHADOW_SNIPPET_GLSL, SHADOW_SNIPPET_WGSL};
 pub(crate) use held::HeldClouds;
 pub(crate) use march::CloudRays;

@@ -286,7 +286,7 @@ impl CloudPasses {
     pub fn bytes(&self) -> u64 {
         let shadows = self.shadows.as_ref().map_or(0, |_| ShadowMap::BYTES);
         let round = self.round.as_ref().map_or(0, |_| Round::BYTES);
-        CloudTables::BYTES + shadows + round + self.picture.as_ref().map_or(0, Picture::bytes)
+        self.tables.bytes() + shadows + round + self.picture.as_ref().map_or(0, Picture::bytes)
     }
 
     /// What the march is bound to.

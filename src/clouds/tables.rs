@@ -224,6 +224,9 @@ impl CloudTables {
     }
 
     /// Bytes of GPU memory.
-    pub const BYTES: u64 =
-        (8 * MAP_SIZE * MAP_SIZE + 8 * 6 * LEAKS * DEPTHS * DEPTHS) as u64 + (SOLID_SIZE as u64).pow(3);
+    pub fn bytes(&self) -> u64 {
+        let (map, light) = (8 * MAP_SIZE * MAP_SIZE, 8 * 6 * LEAKS * DEPTHS * DEPTHS);
+        let placed = self.placed.texture().size();
+        (map + light) as u64 + (SOLID_SIZE as u64).pow(3) + 8 * u64::from(placed.width) * u64::from(placed.height)
+    }
 }

@@ -248,6 +248,16 @@ pub struct CloudLight {
 }
 
 impl Conditions {
+    /// The weather with one layer more, which lies anywhere beside the others; as it is if there is no room.
+    pub(crate) fn beneath(mut self, slab: CloudSlab) -> Self {
+        if let Some(free) = self.clouds.iter_mut().find(|s| s.cover <= 0.0) {
+            self.clear_sky *= 1.0 - slab.cover;
+            *free = slab;
+            self.clouds.sort_unstable_by(|a, b| a.base_m.total_cmp(&b.base_m));
+        }
+        self
+    }
+
     /// What the clouds leave of sun and sky: horizontal irradiance = sun (direct + diffuse) + sky light x sky.
     ///
     /// `cos_sun_zenith`: cosine of the sun's zenith distance, held above 0.01. `ground_albedo`: 0 to 1, default of most land

@@ -45,10 +45,10 @@ use crate::{
     light::{Exposure, ToneCurve},
     moment::{Moment, Region, Scene, WeatherOver},
     planet::Planet,
-    scene::{HostLight, Place, WorldFrame},
+    scene::{HostLight, LocalFrame, Place, WorldFrame},
     surroundings::{LyingSnow, OccluderMaps, Shelter, TerrainHeights, WindTexture},
     terrain::Terrain,
-    weather::{CloudMap, Conditions, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
+    weather::{CloudMap, CloudSlab, Conditions, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
     wind::{Drift, LayerDrifts, Wind, WindGrid, WindOver, WindVolume},
 };
 
@@ -113,6 +113,10 @@ pub(crate) struct Settings {
 /// What an effect does to the light of a scene.
 pub(crate) type Dim = fn(&mut Scene) -> Result<()>;
 
+/// The cloud over rain areas as it stands over a place, `eye` in the host's world.
+pub(crate) type CloudOverAreas =
+    fn(&WeatherOver<'_>, &Conditions, (&LocalFrame, DVec3), f64) -> Result<Option<CloudSlab>>;
+
 /// Light of the moonless sky on level ground at a time and place, lux, under air of given optical depths straight up.
 pub(crate) type NightLux = fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[f64; 3]>;
 
@@ -121,6 +125,8 @@ pub(crate) type NightLux = fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[
 pub(crate) struct Couplings {
     /// Takes the light that the weather's low layer takes.
     pub dim: Dim,
+    /// The cloud over rain areas that takes light from a place, with the part of the sky that it covers there.
+    pub cloud_over_areas: CloudOverAreas,
     /// Light of the moonless sky on level ground, lux a channel, at a time and place where the air's optical depths straight up are
     /// given.
     pub night_lux: NightLux,

@@ -16,7 +16,7 @@ use crate::{
     moment::{GroundLight, Light, Scene},
     planet::Planet,
     scene::{LocalFrame, Place, WorldKind},
-    weather::{CloudLight, Conditions, slab_reflectance, smoothstep},
+    weather::{CloudLight, Conditions, slab_diffuse_reflectance, slab_reflectance, smoothstep},
     wind::Blowing,
 };
 
@@ -39,29 +39,51 @@ fn map(a: [f64; 3], b: [f64; 3], f: impl Fn(f64, f64) -> f64) -> [f64; 3] {
     [0, 1, 2].map(|i| f(a[i], b[i]))
 }
 
-/// Optical depths above `altitude_m` straight up, per wavelength: of what scatters (gas, haze), and of ozone.
-fn zenith_depths(planet: &Planet, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
-    let h = altitude_m.max(0.0);
-    let column = |scale: f64| if scale > 0.0 { scale * (-h / scale).exp() } else { 0.0 };
-    let (gas, haze) = (column(planet.rayleigh.scale_height_m), column(planet.mie.scale_height_m));
-    let tent = &planet.absorption;
-    let above = smoothstep(-tent.half_width_m, tent.half_width_m.max(1.0), tent.center_altitude_m - h);
-    let scattering =
-        [0, 1, 2].map(|i| planet.rayleigh.scattering_per_m[i] * gas + planet.mie.extinction_per_m[i] * haze);
-    (scattering, tent.extinction_per_m.map(|e| e * tent.half_width_m * above))
+/// Optical depths straight up, per wavelength.
+struct ZenithDepths {
+    gas: [f64; 3],
+    /// Of haze: what it scatters, and what it takes.
+    haze: [f64; 3],
+    soot: [f64; 3],
+    ozone: [f64; 3],
+}
+
+impl ZenithDepths {
+    /// Of the air above `altitude_m`.
+    fn new(planet: &Planet, altitude_m: f64) -> Self {
+        let h = altitude_m.max(0.0);
+        let column = |scale: f64| if scale > 0.0 { scale * (-h / scale).exp() } else { 0.0 };
+        let (gas, haze) = (column(planet.rayleigh.scale_height_m), column(planet.mie.scale_height_m));
+        let tent = &planet.absorption;
+        let above = smoothstep(-tent.half_width_m, tent.half_width_m.max(1.0), tent.center_altitude_m - h);
+        let mie = &planet.mie;
+        Self {
+            gas: planet.rayleigh.scattering_per_m.map(|s| s * gas),
+            haze: mie.scattering_per_m.map(|s| s * haze),
+            soot: map(mie.extinction_per_m, mie.scattering_per_m, |e, s| (e - s).max(0.0) * haze),
+            ozone: tent.extinction_per_m.map(|e| e * tent.half_width_m * above),
+        }
+    }
+
+    /// Of gas and haze together.
+    fn grey(&self) -> [f64; 3] {
+        [0, 1, 2].map(|i| self.gas[i] + self.haze[i] + self.soot[i])
+    }
 }
 
 /// Albedo of the grey ground that is adapted to, and what counts as that of ground under snow: its snow, of albedo 0.8, then shows two stops
 /// over grey, as photographers place it (Adams 1981, The Negative: zone VII).
 const GROUND_KEY: f64 = 0.18;
 const SNOW_KEY: f64 = 0.2;
+/// Longest way of scattered light through haze, in thicknesses: that of a low sun is scattered out of its slant way. Fitted to sums over skies.
+const LONGEST_WAY: f64 = 4.0;
 /// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
 const LUX_PER_W_M2: f64 = 110.0;
 
 /// Optical depth of all air above `altitude_m` straight up, per wavelength.
 pub(crate) fn zenith_depth(planet: &Planet, altitude_m: f64) -> [f64; 3] {
-    let (scattering, ozone) = zenith_depths(planet, altitude_m);
-    map(scattering, ozone, |s, o| s + o)
+    let depths = ZenithDepths::new(planet, altitude_m);
+    map(depths.grey(), depths.ozone, |s, o| s + o)
 }
 
 /// How far night has come under a sun, 0 by day to 1.
@@ -76,26 +98,34 @@ fn air_mass(elevation_deg: f64) -> f64 {
     1.0 / (h.to_radians().sin() + 0.505_72 * (h + 6.079_95).powf(-1.6364)).max(0.02)
 }
 
-/// Light of a source of `spectrum` above clear air: (direct on a surface facing it, sky on level ground).
+/// Light of a source of `spectrum` above clear air over ground of an `albedo`: (direct on a surface facing it, sky on level ground).
 ///
-/// The sky's share by day is what the two-stream slab (Meador & Weaver 1980) lets through diffusely, within 10 % of the
-/// scattering tables' irradiance; below 5 degrees it is led over to measured twilight.
+/// The sky's share by day is what the two-stream slab (Meador & Weaver 1980) lets through diffusely, and sends back to the ground of what
+/// goes up there; below 5 degrees it is led over to measured twilight. From 6 degrees on, in visibilities from 3 km
+/// on, it is within 6 % of what is seen of the sky (`tests/frame/radiance.rs`).
 fn clear_light(
     (planet, color): (&Planet, &[[f64; 3]; 3]),
-    altitude_m: f64,
+    (altitude_m, albedo): (f64, [f64; 3]),
     elevation_deg: f64,
     spectrum: [f64; 3],
 ) -> ([f64; 3], [f64; 3]) {
-    let (depth, ozone) = zenith_depths(planet, altitude_m);
+    let depths = ZenithDepths::new(planet, altitude_m);
     let mass = air_mass(elevation_deg);
     // From a height the horizon lies deeper and the sun sets later.
     let h = altitude_m.max(0.0);
     let dip = ((h * (h + 2.0 * planet.bottom_radius_m)).sqrt() / planet.bottom_radius_m).atan().to_degrees();
     let up = smoothstep(-0.9, -0.25, elevation_deg + dip);
-    let lux = map(spectrum, ozone, |l, t| l * (-t * mass).exp());
-    let direct = map(lux, depth, |l, t| l * (-t * mass).exp() * up);
+    let lux = map(spectrum, depths.ozone, |l, t| l * (-t * mass).exp());
+    let direct = map(lux, depths.grey(), |l, t| l * (-t * mass).exp() * up);
     let mu = elevation_deg.to_radians().sin().max(0.08);
-    let day = map(lux, depth, |l, t| l * mu * (1.0 - slab_reflectance(t, 0.0, mu) - (-t / mu).exp()).max(0.0));
+    let day = [0, 1, 2].map(|i| {
+        let depth = depths.gas[i] + depths.haze[i];
+        let asymmetry = planet.mie.asymmetry_g * depths.haze[i] / depth.max(f64::MIN_POSITIVE);
+        let kept = lux[i] * mu * (-depths.soot[i] * (1.0 / mu).min(LONGEST_WAY)).exp();
+        let through = 1.0 - slab_reflectance(depth, asymmetry, mu);
+        let back = albedo[i] * slab_diffuse_reflectance(depth, asymmetry);
+        kept * ((through - (-depth / mu).exp()).max(0.0) + through * back / (1.0 - back))
+    });
     let (first, last) = (TWILIGHT_LN_LUX[0], TWILIGHT_LN_LUX[5]);
     let h = elevation_deg.clamp(first.0, last.0);
     let i = TWILIGHT_LN_LUX.iter().rposition(|p| p.0 <= h).unwrap_or(0).min(4);
@@ -111,7 +141,8 @@ fn clear_light(
 pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     let one = |light: &Light| {
         let elevation = light.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
-        clear_light((&scene.planet, &scene.color), altitude_m, elevation, light.spectrum)
+        // What is below them is their own.
+        clear_light((&scene.planet, &scene.color), (altitude_m, [0.0; 3]), elevation, light.spectrum)
     };
     let ((sun, sun_sky), (moon, moon_sky)) = (one(&scene.sun), one(&scene.moon));
     let direct = if scene.brighter() == &scene.sun { sun } else { moon };
@@ -163,12 +194,16 @@ impl World {
         let local = self.frame.place_at(name, position)?;
         let planet = planet_under(&self.set.planet, &conditions);
         let map_m = self.map_place(position, &local);
-        // Light is that of the clouds over the place, all else the weather's.
+        // Light is that of the clouds over the place, those over rain areas among them; all else is the weather's.
         let mapped = self.set.cloud_map.as_ref().map(|map| conditions.under_map(map, DVec2::from_array(map_m)));
-        let overhead = mapped.as_ref().unwrap_or(&conditions);
+        let shown = mapped.as_ref().unwrap_or(&conditions);
+        let brought = (self.couplings.cloud_over_areas)(&self.over(), &conditions, (&local, position), time_s)?;
+        let under_areas = brought.map(|slab| shown.beneath(slab));
+        let overhead = under_areas.as_ref().unwrap_or(shown);
         let lights = self.lights_over(&local.place, (overhead, land.albedo), time_s)?;
         let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;
-        let above_fog = self.ground_light((&planet, &local.place), overhead, &lights, night_lux);
+        let ground_albedo = land.albedo_on(&planet);
+        let above_fog = self.ground_light((&planet, &local.place), (overhead, ground_albedo), &lights, night_lux);
         let [(sun, under_sun), (moon, _)] = lights;
         // Only patches and curtains show where the air has gone.
         let patchy =
@@ -176,8 +211,7 @@ impl World {
         let curtained = curtain::variation(&conditions.precipitation) > 0.0;
         let wind = (patchy || curtained).then(|| self.over().wind_at(time_s)).transpose()?;
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
-        let deck_cover = smoothstep(0.55, 0.95, overhead.opaque_cover(local.place.altitude_m));
-        let ground_albedo = land.albedo_on(&planet);
+        let deck_cover = smoothstep(0.55, 0.95, shown.opaque_cover(local.place.altitude_m));
         let mut scene = Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
@@ -272,15 +306,15 @@ impl World {
     fn ground_light(
         &self,
         (planet, place): (&Planet, &Place),
-        c: &Conditions,
+        (c, albedo): (&Conditions, [f64; 3]),
         lights: &[UnderClouds; 2],
         night_lux: [f64; 3],
     ) -> GroundLight {
         let cloud_top_m = c.lit_top_m(place.altitude_m);
         let one = |(light, clouds): &UnderClouds| {
             let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
-            let at =
-                |altitude_m| clear_light((planet, &self.set.color), altitude_m, elevation.to_degrees(), light.spectrum);
+            let planet = (planet, &self.set.color);
+            let at = |altitude_m| clear_light(planet, (altitude_m, albedo), elevation.to_degrees(), light.spectrum);
             let (direct, sky) = at(place.altitude_m);
             // What clouds pass on diffusely fell on their tops, through less air.
             let (on_top, _) = at(cloud_top_m);
@@ -313,7 +347,7 @@ mod tests {
         static EARTH: std::sync::LazyLock<(Planet, [[f64; 3]; 3])> =
             std::sync::LazyLock::new(|| (Planet::earth(), color_columns(&Planet::earth())));
         let (planet, color) = &*EARTH;
-        let (direct, sky) = clear_light((planet, color), 0.0, elevation_deg, [1.0; 3]);
+        let (direct, sky) = clear_light((planet, color), (0.0, planet.ground_albedo), elevation_deg, [1.0; 3]);
         luminance(&direct) * elevation_deg.to_radians().sin().max(0.0) + luminance(&sky)
     }
 

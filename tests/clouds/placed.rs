@@ -3,8 +3,10 @@
 use glam::DVec3;
 use welkin::{
     clouds::CloudModel,
+    context::GivenDirection,
     frame::FrameFlags,
     gpu::DeviceOptions,
+    light::luminance,
     rain::{AreaMotion, AreaRain, AreaShape, RainArea},
     weather::{CloudKind, CloudLayer, CloudMap, Weather},
 };
@@ -116,6 +118,12 @@ fn a_map_is_saved_refused_and_taken_off() {
     let forward = DVec3::new(-0.3, 1.0, 0.4);
     let [a, b] = [&mut sky, &mut other].map(|sky| sky.look(forward, 2.0, None, FrameFlags::NO_HISTORY));
     assert!(a == b);
+    // A larger map takes more room.
+    let bytes = sky.view.report().bytes;
+    let larger = CloudMap { cells: [64, 3], cover: half().cover.repeat(3), ..half() };
+    sky.context.set_cloud_map(Some(larger)).unwrap();
+    sky.look(forward, 2.0, None, FrameFlags::NO_HISTORY);
+    assert_eq!(sky.view.report().bytes - bytes, 8 * 2 * 64);
 }
 
 /// What clouds let through straight up from a place.
@@ -206,6 +214,51 @@ fn the_anvil_of_a_thunderstorm_is_wider_than_its_towers() {
     let [tower, anvil] = [[4000.0, 5500.0], [8000.0, 9000.0]].map(|heights| reach_m(&sky, heights));
     println!("towers reach {tower:.0} m from the middle, the anvil {anvil:.0} m");
     assert!(tower > 3500.0 && anvil > 1.15 * tower, "{tower} {anvil}");
+}
+
+/// Light of the sky on level ground at a place, lux: the sum over what is seen.
+fn seen_lux(sky: &Sky, place: DVec3) -> f64 {
+    let (rings, turns) = (12, 24);
+    let directions: Vec<DVec3> = (0..rings * turns)
+        .map(|i| {
+            // As many in each share of the light on level ground.
+            let up2 = (f64::from(i / turns) + 0.5) / f64::from(rings);
+            let (sine, cosine) = (f64::from(i % turns) * std::f64::consts::TAU / f64::from(turns)).sin_cos();
+            let level = (1.0 - up2).sqrt();
+            DVec3::new(level * sine, level * cosine, up2.sqrt())
+        })
+        .collect();
+    let seen = sky.context.sky_radiance(place, &directions, 0.0).unwrap();
+    std::f64::consts::PI * seen.iter().map(luminance).sum::<f64>() / seen.len() as f64
+}
+
+#[test]
+fn light_near_a_storm_is_that_of_its_sky() {
+    let mut sky = Sky::new(CLEAR, CloudModel::Volume);
+    sky.context.set_sun(Some(GivenDirection { azimuth_deg: 200.0, elevation_deg: 50.0 })).unwrap();
+    for (kind, half_m) in [(AreaRain::Showers, 4000.0), (AreaRain::Rain, 8000.0)] {
+        let shape = AreaShape::Ellipse([half_m; 2]);
+        let area = RainArea { shape, kind, rate_mm_h: 0.1, top_m: 1200.0, ..RainArea::default() };
+        sky.context.set_rain_areas(&[area]).unwrap();
+        let (mut worst, mut before) = (0.0f64, None);
+        for share in [0.0, 0.5, 0.8, 1.0, 1.2, 1.5, 2.0, 4.0] {
+            let place = DVec3::new(share * half_m, 0.0, 2.0);
+            let told = sky.context.light_at(place, 0.0).unwrap();
+            let (sky_lux, direct) = (luminance(&told.arriving.sky_lux), told.sun.direct_share);
+            let off = sky_lux / seen_lux(&sky, place) - 1.0;
+            println!("{kind:?}, {share} of its half width off: {sky_lux:.0} lux, off by {off:+.2}; direct {direct:.3}");
+            worst = worst.max(off.abs());
+            assert!(before.is_none_or(|before| before < direct), "less of the cloud is overhead");
+            before = Some(direct);
+        }
+        assert!(worst < 0.25, "{worst}");
+    }
+    // Far off all is as without.
+    let place = DVec3::new(300e3, 0.0, 2.0);
+    let lux = |sky: &Sky| sky.context.light_at(place, 0.0).unwrap().arriving.total_lux;
+    let with = lux(&sky);
+    sky.context.set_rain_areas(&[]).unwrap();
+    assert!((with / lux(&sky) - 1.0).abs() < 1e-2, "{with}");
 }
 
 /// With the wind that moves its area, the cloud moves too.

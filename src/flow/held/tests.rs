@@ -46,7 +46,11 @@ impl Bench {
             utc_at_zero: Utc(1_782_036_000.0),
         };
         // No light is asked for here.
-        let couplings = Couplings { dim: |_| Ok(()), night_lux: |_, _, _, _| Ok([0.0; 3]) };
+        let couplings = Couplings {
+            dim: |_| Ok(()),
+            cloud_over_areas: |_, _, _, _| Ok(None),
+            night_lux: |_, _, _, _| Ok([0.0; 3]),
+        };
         let weather = derive(&weather(8.0)).expect("a weather");
         let mut world = World::new(made, weather, couplings).expect("a world");
         world.set.shelters.push(house(dvec3(-10.0, 0.0, 6.0), DVec3::ZERO));

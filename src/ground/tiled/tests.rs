@@ -42,7 +42,8 @@ fn world() -> World {
         utc_at_zero: Utc(1_782_036_000.0),
     };
     // No light is asked for here.
-    let couplings = Couplings { dim: |_| Ok(()), night_lux: |_, _, _, _| Ok([0.0; 3]) };
+    let couplings =
+        Couplings { dim: |_| Ok(()), cloud_over_areas: |_, _, _, _| Ok(None), night_lux: |_, _, _, _| Ok([0.0; 3]) };
     World::new(made, derive(&Weather::default()).unwrap(), couplings).unwrap()
 }
 
