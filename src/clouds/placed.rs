@@ -34,6 +34,11 @@ const SHAPED_FROM: f64 = 0.02;
 /// How much less excess the anvil of such a cell needs than that of a layer: across its edge, by [`EDGE_SLOPE`], it reaches this much over that
 /// many distances from cloud to cloud farther than its towers.
 const ANVIL_WIDER: f64 = 2.2;
+/// Thickness of a cell over the distance from cloud to cloud from which on its heads grow with its height, and how rough they make it at most:
+/// by the map alone its sides would hang like curtains.
+const HEADS: f64 = 2.0;
+const MOST_ROUGH: f64 = 2.1;
+
 /// What one place of a layer is cut out by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
@@ -188,7 +193,10 @@ impl Overhead {
         let filled = Shape::still(&slab, FILLED);
         let anvil = if filled.anvil < 0.0 { filled.anvil - ANVIL_WIDER } else { filled.anvil };
         let base_m = scene.conditions.air.station_altitude_m + slab.base_m;
-        let shape = Shape { base_m, threshold: CLEAR, anvil, ..filled };
+        let larger = (slab.thickness_m / (HEADS * slab.scale_m)).max(1.0);
+        let rough = (larger * larger * filled.rough).min(MOST_ROUGH.max(filled.rough));
+        let solid_m = larger * filled.solid_m;
+        let shape = Shape { base_m, threshold: CLEAR, anvil, rough, solid_m, ..filled };
         let slot = scene.conditions.clouds.iter().position(|s| s.cover <= 0.0)?;
         self.insert(Layer { shape, slab, slot, share: 1.0 })
     }

@@ -189,18 +189,22 @@ fn clouds_over_rain_are_drawn_as_they_are_asked() {
     assert!(half < 0.02 && most < 0.15, "{half} {most}");
 }
 
-/// How far from the middle of a thunderstorm cloud reaches between two heights, in the mean of directions, m.
-fn reach_m(sky: &Sky, heights_m: [f64; 2]) -> f64 {
+/// How far from the middle of a thunderstorm cloud reaches between two heights in sixteen directions, m.
+fn reaches_m(sky: &Sky, heights_m: [f64; 2]) -> [f64; 16] {
     let has_cloud = |x: f64, y: f64| {
         let [low, high] = heights_m.map(|z| DVec3::new(x, y, z));
         sky.context.between(low, high, 0.0).unwrap().transmittance[1] < 0.5
     };
-    let toward = |k: u32| {
-        let (sine, cosine) = (f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
-        let steps = (0..60).rev().map(|i| 250.0 * f64::from(i));
+    std::array::from_fn(|k| {
+        let (sine, cosine) = (k as f64 * std::f64::consts::FRAC_PI_8).sin_cos();
+        let steps = (0..100).rev().map(|i| 100.0 * f64::from(i));
         steps.into_iter().find(|r| has_cloud(r * cosine, r * sine)).unwrap_or(0.0)
-    };
-    (0..16).map(toward).sum::<f64>() / 16.0
+    })
+}
+
+/// The same in the mean of directions.
+fn reach_m(sky: &Sky, heights_m: [f64; 2]) -> f64 {
+    reaches_m(sky, heights_m).iter().sum::<f64>() / 16.0
 }
 
 #[test]
@@ -214,6 +218,12 @@ fn the_anvil_of_a_thunderstorm_is_wider_than_its_towers() {
     let [tower, anvil] = [[4000.0, 5500.0], [8000.0, 9000.0]].map(|heights| reach_m(&sky, heights));
     println!("towers reach {tower:.0} m from the middle, the anvil {anvil:.0} m");
     assert!(tower > 3500.0 && anvil > 1.15 * tower, "{tower} {anvil}");
+    // Its sides bulge; they hung like curtains.
+    let sides: Vec<_> = (0..8).map(|i| reaches_m(&sky, [3000.0, 3200.0].map(|h| h + 500.0 * f64::from(i)))).collect();
+    let steps = sides.windows(2).flat_map(|two| (0..16).map(|k| (two[1][k] - two[0][k]).abs()));
+    let bulges = steps.sum::<f64>() / (16 * 7) as f64;
+    println!("half a kilometre higher its sides lie {bulges:.0} m farther in or out");
+    assert!(bulges > 250.0, "{bulges}");
 }
 
 /// Light of the sky on level ground at a place, lux: the sum over what is seen.
