@@ -5371,6 +5371,16 @@ typedef uint32_t wk_cloud_model;
  */
 #define WK_CLOUD_MODEL_VOLUME 1
 
+/** What a view draws of clouds beside themselves. */
+typedef uint32_t wk_clouds_flags;
+
+/**
+ * Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows. Drawn
+ * with WK_STAGE_SURFACE where the host gives depth, up to 10 km; 24 look-ups a pixel. Without it the air is as bright as on
+ * the mean over places.
+ */
+#define WK_CLOUDS_SHAFTS 1
+
 /** How finely a view draws clouds that are a volume. */
 typedef struct wk_clouds {
     /** sizeof(wk_clouds) of your header. */
@@ -5386,8 +5396,8 @@ typedef struct wk_clouds {
      * 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
      */
     uint32_t square_side;
-    /** 0. */
-    uint32_t reserved0;
+    /** WK_CLOUDS_* flags. Default 0. */
+    wk_clouds_flags flags;
 } wk_clouds;
 
 /** Every field of `wk_clouds` at its default. */
@@ -5397,7 +5407,7 @@ typedef struct wk_clouds {
     /* next */ NULL, \
     /* fineness */ 2.0, \
     /* square_side */ 4, \
-    /* reserved0 */ 0 \
+    /* flags */ 0 \
 }
 
 /**

@@ -51,7 +51,7 @@ fn brute_force() -> Fallible<f64> {
     let mut scene = Scene::new("", &context, PITCH_RAD)?;
     let color = texture(&device, wgpu::TextureFormat::Rgba16Float);
     let mut picture = |fineness: f64| -> Fallible<Vec<f64>> {
-        scene.view.set_clouds(CloudSettings { fineness, square_side: 1 })?;
+        scene.view.set_clouds(CloudSettings { fineness, square_side: 1, ..Default::default() })?;
         scene.frame_id += 1;
         let frame = Frame::new(scene.frame_id, scene.camera, &color, None);
         let frame = Frame { flags: FrameFlags::NO_HISTORY, cd_m2_per_unit: 1e3, ..frame };
@@ -143,7 +143,7 @@ fn scenes(device: &Arc<Device>, fineness: f64) -> Fallible<Vec<Scene>> {
     let scene = |name, context| Scene::new(name, context, PITCH_RAD);
     let mut brute = scene(BRUTE, &broken)?;
     brute.flags = FrameFlags::NO_HISTORY;
-    brute.view.set_clouds(CloudSettings { fineness, square_side: 1 })?;
+    brute.view.set_clouds(CloudSettings { fineness, square_side: 1, ..Default::default() })?;
     Ok(vec![
         scene("clear sky", &clear)?,
         scene("closed deck, Deck", &deck)?,

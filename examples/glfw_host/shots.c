@@ -127,6 +127,18 @@ static bool limb_with_clouds(demo *d)
     return cloudy(d, l, 2) && sun_at(d, 60, 30);
 }
 
+/* Haze under gaps, the sun in front, to the left. */
+static bool shafts(demo *d)
+{
+    wk_weather w = weather_here(8000, 0.7);
+    wk_cloud_layer l = layer(WK_CLOUD_STRATOCUMULUS, 0.9, 1800.0);
+    wk_clouds with_shafts = WK_CLOUDS_INIT;
+    with_shafts.flags = WK_CLOUDS_SHAFTS;
+    return weather_clock(&d->weather, HOURS[0].utc_s) && set(d, &w, &l) && sun_at(d, SITE_VIEW_AZIMUTH_DEG - 4.0, 33) &&
+           weather_check(wk_context_set_exposure(d->weather.context, WK_EXPOSURE_AUTO, -0.7)) &&
+           weather_check(wk_view_set_clouds(d->weather.view, &with_shafts));
+}
+
 static bool above_clouds(demo *d)
 {
     wk_cloud_layer l = layer(WK_CLOUD_STRATOCUMULUS, 0.85, 900.0);
@@ -420,6 +432,7 @@ const shot SHOTS[] = {
     {"altocumulus", "Altocumulus", SKYWARD(26.0, 60.0), altocumulus, WORLD, NULL, true},
     {"halo", "Cirrostratus with its halo", SKYWARD(22.0, 70.0), halo, WORLD, NULL, true},
     {"cloud_shadows", "Shadows of cumulus", 0.0, -4.8, 500.0, SITE_VIEW_AZIMUTH_DEG + 4.0, -6.0, 60.0, cloud_shadows, WORLD, NULL, false},
+    {"shafts", "Shafts of light under broken clouds", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 7.0, 50.0, shafts, WORLD, NULL, true},
     {"above_clouds", "Stratocumulus from above, low sun", HIGH(2300.0, SITE_VIEW_AZIMUTH_DEG, -6.0, 50.0), above_clouds, NO_WORLD, NULL, false},
     {"lightning", "Lightning at night, rain 6 mm/h", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 8.0, 50.0, lightning, WORLD, NULL, false},
     {"haze", "Haze, visibility 5 km", HILLSIDE, haze, WORLD, NULL, false},

@@ -209,7 +209,7 @@ impl Host {
     /// # Errors
     /// GPU faults.
     pub fn truth(&mut self) -> Result<Picture> {
-        self.whole(CloudSettings { fineness: TRUE_FINENESS, square_side: 1 })
+        self.whole(CloudSettings { fineness: TRUE_FINENESS, square_side: 1, shafts: false })
     }
 
     /// The volume, every pixel marched in one frame.

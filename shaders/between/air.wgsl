@@ -10,6 +10,9 @@ override CLEAR_SKY: bool = true;
 // The deck hides all of the sky: no light of the clear sky is asked for above the horizon and in the air.
 override DECK_CLOSED: bool = false;
 
+// Light in the air between, over that on the mean over places.
+var<private> air_lit: vec3f = vec3f(1.0);
+
 // Light that reaches the eye beside what comes from behind, and the share of the latter that gets through.
 struct Veil {
     light: vec3f,
@@ -35,6 +38,6 @@ fn air_on(path: SkyPath, d: vec3f) -> Veil {
     if !DECK_CLOSED {
         light = mix(color_of(aerial_on(path, d).radiance) * frame.medium_share, light, frame.deck_cover);
     }
-    light += frame.night_floor * (1.0 - transmittance);
+    light = light * air_lit + frame.night_floor * (1.0 - transmittance);
     return Veil(light * drawn.x, mix(vec3f(1.0), transmittance, drawn.x));
 }

@@ -18,7 +18,7 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if BOW {
         f.radiance = max(f.radiance + f.once * bow_phase(BOW_LOW_AIR, ray.direction, fog.to_sun), vec3f(0.0));
     }
-    f.radiance *= drawn.y;
+    f.radiance *= drawn.y * air_lit;
     f.transmittance = mix(vec3f(1.0), f.transmittance, drawn.y);
     var before = Veil(vec3f(0.0), vec3f(1.0));
     if f.distance > 50.0 {

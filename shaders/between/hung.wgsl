@@ -5,13 +5,15 @@
 
 // Layers of the sky. The last is what stands behind the sky's own light, in the night floor's place: stars and the glow between them.
 // With clouds there are two before it (clouds/): their light with the exposure on it, and what they let through; log2 of the distances
-// between which they stand, m, with the share of direct light that they let through to what the host drew. Below the first one's picture
+// between which they stand, m, with the share of direct light that they let through to what the host drew, and to the air before it. Below the first one's picture
 // lie the clouds of all directions (clouds/round.wgsl).
 @group(0) @binding(11) var sky_layers: texture_2d_array<f32>;
 
 override CLOUDS: bool = false;
 // A closed layer above them all is drawn as a deck.
 override DECK_BEHIND: bool = false;
+// Clouds leave shafts of light in the air.
+override CLOUD_SHAFTS: bool = false;
 override STARS: bool = false;
 
 // Texels along a side of the clouds of all directions.
@@ -22,6 +24,8 @@ struct Hung {
     clouds: vec4f,
     // log2 of the distances between which they stand, m, or 0; the share of direct light at what the host drew.
     reach: vec3f,
+    // By how much the share of direct light in the air before it differs from the mean over places.
+    shafts: f32,
     // cd/m^2, behind the sky's own light.
     behind: vec3f,
     // How far the sky is a deck, and what it leaves of the discs of sun and moon.
@@ -31,7 +35,7 @@ struct Hung {
 
 // Without clouds but a deck.
 fn hung_bare() -> Hung {
-    return Hung(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(0.0, 0.0, 1.0), frame.night_floor, frame.deck_cover, frame.direct_share);
+    return Hung(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(0.0, 0.0, 1.0), 0.0, frame.night_floor, frame.deck_cover, frame.direct_share);
 }
 
 // With clouds drawn as a volume in the deck's place, as far as they are.
@@ -52,8 +56,10 @@ fn hung_in(pixel: vec2i, range: f32) -> Hung {
         clouds = textureLoad(sky_layers, pixel, 0, 0);
     }
     var hung = hung_with(clouds);
-    if CLOUDS && (FLASH || range < RANGE_SKY) {
-        hung.reach = textureLoad(sky_layers, pixel, 1, 0).rgb;
+    if CLOUDS && (FLASH || CLOUD_SHAFTS || range < RANGE_SKY) {
+        let reach = textureLoad(sky_layers, pixel, 1, 0);
+        hung.reach = reach.rgb;
+        hung.shafts = reach.a * frame.clouds_drawn;
         hung.reach.z = mix(frame.cloud_shadow.w, hung.reach.z, frame.clouds_drawn);
     }
     if STARS {

@@ -148,12 +148,13 @@ fn clouds_along(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
     return CloudSeen(seen.light, seen.transmittance, max(middle + vec2f(-half, half), vec2f(1.0)));
 }
 
-// With the air before them.
-fn clouds_seen(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
-    var seen = clouds_along(direction, range, jitter);
-    if seen.transmittance < 1.0 {
-        let air = air_between(direction, 0.5 * (seen.reach.x + seen.reach.y));
-        seen.light = seen.light * air.transmittance + air.light * frame.exposure * (1.0 - seen.transmittance);
-    }
-    return seen;
+// Where what is seen of them stands, m.
+fn cloud_middle(seen: CloudSeen) -> f32 {
+    return 0.5 * (seen.reach.x + seen.reach.y);
+}
+
+// With the air before that.
+fn clouds_behind(air: Veil, seen: CloudSeen) -> CloudSeen {
+    let light = seen.light * air.transmittance + air.light * frame.exposure * (1.0 - seen.transmittance);
+    return CloudSeen(light, seen.transmittance, seen.reach);
 }

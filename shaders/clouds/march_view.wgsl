@@ -4,8 +4,23 @@
 //!include "clouds/march.wgsl"
 //!include "clouds/picture.wgsl"
 //!include "common/frame.wgsl"
+//!include "clouds/shafts.wgsl"
+//!include "between/shaft_light.wgsl"
 
 @group(0) @binding(7) var<uniform> picture: CloudsPicture;
+@group(0) @binding(9) var<uniform> shadows: CloudShadows;
+@group(0) @binding(10) var shadow_map: texture_2d<f32>;
+
+// The air before clouds has their shadows in it.
+override SHAFTS: bool = false;
+
+fn air_before(ray: ViewRay, distance: f32, between: f32) -> Veil {
+    if SHAFTS {
+        let differs = cloud_shafts(shadows, shadow_map, cloud_sampler, ray.origin, ray.direction, distance, between);
+        air_lit = shaft_light(ray.direction, differs);
+    }
+    return air_between(ray.direction, distance);
+}
 
 struct MarchedPixel {
     @location(0) seen: vec4f,
@@ -16,10 +31,15 @@ struct MarchedPixel {
 @fragment
 fn march(in: FullscreenVarying) -> MarchedPixel {
     drawn = frame.drawn;
-    let ndc = pixel_ndc(picture, marched_pixel(picture, vec2u(in.position.xy)), frame.y_sign);
+    let pixel = marched_pixel(picture, vec2u(in.position.xy));
+    let ndc = pixel_ndc(picture, pixel, frame.y_sign);
     let ray = view_ray(frame.depth, ndc);
     cloud_origin = ray.origin;
-    let seen = clouds_seen(ray.direction, RANGE_SKY, clouds.jitter);
+    var seen = clouds_along(ray.direction, RANGE_SKY, clouds.jitter);
+    if seen.transmittance < 1.0 {
+        let between = shaft_between(vec2f(pixel));
+        seen = clouds_behind(air_before(ray, cloud_middle(seen), between), seen);
+    }
     // As the half floats of the picture round it: the reach is divided by it again.
     let cover = 1.0 - round(seen.transmittance * 2048.0) / 2048.0;
     return MarchedPixel(vec4f(min(seen.light, vec3f(65504.0)), seen.transmittance), vec4f(log2(seen.reach) * cover, 0.0, 0.0));

@@ -3,7 +3,7 @@
 //!include "common/fullscreen.wgsl"
 //!include "common/frame.wgsl"
 //!include "clouds/picture.wgsl"
-//!include "clouds/shadow_map.wgsl"
+//!include "clouds/shafts.wgsl"
 
 @group(0) @binding(1) var<uniform> picture: CloudsPicture;
 @group(0) @binding(2) var marched: texture_2d<f32>;
@@ -22,25 +22,32 @@
 override HISTORY: bool = true;
 // There are shadows, and a host's depth to cast them on.
 override SHADOWS: bool = true;
+// The air before that is told apart too.
+override SHAFTS: bool = false;
 
 // log2 of a distance beyond all clouds, m.
 const NOWHERE: f32 = 24.0;
 
 struct ResolvedPixel {
     @location(0) seen: vec4f,
-    // log2 of the reach, m, and the share of direct light at what the host drew.
+    // log2 of the reach, m, the share of direct light at what the host drew, and by how much that in the air before it differs from the mean.
     @location(1) reach: vec4f,
 }
 
 // Where the depth has several samples a pixel, the first stands for all: shadows of clouds have no sharp edges.
-fn shadow_on(pixel: vec2u) -> f32 {
+fn shadow_on(pixel: vec2u) -> vec2f {
     if !SHADOWS {
-        return 1.0;
+        return vec2f(1.0, 0.0);
     }
     let ndc = pixel_ndc(picture, pixel, frame.y_sign);
     let range = view_range(frame.depth, textureLoad(host_depth, vec2i(pixel), 0).r, ndc);
     let ray = view_ray(frame.depth, ndc);
-    return cloud_shadow(shadows, shadow_map, repeating, ray.origin + ray.direction * range);
+    let share = cloud_shadow(shadows, shadow_map, repeating, ray.origin + ray.direction * range);
+    if !SHAFTS {
+        return vec2f(share, 0.0);
+    }
+    let between = shaft_between(vec2f(pixel));
+    return vec2f(share, cloud_shafts(shadows, shadow_map, repeating, ray.origin, ray.direction, range, between));
 }
 
 @fragment
@@ -51,7 +58,7 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     // What this frame's rays do not see, but the last picture held, stands far off: never before what the host drew.
     let cover = 1.0 - now.a;
     let stands = textureSampleLevel(marched_reach, linear, among, 0.0).rg / max(cover, 1e-4);
-    let reach = vec4f(select(vec2f(NOWHERE), stands, cover > 1e-4), shadow_on(pixel), 0.0);
+    let reach = vec4f(select(vec2f(NOWHERE), stands, cover > 1e-4), shadow_on(pixel));
     if !HISTORY {
         return ResolvedPixel(now, reach);
     }

@@ -7,6 +7,10 @@
 fn round(in: FullscreenVarying) -> @location(0) vec4f {
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let place = floor(in.position.xy) / (ROUND_SIDE - 1.0);
-    let seen = clouds_seen(octahedron_direction(place), RANGE_SKY, clouds.jitter);
+    let direction = octahedron_direction(place);
+    var seen = clouds_along(direction, RANGE_SKY, clouds.jitter);
+    if seen.transmittance < 1.0 {
+        seen = clouds_behind(air_between(direction, cloud_middle(seen)), seen);
+    }
     return vec4f(min(seen.light, vec3f(65504.0)), seen.transmittance);
 }

@@ -15,7 +15,9 @@ struct CloudShadows {
     mean: f32,
     told: f32,
     top: f32,
-    pad: f32,
+    // What the air takes at the camera's height, 1/m, and the height over which it thins, m.
+    haze: f32,
+    haze_height: f32,
 }
 
 // Share of the direct light at a place relative to the camera (east, north, up), m.

@@ -5,6 +5,7 @@
 //!include "between/veil.wgsl"
 //!include "sky/disc.wgsl"
 //!include "frame/on_surfaces.wgsl"
+//!include "between/shaft_light.wgsl"
 
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
@@ -45,7 +46,7 @@ fn behind_above(d: vec3f, hung: Hung) -> vec3f {
         return open_sky(d, vec3f(0.0), hung);
     }
     let disc = disc_light(disc_radiance_above(d, frame.pixel_angle), hung);
-    return open_sky(d, color_of(sky_radiance_above(d)) + disc, hung);
+    return open_sky(d, color_of(sky_radiance_above(d)) * air_lit + disc, hung);
 }
 
 // The same below the level of the eye: the planet's own ground with the air before it; from high up also sky, down to the horizon.
@@ -53,7 +54,11 @@ fn behind_below(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
     if deck_hides_all() {
         return ground_under_deck(path) + night_light(hung);
     }
-    var clear = color_of(sky_radiance_on(path, d) + ground_radiance_on(path, d)) * frame.medium_share;
+    let air = sky_radiance_on(path, d);
+    var clear = color_of(air + ground_radiance_on(path, d)) * frame.medium_share;
+    if CLOUD_SHAFTS {
+        clear += color_of(air) * (air_lit - 1.0) * frame.medium_share;
+    }
     clear += disc_light(disc_radiance_on(path, d, frame.pixel_angle), hung);
     return mix(clear, ground_under_deck(path), frame.deck_cover) + night_light(hung);
 }
@@ -118,6 +123,9 @@ fn compose(host: vec4f, seen: Seen) -> vec4f {
     behind_share = frame.behind_drawn;
     let ray = view_ray(frame.depth, seen.ndc);
     let hung = hung_in(seen.pixel, seen.range);
+    if CLOUD_SHAFTS {
+        air_lit = shaft_light(ray.direction, hung.shafts);
+    }
     var veil = weather_over(ray, seen.range, seen.plane, hung);
     veil = on_surface(veil, linear_host(host.rgb), ray, seen);
     veil.transmittance *= under_clouds(hung, seen.range);

@@ -80,6 +80,13 @@ pub unsafe extern "C" fn wk_context_get_sun_share(
     })
 }
 
+/// What a view draws of clouds beside themselves.
+pub type wk_clouds_flags = u32;
+/// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows. Drawn
+/// with WK_STAGE_SURFACE where the host gives depth, up to 10 km; 24 look-ups a pixel. Without it the air is as bright as on
+/// the mean over places.
+pub const WK_CLOUDS_SHAFTS: wk_clouds_flags = 1;
+
 /// How finely a view draws clouds that are a volume.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -95,8 +102,8 @@ pub struct wk_clouds {
     /// One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier frames:
     /// 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
     pub square_side: u32,
-    /// 0.
-    pub reserved0: u32,
+    /// WK_CLOUDS_* flags. Default 0.
+    pub flags: wk_clouds_flags,
 }
 
 impl wk_clouds {
@@ -106,7 +113,7 @@ impl wk_clouds {
         next: null(),
         fineness: 2.0,
         square_side: 4,
-        reserved0: 0,
+        flags: 0,
     };
 }
 
@@ -124,7 +131,8 @@ pub unsafe extern "C" fn wk_view_set_clouds(view: *mut wk_view, clouds: *const w
             let c = unsafe { layout::read(&"clouds", clouds)? };
             // SAFETY: as above.
             unsafe { layout::check_chain(&"clouds", c.next, &[])? };
-            settings = CloudSettings { fineness: c.fineness, square_side: c.square_side };
+            let shafts = c.flags & WK_CLOUDS_SHAFTS != 0;
+            settings = CloudSettings { fineness: c.fineness, square_side: c.square_side, shafts };
         }
         object.lock().set_clouds(settings)?;
         Ok(Status::Ok)

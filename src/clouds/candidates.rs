@@ -52,7 +52,7 @@ impl CloudMethod {
 pub fn candidates() -> Vec<Listed<CloudMethod>> {
     let volume = |fineness, square_side| CloudMethod {
         model: CloudModel::Volume,
-        settings: CloudSettings { fineness, square_side },
+        settings: CloudSettings { fineness, square_side, shafts: false },
     };
     let named = [
         ("deck", CloudMethod { model: CloudModel::Deck, ..CloudMethod::default() }),

@@ -27,6 +27,7 @@ use crate::{
 struct Resolve {
     has_history: bool,
     has_shadows: bool,
+    has_shafts: bool,
     /// The host's depth has several samples a pixel.
     is_multisampled: bool,
     depth_kinds: f64,
@@ -37,8 +38,8 @@ struct Resolve {
 struct Pipelines {
     picture_layout: wgpu::BindGroupLayout,
     shadow_layouts: [wgpu::BindGroupLayout; 2],
-    /// By its fineness ([`super::CloudSettings`]), and whether clouds are placed ([`super::placed`]).
-    march: ((f64, bool), wgpu::RenderPipeline),
+    /// By its fineness ([`super::CloudSettings`]), whether clouds are placed ([`super::placed`]), and whether there are shafts of light.
+    march: ((f64, bool, bool), wgpu::RenderPipeline),
     follow: wgpu::RenderPipeline,
     /// Those of the march and of the sky, which the clouds of all directions are marched with too.
     march_layouts: [wgpu::BindGroupLayout; 2],
@@ -57,7 +58,7 @@ fn make(
 }
 
 impl Pipelines {
-    fn new(device: &Device, sky: &wgpu::BindGroupLayout, march: (f64, bool)) -> Result<Self> {
+    fn new(device: &Device, sky: &wgpu::BindGroupLayout, march: (f64, bool, bool)) -> Result<Self> {
         let layout =
             |slots: &[(u32, Slot)]| bind::layout(&device.device, "clouds", wgpu::ShaderStages::FRAGMENT, slots);
         let march_layout = layout(&[
@@ -70,6 +71,8 @@ impl Pipelines {
             (6, Slot::Sampler),
             (7, Slot::Uniform(size_of::<PictureUniform>())),
             (8, Slot::Filtered),
+            (9, Slot::Uniform(size_of::<ShadowUniform>())),
+            (10, Slot::Filtered),
         ]);
         let picture_layout = layout(&[
             (0, Slot::Uniform(size_of::<FrameUniform>())),
@@ -105,10 +108,10 @@ impl Pipelines {
     fn march(
         device: &Device,
         layouts: &[wgpu::BindGroupLayout; 2],
-        (fineness, is_placed): (f64, bool),
+        (fineness, is_placed, has_shafts): (f64, bool, bool),
     ) -> Result<wgpu::RenderPipeline> {
         let march = ("clouds/march_view.wgsl", "march");
-        let constants = [("CLOUD_FINENESS", fineness), ("CLOUD_PLACED", yes(is_placed))];
+        let constants = [("CLOUD_FINENESS", fineness), ("CLOUD_PLACED", yes(is_placed)), ("SHAFTS", yes(has_shafts))];
         make(device, march, &layouts.each_ref(), &[SEEN, PAIR], &constants)
     }
 
@@ -120,6 +123,7 @@ impl Pipelines {
         let constants = [
             ("HISTORY", yes(wanted.has_history)),
             ("SHADOWS", yes(wanted.has_shadows)),
+            ("SHAFTS", yes(wanted.has_shafts)),
             ("DEPTH_KINDS", wanted.depth_kinds),
         ];
         let layouts = [&self.picture_layout, &self.shadow_layouts[usize::from(wanted.is_multisampled)]];
@@ -138,7 +142,7 @@ pub(super) struct CloudPasses {
     pipelines: Option<Pipelines>,
     picture: Option<Picture>,
     /// What the march is bound to, and with which tables of the sky.
-    marched_of: Option<(wgpu::BindGroup, wgpu::BindGroup)>,
+    marched_of: Option<(wgpu::BindGroup, bool, wgpu::BindGroup)>,
     shadows: Option<ShadowMap>,
     round: Option<Round>,
     /// What shadows fall on, and of which of the host's depth images that is.
@@ -179,6 +183,8 @@ pub(super) struct CloudFrame<'a> {
     /// What stands behind the sky's own light.
     pub behind: Option<&'a wgpu::Texture>,
     pub shaded: Option<Shaded<'a>>,
+    /// Whether the air before that is shaded too.
+    pub has_shafts: bool,
     /// What the clouds of all directions are made of.
     pub around: Around,
     /// Of the march ([`super::CloudSettings`]).
@@ -291,11 +297,13 @@ impl CloudPasses {
 
     /// What the march is bound to.
     fn march_group(&mut self, device: &Device, layout: &wgpu::BindGroupLayout, of: &CloudFrame<'_>) -> wgpu::BindGroup {
-        if let Some((sky, group)) = &self.marched_of
-            && sky == of.sky.1
+        let is_shaded = of.has_shafts && of.shaded.is_some();
+        if let Some((sky, was_shaded, group)) = &self.marched_of
+            && (sky, *was_shaded) == (of.sky.1, is_shaded)
         {
             return group.clone();
         }
+        let map = self.shadows.as_ref().filter(|_| is_shaded);
         let (solid, light) = (self.tables.solid.view(), self.tables.light.view());
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("clouds marched"),
@@ -310,9 +318,11 @@ impl CloudPasses {
                 bind::sampler(6, &self.tables.clamping),
                 self.picture_block.entry(7),
                 bind::view(8, &self.tables.placed),
+                map.map_or(&self.no_block, |m| &m.block).entry(9),
+                bind::view(10, map.map_or(&self.none, |m| &m.view)),
             ],
         });
-        self.marched_of = Some((of.sky.1.clone(), group.clone()));
+        self.marched_of = Some((of.sky.1.clone(), is_shaded, group.clone()));
         group
     }
 
@@ -362,6 +372,15 @@ impl CloudPasses {
         })
     }
 
+    /// Makes the map of shadows, if there is none.
+    fn hold_shadows(&mut self, device: &Device) -> Result<()> {
+        if self.shadows.is_none() {
+            let map = self.shadow_map(device, &ShadowMap::texture(device))?;
+            (self.shadows, self.shaded, self.marched_of) = (Some(map), None, None);
+        }
+        Ok(())
+    }
+
     /// Brings the map of shadows up to the frame. Answers the bind group of the depth that they fall on and of the map, empty where there are
     /// no shadows, and the number of passes.
     fn shade(
@@ -371,10 +390,6 @@ impl CloudPasses {
         layout: &wgpu::BindGroupLayout,
         (shaded, past): (Option<&Shaded<'_>>, Past),
     ) -> Result<(wgpu::BindGroup, u32)> {
-        if shaded.is_some() && self.shadows.is_none() {
-            let map = self.shadow_map(device, &ShadowMap::texture(device))?;
-            (self.shadows, self.shaded) = (Some(map), None);
-        }
         let passes = match (shaded, &mut self.shadows) {
             (Some(of), Some(shadows)) => shadows.draw(encoder, &of.lie, past),
             _ => 0,
@@ -425,11 +440,14 @@ impl CloudPasses {
 
     /// Makes what is wanted of a frame. Answers the passes that it took.
     pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, of: &CloudFrame<'_>) -> Result<u32> {
+        let march = (of.fineness, self.is_placed, of.has_shafts && of.shaded.is_some());
+        if of.shaded.is_some() {
+            self.hold_shadows(device)?;
+        }
         let mut pipelines = match self.pipelines.take() {
             Some(pipelines) => pipelines,
-            None => Pipelines::new(device, of.sky.0, (of.fineness, self.is_placed))?,
+            None => Pipelines::new(device, of.sky.0, march)?,
         };
-        let march = (of.fineness, self.is_placed);
         if pipelines.march.0 != march {
             pipelines.march = (march, Pipelines::march(device, &pipelines.march_layouts, march)?);
         }
@@ -472,7 +490,8 @@ impl CloudPasses {
         let has_history = of.picture.exposed > 0.0;
         let has_shadows = of.shaded.is_some();
         let is_multisampled = has_shadows && of.is_multisampled;
-        let kind = Resolve { has_history, has_shadows, is_multisampled, depth_kinds: of.depth_kinds };
+        let has_shafts = has_shadows && of.has_shafts;
+        let kind = Resolve { has_history, has_shadows, has_shafts, is_multisampled, depth_kinds: of.depth_kinds };
         let resolve = pipelines.resolve(device, kind)?;
         self.picture_block.write(bytemuck::bytes_of(&of.picture));
         let layout = &pipelines.shadow_layouts[usize::from(is_multisampled)];

@@ -20,7 +20,7 @@ use crate::{
         flat_texture,
         pass::{self, FullscreenDesc},
     },
-    moment::Moment,
+    moment::{Moment, Scene},
     stage::{Frame, FrameFlags, yes},
     weather::smoothstep,
 };
@@ -94,6 +94,8 @@ pub(super) struct Lie {
     /// How far shadows are told apart, and the height over the plane from which on they are not, m.
     pub told: f64,
     pub top_m: f64,
+    /// What the air takes at the camera's height, 1/m, and the height over which it thins, m.
+    haze: [f64; 2],
 }
 
 /// The map and the passes that make it.
@@ -116,6 +118,18 @@ struct Coarse {
     pipeline: wgpu::RenderPipeline,
     spread: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
+}
+
+/// What the air takes at a scene's height, 1/m, and the height over which it thins there, m.
+fn haze(scene: &Scene) -> [f64; 2] {
+    let (planet, h) = (&scene.planet, scene.place.altitude_m.max(0.0));
+    let of = |extinction: f64, height_m: f64| (extinction * libm::exp(-h / height_m), height_m);
+    let parts = [
+        of(planet.rayleigh.scattering_per_m[1], planet.rayleigh.scale_height_m),
+        of(planet.mie.extinction_per_m[1], planet.mie.scale_height_m),
+    ];
+    let sum = parts.iter().map(|(extinction, _)| extinction).sum::<f64>().max(1e-9);
+    [sum, sum / parts.iter().map(|(extinction, height_m)| extinction / height_m).sum::<f64>().max(1e-12)]
 }
 
 impl Lie {
@@ -146,6 +160,7 @@ impl Lie {
             mean: light.direct_share,
             told: smoothstep(TOLD[0], TOLD[1], light.direction.z),
             top_m: (lowest_m - plane_m).max(0.0),
+            haze: haze(scene),
         }
     }
 
@@ -159,7 +174,9 @@ impl Lie {
             mean: self.mean as f32,
             told: self.told as f32,
             top: self.top_m as f32,
-            pad: 0.0,
+            haze: self.haze[0] as f32,
+            haze_height: self.haze[1] as f32,
+            pad: [0.0; 3],
         }
     }
 }

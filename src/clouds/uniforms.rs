@@ -86,7 +86,9 @@ pub(super) struct ShadowUniform {
     pub mean: f32,
     pub told: f32,
     pub top: f32,
-    pub pad: f32,
+    pub haze: f32,
+    pub haze_height: f32,
+    pub pad: [f32; 3],
 }
 
 impl MediumUniform {
@@ -170,7 +172,7 @@ mod tests {
             "clouds/shadow_map.wgsl",
             "CloudShadows",
             ShadowUniform,
-            [to_light, plane, camera, period, eye, mean, told, top]
+            [to_light, plane, camera, period, eye, mean, told, top, haze, haze_height]
         );
     }
 }

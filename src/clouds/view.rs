@@ -273,6 +273,8 @@ impl DrawnEffect for CloudsView {
         to.between("DECK_BEHIND", deck, deck);
         let shadows = is_there && self.casts_shadows(shot, to.asked);
         to.constant("CLOUD_SHADOWS", yes(shadows), yes(shadows));
+        let shafts = yes(shadows && self.settings.shafts);
+        to.constant("CLOUD_SHAFTS", shafts, shafts);
         if shadows {
             to.block.cloud_shadow = shadow_strength(&shot.now.scene);
         }
@@ -322,6 +324,7 @@ impl DrawnEffect for CloudsView {
             sky: (layout, group),
             behind: self.behind.as_ref(),
             shaded,
+            has_shafts: self.settings.shafts,
             around,
             fineness: self.settings.fineness,
             past: Past::of(shot.frame),

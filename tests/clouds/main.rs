@@ -12,5 +12,6 @@ mod placed;
 mod plan;
 mod seams;
 mod shadows;
+mod shafts;
 #[path = "../support/textures.rs"]
 mod textures;

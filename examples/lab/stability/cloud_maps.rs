@@ -26,9 +26,9 @@ const NARROW: (u32, u32) = (256, 8);
 const NARROW_FOV: f64 = 0.03;
 const PLACES_M: [f64; 4] = [0.0, 3100.0, 7300.0, 12_700.0];
 /// The finest march that a view can be set to, every pixel of it.
-const FINEST: CloudSettings = CloudSettings { fineness: 32.0, square_side: 1 };
+const FINEST: CloudSettings = CloudSettings { fineness: 32.0, square_side: 1, shafts: false };
 /// The default, every pixel in one frame.
-const DEFAULT: CloudSettings = CloudSettings { fineness: 2.0, square_side: 1 };
+const DEFAULT: CloudSettings = CloudSettings { fineness: 2.0, square_side: 1, shafts: false };
 /// Most steps through a layer at a fineness of 1.
 const STEPS: f64 = 96.0;
 /// Base of the layers, m.
@@ -88,7 +88,7 @@ pub fn steps(lab: &Lab, _options: &Options) -> Result<Map> {
             host.look_from(DVec3::new(east_m, 0.0, 2.0), *elevation, NARROW_FOV);
             let truth = host.whole(FINEST)?;
             for (cell, steps) in row.iter_mut().zip(&x.values) {
-                let drawn = host.whole(CloudSettings { fineness: steps / STEPS, square_side: 1 })?;
+                let drawn = host.whole(CloudSettings { fineness: steps / STEPS, square_side: 1, shafts: false })?;
                 *cell += mean_apart(&drawn, &truth) / PLACES_M.len() as f64;
             }
         }

@@ -1,0 +1,21 @@
+// Light in the air where the share of direct light differs from its mean over places.
+//!include "common/frame.wgsl"
+//!include "sky/lookup.wgsl"
+
+// Radiance scattered of a diffuse light, over that on level ground: from above, and the ground's share of it from below.
+const SHAFT_DIFFUSE: f32 = 0.18;
+
+// A channel, over that on the mean, in a direction: what the air scatters of the direct light there follows its phase function.
+fn shaft_light(direction: vec3f, differs: f32) -> vec3f {
+    let air = sky_view.air;
+    let toward = select(sky_view.lamps[0].toward, sky_view.lamps[1].toward, sky_view.lamps[0].toward.z < 0.0);
+    let nu = dot(direction, toward);
+    let density = air_density(air, sky_view.altitude);
+    let scattering = vec2f(air.rayleigh_scattering.y * density.x, air.mie_scattering.y * density.y);
+    let phases = vec2f(rayleigh_phase(nu), mie_phase(nu, air.asymmetry_g));
+    let phase = dot(scattering, phases) / max(scattering.x + scattering.y, 1e-12);
+    // Light of the sky on level ground, over the direct light that faces the sun between clouds.
+    let mean = frame.cloud_shadow.w;
+    let diffuse = toward.z * (1.0 / max(frame.cloud_shadow.rgb, vec3f(1e-4)) - mean);
+    return max(1.0 + phase / (mean * phase + SHAFT_DIFFUSE * max(diffuse, vec3f(1e-3))) * differs, vec3f(0.0));
+}

@@ -1,0 +1,48 @@
+// Shafts of light between the shadows of clouds: how far the air before a place is lit otherwise than on the mean.
+//
+// Model: the air scatters by its depth, which falls off with height; each of some places along the way, apart by as much of the light that
+// comes from between them, has the share of direct light that the map of shadows says.
+//!include "clouds/shadow_map.wgsl"
+
+const SHAFT_STEPS: u32 = 24u;
+
+// Optical depth of the air along so much of a way on which it thins by `thins` a metre.
+fn shaft_depth(extinction: f32, thins: f32, along: f32) -> f32 {
+    let t = thins * along;
+    return extinction * select((1.0 - exp(-clamp(t, -60.0, 60.0))) / thins, along, abs(t) < 1e-3);
+}
+
+// The way to an optical depth.
+fn shaft_way(extinction: f32, thins: f32, depth: f32) -> f32 {
+    let t = thins * depth / extinction;
+    return select(-log(max(1.0 - t, 1e-6)) / thins, depth / extinction, abs(t) < 1e-3);
+}
+
+// Where among the places of its neighbours a pixel's lie: interleaved gradients (Jimenez 2014).
+fn shaft_between(pixel: vec2f) -> f32 {
+    return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
+}
+
+// Difference of the share of direct light in the air before a place from the mean over places. `origin` and `direction` are those of the ray
+// to it; `between` 0 and 1 says where in its stretch each of the places lies.
+fn cloud_shafts(
+    shadows: CloudShadows,
+    map: texture_2d<f32>,
+    repeating: sampler,
+    origin: vec3f,
+    direction: vec3f,
+    range: f32,
+    between: f32,
+) -> f32 {
+    let thins = direction.z / shadows.haze_height;
+    let whole = 1.0 - exp(-shaft_depth(shadows.haze, thins, range));
+    // Beyond half the map shadows are not told apart.
+    let told = 1.0 - exp(-shaft_depth(shadows.haze, thins, min(range, 0.5 * shadows.period)));
+    var sum = 0.0;
+    for (var i = 0u; i < SHAFT_STEPS; i++) {
+        let scattered = told * (f32(i) + between) / f32(SHAFT_STEPS);
+        let way = shaft_way(shadows.haze, thins, -log(1.0 - scattered));
+        sum += cloud_shadow(shadows, map, repeating, origin + direction * way) - shadows.mean;
+    }
+    return sum / f32(SHAFT_STEPS) * told / max(whole, 1e-6);
+}
