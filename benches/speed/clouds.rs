@@ -144,11 +144,14 @@ fn scenes(device: &Arc<Device>, fineness: f64) -> Fallible<Vec<Scene>> {
     let mut brute = scene(BRUTE, &broken)?;
     brute.flags = FrameFlags::NO_HISTORY;
     brute.view.set_clouds(CloudSettings { fineness, square_side: 1, ..Default::default() })?;
+    let mut shafts = scene("broken cumulus, at rest, with shafts of light", &broken)?;
+    shafts.view.set_clouds(CloudSettings { shafts: true, ..Default::default() })?;
     Ok(vec![
         scene("clear sky", &clear)?,
         scene("closed deck, Deck", &deck)?,
         scene("closed deck, Volume", &closed)?,
         scene("broken cumulus, at rest", &broken)?,
+        shafts,
         Scene { turn_rad: TURN_RAD, ..scene("broken cumulus, turning", &broken)? },
         scene("three layers, at rest", &several)?,
         Scene { flags: FrameFlags::NO_HISTORY, ..scene("broken cumulus, every pixel", &broken)? },

@@ -83,8 +83,9 @@ pub unsafe extern "C" fn wk_context_get_sun_share(
 /// What a view draws of clouds beside themselves.
 pub type wk_clouds_flags = u32;
 /// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows. Drawn
-/// with WK_STAGE_SURFACE where the host gives depth, up to 10 km; 24 look-ups a pixel. Without it the air is as bright as on
-/// the mean over places.
+/// with WK_STAGE_SURFACE where the host gives depth and does not read the map of shadows itself
+/// (wk_view_get_cloud_shadows), up to 10 km away; 24 look-ups a pixel. Without it the air is as bright as on the mean over
+/// places.
 pub const WK_CLOUDS_SHAFTS: wk_clouds_flags = 1;
 
 /// How finely a view draws clouds that are a volume.

@@ -141,7 +141,7 @@ pub(super) struct CloudPasses {
     picture_block: UniformBlock,
     pipelines: Option<Pipelines>,
     picture: Option<Picture>,
-    /// What the march is bound to, and with which tables of the sky.
+    /// What the march is bound to; with which tables of the sky, and whether with the map of shadows.
     marched_of: Option<(wgpu::BindGroup, bool, wgpu::BindGroup)>,
     shadows: Option<ShadowMap>,
     round: Option<Round>,

@@ -12,7 +12,8 @@ pub struct CloudSettings {
     /// 4. Frames without history march all.
     pub square_side: u32,
     /// Whether the air between clouds and ground is drawn brighter where the sun shines through and darker in their shadows: shafts of light.
-    /// Default false: on the mean over places. It takes 24 look-ups a pixel, and is drawn with [`crate::frame::Stages::SURFACE`].
+    /// Default false: on the mean over places. It takes 24 look-ups a pixel, and is drawn with [`crate::frame::Stages::SURFACE`]
+    /// where the host gives depth and does not read the map of shadows itself ([`crate::frame::View::cloud_shadows`]).
     pub shafts: bool,
 }
 

@@ -249,7 +249,7 @@ pub struct CloudLight {
 
 impl Conditions {
     /// The weather with one layer more, which lies anywhere beside the others; as it is if there is no room.
-    pub(crate) fn beneath(mut self, slab: CloudSlab) -> Self {
+    pub(crate) fn with_layer(mut self, slab: CloudSlab) -> Self {
         if let Some(free) = self.clouds.iter_mut().find(|s| s.cover <= 0.0) {
             self.clear_sky *= 1.0 - slab.cover;
             *free = slab;

@@ -198,7 +198,7 @@ impl World {
         let mapped = self.set.cloud_map.as_ref().map(|map| conditions.under_map(map, DVec2::from_array(map_m)));
         let shown = mapped.as_ref().unwrap_or(&conditions);
         let brought = (self.couplings.cloud_over_areas)(&self.over(), &conditions, (&local, position), time_s)?;
-        let under_areas = brought.map(|slab| shown.beneath(slab));
+        let under_areas = brought.map(|slab| shown.with_layer(slab));
         let overhead = under_areas.as_ref().unwrap_or(shown);
         let lights = self.lights_over(&local.place, (overhead, land.albedo), time_s)?;
         let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;

@@ -292,7 +292,9 @@ fn brightness(host: &mut Host, position: DVec3, [x0, x1]: [f64; 2]) -> f64 {
 #[test]
 fn drops_fall_inside_half_of_them_in_the_middle_of_the_rim_and_none_outside() {
     let area = RainArea { shape: square(1500.0), rim_m: 1400.0, ..shower(0.0, 50.0) };
-    let mut host = host(&fair(0.0), &[area]);
+    // Under one sky, or drops would be brighter where less of the shower's cloud is overhead.
+    let even = vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, 4000.0)];
+    let mut host = host(&Weather { clouds: even, ..fair(0.0) }, &[area]);
     let eye = |x: f64| DVec3::new(x, 0.0, 2.0);
     let whole = [0.0, 1.0];
     let inside = brightness(&mut host, eye(0.0), whole);
