@@ -5376,8 +5376,9 @@ typedef uint32_t wk_clouds_flags;
 
 /**
  * Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows. Drawn
- * with WK_STAGE_SURFACE where the host gives depth, up to 10 km; 24 look-ups a pixel. Without it the air is as bright as on
- * the mean over places.
+ * with WK_STAGE_SURFACE where the host gives depth and does not read the map of shadows itself
+ * (wk_view_get_cloud_shadows), up to 10 km away; 24 look-ups a pixel. Without it the air is as bright as on the mean over
+ * places.
  */
 #define WK_CLOUDS_SHAFTS 1
 
