@@ -5,8 +5,8 @@
 //! A cell is an ellipse, about a polygon's corners. Its base is that of the lowest layer that makes rain and has it no higher than the area, or
 //! else the area's. Under a closed layer there are none: it hides the sky.
 //!
-//! The light of a place is that under a layer of the cells' cloud that covers as much of the sky as they do: the view factor of a disc over
-//! level ground (Hamilton and Morgan 1952), of a cell's area, seen from where the place lies in the cell.
+//! The light of a place is that under a layer of the cells' cloud that covers as much of the sky as they do. A cell covers what a level disc of
+//! its area covers for level ground (Hamilton and Morgan 1952), seen from as many half widths off its middle.
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};
 
