@@ -28,7 +28,7 @@ mod effect_charts;
 mod fog;
 #[path = "../examples/lab/front.rs"]
 mod front;
-#[path = "../examples/lab/fullscreen.rs"]
+#[path = "support/fullscreen.rs"]
 mod fullscreen;
 #[path = "../examples/lab/genera.rs"]
 mod genera;

@@ -13,6 +13,8 @@ use welkin::{
     scene::{Camera, DepthMapping, ViewRays},
 };
 
+use crate::fullscreen;
+
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
@@ -91,33 +93,9 @@ impl Bench {
     }
 
     fn pipeline(&self, entry: &str, constants: &[(&str, f64)]) -> wgpu::RenderPipeline {
-        let gpu = &self.device.device;
-        let groups = [Some(&self.layout)];
-        gpu.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: None,
-            layout: Some(&gpu.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: None,
-                bind_group_layouts: &groups,
-                immediate_size: 0,
-            })),
-            vertex: wgpu::VertexState {
-                module: &self.module,
-                entry_point: Some("fullscreen_vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &self.module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-                targets: &[Some(wgpu::TextureFormat::Rgba16Float.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+        let stages = (fullscreen::VERTEX, entry, constants);
+        let targets = [wgpu::TextureFormat::Rgba16Float.into()];
+        fullscreen::pipeline(&self.device.device, &self.module, stages, &[&self.layout], &targets)
     }
 
     /// Milliseconds of a pass.

@@ -8,6 +8,8 @@ mod depth_texture;
 mod environment;
 mod first;
 mod fog;
+#[path = "../../tests/support/fullscreen.rs"]
+mod fullscreen;
 mod glass;
 mod ground;
 mod noise;

@@ -18,6 +18,7 @@ mod compare;
 mod effect_charts;
 mod fog;
 mod front;
+#[path = "../../tests/support/fullscreen.rs"]
 mod fullscreen;
 mod genera;
 mod growth;

@@ -1,4 +1,4 @@
-//! `lab chart painted-clouds`: what painted clouds cost, and how far their brightness and contrast are from the truth, beside the library's.
+//! `lab chart painted-clouds`: cost of painted clouds, and error of their brightness and contrast, beside those of the library's clouds.
 
 use std::{path::Path, sync::Arc};
 

@@ -5,8 +5,8 @@
 
 // Layers of the sky. The last is what stands behind the sky's own light, in the night floor's place: stars and the glow between them.
 // With clouds there are two before it (clouds/): their light with the exposure on it, and what they let through; log2 of the distances
-// between which they stand, m, with the share of direct light that they let through to what the host drew, and to the air before it. Below the first one's picture
-// lie the clouds of all directions (clouds/round.wgsl).
+// between which they stand, m, the share of direct light that they let through to what the host drew, and the difference of that in the air
+// before it from the mean. Below the first one's picture lie the clouds of all directions (clouds/round.wgsl).
 @group(0) @binding(11) var sky_layers: texture_2d_array<f32>;
 
 override CLOUDS: bool = false;

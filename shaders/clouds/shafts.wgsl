@@ -1,7 +1,7 @@
 // Shafts of light between the shadows of clouds: how far the air before a place is lit otherwise than on the mean.
 //
-// Model: the air scatters by its depth, which falls off with height; each of some places along the way, apart by as much of the light that
-// comes from between them, has the share of direct light that the map of shadows says.
+// Model: the air thins with height. Along a ray lie places between which the air scatters the same light to the eye; the map of shadows says
+// which share of the direct light reaches each of them, and their mean is the ray's.
 //!include "clouds/shadow_map.wgsl"
 
 // In the median and at 95 % of rays the share is off by 0.025 and 0.079 with 12, 0.019 and 0.049 with 16, 0.014 and 0.039 with these.

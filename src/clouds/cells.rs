@@ -1,9 +1,9 @@
-//! Cells of cloud over rain areas ([`crate::falling::area::RainArea`]), so that no rain falls out of a clear sky: where they stand, what they
-//! are made of, and how much of the sky over a place they cover.
+//! Cells of cloud over rain areas ([`crate::falling::area::RainArea`]), without which rain would fall out of a clear sky: where they stand,
+//! what they are made of, and how much of the sky they cover over a place.
 //!
 //! # Model
-//! A cell is an ellipse, about a polygon's corners. Its base is that of the lowest layer that makes rain and has it no higher than the area, or
-//! else the area's. Under a closed layer there are none: it hides the sky.
+//! A cell is an ellipse; over a polygon it goes about the corners. Its base is that of the lowest layer of the weather from which rain may fall,
+//! if that lies no higher than the area's, and the area's otherwise. Under a closed layer there are no cells: it hides the sky.
 //!
 //! The light of a place is that under a layer of the cells' cloud that covers as much of the sky as they do. A cell covers what a level disc of
 //! its area covers for level ground (Hamilton and Morgan 1952), seen from as many half widths off its middle.
@@ -88,7 +88,7 @@ impl AreaCell {
         Self { center_m: center_m + middle, right: shaft.right, semi_m: semi, rim_m: 0.0 }
     }
 
-    /// The same area with a soft edge `rim_m` wide, of which the share [`BORDER`] lies outside.
+    /// The same cell with an edge `rim_m` wide; the share [`BORDER`] of that lies outside of the area.
     pub(super) fn with_edge(self, rim_m: f64) -> Self {
         Self { semi_m: self.semi_m + BORDER * rim_m, rim_m, ..self }
     }
@@ -218,7 +218,7 @@ fn brought(shaft: &Shaft, rain: AreaRain) -> &'static CloudSlab {
     }
 }
 
-/// Whether rain falls from such a layer: nimbostratus, or heaps that tower.
+/// Whether rain may fall from a layer: it is nimbostratus, towering cumulus or cumulonimbus.
 fn makes_rain(slab: &CloudSlab) -> bool {
     let deep_sheet = slab.convection < 0.1 && slab.thickness_m >= 1000.0 && slab.ice_fraction < 0.5;
     slab.convection > 0.7 || deep_sheet

@@ -96,7 +96,7 @@ pub(super) const SPLASHES: Range<usize> = {
     let at = size_of::<RainUniform>().next_multiple_of(256);
     at..at + size_of::<SplashUniform>()
 };
-/// Likewise the drops of areas behind their columns.
+/// Where the drops of areas begin behind their columns, and where they end.
 pub(super) const LOCAL: Range<usize> = {
     let at = COLUMNS_BYTES.next_multiple_of(256);
     at..at + size_of::<LocalUniform>() - COLUMNS_BYTES

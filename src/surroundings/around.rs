@@ -189,21 +189,14 @@ fn group(
     buffer: &wgpu::Buffer,
     table: &wgpu::TextureView,
 ) -> wgpu::BindGroup {
-    let block = |binding, at: usize, size: usize| wgpu::BindGroupEntry {
-        binding,
-        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer,
-            offset: at as u64,
-            size: wgpu::BufferSize::new(size as u64),
-        }),
-    };
+    let block = |binding, at: usize, size: usize| bind::part(binding, buffer, at..at + size);
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("around"),
         layout,
         entries: &[
             block(0, STARTS[0], SHELTER_BYTES),
             block(1, STARTS[1], MAP_BYTES),
-            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(table) },
+            bind::view(2, table),
             block(3, STARTS[2], LIGHT_BYTES),
         ],
     })

@@ -225,15 +225,8 @@ impl OccluderMaps {
                 label: Some("occluder map"),
                 layout: &self.layouts[0],
                 entries: &[
-                    wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                            buffer: &self.blocks,
-                            offset: at,
-                            size: wgpu::BufferSize::new(size_of::<MapUniform>() as u64),
-                        }),
-                    },
-                    wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&depth) },
+                    bind::part(0, &self.blocks, at as usize..at as usize + size_of::<MapUniform>()),
+                    bind::view(1, &depth),
                 ],
             });
             let [[x, y], [w, h]] = placed.part;

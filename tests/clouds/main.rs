@@ -3,6 +3,8 @@
 mod asked;
 mod bases;
 mod carried;
+#[path = "../support/depth_texture.rs"]
+mod depth_texture;
 mod drawn;
 mod elsewhere;
 mod handed;
@@ -11,6 +13,8 @@ mod lookup;
 mod placed;
 mod plan;
 mod seams;
+#[path = "../support/seen_lux.rs"]
+mod seen_lux;
 mod shadows;
 mod shafts;
 #[path = "../support/textures.rs"]

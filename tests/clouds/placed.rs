@@ -14,6 +14,7 @@ use welkin::{
 use crate::{
     asked::drawn_over_asked,
     drawn::{BROKEN, Sky, p95},
+    seen_lux::seen_lux,
     shadows::over_ground,
 };
 
@@ -226,22 +227,6 @@ fn the_anvil_of_a_thunderstorm_is_wider_than_its_towers() {
     assert!(bulges > 250.0, "{bulges}");
 }
 
-/// Light of the sky on level ground at a place, lux: the sum over what is seen.
-fn seen_lux(sky: &Sky, place: DVec3) -> f64 {
-    let (rings, turns) = (12, 24);
-    let directions: Vec<DVec3> = (0..rings * turns)
-        .map(|i| {
-            // As many in each share of the light on level ground.
-            let up2 = (f64::from(i / turns) + 0.5) / f64::from(rings);
-            let (sine, cosine) = (f64::from(i % turns) * std::f64::consts::TAU / f64::from(turns)).sin_cos();
-            let level = (1.0 - up2).sqrt();
-            DVec3::new(level * sine, level * cosine, up2.sqrt())
-        })
-        .collect();
-    let seen = sky.context.sky_radiance(place, &directions, 0.0).unwrap();
-    std::f64::consts::PI * seen.iter().map(luminance).sum::<f64>() / seen.len() as f64
-}
-
 #[test]
 fn light_near_a_storm_is_that_of_its_sky() {
     let mut sky = Sky::new(CLEAR, CloudModel::Volume);
@@ -255,7 +240,7 @@ fn light_near_a_storm_is_that_of_its_sky() {
             let place = DVec3::new(share * half_m, 0.0, 2.0);
             let told = sky.context.light_at(place, 0.0).unwrap();
             let (sky_lux, direct) = (luminance(&told.arriving.sky_lux), told.sun.direct_share);
-            let off = sky_lux / seen_lux(&sky, place) - 1.0;
+            let off = sky_lux / seen_lux(&sky.context, place, (12, 24)) - 1.0;
             println!("{kind:?}, {share} of its half width off: {sky_lux:.0} lux, off by {off:+.2}; direct {direct:.3}");
             worst = worst.max(off.abs());
             assert!(before.is_none_or(|before| before < direct), "less of the cloud is overhead");

@@ -8,7 +8,10 @@ use welkin::{
     scene::Camera,
 };
 
-use crate::drawn::{SIZE, Sky};
+use crate::{
+    depth_texture::depth_texture,
+    drawn::{SIZE, Sky},
+};
 
 /// Height of the camera that looks straight down at level ground.
 const HEIGHT_M: f64 = 2500.0;
@@ -21,18 +24,18 @@ pub fn over_ground(sky: &mut Sky, luminance: f32, flags: FrameFlags) -> Vec<f64>
 
 /// The same from over a place, with a vertical field of view, rad.
 fn over_ground_from(sky: &mut Sky, (over_m, fov): (DVec3, f64), luminance: f32, flags: FrameFlags) -> Vec<f64> {
-    let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
-    let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
-    let write = |texture: &wgpu::Texture, texels: &[f32], bytes: u32| {
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes * SIZE.0), rows_per_image: None };
-        sky.device.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(texels), layout, size);
-    };
-    let count = (SIZE.0 * SIZE.1) as usize;
-    write(&depth, &vec![0.1 / HEIGHT_M as f32; count], 4);
-    write(&sky.color, &[luminance, luminance, luminance, 1.0].repeat(count), 16);
-    sky.frame_id += 1;
     let camera = Camera::look_to(over_m + DVec3::Z * HEIGHT_M, DVec3::NEG_Z, DVec3::Y, fov, 16.0 / 9.0, 0.1);
+    over_host(sky, camera, (HEIGHT_M, luminance), flags)
+}
+
+/// The same over what a host drew: of this luminance, so far before the camera's plane (infinitely far: nothing).
+pub fn over_host(sky: &mut Sky, camera: Camera, (plane_m, luminance): (f64, f32), flags: FrameFlags) -> Vec<f64> {
+    let count = (SIZE.0 * SIZE.1) as usize;
+    let depth = depth_texture(&sky.device, SIZE, &vec![(0.1 / plane_m) as f32; count]);
+    let host = [luminance, luminance, luminance, 1.0].repeat(count);
+    let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * SIZE.0), rows_per_image: None };
+    sky.device.queue.write_texture(sky.color.as_image_copy(), bytemuck::cast_slice(&host), rows, sky.color.size());
+    sky.frame_id += 1;
     let mut frame = Frame::new(sky.frame_id, camera, &sky.color, Some(&depth));
     frame.flags = flags;
     let stages = Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::SURFACE);

@@ -6,12 +6,14 @@ use glam::DVec3;
 use welkin::{
     clouds::{CloudModel, CloudSettings},
     context::GivenDirection,
-    frame::{Frame, FrameFlags, Stages},
-    gpu::readback,
+    frame::FrameFlags,
     scene::Camera,
 };
 
-use crate::drawn::{SIZE, Sky};
+use crate::{
+    drawn::{SIZE, Sky},
+    shadows::over_host,
+};
 
 const HAZY: &str = "LOWI 121150Z 00000KT 6000 HZ SCT070 18/12 Q1015";
 const EYE: DVec3 = DVec3::new(0.0, 0.0, 30.0);
@@ -27,22 +29,7 @@ fn sky(report: &str) -> Sky {
 /// Green of a picture towards the north-west before a black wall, or before nothing.
 fn take(sky: &mut Sky, shafts: bool, wall_m: Option<f64>) -> Vec<f64> {
     sky.view.set_clouds(CloudSettings { shafts, ..CloudSettings::default() }).unwrap();
-    let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
-    let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
-    let write = |texture: &wgpu::Texture, texels: &[f32], bytes: u32| {
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes * SIZE.0), rows_per_image: None };
-        sky.device.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(texels), layout, size);
-    };
-    let count = (SIZE.0 * SIZE.1) as usize;
-    write(&depth, &vec![wall_m.map_or(0.0, |m| 0.1 / m as f32); count], 4);
-    write(&sky.color, &[0.0, 0.0, 0.0, 1.0].repeat(count), 16);
-    sky.frame_id += 1;
-    let mut frame = Frame::new(sky.frame_id, camera(), &sky.color, Some(&depth));
-    frame.flags = FrameFlags::NO_HISTORY;
-    let stages = Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::SURFACE);
-    sky.view.record(&sky.context, &frame, stages).unwrap();
-    readback::rgba(&sky.device, &sky.color).unwrap().iter().map(|t| f64::from(t[1])).collect()
+    over_host(sky, camera(), (wall_m.unwrap_or(f64::INFINITY), 0.0), FrameFlags::NO_HISTORY)
 }
 
 fn forward() -> DVec3 {
@@ -61,8 +48,8 @@ fn way(i: usize) -> DVec3 {
     forward() + right * (at(x, SIZE.0) * half * 16.0 / 9.0) - right.cross(forward()) * (at(y, SIZE.1) * half)
 }
 
-/// What air of so much extinction at the ground, 1/m, scatters of a beam, 1/sr, at the cosine of an angle: gas (Rayleigh), and haze with an
-/// asymmetry of 0.76 (Cornette and Shanks 1992).
+/// Phase function of air, 1/sr, at `nu`, the cosine of the scattering angle: of gas (Rayleigh) and of haze (Cornette and Shanks 1992,
+/// asymmetry 0.76), which together have this extinction, 1/m.
 fn phase(nu: f64, extinction: f64) -> f64 {
     const G: f64 = 0.76;
     let gas = 1.3e-5;

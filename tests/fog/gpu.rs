@@ -4,6 +4,8 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use welkin::gpu::{Device, DeviceOptions, flat_texture, pass, readback, shader};
 
+use crate::fullscreen;
+
 /// The device all tests of this file share.
 pub fn device() -> &'static Arc<Device> {
     static DEVICE: OnceLock<Arc<Device>> = OnceLock::new();
@@ -150,30 +152,6 @@ fn pipeline(
         label: None,
         source: wgpu::ShaderSource::Wgsl(text.into()),
     });
-    let groups = [Some(layout)];
-    d.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: None,
-        layout: Some(&d.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &groups,
-            immediate_size: 0,
-        })),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("fullscreen_vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: Default::default(),
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("evaluate"),
-            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-            targets: &[Some(wgpu::TextureFormat::Rgba32Float.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let stages = (fullscreen::VERTEX, "evaluate", constants);
+    fullscreen::pipeline(&d.device, &module, stages, &[layout], &[wgpu::TextureFormat::Rgba32Float.into()])
 }

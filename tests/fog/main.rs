@@ -4,6 +4,8 @@ mod cameras;
 mod contrast;
 mod depth;
 mod drawn;
+#[path = "../support/fullscreen.rs"]
+mod fullscreen;
 mod gpu;
 mod light;
 mod path;

@@ -19,6 +19,8 @@ mod queries;
 mod radiance;
 mod refined;
 mod refused;
+#[path = "../support/seen_lux.rs"]
+mod seen_lux;
 mod spaces;
 mod stability;
 mod stages;

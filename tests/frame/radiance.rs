@@ -15,7 +15,7 @@ use welkin::{
     weather::{CloudKind, CloudLayer, Weather},
 };
 
-use crate::environment::Level;
+use crate::{environment::Level, seen_lux::seen_lux};
 
 const SIZE: (u32, u32) = (64, 36);
 /// Winter night without moon, 2026-01-18 22:00 UTC.
@@ -160,21 +160,6 @@ fn radiance_asked_for_is_the_radiance_drawn() {
     night.hold("night", [0.006, 0.14, 0.18]);
 }
 
-/// Light of a sky on level ground, lux: the sum over what is seen of it.
-fn seen_lux(context: &Context) -> f64 {
-    let (rings, turns) = (16, 32);
-    let directions: Vec<DVec3> = (0..rings * turns)
-        .map(|i| {
-            // As many directions in each share of the light on level ground.
-            let up2 = (f64::from(i / turns) + 0.5) / f64::from(rings);
-            let (sine, cosine) = (f64::from(i % turns) * std::f64::consts::TAU / f64::from(turns)).sin_cos();
-            DVec3::new((1.0 - up2).sqrt() * sine, (1.0 - up2).sqrt() * cosine, up2.sqrt())
-        })
-        .collect();
-    let seen = context.sky_radiance(DVec3::Z * 2.0, &directions, 0.0).unwrap();
-    std::f64::consts::PI * seen.iter().map(luminance).sum::<f64>() / seen.len() as f64
-}
-
 #[test]
 fn light_of_a_clear_sky_is_that_of_what_is_seen_of_it() {
     let mut sky = Sky::new();
@@ -184,7 +169,7 @@ fn light_of_a_clear_sky_is_that_of_what_is_seen_of_it() {
         for elevation_deg in [6.0, 11.0, 30.0, 65.0] {
             sky.context.set_sun(Some(GivenDirection { azimuth_deg: 200.0, elevation_deg })).unwrap();
             let told = luminance(&sky.context.light_at(DVec3::Z * 2.0, 0.0).unwrap().arriving.sky_lux);
-            let off = told / seen_lux(&sky.context) - 1.0;
+            let off = told / seen_lux(&sky.context, DVec3::Z * 2.0, (16, 32)) - 1.0;
             println!(
                 "visibility {:.0} km, sun at {elevation_deg:.0} degrees: {told:.0} lux, off by {off:+.3}",
                 visibility_m / 1e3
