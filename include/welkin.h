@@ -5122,8 +5122,8 @@ wk_status wk_occluder_map_init(wk_occluder_map *out,
  * ====================================================================================================
  * Lamps
  *
- * Head lights, work lights, search lights: the host's lamps light what Welkin draws in their beams (rain, hail and
- * splashes) and shine in wet ground. The host lights its own world itself.
+ * Head lights, work lights, search lights: the host's lamps light what Welkin draws in their beams (rain, snow, hail,
+ * splashes and clouds) and shine in wet ground. The host lights its own world itself.
  * ====================================================================================================
  */
 

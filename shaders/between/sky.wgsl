@@ -27,7 +27,9 @@ fn before_sky(behind: vec3f, d: vec3f, hung: Hung) -> vec3f {
     if FLASH {
         let known = CLOUDS && hung.reach.y > 0.0;
         let way = select(flash_way(d), exp2(0.5 * (hung.reach.x + hung.reach.y)), known);
-        light += flash_on_clouds(d, way) * cloud_cover(hung);
+        // What is drawn as a deck has no glow of its own.
+        let flat = select(cloud_cover(hung), hung.clouds.a * hung.deck, hung.has_glow);
+        light += flash_on_clouds(d, way) * flat;
     }
     return light;
 }
@@ -36,6 +38,15 @@ fn before_sky(behind: vec3f, d: vec3f, hung: Hung) -> vec3f {
 fn sky_toward(d: vec3f) -> vec3f {
     let hung = hung_toward(d);
     return before_sky(open_sky(d, clear_sky_above(d), hung), d, hung);
+}
+
+// What flashes make of the air before something at this range: clouds hide what is behind them.
+fn flash_before(ray: ViewRay, range: f32, hung: Hung) -> vec3f {
+    let all = flash_in_air(ray, range);
+    if !CLOUDS || hung.reach.y == 0.0 {
+        return all;
+    }
+    return mix(flash_in_air(ray, min(range, exp2(hung.reach.x))), all, hung.clouds.a);
 }
 
 // Share of what is behind that clouds hide.

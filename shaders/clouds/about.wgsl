@@ -110,17 +110,17 @@ fn cloud_stretch(layer: CloudLayer, excess: f32, height: f32, rise: f32, length:
     return length * filled / (top - bottom);
 }
 
-// Metres of full extinction towards the sun. What frays a cloud is looked up on the nearer part of the way; beyond it columns of even
-// strength stand for the cloud.
-fn cloud_sun_way(layer: CloudLayer, at: CloudPlace) -> f32 {
-    let rise = select(min(clouds.to_sun.z, -1e-3), max(clouds.to_sun.z, 1e-3), clouds.to_sun.z >= 0.0) * layer.size.y;
-    let way = select(at.height, 1.0 - at.height, rise > 0.0) / abs(rise);
+// Metres of full extinction along a direction, up to a distance. What frays a cloud is looked up on the nearer part of the way; beyond it
+// columns of even strength stand for the cloud.
+fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32 {
+    let rise = select(min(toward.z, -1e-3), max(toward.z, 1e-3), toward.z >= 0.0) * layer.size.y;
+    let way = min(select(at.height, 1.0 - at.height, rise > 0.0) / abs(rise), most);
     var gone = 0.0;
     var depth = 0.0;
     for (var i = 0u; i < SUN_FRAYED && gone < way; i++) {
         let end = min(SUN_WAY[i] / layer.size.z, way);
         let t = 0.5 * (gone + end);
-        let p = CloudPlace(at.level + clouds.to_sun.xy * t, at.height + rise * t);
+        let p = CloudPlace(at.level + toward.xy * t, at.height + rise * t);
         let there = cloud_local(layer, cloud_unleaned(layer, p)).layer;
         let over = cloud_over(there, p);
         let excess = over - cloud_dome(there, over, p.height) + cloud_frays(there, p);
@@ -130,7 +130,7 @@ fn cloud_sun_way(layer: CloudLayer, at: CloudPlace) -> f32 {
     for (var i = SUN_FRAYED; i < SUN_STEPS && gone < way; i++) {
         let end = min(SUN_WAY[i] / layer.size.z, way);
         let t = 0.5 * (gone + end);
-        let p = CloudPlace(at.level + clouds.to_sun.xy * t, at.height + rise * t);
+        let p = CloudPlace(at.level + toward.xy * t, at.height + rise * t);
         let there = cloud_local(layer, cloud_unleaned(layer, p)).layer;
         depth += cloud_stretch(there, cloud_over(there, p), at.height + rise * gone, rise, end - gone);
         gone = end;
@@ -138,15 +138,18 @@ fn cloud_sun_way(layer: CloudLayer, at: CloudPlace) -> f32 {
     return depth;
 }
 
-fn cloud_depths(whole: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
-    // About a place the cloud counts as it is there.
-    let layer = cloud_local(whole, cloud_unleaned(whole, at)).layer;
-    let scaled = layer.size.w * layer.medium.y;
-    let about = cloud_about(layer, excess, at.height) * scaled;
-    let to_sun = cloud_sun_way(whole, at) * scaled;
-    let sine = length(clouds.to_sun.xy);
+// Scaled depths of the cloud about a place, which counts as it is there (cloud_local): above, below, level to the nearer side and to the
+// other.
+fn cloud_box(here: CloudLayer, at: CloudPlace, excess: f32) -> vec4f {
+    let about = cloud_about(here, excess, at.height) * (here.size.w * here.medium.y);
     let edge = max(about.z, 0.02);
-    let other = max(layer.below.w - edge, edge);
-    let near = max(edge, to_sun * sine);
-    return CloudDepths(about.x, about.y, to_sun, near, other, edge, other);
+    return vec4f(about.xy, edge, max(here.below.w - edge, edge));
+}
+
+fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
+    let here = cloud_local(layer, cloud_unleaned(layer, at)).layer;
+    let about = cloud_box(here, at, excess);
+    let to_sun = cloud_way(layer, at, clouds.to_sun, 1e9) * (here.size.w * here.medium.y);
+    let near = max(about.z, to_sun * length(clouds.to_sun.xy));
+    return CloudDepths(about.x, about.y, to_sun, near, about.w, about.z, about.w);
 }

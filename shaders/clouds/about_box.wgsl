@@ -37,13 +37,43 @@ fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     return CloudPlace(at.xy, at.z * layer.size.y);
 }
 
+// A place in the box, m.
+fn box_place(layer: CloudLayer, at: CloudPlace) -> vec3f {
+    let sides = box_sides(layer);
+    return clamp(vec3f(at.level, at.height * sides.z), vec3f(0.0), sides);
+}
+
+fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32 {
+    return min(box_exit(box_place(layer, at), box_sides(layer), toward), most);
+}
+
+// It is the same all over.
+struct CloudLocal {
+    layer: CloudLayer,
+}
+
+fn cloud_local(layer: CloudLayer, level: vec2f) -> CloudLocal {
+    return CloudLocal(layer);
+}
+
+fn cloud_unleaned(layer: CloudLayer, at: CloudPlace) -> vec2f {
+    return at.level;
+}
+
+fn cloud_box(layer: CloudLayer, at: CloudPlace, excess: f32) -> vec4f {
+    let scaled = layer.size.w * layer.medium.y;
+    let sides = box_sides(layer);
+    let low = box_place(layer, at);
+    let high = sides - low;
+    let edge = min(min(low.x, high.x), min(low.y, high.y));
+    return vec4f(high.z, low.z, edge, max(min(sides.x, sides.y) - edge, edge)) * scaled;
+}
+
 // The sun stands over the box's side x = 0.
 fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
-    let sides = box_sides(layer);
-    let place = clamp(vec3f(at.level, at.height * sides.z), vec3f(0.0), sides);
     let scaled = layer.size.w * layer.medium.y;
-    let low = place * scaled;
-    let high = (sides - place) * scaled;
-    let to_sun = box_exit(place, sides, clouds.to_sun) * scaled;
+    let low = box_place(layer, at) * scaled;
+    let high = box_sides(layer) * scaled - low;
+    let to_sun = cloud_way(layer, at, clouds.to_sun, 1e9) * scaled;
     return CloudDepths(high.z, low.z, to_sun, low.x, high.x, low.y, high.y);
 }

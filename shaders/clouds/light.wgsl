@@ -22,6 +22,17 @@ struct CloudDepths {
     right: f32,
 }
 
+// A stretch of a ray that is looked at in one place.
+struct CloudStretch {
+    direction: vec3f,
+    // Distances at which it begins, how long it is, and of the place, m.
+    begun: f32,
+    length: f32,
+    at: f32,
+    // Scaled depth of cloud before it.
+    to_eye: f32,
+}
+
 // Per unit of the sun's irradiance facing it, of the sky's and of the ground's radiance.
 struct CloudScattered {
     sun: f32,
@@ -87,6 +98,15 @@ fn cloud_phase(medium: CloudMedium, versine: f32) -> f32 {
     return mix(lobe.x, draine, medium.lobes.w) / (4.0 * CLOUD_PI);
 }
 
+// What is scattered for the first time after so much cloud (scaled), with what is still to come to the eye, 1/sr: of what counts as straight
+// on, the part that is scattered at the angle.
+fn cloud_first_phase(medium: CloudMedium, versine: f32, gone: f32) -> f32 {
+    let phase = cloud_phase(medium, versine);
+    let forward = medium.rest.x * gone / (1.0 - medium.rest.x);
+    let share_forward = select((1.0 - exp(-forward)) / forward, 1.0 - 0.5 * forward, forward < 1e-3);
+    return (min(phase, medium.rest.y) + max(phase - medium.rest.y, 0.0) * share_forward) / (1.0 - medium.rest.x);
+}
+
 // Terms of a table with what goes from side to side along two further axes: (cosine and slope, direction along the axis) each.
 fn cloud_through(terms: vec4f, axis: f32, one: vec3f, other: vec3f, spread: f32) -> f32 {
     let leaves = one.y * other.x * one.z + other.y * one.x * other.z;
@@ -130,17 +150,9 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
     let momentum = exp(-turning * at.to_sun) - exp(-at.to_sun);
     let kept = albedo * 3.0 * (1.0 - turning) / (4.0 * CLOUD_PI) * momentum;
     let level_kept = kept * (top_share * sine * along + (1.0 - top_share) * cosine * down);
-    let versine = 1.0 + dot(direction, sun);
-    let phase = cloud_phase(medium, versine);
-    let smooth_phase = min(phase, medium.rest.y) / (1.0 - medium.rest.x);
-    // Light round the sun: of what the beam counts as straight on, the part that is scattered so.
-    let forward = medium.rest.x * (at.to_sun + to_eye) / (1.0 - medium.rest.x);
-    let share_forward = select((1.0 - exp(-forward)) / forward, 1.0 - 0.5 * forward, forward < 1e-3);
-    let peak = max(phase - medium.rest.y, 0.0) / (1.0 - medium.rest.x) * share_forward;
-
     var out: CloudScattered;
     out.once = albedo * exp(-at.to_sun);
-    let once = out.once * (smooth_phase + peak);
+    let once = out.once * cloud_first_phase(medium, 1.0 + dot(direction, sun), at.to_sun + to_eye);
     let often = share * (max(top, 0.0) + max(side, 0.0));
     out.sun = once + often + clamp(level_kept, -often, often);
     let sky = max(cloud_through(cloud_table(2.0, medium_index, at.above, at.below, leak), -direction.z, a, c, spread), 0.0);

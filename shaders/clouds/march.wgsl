@@ -2,6 +2,7 @@
 //!include "between/air.wgsl"
 //!include "clouds/about.wgsl"
 //!include "clouds/halo.wgsl"
+//!include "clouds/lit.wgsl"
 
 // How many steps a ray takes, over those of these: most steps through one layer; depth of a step in cloud, scaled, at most; distance from
 // which on steps grow with it.
@@ -95,9 +96,8 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
         }
         before.y = 0.0;
         gone = begun + step;
-        let depths = cloud_depths(layer, at, here.excess);
-        let s = cloud_scattered(layer.medium.x, depths, -direction, -log(out.transmittance));
-        let light = layer.sun.rgb * (s.sun + s.once * halo) + layer.above.rgb * s.sky + layer.below.rgb * s.ground;
+        let stretch = CloudStretch(direction, begun, step, t, -log(out.transmittance));
+        let light = cloud_lit(layer, at, here, stretch, halo);
         let left = exp(-here.extinction * scaled * step);
         let share = out.transmittance * (1.0 - left);
         out.light += light * share;

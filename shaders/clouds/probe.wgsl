@@ -34,6 +34,7 @@ fn box_probe(in: FullscreenVarying) -> @location(0) vec4f {
         at = on.yzx;
     }
     box_origin = at * sides;
+    cloud_origin = box_origin;
     let length = box_exit(clamp(box_origin, 1e-4 * sides, (1.0 - 1e-4) * sides), sides, -away);
     let none = CloudMarch(vec3f(0.0), 1.0, vec2f(0.0));
     let seen = cloud_layer_along(layer, -away, 0.0, length, none, 0.5);

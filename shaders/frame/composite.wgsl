@@ -103,7 +103,7 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32, hung: Hung) -> Veil {
         veil = veil_before(ray, range, plane, veil, hung);
     }
     if FLASH && MEDIUM {
-        veil.light += flash_in_air(ray, range);
+        veil.light += flash_before(ray, range, hung);
     }
     return veil;
 }

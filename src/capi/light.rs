@@ -1,7 +1,7 @@
 //! Lamps
 //!
-//! Head lights, work lights, search lights: the host's lamps light what Welkin draws in their beams (rain, hail and
-//! splashes) and shine in wet ground. The host lights its own world itself.
+//! Head lights, work lights, search lights: the host's lamps light what Welkin draws in their beams (rain, snow, hail,
+//! splashes and clouds) and shine in wet ground. The host lights its own world itself.
 
 use std::{ffi::c_void, ptr::null};
 

@@ -8,6 +8,7 @@
 //! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the frame before.
 //! * What mirrors and cube maps show of it: `round`, a small map of all directions.
 //! * A host's map of where clouds stand, and cloud over rain areas: `placed`, `layer_map`, `cells`.
+//! * What lamps and flashes make of it: [`lamp_light`], a small picture of its own (`lamps`).
 //! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures and for a host's own materials (`handed`).
 //!
 //! The deck is drawn with the sky (`shaders/between/sky.wgsl`).
@@ -24,6 +25,8 @@ pub mod field;
 pub mod halo;
 mod handed;
 mod held;
+pub mod lamp_light;
+mod lamps;
 mod layer_map;
 pub mod light;
 pub mod map;
@@ -31,6 +34,7 @@ mod march;
 mod overhead;
 mod passes;
 mod picture;
+mod pipelines;
 mod placed;
 pub mod probe;
 pub mod reference;

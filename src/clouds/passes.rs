@@ -4,8 +4,10 @@
 use std::sync::Arc;
 
 use super::{
+    lamps::{LampsUniform, glow_size},
     overhead::Overhead,
-    picture::{BEHIND, PAIR, Picture, SEEN, marched},
+    picture::{BEHIND, Picture, marched},
+    pipelines::{Part, Pipelines, Resolve, run},
     round::{Around, Round},
     shadow_map::{Lie, Past, ShadowMap},
     tables::CloudTables,
@@ -14,124 +16,10 @@ use super::{
 use crate::{
     error::Result,
     gpu::{
-        Device, Layer,
-        bind::{self, Slot},
+        Device, Layer, bind,
         blocks::{BlockView, Blocks, UniformBlock},
-        pass::{self, FullscreenDesc},
     },
-    stage::{FrameUniform, yes},
 };
-
-/// What distinguishes one pipeline that makes a whole picture from another.
-#[derive(Clone, Copy, PartialEq)]
-struct Resolve {
-    has_history: bool,
-    has_shadows: bool,
-    has_shafts: bool,
-    /// The host's depth has several samples a pixel.
-    is_multisampled: bool,
-    depth_kinds: f64,
-}
-
-/// The pipelines, and the layouts of their groups: of the march, of the passes after it, and of what shadows fall on by whether that has
-/// several samples a pixel.
-struct Pipelines {
-    picture_layout: wgpu::BindGroupLayout,
-    shadow_layouts: [wgpu::BindGroupLayout; 2],
-    /// By its fineness ([`super::CloudSettings`]), whether clouds are placed ([`super::placed`]), and whether there are shafts of light.
-    march: ((f64, bool, bool), wgpu::RenderPipeline),
-    follow: wgpu::RenderPipeline,
-    /// Those of the march and of the sky, which the clouds of all directions are marched with too.
-    march_layouts: [wgpu::BindGroupLayout; 2],
-    resolve: Vec<(Resolve, wgpu::RenderPipeline)>,
-}
-
-fn make(
-    device: &Device,
-    (shader, entry): (&str, &str),
-    layouts: &[&wgpu::BindGroupLayout],
-    formats: &[wgpu::TextureFormat],
-    constants: &[(&str, f64)],
-) -> Result<wgpu::RenderPipeline> {
-    let targets: Vec<_> = formats.iter().map(|f| (*f).into()).collect();
-    pass::fullscreen(device, &FullscreenDesc { shader, entry, layouts, targets: &targets, constants, samples: 1 })
-}
-
-impl Pipelines {
-    fn new(device: &Device, sky: &wgpu::BindGroupLayout, march: (f64, bool, bool)) -> Result<Self> {
-        let layout =
-            |slots: &[(u32, Slot)]| bind::layout(&device.device, "clouds", wgpu::ShaderStages::FRAGMENT, slots);
-        let march_layout = layout(&[
-            (0, Slot::Uniform(size_of::<FrameUniform>())),
-            (1, Slot::Uniform(size_of::<CloudsUniform>())),
-            (2, Slot::FilteredArray),
-            (3, Slot::FilteredVolume),
-            (4, Slot::FilteredVolume),
-            (5, Slot::Sampler),
-            (6, Slot::Sampler),
-            (7, Slot::Uniform(size_of::<PictureUniform>())),
-            (8, Slot::Filtered),
-            (9, Slot::Uniform(size_of::<ShadowUniform>())),
-            (10, Slot::Filtered),
-        ]);
-        let picture_layout = layout(&[
-            (0, Slot::Uniform(size_of::<FrameUniform>())),
-            (1, Slot::Uniform(size_of::<PictureUniform>())),
-            (2, Slot::Filtered),
-            (3, Slot::Filtered),
-            (4, Slot::FilteredArray),
-            (5, Slot::Sampler),
-            (6, Slot::Texels),
-            (7, Slot::Texels),
-            (8, Slot::Texels),
-        ]);
-        let shadow_layouts = [false, true].map(|multisampled| {
-            layout(&[
-                (0, Slot::texels(multisampled)),
-                (1, Slot::Uniform(size_of::<ShadowUniform>())),
-                (2, Slot::Filtered),
-                (3, Slot::Sampler),
-            ])
-        });
-        let march_layouts = [march_layout, sky.clone()];
-        let follow = ("clouds/follow.wgsl", "follow");
-        Ok(Self {
-            march: (march, Self::march(device, &march_layouts, march)?),
-            march_layouts,
-            follow: make(device, follow, &[&picture_layout], &[SEEN, SEEN, PAIR], &[])?,
-            resolve: Vec::new(),
-            picture_layout,
-            shadow_layouts,
-        })
-    }
-
-    fn march(
-        device: &Device,
-        layouts: &[wgpu::BindGroupLayout; 2],
-        (fineness, is_placed, has_shafts): (f64, bool, bool),
-    ) -> Result<wgpu::RenderPipeline> {
-        let march = ("clouds/march_view.wgsl", "march");
-        let constants = [("CLOUD_FINENESS", fineness), ("CLOUD_PLACED", yes(is_placed)), ("SHAFTS", yes(has_shafts))];
-        make(device, march, &layouts.each_ref(), &[SEEN, PAIR], &constants)
-    }
-
-    fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<wgpu::RenderPipeline> {
-        if let Some((_, pipeline)) = self.resolve.iter().find(|(made, _)| *made == wanted) {
-            return Ok(pipeline.clone());
-        }
-        let shader = if wanted.is_multisampled { "clouds/resolve.wgsl:multi" } else { "clouds/resolve.wgsl" };
-        let constants = [
-            ("HISTORY", yes(wanted.has_history)),
-            ("SHADOWS", yes(wanted.has_shadows)),
-            ("SHAFTS", yes(wanted.has_shafts)),
-            ("DEPTH_KINDS", wanted.depth_kinds),
-        ];
-        let layouts = [&self.picture_layout, &self.shadow_layouts[usize::from(wanted.is_multisampled)]];
-        let pipeline = make(device, (shader, "resolve"), &layouts, &[SEEN, SEEN], &constants)?;
-        self.resolve.push((wanted, pipeline.clone()));
-        Ok(pipeline)
-    }
-}
 
 /// The passes of a view.
 pub(super) struct CloudPasses {
@@ -150,6 +38,7 @@ pub(super) struct CloudPasses {
     none: wgpu::TextureView,
     no_layers: wgpu::TextureView,
     no_block: UniformBlock,
+    lamps_block: UniformBlock,
     /// Some clouds are elsewhere than their layer's cover says ([`super::placed`]).
     is_placed: bool,
 }
@@ -185,6 +74,8 @@ pub(super) struct CloudFrame<'a> {
     pub shaded: Option<Shaded<'a>>,
     /// Whether the air before that is shaded too.
     pub has_shafts: bool,
+    /// Lamps and flashes that light them.
+    pub lamps: Option<LampsUniform>,
     /// What the clouds of all directions are made of.
     pub around: Around,
     /// Of the march ([`super::CloudSettings`]).
@@ -193,38 +84,6 @@ pub(super) struct CloudFrame<'a> {
     /// The host's depth has several samples a pixel, and which kinds of depth there are.
     pub is_multisampled: bool,
     pub depth_kinds: f64,
-}
-
-fn attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
-    Some(wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
-    })
-}
-
-/// Runs one pass over its targets, or over a part of them from their first corner.
-fn run(
-    encoder: &mut wgpu::CommandEncoder,
-    (targets, part): (&[&wgpu::TextureView], Option<(u32, u32)>),
-    pipeline: &wgpu::RenderPipeline,
-    groups: &[&wgpu::BindGroup],
-) {
-    let attachments: [_; 3] = std::array::from_fn(|i| targets.get(i).and_then(|t| attachment(t)));
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("clouds"),
-        color_attachments: &attachments[..targets.len()],
-        ..Default::default()
-    });
-    if let Some((width, height)) = part {
-        pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
-    }
-    pass.set_pipeline(pipeline);
-    for (i, group) in groups.iter().enumerate() {
-        pass.set_bind_group(i as u32, *group, &[]);
-    }
-    pass.draw(0..3, 0..1);
 }
 
 impl CloudPasses {
@@ -244,6 +103,7 @@ impl CloudPasses {
             round: None,
             shaded: None,
             no_block: blocks.block(device, size_of::<ShadowUniform>()),
+            lamps_block: blocks.block(device, size_of::<LampsUniform>()),
             is_placed: false,
         })
     }
@@ -320,6 +180,7 @@ impl CloudPasses {
                 bind::view(8, &self.tables.placed),
                 map.map_or(&self.no_block, |m| &m.block).entry(9),
                 bind::view(10, map.map_or(&self.none, |m| &m.view)),
+                self.lamps_block.entry(11),
             ],
         });
         self.marched_of = Some((of.sky.1.clone(), is_shaded, group.clone()));
@@ -522,8 +383,14 @@ impl CloudPasses {
         }
         let made = picture.to_make(of.wanted.is_begun);
         let [seen, reach] = &picture.whole[made].written;
-        let group = picture.begun.as_ref().map_or(&groups[1 + (1 - made)], |(_, group)| group);
-        run(encoder, (&[seen, reach], Some(picture.of.0)), &resolve, &[group, &shaded]);
+        let past = picture.begun.as_ref().map_or(&groups[1 + (1 - made)], |(_, group)| group);
+        run(encoder, (&[seen, reach], Some(Part { first_row: 0, size: picture.of.0 })), &resolve, &[past, &shaded]);
+        if let Some(lamps) = &of.lamps {
+            self.lamps_block.write(bytemuck::bytes_of(lamps));
+            let below = Part { first_row: picture.of.0.1, size: glow_size(picture.of.0) };
+            run(encoder, (&[reach], Some(below)), &pipelines.glow(device)?, &[group, of.sky.1]);
+            passes += 1;
+        }
         picture.newest = made;
         picture.groups = Some(groups);
         Ok((passes, of_shadows))

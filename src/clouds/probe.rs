@@ -6,8 +6,10 @@ use std::sync::Arc;
 use std::f64::consts::PI;
 
 use bytemuck::Zeroable as _;
+use glam::DVec3;
 
 use super::{
+    lamps::{LampUniform, LampsUniform},
     tables::{LightTables, sampler},
     transport::{Scattering, Transport},
     uniforms::{CloudsUniform, LayerUniform, MediumUniform},
@@ -86,13 +88,7 @@ pub fn fluxes(device: &Device, cloud: &EvenCloud) -> Result<[f64; 6]> {
     if cloud.depths[2] == 0.0 {
         return Ok([0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
     }
-    let texels = draw(device, cloud, &of)?;
-    let mut sums = [0.0; 6];
-    for (i, texel) in texels.iter().enumerate() {
-        sums[i % (6 * SIDE as usize) / SIDE as usize] += f64::from(texel[0]);
-    }
-    // Mean radiance times pi is the flux through a unit of the face.
-    let mut out = sums.map(|s| s / f64::from(SIDE * SIDE) * PI);
+    let mut out = draw(device, cloud, &of, None)?;
     let (sine, cosine) = ((1.0 - cloud.cosine * cloud.cosine).sqrt(), cloud.cosine);
     let sides = cloud.depths;
     if cloud.is_slab() {
@@ -126,7 +122,32 @@ fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
     (far, base)
 }
 
-fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering) -> Result<Vec<[f32; 4]>> {
+/// Light of a lamp of 1 cd to all sides that leaves a unit of each face of a box, of which optical depth 1 is a unit of length: what droplets have
+/// scattered. `position`: from the box's low corner. Faces as in [`fluxes`].
+///
+/// # Errors
+/// As [`fluxes`].
+pub fn lamp_fluxes(device: &Device, cloud: &EvenCloud, position: DVec3) -> Result<[f64; 6]> {
+    cloud.check()?;
+    let lobes = PhaseLobes::new(&Phase::HenyeyGreenstein { g: cloud.asymmetry });
+    let of = Scattering::new(lobes, cloud.albedo);
+    let unit_m = THICKNESS_M / cloud.depths[2];
+    let mut lamps = LampsUniform { count: 1, ..LampsUniform::zeroed() };
+    lamps.lamps[0] = LampUniform {
+        position: (position * unit_m).as_vec3().to_array(),
+        direction: [0.0, 0.0, 1.0],
+        end: -2.0,
+        // In units of length, not metres.
+        intensity: [(unit_m * unit_m) as f32; 3],
+        steepness: 1.0,
+        even: 1.0,
+        ..LampUniform::zeroed()
+    };
+    draw(device, cloud, &of, Some(&lamps))
+}
+
+/// Light that leaves a unit of each face.
+fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering, lamps: Option<&LampsUniform>) -> Result<[f64; 6]> {
     let gpu = &device.device;
     let target = flat_texture(
         gpu,
@@ -140,12 +161,19 @@ fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering) -> Result<Vec<[f32;
     tables.update(device, cloud.cosine);
     let block = bind::block(gpu, "cloud probe", size_of::<CloudsUniform>());
     device.queue.write_buffer(&block, 0, bytemuck::bytes_of(&cloud.uniform(of)));
-    let slots = [(1, Slot::Uniform(size_of::<CloudsUniform>())), (4, Slot::FilteredVolume), (6, Slot::Sampler)];
+    let of_lamps = bind::block(gpu, "cloud probe", size_of::<LampsUniform>());
+    device.queue.write_buffer(&of_lamps, 0, bytemuck::bytes_of(lamps.unwrap_or(&LampsUniform::zeroed())));
+    let slots = [
+        (1, Slot::Uniform(size_of::<CloudsUniform>())),
+        (4, Slot::FilteredVolume),
+        (6, Slot::Sampler),
+        (11, Slot::Uniform(size_of::<LampsUniform>())),
+    ];
     let layout = bind::layout(gpu, "cloud probe", wgpu::ShaderStages::FRAGMENT, &slots);
     let pipeline = pass::fullscreen(
         device,
         &FullscreenDesc {
-            shader: "clouds/probe.wgsl:box",
+            shader: if lamps.is_some() { "clouds/probe.wgsl:box:lamps" } else { "clouds/probe.wgsl:box" },
             entry: "box_probe",
             layouts: &[&layout],
             targets: &[wgpu::TextureFormat::Rgba16Float.into()],
@@ -167,20 +195,27 @@ fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering) -> Result<Vec<[f32;
             wgpu::BindGroupEntry { binding: 1, resource: block.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::TextureView(&view) },
             wgpu::BindGroupEntry { binding: 6, resource: wgpu::BindingResource::Sampler(&sampler) },
+            wgpu::BindGroupEntry { binding: 11, resource: of_lamps.as_entire_binding() },
         ],
     });
     let mut encoder = gpu.create_command_encoder(&Default::default());
     pass::draw(&mut encoder, "cloud probe", &pipeline, &[&group], &target.create_view(&Default::default()));
     device.submit_and_wait(encoder)?;
-    readback::rgba(device, &target)
+    let mut sums = [0.0; 6];
+    for (i, texel) in readback::rgba(device, &target)?.iter().enumerate() {
+        sums[i % (6 * SIDE as usize) / SIDE as usize] += f64::from(texel[0]);
+    }
+    // Mean radiance times pi is the flux through a unit of the face.
+    Ok(sums.map(|s| s / f64::from(SIDE * SIDE) * PI))
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
-    use crate::{clouds::reference::tests::even, gpu::DeviceOptions};
+    use crate::{
+        clouds::{lamp_light, reference::tests::even},
+        gpu::DeviceOptions,
+    };
 
     fn slab(device: &Device, tau: f64, albedo: f64, cosine: f64) -> [f64; 2] {
         let depths = [f64::INFINITY, f64::INFINITY, tau];
@@ -214,6 +249,21 @@ mod tests {
             let through = diffuse + f64::exp(-tau);
             println!("depth {tau}, albedo 0.99: R {r:.4} ({reflected}), T {t:.4} ({through:.4})");
             assert!(near(r, reflected) && near(t, through), "{tau}: {r} {t}");
+        }
+    }
+
+    /// As the f64 model has it: a twin.
+    #[test]
+    fn drawn_cubes_glow_as_the_model_of_lamps_has_it() {
+        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        let cloud = EvenCloud { depths: [16.0; 3], asymmetry: 0.85, albedo: 1.0, cosine: 1.0 };
+        for position in [DVec3::splat(8.0), DVec3::new(3.0, 8.0, 8.0), DVec3::new(8.0, 8.0, -8.0)] {
+            let got = lamp_fluxes(&device, &cloud, position).unwrap();
+            let want = lamp_light::tests::modelled_faces(16.0, position);
+            println!("lamp at {position}: {got:.6?}, model {want:.6?}");
+            for (got, want) in got.into_iter().zip(want) {
+                assert!((got / want - 1.0).abs() < 0.05, "{position}: {got} not {want}");
+            }
         }
     }
 

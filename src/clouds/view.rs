@@ -7,6 +7,7 @@ use super::{
     candidates::{CLOUDS, clouds_work},
     field::Shape,
     handed::{CloudShadows, Handed},
+    lamps::LampsUniform,
     layer_map::LayerMaps,
     overhead::{Overhead, light_on},
     passes::{CloudFrame, CloudPasses, Shaded, Wanted},
@@ -64,6 +65,8 @@ pub(crate) struct CloudsView {
     made: Option<Made>,
     /// What the draw that is being composed is to make.
     wanted: Option<Wanted>,
+    /// Lamps and flashes that light the clouds of it.
+    lamps: Option<LampsUniform>,
     /// The picture before this call holds the last frame's clouds.
     kept: bool,
     /// The map of shadows, once a host's own materials read it.
@@ -273,6 +276,12 @@ impl DrawnEffect for CloudsView {
         to.between("DECK_BEHIND", deck, deck);
         let shadows = is_there && self.casts_shadows(shot, to.asked);
         to.constant("CLOUD_SHADOWS", yes(shadows), yes(shadows));
+        let texture = shot.color.texture;
+        let size = (texture.width(), texture.height());
+        let overhead = self.overhead.as_ref().filter(|_| is_there);
+        self.lamps = overhead.and_then(|o| LampsUniform::of(o, shot.now, shot.exposure, size));
+        let glow = yes(self.lamps.is_some());
+        to.between_and_veil("CLOUD_GLOW", glow, glow);
         let shafts = yes(shadows && self.settings.shafts);
         to.constant("CLOUD_SHAFTS", shafts, shafts);
         if shadows {
@@ -281,8 +290,7 @@ impl DrawnEffect for CloudsView {
         let (wanted, side) = (self.wanted(shot, to), self.side(shot.frame));
         self.wanted = is_there.then_some(wanted);
         if let Some(passes) = self.passes.as_mut().filter(|_| is_there) {
-            let texture = shot.color.texture;
-            let holds = passes.hold(shot.device, (texture.width(), texture.height()), side);
+            let holds = passes.hold(shot.device, size, side);
             if !wanted.is_begun {
                 self.kept = holds && self.before.is_some();
             }
@@ -325,6 +333,7 @@ impl DrawnEffect for CloudsView {
             behind: self.behind.as_ref(),
             shaded,
             has_shafts: self.settings.shafts,
+            lamps: self.lamps,
             around,
             fineness: self.settings.fineness,
             past: Past::of(shot.frame),

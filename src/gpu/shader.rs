@@ -26,12 +26,13 @@ fn source(name: &str) -> Option<&'static str> {
 
 /// Words of variants, and a file of the shaders that have them.
 #[cfg(test)]
-const VARIANTS: [(&str, &str); 5] = [
+const VARIANTS: [(&str, &str); 6] = [
     ("multi", "common/host.wgsl"),
     ("resolved", "common/host.wgsl"),
     ("clear", "frame/composite.wgsl"),
     ("dry", "frame/composite.wgsl"),
     ("box", "clouds/probe.wgsl"),
+    ("lamps", "clouds/glow_view.wgsl"),
 ];
 
 /// The text of shader `name` with its includes put before it, each once, in order of first mention; of variants after colons.

@@ -14,11 +14,11 @@ use crate::{
 };
 
 /// Temperature of the cloud's charge from which a flash starts, degrees Celsius (Krehbiel 1986: -10 to -25), how fast air cools with height,
-/// K/m, and least height of the charge over the ground and over the cloud's base, m.
+/// K/m, least height of the charge over the ground, m, and how far inside the cloud it is, m, where that is deep enough.
 const CHARGE_C: f64 = -12.0;
 const COOLS_K_M: f64 = 6.5e-3;
 const LEAST_M: f64 = 2500.0;
-const OVER_BASE_M: f64 = 800.0;
+const WITHIN_M: f64 = 800.0;
 /// Cover from which a layer of cloud hides a channel inside it.
 const HIDES_FROM: f64 = 0.2;
 /// Depth in cloud over which a channel fades by 1/e, m.
@@ -86,12 +86,16 @@ impl Strike {
             Some(position) => world.frame.frame_at(position).place.altitude_m,
             None => air.station_altitude_m,
         };
-        let clouds = CloudSpan::of(&conditions);
-        let charge_m = air.station_altitude_m + ((air.temperature_c - CHARGE_C) / COOLS_K_M).max(LEAST_M);
-        let top_m =
-            clouds.map_or(charge_m, |c| charge_m.clamp(c.base_m + OVER_BASE_M, c.top_m.max(c.base_m + OVER_BASE_M)));
         let anchor = world.position_on_map(flash.place_m, ground_m);
         let local = world.frame.frame_at(anchor);
+        // Of a time that the weather has forgotten there are no others.
+        let over = world.clouds_over(&conditions, (&local, anchor), flash.time_s).unwrap_or_default();
+        let clouds = CloudSpan::of(over.iter().flatten().last().unwrap_or(&conditions));
+        let charge_m = air.station_altitude_m + ((air.temperature_c - CHARGE_C) / COOLS_K_M).max(LEAST_M);
+        let top_m = clouds.map_or(charge_m, |c| {
+            let inside_m = WITHIN_M.min(0.5 * (c.top_m - c.base_m));
+            charge_m.clamp(c.base_m + inside_m, c.top_m - inside_m)
+        });
         let end = match at {
             Some(_) => flash.place_m.extend(ground_m),
             None => {
@@ -164,7 +168,8 @@ impl Strike {
             let lm_m = flux_lm_m(&self.flash, &stretch, span, course);
             if lm_m > 0.0 {
                 let altitude_m = self.altitude_m(0.5 * (ends[0] + ends[1]));
-                let open = self.clouds.map_or(1.0, |c| (-(altitude_m - c.base_m).max(0.0) / FADES_M).exp());
+                let depth_m = |c: CloudSpan| (altitude_m - c.base_m).min(c.top_m - altitude_m).max(0.0);
+                let open = self.clouds.map_or(1.0, |c| (-depth_m(c) / FADES_M).exp());
                 let flux_lm = lm_m * (ends[1] - ends[0]).length();
                 to(&Part { ends: [ends[0], ends[1]], altitude_m, flux_lm, open });
             }

@@ -164,8 +164,12 @@ impl LightningView {
             let position = now.scene.world_to_enu * (source.position - now.eye);
             lit.sources[i] = (*source, position);
             let flux_lm = COLOR.map(|c| c * source.flux_lm);
-            light.lamps[i] =
-                FlashLamp { position, flux_lm, down_share: source.is_hidden().then_some(source.down_share) };
+            light.lamps[i] = FlashLamp {
+                position,
+                flux_lm,
+                radius_m: source.radius_m,
+                down_share: source.is_hidden().then_some(source.down_share),
+            };
         }
         self.lit = Some(lit);
         // A moment is worked out anew for each call.

@@ -44,6 +44,8 @@ pub(crate) struct FlashLamp {
     pub position: DVec3,
     /// Luminous flux, lm a channel of linear Rec. 709, on the mean of the frame's time.
     pub flux_lm: [f64; 3],
+    /// How far its light reaches about that, m.
+    pub radius_m: f64,
     /// Of a source inside a cloud the share of its light that leaves by the cloud's base; none of one that is open to all sides.
     pub down_share: Option<f64>,
 }

@@ -183,6 +183,24 @@ impl World {
         self.scene_over((name, position), time_s, conditions, &land)
     }
 
+    /// This weather with the clouds that the host's map has over a place, where there is a map, and with those over rain areas besides, where any
+    /// stand over it.
+    ///
+    /// # Errors
+    /// For a time that the weather does not know.
+    pub(crate) fn clouds_over(
+        &self,
+        conditions: &Conditions,
+        (local, position): (&LocalFrame, DVec3),
+        time_s: f64,
+    ) -> Result<[Option<Conditions>; 2]> {
+        let map_m = DVec2::from_array(self.map_place(position, local));
+        let mapped = self.set.cloud_map.as_ref().map(|map| conditions.under_map(map, map_m));
+        let brought = (self.couplings.cloud_over_areas)(&self.over(), conditions, (local, position), time_s)?;
+        let under_areas = brought.map(|slab| mapped.as_ref().unwrap_or(conditions).with_layer(slab));
+        Ok([mapped, under_areas])
+    }
+
     /// The same in this weather over this land.
     fn scene_over(
         &self,
@@ -195,10 +213,8 @@ impl World {
         let planet = planet_under(&self.set.planet, &conditions);
         let map_m = self.map_place(position, &local);
         // Light is that of the clouds over the place, those over rain areas among them; all else is the weather's.
-        let mapped = self.set.cloud_map.as_ref().map(|map| conditions.under_map(map, DVec2::from_array(map_m)));
+        let [mapped, under_areas] = self.clouds_over(&conditions, (&local, position), time_s)?;
         let shown = mapped.as_ref().unwrap_or(&conditions);
-        let brought = (self.couplings.cloud_over_areas)(&self.over(), &conditions, (&local, position), time_s)?;
-        let under_areas = brought.map(|slab| shown.with_layer(slab));
         let overhead = under_areas.as_ref().unwrap_or(shown);
         let lights = self.lights_over(&local.place, (overhead, land.albedo), time_s)?;
         let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;

@@ -8,6 +8,7 @@ mod depth_texture;
 mod drawn;
 mod elsewhere;
 mod handed;
+mod lamps;
 #[path = "../frame/lookup.rs"]
 mod lookup;
 mod placed;

@@ -1,0 +1,22 @@
+// The glow of clouds in the light of lamps and flashes: marched as clouds are (with lit_lamps.wgsl in lit.wgsl's place), in fewer rays.
+//!include "common/fullscreen.wgsl"
+//!include "clouds/march.wgsl"
+//!include "clouds/lamps.wgsl"
+//!include "common/frame.wgsl"
+
+// Light over what of it clouds hide, and log2 of how far they are, m; 0 without clouds.
+@fragment
+fn glow(in: FullscreenVarying) -> @location(0) vec4f {
+    drawn = frame.drawn;
+    let uv = (in.position.xy - vec2f(0.0, lamps.row)) / lamps.size;
+    let ray = view_ray(frame.depth, vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign));
+    cloud_origin = ray.origin;
+    let seen = clouds_along(ray.direction, RANGE_SKY, clouds.jitter);
+    let cover = 1.0 - seen.transmittance;
+    if cover < 1e-3 {
+        return vec4f(0.0);
+    }
+    let middle = cloud_middle(seen);
+    let light = seen.light * air_between(ray.direction, middle).transmittance / cover;
+    return vec4f(min(light, vec3f(65504.0)), log2(middle));
+}

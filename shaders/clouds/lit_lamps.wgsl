@@ -1,0 +1,174 @@
+// In place of lit.wgsl: what a place in a cloud sends to the eye of the light of the host's lamps and of flashes. Twin of
+// src/clouds/lamp_light.rs, where the model is described.
+//!include "clouds/about.wgsl"
+//!include "clouds/lamps.wgsl"
+
+// Extrapolation length, and the depth from which light comes back through the face that it fell on, over 1 / (1 - g').
+const DARK_AT: f32 = 0.71;
+const RETURNS_FROM: f32 = 0.5;
+// Places along a stretch at which a beam is looked at.
+const BEAM_PLACES: u32 = 4u;
+
+// A lamp as a place sees it; the distance in scaled depths of the cloud about it.
+struct CloudShine {
+    toward: vec3f,
+    distance: f32,
+    between: f32,
+}
+
+// A lamp `to` away from a place.
+fn cloud_shine(layer: CloudLayer, at: CloudPlace, lamp: CloudLamp, to: vec3f, scaled: f32) -> CloudShine {
+    let way = sqrt(dot(to, to) + lamp.radius * lamp.radius);
+    let d = max(way * scaled, 1e-3);
+    if lamp.buried > 0.0 {
+        return CloudShine(to / way, d, d);
+    }
+    return CloudShine(to / way, d, min(cloud_way(layer, at, to / way, way) * scaled, d));
+}
+
+// Distance from a lamp over that from its image behind a face, and how fast that grows along `direction`.
+fn cloud_mirrored(shine: CloudShine, direction: vec3f, place: f32, grows: f32, source: f32) -> vec2f {
+    let d = shine.distance;
+    let square = d * d + 4.0 * place * source;
+    let image = inverseSqrt(square);
+    let toward = (d * d / square - 1.0) * dot(shine.toward, direction);
+    return vec2f(d, toward - 2.0 * d * source * grows / square) * image;
+}
+
+// Of a lamp in the cloud, what has been scattered more than once; for a lamp of 1 cd a unit of scaled depth squared. `within`: what lies above
+// and below the lamp of the cloud's layer.
+fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: CloudShine, direction: vec3f) -> f32 {
+    let turning = medium.rest.z;
+    let dark = DARK_AT / turning;
+    let d = shine.distance;
+    let level = length(shine.toward.xy) * d;
+    // Of the sides no more is known than that one looks at the nearer one, and that the lamp lies beyond it in the same cloud.
+    let out = length(direction.xy);
+    let half = 0.5 * max(about.z + about.w, d);
+    let place = array<f32, 6>(about.x, about.y, about.z, max(about.w, level + half), half, half);
+    let lamp = array<f32, 6>(within.x, within.y, about.z + level, half, half, half);
+    let grows = array<f32, 6>(-direction.z, direction.z, -out, out, 0.0, 0.0);
+    let nearest = select(select(0u, 1u, about.y < about.x), 2u, about.z < min(about.x, about.y));
+    var mean = 1.0 / d;
+    var growing = dot(shine.toward, direction) / d;
+    for (var i = 0u; i < 6u; i++) {
+        let power = select(select(3.0, 2.0, i == (nearest ^ 1u)), 1.0, i == nearest);
+        // A cloud is round: where one face is near, the others are not.
+        let depth = select(max(place[i], lamp[i]), place[i], i == nearest);
+        let r = cloud_mirrored(shine, direction, depth + dark, grows[i], max(lamp[i], 0.0) + dark);
+        let others = pow(r.x, power - 1.0);
+        let left = 1.0 - others * r.x;
+        mean *= left;
+        growing -= power * others * r.y / left;
+    }
+    return medium.rest.w * 3.0 / (4.0 * CLOUD_PI) * mean * max(turning - (1.0 - turning) * growing, 0.0);
+}
+
+// Of a lamp outside of the cloud, likewise, all that is scattered.
+fn cloud_shone_on(medium_index: f32, medium: CloudMedium, about: vec4f, shine: CloudShine, direction: vec3f) -> f32 {
+    let turning = medium.rest.z;
+    let to = shine.toward;
+    let upright = select(about.x, about.y, to.z > 0.0) / max(abs(to.z), 1e-6);
+    let behind = min(upright, about.w / max(length(to.xy), 1e-6));
+    let widths = vec3f(vec2f(about.z + about.w), about.x + about.y);
+    let b = CLOUD_PI / (widths + 2.0 * DARK_AT / turning);
+    let leak = dot(b * b, 1.0 - to * to) / (3.0 * turning);
+    let x = -dot(direction, to);
+    let often = max(cloud_legendre(cloud_table(2.0, medium_index, shine.between, behind, leak), x), 0.0) / CLOUD_PI;
+    let momentum = exp(-turning * shine.between) - exp(-shine.between);
+    let kept = medium.rest.w * 3.0 * (1.0 - turning) / (4.0 * CLOUD_PI) * momentum * x;
+    // What comes back to the face has been some way in.
+    let d = shine.distance - shine.between + max(shine.between, RETURNS_FROM / turning);
+    return (often + clamp(kept, -often, often)) / (d * d);
+}
+
+// Share of a lamp's middle that it sends along a unit way.
+fn cloud_beam(lamp: CloudLamp, way: vec3f) -> f32 {
+    return smoothstep(0.0, 1.0, (dot(way, lamp.direction) - lamp.end) * lamp.steepness);
+}
+
+// Where a stretch of a ray is in a lamp's beam, m; empty where the second is not beyond the first. `to`: from the ray's start to the lamp.
+fn cloud_in_beam(lamp: CloudLamp, to: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
+    if lamp.end <= 0.0 {
+        return vec2f(first, last);
+    }
+    // (axis . p)^2 = end^2 p^2, for p from the lamp to the ray.
+    let on = dot(direction, lamp.direction);
+    let from_lamp = -dot(to, lamp.direction);
+    let square = lamp.end * lamp.end;
+    let a = on * on - square;
+    let b = from_lamp * on + square * dot(to, direction);
+    let c = from_lamp * from_lamp - square * dot(to, to);
+    let root = b * b - a * c;
+    if root <= 0.0 || abs(a) < 1e-9 {
+        return vec2f(first, select(first, last, c > 0.0 && from_lamp > 0.0));
+    }
+    let ends = (vec2f(-b) + vec2f(-1.0, 1.0) * sqrt(root) * sign(a)) / a;
+    if a > 0.0 {
+        // Along the axis one gets in and stays, or gets out for good.
+        return select(vec2f(first, min(last, ends.x)), vec2f(max(first, ends.y), last), on > 0.0);
+    }
+    let in_front = from_lamp + 0.5 * (ends.x + ends.y) * on > 0.0;
+    return select(vec2f(first), vec2f(max(first, min(ends.x, ends.y)), min(last, max(ends.x, ends.y))), in_front);
+}
+
+// What droplets along a stretch scatter once of a lamp in the cloud, and the mean of its beam over the stretch. `dense`: scaled depth on
+// the way to the lamp a metre. Places lie evenly as seen from the lamp (Kulla and Fajardo 2012, "equiangular").
+fn cloud_once(medium: CloudMedium, lamp: CloudLamp, to: vec3f, stretch: CloudStretch, dense: f32) -> vec2f {
+    let within = cloud_in_beam(lamp, to, stretch.direction, stretch.begun, stretch.begun + stretch.length);
+    if within.y <= within.x {
+        return vec2f(0.0);
+    }
+    let along = dot(to, stretch.direction);
+    let h = sqrt(max(dot(to, to) - along * along, 0.0) + lamp.radius * lamp.radius);
+    let first = atan((within.x - along) / h);
+    let whole = atan((within.y - along) / h) - first;
+    var sum = vec2f(0.0);
+    for (var k = 0u; k < BEAM_PLACES; k++) {
+        let u = first + whole * (f32(k) + 0.5) / f32(BEAM_PLACES);
+        let s = along + h * tan(u);
+        let d = h / cos(u);
+        let way = (stretch.direction * s - to) / d;
+        let beam = cloud_beam(lamp, way);
+        let gone = d * dense;
+        let phase = cloud_first_phase(medium, 1.0 + dot(stretch.direction, way), gone + stretch.to_eye);
+        // Of ds = d^2 du / h.
+        sum += beam * vec2f(phase * exp(-gone), d * d);
+    }
+    return sum * vec2f(medium.rest.w, 1.0) * (whole / (h * f32(BEAM_PLACES) * stretch.length));
+}
+
+// cd/m^2 over exposure, for each unit of scaled depth.
+fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudStretch, halo: vec3f) -> vec3f {
+    let local = cloud_local(layer, cloud_unleaned(layer, at)).layer;
+    let about = cloud_box(local, at, here.excess);
+    let medium = clouds.media[u32(layer.medium.x)];
+    let scaled = local.size.w * local.medium.y;
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < lamps.count; i++) {
+        let lamp = lamps.lamps[i];
+        let from_origin = lamp.position - cloud_origin;
+        let place = stretch.direction * stretch.at;
+        let shine = cloud_shine(layer, at, lamp, from_origin - place, scaled);
+        let inside = select(smoothstep(0.5, 1.0, shine.between / shine.distance), 1.0, lamp.buried > 0.0);
+        let once = cloud_once(medium, lamp, from_origin, stretch, scaled * shine.between / shine.distance);
+        var light = inside * once.x;
+        if inside > 0.0 {
+            // A beam turns as far ahead of its lamp as light keeps its direction.
+            let ahead = lamp.direction * ((1.0 - lamp.even) / (medium.rest.z * scaled));
+            let to = from_origin + ahead - place;
+            let way = sqrt(dot(to, to) + lamp.radius * lamp.radius);
+            let turned = CloudShine(to / way, max(way * scaled, 1e-3), shine.between);
+            let below = (clouds.altitude + lamp.position.z + ahead.z - layer.size.x) * scaled;
+            let within = vec2f(scaled / layer.size.y - below, below);
+            let wandered = cloud_wandered(medium, about, within, turned, -stretch.direction);
+            light += inside * scaled * scaled * lamp.even * wandered;
+        }
+        if inside < 1.0 {
+            let shone = cloud_shone_on(layer.medium.x, medium, about, shine, -stretch.direction);
+            light += (1.0 - inside) * scaled * scaled * once.y * shone;
+        }
+        sum += lamp.intensity * light;
+    }
+    return sum;
+}

@@ -1,0 +1,190 @@
+//! The pipelines of a picture's clouds, and how their passes are run.
+
+use super::{
+    lamps::LampsUniform,
+    picture::{PAIR, SEEN},
+    uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
+};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        bind::{self, Slot},
+        pass::{self, FullscreenDesc},
+    },
+    stage::{FrameUniform, yes},
+};
+
+/// What distinguishes one pipeline that makes a whole picture from another.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Resolve {
+    pub has_history: bool,
+    pub has_shadows: bool,
+    pub has_shafts: bool,
+    /// The host's depth has several samples a pixel.
+    pub is_multisampled: bool,
+    pub depth_kinds: f64,
+}
+
+/// The pipelines, and the layouts of their groups: of the march, of the passes after it, and of what shadows fall on by whether that has
+/// several samples a pixel.
+pub(super) struct Pipelines {
+    pub picture_layout: wgpu::BindGroupLayout,
+    pub shadow_layouts: [wgpu::BindGroupLayout; 2],
+    /// By its fineness ([`super::CloudSettings`]), whether clouds are placed ([`super::placed`]), and whether there are shafts of light.
+    pub march: ((f64, bool, bool), wgpu::RenderPipeline),
+    /// Of the light of lamps and flashes, once there is any, by the first two of those.
+    glow: Option<((f64, bool), wgpu::RenderPipeline)>,
+    pub follow: wgpu::RenderPipeline,
+    /// Those of the march and of the sky, which the clouds of all directions are marched with too.
+    pub march_layouts: [wgpu::BindGroupLayout; 2],
+    resolve: Vec<(Resolve, wgpu::RenderPipeline)>,
+}
+
+fn make(
+    device: &Device,
+    (shader, entry): (&str, &str),
+    layouts: &[&wgpu::BindGroupLayout],
+    formats: &[wgpu::TextureFormat],
+    constants: &[(&str, f64)],
+) -> Result<wgpu::RenderPipeline> {
+    let targets: Vec<_> = formats.iter().map(|f| (*f).into()).collect();
+    pass::fullscreen(device, &FullscreenDesc { shader, entry, layouts, targets: &targets, constants, samples: 1 })
+}
+
+impl Pipelines {
+    pub fn new(device: &Device, sky: &wgpu::BindGroupLayout, march: (f64, bool, bool)) -> Result<Self> {
+        let layout =
+            |slots: &[(u32, Slot)]| bind::layout(&device.device, "clouds", wgpu::ShaderStages::FRAGMENT, slots);
+        let march_layout = layout(&[
+            (0, Slot::Uniform(size_of::<FrameUniform>())),
+            (1, Slot::Uniform(size_of::<CloudsUniform>())),
+            (2, Slot::FilteredArray),
+            (3, Slot::FilteredVolume),
+            (4, Slot::FilteredVolume),
+            (5, Slot::Sampler),
+            (6, Slot::Sampler),
+            (7, Slot::Uniform(size_of::<PictureUniform>())),
+            (8, Slot::Filtered),
+            (9, Slot::Uniform(size_of::<ShadowUniform>())),
+            (10, Slot::Filtered),
+            (11, Slot::Uniform(size_of::<LampsUniform>())),
+        ]);
+        let picture_layout = layout(&[
+            (0, Slot::Uniform(size_of::<FrameUniform>())),
+            (1, Slot::Uniform(size_of::<PictureUniform>())),
+            (2, Slot::Filtered),
+            (3, Slot::Filtered),
+            (4, Slot::FilteredArray),
+            (5, Slot::Sampler),
+            (6, Slot::Texels),
+            (7, Slot::Texels),
+            (8, Slot::Texels),
+        ]);
+        let shadow_layouts = [false, true].map(|multisampled| {
+            layout(&[
+                (0, Slot::texels(multisampled)),
+                (1, Slot::Uniform(size_of::<ShadowUniform>())),
+                (2, Slot::Filtered),
+                (3, Slot::Sampler),
+            ])
+        });
+        let march_layouts = [march_layout, sky.clone()];
+        let follow = ("clouds/follow.wgsl", "follow");
+        Ok(Self {
+            march: (march, Self::march(device, &march_layouts, march)?),
+            march_layouts,
+            glow: None,
+            follow: make(device, follow, &[&picture_layout], &[SEEN, SEEN, PAIR], &[])?,
+            resolve: Vec::new(),
+            picture_layout,
+            shadow_layouts,
+        })
+    }
+
+    pub fn march(
+        device: &Device,
+        layouts: &[wgpu::BindGroupLayout; 2],
+        (fineness, is_placed, has_shafts): (f64, bool, bool),
+    ) -> Result<wgpu::RenderPipeline> {
+        let march = ("clouds/march_view.wgsl", "march");
+        let constants = [("CLOUD_FINENESS", fineness), ("CLOUD_PLACED", yes(is_placed)), ("SHAFTS", yes(has_shafts))];
+        make(device, march, &layouts.each_ref(), &[SEEN, PAIR], &constants)
+    }
+
+    /// The pipeline that draws clouds in the light of lamps and flashes.
+    pub fn glow(&mut self, device: &Device) -> Result<wgpu::RenderPipeline> {
+        let (fineness, is_placed, _) = self.march.0;
+        if let Some((made, pipeline)) = &self.glow
+            && *made == (fineness, is_placed)
+        {
+            return Ok(pipeline.clone());
+        }
+        let glow = ("clouds/glow_view.wgsl:lamps", "glow");
+        let constants = [("CLOUD_FINENESS", fineness), ("CLOUD_PLACED", yes(is_placed))];
+        let pipeline = make(device, glow, &self.march_layouts.each_ref(), &[SEEN], &constants)?;
+        self.glow = Some(((fineness, is_placed), pipeline.clone()));
+        Ok(pipeline)
+    }
+
+    pub fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<wgpu::RenderPipeline> {
+        if let Some((_, pipeline)) = self.resolve.iter().find(|(made, _)| *made == wanted) {
+            return Ok(pipeline.clone());
+        }
+        let shader = if wanted.is_multisampled { "clouds/resolve.wgsl:multi" } else { "clouds/resolve.wgsl" };
+        let constants = [
+            ("HISTORY", yes(wanted.has_history)),
+            ("SHADOWS", yes(wanted.has_shadows)),
+            ("SHAFTS", yes(wanted.has_shafts)),
+            ("DEPTH_KINDS", wanted.depth_kinds),
+        ];
+        let layouts = [&self.picture_layout, &self.shadow_layouts[usize::from(wanted.is_multisampled)]];
+        let pipeline = make(device, (shader, "resolve"), &layouts, &[SEEN, SEEN], &constants)?;
+        self.resolve.push((wanted, pipeline.clone()));
+        Ok(pipeline)
+    }
+}
+
+fn attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+    })
+}
+
+/// A part of a pass's targets.
+#[derive(Clone, Copy)]
+pub(super) struct Part {
+    pub first_row: u32,
+    pub size: (u32, u32),
+}
+
+/// Runs one pass over its targets, which are empty before, or over a part of them. What lies above that part stays.
+pub(super) fn run(
+    encoder: &mut wgpu::CommandEncoder,
+    (targets, part): (&[&wgpu::TextureView], Option<Part>),
+    pipeline: &wgpu::RenderPipeline,
+    groups: &[&wgpu::BindGroup],
+) {
+    let keeps = part.is_some_and(|part| part.first_row > 0);
+    let load = if keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+    let attachments: [_; 3] = std::array::from_fn(|i| targets.get(i).and_then(|t| attachment(t, load)));
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("clouds"),
+        color_attachments: &attachments[..targets.len()],
+        ..Default::default()
+    });
+    if let Some(Part { first_row, size: (width, height) }) = part {
+        pass.set_viewport(0.0, first_row as f32, width as f32, height as f32, 0.0, 1.0);
+    }
+    pass.set_pipeline(pipeline);
+    for (i, group) in groups.iter().enumerate() {
+        pass.set_bind_group(i as u32, *group, &[]);
+    }
+    pass.draw(0..3, 0..1);
+}
