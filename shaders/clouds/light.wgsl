@@ -75,16 +75,17 @@ fn cloud_reach(near: f32, far: f32, turning: f32) -> f32 {
     return max(near + far, 1e-3) + 1.42 / turning;
 }
 
-// What light follows from side to side of a box, of mean 1, and its slope.
-fn cloud_across(near: f32, far: f32, turning: f32, height: f32) -> vec2f {
+// What light follows from side to side of a box, of mean 1, and its slope, so deep behind the face that it falls on.
+fn cloud_across(near: f32, far: f32, turning: f32, height: f32, entered: f32) -> vec2f {
     let extent = cloud_reach(near, far, turning);
     let b = CLOUD_PI / extent;
     let half = 0.5 * b * max(near + far, 1e-3);
     let off = 0.5 * b * (near - far);
     let mean = sin(half) / half;
     let sideways = height * height / (extent * extent);
-    let share = min(2.0 * sideways / (1.0 + sideways), 1.0);
-    return vec2f(1.0 + share * (cos(off) / mean - 1.0), -b * sin(off) / mean);
+    let set_in = 1.0 - exp(-turning * entered);
+    let share = min(2.0 * sideways / (1.0 + sideways), 1.0) * set_in;
+    return vec2f(1.0 + share * (cos(off) / mean - 1.0), -b * sin(off) / mean * set_in);
 }
 
 // The two lobes of a phase function, 1/sr, at the angle whose 1 - cos is `versine`.
@@ -131,10 +132,10 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
 
     let height = cloud_reach(above, below, turning);
     let depth = cloud_reach(at.near, at.far, turning);
-    let a = vec3f(cloud_across(at.near, at.far, turning, height), along);
-    let c = vec3f(cloud_across(at.left, at.right, turning, height), sideways);
-    let u = vec3f(cloud_across(above, below, turning, depth), down);
-    let across = vec3f(cloud_across(at.left, at.right, turning, depth), sideways);
+    let a = vec3f(cloud_across(at.near, at.far, turning, height, above), along);
+    let c = vec3f(cloud_across(at.left, at.right, turning, height, above), sideways);
+    let u = vec3f(cloud_across(above, below, turning, depth, at.near), down);
+    let across = vec3f(cloud_across(at.left, at.right, turning, depth, at.near), sideways);
     let widths = vec3f(at.near + at.far, at.left + at.right, above + below);
     let spread = (1.0 - turning) / turning;
     let leak = cloud_leak(widths.xy, turning);

@@ -4,7 +4,8 @@
 //! A place knows how much cloud lies about it: above and below, towards the sun and, level, to either side. As far as light is
 //! concerned it stands in a box of these depths. Light that is scattered once keeps the true phase function. Light scattered more often
 //! comes from the tables of [`super::transport`]: one for the beam that falls on the box's top, one for what falls on the side
-//! that faces the sun, one each for sky and ground. Side to side, light goes as the cosine whose leak the tables were made with. Top and
+//! that faces the sun, one each for sky and ground. Side to side, light goes as the cosine whose leak the tables were made with, once it has turned:
+//! at the face that it falls on it is even. Top and
 //! side share the beam. The rays of the sun come to a place through the nearer of the two, so with d the way to the top less the way to the side the
 //! top has the share 1 / (1 + exp((1 - g') d)), the side the rest. A real cloud is no box: where its way to the sun, s, is longer than the
 //! box's, m, the light falls as the square of (1 + (1 - g') m) / (1 + (1 - g') s). What beam and first scatterings keep
@@ -81,15 +82,17 @@ fn reach(near: f64, far: f64, turning: f64) -> f64 {
 }
 
 /// What light follows from side to side of a box, of mean 1, and its slope along the axis. In a box no wider than it is high, a cosine; the
-/// wider the box, the more of its light leaves through top and base before it comes to a side, and the more even it is between them.
-fn across(near: f64, far: f64, turning: f64, height: f64) -> (f64, f64) {
+/// wider the box, the more of its light leaves through top and base before it comes to a side, and the more even it is between them. At
+/// the face that the light falls on it is even too, however narrow the box: `entered` is the depth behind that.
+fn across([near, far]: [f64; 2], turning: f64, height: f64, entered: f64) -> (f64, f64) {
     let extent = reach(near, far, turning);
     let b = std::f64::consts::PI / extent;
     let (half, off) = (0.5 * b * (near + far).max(1e-3), 0.5 * b * (near - far));
     let mean = half.sin() / half;
     let sideways = (height / extent).powi(2);
-    let share = (2.0 * sideways / (1.0 + sideways)).min(1.0);
-    (1.0 + share * (off.cos() / mean - 1.0), -b * off.sin() / mean)
+    let set_in = 1.0 - (-turning * entered).exp();
+    let share = (2.0 * sideways / (1.0 + sideways)).min(1.0) * set_in;
+    (1.0 + share * (off.cos() / mean - 1.0), -b * off.sin() / mean * set_in)
 }
 
 impl Sources {
@@ -123,9 +126,9 @@ impl Sources {
         // A box of which one axis is upright, one along the sun's level direction, one across.
         let (height, depth) = (reach(above, below, turning), reach(at.near, at.far, turning));
         let [sides_a, sides_c] = [(at.near, at.far, along), (at.left, at.right, sideways)]
-            .map(|(near, far, x)| (across(near, far, turning, height), x));
-        let sides_u = (across(above, below, turning, depth), down);
-        let sides_across = (across(at.left, at.right, turning, depth), sideways);
+            .map(|(near, far, x)| (across([near, far], turning, height, above), x));
+        let sides_u = (across([above, below], turning, depth, at.near), down);
+        let sides_across = (across([at.left, at.right], turning, depth, at.near), sideways);
         let (a, c, u) = (at.near + at.far, at.left + at.right, above + below);
         let leak = leak_rate([a, c], turning);
         let spread = 1.0 / turning * of.scaled_albedo() * of.moments[1] / (4.0 * std::f64::consts::PI);
