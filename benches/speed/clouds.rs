@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use welkin::{
     clouds::{CloudModel, CloudSettings},
-    context::Context,
+    context::{Context, GivenDirection},
     frame::{Frame, FrameFlags, Shared, Stages},
     gpu::{Device, DeviceOptions, readback},
     light::luminance,
+    scene::HostLight,
     weather::{CloudKind, CloudLayer, Weather},
 };
 
@@ -125,6 +127,23 @@ fn changed() -> Fallible<()> {
     Ok(())
 }
 
+/// The same clouds at night, in the light of so many lamps on the ground.
+fn at_night(device: &Arc<Device>, shared: &Arc<Shared>, layers: &[CloudLayer], lamps: usize) -> Fallible<Arc<Context>> {
+    let mut context = under(device, shared, layers, CloudModel::Volume)?;
+    let changing = Arc::get_mut(&mut context).ok_or("the world is shared already")?;
+    changing.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg: -40.0 }))?;
+    let lamp = |i: usize| HostLight {
+        position_m: DVec3::new(300.0 * i as f64, 2000.0, 5.0),
+        direction: DVec3::Z,
+        intensity_cd: [1e7; 3],
+        inner_deg: 60.0,
+        outer_deg: 80.0,
+    };
+    changing.set_lights(&(0..lamps).map(lamp).collect::<Vec<_>>())?;
+    changing.update(0.0)?;
+    Ok(context)
+}
+
 /// What the brute force is called.
 const BRUTE: &str = "broken cumulus, every pixel in as many steps as it takes";
 
@@ -140,12 +159,14 @@ fn scenes(device: &Arc<Device>, fineness: f64) -> Fallible<Vec<Scene>> {
     let volume = |layers: &[CloudLayer]| under(device, &shared, layers, CloudModel::Volume);
     let (clear, deck) = (volume(&[])?, under(device, &shared, &closed, CloudModel::Deck)?);
     let (broken, closed, several) = (volume(&broken)?, volume(&closed)?, volume(&several)?);
+    let night = [0, 1, 4].map(|lamps| at_night(device, &shared, &cumulus(), lamps));
     let scene = |name, context| Scene::new(name, context, PITCH_RAD);
     let mut brute = scene(BRUTE, &broken)?;
     brute.flags = FrameFlags::NO_HISTORY;
     brute.view.set_clouds(CloudSettings { fineness, square_side: 1, ..Default::default() })?;
     let mut shafts = scene("broken cumulus, at rest, with shafts of light", &broken)?;
     shafts.view.set_clouds(CloudSettings { shafts: true, ..Default::default() })?;
+    let [dark, one, four] = night;
     Ok(vec![
         scene("clear sky", &clear)?,
         scene("closed deck, Deck", &deck)?,
@@ -156,6 +177,9 @@ fn scenes(device: &Arc<Device>, fineness: f64) -> Fallible<Vec<Scene>> {
         scene("three layers, at rest", &several)?,
         Scene { flags: FrameFlags::NO_HISTORY, ..scene("broken cumulus, every pixel", &broken)? },
         brute,
+        scene("broken cumulus at night", &dark?)?,
+        scene("broken cumulus at night, over a lamp", &one?)?,
+        scene("broken cumulus at night, over four lamps", &four?)?,
     ])
 }
 

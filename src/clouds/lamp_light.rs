@@ -110,8 +110,8 @@ fn from_outside(of: &Scattering, sky: &Table, at: &Depths, shine: &Shine, direct
     let turning = of.turning();
     // Where the light would leave the box behind the place.
     let (sine, rise) = (shine.toward.truncate().length(), shine.toward.z);
-    let upright = if rise > 0.0 { at.below } else { at.above } / rise.abs().max(1e-6);
-    let behind = upright.min(at.right / sine.max(1e-6));
+    let upright = if rise > 0.0 { at.below } else { at.above };
+    let behind = (upright / rise.abs().max(1e-6)).min(at.right / sine.max(1e-6));
     // What leaves across the way.
     let rate = |width: f64, across: f64| across * (PI / (width + 2.0 * DARK_AT / turning)).powi(2);
     let squares = shine.toward * shine.toward;
