@@ -32,7 +32,7 @@ struct Hung {
     reach: vec3f,
     // By how much the share of direct light in the air before it differs from the mean over places.
     shafts: f32,
-    // Light of lamps and flashes in them, with the exposure on it, over what they hide; whether that is known.
+    // Their light of lamps and flashes over their cover, with the exposure on it; whether that is known.
     glow: vec3f,
     has_glow: bool,
     // cd/m^2, behind the sky's own light.

@@ -1,10 +1,11 @@
-// The glow of clouds in the light of lamps and flashes: marched as clouds are (with lit_lamps.wgsl in lit.wgsl's place), in fewer rays.
+// The glow of clouds in the light of lamps and flashes, marched in fewer rays than the clouds are. It is assembled with lit_lamps.wgsl in place of
+// lit.wgsl.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"
 //!include "clouds/lamps.wgsl"
 //!include "common/frame.wgsl"
 
-// Light over what of it clouds hide, and log2 of how far they are, m; 0 without clouds.
+// Light of the clouds over their cover, and log2 of their distance, m; 0 without clouds.
 @fragment
 fn glow(in: FullscreenVarying) -> @location(0) vec4f {
     drawn = frame.drawn;

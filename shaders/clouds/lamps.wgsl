@@ -1,19 +1,15 @@
 // The lamps and flashes that light clouds: LampsUniform of src/clouds/lamps.rs.
+//!include "common/light.wgsl"
 
 struct CloudLamp {
-    // Camera-relative, m, and how far its light reaches about that.
-    position: vec3f,
+    light: HostLight,
+    // How far its light reaches about its place, m.
     radius: f32,
-    // Cosine of the beam's end; below -1 it has none. 1/(cosine of where the beam is full - that of its end).
-    direction: vec3f,
-    end: f32,
-    // In the beam's middle, cd times exposure.
-    intensity: vec3f,
-    steepness: f32,
-    // The mean over all directions, of the middle's; above 0 where it shines in a cloud, whatever lies on the way.
+    // Mean of its light over all directions, of that in its middle.
     even: f32,
+    // Above 0 where it shines in a cloud, whatever lies on the way.
     buried: f32,
-    pad: vec2f,
+    pad: f32,
 }
 
 struct CloudLamps {

@@ -6,6 +6,8 @@
 // Extrapolation length, and the depth from which light comes back through the face that it fell on, over 1 / (1 - g').
 const DARK_AT: f32 = 0.71;
 const RETURNS_FROM: f32 = 0.5;
+// Shares of the way to a lamp that lie in cloud, between which it goes over from outside to inside.
+const INSIDE: vec2f = vec2f(0.5, 1.0);
 // Places along a stretch at which a beam is looked at.
 const BEAM_PLACES: u32 = 4u;
 
@@ -82,20 +84,15 @@ fn cloud_shone_on(medium_index: f32, medium: CloudMedium, about: vec4f, shine: C
     return (often + clamp(kept, -often, often)) / (d * d);
 }
 
-// Share of a lamp's middle that it sends along a unit way.
-fn cloud_beam(lamp: CloudLamp, way: vec3f) -> f32 {
-    return smoothstep(0.0, 1.0, (dot(way, lamp.direction) - lamp.end) * lamp.steepness);
-}
-
 // Where a stretch of a ray is in a lamp's beam, m; empty where the second is not beyond the first. `to`: from the ray's start to the lamp.
 fn cloud_in_beam(lamp: CloudLamp, to: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
-    if lamp.end <= 0.0 {
+    if lamp.light.end <= 0.0 {
         return vec2f(first, last);
     }
     // (axis . p)^2 = end^2 p^2, for p from the lamp to the ray.
-    let on = dot(direction, lamp.direction);
-    let from_lamp = -dot(to, lamp.direction);
-    let square = lamp.end * lamp.end;
+    let on = dot(direction, lamp.light.direction);
+    let from_lamp = -dot(to, lamp.light.direction);
+    let square = lamp.light.end * lamp.light.end;
     let a = on * on - square;
     let b = from_lamp * on + square * dot(to, direction);
     let c = from_lamp * from_lamp - square * dot(to, to);
@@ -129,7 +126,7 @@ fn cloud_once(medium: CloudMedium, lamp: CloudLamp, to: vec3f, stretch: CloudStr
         let s = along + h * tan(u);
         let d = h / cos(u);
         let way = (stretch.direction * s - to) / d;
-        let beam = cloud_beam(lamp, way);
+        let beam = light_beam(lamp.light, dot(way, lamp.light.direction));
         let gone = d * dense;
         let phase = cloud_first_phase(medium, 1.0 + dot(stretch.direction, way), gone + stretch.to_eye);
         // Of ds = d^2 du / h.
@@ -147,19 +144,19 @@ fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudS
     var sum = vec3f(0.0);
     for (var i = 0u; i < lamps.count; i++) {
         let lamp = lamps.lamps[i];
-        let from_origin = lamp.position - cloud_origin;
+        let from_origin = lamp.light.position - cloud_origin;
         let place = stretch.direction * stretch.at;
         let shine = cloud_shine(layer, at, lamp, from_origin - place, scaled);
-        let inside = select(smoothstep(0.5, 1.0, shine.between / shine.distance), 1.0, lamp.buried > 0.0);
+        let inside = select(smoothstep(INSIDE.x, INSIDE.y, shine.between / shine.distance), 1.0, lamp.buried > 0.0);
         let once = cloud_once(medium, lamp, from_origin, stretch, scaled * shine.between / shine.distance);
         var light = inside * once.x;
         if inside > 0.0 {
             // A beam turns as far ahead of its lamp as light keeps its direction.
-            let ahead = lamp.direction * ((1.0 - lamp.even) / (medium.rest.z * scaled));
+            let ahead = lamp.light.direction * ((1.0 - lamp.even) / (medium.rest.z * scaled));
             let to = from_origin + ahead - place;
             let way = sqrt(dot(to, to) + lamp.radius * lamp.radius);
             let turned = CloudShine(to / way, max(way * scaled, 1e-3), shine.between);
-            let below = (clouds.altitude + lamp.position.z + ahead.z - layer.size.x) * scaled;
+            let below = (clouds.altitude + lamp.light.position.z + ahead.z - layer.size.x) * scaled;
             let within = vec2f(scaled / layer.size.y - below, below);
             let wandered = cloud_wandered(medium, about, within, turned, -stretch.direction);
             light += inside * scaled * scaled * lamp.even * wandered;
@@ -168,7 +165,7 @@ fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudS
             let shone = cloud_shone_on(layer.medium.x, medium, about, shine, -stretch.direction);
             light += (1.0 - inside) * scaled * scaled * once.y * shone;
         }
-        sum += lamp.intensity * light;
+        sum += lamp.light.intensity * light;
     }
     return sum;
 }

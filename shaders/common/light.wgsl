@@ -15,9 +15,13 @@ struct HostLight {
     pad: f32,
 }
 
+// Share of what a lamp sends in its middle that it sends at an angle to that, by the cosine.
+fn light_beam(lamp: HostLight, cosine: f32) -> f32 {
+    return smoothstep(0.0, 1.0, (cosine - lamp.end) * lamp.steepness);
+}
+
 // Illuminance of a lamp on a surface `to` from it that faces it.
 fn light_at(lamp: HostLight, to: vec3f) -> vec3f {
     let d2 = max(dot(to, to), 0.01);
-    let c = dot(to, lamp.direction) * inverseSqrt(d2);
-    return lamp.intensity * (smoothstep(0.0, 1.0, (c - lamp.end) * lamp.steepness) / d2);
+    return lamp.intensity * (light_beam(lamp, dot(to, lamp.direction) * inverseSqrt(d2)) / d2);
 }

@@ -3,10 +3,10 @@
 //! # Model
 //! A place stands in a box of cloud, as it does for the sun ([`super::light`]).
 //! * Of a source in the cloud: light that is scattered once, by the true phase function, and light that wanders. Without faces its mean
-//!   radiance a scaled distance d from a source of intensity I would be 3 (1 - g') I / (4 pi d) (diffusion; Ishimaru 1978, chapter 9). 0.71 / (1 - g') before a face it is dark; a
-//!   source of the opposite sign, as far before that as the true one is behind, makes it so. With p and s the depths of place and source behind
-//!   the dark plane the nearest face leaves 1 - r of the light, r = d / sqrt(d^2 + 4 p s), the opposite face 1 - r^2, those across 1 - r^3.
-//!   The slope of that is the light's flux, by which more goes one way than the other.
+//!   radiance at a scaled distance d from a source of intensity I would be 3 (1 - g') I / (4 pi d) (diffusion; Ishimaru 1978, chapter 9). In
+//!   front of a face, 0.71 / (1 - g') away, there is a plane in which it is 0: an image of the source there, of the opposite sign, stands for
+//!   that. With p and s the depths of place and source behind that plane the nearest face leaves 1 - r of the light, r = d / sqrt(d^2 + 4 p s),
+//!   the opposite face 1 - r^2, those across 1 - r^3. The slope of that is the flux, by which more light goes one way than the other.
 //! * Of a source outside: the face towards it is lit as by a sky of the same irradiance ([`super::transport`]).
 //!
 //! How much cloud lies on the way tells the two apart. A flash in a cloud is in it, even where the drawn cloud has a gap there.

@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 use super::overhead::Overhead;
 use crate::{
     moment::Moment,
-    scene::{FlashLamp, HostLight},
+    scene::{FlashLamp, HostLight, LightUniform},
 };
 
 /// Most of them; of more, those that light clouds most.
@@ -25,15 +25,11 @@ const NEAREST_M: f64 = 5.0;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct LampUniform {
-    pub position: [f32; 3],
+    pub light: LightUniform,
     pub radius: f32,
-    pub direction: [f32; 3],
-    pub end: f32,
-    pub intensity: [f32; 3],
-    pub steepness: f32,
     pub even: f32,
     pub buried: f32,
-    pub pad: [f32; 2],
+    pub pad: f32,
 }
 
 /// All of them, and where in its target their glow is drawn.
@@ -46,7 +42,7 @@ pub(super) struct LampsUniform {
     pub lamps: [LampUniform; LAMPS],
 }
 
-/// Texels of the glow of a picture of these pixels: `glow_size` of `shaders/between/glow.wgsl`.
+/// Width and height of the glow's picture, texels, for a picture of so many pixels: `glow_size` of `shaders/between/glow.wgsl`.
 pub(super) fn glow_size((width, height): (u32, u32)) -> (u32, u32) {
     let rows = height.min(ROWS);
     ((width * rows).div_ceil(height), rows)
@@ -80,31 +76,19 @@ fn most_on(overhead: &Overhead, lamp: &HostLight, up: f64, height_m: f64) -> f64
 
 impl LampUniform {
     fn host(lamp: &HostLight, now: &Moment<'_>, exposure: f64) -> Self {
-        let of = lamp.uniform(now.eye, now.scene.world_to_enu, exposure);
-        Self {
-            position: of.position,
-            radius: 0.1,
-            direction: of.direction,
-            end: of.end,
-            intensity: of.intensity,
-            steepness: of.steepness,
-            even: even_share(lamp) as f32,
-            ..Self::zeroed()
-        }
+        let light = lamp.uniform(now.eye, now.scene.world_to_enu, exposure);
+        Self { light, radius: 0.1, even: even_share(lamp) as f32, buried: 0.0, pad: 0.0 }
     }
 
     /// All of a flash's light goes to all sides.
     fn flash(flash: &FlashLamp, exposure: f64) -> Self {
         Self {
-            position: flash.position.as_vec3().to_array(),
+            // As one without a cloud about it.
+            light: FlashLamp { down_share: None, ..*flash }.uniform(exposure),
             radius: flash.radius_m.max(10.0) as f32,
-            direction: [0.0, 0.0, -1.0],
-            end: -2.0,
-            intensity: flash.flux_lm.map(|lm| (lm / (4.0 * PI) * exposure).min(1e30) as f32),
-            steepness: 1.0,
             even: 1.0,
             buried: f32::from(u8::from(flash.down_share.is_some())),
-            ..Self::zeroed()
+            pad: 0.0,
         }
     }
 }
@@ -144,12 +128,7 @@ mod tests {
 
     #[test]
     fn offsets_agree_with_the_shader() {
-        shader::assert_layout!(
-            "clouds/glow_view.wgsl:lamps",
-            "CloudLamp",
-            LampUniform,
-            [position, radius, direction, end, intensity, steepness, even, buried]
-        );
+        shader::assert_layout!("clouds/glow_view.wgsl:lamps", "CloudLamp", LampUniform, [light, radius, even, buried]);
         shader::assert_layout!("clouds/glow_view.wgsl:lamps", "CloudLamps", LampsUniform, [count, row, size, lamps]);
     }
 

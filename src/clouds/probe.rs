@@ -24,6 +24,7 @@ use crate::{
         readback,
     },
     light::{Phase, PhaseLobes},
+    scene::LightUniform,
 };
 
 /// Rays a face, along each side of its tile.
@@ -134,12 +135,15 @@ pub fn lamp_fluxes(device: &Device, cloud: &EvenCloud, position: DVec3) -> Resul
     let unit_m = THICKNESS_M / cloud.depths[2];
     let mut lamps = LampsUniform { count: 1, ..LampsUniform::zeroed() };
     lamps.lamps[0] = LampUniform {
-        position: (position * unit_m).as_vec3().to_array(),
-        direction: [0.0, 0.0, 1.0],
-        end: -2.0,
-        // In units of length, not metres.
-        intensity: [(unit_m * unit_m) as f32; 3],
-        steepness: 1.0,
+        light: LightUniform {
+            position: (position * unit_m).as_vec3().to_array(),
+            direction: [0.0, 0.0, 1.0],
+            end: -2.0,
+            // In units of length, not metres.
+            intensity: [(unit_m * unit_m) as f32; 3],
+            steepness: 1.0,
+            pad: 0.0,
+        },
         even: 1.0,
         ..LampUniform::zeroed()
     };

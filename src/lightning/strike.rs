@@ -13,11 +13,13 @@ use crate::{
     world::World,
 };
 
-/// Temperature of the cloud's charge from which a flash starts, degrees Celsius (Krehbiel 1986: -10 to -25), how fast air cools with height,
-/// K/m, least height of the charge over the ground, m, and how far inside the cloud it is, m, where that is deep enough.
+/// Temperature of the cloud's charge from which a flash starts, degrees Celsius (Krehbiel 1986: -10 to -25), and how fast air cools with height,
+/// K/m.
 const CHARGE_C: f64 = -12.0;
 const COOLS_K_M: f64 = 6.5e-3;
+/// Least height of that charge over the ground, m.
 const LEAST_M: f64 = 2500.0;
+/// Least depth of it in its cloud, from base and top, m; in a cloud of less than twice that it lies half way up.
 const WITHIN_M: f64 = 800.0;
 /// Cover from which a layer of cloud hides a channel inside it.
 const HIDES_FROM: f64 = 0.2;
@@ -88,8 +90,8 @@ impl Strike {
         };
         let anchor = world.position_on_map(flash.place_m, ground_m);
         let local = world.frame.frame_at(anchor);
-        // Of a time that the weather has forgotten there are no others.
-        let over = world.clouds_over(&conditions, (&local, anchor), flash.time_s).unwrap_or_default();
+        // Of a time that the weather has forgotten only its own clouds are known.
+        let over = world.clouds_over(&conditions, (&local, anchor, flash.place_m), flash.time_s).unwrap_or_default();
         let clouds = CloudSpan::of(over.iter().flatten().last().unwrap_or(&conditions));
         let charge_m = air.station_altitude_m + ((air.temperature_c - CHARGE_C) / COOLS_K_M).max(LEAST_M);
         let top_m = clouds.map_or(charge_m, |c| {

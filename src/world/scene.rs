@@ -183,18 +183,17 @@ impl World {
         self.scene_over((name, position), time_s, conditions, &land)
     }
 
-    /// This weather with the clouds that the host's map has over a place, where there is a map, and with those over rain areas besides, where any
-    /// stand over it.
+    /// This weather with the clouds that the host's map has over a place, if there is a map, and with those over rain areas besides, if any
+    /// stand over it. `map_m`: the place on the ground's map.
     ///
     /// # Errors
     /// For a time that the weather does not know.
     pub(crate) fn clouds_over(
         &self,
         conditions: &Conditions,
-        (local, position): (&LocalFrame, DVec3),
+        (local, position, map_m): (&LocalFrame, DVec3, DVec2),
         time_s: f64,
     ) -> Result<[Option<Conditions>; 2]> {
-        let map_m = DVec2::from_array(self.map_place(position, local));
         let mapped = self.set.cloud_map.as_ref().map(|map| conditions.under_map(map, map_m));
         let brought = (self.couplings.cloud_over_areas)(&self.over(), conditions, (local, position), time_s)?;
         let under_areas = brought.map(|slab| mapped.as_ref().unwrap_or(conditions).with_layer(slab));
@@ -213,7 +212,8 @@ impl World {
         let planet = planet_under(&self.set.planet, &conditions);
         let map_m = self.map_place(position, &local);
         // Light is that of the clouds over the place, those over rain areas among them; all else is the weather's.
-        let [mapped, under_areas] = self.clouds_over(&conditions, (&local, position), time_s)?;
+        let [mapped, under_areas] =
+            self.clouds_over(&conditions, (&local, position, DVec2::from_array(map_m)), time_s)?;
         let shown = mapped.as_ref().unwrap_or(&conditions);
         let overhead = under_areas.as_ref().unwrap_or(shown);
         let lights = self.lights_over(&local.place, (overhead, land.albedo), time_s)?;
