@@ -30,6 +30,22 @@ struct CloudHere {
     slope: f32,
     // How far there is no cloud whatever the map holds, m.
     clear: f32,
+    // Share of a place with cloud that is cloud: all but where it is looked at coarsely. Excess and extinction are those of that share.
+    share: f32,
+}
+
+// Standard deviations below the mean from which on a place looked at coarsely counts as without cloud.
+const CLOUD_RARE: f32 = 2.5;
+
+// Cells from side to side after which clouds are others.
+const CLOUD_CELL: f32 = 0.3;
+
+// Share of what is spread normally about `mean` that lies above 0, and its mean (both by the logistic that is next to the normal law).
+fn cloud_share(mean: f32, spread: f32) -> vec2f {
+    let a = 1.702 * mean / spread;
+    let share = 1.0 / (1.0 + exp(-a));
+    let over = select(log(1.0 + exp(a)), a, a > 20.0) * spread / 1.702;
+    return vec2f(share, over / share);
 }
 
 fn cloud_here(whole: CloudLayer, at: CloudPlace) -> CloudHere {
@@ -43,8 +59,20 @@ fn cloud_here(whole: CloudLayer, at: CloudPlace) -> CloudHere {
     let gap = min(dome * at.height * at.height, layer.lean.z) - over;
     let inside = excess + frays;
     let clear = select(0.0, local.steady, CLOUD_PLACED && layer.shape.x > CLOUD_CLEAR_FROM);
-    let extinction = cloud_extinction(layer, inside);
-    return CloudHere(gap, over + frays, extinction, inside, gap - frays, dome, local.steady, local.slope, clear);
+    var here = CloudHere(gap, over + frays, cloud_extinction(layer, inside), inside, gap - frays, dome, local.steady, local.slope, clear, 1.0);
+    let spread = cloud_blur.spread;
+    if CLOUD_COARSE && spread > 0.0 {
+        let wanting = CLOUD_RARE * spread;
+        let part = cloud_share(inside, spread);
+        let is_cloud = inside > -wanting;
+        here.gap -= wanting;
+        here.frayed_gap -= wanting;
+        here.excess += part.y - inside;
+        here.inside = select(inside + wanting, part.y, is_cloud);
+        here.extinction = select(0.0, cloud_extinction(layer, part.y), is_cloud);
+        here.share = part.x;
+    }
+    return here;
 }
 
 // How far a place is in cloud, or out of it, below 0.
@@ -152,4 +180,16 @@ fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     let to_sun = cloud_way(layer, at, clouds.to_sun, 1e9) * (here.size.w * here.medium.y);
     let near = max(about.z, to_sun * length(clouds.to_sun.xy));
     return CloudDepths(about.x, about.y, to_sun, near, about.w, about.z, about.w);
+}
+
+// What other clouds leave of the sun, of 1, where a place is looked at coarsely: close by they are met on the way.
+fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
+    if !CLOUD_COARSE {
+        return 1.0;
+    }
+    let up = select(at.height, 1.0 - at.height, clouds.to_sun.z >= 0.0) / layer.size.y;
+    let cells = up * length(clouds.to_sun.xy) / max(abs(clouds.to_sun.z), 0.05) * layer.size.z;
+    // Less of them stands the higher.
+    let blocked = 1.0 - exp(-0.5 * here.share * cells / CLOUD_CELL);
+    return 1.0 - min(cloud_blur.spread, 1.0) * blocked;
 }

@@ -11,10 +11,21 @@ struct CloudPlace {
 struct CloudHere {
     excess: f32,
     extinction: f32,
+    share: f32,
+}
+
+struct CloudBlur {
+    spread: f32,
+}
+
+var<private> cloud_blur: CloudBlur;
+
+fn cloud_blur_over(layer: CloudLayer, width: f32) -> CloudBlur {
+    return CloudBlur(0.0);
 }
 
 fn cloud_here(layer: CloudLayer, at: CloudPlace) -> CloudHere {
-    return CloudHere(0.0, layer.size.w);
+    return CloudHere(0.0, layer.size.w, 1.0);
 }
 
 // All of a box is cloud.
@@ -76,4 +87,10 @@ fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     let high = box_sides(layer) * scaled - low;
     let to_sun = cloud_way(layer, at, clouds.to_sun, 1e9) * scaled;
     return CloudDepths(high.z, low.z, to_sun, low.x, high.x, low.y, high.y);
+}
+
+const CLOUD_CELL: f32 = 1.0;
+
+fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
+    return 1.0;
 }

@@ -61,6 +61,9 @@ struct CloudsUniform {
     areas: array<CloudArea, 16>,
 }
 
+// Some places are looked at over widths in which clouds differ (field.wgsl).
+override CLOUD_COARSE: bool = false;
+
 @group(0) @binding(1) var<uniform> clouds: CloudsUniform;
 
 // Where a ray begins, relative to the camera (east, north, up), m: at the camera, but for rays of parallel views.

@@ -32,6 +32,51 @@ const ANVIL_FACES: vec2f = vec2f(0.2, 0.05);
 // How much smoother an anvil is than its towers.
 const ANVIL_SMOOTHER: f32 = 0.65;
 
+// How coarsely a place is looked at: from far off a pixel holds many clouds. Levels of the map and of the solid noise, and the standard
+// deviation of the excess within what is looked at; 0 close by.
+struct CloudBlur {
+    map: f32,
+    solid: f32,
+    spread: f32,
+}
+
+var<private> cloud_blur: CloudBlur;
+
+// Texels a cell of the map, and a side of the solid noise; level of the second sheet below that of the first.
+const MAP_TEXELS: f32 = 16.0;
+const SOLID_TEXELS: f32 = 64.0;
+const SECOND_LEVEL: f32 = 0.694;
+// What means over a width w (cells, and sides of the solid noise) take from the variance: 1 - exp(-(w / x)^y), of sheets of the even and of
+// the cellular kind and of the solid noise, whose standard deviation is the last. Held by a test (src/clouds/map.rs).
+const EVEN_BLUR: vec2f = vec2f(2.12, 1.25);
+const CELLULAR_BLUR: vec2f = vec2f(0.84, 1.9);
+const SOLID_BLUR: vec2f = vec2f(0.14, 1.7);
+const SOLID_DEVIATION: f32 = 0.107;
+
+// Width, cells, up to which clouds are looked at as they are.
+const BLUR_FROM: f32 = 0.15;
+
+fn cloud_lost(width: f32, law: vec2f) -> f32 {
+    return 1.0 - exp(-pow(width / law.x, law.y));
+}
+
+// For places that are looked at over a width, m.
+fn cloud_blur_over(layer: CloudLayer, width: f32) -> CloudBlur {
+    var blur = CloudBlur(0.0, 0.0, 0.0);
+    let cells = width * layer.size.z - BLUR_FROM;
+    if cells > 0.0 {
+        let sides = cells * layer.medium.w / layer.size.z;
+        let c = layer.solid.w;
+        let kinds = vec2f((1.0 - c) * (1.0 - c), c * c);
+        let lost = dot(kinds, vec2f(cloud_lost(cells, EVEN_BLUR), cloud_lost(cells, CELLULAR_BLUR))) / (kinds.x + kinds.y);
+        let fray = layer.shape.z * SOLID_GAIN * SOLID_DEVIATION;
+        blur.spread = sqrt(lost + fray * fray * cloud_lost(sides, SOLID_BLUR));
+        blur.map = max(log2(cells * MAP_TEXELS), 0.0);
+        blur.solid = max(log2(sides * SOLID_TEXELS), 0.0);
+    }
+    return blur;
+}
+
 // A place over the ground, as it is at the base: what is above that leans.
 fn cloud_unleaned(layer: CloudLayer, at: CloudPlace) -> vec2f {
     return at.level - layer.lean.xy * (at.height * at.height);
@@ -58,8 +103,9 @@ fn cloud_dome_over(layer: CloudLayer, excess: f32) -> f32 {
 fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
     let cell = level * layer.size.z / MAP_CELLS;
     let turned = vec2f(SECOND_TURN.x * cell.x - SECOND_TURN.y * cell.y, SECOND_TURN.y * cell.x + SECOND_TURN.x * cell.y);
-    let first = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.xy + cell, 0, 0.0);
-    let second = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.zw + turned / SECOND_PERIOD, 1, 0.0);
+    let first = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.xy + cell, 0, cloud_blur.map);
+    let second_at = layer.sheets.zw + turned / SECOND_PERIOD;
+    let second = textureSampleLevel(cloud_map, cloud_sampler, second_at, 1, max(cloud_blur.map - SECOND_LEVEL, 0.0));
     let c = layer.solid.w;
     let scale = inverseSqrt(2.0 * (c * c + (1.0 - c) * (1.0 - c)));
     return ((first.x + second.x) * (1.0 - c) + (first.y + second.y) * c) * scale;
@@ -78,7 +124,7 @@ fn cloud_frays(layer: CloudLayer, at: CloudPlace) -> f32 {
     let solid = vec3f(cloud_upright(layer, at), at.height / layer.size.y) * layer.medium.w + layer.solid.xyz;
     let within = clamp((at.height - ANVIL.x) / 0.14 + 1.0, 0.0, 1.0);
     let smooth_share = 1.0 - ANVIL_SMOOTHER * within * clamp(-layer.lean.z / 0.2, 0.0, 1.0);
-    return layer.shape.z * smooth_share * SOLID_GAIN * (textureSampleLevel(cloud_solid, cloud_sampler, solid, 0.0).r - SOLID_MEAN);
+    return layer.shape.z * smooth_share * SOLID_GAIN * (textureSampleLevel(cloud_solid, cloud_sampler, solid, cloud_blur.solid).r - SOLID_MEAN);
 }
 
 // Extinction, 1/m, of a frayed excess over threshold and dome.

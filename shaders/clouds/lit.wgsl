@@ -5,5 +5,5 @@
 fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudStretch, halo: vec3f) -> vec3f {
     let depths = cloud_depths(layer, at, here.excess);
     let s = cloud_scattered(layer.medium.x, depths, -stretch.direction, stretch.to_eye);
-    return layer.sun.rgb * (s.sun + s.once * halo) + layer.above.rgb * s.sky + layer.below.rgb * s.ground;
+    return layer.sun.rgb * (s.sun + s.once * halo) * cloud_sunlit(layer, at, here) + layer.above.rgb * s.sky + layer.below.rgb * s.ground;
 }

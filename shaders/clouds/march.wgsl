@@ -10,6 +10,10 @@ override CLOUD_FINENESS: f32 = 1.0;
 override CLOUD_STEPS: u32 = 96u;
 override CLOUD_STEP_DEPTH: f32 = 0.5;
 override CLOUD_STEP_ANGLE: f32 = 0.004;
+// Share of a layer's thickness that a step goes up or down at most.
+const CLOUD_STEP_RISE: f32 = 0.08;
+// Scaled depth of a step from which on its light is looked up where it is seen, not half-way.
+const CLOUD_THICK_STEP: f32 = 0.7;
 // What is let through at which a ray ends.
 override CLOUD_LEAST: f32 = 0.01;
 
@@ -45,18 +49,65 @@ struct CloudMarch {
     distance: vec2f,
 }
 
+// Where the mean of what is seen of a step of this scaled depth lies, as a share of the step: extinction is even in it, or rises evenly from
+// the face where it begins (within 4 % of the integral).
+fn cloud_seen_at(depth: f32, at_face: bool) -> f32 {
+    let left = exp(-depth);
+    return select(1.0 / depth - left / (1.0 - left), 0.667 / sqrt(sqrt(1.0 + 0.32 * depth * depth)), at_face);
+}
+
+// Width over which a pixel looks, pixels: at one the map's texels still show as rings.
+const PIXEL_BLUR: f32 = 1.4;
+
+// Angle of a pixel, rad.
+var<private> cloud_pixel: f32 = 0.0;
+
+// Width of a pixel on a layer, m: the geometric mean of that across and that along, less what the ray passes through of the layer itself.
+fn cloud_pixel_width(layer: CloudLayer, t: f32, rise: f32) -> f32 {
+    let across = PIXEL_BLUR * cloud_pixel * t / CLOUD_FINENESS;
+    let along = max(across, (across - 1.0 / layer.size.y) / max(rise, 0.05));
+    return sqrt(across * along);
+}
+
+// How much of a ray is open before gaps (x) and before cloud (y), so many cells on from a place of one share of cloud to a place of another:
+// up and down, cloud stands over cloud; from side to side it is met anew.
+fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
+    let grown = open.x * (shares.y - shares.x) / max(1.0 - shares.x, 1e-6);
+    let shrunk = open.y * (shares.y / max(shares.x, 1e-6) - 1.0);
+    let stacked = open.y + select(shrunk, grown, shares.y > shares.x);
+    let all = open.x + open.y;
+    let cloudy = mix(shares.y * all, stacked, exp(-cells / CLOUD_CELL));
+    return vec2f(all - cloudy, cloudy);
+}
+
+// What a step in cloud sends to the eye, and how much of what is behind it hides.
+fn cloud_step(layer: CloudLayer, half_way: CloudPlace, here: CloudHere, stretch: CloudStretch, at_face: bool, halo: vec3f) -> vec4f {
+    let depth = here.extinction * layer.medium.y * stretch.length;
+    var at = half_way;
+    var seen = here;
+    if depth > CLOUD_THICK_STEP {
+        at = cloud_place(layer, stretch.direction, stretch.begun + cloud_seen_at(depth, at_face) * stretch.length);
+        seen.excess = cloud_here(layer, at).excess;
+    }
+    return vec4f(cloud_lit(layer, at, seen, stretch, halo), 1.0 - exp(-depth));
+}
+
 // One layer between two distances along a ray.
 fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32, seen: CloudMarch, jitter: f32) -> CloudMarch {
     var out = seen;
     let thickness = 1.0 / layer.size.y;
-    let scaled = layer.medium.y;
-    let fine = clamp(CLOUD_STEP_DEPTH / (layer.size.w * scaled), thickness / 64.0, thickness / 12.0) / CLOUD_FINENESS;
+    let fine = clamp(CLOUD_STEP_DEPTH / (layer.size.w * layer.medium.y), thickness / 64.0, thickness / 12.0) / CLOUD_FINENESS;
+    let rise = abs(direction.z + first / (clouds.radius + cloud_eye()));
+    let coarse = max(fine, CLOUD_STEP_RISE * thickness / (CLOUD_FINENESS * max(rise, 1e-6)));
     let most = u32(f32(CLOUD_STEPS) * CLOUD_FINENESS);
     let halo = cloud_halo(layer.medium.x, direction);
     var gone = first;
     var tried = 0u;
     // The last place without cloud since the last with some, and how much is wanting there, or 0.
     var before = vec2f(first, 0.0);
+    // What of the ray has not ended yet, before gaps and before cloud, where it is looked at coarsely; share of cloud at the last place.
+    var open = vec2f(out.transmittance, 0.0);
+    var cloudy_share = 0.0;
     while out.transmittance > CLOUD_LEAST {
         // To the next step with cloud in it: faces and light are looked up for those alone, all rays of a wave together.
         var begun = gone;
@@ -67,14 +118,19 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
         here.extinction = 0.0;
         while here.extinction <= 0.0 && tried < most && gone < last {
             begun = gone;
-            step = min(max(fine, CLOUD_STEP_ANGLE / CLOUD_FINENESS * gone), last - gone);
+            step = min(clamp(CLOUD_STEP_ANGLE / CLOUD_FINENESS * gone, fine, coarse), last - gone);
             t = gone + jitter * step;
             at = cloud_place(layer, direction, t);
+            if CLOUD_COARSE {
+                cloud_blur = cloud_blur_over(layer, cloud_pixel_width(layer, t, rise));
+            }
             here = cloud_here(layer, at);
             here.extinction *= cloud_fades(t - first);
             tried++;
             if here.extinction <= 0.0 {
                 before = vec2f(t, -cloud_inside(here));
+                open = vec2f(open.x + open.y, 0.0);
+                cloudy_share = 0.0;
                 gone += max(step, cloud_skip(layer, here, at.height, direction));
             }
         }
@@ -83,26 +139,30 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
         }
         // A ray that comes into a cloud begins its steps at the face, wherever they lie: else faces show where steps begin.
         let face = before.x + (t - before.x) * before.y / max(before.y + cloud_inside(here), 1e-6);
+        var at_face = false;
         if before.y > 0.0 && face > 0.0 {
-            let at_face = cloud_place(layer, direction, face + jitter * step);
-            var behind = cloud_here(layer, at_face);
+            let behind_face = cloud_place(layer, direction, face + jitter * step);
+            var behind = cloud_here(layer, behind_face);
             behind.extinction *= cloud_fades(t - first);
             if behind.extinction > 0.0 {
                 here = behind;
-                at = at_face;
+                at = behind_face;
+                at_face = true;
                 t = face + jitter * step;
                 begun = face;
             }
         }
         before.y = 0.0;
         gone = begun + step;
-        let stretch = CloudStretch(direction, begun, step, t, -log(out.transmittance));
-        let light = cloud_lit(layer, at, here, stretch, halo);
-        let left = exp(-here.extinction * scaled * step);
-        let share = out.transmittance * (1.0 - left);
-        out.light += light * share;
+        open = cloud_open(open, vec2f(cloudy_share, here.share), length(direction.xy) * step * layer.size.z);
+        cloudy_share = here.share;
+        let stretch = CloudStretch(direction, begun, step, t, -log(max(open.y, 1e-9) / max(cloudy_share, 1e-6)));
+        let found = cloud_step(layer, at, here, stretch, at_face, halo);
+        let share = open.y * found.a;
+        out.light += found.rgb * share;
         out.distance += vec2f(t, t * t * 1e-6) * share;
-        out.transmittance *= left;
+        open.y -= share;
+        out.transmittance = open.x + open.y;
     }
     return out;
 }

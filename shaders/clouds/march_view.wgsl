@@ -35,6 +35,7 @@ fn march(in: FullscreenVarying) -> MarchedPixel {
     let ndc = pixel_ndc(picture, pixel, frame.y_sign);
     let ray = view_ray(frame.depth, ndc);
     cloud_origin = ray.origin;
+    cloud_pixel = frame.pixel_angle;
     var seen = clouds_along(ray.direction, RANGE_SKY, clouds.jitter);
     if seen.transmittance < 1.0 {
         let between = shaft_between(vec2f(pixel));

@@ -8,6 +8,7 @@ fn round(in: FullscreenVarying) -> @location(0) vec4f {
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let place = floor(in.position.xy) / (ROUND_SIDE - 1.0);
     let direction = octahedron_direction(place);
+    cloud_pixel = 4.0 / ROUND_SIDE;
     var seen = clouds_along(direction, RANGE_SKY, clouds.jitter);
     if seen.transmittance < 1.0 {
         seen = clouds_behind(air_between(direction, cloud_middle(seen)), seen);

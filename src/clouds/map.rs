@@ -49,11 +49,30 @@ impl Map {
         }
         Self(texels)
     }
+
+    /// Its mip levels, itself first: each the mean of 2 x 2 of the one before.
+    pub(super) fn levels(&self) -> Vec<Vec<[f32; 4]>> {
+        let mut levels = vec![self.0.clone()];
+        let mut side = MAP_SIZE / 2;
+        while side > 0 {
+            let from = &levels[levels.len() - 1];
+            let mean = |i: usize| {
+                let first = 2 * (i / side) * (2 * side) + 2 * (i % side);
+                [0, 1, 2, 3]
+                    .map(|k| [0, 1, 2 * side, 2 * side + 1].map(|to| from[first + to][k]).iter().sum::<f32>() / 4.0)
+            };
+            let level = (0..side * side).map(mean).collect();
+            levels.push(level);
+            side /= 2;
+        }
+        levels
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::clouds::overhead::{BLUR_FROM, PIXEL_BLUR};
 
     #[test]
     fn a_threshold_says_how_much_of_the_plane_lies_above_it() {
@@ -63,6 +82,51 @@ mod tests {
                 let count = map.0.iter().filter(|t| f64::from(t[sheet]) > above).count();
                 let got = count as f64 / map.0.len() as f64;
                 assert!((got - share).abs() < 1e-4, "sheet {sheet}: {got} above {above}");
+            }
+        }
+    }
+
+    /// Variance of a layer's number that means over a width take away, by the law of shaders/clouds/field.wgsl.
+    fn lost(width: f64, law: &str) -> f64 {
+        let text = include_str!("../../shaders/clouds/field.wgsl");
+        let (_, after) = text.split_once(&format!("const {law}: vec2f = vec2f(")).unwrap();
+        let (numbers, _) = after.split_once(')').unwrap();
+        let [over, power]: [f64; 2] =
+            numbers.split(", ").map(|n| n.parse().unwrap()).collect::<Vec<_>>().try_into().unwrap();
+        1.0 - (-(width / over).powf(power)).exp()
+    }
+
+    #[test]
+    fn coarse_looks_lose_as_much_variance_as_the_map_and_the_noise_do() {
+        let constants =
+            [include_str!("../../shaders/clouds/field.wgsl"), include_str!("../../shaders/clouds/march.wgsl")];
+        for (text, said) in constants
+            .into_iter()
+            .zip([format!("const BLUR_FROM: f32 = {BLUR_FROM:?};"), format!("const PIXEL_BLUR: f32 = {PIXEL_BLUR:?};")])
+        {
+            assert!(text.contains(&said), "{said}");
+        }
+        // The second sheet's cells are larger: a width is as much less of them.
+        let mean =
+            |width: f64, of: &dyn Fn(f64) -> f64| 0.5 * (of(width) + of(width / super::super::field::SECOND_PERIOD));
+        let variance = |level: &[f64]| {
+            let mean = level.iter().sum::<f64>() / level.len() as f64;
+            level.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / level.len() as f64
+        };
+        let between = |levels: &[f64], at: f64| {
+            let i = (at.max(0.0) as usize).min(levels.len() - 2);
+            levels[i] + (levels[i + 1] - levels[i]) * (at.max(0.0) - i as f64)
+        };
+        let levels = Map::new(5).levels();
+        for (sheet, law) in [(0, "EVEN_BLUR"), (2, "CELLULAR_BLUR")] {
+            let kept: Vec<f64> =
+                levels.iter().map(|t| variance(&t.iter().map(|t| f64::from(t[sheet])).collect::<Vec<_>>())).collect();
+            for width in [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0] {
+                let texels = MAP_SIZE as f64 / MAP_CELLS;
+                let want = 1.0 - mean(width, &|w: f64| between(&kept, (w * texels).log2())) / kept[0];
+                let got = lost(width, law);
+                println!("{law} over {width} cells: {got:.3} of the variance lost, {want:.3} of the map's");
+                assert!((got - want).abs() < 0.07, "{law} over {width}: {got}, {want}");
             }
         }
     }

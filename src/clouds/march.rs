@@ -23,6 +23,8 @@ use crate::moment::Scene;
 /// Scaled depth of a step in cloud, and its length over the distance from the eye, at most: half of those of a picture.
 const STEP_DEPTH: f64 = 0.25;
 const STEP_ANGLE: f64 = 0.002;
+/// Share of a layer's thickness that a step goes up or down at most.
+const STEP_RISE: f64 = 0.04;
 /// What is let through at which a ray ends.
 const LEAST: f64 = 0.001;
 /// Farthest that a ray is followed through a layer, m.
@@ -227,9 +229,11 @@ impl<'a> CloudRays<'a> {
         let s = &of.field.shape;
         let scaled = s.extinction_per_m * of.scale;
         let fine = self.longer[0] * (STEP_DEPTH / scaled).clamp(s.thickness_m / 128.0, s.thickness_m / 24.0);
+        let rise = (d.z + first / (self.radius_m + self.place_m.z)).abs();
+        let coarse = fine.max(self.longer[1] * STEP_RISE * s.thickness_m / rise.max(1e-6));
         let mut gone = first;
         while gone < last && seen.transmittance > LEAST {
-            let step = fine.max(self.longer[1] * STEP_ANGLE * gone).min(last - gone);
+            let step = (self.longer[1] * STEP_ANGLE * gone).clamp(fine, coarse).min(last - gone);
             let t = gone + 0.5 * step;
             let position_m = self.at(d, t);
             let height = (position_m.z - s.base_m) / s.thickness_m;

@@ -81,7 +81,22 @@ pub(super) fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -
     LIQUID_UM.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(diameter)
 }
 
+/// Width over which a pixel looks, pixels, and that from which on clouds in it differ, in distances from cloud to cloud; both of
+/// `shaders/clouds`.
+pub(super) const PIXEL_BLUR: f64 = 1.4;
+pub(super) const BLUR_FROM: f64 = 0.15;
+
 impl Overhead {
+    /// Whether pixels of so many radians hold clouds that differ, of a layer that the camera stands above: as far as its horizon.
+    pub fn is_coarse(&self, scene: &Scene, radius_m: f64, pixel: f64) -> bool {
+        let coarse = |layer: &Layer| {
+            let over_m = (scene.place.altitude_m - layer.shape.base_m).max(0.0);
+            let farthest_m = (over_m * (2.0 * radius_m + over_m)).sqrt();
+            PIXEL_BLUR * pixel * farthest_m > BLUR_FROM * layer.shape.scale_m
+        };
+        self.layers().iter().any(coarse)
+    }
+
     /// What there is at a scene's place for a model, where the wind has carried the layers so far; `None` where the model is no volume.
     /// `still`: [`Shape::of`], or what remembers it.
     pub fn new(

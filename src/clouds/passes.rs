@@ -7,7 +7,7 @@ use super::{
     lamps::{LampsUniform, glow_size},
     overhead::Overhead,
     picture::{BEHIND, Picture, marched},
-    pipelines::{Part, Pipelines, Resolve, run},
+    pipelines::{March, Part, Pipelines, Resolve, run},
     round::{Around, Round},
     shadow_map::{Lie, Past, ShadowMap},
     tables::CloudTables,
@@ -80,6 +80,7 @@ pub(super) struct CloudFrame<'a> {
     pub around: Around,
     /// Of the march ([`super::CloudSettings`]).
     pub fineness: f64,
+    pub is_coarse: bool,
     pub past: Past,
     /// The host's depth has several samples a pixel, and which kinds of depth there are.
     pub is_multisampled: bool,
@@ -301,17 +302,13 @@ impl CloudPasses {
 
     /// Makes what is wanted of a frame. Answers the passes that it took.
     pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, of: &CloudFrame<'_>) -> Result<u32> {
-        let march = (of.fineness, self.is_placed, of.has_shafts && of.shaded.is_some());
         if of.shaded.is_some() {
             self.hold_shadows(device)?;
         }
         let mut pipelines = match self.pipelines.take() {
             Some(pipelines) => pipelines,
-            None => Pipelines::new(device, of.sky.0, march)?,
+            None => Pipelines::new(device, of.sky.0)?,
         };
-        if pipelines.march.0 != march {
-            pipelines.march = (march, Pipelines::march(device, &pipelines.march_layouts, march)?);
-        }
         let Some(mut picture) = self.picture.take() else { return Ok(0) };
         self.block.write(bytemuck::bytes_of(&of.clouds));
         let group = self.march_group(device, &pipelines.march_layouts[0], of);
@@ -371,9 +368,10 @@ impl CloudPasses {
             let group = self.picture_group(device, &pipelines.picture_layout, of.frame, (&marched, self.no_past()));
             picture.begun = Some((marched, group));
         }
+        let march = March { fineness: of.fineness, is_placed: self.is_placed, has_shafts, is_coarse: of.is_coarse };
         if of.wanted.march {
             let [seen, reach] = picture.begun.as_ref().map_or(&picture.marched, |(marched, _)| marched);
-            run(encoder, (&[seen, reach], None), &pipelines.march.1, &[group, of.sky.1]);
+            run(encoder, (&[seen, reach], None), &pipelines.march(device, march)?, &[group, of.sky.1]);
             passes += 1;
         }
         if of.wanted.march && has_history {
@@ -388,7 +386,7 @@ impl CloudPasses {
         if let Some(lamps) = &of.lamps {
             self.lamps_block.write(bytemuck::bytes_of(lamps));
             let below = Part { first_row: picture.of.0.1, size: glow_size(picture.of.0) };
-            run(encoder, (&[reach], Some(below)), &pipelines.glow(device)?, &[group, of.sky.1]);
+            run(encoder, (&[reach], Some(below)), &pipelines.glow(device, march)?, &[group, of.sky.1]);
             passes += 1;
         }
         picture.newest = made;

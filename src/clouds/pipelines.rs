@@ -11,9 +11,23 @@ use crate::{
         Device,
         bind::{self, Slot},
         pass::{self, FullscreenDesc},
+        recent::Recent,
     },
     stage::{FrameUniform, yes},
 };
+
+/// What distinguishes one pipeline that marches rays from another.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct March {
+    /// See [`super::CloudSettings`].
+    pub fineness: f64,
+    /// Clouds are placed ([`super::placed`]).
+    pub is_placed: bool,
+    /// There are shafts of light.
+    pub has_shafts: bool,
+    /// Some clouds are looked at coarsely ([`super::Overhead::is_coarse`]).
+    pub is_coarse: bool,
+}
 
 /// What distinguishes one pipeline that makes a whole picture from another.
 #[derive(Clone, Copy, PartialEq)]
@@ -31,10 +45,10 @@ pub(super) struct Resolve {
 pub(super) struct Pipelines {
     pub picture_layout: wgpu::BindGroupLayout,
     pub shadow_layouts: [wgpu::BindGroupLayout; 2],
-    /// By its fineness ([`super::CloudSettings`]), whether clouds are placed ([`super::placed`]), and whether there are shafts of light.
-    pub march: ((f64, bool, bool), wgpu::RenderPipeline),
-    /// Of the light of lamps and flashes, once there is any, by the first two of those.
-    glow: Option<((f64, bool), wgpu::RenderPipeline)>,
+    /// The two last ones: a view that climbs and sinks again changes between them.
+    march: Recent<March, wgpu::RenderPipeline, 2>,
+    /// Of the light of lamps and flashes, once there is any.
+    glow: Recent<March, wgpu::RenderPipeline, 1>,
     pub follow: wgpu::RenderPipeline,
     /// Those of the march and of the sky, which the clouds of all directions are marched with too.
     pub march_layouts: [wgpu::BindGroupLayout; 2],
@@ -53,7 +67,7 @@ fn make(
 }
 
 impl Pipelines {
-    pub fn new(device: &Device, sky: &wgpu::BindGroupLayout, march: (f64, bool, bool)) -> Result<Self> {
+    pub fn new(device: &Device, sky: &wgpu::BindGroupLayout) -> Result<Self> {
         let layout =
             |slots: &[(u32, Slot)]| bind::layout(&device.device, "clouds", wgpu::ShaderStages::FRAGMENT, slots);
         let march_layout = layout(&[
@@ -92,9 +106,9 @@ impl Pipelines {
         let march_layouts = [march_layout, sky.clone()];
         let follow = ("clouds/follow.wgsl", "follow");
         Ok(Self {
-            march: (march, Self::march(device, &march_layouts, march)?),
+            march: Recent::new(),
             march_layouts,
-            glow: None,
+            glow: Recent::new(),
             follow: make(device, follow, &[&picture_layout], &[SEEN, SEEN, PAIR], &[])?,
             resolve: Vec::new(),
             picture_layout,
@@ -102,29 +116,30 @@ impl Pipelines {
         })
     }
 
-    pub fn march(
-        device: &Device,
-        layouts: &[wgpu::BindGroupLayout; 2],
-        (fineness, is_placed, has_shafts): (f64, bool, bool),
-    ) -> Result<wgpu::RenderPipeline> {
-        let march = ("clouds/march_view.wgsl", "march");
-        let constants = [("CLOUD_FINENESS", fineness), ("CLOUD_PLACED", yes(is_placed)), ("SHAFTS", yes(has_shafts))];
-        make(device, march, &layouts.each_ref(), &[SEEN, PAIR], &constants)
+    /// The pipeline that marches rays.
+    pub fn march(&mut self, device: &Device, of: March) -> Result<wgpu::RenderPipeline> {
+        let make = || {
+            let march = ("clouds/march_view.wgsl", "march");
+            let constants = [
+                ("CLOUD_FINENESS", of.fineness),
+                ("CLOUD_PLACED", yes(of.is_placed)),
+                ("CLOUD_COARSE", yes(of.is_coarse)),
+                ("SHAFTS", yes(of.has_shafts)),
+            ];
+            Ok((of, make(device, march, &self.march_layouts.each_ref(), &[SEEN, PAIR], &constants)?))
+        };
+        self.march.get_or_make(|made| *made == of, make).cloned()
     }
 
     /// The pipeline that draws clouds in the light of lamps and flashes.
-    pub fn glow(&mut self, device: &Device) -> Result<wgpu::RenderPipeline> {
-        let (fineness, is_placed, _) = self.march.0;
-        if let Some((made, pipeline)) = &self.glow
-            && *made == (fineness, is_placed)
-        {
-            return Ok(pipeline.clone());
-        }
-        let glow = ("clouds/glow_view.wgsl:lamps", "glow");
-        let constants = [("CLOUD_FINENESS", fineness), ("CLOUD_PLACED", yes(is_placed))];
-        let pipeline = make(device, glow, &self.march_layouts.each_ref(), &[SEEN], &constants)?;
-        self.glow = Some(((fineness, is_placed), pipeline.clone()));
-        Ok(pipeline)
+    pub fn glow(&mut self, device: &Device, of: March) -> Result<wgpu::RenderPipeline> {
+        let of = March { has_shafts: false, is_coarse: false, ..of };
+        let make = || {
+            let glow = ("clouds/glow_view.wgsl:lamps", "glow");
+            let constants = [("CLOUD_FINENESS", of.fineness), ("CLOUD_PLACED", yes(of.is_placed))];
+            Ok((of, make(device, glow, &self.march_layouts.each_ref(), &[SEEN], &constants)?))
+        };
+        self.glow.get_or_make(|made| *made == of, make).cloned()
     }
 
     pub fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<wgpu::RenderPipeline> {

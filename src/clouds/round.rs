@@ -57,7 +57,7 @@ impl Round {
             entry: "round",
             layouts,
             targets: &[SEEN.into()],
-            constants: &[("CLOUD_PLACED", yes(is_placed))],
+            constants: &[("CLOUD_PLACED", yes(is_placed)), ("CLOUD_COARSE", 1.0)],
             samples: 1,
         };
         Ok(Self {

@@ -31,12 +31,12 @@ fn texture(
     label: &str,
     dimension: wgpu::TextureDimension,
     [width, height, depth_or_array_layers]: [u32; 3],
-    format: wgpu::TextureFormat,
+    (format, mip_level_count): (wgpu::TextureFormat, u32),
 ) -> wgpu::Texture {
     device.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers },
-        mip_level_count: 1,
+        mip_level_count,
         sample_count: 1,
         dimension,
         format,
@@ -45,10 +45,10 @@ fn texture(
     })
 }
 
-/// Writes numbers as halves into a box of a texture that begins at `x` and `y`.
+/// Writes numbers as halves into a box of a texture's mip level that begins at `x` and `y`.
 fn write_halves(
     device: &Device,
-    texture: &wgpu::Texture,
+    (texture, mip_level): (&wgpu::Texture, u32),
     (x, y): (u32, u32),
     [width, height, depth_or_array_layers]: [u32; 3],
     numbers: impl Iterator<Item = f32>,
@@ -56,7 +56,7 @@ fn write_halves(
     let halves: Vec<u16> = numbers.map(|v| f16::from_f32(v).to_bits()).collect();
     let texel = 2 * u32::from(texture.format().components());
     device.queue.write_texture(
-        wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x, y, z: 0 }, ..texture.as_image_copy() },
+        wgpu::TexelCopyTextureInfo { mip_level, origin: wgpu::Origin3d { x, y, z: 0 }, ..texture.as_image_copy() },
         bytemuck::cast_slice(&halves),
         wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * width), rows_per_image: Some(height) },
         wgpu::Extent3d { width, height, depth_or_array_layers },
@@ -65,16 +65,19 @@ fn write_halves(
 
 /// The map as shaders look it up: a layer a sheet, each with its even and its cellular kind, since one look-up needs no more.
 fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
-    let size = [MAP_SIZE as u32, MAP_SIZE as u32, 2];
-    let made = texture(device, "cloud map", wgpu::TextureDimension::D2, size, SHEET);
-    let sheet = |i: usize| map.0.iter().flat_map(move |texel| [texel[i], texel[i + 2]]);
-    write_halves(device, &made, (0, 0), size, sheet(0).chain(sheet(1)));
+    let levels = map.levels();
+    let size = |level: usize| [(MAP_SIZE >> level) as u32, (MAP_SIZE >> level) as u32, 2];
+    let made = texture(device, "cloud map", wgpu::TextureDimension::D2, size(0), (SHEET, levels.len() as u32));
+    for (level, texels) in levels.iter().enumerate() {
+        let sheet = |i: usize| texels.iter().flat_map(move |texel| [texel[i], texel[i + 2]]);
+        write_halves(device, (&made, level as u32), (0, 0), size(level), sheet(0).chain(sheet(1)));
+    }
     bind::as_layers(&made)
 }
 
 /// Of hosts' maps of layers, one below the other.
 fn placed(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::TextureView {
-    texture(device, label, wgpu::TextureDimension::D2, [width, height, 1], FORMAT).create_view(&Default::default())
+    texture(device, label, wgpu::TextureDimension::D2, [width, height, 1], (FORMAT, 1)).create_view(&Default::default())
 }
 
 pub(super) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Sampler {
@@ -84,6 +87,7 @@ pub(super) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Samp
         address_mode_w: address,
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
         ..Default::default()
     })
 }
@@ -100,7 +104,7 @@ pub(super) struct LightTables {
 impl LightTables {
     pub fn new(device: &Device, media: [Arc<Transport>; 2]) -> Self {
         let size = [3 * DEPTHS as u32, 2 * DEPTHS as u32, LEAKS as u32];
-        let texture = texture(device, "light in clouds", wgpu::TextureDimension::D3, size, FORMAT);
+        let texture = texture(device, "light in clouds", wgpu::TextureDimension::D3, size, (FORMAT, 1));
         Self { texture, media, under: None }
     }
 
@@ -124,7 +128,7 @@ impl LightTables {
         for (i, medium) in self.media.iter().enumerate() {
             let put = |column: u32, table: &Table| {
                 let (at, size) = ((column * across, i as u32 * across), [across, across, LEAKS as u32]);
-                write_halves(device, &self.texture, at, size, table.iter().flatten().copied());
+                write_halves(device, (&self.texture, 0), at, size, table.iter().flatten().copied());
             };
             put(0, &medium.under_beam(cosine.abs()));
             put(1, &medium.under_beam((1.0 - cosine * cosine).sqrt()));
@@ -215,7 +219,7 @@ impl CloudTables {
         let mut row = 0;
         for made in maps.clone() {
             let ([width, height], numbers) = (made.map.cells, made.texels.iter().flatten().copied());
-            write_halves(device, self.placed.texture(), (0, row), [width, height, 1], numbers);
+            write_halves(device, (self.placed.texture(), 0), (0, row), [width, height, 1], numbers);
             row += height;
         }
         self.in_placed.clear();
@@ -225,7 +229,7 @@ impl CloudTables {
 
     /// Bytes of GPU memory.
     pub fn bytes(&self) -> u64 {
-        let (map, light) = (8 * MAP_SIZE * MAP_SIZE, 8 * 6 * LEAKS * DEPTHS * DEPTHS);
+        let (map, light) = (8 * MAP_SIZE * MAP_SIZE * 4 / 3, 8 * 6 * LEAKS * DEPTHS * DEPTHS);
         let placed = self.placed.texture().size();
         (map + light) as u64 + (SOLID_SIZE as u64).pow(3) + 8 * u64::from(placed.width) * u64::from(placed.height)
     }

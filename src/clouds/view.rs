@@ -320,6 +320,7 @@ impl DrawnEffect for CloudsView {
             return Ok(());
         };
         let lie = Lie::new(shot.now, overhead);
+        let pixel = shot.rays.pixel_angle(shot.color.texture.height());
         let around =
             Around { standing: lie.standing, altitude_m: shot.now.scene.place.altitude_m, exposure: shot.exposure };
         let shaded = shot.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { lie, depth });
@@ -336,6 +337,7 @@ impl DrawnEffect for CloudsView {
             lamps: self.lamps,
             around,
             fineness: self.settings.fineness,
+            is_coarse: overhead.is_coarse(&shot.now.scene, shot.now.planet_radius_m, pixel),
             past: Past::of(shot.frame),
             is_multisampled: sampling.multisampled()[1],
             depth_kinds: f64::from(shot.rays.depth_kinds()),

@@ -7,6 +7,7 @@ mod carried;
 mod depth_texture;
 mod drawn;
 mod elsewhere;
+mod far;
 mod handed;
 mod lamps;
 #[path = "../frame/lookup.rs"]
