@@ -2122,7 +2122,7 @@ wk_status wk_context_create(wk_device *device,
  * Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
  * call; NULL means the Earth. Light and queries are those of the new planet at once; nothing is blended. The sky's
  * tables follow as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the
- * radius, the top, the wavelengths or the ground differ, the next frame shows a draft of the new planet at once
+ * radius, the top or the wavelengths differ, the next frame shows a draft of the new planet at once
  * (docs/planets.md).
  * Thread: exclusive.
  * Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet
@@ -3418,6 +3418,11 @@ typedef uint32_t wk_diagnostic;
  * How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
  */
 #define WK_DIAGNOSTIC_OVERDRAW 5
+/**
+ * The wind 2 m over what you drew, as it carries what falls: black a calm, 4 m/s a step, white 20 m/s and more; in each
+ * square of the ground an arrow along it, or a dot below 0.3 m/s. The sky is black. Stage MEDIUM.
+ */
+#define WK_DIAGNOSTIC_WIND 6
 
 /** One frame of one view. */
 typedef struct wk_frame {

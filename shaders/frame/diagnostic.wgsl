@@ -3,13 +3,12 @@
 //!include "frame/host_picture.wgsl"
 //!include "frame/composite.wgsl"
 //!include "frame/exposed.wgsl"
+//!include "frame/false_colors.wgsl"
 
 // Which number: those of src/stage/diagnostic.rs.
 override DIAGNOSTIC: u32 = 1u;
 // What it is about is not in the frame.
 override ABSENT: bool = false;
-// The target holds display values by the sRGB curve.
-override ENCODED: bool = false;
 
 const DISTANCE: u32 = 1u;
 const OPTICAL_DEPTH: u32 = 2u;
@@ -17,25 +16,8 @@ const WETNESS: u32 = 3u;
 const PLAN_ERROR: u32 = 4u;
 const OVERDRAW: u32 = 5u;
 
-// Numbers of the scale's steps from one colour to the next.
-const STEPS: f32 = 5.0;
 // Draws of a pixel a step.
 const DRAWS_OF_STEP: f32 = 4.0;
-
-// The scale from 0 to 1, by the sRGB curve: black, blue, green, yellow, red, white.
-fn scale_color(share: f32) -> vec3f {
-    var colors = array<vec3f, 6>(
-        vec3f(0.0),
-        vec3f(0.0, 0.0, 1.0),
-        vec3f(0.0, 1.0, 0.0),
-        vec3f(1.0, 1.0, 0.0),
-        vec3f(1.0, 0.0, 0.0),
-        vec3f(1.0),
-    );
-    let at = clamp(share, 0.0, 1.0) * STEPS;
-    let below = min(u32(at), 4u);
-    return mix(colors[below], colors[below + 1u], at - f32(below));
-}
 
 fn log10(x: f32) -> f32 {
     return log2(x) * 0.30103;
@@ -84,21 +66,7 @@ fn measured(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
 
 @fragment
 fn diagnose(in: FullscreenVarying) -> @location(0) vec4f {
-    let pixel = vec2i(in.position.xy);
-    let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
-    var seen = Seen(pixel, 0, ndc, 0.0, RANGE_SKY, RANGE_SKY, 0.0);
-    if HAS_DEPTH {
-        seen.depth = textureLoad(host_depth, pixel, 0).r;
-        seen.range = view_range(frame.depth, seen.depth, ndc);
-        seen.plane = view_plane(frame.depth, seen.depth, ndc);
-    }
-    if HAS_MASK {
-        seen.mask = textureLoad(host_mask, pixel, 0).r;
-    }
-    let host = textureLoad(host_color, pixel, 0);
-    var shown = scale_color(measured(host.rgb, view_ray(frame.depth, ndc), seen));
-    if !ENCODED {
-        shown = srgb_decode(shown);
-    }
-    return vec4f(mix(shown, host.rgb, seen.mask), host.a);
+    let seen = seen_at(in);
+    let host = textureLoad(host_color, seen.pixel, 0);
+    return over_host(scale_color(measured(host.rgb, view_ray(frame.depth, seen.ndc), seen)), host, seen);
 }

@@ -274,7 +274,7 @@ pub unsafe extern "C" fn wk_context_create(
 /// Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
 /// call; NULL means the Earth. Light and queries are those of the new planet at once; nothing is blended. The sky's
 /// tables follow as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the
-/// radius, the top, the wavelengths or the ground differ, the next frame shows a draft of the new planet at once
+/// radius, the top or the wavelengths differ, the next frame shows a draft of the new planet at once
 /// (docs/planets.md).
 /// Thread: exclusive.
 /// Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet

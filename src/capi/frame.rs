@@ -84,6 +84,9 @@ pub const WK_DIAGNOSTIC_WETNESS: wk_diagnostic = 3;
 pub const WK_DIAGNOSTIC_PLAN_ERROR: wk_diagnostic = 4;
 /// How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
 pub const WK_DIAGNOSTIC_OVERDRAW: wk_diagnostic = 5;
+/// The wind 2 m over what you drew, as it carries what falls: black a calm, 4 m/s a step, white 20 m/s and more; in each
+/// square of the ground an arrow along it, or a dot below 0.3 m/s. The sky is black. Stage MEDIUM.
+pub const WK_DIAGNOSTIC_WIND: wk_diagnostic = 6;
 
 /// Flags of a frame.
 pub type wk_frame_flags = u32;
@@ -364,6 +367,7 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
             WK_DIAGNOSTIC_WETNESS => Diagnostic::Wetness,
             WK_DIAGNOSTIC_PLAN_ERROR => Diagnostic::PlanError,
             WK_DIAGNOSTIC_OVERDRAW => Diagnostic::Overdraw,
+            WK_DIAGNOSTIC_WIND => Diagnostic::Wind,
             _ => Diagnostic::None,
         },
         camera_velocity_m_s: DVec3::from_array(c.velocity_m_s),

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use super::kinds::Pixels;
+use super::{kinds::Pixels, wind_picture::WindPicture};
 use crate::{
     effects::{BLOCK_BYTES, tables_layout},
     error::{Error, Result, Status},
@@ -13,6 +13,7 @@ use crate::{
         pass::{self, FullscreenDesc},
         recent::Recent,
     },
+    moment::Moment,
     stage::{Composition, Constant, Constants, Frame, FrameUniform, Pipeline, Sampling, Stages, yes},
     surroundings::layout as around_layout,
 };
@@ -119,6 +120,7 @@ pub(super) struct Composite {
     /// The same as a texture of layers.
     no_layers: wgpu::TextureView,
     reads_samples: bool,
+    wind: WindPicture,
 }
 
 fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
@@ -154,6 +156,7 @@ impl Composite {
             no_layers: bind::as_layers(none.texture()),
             none,
             reads_samples: multi,
+            wind: WindPicture::new(device),
         }
     }
 
@@ -225,6 +228,41 @@ impl Composite {
                 Ok((variant, pass::fullscreen_at(device, &desc, variant.pixels.test())?))
             },
         )
+    }
+
+    /// The pipeline that draws a picture of the wind in the place of `variant`'s, and its group 1, after the frame's.
+    ///
+    /// # Errors
+    /// A missing shader file; a time that the weather does not know.
+    pub fn wind(
+        &mut self,
+        device: &Arc<Device>,
+        variant: Variant,
+        now: &Moment<'_>,
+    ) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup)> {
+        let group = self.wind.bind(device, now)?;
+        let layouts = [&self.layouts[variant.sampling as usize], &self.wind.layout];
+        let make = || {
+            let of = &variant.constants;
+            let constants = [
+                ("DEPTH_KINDS", of.between.value("DEPTH_KINDS")),
+                ("ENCODED", of.composed.value("ENCODED")),
+                ("HAS_DEPTH", yes(variant.images[0])),
+                ("HAS_MASK", yes(variant.images[1])),
+            ];
+            let targets = [variant.target(wgpu::ColorWrites::ALL)];
+            let desc = FullscreenDesc {
+                shader: variant.sampling.wind_picture(),
+                entry: "wind",
+                layouts: &layouts,
+                targets: &targets,
+                constants: &constants,
+                samples: variant.samples,
+            };
+            Ok((variant, pass::fullscreen_at(device, &desc, variant.pixels.test())?))
+        };
+        let pipeline = self.pipelines.get_or_make(|made| *made == variant, make)?;
+        Ok((pipeline.clone(), group))
     }
 
     /// The pipeline that writes the kinds of the pixels of `variant`, compiled at its first use.

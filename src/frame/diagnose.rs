@@ -50,8 +50,14 @@ impl View {
         self.take_picture(call.color, to)?;
         let (Some((_, group, target)), Some((_, tables))) = (&self.bound, &composition.tables) else { return Ok(()) };
         let mut composite = self.composite.lock()?;
-        let pipeline = composite.pipeline(&self.device, variant)?;
-        pass::draw(to.encoder, "diagnostic", pipeline, &[group, tables, self.surroundings.bind_group()], target);
+        if frame.diagnostic == Diagnostic::Wind {
+            let (pipeline, wind) = composite.wind(&self.device, variant, call.now)?;
+            pass::draw(to.encoder, "wind", &pipeline, &[group, &wind], target);
+        } else {
+            let pipeline = composite.pipeline(&self.device, variant)?;
+            let groups = [group, tables, self.surroundings.bind_group()];
+            pass::draw(to.encoder, "diagnostic", pipeline, &groups, target);
+        }
         to.passes += 1;
         to.ends(CostItem::Composition, true)
     }

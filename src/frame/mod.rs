@@ -17,6 +17,7 @@ mod picture;
 mod planned;
 mod unit;
 mod view;
+mod wind_picture;
 
 pub use crate::effects::PARTS;
 pub use crate::gpu::Shared;

@@ -16,7 +16,7 @@ use crate::{
         FollowedSky, LightTable, Planet, Sh9, SkyLibrary, SkySettings,
         reference::{medium::Medium, ray::Ray},
     },
-    world::{color_of, planet_under},
+    world::color_of,
 };
 
 impl Context {
@@ -170,7 +170,7 @@ impl Context {
     /// # Errors
     /// [`Status::Aborted`], [`Status::DeviceLost`], or a GPU fault.
     pub fn build_sky(&self, progress: &mut dyn FnMut(f32) -> bool) -> Result<()> {
-        let planet = planet_under(&self.world.set.planet, &self.world.timeline.at(self.world.time_s));
+        let planet = self.world.planet_under(&self.world.timeline.at(self.world.time_s));
         planet.check()?;
         // Not under the sky's lock: frames and queries of other threads go on while parts are built.
         let kit = self.sky()?.kit().clone();
@@ -180,7 +180,7 @@ impl Context {
     }
 
     /// Puts another planet in place of the one before: air, ground and sun. The sky's tables follow as after a change of the weather,
-    /// by a draft that fades in within sixteen frames; where radius, top, wavelengths or ground are others, the next frame cuts to a
+    /// by a draft that fades in within sixteen frames; where radius, top or wavelengths are others, the next frame cuts to a
     /// draft of them, and later ones refine it. Steps of the simulated ground that remain are done under the planet before.
     ///
     /// # Errors

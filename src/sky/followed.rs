@@ -119,9 +119,9 @@ impl FollowedSky {
     }
 }
 
-/// Whether two planets differ in their air at most, as one under two weathers does.
+/// Whether two planets differ in their air and in the albedo of their ground at most, as one under two weathers does.
 fn is_same_body(a: &Planet, b: &Planet) -> bool {
-    let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm, p.ground_albedo);
+    let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm);
     body(a) == body(b)
 }
 

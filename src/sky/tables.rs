@@ -33,6 +33,9 @@ const FADE: f32 = 1.0 / 16.0;
 /// Airs whose optical depth differs by more than this share need a draft before the whole tables: it errs by less.
 const FAR: f64 = 0.03;
 
+/// The same for the albedo of the ground.
+const FAR_ALBEDO: f64 = 0.1;
+
 /// What [`SkyTables::update`] did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TablesProgress {
@@ -367,8 +370,9 @@ fn is_far(a: &Planet, b: &Planet) -> bool {
         change > FAR * a.iter().sum::<f64>().max(b.iter().sum())
     };
     let taller = |x: f64, y: f64| (x - y).abs() > 2.0 * FAR * x.max(y);
-    let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm, p.ground_albedo);
+    let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm);
     body(a) != body(b)
+        || (0..3).any(|i| (a.ground_albedo[i] - b.ground_albedo[i]).abs() > FAR_ALBEDO)
         || (a.mie.asymmetry_g - b.mie.asymmetry_g).abs() > FAR
         || taller(a.mie.scale_height_m, b.mie.scale_height_m)
         || taller(a.rayleigh.scale_height_m, b.rayleigh.scale_height_m)

@@ -24,6 +24,9 @@ pub enum Diagnostic {
     PlanError = 4,
     /// How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
     Overdraw = 5,
+    /// The wind 2 m over what the host drew, as it carries what falls: black a calm, 4 m/s a step, white 20 m/s and more; in each square of
+    /// the ground an arrow along it, or a dot below 0.3 m/s. The sky is black. Stage MEDIUM.
+    Wind = 6,
 }
 
 impl Diagnostic {
@@ -31,7 +34,7 @@ impl Diagnostic {
     pub(crate) fn stage(self) -> Stages {
         match self {
             Self::None => Stages(0),
-            Self::Distance | Self::OpticalDepth | Self::PlanError => Stages::MEDIUM,
+            Self::Distance | Self::OpticalDepth | Self::PlanError | Self::Wind => Stages::MEDIUM,
             Self::Wetness => Stages::SURFACE,
             Self::Overdraw => Stages::PARTICLES,
         }

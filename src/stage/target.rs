@@ -290,6 +290,15 @@ impl Sampling {
         }
     }
 
+    /// Shader of the picture of the wind; its entry point is `wind`.
+    pub fn wind_picture(self) -> &'static str {
+        match self {
+            Self::Single => "frame/wind_picture.wgsl",
+            Self::Multi => "frame/wind_picture.wgsl:multi",
+            Self::Resolved => "frame/wind_picture.wgsl:resolved",
+        }
+    }
+
     /// Shader that tells kinds of pixels apart, of pictures with one sample.
     pub fn kinds(self) -> &'static str {
         if self == Self::Single { "frame/kinds.wgsl" } else { "frame/kinds.wgsl:resolved" }

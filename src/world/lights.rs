@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::World;
+use super::{World, planet_under};
 use crate::{
     almanac::{
         moon::{self, MoonPosition},
@@ -49,6 +49,9 @@ const LAND_ALBEDO: f64 = 0.2;
 /// The same of snow of which only the depth is known.
 const SNOW_ALBEDO: f64 = 0.82;
 
+/// Steps from bare to covered land in which the sky follows. Half of one changes the light of a clear sky by less than a hundredth.
+const SNOW_STEPS: f64 = 16.0;
+
 /// What light from above meets on land of which snow covers this share.
 pub(super) struct LandSeen {
     /// Share that snow covers.
@@ -69,6 +72,12 @@ impl LandSeen {
         planet.ground_albedo.map(|bare| bare + (self.snow_albedo - bare) * self.snow)
     }
 
+    /// A planet whose ground is this land. The share that snow covers goes by steps: tables of its sky are not built anew for every flake.
+    pub fn under_sky(&self, planet: Planet) -> Planet {
+        let stepped = Self { snow: (self.snow * SNOW_STEPS).round() / SNOW_STEPS, ..*self };
+        Planet { ground_albedo: stepped.albedo_on(&planet), ..planet }
+    }
+
     /// As the weather reports the snow.
     pub fn reported(c: &Conditions) -> Self {
         Self::new(snow_cover(c.surface.snow_depth_m), SNOW_ALBEDO)
@@ -76,6 +85,11 @@ impl LandSeen {
 }
 
 impl World {
+    /// The planet under a weather: its air, and its ground as it is covered.
+    pub fn planet_under(&self, c: &Conditions) -> Planet {
+        self.land(c).under_sky(planet_under(&self.set.planet, c))
+    }
+
     /// The land under a weather: as its snow is led through time, else as it is reported.
     pub(super) fn land(&self, c: &Conditions) -> LandSeen {
         match &self.snow {

@@ -26,7 +26,7 @@ use std::{
 
 use glam::{DMat3, DVec3};
 
-pub(crate) use air::planet_under;
+use air::planet_under;
 pub(crate) use binary::{binary_text, text_binary};
 pub(crate) use held::{HeldEffect, Within};
 pub(crate) use kept::KeptScene;

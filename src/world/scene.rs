@@ -209,7 +209,8 @@ impl World {
         land: &LandSeen,
     ) -> Result<(Scene, Option<Blowing>)> {
         let local = self.frame.place_at(name, position)?;
-        let planet = planet_under(&self.set.planet, &conditions);
+        let bare = planet_under(&self.set.planet, &conditions);
+        let (planet, ground_albedo) = (land.under_sky(bare), land.albedo_on(&bare));
         let map_m = self.map_place(position, &local);
         // Light is that of the clouds over the place, those over rain areas among them; all else is the weather's.
         let [mapped, under_areas] =
@@ -218,7 +219,6 @@ impl World {
         let overhead = under_areas.as_ref().unwrap_or(shown);
         let lights = self.lights_over(&local.place, (overhead, land.albedo), time_s)?;
         let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;
-        let ground_albedo = land.albedo_on(&planet);
         let above_fog = self.ground_light((&planet, &local.place), (overhead, ground_albedo), &lights, night_lux);
         let [(sun, under_sun), (moon, _)] = lights;
         // Only patches and curtains show where the air has gone.

@@ -478,8 +478,8 @@ fn depth_access_and_diagnostic_pictures_are_checked() {
     let frame = |diagnostic| wk_frame { frame_id: next_frame(), diagnostic, ..init("wk_frame") };
     // SAFETY: live pointers.
     let status = |diagnostic| unsafe { wk_view_record(world.view, &frame(diagnostic), WK_STAGE_PREPARE) };
-    assert!((WK_DIAGNOSTIC_NONE..=WK_DIAGNOSTIC_OVERDRAW).all(|diagnostic| status(diagnostic) == WK_OK));
-    assert_eq!(status(WK_DIAGNOSTIC_OVERDRAW + 1), WK_ERROR_INVALID_ARGUMENT);
+    assert!((WK_DIAGNOSTIC_NONE..=WK_DIAGNOSTIC_WIND).all(|diagnostic| status(diagnostic) == WK_OK));
+    assert_eq!(status(WK_DIAGNOSTIC_WIND + 1), WK_ERROR_INVALID_ARGUMENT);
     assert!(
         message().contains("frame.diagnostic must be one of WK_DIAGNOSTIC_NONE, WK_DIAGNOSTIC_DISTANCE"),
         "{}",

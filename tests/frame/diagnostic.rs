@@ -7,6 +7,7 @@ use welkin::{
     rain::{RainModel, RainSettings},
     scene::{Camera, DepthMapping, ViewRays},
     weather::{Fog, FogKind, Precipitation, PrecipitationKind, Surface, SurfaceState, Weather},
+    wind::{WindGrid, WindGridKind},
 };
 
 use crate::{
@@ -220,6 +221,57 @@ fn overdraw_is_none_without_rain_and_grows_with_it() {
             _ => assert!(some > 0.02 && more > 1.5 * some, "{model:?}: {some} {more}"),
         }
     }
+}
+
+/// A wind that turns about a point and grows away from it, seen from above.
+#[test]
+fn wind_is_that_of_the_query_and_arrows_lie_along_it() {
+    let mut host = Host::new(HALF);
+    let nodes = [33, 33, 3];
+    let origin = DVec3::new(-160.0, -160.0, -10.0);
+    let cell_m = DVec3::splat(10.0);
+    let turning = |i: u32| {
+        let at = origin + cell_m * DVec3::new(f64::from(i % 33), f64::from(i / 33 % 33), 0.0);
+        [-0.11 * at.y, 0.11 * at.x, 0.0].map(|v| v as f32)
+    };
+    let velocities_m_s = (0..33 * 33 * 3).map(turning).collect();
+    let kind = WindGridKind::Whole;
+    host.context.set_wind_grid(Some(WindGrid { origin, cell_m, nodes, kind, velocities_m_s })).unwrap();
+    // Not at the world's origin: squares of arrows stay where they are.
+    let eye = DVec3::new(13.0, -21.0, 60.0);
+    let down = Camera::look_to(eye, -DVec3::Z, DVec3::Y, 1.0, 160.0 / 90.0, 0.1);
+    host.clear([5.0; 4], 0.1 / 60.0);
+    let change = |frame: &mut Frame<'_>| (frame.camera, frame.diagnostic) = (down, Diagnostic::Wind);
+    let shown = record(&mut host, 1, ALL, change);
+    let rays = rays(&down);
+    let (mut colours, mut pixels, mut ahead) = (0, 0, 0.0);
+    for (i, pixel) in shown.iter().enumerate() {
+        let range = rays.view_range(0.1 / 60.0, ndc(i));
+        let at = eye + rays.view_ray(ndc(i)).direction * range;
+        let wind = |at: DVec3| host.context.wind_at(at + DVec3::Z * 2.0, 0.0).unwrap().velocity_m_s.truncate();
+        let found = steps(*pixel);
+        if (0.01..4.99).contains(&found) {
+            let asked = wind(at).length() / 4.0;
+            assert!((found - asked).abs() < 0.03, "{at}: {found} {asked}");
+            colours += 1;
+            continue;
+        }
+        let side = (0.06 * range).log2().round().exp2();
+        let middle = ((at.truncate() / side).floor() + 0.5) * side;
+        let off = (at.truncate() - middle) / side;
+        if wind(middle.extend(0.0)).length() > 1.0 {
+            let along = wind(middle.extend(0.0)).normalize();
+            assert!(off.perp_dot(along).abs() < 0.2 && off.dot(along).abs() < 0.42, "{at}: {off}, {along}");
+            ahead += off.dot(along);
+            pixels += 1;
+        }
+    }
+    println!(
+        "{colours} pixels of speed, {pixels} of arrows, whose middle lies {:.3} of a square ahead",
+        ahead / f64::from(pixels)
+    );
+    assert!(colours > 11_000 && pixels > 500);
+    assert!(ahead > 0.02 * f64::from(pixels), "arrows point the other way");
 }
 
 #[test]

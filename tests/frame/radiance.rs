@@ -160,22 +160,36 @@ fn radiance_asked_for_is_the_radiance_drawn() {
     night.hold("night", [0.006, 0.14, 0.18]);
 }
 
-#[test]
-fn light_of_a_clear_sky_is_that_of_what_is_seen_of_it() {
+/// How far the light that is told is from what is seen of skies of these visibilities over ground under so much snow, at worst.
+fn told_over_seen(visibilities_m: &[f64], snow_depth_m: f64) -> f64 {
     let mut sky = Sky::new();
     let mut worst = 0.0f64;
-    for visibility_m in [3e3, 7e3, 20e3, 150e3] {
-        sky.context.set_weather(&Weather { visibility_m, ..Weather::default() }, 0.0, 0.0).unwrap();
+    for &visibility_m in visibilities_m {
+        let mut weather = Weather { visibility_m, ..Weather::default() };
+        weather.surface.snow_depth_m = snow_depth_m;
+        sky.context.set_weather(&weather, 0.0, 0.0).unwrap();
         for elevation_deg in [6.0, 11.0, 30.0, 65.0] {
             sky.context.set_sun(Some(GivenDirection { azimuth_deg: 200.0, elevation_deg })).unwrap();
             let told = luminance(&sky.context.light_at(DVec3::Z * 2.0, 0.0).unwrap().arriving.sky_lux);
             let off = told / seen_lux(&sky.context, DVec3::Z * 2.0, (16, 32)) - 1.0;
             println!(
-                "visibility {:.0} km, sun at {elevation_deg:.0} degrees: {told:.0} lux, off by {off:+.3}",
+                "visibility {:.0} km, {snow_depth_m} m of snow, sun at {elevation_deg:.0} degrees: {told:.0} lux, off by {off:+.3}",
                 visibility_m / 1e3
             );
             worst = worst.max(off.abs());
         }
     }
+    worst
+}
+
+#[test]
+fn light_of_a_clear_sky_is_that_of_what_is_seen_of_it() {
+    let worst = told_over_seen(&[3e3, 7e3, 20e3, 150e3], 0.0);
+    assert!(worst < 0.06, "{worst}");
+}
+
+#[test]
+fn snow_on_the_ground_brightens_the_sky_that_is_seen_as_the_light_that_is_told() {
+    let worst = told_over_seen(&[7e3, 150e3], 0.5);
     assert!(worst < 0.06, "{worst}");
 }

@@ -1,0 +1,51 @@
+// Diagnostic pictures: a number of each pixel on a scale of colours, and how it lies over the host's picture.
+//!include "common/fullscreen.wgsl"
+//!include "common/frame.wgsl"
+//!include "common/tone.wgsl"
+//!include "frame/host_picture.wgsl"
+
+// The target holds display values by the sRGB curve.
+override ENCODED: bool = false;
+
+// Numbers of the scale's steps from one colour to the next.
+const STEPS: f32 = 5.0;
+
+// The scale from 0 to 1, by the sRGB curve: black, blue, green, yellow, red, white.
+fn scale_color(share: f32) -> vec3f {
+    var colors = array<vec3f, 6>(
+        vec3f(0.0),
+        vec3f(0.0, 0.0, 1.0),
+        vec3f(0.0, 1.0, 0.0),
+        vec3f(1.0, 1.0, 0.0),
+        vec3f(1.0, 0.0, 0.0),
+        vec3f(1.0),
+    );
+    let at = clamp(share, 0.0, 1.0) * STEPS;
+    let below = min(u32(at), 4u);
+    return mix(colors[below], colors[below + 1u], at - f32(below));
+}
+
+// What the host's images say of a pixel; of several samples the first.
+fn seen_at(in: FullscreenVarying) -> Seen {
+    let pixel = vec2i(in.position.xy);
+    let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
+    var seen = Seen(pixel, 0, ndc, 0.0, RANGE_SKY, RANGE_SKY, 0.0);
+    if HAS_DEPTH {
+        seen.depth = textureLoad(host_depth, pixel, 0).r;
+        seen.range = view_range(frame.depth, seen.depth, ndc);
+        seen.plane = view_plane(frame.depth, seen.depth, ndc);
+    }
+    if HAS_MASK {
+        seen.mask = textureLoad(host_mask, pixel, 0).r;
+    }
+    return seen;
+}
+
+// A colour in the host's place, but where its mask keeps that.
+fn over_host(shown: vec3f, host: vec4f, seen: Seen) -> vec4f {
+    var color = shown;
+    if !ENCODED {
+        color = srgb_decode(shown);
+    }
+    return vec4f(mix(color, host.rgb, seen.mask), host.a);
+}
