@@ -145,6 +145,36 @@ void objects_bridge_mesh(const ground *g, mesh *m)
         mesh_box(m, boxes[i].place, boxes[i].size, vec(0.30, 0.29, 0.27));
 }
 
+#define BARN_AWAY_M 19.0
+
+void objects_barn(const ground *g, solid boxes[BARN_BOXES])
+{
+    double pad_x, pad_y;
+    ground_pad(&pad_x, &pad_y);
+    vec3 away = scale(direction(BARN_AZIMUTH_DEG, 0.0), BARN_AWAY_M);
+    double x = pad_x + away.x, y = pad_y + away.y;
+    mat4 foot = multiply(translation(vec(x, y, ground_z(g, x, y))), rotation(2, RAD(-BARN_AZIMUTH_DEG)));
+    /* x along the ridge, y to windward; walls go into the ground, which is not level. */
+    boxes[0] = (solid){multiply(foot, translation(vec(0, 0, 1.5))), vec(16, 9, 6)};
+    boxes[1] = (solid){multiply(foot, translation(vec(0, 0, 4.65))), vec(17, 10, 0.3)};
+    boxes[2] = (solid){multiply(foot, translation(vec(0, -6.0, 2.9))), vec(9, 3.2, 0.15)};
+    for (int side = 0; side < 2; side++)
+        boxes[3 + side] = (solid){multiply(foot, translation(vec(side ? 4.2 : -4.2, -7.4, 0.9))), vec(0.18, 0.18, 4)};
+}
+
+void objects_barn_mesh(const ground *g, mesh *m)
+{
+    const vec3 boards = vec(0.16, 0.045, 0.035), slates = vec(0.07, 0.075, 0.08), beams = vec(0.12, 0.08, 0.05);
+    solid boxes[BARN_BOXES];
+    objects_barn(g, boxes);
+    for (int i = 0; i < BARN_BOXES; i++)
+        mesh_box(m, boxes[i].place, boxes[i].size, i == 0 ? boards : i < 3 ? slates : beams);
+    /* A door under the porch, and windows beside it. */
+    part(m, boxes[0].place, vec(0, -4.52, -0.1), vec(2.6, 0.06, 2.8), beams);
+    for (int side = -1; side <= 1; side += 2)
+        part(m, boxes[0].place, vec(5.9 * side, -4.52, 0.4), vec(1.3, 0.06, 1.1), GLASS);
+}
+
 void objects_mesh(const ground *g, mesh *m)
 {
     excavator(g, m);

@@ -24,4 +24,10 @@ typedef struct solid {
 void objects_bridge(const ground *g, solid boxes[BRIDGE_BOXES]);
 void objects_bridge_mesh(const ground *g, mesh *m);
 
+/* A barn with a porch, to windward of the excavator in the snow pictures: its walls come first, then its roofs. */
+#define BARN_BOXES 5
+#define BARN_AZIMUTH_DEG (SITE_VIEW_AZIMUTH_DEG - 100.0)
+void objects_barn(const ground *g, solid boxes[BARN_BOXES]);
+void objects_barn_mesh(const ground *g, mesh *m);
+
 #endif

@@ -70,8 +70,12 @@ bool scene_create(scene *s, const char *terrain_png)
     s->ground_indices = (GLsizei)s->mesh.index_count;
     objects_mesh(&s->ground, &s->mesh);
     s->object_indices = (GLsizei)s->mesh.index_count - s->ground_indices;
-    objects_bridge_mesh(&s->ground, &s->mesh);
-    s->bridge_indices = (GLsizei)s->mesh.index_count - s->ground_indices - s->object_indices;
+    void (*const extras[EXTRAS])(const ground *, mesh *) = {[BRIDGE] = objects_bridge_mesh, [BARN] = objects_barn_mesh};
+    for (int i = NO_EXTRA + 1; i < EXTRAS; i++) {
+        s->extra_first[i] = (GLsizei)s->mesh.index_count;
+        extras[i](&s->ground, &s->mesh);
+        s->extra_indices[i] = (GLsizei)s->mesh.index_count - s->extra_first[i];
+    }
     s->lit = malloc(s->mesh.vertex_count * sizeof *s->lit);
     if (!s->lit) {
         fprintf(stderr, "out of memory\n");
@@ -138,15 +142,21 @@ static mat4 shadow_matrix(const scene *s, vec3 sun)
     return multiply(box, view);
 }
 
+static void draw_from(GLsizei first, GLsizei count)
+{
+    glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, (const void *)((size_t)first * sizeof(uint32_t)));
+}
+
 static void draw(const scene *s, bool with_ground, bool objects)
 {
     if (s->empty)
         return;
-    GLsizei first = with_ground ? 0 : s->ground_indices;
-    GLsizei count = (with_ground ? s->ground_indices : 0);
-    if (objects)
-        count += s->object_indices + (s->with_bridge ? s->bridge_indices : 0);
-    glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, (const void *)((size_t)first * sizeof(uint32_t)));
+    if (with_ground)
+        draw_from(0, s->ground_indices);
+    if (objects) {
+        draw_from(s->ground_indices, s->object_indices);
+        draw_from(s->extra_first[s->extra], s->extra_indices[s->extra]);
+    }
 }
 
 static void draw_shadows(scene *s, const float to_shadow[16])
@@ -201,7 +211,7 @@ static void set_deck(const scene *s)
 {
     solid boxes[BRIDGE_BOXES];
     objects_bridge(&s->ground, boxes);
-    vec3 half = scale(boxes[0].size, s->with_bridge ? 0.5 : 0.0);
+    vec3 half = scale(boxes[0].size, s->extra == BRIDGE ? 0.5 : 0.0);
     set_vector(s->program, "deck_foot", transform_point(boxes[0].place, vec(0, 0, -0.5 * boxes[0].size.z)));
     set_vector(s->program, "deck_right", transform_direction(boxes[0].place, vec(1, 0, 0)));
     glUniform2f(glGetUniformLocation(s->program, "deck_half"), (float)half.x, (float)half.y);

@@ -12,11 +12,16 @@ typedef struct camera {
     double fov_y;  /* rad */
 } camera;
 
+/* What stands there in some pictures only. */
+typedef enum extra { NO_EXTRA, BRIDGE, BARN, EXTRAS } extra;
+
 typedef struct scene {
     ground ground;
     mesh mesh;
-    GLsizei ground_indices, object_indices, bridge_indices;
-    bool with_bridge, empty; /* empty: nothing is drawn, as from space */
+    GLsizei ground_indices, object_indices;
+    GLsizei extra_first[EXTRAS], extra_indices[EXTRAS];
+    extra extra;
+    bool empty; /* nothing is drawn, as from space */
     GLuint array, vertices, indices, sunlit;
     GLuint shadow_texture, shadow_frame;
     GLuint program, shadow_program;

@@ -332,15 +332,10 @@ static bool rainbow(demo *d)
            weather_check(wk_context_set_rain_areas(d->weather.context, &area, 1, sizeof area));
 }
 
-static bool under_the_bridge(demo *d)
+bool shelter(demo *d, const solid *boxes, int count)
 {
-    wk_weather w = weather_here(4000, 0.95);
-    wk_cloud_layer cloud = overcast(WK_CLOUD_NIMBOSTRATUS, 600);
-    fall(&w, WK_PRECIPITATION_RAIN, 20.0, 5.0, 85.0); /* from behind the camera */
-    solid boxes[BRIDGE_BOXES];
-    wk_shelter shelters[BRIDGE_BOXES];
-    objects_bridge(&d->scene.ground, boxes);
-    for (int i = 0; i < BRIDGE_BOXES; i++) {
+    wk_shelter shelters[MOST_SHELTERS];
+    for (int i = 0; i < count; i++) {
         const mat4 *place = &boxes[i].place;
         const double half[3] = {0.5 * boxes[i].size.x, 0.5 * boxes[i].size.y, 0.5 * boxes[i].size.z};
         shelters[i] = (wk_shelter)WK_SHELTER_INIT;
@@ -351,8 +346,17 @@ static bool under_the_bridge(demo *d)
                 shelters[i].axes[3 * axis + k] = place->m[4 * axis + k];
         }
     }
-    return sun_at(d, 200, 35) && set(d, &w, &cloud) &&
-           weather_check(wk_context_set_shelters(d->weather.context, shelters, BRIDGE_BOXES, sizeof shelters[0]));
+    return weather_check(wk_context_set_shelters(d->weather.context, shelters, (uint32_t)count, sizeof shelters[0]));
+}
+
+static bool under_the_bridge(demo *d)
+{
+    wk_weather w = weather_here(4000, 0.95);
+    wk_cloud_layer cloud = overcast(WK_CLOUD_NIMBOSTRATUS, 600);
+    fall(&w, WK_PRECIPITATION_RAIN, 20.0, 5.0, 85.0); /* from behind the camera */
+    solid boxes[BRIDGE_BOXES];
+    objects_bridge(&d->scene.ground, boxes);
+    return sun_at(d, 200, 35) && set(d, &w, &cloud) && shelter(d, boxes, BRIDGE_BOXES);
 }
 
 /* Two lamps on a roof behind the camera, one for each side of the work. */
@@ -419,6 +423,8 @@ static bool with_wipers(demo *d, double time_s)
 #define ROADSIDE(elevation) 12.0, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 3.0, elevation, 50.0
 /* Beside the excavator's way to its pad. */
 #define YARD 20.0, -50.0, 5.0, SITE_VIEW_AZIMUTH_DEG + 48.0, -8.0, 50.0
+/* In the lee of the barn. */
+#define LEE 42.0, -8.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 78.0, -3.0, 50.0
 #define SKYWARD(elevation, fov_y) 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, elevation, fov_y
 #define HIGH(up, azimuth, elevation, fov_y) 0.0, -4.8, up, azimuth, elevation, fov_y
 
@@ -455,7 +461,9 @@ const shot SHOTS[] = {
     {"after_a_night", "After six hours of snow in wind", YARD, after_a_night, WORLD, NULL, false},
     {"thaw", "Five warm hours later", YARD, thaw, WORLD, NULL, false},
     {"blowing_snow", "Blowing snow, wind 14 m/s", ROADSIDE(-1.0), blowing_snow, WORLD, NULL, false},
-    {"snowstorm", "Snowstorm, 4 mm/h, wind 16 m/s", ROADSIDE(-2.0), snowstorm, WORLD, NULL, false},
+    {"snowstorm", "Snowstorm, 4 mm/h, wind 16 m/s", ROADSIDE(-2.0), snowstorm, WORLD, NULL, true},
+    {"lee_of_a_barn", "Snowstorm in the lee of a barn, 3 mm/h, wind 13 m/s, after three hours of it", LEE, lee_of_a_barn, WITH_BARN, NULL, true},
+    {"wind", "The wind of that storm 2 m over the ground: blue 4 m/s, green 8, yellow 12, red 16", LEE, wind_in_numbers, WITH_BARN, NULL, true},
     {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL, false},
     {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL, false},
     {"twelve_km", "12 km up", HIGH(12e3, 8.0, -2.0, 50.0), twelve_km, NO_WORLD, NULL, false},

@@ -3,8 +3,9 @@
 #define SHOTS_H
 
 #include "demo.h"
+#include "objects.h"
 
-enum world { WORLD, WITH_BRIDGE, NO_WORLD /* from so high that the host's land would end in the picture */ };
+enum world { WORLD, WITH_BRIDGE, WITH_BARN, NO_WORLD /* from so high that the host's land would end in the picture */ };
 
 typedef struct shot {
     const char *name, *caption;
@@ -25,6 +26,10 @@ extern const int SHOT_COUNT;
 
 /* Puts the sun there from now on. */
 bool sun_at(demo *d, double azimuth_deg, double elevation_deg);
+
+/* Tells Welkin of boxes that keep weather off. */
+#define MOST_SHELTERS BRIDGE_BOXES
+bool shelter(demo *d, const solid *boxes, int count);
 
 camera shot_camera(const shot *s, const ground *g);
 

@@ -53,7 +53,7 @@ static bool tell_ground(demo *d)
 }
 
 /* From now on. */
-static bool weather(demo *d, double temperature_c, double snow_mm_h, double wind_m_s, double cover)
+static bool weather_from(demo *d, double from_deg, double temperature_c, double snow_mm_h, double wind_m_s, double cover)
 {
     wk_weather w = WK_WEATHER_INIT;
     wk_cloud_layer cloud = WK_CLOUD_LAYER_INIT;
@@ -62,7 +62,7 @@ static bool weather(demo *d, double temperature_c, double snow_mm_h, double wind
     w.relative_humidity = 0.8;
     w.temperature_c = temperature_c;
     w.wind_speed_m_s = wind_m_s;
-    w.wind_from_deg = SITE_VIEW_AZIMUTH_DEG + 80.0;
+    w.wind_from_deg = from_deg;
     w.precipitation_kind = snow_mm_h > 0.0 ? WK_PRECIPITATION_SNOW : WK_PRECIPITATION_NONE;
     w.precipitation_rate_mm_h = snow_mm_h;
     cloud.kind = snow_mm_h > 0.0 ? WK_CLOUD_NIMBOSTRATUS : WK_CLOUD_CIRRUS;
@@ -71,6 +71,12 @@ static bool weather(demo *d, double temperature_c, double snow_mm_h, double wind
     w.clouds = &cloud;
     w.cloud_count = cover > 0.0 ? 1 : 0;
     return weather_check(wk_context_set_weather(d->weather.context, &w, d->time_s, 0.0));
+}
+
+/* The same with wind from the right of the hillside's view. */
+static bool weather(demo *d, double temperature_c, double snow_mm_h, double wind_m_s, double cover)
+{
+    return weather_from(d, SITE_VIEW_AZIMUTH_DEG + 80.0, temperature_c, snow_mm_h, wind_m_s, cover);
 }
 
 static bool hours(demo *d, double count)
@@ -116,6 +122,30 @@ bool thaw(demo *d)
 {
     return night(d) && weather(d, 7.0, 0.0, 3.0, 0.0) && sun_at(d, 170, 30) && hours(d, 5.0) &&
            weather(d, 7.0, 0.0, 3.0, 0.3);
+}
+
+/* The barn in a wind that goes round it. */
+static bool storm_at_the_barn(demo *d)
+{
+    solid boxes[BARN_BOXES];
+    wk_wind_field field = WK_WIND_FIELD_INIT;
+    objects_barn(&d->scene.ground, boxes);
+    for (int axis = 0; axis < 3; axis++)
+        field.floor_center_m[axis] = boxes[0].place.m[12 + axis];
+    field.floor_center_m[2] -= 6.0; /* the lowest ground about it */
+    for (int axis = 0; axis < 3; axis++)
+        field.cell_m[axis] = 1.0, field.cells[axis] = axis < 2 ? 96 : 32;
+    return begin(d) && tell_ground(d) && shelter(d, boxes, BARN_BOXES) && sun_at(d, 200, 20) &&
+           weather_from(d, BARN_AZIMUTH_DEG, -6.0, 3.0, 13.0, 1.0) &&
+           weather_check(wk_context_set_wind_field(d->weather.context, &field, d->time_s));
+}
+
+bool lee_of_a_barn(demo *d) { return storm_at_the_barn(d) && hours(d, 3.0); }
+
+bool wind_in_numbers(demo *d)
+{
+    d->weather.diagnostic = WK_DIAGNOSTIC_WIND;
+    return storm_at_the_barn(d) && hours(d, 0.02);
 }
 
 bool blowing_snow(demo *d) { return night(d) && sun_at(d, 160, 16) && weather(d, -8.0, 0.0, 14.0, 0.3); }

@@ -10,5 +10,8 @@ bool after_a_night(demo *d);
 bool thaw(demo *d);
 /* The same in a gale. */
 bool blowing_snow(demo *d);
+/* A barn after three hours of a snowstorm that goes round it, and the wind of that storm in false colours. */
+bool lee_of_a_barn(demo *d);
+bool wind_in_numbers(demo *d);
 
 #endif
