@@ -5805,7 +5805,7 @@ wk_status wk_flash_light_init(wk_flash_light *out,
  *
  * A view may look through a window. Rain lands on it at the rate and speed at which the window meets it. Beads merge,
  * run down by gravity or up by the air, are wiped, and bend the picture behind them. Mist on the inside blurs the
- * picture. The stage LENS draws this over everything drawn so far, inside the window only; pixels of the mask stay. In
+ * picture. Snow lies on it until wipers take it or heat melts it. The stage LENS draws this over everything drawn so far, inside the window only; pixels of the mask stay. In
  * a call with TONE the glass lies before the tone curve if the target is a float one, else after it.
  *
  * The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
@@ -5918,6 +5918,11 @@ typedef struct wk_windscreen {
     uint32_t arm_stride;
     /** Must be 0. */
     uint32_t reserved0;
+    /**
+     * Heat that the glass gets from wires in it or from a blower, W/m^2: melts snow, once it outweighs what cold air takes. A heated
+     * windscreen has some 600. Range [0, 3000], default 0.
+     */
+    double heat_w_m2;
 } wk_windscreen;
 
 /** Every field of `wk_windscreen` at its default. */
@@ -5936,7 +5941,8 @@ typedef struct wk_windscreen {
     /* demist */ 0.0, \
     /* arms */ NULL, \
     /* arm_stride */ (uint32_t)sizeof(wk_wiper_arm), \
-    /* reserved0 */ 0 \
+    /* reserved0 */ 0, \
+    /* heat_w_m2 */ 0.0 \
 }
 
 /** Water on a windscreen. */
@@ -5957,6 +5963,8 @@ typedef struct wk_windscreen_report {
     double water_kg;
     /** Simulation time of the state, s. */
     double state_time_s;
+    /** Water in the snow on it, kg. */
+    double snow_kg;
 } wk_windscreen_report;
 
 /** Every field of `wk_windscreen_report` at its default. */
@@ -5968,7 +5976,8 @@ typedef struct wk_windscreen_report {
     /* water_mm_h */ 0.0, \
     /* covered */ 0.0, \
     /* water_kg */ 0.0, \
-    /* state_time_s */ 0.0 \
+    /* state_time_s */ 0.0, \
+    /* snow_kg */ 0.0 \
 }
 
 /**

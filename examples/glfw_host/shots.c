@@ -253,6 +253,8 @@ static bool quiet_snow(demo *d) { return sun_at(d, 300, -1) && snow(d, 1.5, 0.3,
 
 static bool snowstorm(demo *d) { return sun_at(d, 200, 20) && snow(d, 4.0, -6.0, 250, 16.0); }
 
+static bool heavy_snow(demo *d) { return sun_at(d, 200, 20) && snow(d, 12.0, -3.0, 250, 2.0); }
+
 static bool wet_road(demo *d)
 {
     wk_weather w = weather_here(40e3, 0.6);
@@ -462,6 +464,7 @@ const shot SHOTS[] = {
     {"thaw", "Five warm hours later", YARD, thaw, WORLD, NULL, false},
     {"blowing_snow", "Blowing snow, wind 14 m/s", ROADSIDE(-1.0), blowing_snow, WORLD, NULL, false},
     {"snowstorm", "Snowstorm, 4 mm/h, wind 16 m/s", ROADSIDE(-2.0), snowstorm, WORLD, NULL, true},
+    {"snowy_windscreen", "Heavy snow on the windscreen, wipers going", ROADSIDE(1.0), heavy_snow, WORLD, with_wipers, true},
     {"lee_of_a_barn", "Snowstorm in the lee of a barn, 3 mm/h, wind 13 m/s, after three hours of it", LEE, lee_of_a_barn, WITH_BARN, NULL, true},
     {"wind", "The wind of that storm 2 m over the ground: blue 4 m/s, green 8, yellow 12, red 16", LEE, wind_in_numbers, WITH_BARN, NULL, true},
     {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL, false},

@@ -17,6 +17,8 @@ struct Step {
     drops: array<vec4u, 64>,
     // Beads by volume: (radius + 1024 x loss to the air, motion x, y, 256 x drive over retention).
     beads: array<vec4i, 96>,
+    // Snow: a flake lands on a cell whose 32 random bits are below the first; water of a flake; what melts, in 1/4096 unit; most of a cell.
+    snow: vec4u,
     // Shares of the rain that get to the nodes of a net over the pane, in 1/128, four a word, rows from the lower edge up.
     reach: array<vec4u, 8>,
 }
@@ -31,6 +33,9 @@ override MAPPED: bool = false;
 @group(0) @binding(2) var moves: texture_2d<u32>;
 // Of each node the share that maps let through, as `reach`.
 @group(0) @binding(3) var mapped: texture_2d<u32>;
+
+// Snow on the cells, units of water.
+@group(0) @binding(4) var snow: texture_2d<u32>;
 
 const MOST_HITS: u32 = 4095u;
 const FULL_FILM: u32 = 65535u;
@@ -145,4 +150,10 @@ fn reached(cell: vec2i) -> u32 {
 // A share of a number, of 65536.
 fn part_of(number: u32, share: u32) -> u32 {
     return select((number >> 16u) * share + (((number & 0xffffu) * share) >> 16u), number, share > 65535u);
+}
+
+// What melts in a step of so much snow, chance deciding on the fraction of a unit.
+fn melted(cell: vec2i, there: u32) -> u32 {
+    let random = cell_hash(cell, step.key.x + 4u) & 4095u;
+    return min(there, (step.snow.z >> 12u) + select(0u, 1u, random < (step.snow.z & 4095u)));
 }

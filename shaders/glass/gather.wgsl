@@ -44,7 +44,16 @@ fn gather(in: FullscreenVarying) -> @location(0) vec4u {
         }
     }
     let wiped = (own.w & WIPED) != 0u;
-    return landed(cell, dried(cell, c), cleared(cell, before.w, ran, wiped));
+    c = dried(cell, c);
+    // What melts is a bead, or a bead's; a blade takes snow before it melts.
+    if step.snow.z > 0u && !wiped {
+        let melt = melted(cell, textureLoad(snow, cell, 0).x);
+        if melt > 0u {
+            let at = cell_hash(cell, step.key.y + 13u);
+            c = join(c, melt, at, at << 16u);
+        }
+    }
+    return landed(cell, c, cleared(cell, before.w, ran, wiped));
 }
 
 // What the air takes of a bead, chance deciding on the fraction of a unit.

@@ -1,5 +1,5 @@
 // What the glass does to the finished picture: each bead is a lens that shows the scene behind it upside down and small,
-// with a dark rim where light is thrown back; a film of water shakes the picture, mist on the inside blurs and whitens it.
+// with a dark rim where light is thrown back; snow lets light through and nothing to be seen; a film of water shakes the picture, mist on the inside blurs and whitens it.
 // Axes: right and up along the glass, outwards from it; metres, the eye behind the glass.
 //!include "common/fullscreen.wgsl"
 //!include "common/tone.wgsl"
@@ -38,6 +38,8 @@ struct Lens {
     key: u32,
     // 1 where there is water.
     wet: u32,
+    // Optical depth of snow a unit of its water on a cell; 0 where there is none.
+    snow_depth: f32,
 }
 
 @group(0) @binding(0) var<uniform> lens: Lens;
@@ -48,6 +50,7 @@ struct Lens {
 @group(0) @binding(4) var smallest: texture_2d<f32>;
 @group(0) @binding(5) var linear_sampler: sampler;
 @group(0) @binding(6) var host_mask: texture_2d<f32>;
+@group(0) @binding(7) var snow: texture_2d<u32>;
 
 override ENCODED: bool = false;
 override HAS_MASK: bool = false;
@@ -283,6 +286,36 @@ fn mist_at(v: f32) -> f32 {
     return lens.fogging * smoothstep(cleared - 0.3, cleared, height);
 }
 
+// Optical depth of the snow over a point of the glass: flakes are some cells wide, with ragged edges.
+fn snow_over(c: vec2f) -> f32 {
+    if lens.snow_depth <= 0.0 {
+        return 0.0;
+    }
+    var sum = 0.0;
+    var weights = 0.0;
+    let base = vec2i(floor(c));
+    for (var y = -1; y <= 1; y++) {
+        for (var x = -1; x <= 1; x++) {
+            let at = clamp(base + vec2i(x, y), vec2i(0), lens.size - 1);
+            let h = hash(at, lens.key + 21u);
+            // No flake lies in the middle of its cell.
+            let middle = vec2f(at) + vec2f(f32(h & 255u), f32((h >> 8u) & 255u)) / 255.0;
+            let off = c - middle;
+            let weight = exp2(-2.5 * dot(off, off));
+            sum += weight * f32(textureLoad(snow, at, 0).x);
+            weights += weight;
+        }
+    }
+    let grain = f32(hash(vec2i(floor(c * 6.0)), lens.key + 22u) & 255u) / 255.0;
+    return lens.snow_depth * sum / max(weights, 1e-3) * (0.5 + grain);
+}
+
+// Light through snow: what comes from all over the picture, less what goes back (two streams, asymmetry 0.89 as of ice spheres).
+fn through_snow(depth: f32) -> vec3f {
+    let around = 0.25 * (scene(vec2f(0.25, 0.3), 5.0) + scene(vec2f(0.75, 0.3), 5.0) + 2.0 * scene(vec2f(0.5, 0.5), 5.0));
+    return around / (1.0 + 0.75 * 0.11 * depth);
+}
+
 @fragment
 fn look_through(in: FullscreenVarying) -> @location(0) vec4f {
     let pixel = vec2i(in.position.xy);
@@ -309,7 +342,8 @@ fn look_through(in: FullscreenVarying) -> @location(0) vec4f {
         film = state.x * state.x;
         water = water_over(c, state.y);
     }
-    if keep >= 1.0 || (mist <= 0.0 && film < 1e-3 && water.cover <= 0.0) {
+    let snow_depth = snow_over(c);
+    if keep >= 1.0 || (mist <= 0.0 && film < 1e-3 && water.cover <= 0.0 && snow_depth <= 0.0) {
         discard;
     }
     let host = textureLoad(picture, pixel, 0);
@@ -325,6 +359,9 @@ fn look_through(in: FullscreenVarying) -> @location(0) vec4f {
     }
     if water.cover > 0.0 {
         seen = mix(seen, through(d, water, uv), water.cover);
+    }
+    if snow_depth > 0.0 {
+        seen = mix(through_snow(snow_depth), seen, exp(-snow_depth));
     }
     if mist > 0.0 {
         seen = mix(seen, scene(uv, 3.0 + 2.0 * mist), mist);

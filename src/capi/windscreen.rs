@@ -2,7 +2,7 @@
 //!
 //! A view may look through a window. Rain lands on it at the rate and speed at which the window meets it. Beads merge,
 //! run down by gravity or up by the air, are wiped, and bend the picture behind them. Mist on the inside blurs the
-//! picture. The stage LENS draws this over everything drawn so far, inside the window only; pixels of the mask stay. In
+//! picture. Snow lies on it until wipers take it or heat melts it. The stage LENS draws this over everything drawn so far, inside the window only; pixels of the mask stay. In
 //! a call with TONE the glass lies before the tone curve if the target is a float one, else after it.
 //!
 //! The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
@@ -121,6 +121,9 @@ pub struct wk_windscreen {
     pub arm_stride: u32,
     /// Must be 0.
     pub reserved0: u32,
+    /// Heat that the glass gets from wires in it or from a blower, W/m^2: melts snow, once it outweighs what cold air takes. A heated
+    /// windscreen has some 600. Range [0, 3000], default 0.
+    pub heat_w_m2: f64,
 }
 
 impl wk_windscreen {
@@ -140,6 +143,7 @@ impl wk_windscreen {
         arms: null(),
         arm_stride: struct_size::<wk_wiper_arm>(),
         reserved0: 0,
+        heat_w_m2: 0.0,
     };
 }
 
@@ -163,6 +167,8 @@ pub struct wk_windscreen_report {
     pub water_kg: f64,
     /// Simulation time of the state, s.
     pub state_time_s: f64,
+    /// Water in the snow on it, kg.
+    pub snow_kg: f64,
 }
 
 impl wk_windscreen_report {
@@ -175,6 +181,7 @@ impl wk_windscreen_report {
         covered: 0.0,
         water_kg: 0.0,
         state_time_s: 0.0,
+        snow_kg: 0.0,
     };
 }
 
@@ -219,6 +226,7 @@ unsafe fn windscreen(p: *const wk_windscreen) -> Result<Windscreen> {
         fogging: c.fogging,
         demist: c.demist,
         arms,
+        heat_w_m2: c.heat_w_m2,
     };
     screen.validate()?;
     Ok(screen)
@@ -263,6 +271,7 @@ pub unsafe extern "C" fn wk_view_get_windscreen_report(
             covered: report.covered,
             water_kg: report.water_m3 * crate::glass::laws::WATER,
             state_time_s: report.state_time_s,
+            snow_kg: report.snow_m3 * crate::glass::laws::WATER,
             ..wk_windscreen_report::INIT
         });
         Ok(Status::Ok)

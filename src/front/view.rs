@@ -4,7 +4,10 @@ use crate::{
     clouds::{CloudSettings, CloudShadows},
     error::Result,
     frame::View,
-    glass::{GlassReport, Windscreen, reference::Cells},
+    glass::{
+        GlassReport, Windscreen,
+        reference::{Cells, Snow},
+    },
     rain::RainSettings,
     snow::SnowSettings,
 };
@@ -74,6 +77,15 @@ impl View {
     pub fn windscreen_report(&self) -> Result<Option<GlassReport>> {
         let _entered = self.device.enter()?;
         self.effects.glass.water(&self.device)
+    }
+
+    /// The snow on the windscreen, or `None` where there is none; for tests and tools. Waits for the GPU.
+    ///
+    /// # Errors
+    /// As [`View::windscreen_report`].
+    pub fn windscreen_snow(&self) -> Result<Option<Snow>> {
+        let _entered = self.device.enter()?;
+        self.effects.glass.snow(&self.device)
     }
 
     /// The cells of the windscreen's water, or `None` where it is dry; for tests and tools. Waits for the GPU.

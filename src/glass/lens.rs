@@ -6,6 +6,10 @@ use glam::{DMat3, DVec2, DVec3};
 use super::{MAX_ARMS, Plane, Windscreen, geometry::Rays, laws, step::VOLUME_UNIT_M3};
 use crate::{error::Result, gpu::Layer, scene::Camera};
 
+/// Optical depth of snow over its water, 1/m: 3 / (2 r) over the density of ice, for grains of r = 0.1 mm (Wiscombe & Warren 1980, new
+/// snow).
+const SNOW_DEPTH_PER_M: f64 = 1.5 / (1e-4 * 0.917);
+
 /// What the frame knows of its target.
 #[derive(Clone, Copy)]
 pub(crate) struct LensFrame<'a> {
@@ -43,7 +47,8 @@ pub(super) struct LensUniform {
     pub size: [i32; 2],
     pub key: u32,
     pub wet: u32,
-    pub pad: [u32; 2],
+    pub snow_depth: f32,
+    pub pad: u32,
 }
 
 /// The lattice that the lens shows.
@@ -53,6 +58,8 @@ pub(super) struct LensLattice {
     pub size: [u32; 2],
     /// Whether there is water on it.
     pub wet: bool,
+    /// Whether snow may lie on it.
+    pub snowy: bool,
     /// Where large beads run to, (u, v); any length.
     pub flow: DVec2,
     pub key: u32,
@@ -99,7 +106,12 @@ impl LensUniform {
             size: shown.size.map(|n| n as i32),
             key: shown.key,
             wet: u32::from(shown.wet),
-            pad: [0; 2],
+            snow_depth: if shown.snowy {
+                (VOLUME_UNIT_M3 / (shown.cell_m * shown.cell_m) * SNOW_DEPTH_PER_M) as f32
+            } else {
+                0.0
+            },
+            pad: 0,
         })
     }
 }
@@ -117,7 +129,7 @@ mod tests {
             LensUniform,
             [
                 ray, per_m, ray_dx, y_sign, ray_dy, radius, eye, pixel, clip_x, fogging, clip_y, demist, clip_z,
-                height, edges, arms, flow, size, key, wet
+                height, edges, arms, flow, size, key, wet, snow_depth
             ]
         );
     }

@@ -8,17 +8,21 @@
 //! What needs physics in floating point, speeds, rates, retention, becomes tables of integers on the CPU once a step
 //! ([`step`], from the laws in [`laws`]).
 //!
+//! **Snow** lies on the cells as whole units of its water: flakes land, blades take them away, heat melts them, and the melt
+//! water is beads ([`frost`], `shaders/glass/settle.wgsl`).
+//!
 //! **Time.** Steps lie on a grid of 60 Hz anchored at simulation time 0, so the frame rate does not matter. After a cut,
 //! at the first frame, and where more than [`MAX_STEPS`] would be due, the glass takes the declared state of that moment,
 //! a pure function of (seed, time, rain): beads below the size at which they run. `NO_HISTORY` shows that state always.
 //!
-//! **Cost.** Two passes over the lattice a step, two small copies of the picture and one pass over it a frame; nothing
+//! **Cost.** Two passes over the lattice a step, a third where snow is or falls, two small copies of the picture and one pass over it a frame; nothing
 //! without a windscreen or on dry glass. **Left out**: the splash of an impact, water pushed ahead of a blade, drops
 //! farther apart than a cell seeing each other.
 //!
 //! No `held.rs`: the water belongs to a view's own window (`state.rs`). No `candidates.rs`: it is drawn in one way, and no plan leaves it
 //! out.
 
+pub mod frost;
 mod geometry;
 pub mod laws;
 mod lens;
@@ -120,6 +124,8 @@ pub struct Windscreen {
     pub demist: f64,
     /// The wipers; 0 to 2.
     pub arms: [Option<WiperArm>; MAX_ARMS],
+    /// Heat that the glass gets from wires in it or from a blower, W/m^2, [0, 3000]: melts snow.
+    pub heat_w_m2: f64,
 }
 
 impl Default for Windscreen {
@@ -132,6 +138,7 @@ impl Default for Windscreen {
             fogging: 0.0,
             demist: 0.0,
             arms: [None; MAX_ARMS],
+            heat_w_m2: 0.0,
         }
     }
 }
@@ -178,6 +185,7 @@ impl Windscreen {
         check_range("windscreen.exposed", self.exposed, 0.0, 1.0, "")?;
         check_range("windscreen.fogging", self.fogging, 0.0, 1.0, "")?;
         check_range("windscreen.demist", self.demist, 0.0, 1.0, "")?;
+        check_range("windscreen.heat_w_m2", self.heat_w_m2, 0.0, 3000.0, "W/m^2")?;
         // Names are put together for an error only: a host that drives sets its windscreen before every frame.
         let named = |i: usize| move |e: Error| e.within(&format!("windscreen.arms[{i}]"));
         self.arms.iter().flatten().enumerate().try_for_each(|(i, a)| a.validate().map_err(named(i)))

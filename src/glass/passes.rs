@@ -20,8 +20,8 @@ use crate::{
 };
 
 const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// Shares of the rain that maps let through.
-pub(super) const REACH: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// Shares of the rain that maps let through, and snow.
+pub(super) const WORD: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 const SMALL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Texels of the picture in one of its smaller copies, along an edge.
 const SMALLER: u32 = 8;
@@ -44,6 +44,7 @@ pub(crate) struct GlassKit {
     decide: wgpu::RenderPipeline,
     gather: wgpu::RenderPipeline,
     declare: wgpu::RenderPipeline,
+    settle: [wgpu::RenderPipeline; 2],
     /// Once a view has looked through glass below maps.
     mapped: Option<MappedKit>,
     shrink_layout: wgpu::BindGroupLayout,
@@ -53,6 +54,7 @@ pub(crate) struct GlassKit {
     sampler: wgpu::Sampler,
     no_mask: wgpu::TextureView,
     no_cells: wgpu::TextureView,
+    no_snow: wgpu::TextureView,
 }
 
 fn texture(device: &Device, label: &str, format: wgpu::TextureFormat, [width, height]: [u32; 2]) -> wgpu::Texture {
@@ -89,6 +91,19 @@ fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(view)
 }
 
+/// What lands, melts and is wiped away of snow, and its declared state.
+const SETTLE: &str = "glass/settle.wgsl";
+
+/// The two pipelines of snow.
+pub(super) fn settle_pipelines(
+    device: &Device,
+    layout: &wgpu::BindGroupLayout,
+    constants: &[(&str, f64)],
+) -> Result<[wgpu::RenderPipeline; 2]> {
+    let one = |entry| cells_pipeline(device, (SETTLE, entry), layout, constants);
+    Ok([one("settle")?, one("declare_snow")?])
+}
+
 /// A pipeline over the cells.
 pub(super) fn cells_pipeline(
     device: &Device,
@@ -96,7 +111,8 @@ pub(super) fn cells_pipeline(
     layout: &wgpu::BindGroupLayout,
     constants: &[(&str, f64)],
 ) -> Result<wgpu::RenderPipeline> {
-    let targets = &[CELLS.into()];
+    let format = if shader == SETTLE { WORD } else { CELLS };
+    let targets = &[format.into()];
     pass::fullscreen(device, &FullscreenDesc { shader, entry, layouts: &[layout], targets, constants, samples: 1 })
 }
 
@@ -114,6 +130,7 @@ impl GlassKit {
             (1, Slot::Words),
             (2, Slot::Words),
             (3, Slot::Words),
+            (4, Slot::Words),
         ]);
         let shrink_layout = layout(&[(0, Slot::Texels)]);
         let lens_layout = layout(&[
@@ -124,6 +141,7 @@ impl GlassKit {
             (4, Slot::Filtered),
             (5, Slot::Sampler),
             (6, Slot::Texels),
+            (7, Slot::Words),
         ]);
         let cells = |shader, entry| cells_pipeline(device, (shader, entry), &step_layout, &[]);
         let shrink = |factor: u32, encoded: f64| {
@@ -141,6 +159,7 @@ impl GlassKit {
             decide: cells("glass/decide.wgsl", "decide")?,
             gather: cells("glass/gather.wgsl", "gather")?,
             declare: cells("glass/declare.wgsl", "declare")?,
+            settle: settle_pipelines(device, &step_layout, &[])?,
             mapped: None,
             shrink: [shrink(SMALLER, 0.0)?, shrink(SMALLER, 1.0)?, shrink(SMALLEST, 0.0)?],
             lenses: Recent::new(),
@@ -152,6 +171,7 @@ impl GlassKit {
             }),
             no_mask: view(&texture(device, "no mask", wgpu::TextureFormat::Rgba8Unorm, [1, 1])),
             no_cells: view(&texture(device, "no cells", CELLS, [1, 1])),
+            no_snow: view(&texture(device, "no snow", WORD, [1, 1])),
             step_layout,
             shrink_layout,
             lens_layout,
@@ -193,16 +213,21 @@ pub(super) struct Lattice {
     cells: [wgpu::Texture; 2],
     views: [wgpu::TextureView; 2],
     moves: wgpu::TextureView,
+    /// Snow on the cells, likewise.
+    snow: [wgpu::Texture; 2],
+    snow_views: [wgpu::TextureView; 2],
     /// Share of the rain that maps let through to the net over the pane.
     mapped: (wgpu::Texture, wgpu::TextureView),
-    /// Which of the two is the present state.
+    /// Which of the two is the present state, of the cells and of the snow.
     now: usize,
-    /// Reading state i and, in place of the moves, the other state; reading state i and the moves.
-    groups: [[wgpu::BindGroup; 2]; 2],
+    snow_now: usize,
+    /// By the state of the snow: reading state i and, in place of the moves, the other state; reading state i and the moves.
+    groups: [[[wgpu::BindGroup; 2]; 2]; 2],
     steps: wgpu::Buffer,
     stride: usize,
     slots: Vec<u8>,
-    due: Vec<Work>,
+    /// What to do, and whether snow takes part in it.
+    due: Vec<(Work, bool)>,
 }
 
 impl Lattice {
@@ -210,23 +235,41 @@ impl Lattice {
         let cells = ["glass 0", "glass 1"].map(|label| texture(device, label, CELLS, size));
         let views = [view(&cells[0]), view(&cells[1])];
         let moves = view(&texture(device, "glass moves", CELLS, size));
-        let mapped = texture(device, "glass below maps", REACH, reach_pass::SIZE);
+        let snow = ["snow on glass 0", "snow on glass 1"].map(|label| texture(device, label, WORD, size));
+        let snow_views = [view(&snow[0]), view(&snow[1])];
+        let mapped = texture(device, "glass below maps", WORD, reach_pass::SIZE);
         let mapped = (mapped.clone(), view(&mapped));
         let alignment = device.device.limits().min_uniform_buffer_offset_alignment as usize;
         let stride = size_of::<StepUniform>().next_multiple_of(alignment.max(16));
         let steps = buffer(device, "glass steps", (stride * most_steps) as u64);
-        let group = |state: usize, moves: &wgpu::TextureView| {
+        let group = |state: usize, moves: &wgpu::TextureView, snow: usize| {
             let numbers = wgpu::BufferBinding {
                 buffer: &steps,
                 offset: 0,
                 size: wgpu::BufferSize::new(size_of::<StepUniform>() as u64),
             };
-            let resources = [wgpu::BindingResource::Buffer(numbers), tex(&views[state]), tex(moves), tex(&mapped.1)];
+            let numbers = wgpu::BindingResource::Buffer(numbers);
+            let resources = [numbers, tex(&views[state]), tex(moves), tex(&mapped.1), tex(&snow_views[snow])];
             bind(device, &kit.step_layout, &resources)
         };
-        let groups = [0, 1].map(|i| [group(i, &views[1 - i]), group(i, &moves)]);
+        let groups = [0, 1].map(|s| [0, 1].map(|i| [group(i, &views[1 - i], s), group(i, &moves, s)]));
         let (slots, due) = (Vec::with_capacity(stride * most_steps), Vec::with_capacity(most_steps));
-        Self { size, cells, views, moves, mapped, now: 0, groups, steps, stride, slots, due }
+        Self {
+            size,
+            cells,
+            views,
+            moves,
+            snow,
+            snow_views,
+            mapped,
+            now: 0,
+            snow_now: 0,
+            groups,
+            steps,
+            stride,
+            slots,
+            due,
+        }
     }
 
     /// The present state.
@@ -234,20 +277,25 @@ impl Lattice {
         &self.cells[self.now]
     }
 
+    /// The present snow.
+    pub fn snow(&self) -> &wgpu::Texture {
+        &self.snow[self.snow_now]
+    }
+
     /// Bytes on the GPU.
     pub fn bytes(&self) -> u64 {
-        3 * 16 * u64::from(self.size[0]) * u64::from(self.size[1]) + self.steps.size()
+        (3 * 16 + 2 * 4) * u64::from(self.size[0]) * u64::from(self.size[1]) + self.steps.size()
     }
 
     /// Adds work to what [`Lattice::record`] will do; a declared state makes what was due before it needless.
-    pub fn add(&mut self, numbers: &StepUniform, work: Work) {
+    pub fn add(&mut self, numbers: &StepUniform, (work, has_snow): (Work, bool)) {
         if work == Work::Declare {
             self.slots.clear();
             self.due.clear();
         }
         self.slots.extend_from_slice(bytemuck::bytes_of(numbers));
         self.slots.resize(self.stride * (self.due.len() + 1), 0);
-        self.due.push(work);
+        self.due.push((work, has_snow));
     }
 
     /// The shares of the rain that maps let through, as of the last frame that had any.
@@ -271,7 +319,7 @@ impl Lattice {
         }
         device.queue.write_buffer(&self.steps, 0, &self.slots);
         let mut passes = 0;
-        let (mut gather, mut declare) = (&kit.gather, &kit.declare);
+        let (mut gather, mut declare, mut settle) = (&kit.gather, &kit.declare, &kit.settle);
         if let Some((reach, mapped)) = below {
             let more = match &mut kit.mapped {
                 Some(more) => more,
@@ -279,17 +327,23 @@ impl Lattice {
             };
             let reach = reach.get_or_insert_with(|| Box::new(MapReach::new(device, more)));
             reach.draw(device, more, encoder, mapped, &self.mapped.1);
-            (gather, declare, passes) = (&more.gather, &more.declare, 1);
+            (gather, declare, settle, passes) = (&more.gather, &more.declare, &more.settle, 1);
         }
-        for (i, work) in self.due.iter().enumerate() {
+        for (i, (work, has_snow)) in self.due.iter().enumerate() {
             let offset = (i * self.stride) as u32;
             let (now, next) = (self.now, 1 - self.now);
-            if *work == Work::Move {
-                draw(encoder, &kit.decide, (&self.groups[now][0], offset), &self.moves);
-                draw(encoder, gather, (&self.groups[now][1], offset), &self.views[next]);
-                passes += 2;
-            } else {
-                draw(encoder, declare, (&self.groups[now][1], offset), &self.views[next]);
+            let groups = &self.groups[self.snow_now][now];
+            let moves = *work == Work::Move;
+            if moves {
+                draw(encoder, &kit.decide, (&groups[0], offset), &self.moves);
+                passes += 1;
+            }
+            draw(encoder, if moves { gather } else { declare }, (&groups[1], offset), &self.views[next]);
+            passes += 1;
+            if *has_snow {
+                let target = &self.snow_views[1 - self.snow_now];
+                draw(encoder, &settle[usize::from(!moves)], (&groups[1], offset), target);
+                self.snow_now = 1 - self.snow_now;
                 passes += 1;
             }
             self.now = next;
@@ -330,8 +384,8 @@ pub(super) struct LensPass {
     smaller: [wgpu::TextureView; 2],
     shrinks: [wgpu::BindGroup; 2],
     uniform: wgpu::Buffer,
-    /// Over either state of the lattice, or none.
-    groups: [wgpu::BindGroup; 2],
+    /// Over either state of the lattice's snow and cells, or none.
+    groups: [[wgpu::BindGroup; 2]; 2],
     lattice: Option<[u32; 2]>,
     bytes: u64,
 }
@@ -348,7 +402,7 @@ impl LensPass {
         let shrinks = [&source, &smaller[0]].map(|v| bind(device, &kit.shrink_layout, &[tex(v)]));
         let uniform = buffer(device, "lens", size_of::<LensUniform>() as u64);
         let mask_view = mask.map_or_else(|| kit.no_mask.clone(), Layer::view);
-        let groups = [0, 1].map(|i| {
+        let group = |snow: usize, i: usize| {
             let resources = [
                 uniform.as_entire_binding(),
                 tex(lattice.map_or(&kit.no_cells, |l| &l.views[i])),
@@ -357,9 +411,11 @@ impl LensPass {
                 tex(&smaller[1]),
                 wgpu::BindingResource::Sampler(&kit.sampler),
                 tex(&mask_view),
+                tex(lattice.map_or(&kit.no_snow, |l| &l.snow_views[snow])),
             ];
             bind(device, &kit.lens_layout, &resources)
-        });
+        };
+        let groups = [0, 1].map(|snow| [0, 1].map(|i| group(snow, i)));
         let bytes = 8 * u64::from(size[0] * size[1] + smallest[0] * smallest[1]);
         let lattice = lattice.map(|l| l.size);
         Self {
@@ -400,7 +456,8 @@ impl LensPass {
         let first = &kit.shrink[usize::from(variant.encoded)];
         pass::draw(encoder, "smaller", first, &[&self.shrinks[0]], &self.smaller[0]);
         pass::draw(encoder, "smallest", &kit.shrink[2], &[&self.shrinks[1]], &self.smaller[1]);
-        let group = &self.groups[lattice.map_or(0, |l| l.now)];
+        let (snow, now) = lattice.map_or((0, 0), |l| (l.snow_now, l.now));
+        let group = &self.groups[snow][now];
         let pipeline = kit.lens(device, variant)?;
         pass::draw(encoder, "lens", pipeline, &[group], &self.target.1);
         Ok(3)

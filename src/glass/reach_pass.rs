@@ -31,6 +31,7 @@ pub(super) struct MappedKit {
     reach: wgpu::RenderPipeline,
     pub gather: wgpu::RenderPipeline,
     pub declare: wgpu::RenderPipeline,
+    pub settle: [wgpu::RenderPipeline; 2],
 }
 
 /// A view's maps as its glass asks them.
@@ -60,7 +61,7 @@ impl MappedKit {
                 shader: "glass/maps.wgsl",
                 entry: "reach_by_maps",
                 layouts: &[&layouts[0], &layouts[1], &around_layout(&device.device)],
-                targets: &[passes::REACH.into()],
+                targets: &[passes::WORD.into()],
                 constants: &[("MAPS", 1.0)],
                 samples: 1,
             },
@@ -71,6 +72,7 @@ impl MappedKit {
             reach,
             gather: cells("glass/gather.wgsl", "gather")?,
             declare: cells("glass/declare.wgsl", "declare")?,
+            settle: passes::settle_pipelines(device, step_layout, &[("MAPPED", 1.0)])?,
         })
     }
 }

@@ -1,4 +1,4 @@
-//! The cells on the CPU, bit for bit as `shaders/glass/{cells,decide,gather,declare}.wgsl` have them: same names, same order.
+//! The cells on the CPU, bit for bit as `shaders/glass/{cells,decide,gather,declare,settle}.wgsl` have them: same names, same order.
 
 use glam::DVec2;
 
@@ -142,10 +142,15 @@ impl Cells {
         Self { size: self.size, cells: cells.collect() }
     }
 
-    /// The state a step later.
+    /// The state a step later, without snow.
     pub fn stepped(&self, step: &StepUniform) -> Self {
+        self.stepped_under(step, None)
+    }
+
+    /// The same with what snow lay on the glass before the step.
+    pub fn stepped_under(&self, step: &StepUniform, snow: Option<&Snow>) -> Self {
         let moves = self.each(|cell| self.decide(step, cell));
-        self.each(|cell| self.gather(step, &moves, cell))
+        self.each(|cell| self.gather(step, (&moves, snow), cell))
     }
 
     fn decide(&self, step: &StepUniform, cell: [i32; 2]) -> Cell {
@@ -213,7 +218,7 @@ impl Cells {
         [here[0] - left, there, (here[2] & 0xffff_0000) | speed, flags | RAN | where_to | (left << 8)]
     }
 
-    fn gather(&self, step: &StepUniform, moves: &Self, cell: [i32; 2]) -> Cell {
+    fn gather(&self, step: &StepUniform, (moves, snow): (&Self, Option<&Snow>), cell: [i32; 2]) -> Cell {
         let before = self.at(cell).unwrap_or_default();
         let own = moves.at(cell).unwrap_or_default();
         let mut ran = own[3] & RAN != 0;
@@ -229,6 +234,13 @@ impl Cells {
             }
         }
         c.dry(step, cell);
+        if let Some(snow) = snow.filter(|_| step.snow[2] > 0 && own[3] & WIPED == 0) {
+            let melt = melted(step, cell, snow.at(cell));
+            if melt > 0 {
+                let at = cell_hash(cell, step.key[1].wrapping_add(13));
+                c.join(melt, at, at << 16);
+            }
+        }
         let state = cleared(step, cell, before[3], ran, own[3] & WIPED != 0);
         let mut random = cell_hash(cell, step.key[0].wrapping_add(3));
         let share = reached(step, cell);
@@ -244,6 +256,62 @@ impl Cells {
         let hits = ((state & MOST_HITS) + count).min(MOST_HITS);
         [c.volume.min(step.limits[0]), c.place, c.motion, (state & 0xffff_f000) | hits]
     }
+}
+
+/// Snow on glass, units of its water a cell, row by row from the lower left.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Snow {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Of each cell.
+    pub cells: Vec<u32>,
+}
+
+impl Snow {
+    fn of(step: &StepUniform, one: impl Fn([i32; 2]) -> u32) -> Self {
+        let size = [step.key[2], step.key[3]];
+        let cells = (0..size[0] * size[1]).map(|i| one([(i % size[0]) as i32, (i / size[0]) as i32]));
+        Self { size, cells: cells.collect() }
+    }
+
+    fn at(&self, cell: [i32; 2]) -> u32 {
+        self.cells[(cell[1] * self.size[0] as i32 + cell[0]) as usize]
+    }
+
+    /// The declared state of a step.
+    pub fn declared(step: &StepUniform) -> Self {
+        let [_, flake, melt, most] = step.snow;
+        Self::of(step, |cell| {
+            let random = cell_hash(cell, step.key[1].wrapping_add(11));
+            let age = step.declared[2].wrapping_add(random & (LIFE_STEPS - 1)) % LIFE_STEPS;
+            let flakes =
+                ((part_of(step.snow[0], reached(step, cell)) >> 12) * age).wrapping_add(pcg(random) >> 12) >> 20;
+            let there = flakes.wrapping_mul(flake).min(most);
+            there - there.min(((melt >> 4).min(1_048_575) * age) >> 8)
+        })
+    }
+
+    /// The state a step later.
+    pub fn settled(&self, step: &StepUniform) -> Self {
+        Self::of(step, |cell| {
+            if swept(step, cell.map(|v| v * 16 + 8)) {
+                return 0;
+            }
+            let before = self.at(cell);
+            let lands = cell_hash(cell, step.key[0].wrapping_add(5)) < part_of(step.snow[0], reached(step, cell));
+            (before - melted(step, cell, before) + if lands { step.snow[1] } else { 0 }).min(step.snow[3])
+        })
+    }
+
+    /// Water in it, m^3.
+    pub fn water_m3(&self) -> f64 {
+        self.cells.iter().map(|c| f64::from(*c)).sum::<f64>() * VOLUME_UNIT_M3
+    }
+}
+
+fn melted(step: &StepUniform, cell: [i32; 2], there: u32) -> u32 {
+    let random = cell_hash(cell, step.key[0].wrapping_add(4)) & 4095;
+    there.min((step.snow[2] >> 12) + u32::from(random < step.snow[2] & 4095))
 }
 
 #[derive(Default)]

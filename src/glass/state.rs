@@ -5,11 +5,12 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::{
-    LensFrame, MAX_STEPS, Plane, Reach, STEPS_PER_S, Windscreen,
+    LensFrame, MAX_ARMS, MAX_STEPS, Plane, Reach, STEPS_PER_S, Windscreen,
+    frost::Snowing,
     lens::{LensLattice, LensUniform},
     passes::{GlassKit, Lattice, LensPass, LensVariant, Work},
     reach_pass::{MapReach, Mapped},
-    reference::Cells,
+    reference::{Cells, Snow},
     step::{StepConditions, Tables, seed_key},
 };
 use crate::{
@@ -51,6 +52,8 @@ pub struct GlassReport {
     pub covered: f64,
     /// Water on it, m^3.
     pub water_m3: f64,
+    /// Water in the snow on it, m^3.
+    pub snow_m3: f64,
     /// Simulation time of the state, s; NaN before the first frame.
     pub state_time_s: f64,
 }
@@ -72,6 +75,8 @@ pub(crate) struct Glass {
     step: Option<i64>,
     /// 1 after rain, 0 when the last bead has dried.
     moisture: f64,
+    /// Snow of the cell that may have most, units; 0 where there is none.
+    frost: f64,
     /// Of what stays where it is on the glass.
     key: u32,
 }
@@ -95,6 +100,8 @@ fn acting(screen: &Windscreen, plane: &Plane, moment: &AtGlass<'_>, weather: &Co
         down: DVec2::new(-plane.u.dot(up), -plane.v.dot(up)),
         relative_humidity: weather.air.relative_humidity,
         temperature_c: weather.air.temperature_c,
+        snow: Snowing::new(&weather.precipitation, weather.air.temperature_c, factor_in(&weather.air, level)),
+        heat_w_m2: screen.heat_w_m2,
     }
 }
 
@@ -112,6 +119,7 @@ impl Glass {
             tables: Box::default(),
             step: None,
             moisture: 0.0,
+            frost: 0.0,
             key: 0,
         }
     }
@@ -123,7 +131,7 @@ impl Glass {
 
     /// Whether the lens has anything to show.
     pub fn shows(&self) -> bool {
-        self.moisture > 0.0 || self.screen.fogging * (1.0 - self.screen.demist) > 0.0
+        self.moisture > 0.0 || self.frost > 0.0 || self.screen.fogging * (1.0 - self.screen.demist) > 0.0
     }
 
     /// Bytes on the GPU.
@@ -198,11 +206,14 @@ impl Glass {
         (now, size): (i64, [u32; 2]),
     ) {
         self.step = Some(now);
-        self.moisture = if self.reach.0.any() && self.tables.arrive(acts) { 1.0 } else { 0.0 };
-        if self.moisture > 0.0 {
+        let reached = self.reach.0.any();
+        self.moisture = if reached && self.tables.arrive(acts) { 1.0 } else { 0.0 };
+        let had_snow = self.frost > 0.0;
+        self.frost = if reached && self.tables.snows(acts).0 { self.tables.most_snow() } else { 0.0 };
+        if self.moisture > 0.0 || self.frost > 0.0 {
             let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
             let numbers = self.tables.at((acts, &self.reach.0), moment.seed, now, lattice.size, &[None; 2]);
-            lattice.add(&numbers, Work::Declare);
+            lattice.add(&numbers, (Work::Declare, had_snow || self.frost > 0.0));
         }
     }
 
@@ -218,27 +229,40 @@ impl Glass {
         before: Option<(f64, Windscreen)>,
         until_s: f64,
     ) {
-        let rains = self.reach.0.any() && self.tables.arrive(acts);
-        if !rains && self.moisture <= 0.0 {
+        let reached = self.reach.0.any();
+        let rains = reached && self.tables.arrive(acts);
+        let (snows, melts) = self.tables.snows(acts);
+        let snows = snows && reached;
+        if !rains && self.moisture <= 0.0 && !snows && self.frost <= 0.0 {
             return;
-        }
-        let was_dry = self.moisture <= 0.0;
-        self.moisture = if rains { 1.0 } else { self.moisture - 1.0 / (STEPS_PER_S * acts.drying_s()) };
-        let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
-        if was_dry {
-            let dry = StepConditions { exposed: 0.0, ..*acts };
-            lattice.add(&self.tables.at((&dry, &self.reach.0), seed, step, lattice.size, &[None; 2]), Work::Declare);
         }
         let earlier = match before {
             Some((from_s, old)) => blend(&old, &self.screen, share(from_s, until_s, (step - 1) as f64 / STEPS_PER_S)),
             None => *screen,
         };
+        let is_wiped = (0..MAX_ARMS).any(|i| screen.arms[i] != earlier.arms[i]);
+        // Snow that lies.
+        if !rains && self.moisture <= 0.0 && !snows && melts <= 0.0 && !is_wiped {
+            return;
+        }
+        let was_dry = self.moisture <= 0.0 && self.frost <= 0.0;
+        let has_snow = snows || self.frost > 0.0;
+        let wets = rains || (self.frost > 0.0 && melts > 0.0);
+        self.moisture = if wets { 1.0 } else { (self.moisture - 1.0 / (STEPS_PER_S * acts.drying_s())).max(0.0) };
+        // Cells melt by chance around the mean.
+        self.frost = if snows { self.tables.most_snow() } else { (self.frost - 0.99 * melts).max(0.0) };
+        let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
+        if was_dry {
+            let dry = StepConditions { exposed: 0.0, ..*acts };
+            let numbers = self.tables.at((&dry, &self.reach.0), seed, step, lattice.size, &[None; 2]);
+            lattice.add(&numbers, (Work::Declare, has_snow));
+        }
         let arms = std::array::from_fn(|i| {
             let arm = screen.arms[i]?;
             let start = earlier.arms[i].map_or(arm.position, |a| a.position);
             Some((arm, [arm.angle(start), arm.angle(arm.position)]))
         });
-        lattice.add(&self.tables.at((acts, &self.reach.0), seed, step, lattice.size, &arms), Work::Move);
+        lattice.add(&self.tables.at((acts, &self.reach.0), seed, step, lattice.size, &arms), (Work::Move, has_snow));
     }
 
     /// The windscreen at a time since the last frame.
@@ -258,8 +282,8 @@ impl Glass {
         frame: &LensFrame<'_>,
     ) -> Result<u32> {
         let (Some(plane), Some(acts)) = (self.plane, self.acting) else { return Ok(0) };
-        let wet = self.moisture > 0.0;
-        let lattice = self.lattice.as_ref().filter(|_| wet);
+        let (wet, snowy) = (self.moisture > 0.0, self.frost > 0.0);
+        let lattice = self.lattice.as_ref().filter(|_| wet || snowy);
         let serves = |l: &LensPass| l.serves(frame, lattice);
         if !self.lens.as_ref().is_some_and(serves) {
             self.lens = Some(LensPass::new(device, kit, frame, lattice));
@@ -268,7 +292,7 @@ impl Glass {
         // Large beads: as heavy as the largest that a cell holds.
         let large = self.tables.flow();
         let size = lattice.map_or(plane.lattice().1, |l| l.size);
-        let shown = LensLattice { cell_m: acts.cell_m, size, wet, flow: large, key: self.key };
+        let shown = LensLattice { cell_m: acts.cell_m, size, wet, snowy, flow: large, key: self.key };
         let uniform = LensUniform::of(&self.screen, &plane, frame, &shown)?;
         let variant =
             LensVariant { format: frame.picture.format(), encoded: frame.encoded, has_mask: frame.mask.is_some() };
@@ -293,6 +317,9 @@ impl Glass {
         if let Some(cells) = self.cells(device)? {
             (report.covered, report.water_m3) = cells.covered(&plane, acts.cell_m);
         }
+        if let Some(snow) = self.snow(device)? {
+            report.snow_m3 = snow.water_m3();
+        }
         Ok(report)
     }
 
@@ -302,6 +329,17 @@ impl Glass {
         let Some(lattice) = self.lattice.as_ref().filter(|_| mapped) else { return Ok(boxes) };
         let nodes: Vec<u8> = readback::bytes(device, lattice.mapped(), 0)?.into_iter().step_by(4).collect();
         Ok(boxes.and(&Reach::from_nodes(&nodes)))
+    }
+
+    /// The snow, if any may lie there. Waits for the GPU.
+    ///
+    /// # Errors
+    /// As [`Glass::report`].
+    pub fn snow(&self, device: &Device) -> Result<Option<Snow>> {
+        let Some(lattice) = self.lattice.as_ref().filter(|_| self.frost > 0.0) else { return Ok(None) };
+        let bytes = readback::bytes(device, lattice.snow(), 0)?;
+        let cells = bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+        Ok(Some(Snow { size: lattice.size, cells: cells.collect() }))
     }
 
     /// The cells, if there is water. Waits for the GPU.

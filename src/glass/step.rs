@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use super::{
     Reach, STEPS_PER_S, WiperArm,
+    frost::{self, Snowing},
     laws::{self, Arrivals},
 };
 use crate::falling::sizes::DropSizes;
@@ -44,6 +45,8 @@ pub struct StepUniform {
     /// Beads by volume: (radius in 1/256 cell + 1024 x loss to the air in 1/4096 unit a step), motion x, y in 1/65536
     /// cell, 256 x drive over retention.
     pub beads: [[i32; 4]; BEAD_CLASSES],
+    /// Snow: a flake lands on a cell whose 32 random bits are below the first; water of a flake; what melts, in 1/4096 unit; most of a cell.
+    pub snow: [u32; 4],
     /// [`Reach`]: the shares of the rain that get to the nodes.
     pub reach: [[u32; 4]; 8],
 }
@@ -69,6 +72,10 @@ pub struct StepConditions {
     pub relative_humidity: f64,
     /// Temperature, degrees Celsius.
     pub temperature_c: f64,
+    /// The snow.
+    pub snow: Snowing,
+    /// Heat that the glass gets, W/m^2.
+    pub heat_w_m2: f64,
 }
 
 impl StepConditions {
@@ -131,6 +138,18 @@ impl Tables {
         self.numbers.arrive[0] > 0
     }
 
+    /// Whether snow lands at all, and how much melts in a step, units.
+    pub fn snows(&mut self, acting: &StepConditions) -> (bool, f64) {
+        self.update(acting);
+        let [chance, _, melt, _] = self.numbers.snow;
+        (acting.exposed > 0.0 && chance > 0, f64::from(melt) / 4096.0)
+    }
+
+    /// Most snow of a cell, units.
+    pub fn most_snow(&self) -> f64 {
+        f64::from(self.numbers.snow[3])
+    }
+
     /// Where beads as large as a cell holds run to, in (u, v); any length, 0 if they rest.
     pub fn flow(&self) -> DVec2 {
         let largest = &self.numbers.beads[4 * (31 - (self.numbers.limits[0] | 1).leading_zeros()) as usize];
@@ -178,6 +197,16 @@ fn numbers(acting: &StepConditions) -> StepUniform {
     let water = units(arrivals.water_m_s * per_cell, 256.0, 2e6);
     n.declared = [water, (mean * 65_536.0).min(1e5) as u32, 0, 0];
     n.limits[0] = units(laws::volume_factor() * (LARGEST * acting.cell_m).powi(3), 1.0, 1.6e7);
+    let stays = acting.exposed * acting.snow.stays_m_s(acting.up, acting.approach_m_s);
+    let flake = units(acting.snow.flake_m3.min(frost::of_a_flake_m3(acting.cell_m)), 1.0, 1e8);
+    let wind = acting.approach_m_s.abs().max(acting.airflow_m_s.abs());
+    let melts = frost::melts_m_s(acting.heat_w_m2, acting.temperature_c, wind);
+    n.snow = [
+        if flake > 0 { chance(stays * per_cell / (f64::from(flake) * VOLUME_UNIT_M3)) } else { 0 },
+        flake,
+        units(melts * per_cell, 4096.0, 4e9),
+        units(frost::most_m3(acting.cell_m), 1.0, 4e8),
+    ];
     drop_classes(&arrivals, &mut n.drops);
     for i in 0..BEAD_CLASSES {
         let octave = (i as f64 + 0.5) / 4.0;
@@ -279,6 +308,8 @@ mod tests {
             down: DVec2::new(0.0, -0.87),
             relative_humidity: 0.9,
             temperature_c: 12.0,
+            snow: Snowing::default(),
+            heat_w_m2: 0.0,
         }
     }
 

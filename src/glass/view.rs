@@ -6,7 +6,7 @@ use super::{
     Glass, GlassReport, LensFrame, Mapped, Plane, Reach, Windscreen,
     pane::PaneAt,
     passes::GlassKit,
-    reference::Cells,
+    reference::{Cells, Snow},
     state::{AtGlass, Reached},
 };
 use crate::{
@@ -60,6 +60,14 @@ impl GlassView {
     /// As [`GlassView::water`].
     pub fn cells(&self, device: &Device) -> Result<Option<Cells>> {
         self.glass.as_ref().map_or(Ok(None), |g| g.cells(device))
+    }
+
+    /// The snow, or `None` where there is none. Waits for the GPU.
+    ///
+    /// # Errors
+    /// As [`GlassView::water`].
+    pub fn snow(&self, device: &Device) -> Result<Option<Snow>> {
+        self.glass.as_ref().map_or(Ok(None), |g| g.snow(device))
     }
 
     /// What windscreens of the device are drawn with, made at its first use.

@@ -5,6 +5,7 @@ use welkin::{
     frame::{FrameFlags, Stages},
     glass::{
         Pane, Reach, Windscreen, WiperArm,
+        frost::Snowing,
         laws::volume_factor,
         reference::Cells,
         step::{StepConditions, Tables, VOLUME_UNIT_M3},
@@ -35,6 +36,8 @@ fn acting(rate_mm_h: f64) -> StepConditions {
         down: DVec2::new(0.0, -1.0),
         relative_humidity: 0.95,
         temperature_c: 15.0,
+        snow: Snowing::default(),
+        heat_w_m2: 0.0,
     }
 }
 

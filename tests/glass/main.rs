@@ -1,6 +1,6 @@
 //! Water on the windscreen: the cells against their twin and the flux, and what the lens makes of a picture. One binary.
 
-mod cells;
+pub mod cells;
 #[path = "../support/coarse_sky.rs"]
 mod coarse_sky;
 #[path = "../support/depth_texture.rs"]
@@ -9,5 +9,6 @@ mod host;
 mod lens;
 mod pictures;
 mod shelter;
+mod snow;
 #[path = "../support/textures.rs"]
 mod textures;

@@ -1,0 +1,31 @@
+// Snow on glass, in units of its water a cell: flakes land, blades take it away, heat melts it. The twin is src/glass/reference.rs.
+//!include "glass/cells.wgsl"
+
+// A step's snow of a cell, from that before.
+fn settled(cell: vec2i) -> u32 {
+    if swept(cell * 16 + 8) {
+        return 0u;
+    }
+    let before = textureLoad(snow, cell, 0).x;
+    var there = before - melted(cell, before);
+    if cell_hash(cell, step.key.x + 5u) < part_of(step.snow.x, reached(cell)) {
+        there += step.snow.y;
+    }
+    return min(there, step.snow.w);
+}
+
+@fragment
+fn settle(in: FullscreenVarying) -> @location(0) u32 {
+    return settled(vec2i(in.position.xy));
+}
+
+// The declared state: what falls within some half a minute, less what melts meanwhile.
+@fragment
+fn declare_snow(in: FullscreenVarying) -> @location(0) u32 {
+    let cell = vec2i(in.position.xy);
+    let random = cell_hash(cell, step.key.y + 11u);
+    let age = (step.declared.z + (random & (LIFE_STEPS - 1u))) % LIFE_STEPS;
+    let flakes = ((part_of(step.snow.x, reached(cell)) >> 12u) * age + (pcg(random) >> 12u)) >> 20u;
+    let there = min(flakes * step.snow.y, step.snow.w);
+    return there - min(there, (min(step.snow.z >> 4u, 1048575u) * age) >> 8u);
+}
