@@ -262,7 +262,12 @@ impl Glass {
             let start = earlier.arms[i].map_or(arm.position, |a| a.position);
             Some((arm, [arm.angle(start), arm.angle(arm.position)]))
         });
-        lattice.add(&self.tables.at((acts, &self.reach.0), seed, step, lattice.size, &arms), (Work::Move, has_snow));
+        let mut numbers = self.tables.at((acts, &self.reach.0), seed, step, lattice.size, &arms);
+        if !has_snow {
+            // Warm air has nothing to melt.
+            numbers.snow = [0; 4];
+        }
+        lattice.add(&numbers, (Work::Move, has_snow));
     }
 
     /// The windscreen at a time since the last frame.
