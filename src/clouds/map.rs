@@ -72,7 +72,13 @@ impl Map {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clouds::overhead::{BLUR_FROM, PIXEL_BLUR};
+    use crate::{
+        clouds::{
+            cover::{SOLID_SIZE, solid_settings},
+            overhead::{BLUR_FROM, PIXEL_BLUR},
+        },
+        noise::NoiseImage,
+    };
 
     #[test]
     fn a_threshold_says_how_much_of_the_plane_lies_above_it() {
@@ -113,6 +119,10 @@ mod tests {
             let mean = level.iter().sum::<f64>() / level.len() as f64;
             level.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / level.len() as f64
         };
+        let held = |law: &str, [width, got, want]: [f64; 3]| {
+            println!("{law} over {width}: {got:.3} of the variance lost, {want:.3} in truth");
+            assert!((got - want).abs() < 0.07, "{law} over {width}: {got}, {want}");
+        };
         let between = |levels: &[f64], at: f64| {
             let i = (at.max(0.0) as usize).min(levels.len() - 2);
             levels[i] + (levels[i + 1] - levels[i]) * (at.max(0.0) - i as f64)
@@ -124,11 +134,18 @@ mod tests {
             for width in [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0] {
                 let texels = MAP_SIZE as f64 / MAP_CELLS;
                 let want = 1.0 - mean(width, &|w: f64| between(&kept, (w * texels).log2())) / kept[0];
-                let got = lost(width, law);
-                println!("{law} over {width} cells: {got:.3} of the variance lost, {want:.3} of the map's");
-                assert!((got - want).abs() < 0.07, "{law} over {width}: {got}, {want}");
+                held(law, [width, lost(width, law), want]);
             }
         }
+        let image = NoiseImage::generate([SOLID_SIZE; 3], &solid_settings(5)).unwrap();
+        let of_bytes = |level: &Vec<u8>| variance(&level.iter().map(|b| f64::from(*b) / 255.0).collect::<Vec<_>>());
+        let whole = of_bytes(&image.levels()[0]);
+        for (level, bytes) in image.levels().iter().enumerate().take(5) {
+            let width = f64::from(1 << level) / f64::from(SOLID_SIZE);
+            held("SOLID_BLUR", [width, lost(width, "SOLID_BLUR"), 1.0 - of_bytes(bytes) / whole]);
+        }
+        assert!(constants[0].contains("const SOLID_DEVIATION: f32 = 0.107;"));
+        assert!((whole.sqrt() - 0.107).abs() < 0.003, "{}", whole.sqrt());
     }
 
     #[test]
