@@ -227,7 +227,7 @@ fn position(dice: &mut Dice) -> [f64; 3] {
 
 /// A direction, mostly of no unit length: a new air's first answer takes a second.
 fn direction(dice: &mut Dice) -> [f64; 3] {
-    if dice.one_in(30) {
+    if dice.one_in(4) {
         return dice.pick(&[[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, 0.8, -0.6]]);
     }
     std::array::from_fn(|_| if dice.one_in(6) { dice.float() } else { 2.0 * dice.unit() - 1.0 })
