@@ -3419,8 +3419,8 @@ typedef uint32_t wk_diagnostic;
  */
 #define WK_DIAGNOSTIC_OVERDRAW 5
 /**
- * The wind 2 m over what you drew, as it carries what falls: black a calm, 4 m/s a step, white 20 m/s and more; in each
- * square of the ground an arrow along it, or a dot below 0.3 m/s. The sky is black. Stage MEDIUM.
+ * The wind that carries what falls, 2 m over what you drew: black a calm, 4 m/s a step, white 20 m/s and more. Each square
+ * of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The sky is black. Stage MEDIUM.
  */
 #define WK_DIAGNOSTIC_WIND 6
 

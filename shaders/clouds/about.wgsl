@@ -30,17 +30,17 @@ struct CloudHere {
     slope: f32,
     // How far there is no cloud whatever the map holds, m.
     clear: f32,
-    // Share of a place with cloud that is cloud: all but where it is looked at coarsely. Excess and extinction are those of that share.
+    // Share of the place that is cloud: 1 unless the place is looked at coarsely. Excess and extinction are those of the cloudy share.
     share: f32,
 }
 
 // Standard deviations below the mean from which on a place looked at coarsely counts as without cloud.
 const CLOUD_RARE: f32 = 2.5;
 
-// Cells from side to side after which clouds are others.
+// Level distance over which a ray meets other clouds, cells.
 const CLOUD_CELL: f32 = 0.3;
 
-// Share of what is spread normally about `mean` that lies above 0, and its mean (both by the logistic that is next to the normal law).
+// Share of a normal spread about `mean` that lies above 0, and the mean of that share; both by the logistic law closest to the normal one.
 fn cloud_share(mean: f32, spread: f32) -> vec2f {
     let a = 1.702 * mean / spread;
     let share = 1.0 / (1.0 + exp(-a));
@@ -182,14 +182,14 @@ fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     return CloudDepths(about.x, about.y, to_sun, near, about.w, about.z, about.w);
 }
 
-// What other clouds leave of the sun, of 1, where a place is looked at coarsely: close by they are met on the way.
+// Share of sunlight that other clouds let through to a place that is looked at coarsely. Elsewhere the way to the sun meets them itself.
 fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
     if !CLOUD_COARSE {
         return 1.0;
     }
     let up = select(at.height, 1.0 - at.height, clouds.to_sun.z >= 0.0) / layer.size.y;
     let cells = up * length(clouds.to_sun.xy) / max(abs(clouds.to_sun.z), 0.05) * layer.size.z;
-    // Less of them stands the higher.
+    // Cloud cover falls with height.
     let blocked = 1.0 - exp(-0.5 * here.share * cells / CLOUD_CELL);
     return 1.0 - min(cloud_blur.spread, 1.0) * blocked;
 }

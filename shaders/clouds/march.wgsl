@@ -69,8 +69,8 @@ fn cloud_pixel_width(layer: CloudLayer, t: f32, rise: f32) -> f32 {
     return sqrt(across * along);
 }
 
-// How much of a ray is open before gaps (x) and before cloud (y), so many cells on from a place of one share of cloud to a place of another:
-// up and down, cloud stands over cloud; from side to side it is met anew.
+// Share of a ray that is still open, in gaps (x) and in cloud (y), so many cells on from a place of one share of cloud (shares.x) to a place
+// of another (shares.y). Going up or down cloud stands over cloud; going level a ray meets clouds anew.
 fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     let grown = open.x * (shares.y - shares.x) / max(1.0 - shares.x, 1e-6);
     let shrunk = open.y * (shares.y / max(shares.x, 1e-6) - 1.0);

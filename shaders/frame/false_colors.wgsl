@@ -41,7 +41,7 @@ fn seen_at(in: FullscreenVarying) -> Seen {
     return seen;
 }
 
-// A colour in the host's place, but where its mask keeps that.
+// The colour in place of the host's picture, except where the host's mask keeps the picture.
 fn over_host(shown: vec3f, host: vec4f, seen: Seen) -> vec4f {
     var color = shown;
     if !ENCODED {

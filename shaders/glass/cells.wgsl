@@ -17,7 +17,8 @@ struct Step {
     drops: array<vec4u, 64>,
     // Beads by volume: (radius + 1024 x loss to the air, motion x, y, 256 x drive over retention).
     beads: array<vec4i, 96>,
-    // Snow: a flake lands on a cell whose 32 random bits are below the first; water of a flake; what melts, in 1/4096 unit; most of a cell.
+    // Snow. A flake lands on a cell whose 32 random bits are below the first number. Then, in units of water: a flake, what melts in a step
+    // (in 1/4096), and the most that a cell holds.
     snow: vec4u,
     // Shares of the rain that get to the nodes of a net over the pane, in 1/128, four a word, rows from the lower edge up.
     reach: array<vec4u, 8>,

@@ -45,7 +45,7 @@ fn gather(in: FullscreenVarying) -> @location(0) vec4u {
     }
     let wiped = (own.w & WIPED) != 0u;
     c = dried(cell, c);
-    // What melts is a bead, or a bead's; a blade takes snow before it melts.
+    // Melt water becomes a bead, or joins one. A blade takes the snow before it melts.
     if step.snow.z > 0u && !wiped {
         let melt = melted(cell, textureLoad(snow, cell, 0).x);
         if melt > 0u {

@@ -1,5 +1,6 @@
 // What the glass does to the finished picture: each bead is a lens that shows the scene behind it upside down and small,
-// with a dark rim where light is thrown back; snow lets light through and nothing to be seen; a film of water shakes the picture, mist on the inside blurs and whitens it.
+// with a dark rim where light is thrown back; a film of water shakes the picture, mist on the inside blurs and whitens it. Through snow
+// comes light, but no picture.
 // Axes: right and up along the glass, outwards from it; metres, the eye behind the glass.
 //!include "common/fullscreen.wgsl"
 //!include "common/tone.wgsl"

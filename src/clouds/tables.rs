@@ -45,7 +45,7 @@ fn texture(
     })
 }
 
-/// Writes numbers as halves into a box of a texture's mip level that begins at `x` and `y`.
+/// Writes numbers as half floats into one mip level of a texture, into the box that begins at `x` and `y`.
 fn write_halves(
     device: &Device,
     (texture, mip_level): (&wgpu::Texture, u32),

@@ -9,7 +9,7 @@ use crate::{falling::flakes::aggregate_speed_m_s, weather::Falling};
 const MELTING_J_KG: f64 = 3.34e5;
 /// Diameter of a flake whose fall speed stands for all, mm.
 const TYPICAL_MM: f64 = 4.0;
-/// What air flows around with the glass, m across.
+/// Width of the body that the air flows around: the glass and its cab, m.
 const BLUFF_M: f64 = 1.0;
 /// Most snow that stays on glass, m of water: more slides off as a sheet.
 const MOST_M: f64 = 5e-3;
@@ -63,13 +63,13 @@ fn exchange_w_m2_k(wind_m_s: f64) -> f64 {
     if v < 5.0 { 5.7 + 3.8 * v } else { 6.47 * libm::pow(v, 0.78) }
 }
 
-/// Water that melts from snow on glass that is heated so much, m/s: glass at 0 C, air that warms or cools it.
+/// Rate at which snow melts on heated glass, m/s of water. The glass is at 0 C: warmer air adds heat, colder air takes it.
 pub fn melts_m_s(heat_w_m2: f64, temperature_c: f64, wind_m_s: f64) -> f64 {
     (heat_w_m2 + exchange_w_m2_k(wind_m_s) * temperature_c).max(0.0) / (MELTING_J_KG * WATER)
 }
 
-/// Most water that one flake brings to a cell, m^3: a large one lies on several. One of 5 mm
-/// that weighs 2 mg is 0.1 mm of water over its disc.
+/// Most water that one flake brings to a cell, m^3: a large flake lies on several cells. One of 5 mm that weighs 2 mg is 0.1 mm of water over
+/// its disc.
 pub fn of_a_flake_m3(cell_m: f64) -> f64 {
     1e-4 * cell_m * cell_m
 }
@@ -87,7 +87,7 @@ mod tests {
     fn standing_glass_gathers_what_falls_and_fast_glass_less_than_meets_it() {
         let snow = Snowing { water_m_s: 1.0 / 3.6e6, fall_m_s: 1.0, flake_m3: 1e-9 };
         let mm_h = |up, approach| snow.stays_m_s(up, approach) * 3.6e6;
-        // Level glass in a calm has the rate of level ground; upright glass has nothing.
+        // In a calm level glass gathers as much as level ground, and upright glass nothing.
         assert!((mm_h(1.0, 0.0) - 1.0).abs() < 1e-12);
         assert_eq!([mm_h(0.0, 0.0), mm_h(0.0, -8.0), mm_h(-0.5, 0.0)], [0.0; 3]);
         // A leaning windscreen at 14 m/s meets eight times what falls, of which most blows off.

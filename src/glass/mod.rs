@@ -15,7 +15,7 @@
 //! at the first frame, and where more than [`MAX_STEPS`] would be due, the glass takes the declared state of that moment,
 //! a pure function of (seed, time, rain): beads below the size at which they run. `NO_HISTORY` shows that state always.
 //!
-//! **Cost.** Two passes over the lattice a step, a third where snow is or falls, two small copies of the picture and one pass over it a frame; nothing
+//! **Cost.** Two passes over the lattice a step, a third where snow is or falls; two small copies of the picture and one pass over it a frame; nothing
 //! without a windscreen or on dry glass. **Left out**: the splash of an impact, water pushed ahead of a blade, drops
 //! farther apart than a cell seeing each other.
 //!

@@ -45,7 +45,8 @@ pub struct StepUniform {
     /// Beads by volume: (radius in 1/256 cell + 1024 x loss to the air in 1/4096 unit a step), motion x, y in 1/65536
     /// cell, 256 x drive over retention.
     pub beads: [[i32; 4]; BEAD_CLASSES],
-    /// Snow: a flake lands on a cell whose 32 random bits are below the first; water of a flake; what melts, in 1/4096 unit; most of a cell.
+    /// Snow. A flake lands on a cell whose 32 random bits are below the first number. Then, in units of water: a flake, what melts in a step (in
+    /// 1/4096), and the most that a cell holds.
     pub snow: [u32; 4],
     /// [`Reach`]: the shares of the rain that get to the nodes.
     pub reach: [[u32; 4]; 8],

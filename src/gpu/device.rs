@@ -448,7 +448,7 @@ impl Device {
         loop {
             match self.device.poll(wgpu::PollType::wait_indefinitely()) {
                 Ok(_) => return self.check(),
-                // On OpenGL wgpu asks the driver for i32::MAX ns: after 2.1 s a wait ends, whatever the GPU still has to do.
+                // wgpu's OpenGL backend waits for i32::MAX ns at most: after 2.1 s it answers with a timeout, though the GPU still works.
                 Err(wgpu::PollError::Timeout) if begun.elapsed() < LONGEST_WAIT => self.check()?,
                 Err(e) => return Err(Error::new(Status::DeviceLost, format!("waiting for the GPU failed: {e}"))),
             }

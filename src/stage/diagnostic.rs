@@ -24,8 +24,8 @@ pub enum Diagnostic {
     PlanError = 4,
     /// How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
     Overdraw = 5,
-    /// The wind 2 m over what the host drew, as it carries what falls: black a calm, 4 m/s a step, white 20 m/s and more; in each square of
-    /// the ground an arrow along it, or a dot below 0.3 m/s. The sky is black. Stage MEDIUM.
+    /// The wind that carries what falls, 2 m over what the host drew: black a calm, 4 m/s a step, white 20 m/s and more. Each square of the
+    /// ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The sky is black. Stage MEDIUM.
     Wind = 6,
 }
 

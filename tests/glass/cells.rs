@@ -48,7 +48,7 @@ pub fn acting_on(host: &Host, rate_mm_h: f64) -> StepConditions {
     StepConditions { rain, temperature_c: weather.air.temperature_c, ..acting(rate_mm_h) }
 }
 
-fn wiper(position: f64) -> WiperArm {
+pub fn wiper(position: f64) -> WiperArm {
     WiperArm {
         pivot_m: [0.2, -0.05],
         length_m: 0.28,

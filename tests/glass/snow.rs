@@ -14,7 +14,7 @@ use welkin::{
 };
 
 use crate::{
-    cells::acting_on,
+    cells::{acting_on, wiper},
     host::{Host, upright},
 };
 
@@ -38,18 +38,6 @@ fn host(options: &DeviceOptions, rate_mm_h: f64, temperature_c: f64) -> Host {
     let mut host = Host::on(Device::headless(options).unwrap(), FORMAT, SMALL, 0.0, 7);
     host.context.set_weather(&snowfall(rate_mm_h, temperature_c), 0.0, 0.0).unwrap();
     host
-}
-
-fn wiper(position: f64) -> WiperArm {
-    WiperArm {
-        pivot_m: [0.2, -0.05],
-        length_m: 0.28,
-        inner_radius_m: 0.06,
-        parked_deg: 20.0,
-        far_deg: 160.0,
-        position,
-        blade_width_m: 0.006,
-    }
 }
 
 /// Leads a host's glass from time 0 on, half a second a frame.
