@@ -183,6 +183,7 @@ pub fn run() -> Fallible<()> {
         let mut child = Command::new(std::env::current_exe()?);
         child.args(["first"]).env("FIRST_SCRIPT", script.name).env("XDG_CACHE_HOME", &empty);
         child.env("MESA_SHADER_CACHE_DISABLE", "true").env("MESA_SHADER_CACHE_DIR", &empty);
+        child.env("__GL_SHADER_DISK_CACHE", "0");
         if !child.status()?.success() {
             return Err(format!("the process for {} failed", script.name).into());
         }

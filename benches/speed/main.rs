@@ -1,5 +1,5 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (clouds, copies, record, environment, first, fog, glass, ground, noise, parts, radiance, rain, sky, wind).
+//! (clouds, copies, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, sky, wind).
 
 mod clouds;
 mod copies;
@@ -11,6 +11,7 @@ mod fog;
 #[path = "../../tests/support/fullscreen.rs"]
 mod fullscreen;
 mod glass;
+mod gpu;
 mod ground;
 mod noise;
 mod parts;
@@ -60,6 +61,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("glass") {
         glass::run()?;
+    }
+    if wanted("gpu") {
+        gpu::run()?;
     }
     if wanted("ground") {
         ground::run()?;

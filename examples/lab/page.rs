@@ -23,7 +23,7 @@ pub fn write(directory: &Path) -> Result<()> {
         "# The lab: speed against accuracy, and where methods fail\n\n\
          Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page. \
          [Rain](rain.md) and\n\
-         [wet ground](ground.md) have pages of what the tests measure.\n\n",
+         [wet ground](ground.md) have pages of what the tests measure; [on a GPU](gpu.md) has milliseconds of every effect.\n\n",
     );
     if let Some(table) = &sky {
         sky_section(&mut out, table);
