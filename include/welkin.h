@@ -4878,7 +4878,7 @@ typedef uint32_t wk_wind_field_mode;
  */
 #define WK_WIND_FIELD_STEADY 0
 /**
- * The wind with gusts and the whirls that obstacles shed, stepped all the time. docs/wind-field.md says what sizes a core
+ * The wind with gusts, the whirls that come in with it and those that obstacles shed, stepped all the time. docs/wind-field.md says what sizes a core
  * keeps up with.
  */
 #define WK_WIND_FIELD_RUNNING 1

@@ -27,7 +27,7 @@ pub type wk_wind_field_mode = u32;
 /// The mean wind: solved for over the first moments after the wind or an obstacle has changed, then it rests at no cost.
 /// Gusts are as strong, against the weather's, as the mean is there.
 pub const WK_WIND_FIELD_STEADY: wk_wind_field_mode = 0;
-/// The wind with gusts and the whirls that obstacles shed, stepped all the time. docs/wind-field.md says what sizes a core
+/// The wind with gusts, the whirls that come in with it and those that obstacles shed, stepped all the time. docs/wind-field.md says what sizes a core
 /// keeps up with.
 pub const WK_WIND_FIELD_RUNNING: wk_wind_field_mode = 1;
 

@@ -11,7 +11,7 @@ pub enum WindFieldMode {
     /// at no cost. Gusts are as strong, against the weather's, as the mean is there.
     #[default]
     Steady,
-    /// The wind with gusts, and the whirls that obstacles shed: stepped all the time.
+    /// The wind with gusts, the whirls that come in with it and those that obstacles shed: stepped all the time.
     Running,
 }
 

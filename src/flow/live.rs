@@ -6,7 +6,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::{
     FlowBox, FlowField, FlowObstacles, FlowSettings, Scheme, WindFieldDesc, WindFieldMode, WindFieldReport, WindWalls,
-    moving::Standing,
+    moving::Standing, turbulence::Whirls,
 };
 use crate::{
     error::Result,
@@ -99,6 +99,12 @@ impl Inflow {
         let wind = self.blowing.at_height(&self.profile, height_m);
         let v = if self.is_steady { wind.mean_m_s } else { wind.velocity_m_s };
         v.clamp_length_max(MOST_WIND_M_S)
+    }
+
+    /// The whirls that come in with it: none with a mean wind, which has but what mixes it.
+    fn whirls(&self, seed: u64, desc: &WindFieldDesc) -> Whirls {
+        let speed = if self.is_steady { 0.0 } else { self.profile.friction_velocity_m_s() };
+        Whirls::new(seed, desc, self.blowing.mean_m_s, speed)
     }
 
     /// Lets the whirls that the field does not show mix its air.
@@ -429,7 +435,13 @@ impl Live {
             self.field.set_roughness(inflow.profile.roughness_length_m)?;
         }
         inflow.mix(&mut self.field, self.desc.cell_m, ground);
-        self.field.set_wind(|p| inflow.at(p.z - ground(p.truncate())))?;
+        let whirls = inflow.whirls(world.seed, &self.desc);
+        let (from, top_m) = (self.corner_m() - inflow.blowing.drift.displacement_m.extend(0.0), scenery.size_m.z);
+        self.field.set_wind(|p| {
+            let height_m = p.z - ground(p.truncate());
+            let whirling = if p.z < top_m { whirls.at(from + p, height_m) } else { DVec3::ZERO };
+            (inflow.at(height_m) + whirling).clamp_length_max(MOST_WIND_M_S)
+        })?;
         self.field.fill_ghosts();
         let seconds = end_s - self.time_s;
         let passed = self.field.fastest_m_s().max(inflow.at(1e3).length()) * seconds / self.desc.cell_m.min_element();

@@ -88,7 +88,7 @@ fn share_below(x: f64) -> f64 {
 }
 
 /// Numbers in [0, 1) from a seed: SplitMix64 (Steele, Lea and Flood 2014).
-fn randoms(seed: u64) -> impl FnMut() -> f64 {
+pub(crate) fn randoms(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
         state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -25,6 +25,7 @@ use drift::Walk;
 pub use drift::{Blowing, Drift};
 pub use grid::{MAX_NODES, WindGrid, WindGridKind};
 use gusts::Gusts;
+pub(crate) use gusts::randoms;
 pub(crate) use layers::{LayerDrift, LayerDrifts, stretch, stretch_toward};
 pub(crate) use volume::WindVolume;
 

@@ -1,0 +1,161 @@
+//! Turbulence of the air that blows in: whirls that the cells can show and the box has room for.
+//!
+//! They are a sum of waves, each across its own wave vector, so that no air comes from nowhere (Kraichnan 1970, Phys. Fluids 13, 22), in all
+//! directions alike; waves of different lengths have the energy of von Karman's spectrum (1948), E(k) of x^4 / (1 + x^2)^(17/6) with
+//! x = 1.339 L k and L the integral length along the wind. The wind carries them unchanged (Taylor 1938). Without them the air behind a block stays
+//! calm too far: turbulence mixes the shear between the wake and the wind (`src/flow/tests/bluff.rs`).
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::WindFieldDesc;
+use crate::wind::randoms;
+
+/// Waves of a box: more come no nearer to a spectrum that a field of some dozen cells shows.
+const WAVES: usize = 32;
+/// Cells that a wave must be long to be carried.
+const FEWEST_CELLS: f64 = 4.0;
+/// The integral of x^4 / (1 + x^2)^(17/6) over all x: B(5/2, 1/3) / 2.
+const WHOLE: f64 = 1.0325;
+/// Standard deviations along the wind, across it and upward, in friction velocities, of the air near the ground if it is neither warmer nor colder
+/// than the ground (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
+const OVER_LAND: DVec3 = DVec3::new(2.4, 1.9, 1.25);
+
+/// Integral length along the wind, m: 10 m over open grassland (25 z^0.35 / z0^0.063, Counihan 1975).
+const INTEGRAL_M: f64 = 70.0;
+
+/// sine x sin(k . place) + cosine x cos(k . place).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Wave {
+    k_per_m: DVec3,
+    sine: DVec3,
+    cosine: DVec3,
+}
+
+/// The whirls of a seed, with the share of a variance of 1 in each component that waves of the lengths have which a box has room for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Turbulence([Wave; WAVES]);
+
+/// A share of von Karman's spectrum, of 1, between two numbers x.
+fn share_between(low: f64, high: f64) -> f64 {
+    const PARTS: u32 = 16;
+    let ratio = libm::pow(high / low, 1.0 / f64::from(PARTS));
+    let middle = |i: u32| low * libm::pow(ratio, f64::from(i) + 0.5);
+    let of = |x: f64| x * libm::pow(x, 4.0) / libm::pow(1.0 + x * x, 17.0 / 6.0);
+    (0..PARTS).map(|i| of(middle(i)) * libm::log(ratio)).sum::<f64>() / WHOLE
+}
+
+impl Turbulence {
+    /// Whirls of an integral length, m, in cells of a size and a box whose shorter level side is so long, m. None where a box has no room for one.
+    pub fn new(seed: u64, integral_m: f64, cell_m: f64, side_m: f64) -> Self {
+        let (longest, shortest) = (side_m / 2.0, FEWEST_CELLS * cell_m);
+        if longest <= shortest {
+            return Self([Wave::default(); WAVES]);
+        }
+        // A word of its own, as gusts have.
+        let mut random = randoms(seed ^ 0x7768_6972_6c73_2069);
+        let x_of = |length_m: f64| 1.339 * integral_m * TAU / length_m;
+        let (low, high) = (x_of(longest), x_of(shortest));
+        let edge = |i: f64| low * libm::pow(high / low, i / WAVES as f64);
+        let wave = |i: usize| {
+            let part = random();
+            let k = edge(i as f64 + part) / (1.339 * integral_m);
+            // Directions go round a sphere by the golden angle, in an order that does not go with the length.
+            let place = ((i * 13) % WAVES) as f64 + 0.5;
+            let (up, round) = (1.0 - 2.0 * place / WAVES as f64, place * PI * (3.0 - 5.0f64.sqrt()) + TAU * random());
+            let (sin, cos) = libm::sincos(round);
+            let level = (1.0 - up * up).sqrt();
+            let toward = DVec3::new(level * cos, level * sin, up);
+            let (one, other) = toward.any_orthonormal_pair();
+            // Both sides of the way have half the energy, at any angle to one another.
+            let size = (3.0 * share_between(edge(i as f64), edge(i as f64 + 1.0))).sqrt();
+            let mut across = || {
+                let (sin, cos) = libm::sincos(TAU * random());
+                (one * cos + other * sin) * size
+            };
+            Wave { k_per_m: toward * k, sine: across(), cosine: across() }
+        };
+        Self(std::array::from_fn(wave))
+    }
+
+    /// What the whirls add to the wind at a place that goes with the air, m, in standard deviations of whirls of all lengths.
+    pub fn at(&self, place_m: DVec3) -> DVec3 {
+        self.0.iter().fold(DVec3::ZERO, |sum, wave| {
+            let (sin, cos) = libm::sincos(wave.k_per_m.dot(place_m));
+            sum + wave.sine * sin + wave.cosine * cos
+        })
+    }
+}
+
+/// Whirls in the wind that comes in over a field's sides.
+pub(super) struct Whirls {
+    turbulence: Option<Turbulence>,
+    /// Along the mean wind, across it, up.
+    axes: DMat3,
+    deviation_m_s: DVec3,
+    /// Nearer than so to the ground they fade, m.
+    least_m: f64,
+}
+
+impl Whirls {
+    /// Of a mean wind (east, north) with a friction velocity, m/s; none if that is 0.
+    pub fn new(seed: u64, desc: &WindFieldDesc, mean_m_s: DVec2, friction_velocity_m_s: f64) -> Self {
+        let along = mean_m_s.try_normalize().unwrap_or(DVec2::X).extend(0.0);
+        let side_m = |i: usize| f64::from(desc.cells[i]) * desc.cell_m[i];
+        let (cell_m, side_m) = (desc.cell_m.max_element(), side_m(0).min(side_m(1)));
+        Self {
+            turbulence: (friction_velocity_m_s > 0.0).then(|| Turbulence::new(seed, INTEGRAL_M, cell_m, side_m)),
+            axes: DMat3::from_cols(along, DVec3::Z.cross(along), DVec3::Z),
+            deviation_m_s: OVER_LAND * friction_velocity_m_s,
+            least_m: cell_m,
+        }
+    }
+
+    /// What they add at a place that goes with the wind, at a height above the ground.
+    pub fn at(&self, place_m: DVec3, height_m: f64) -> DVec3 {
+        let Some(turbulence) = &self.turbulence else { return DVec3::ZERO };
+        let local = self.axes.transpose() * turbulence.at(place_m);
+        self.axes * (local * self.deviation_m_s) * (height_m / self.least_m).clamp(0.0, 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LENGTH_M: f64 = 20.0;
+
+    /// Means over many boxes' whirls: of the square of each component, and of products along and across the way of 10 m.
+    fn means(f: impl Fn(&Turbulence, DVec3) -> DVec3) -> DVec3 {
+        let of = |seed: u64| {
+            let whirls = Turbulence::new(seed, LENGTH_M, 0.25, 2000.0);
+            (0..40).map(|i| f(&whirls, DVec3::new(97.0, 61.0, 37.0) * f64::from(i))).sum::<DVec3>() / 40.0
+        };
+        (0..400).map(of).sum::<DVec3>() / 400.0
+    }
+
+    #[test]
+    fn whirls_have_the_energy_and_the_lengths_of_von_karmans() {
+        let square = means(|w, p| w.at(p) * w.at(p));
+        // What waves from 1 m to 1000 m have of all.
+        println!("variance {square}, due 0.952");
+        assert!((square - 0.952).abs().max_element() < 0.04, "{square}");
+        // The correlation along the wind falls to what von Karman has at r = L / 2: f = 2^(2/3) / Gamma(1/3) z^(1/3) K_1/3(z), z = r / (1.339 L).
+        let along = means(|w, p| w.at(p) * w.at(p + DVec3::X * 0.5 * LENGTH_M)).x / square.x;
+        println!("correlation after half a length: {along:.3}");
+        assert!((along - 0.54).abs() < 0.05, "{along}");
+    }
+
+    #[test]
+    fn no_air_comes_from_nowhere_and_a_seed_is_a_seed() {
+        let whirls = Turbulence::new(3, LENGTH_M, 1.0, 200.0);
+        let (p, h) = (DVec3::new(12.0, -7.0, 3.0), 1e-4);
+        let slope = |axis: DVec3| ((whirls.at(p + axis * h) - whirls.at(p - axis * h)) / (2.0 * h)).dot(axis);
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(slope);
+        assert!((x + y + z).abs() < 1e-6 && x.abs() > 1e-4, "{x} {y} {z}");
+        assert_eq!(whirls, Turbulence::new(3, LENGTH_M, 1.0, 200.0));
+        assert_ne!(whirls, Turbulence::new(4, LENGTH_M, 1.0, 200.0));
+        assert_eq!(Turbulence::new(3, LENGTH_M, 4.0, 30.0).at(p), DVec3::ZERO, "a box too small for any");
+    }
+}
