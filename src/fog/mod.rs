@@ -44,6 +44,7 @@ mod held;
 pub mod laws;
 pub mod light;
 mod of_weather;
+mod path;
 pub mod patterns;
 pub mod phase;
 mod probe;
