@@ -34,8 +34,20 @@ fn under(
     Ok(context)
 }
 
-fn cumulus() -> [CloudLayer; 1] {
+pub fn cumulus() -> [CloudLayer; 1] {
     [CloudLayer::of(CloudKind::Cumulus, 0.5, 1000.0)]
+}
+
+pub fn stratus() -> [CloudLayer; 1] {
+    [CloudLayer::of(CloudKind::Stratus, 1.0, 600.0)]
+}
+
+pub fn three_layers() -> [CloudLayer; 3] {
+    [
+        CloudLayer::of(CloudKind::Cumulus, 0.35, 1000.0),
+        CloudLayer::of(CloudKind::Altocumulus, 0.4, 4000.0),
+        CloudLayer::of(CloudKind::Cirrus, 0.4, 9000.0),
+    ]
 }
 
 /// Most steps of a ray through a layer at fineness 1 (`shaders/clouds/march.wgsl`).
@@ -149,13 +161,7 @@ const BRUTE: &str = "broken cumulus, every pixel in as many steps as it takes";
 
 fn scenes(device: &Arc<Device>, fineness: f64) -> Fallible<Vec<Scene>> {
     let shared = Arc::new(Shared::new(device)?);
-    let broken = cumulus();
-    let closed = [CloudLayer::of(CloudKind::Stratus, 1.0, 600.0)];
-    let several = [
-        CloudLayer::of(CloudKind::Cumulus, 0.35, 1000.0),
-        CloudLayer::of(CloudKind::Altocumulus, 0.4, 4000.0),
-        CloudLayer::of(CloudKind::Cirrus, 0.4, 9000.0),
-    ];
+    let (broken, closed, several) = (cumulus(), stratus(), three_layers());
     let volume = |layers: &[CloudLayer]| under(device, &shared, layers, CloudModel::Volume);
     let (clear, deck) = (volume(&[])?, under(device, &shared, &closed, CloudModel::Deck)?);
     let (broken, closed, several) = (volume(&broken)?, volume(&closed)?, volume(&several)?);

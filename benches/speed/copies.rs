@@ -27,7 +27,7 @@ const COPIES: u32 = 16;
 /// Rounds of all scenes; the median of each counts.
 const ROUNDS: usize = 9;
 /// Frames without work on tables after which there is none.
-const SETTLED: u32 = 12;
+pub const SETTLED: u32 = 12;
 
 /// Nanoseconds that the threads of this process have run.
 pub fn processor_ns() -> Fallible<u64> {
@@ -231,14 +231,15 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
 }
 
 /// Writes the depth of level ground 2 m below an eye that looks `pitch_rad` up.
-fn level_ground(device: &Device, depth: &wgpu::Texture, pitch_rad: f64) {
+pub fn level_ground(device: &Device, depth: &wgpu::Texture, pitch_rad: f64) {
+    let (width, half) = (depth.width(), 0.5 * f64::from(depth.height()));
     let row = |y: u32| {
-        let ahead = (179.5 - f64::from(y)) / 180.0 * 0.45f64.tan();
+        let ahead = (half - 0.5 - f64::from(y)) / half * 0.45f64.tan();
         0.1 * (-pitch_rad.sin() - ahead * pitch_rad.cos()).max(0.0) / 2.0
     };
-    let texels: Vec<f32> = (0..SIZE.width * SIZE.height).map(|i| row(i / SIZE.width) as f32).collect();
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.width * 4), rows_per_image: None };
-    device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, SIZE);
+    let texels: Vec<f32> = (0..width * depth.height()).map(|i| row(i / width) as f32).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * 4), rows_per_image: None };
+    device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, depth.size());
 }
 
 /// Measures scenes beside copies in turn, over level ground seen by eyes that look `pitch_rad` up, and prints on what.

@@ -23,6 +23,12 @@ fn least(times: &[f64]) -> f64 {
     times.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
+/// A car's: 1.4 m x 0.7 m of glass at 0.7 m, which is 350 x 175 cells.
+pub fn windscreen() -> Windscreen {
+    let corners = [(-0.7, -0.35), (0.7, -0.35), (0.7, 0.35), (-0.7, 0.35)].map(|(x, y)| DVec3::new(x, y, -0.7));
+    Windscreen { pane: Pane::Quad(corners), velocity_m_s: DVec3::new(0.0, 0.0, -15.0), ..Windscreen::default() }
+}
+
 /// Prints the times and their ratios.
 pub fn run() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions::default())?;
@@ -33,12 +39,8 @@ pub fn run() -> Fallible<()> {
     context.set_weather(&Weather { precipitation, visibility_m: 3000.0, ..Weather::default() }, 0.0, 0.0)?;
     let color = textures::texture(&device, (SIZE.width, SIZE.height), wgpu::TextureFormat::Rgba16Float, 1);
     let camera = Camera::look_to(DVec3::new(0.0, 0.0, 10.0), DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, 0.1);
-    // A car's: 1.4 m x 0.7 m of glass at 0.7 m, which is 350 x 175 cells.
-    let corners = [(-0.7, -0.35), (0.7, -0.35), (0.7, 0.35), (-0.7, 0.35)].map(|(x, y)| DVec3::new(x, y, -0.7));
-    let velocity_m_s = DVec3::new(0.0, 0.0, -15.0);
-    let screen = Windscreen { pane: Pane::Quad(corners), velocity_m_s, ..Windscreen::default() };
     let (mut bare, mut glazed) = (View::new(&context)?, View::new(&context)?);
-    glazed.set_windscreen(Some(&screen))?;
+    glazed.set_windscreen(Some(&windscreen()))?;
     let (mut without, mut with, mut steps) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..60u32 {
         let time = |view: &mut View, context: &Context, id: u32, stages: Stages| -> Fallible<f64> {

@@ -10,28 +10,29 @@ use welkin::{
     clouds::CloudSettings,
     context::{Context, GivenDirection},
     frame::{Frame, FrameFlags, Shared, Stages, View},
-    glass::{Pane, Windscreen},
     gpu::{Device, DeviceOptions},
     rain::{RainModel, RainSettings},
     scene::Camera,
     snow::{SnowModel, SnowSettings},
-    weather::{CloudKind, CloudLayer, Precipitation, PrecipitationKind, Surface, SurfaceState, Weather},
+    weather::{CloudLayer, Precipitation, PrecipitationKind, Surface, SurfaceState, Weather},
     wind::{WindGrid, WindGridKind},
 };
 
 use crate::{
-    copies::{median, world},
+    clouds,
+    copies::{SETTLED, level_ground, median, world},
+    glass,
+    record::empty_pass,
     textures,
 };
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Frames between timestamps, and how often they are measured.
+/// Frames that are timed one after the other, and rounds of them.
 const FRAMES: u64 = 8;
 const ROUNDS: usize = 4;
-/// Frames without work on tables after which there is none.
-const SETTLED: u32 = 12;
-/// Full-screen passes that keep a GPU busy while frames are handed over, and the side of their picture.
+const CLEARED: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+/// Passes that clear a square picture to keep the GPU busy while frames are handed over, and the picture's side.
 const FILLING: (u32, u32) = (40, 4096);
 
 /// Reads the GPU's clock between submissions.
@@ -72,7 +73,7 @@ impl Clock {
     /// Marks the moment at which all that was handed over so far is done.
     fn mark(&self, device: &Device, index: u32) {
         let mut encoder = device.device.create_command_encoder(&Default::default());
-        clear(&mut encoder, &self.target, Some((&self.queries, index)));
+        empty_pass(&mut encoder, &self.target, CLEARED, Some((&self.queries, index)));
         device.submit(encoder);
     }
 
@@ -88,25 +89,6 @@ impl Clock {
         self.read.unmap();
         Ok(ticks.windows(2).map(|t| t[1].saturating_sub(t[0]) as f64 * self.ns_per_tick * 1e-6).collect())
     }
-}
-
-/// A pass that clears a picture, with a timestamp at its begin.
-fn clear(encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, mark: Option<(&wgpu::QuerySet, u32)>) {
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: None,
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: target,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-        })],
-        timestamp_writes: mark.map(|(query_set, index)| wgpu::RenderPassTimestampWrites {
-            query_set,
-            beginning_of_pass_write_index: Some(index),
-            end_of_pass_write_index: None,
-        }),
-        ..Default::default()
-    });
 }
 
 /// What changes from frame to frame.
@@ -174,11 +156,7 @@ impl Bench {
     fn new(device: &Arc<Device>, (width, height): (u32, u32)) -> Self {
         let texture = |size, format| textures::texture(device, size, format, 1);
         let depth = texture((width, height), wgpu::TextureFormat::R32Float);
-        // Level ground 2 m below an eye that looks straight ahead: where eyes look up, less of the picture is sky than their slope says.
-        let below = |y: u32| (f64::from(2 * y + 1) / f64::from(height) - 1.0) * 0.45f64.tan();
-        let texels: Vec<f32> = (0..width * height).map(|i| (0.1 * below(i / width).max(0.0) / 2.0) as f32).collect();
-        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
-        device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), rows, depth.size());
+        level_ground(device, &depth, 0.0);
         let side = if device.caps().software { 16 } else { FILLING.1 };
         Self {
             device: device.clone(),
@@ -204,7 +182,7 @@ impl Bench {
         for _ in 0..ROUNDS {
             let mut encoder = self.device.device.create_command_encoder(&Default::default());
             for _ in 0..FILLING.0 {
-                clear(&mut encoder, &self.filled, None);
+                empty_pass(&mut encoder, &self.filled, CLEARED, None);
             }
             self.device.submit(encoder);
             self.clock.mark(&self.device, 0);
@@ -229,12 +207,6 @@ fn wind() -> WindGrid {
         nodes,
         velocities_m_s: (0..nodes.iter().product()).map(velocity).collect(),
     }
-}
-
-/// The windscreen of a car, 1.4 m x 0.7 m at 0.7 m.
-fn windscreen() -> Windscreen {
-    let corners = [(-0.7, -0.35), (0.7, -0.35), (0.7, 0.35), (-0.7, 0.35)].map(|(x, y)| DVec3::new(x, y, -0.7));
-    Windscreen { pane: Pane::Quad(corners), velocity_m_s: DVec3::new(0.0, 0.0, -15.0), ..Windscreen::default() }
 }
 
 struct Maker {
@@ -280,20 +252,15 @@ impl Maker {
             let weather = Weather { clouds: layers.to_vec(), ..Weather::default() };
             Ok(Scene { pitch_rad: 0.26, ..self.scene(name, CLEAR_UP, &weather)? })
         };
-        let broken = [CloudLayer::of(CloudKind::Cumulus, 0.5, 1000.0)];
-        let several = [
-            CloudLayer::of(CloudKind::Cumulus, 0.35, 1000.0),
-            CloudLayer::of(CloudKind::Altocumulus, 0.4, 4000.0),
-            CloudLayer::of(CloudKind::Cirrus, 0.4, 9000.0),
-        ];
+        let broken = clouds::cumulus();
         let mut shafts = under("broken cumulus with shafts of light", &broken)?;
         shafts.view.set_clouds(CloudSettings { shafts: true, ..Default::default() })?;
         Ok(vec![
             Scene { beyond: "", ..under(CLEAR_UP, &[])? },
-            under("a closed deck of stratus", &[CloudLayer::of(CloudKind::Stratus, 1.0, 600.0)])?,
+            under("a closed deck of stratus", &clouds::stratus())?,
             under("broken cumulus", &broken)?,
             shafts,
-            under("cumulus, altocumulus and cirrus", &several)?,
+            under("cumulus, altocumulus and cirrus", &clouds::three_layers())?,
             Scene { flags: FrameFlags::NO_HISTORY, ..under("broken cumulus, every pixel marched", &broken)? },
             Scene { height_m: 4e5, pitch_rad: -0.6, ..under("broken cumulus from 400 km", &broken)? },
         ])
@@ -305,32 +272,31 @@ impl Maker {
             let surface = Surface { state: Some(SurfaceState::Dry), ..Surface::default() };
             self.scene(name, beyond, &Weather { visibility_m: 3000.0, precipitation, surface, ..Weather::default() })
         };
-        let asked = |name, model, drops, rate| -> Fallible<Scene> {
-            let mut scene = falls(name, DRY, PrecipitationKind::Rain, rate)?;
+        let asked = |name, model, drops, (kind, rate)| -> Fallible<Scene> {
+            let mut scene = falls(name, DRY, kind, rate)?;
             let settings = RainSettings { model, most_drops: Some(drops), ..RainSettings::default() };
             scene.view.set_rain(settings)?;
             Ok(scene)
         };
-        let mut stepped = asked("400,000 drops stepped through a wind", RainModel::Integrated, 400_000, 100.0)?;
+        let cloudburst = (PrecipitationKind::Rain, 100.0);
+        let mut stepped = asked("400,000 drops stepped through a wind", RainModel::Integrated, 400_000, cloudburst)?;
         stepped.context.set_wind_grid(Some(wind()))?;
         let wet = Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() };
         let mut behind_glass = self.scene("a wet windscreen", CLEAR, &Weather::default())?;
         let shower = Precipitation::of(PrecipitationKind::Rain, 10.0);
         behind_glass.context.set_weather(&Weather { precipitation: shower, ..Weather::default() }, 0.0, 0.0)?;
         behind_glass.stages = Stages::ALL.without(Stages::PARTICLES.with(Stages::SURFACE));
-        behind_glass.view.set_windscreen(Some(&windscreen()))?;
+        behind_glass.view.set_windscreen(Some(&glass::windscreen()))?;
         // Far more small drops than nature has, so that all of them fall.
-        let mut many = falls("4 million drops", DRY, PrecipitationKind::Drizzle, 500.0)?;
-        let settings = RainSettings { model: RainModel::Drops, most_drops: Some(4_000_000), ..RainSettings::default() };
-        many.view.set_rain(settings)?;
+        let many = (PrecipitationKind::Drizzle, 500.0);
         Ok(vec![
             falls(DRY, "", PrecipitationKind::None, 0.0)?,
             falls("rain of 5 mm/h", DRY, PrecipitationKind::Rain, 5.0)?,
             falls("rain of 20 mm/h", DRY, PrecipitationKind::Rain, 20.0)?,
             falls("rain of 60 mm/h", DRY, PrecipitationKind::Rain, 60.0)?,
-            asked("150,000 drops", RainModel::Drops, 150_000, 100.0)?,
-            asked("400,000 drops", RainModel::Drops, 400_000, 100.0)?,
-            many,
+            asked("150,000 drops", RainModel::Drops, 150_000, cloudburst)?,
+            asked("400,000 drops", RainModel::Drops, 400_000, cloudburst)?,
+            asked("4 million drops", RainModel::Drops, 4_000_000, many)?,
             stepped,
             self.scene("a wet road", CLEAR, &Weather { surface: wet, ..Weather::default() })?,
             behind_glass,

@@ -22,18 +22,33 @@ fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
     textures::texture(device, (64, 36), format, 1)
 }
 
-fn empty_pass(device: &Device, target: &wgpu::TextureView) {
-    let mut encoder = device.device.create_command_encoder(&Default::default());
+/// A pass that draws nothing, which may begin with a timestamp.
+pub fn empty_pass(
+    encoder: &mut wgpu::CommandEncoder,
+    target: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+    timestamp: Option<(&wgpu::QuerySet, u32)>,
+) {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: None,
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: target,
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         })],
+        timestamp_writes: timestamp.map(|(query_set, index)| wgpu::RenderPassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: Some(index),
+            end_of_pass_write_index: None,
+        }),
         ..Default::default()
     });
+}
+
+fn submit_empty_pass(device: &Device, target: &wgpu::TextureView) {
+    let mut encoder = device.device.create_command_encoder(&Default::default());
+    empty_pass(&mut encoder, target, wgpu::LoadOp::Load, None);
     device.queue.submit([encoder.finish()]);
 }
 
@@ -95,7 +110,7 @@ fn compare(change: Change, backends: wgpu::Backends) -> Fallible<()> {
         ours.push(start.elapsed());
         device.wait()?;
         let start = Instant::now();
-        empty_pass(&device, &target);
+        submit_empty_pass(&device, &target);
         empty.push(start.elapsed());
         device.wait()?;
     }

@@ -101,7 +101,7 @@ impl Inflow {
         v.clamp_length_max(MOST_WIND_M_S)
     }
 
-    /// The whirls that come in with it: none with a mean wind, which has but what mixes it.
+    /// The whirls that come in with it: none with the mean wind of a steady field.
     fn whirls(&self, seed: u64, desc: &WindFieldDesc) -> Whirls {
         let speed = if self.is_steady { 0.0 } else { self.profile.friction_velocity_m_s() };
         Whirls::new(seed, desc, self.blowing.mean_m_s, speed)

@@ -53,8 +53,7 @@
 //! # Not here yet
 //!
 //! No shader steps a field. Behind a cube on the floor of a turbulent channel the flow comes back to the floor 2.75 edges behind it with 8 cells
-//! an edge and 2.32 with 12, in place of 1.6 (Martinuzzi and Tropea 1993; `.. floor` with `WELKIN_ACCEPT=1`); without turbulence in
-//! what blows in it was 3.5. Inside of things the answer is that of the air beside them. No heat.
+//! an edge and 2.32 with 12, where 1.6 was measured (Martinuzzi and Tropea 1993; `.. floor` with `WELKIN_ACCEPT=1`). Inside of things the answer is that of the air beside them. No heat.
 
 mod advect;
 mod desc;

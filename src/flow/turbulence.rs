@@ -1,9 +1,9 @@
 //! Turbulence of the air that blows in: whirls that the cells can show and the box has room for.
 //!
 //! They are a sum of waves, each across its own wave vector, so that no air comes from nowhere (Kraichnan 1970, Phys. Fluids 13, 22), in all
-//! directions alike; waves of different lengths have the energy of von Karman's spectrum (1948), E(k) of x^4 / (1 + x^2)^(17/6) with
-//! x = 1.339 L k and L the integral length along the wind. The wind carries them unchanged (Taylor 1938). Without them the air behind a block stays
-//! calm too far: turbulence mixes the shear between the wake and the wind (`src/flow/tests/bluff.rs`).
+//! directions alike. Waves of different lengths have the energy of von Karman's spectrum (1948): E(k) is proportional to x^4 / (1 + x^2)^(17/6),
+//! x = 1.339 L k, with L the integral length along the wind. The wind carries them unchanged (Taylor 1938). They mix the shear between the wake of
+//! a block and the wind; in a calm inflow the wake is too long (`src/flow/tests/bluff.rs`).
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,32 +12,32 @@ use glam::{DMat3, DVec2, DVec3};
 use super::WindFieldDesc;
 use crate::wind::randoms;
 
-/// Waves of a box: more come no nearer to a spectrum that a field of some dozen cells shows.
+/// Waves that are added up.
 const WAVES: usize = 32;
-/// Cells that a wave must be long to be carried.
+/// Shortest wave that the field carries, cells.
 const FEWEST_CELLS: f64 = 4.0;
-/// The integral of x^4 / (1 + x^2)^(17/6) over all x: B(5/2, 1/3) / 2.
+/// Integral of x^4 / (1 + x^2)^(17/6) from 0 to infinity: half the beta function of 5/2 and 1/3.
 const WHOLE: f64 = 1.0325;
-/// Standard deviations along the wind, across it and upward, in friction velocities, of the air near the ground if it is neither warmer nor colder
-/// than the ground (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
+/// Standard deviations of the wind near the ground along the mean wind, across it and upward, in friction velocities, in neutral stratification
+/// (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
 const OVER_LAND: DVec3 = DVec3::new(2.4, 1.9, 1.25);
-
 /// Integral length along the wind, m: 10 m over open grassland (25 z^0.35 / z0^0.063, Counihan 1975).
 const INTEGRAL_M: f64 = 70.0;
 
 /// sine x sin(k . place) + cosine x cos(k . place).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Wave {
     k_per_m: DVec3,
     sine: DVec3,
     cosine: DVec3,
 }
 
-/// The whirls of a seed, with the share of a variance of 1 in each component that waves of the lengths have which a box has room for.
+/// Whirls of a seed. Those of all lengths together have a variance of 1 in each component; these are the ones that a field can show, and have their
+/// share of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Turbulence([Wave; WAVES]);
 
-/// A share of von Karman's spectrum, of 1, between two numbers x.
+/// Share of the energy in von Karman's spectrum between two values of x.
 fn share_between(low: f64, high: f64) -> f64 {
     const PARTS: u32 = 16;
     let ratio = libm::pow(high / low, 1.0 / f64::from(PARTS));
@@ -47,11 +47,11 @@ fn share_between(low: f64, high: f64) -> f64 {
 }
 
 impl Turbulence {
-    /// Whirls of an integral length, m, in cells of a size and a box whose shorter level side is so long, m. None where a box has no room for one.
-    pub fn new(seed: u64, integral_m: f64, cell_m: f64, side_m: f64) -> Self {
+    /// Of an integral length, m, in a box of cells `cell_m` long whose shorter level side is `side_m` long; none if it is too short for any.
+    pub fn new(seed: u64, integral_m: f64, cell_m: f64, side_m: f64) -> Option<Self> {
         let (longest, shortest) = (side_m / 2.0, FEWEST_CELLS * cell_m);
         if longest <= shortest {
-            return Self([Wave::default(); WAVES]);
+            return None;
         }
         // A word of its own, as gusts have.
         let mut random = randoms(seed ^ 0x7768_6972_6c73_2069);
@@ -68,7 +68,7 @@ impl Turbulence {
             let level = (1.0 - up * up).sqrt();
             let toward = DVec3::new(level * cos, level * sin, up);
             let (one, other) = toward.any_orthonormal_pair();
-            // Both sides of the way have half the energy, at any angle to one another.
+            // Sine and cosine have half of the energy each.
             let size = (3.0 * share_between(edge(i as f64), edge(i as f64 + 1.0))).sqrt();
             let mut across = || {
                 let (sin, cos) = libm::sincos(TAU * random());
@@ -76,10 +76,10 @@ impl Turbulence {
             };
             Wave { k_per_m: toward * k, sine: across(), cosine: across() }
         };
-        Self(std::array::from_fn(wave))
+        Some(Self(std::array::from_fn(wave)))
     }
 
-    /// What the whirls add to the wind at a place that goes with the air, m, in standard deviations of whirls of all lengths.
+    /// The velocity at a place in the air that carries them, m, in standard deviations of whirls of all lengths.
     pub fn at(&self, place_m: DVec3) -> DVec3 {
         self.0.iter().fold(DVec3::ZERO, |sum, wave| {
             let (sin, cos) = libm::sincos(wave.k_per_m.dot(place_m));
@@ -94,7 +94,7 @@ pub(super) struct Whirls {
     /// Along the mean wind, across it, up.
     axes: DMat3,
     deviation_m_s: DVec3,
-    /// Nearer than so to the ground they fade, m.
+    /// Height below which they fade towards the ground, m.
     least_m: f64,
 }
 
@@ -105,14 +105,18 @@ impl Whirls {
         let side_m = |i: usize| f64::from(desc.cells[i]) * desc.cell_m[i];
         let (cell_m, side_m) = (desc.cell_m.max_element(), side_m(0).min(side_m(1)));
         Self {
-            turbulence: (friction_velocity_m_s > 0.0).then(|| Turbulence::new(seed, INTEGRAL_M, cell_m, side_m)),
+            turbulence: if friction_velocity_m_s > 0.0 {
+                Turbulence::new(seed, INTEGRAL_M, cell_m, side_m)
+            } else {
+                None
+            },
             axes: DMat3::from_cols(along, DVec3::Z.cross(along), DVec3::Z),
             deviation_m_s: OVER_LAND * friction_velocity_m_s,
             least_m: cell_m,
         }
     }
 
-    /// What they add at a place that goes with the wind, at a height above the ground.
+    /// What they add to the wind, m/s, at a place in the air that carries them and a height above the ground, m.
     pub fn at(&self, place_m: DVec3, height_m: f64) -> DVec3 {
         let Some(turbulence) = &self.turbulence else { return DVec3::ZERO };
         let local = self.axes.transpose() * turbulence.at(place_m);
@@ -126,10 +130,14 @@ mod tests {
 
     const LENGTH_M: f64 = 20.0;
 
-    /// Means over many boxes' whirls: of the square of each component, and of products along and across the way of 10 m.
+    fn whirls(seed: u64, cell_m: f64, side_m: f64) -> Turbulence {
+        Turbulence::new(seed, LENGTH_M, cell_m, side_m).expect("room for whirls")
+    }
+
+    /// The mean of what is asked of whirls at a place, over places and seeds.
     fn means(f: impl Fn(&Turbulence, DVec3) -> DVec3) -> DVec3 {
         let of = |seed: u64| {
-            let whirls = Turbulence::new(seed, LENGTH_M, 0.25, 2000.0);
+            let whirls = whirls(seed, 0.25, 2000.0);
             (0..40).map(|i| f(&whirls, DVec3::new(97.0, 61.0, 37.0) * f64::from(i))).sum::<DVec3>() / 40.0
         };
         (0..400).map(of).sum::<DVec3>() / 400.0
@@ -141,7 +149,7 @@ mod tests {
         // What waves from 1 m to 1000 m have of all.
         println!("variance {square}, due 0.952");
         assert!((square - 0.952).abs().max_element() < 0.04, "{square}");
-        // The correlation along the wind falls to what von Karman has at r = L / 2: f = 2^(2/3) / Gamma(1/3) z^(1/3) K_1/3(z), z = r / (1.339 L).
+        // Von Karman's longitudinal correlation at r = L / 2: 2^(2/3) / Gamma(1/3) z^(1/3) K_1/3(z) = 0.54 with z = r / (1.339 L).
         let along = means(|w, p| w.at(p) * w.at(p + DVec3::X * 0.5 * LENGTH_M)).x / square.x;
         println!("correlation after half a length: {along:.3}");
         assert!((along - 0.54).abs() < 0.05, "{along}");
@@ -149,13 +157,13 @@ mod tests {
 
     #[test]
     fn no_air_comes_from_nowhere_and_a_seed_is_a_seed() {
-        let whirls = Turbulence::new(3, LENGTH_M, 1.0, 200.0);
+        let three = whirls(3, 1.0, 200.0);
         let (p, h) = (DVec3::new(12.0, -7.0, 3.0), 1e-4);
-        let slope = |axis: DVec3| ((whirls.at(p + axis * h) - whirls.at(p - axis * h)) / (2.0 * h)).dot(axis);
+        let slope = |axis: DVec3| ((three.at(p + axis * h) - three.at(p - axis * h)) / (2.0 * h)).dot(axis);
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(slope);
         assert!((x + y + z).abs() < 1e-6 && x.abs() > 1e-4, "{x} {y} {z}");
-        assert_eq!(whirls, Turbulence::new(3, LENGTH_M, 1.0, 200.0));
-        assert_ne!(whirls, Turbulence::new(4, LENGTH_M, 1.0, 200.0));
-        assert_eq!(Turbulence::new(3, LENGTH_M, 4.0, 30.0).at(p), DVec3::ZERO, "a box too small for any");
+        assert_eq!(three, whirls(3, 1.0, 200.0));
+        assert_ne!(three, whirls(4, 1.0, 200.0));
+        assert_eq!(Turbulence::new(3, LENGTH_M, 4.0, 30.0), None, "a box too small for any");
     }
 }

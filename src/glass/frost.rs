@@ -87,7 +87,7 @@ mod tests {
     fn standing_glass_gathers_what_falls_and_fast_glass_less_than_meets_it() {
         let snow = Snowing { water_m_s: 1.0 / 3.6e6, fall_m_s: 1.0, flake_m3: 1e-9 };
         let mm_h = |up, approach| snow.stays_m_s(up, approach) * 3.6e6;
-        // In a calm level glass gathers as much as level ground, and upright glass nothing.
+        // In calm air level glass gathers as much as level ground does, and upright glass none.
         assert!((mm_h(1.0, 0.0) - 1.0).abs() < 1e-12);
         assert_eq!([mm_h(0.0, 0.0), mm_h(0.0, -8.0), mm_h(-0.5, 0.0)], [0.0; 3]);
         // A leaning windscreen at 14 m/s meets eight times what falls, of which most blows off.

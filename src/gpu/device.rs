@@ -404,7 +404,7 @@ impl Device {
         let text = super::shader::assemble(name)?;
         let overrides = super::shader::overrides(&text);
         let desc = wgpu::ShaderModuleDescriptor { label: Some(name), source: wgpu::ShaderSource::Wgsl(text.into()) };
-        // A counter in every loop, which no loop here needs, costs a march through clouds a sixteenth of its time on a GPU.
+        // By default wgpu counts the turns of each loop, to end those that never would. That takes a sixteenth of what clouds cost on a GPU.
         let checks = wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..wgpu::ShaderRuntimeChecks::checked() };
         // SAFETY: all shaders are this crate's own, and each loop in them counts towards an end; bounds are checked as ever.
         let module = unsafe { self.device.create_shader_module_trusted(desc, checks) };

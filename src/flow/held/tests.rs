@@ -287,8 +287,7 @@ fn over_rough_ground_the_wind_keeps_its_profile_and_smooth_walls_do_not_slow_it(
     assert!(rough < smooth && (rough / comes - 1.0).abs() < 0.2, "{rough} {smooth} {comes}");
 }
 
-/// The wind goes round tiles as round a grid of the same heights, and finds what is dug in them.
-/// Root of the mean square of the upward wind inside of a field over open ground, over half a minute after the first one, m/s.
+/// Root of the mean square of the upward wind inside of a field over open ground, from second 31 to 60, m/s.
 fn upward_m_s(mode: WindFieldMode) -> f64 {
     let mut bench = Bench::new(mode);
     bench.world.set.shelters.clear();
@@ -312,10 +311,11 @@ fn upward_m_s(mode: WindFieldMode) -> f64 {
 fn whirls_come_in_with_gusts_and_none_with_the_mean_wind() {
     let [running, steady] = [WindFieldMode::Running, WindFieldMode::Steady].map(upward_m_s);
     println!("upward {running:.3} m/s with gusts, {steady:.4} without");
-    // 1.25 u* = 0.69 m/s is that of whirls of all lengths, of which waves of 16 to 64 m have a third of the energy.
+    // Whirls of all lengths have 1.25 u* = 0.69 m/s; the field shows those of 16 to 64 m, which have a part of their energy.
     assert!((0.2..0.5).contains(&running) && steady < 0.02, "{running} {steady}");
 }
 
+/// The wind goes round tiles as round a grid of the same heights, and finds what is dug in them.
 #[test]
 fn tiles_stand_in_the_wind_as_a_grid_of_their_heights_does() {
     use crate::{

@@ -46,8 +46,8 @@ fn a_cube_has_the_drag_that_was_measured() {
     assert!((found / 1.05 - 1.0).abs() < 0.2, "{found}");
 }
 
-/// Standard deviations along a channel, across it and upward, in friction velocities, at distances from the nearer wall over half its height (Moser,
-/// Kim and Mansour 1999, Phys. Fluids 11, 943, figures for a friction Reynolds number of 590).
+/// Standard deviations of the air in a turbulent channel along it, across it and upward, in friction velocities, about as Moser, Kim and Mansour (1999,
+/// Phys. Fluids 11, 943) have them; first the distance from the nearer wall over half the channel's height.
 const CHANNEL: [(f64, DVec3); 6] = [
     (0.0, DVec3::ZERO),
     (0.05, dvec3(2.4, 1.4, 0.85)),
@@ -57,7 +57,7 @@ const CHANNEL: [(f64, DVec3); 6] = [
     (1.0, dvec3(0.8, 0.62, 0.6)),
 ];
 
-/// The same at any distance.
+/// The same at any distance from a wall.
 fn deviation(y: f64) -> DVec3 {
     let i = CHANNEL.iter().rposition(|(at, _)| *at <= y).unwrap_or(0).min(CHANNEL.len() - 2);
     let [(low, a), (high, b)] = [CHANNEL[i], CHANNEL[i + 1]];
@@ -72,10 +72,10 @@ fn reattachment<const N: u32>() -> f64 {
     let wind = |p: DVec3| DVec3::X * profile(p.z);
     let h = 1.0 / f64::from(N);
     let mut field = round_cube([10 * N, 7 * N, 2 * N], N, dvec3(3.5, 3.5, 0.5), ROUGHNESS, wind);
-    field.set_mixing(0.16 / (1.0 + 1.0 / ROUGHNESS).ln(), h, |_| 0.0);
-    // Whirls half as long as half the channel is high.
     let friction_velocity = 0.4 / (1.0 + 1.0 / ROUGHNESS).ln();
-    let whirls = Turbulence::new(1, 0.5, h, 7.0);
+    field.set_mixing(0.4 * friction_velocity, h, |_| 0.0);
+    // An integral length of half an edge, a quarter of the channel's height.
+    let whirls = Turbulence::new(1, 0.5, h, 7.0).expect("room for whirls");
     let dt = 1.2 * h;
     let [first, last] = [15.0, 45.0].map(|t: f64| (t / dt) as u32);
     let mut sums = vec![0.0; 5 * N as usize];
