@@ -199,13 +199,15 @@ fn channel(name: &str) -> String {
     text
 }
 
-fn answer_file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("rain_channel_{name}.txt"))
+/// A file for channel `name` of the test `test` alone: tests run beside each other.
+fn answer_file(test: &str, name: &str) -> PathBuf {
+    let test = test.rsplit("::").next().unwrap();
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{test}_{name}.txt"))
 }
 
 /// Runs the test `test` of this binary as channel `name` in a process of its own, and answers what it wrote.
 fn run(test: &str, name: &str) -> String {
-    let answer = answer_file(name);
+    let answer = answer_file(test, name);
     let _ = std::fs::remove_file(&answer);
     let done = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", test, "--nocapture"])
