@@ -68,6 +68,8 @@ mod stars;
 mod store;
 #[path = "../examples/lab/timing.rs"]
 mod timing;
+#[path = "../examples/lab/wind_flakes.rs"]
+mod wind_flakes;
 
 use std::path::{Path, PathBuf};
 

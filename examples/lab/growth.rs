@@ -20,7 +20,7 @@ use crate::front::growth;
 use crate::plot::{Line, Titles, lines, short};
 use crate::store::{Journal, Table};
 use crate::timing::{interleaved, target, timed};
-use crate::{fog, page, rain, scenes, sky};
+use crate::{fog, page, rain, scenes, sky, wind_flakes};
 
 /// Exponents above this are named: linear with the fit's own error.
 pub const LINEAR: f64 = 1.1;
@@ -43,6 +43,7 @@ pub fn run(options: &Options) -> Result<()> {
     views(&mut series)?;
     clouds(&mut series)?;
     drops(&mut series)?;
+    wind_flakes::measure(&mut series)?;
     let (table, old) = series.journal.finish()?;
     say_what_moved(&table, old.as_ref());
     draw(&table, options)?;
@@ -57,14 +58,15 @@ pub fn run(options: &Options) -> Result<()> {
     page::write(&options.out)
 }
 
-struct Series<'a> {
+/// Series that are being measured.
+pub struct Series<'a> {
     journal: Journal,
-    lab: &'a Lab,
+    pub lab: &'a Lab,
 }
 
 impl Series<'_> {
     /// One point, unless an earlier run has it. `make` prepares what is then timed, and answers the bytes it holds.
-    fn point<F: FnMut(usize) -> Result<f64>>(
+    pub fn point<F: FnMut(usize) -> Result<f64>>(
         &mut self,
         (what, against, amount): (&str, &str, f64),
         make: impl FnOnce() -> Result<(F, f64)>,
@@ -192,7 +194,12 @@ impl HostViews {
         );
         let views = (0..count).map(|_| View::new(&context)).collect::<Result<Vec<_>>>()?;
         let mut this = Self { device: device.clone(), context, views, color, depth, next: 0 };
-        this.frame()?;
+        // Tables that all of them share come in parts, over many frames.
+        let mut quiet = 0;
+        while quiet < 12 {
+            this.frame()?;
+            quiet = if this.views.iter().any(|v| v.report().tables_rebuilt > 0) { 0 } else { quiet + 1 };
+        }
         Ok(this)
     }
 

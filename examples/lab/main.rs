@@ -39,6 +39,7 @@ mod stability;
 mod stars;
 mod store;
 mod timing;
+mod wind_flakes;
 
 use std::process::ExitCode;
 

@@ -347,6 +347,7 @@ fn growth_section(out: &mut String, t: &Table) {
         let _ = writeln!(out, "| {name} | {against} | {} | {} | {say} |", show(time), show(bytes));
     }
     out.push('\n');
+    crate::wind_flakes::section(out, t);
 }
 
 fn how_section(out: &mut String, tables: [&Option<Table>; 9]) {

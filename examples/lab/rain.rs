@@ -8,6 +8,7 @@ use std::{f64::consts::PI, sync::Arc, time::Instant};
 use glam::{DMat3, DVec2, DVec3};
 use welkin::candidates::Method as LibraryMethod;
 use welkin::context::{Context, ContextDesc, GivenDirection, Scene};
+use welkin::flow::WindFieldDesc;
 use welkin::fog::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m};
 use welkin::frame::{Frame, Shared, Stages, View};
 use welkin::gpu::{Device, readback};
@@ -179,6 +180,20 @@ impl Host {
     /// Of its pictures.
     pub fn size(&self) -> (u32, u32) {
         self.size
+    }
+
+    /// Solves for the wind in a box of cells about the camera, which what falls is then stepped through.
+    pub fn solve_wind(&mut self, cells: [u32; 3]) -> Result<()> {
+        let desc = WindFieldDesc { floor_center: EYE - DVec3::Z * EYE.z, cells, ..WindFieldDesc::default() };
+        self.context.set_wind_field(Some(&desc), self.context.time_s())?;
+        // From then on it is stepped every other second, which the frames that are timed do not reach.
+        self.at((self.context.time_s() / 2.0).floor() * 2.0 + 2.0)
+    }
+
+    /// As [`Host::timed`], a sixtieth of a second on.
+    pub fn timed_on(&mut self) -> Result<f64> {
+        self.at(self.context.time_s() + 1.0 / 60.0)?;
+        self.timed()
     }
 
     /// Goes to a moment.

@@ -216,11 +216,18 @@ impl HeldEffect for HeldFlow {
     }
 
     fn publish(&mut self, world: &mut World) {
+        let is_ready = |live: &Live| live.start.is_none() && live.parts.0 == 0;
         if self.is_shown {
+            // A field that rests stays as it is, and goes on in time.
+            if let (Some(live), Some(volume)) =
+                (self.live.as_ref().filter(|live| is_ready(live)), &mut world.solved_wind)
+            {
+                volume.holds_s = Some(live.holds_s());
+            }
             return;
         }
         match &self.live {
-            Some(live) if live.start.is_none() && live.parts.0 == 0 => {
+            Some(live) if is_ready(live) => {
                 let mut volume = world.solved_wind.take().unwrap_or_else(|| Box::new(WindVolume::empty()));
                 live.publish(world, &mut volume);
                 world.solved_wind = Some(volume);

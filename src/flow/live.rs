@@ -483,6 +483,11 @@ impl Live {
         (self.awake_s, self.rests) = (0.0, false);
     }
 
+    /// When it is known, s.
+    pub fn holds_s(&self) -> [f64; 2] {
+        [self.time_s - LEAP_S, self.time_s + LEAP_S]
+    }
+
     /// Fills what queries and shaders read.
     pub fn publish(&self, world: &World, volume: &mut WindVolume) {
         let inflow = Inflow::new(world, self.time_s, self.desc.mode);
@@ -491,7 +496,7 @@ impl Live {
         volume.origin = self.anchor.origin + self.anchor.to_enu.transpose() * self.corner_m();
         (volume.to_enu, volume.cell_m) = (self.anchor.to_enu, self.desc.cell_m);
         volume.nodes = cells.map(|n| n + 1);
-        volume.holds_s = Some([self.time_s - LEAP_S, self.time_s + LEAP_S]);
+        volume.holds_s = Some(self.holds_s());
         volume.values.clear();
         let is_steady = self.desc.mode == WindFieldMode::Steady;
         // 0 at a side, 1 so many cells from it.

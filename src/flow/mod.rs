@@ -41,6 +41,7 @@
 //! | a whirl 8 cells in radius, carried 96 cells, CFL 1 and 4 | 1.3 % and 2.9 % of its speed | `.. whirl_drifts` |
 //! | a whirl that leaves, a whirl's width from the side | 5.3 % of its speed while it leaves, then less than 0.4 % | `.. what_leaves` |
 //! | drag of a cube of 10 cells an edge, mean of 20 edges/U, off 1.05 | 1.21 (16 % more) | the same with `WELKIN_ACCEPT=1`: `.. cube` |
+//! | cube on the floor of a turbulent channel: edges behind it where the flow comes back to the floor, off 1.6 (Martinuzzi and Tropea 1993); 8 and 16 cells an edge | 2.84 and 1.94 | .. `floor` |
 //! | largest divergence times cell size over speed, hills and boxes | below the tolerance, 1e-4 by default | `.. no_air_is_made` |
 //!
 //! # Cost
@@ -52,8 +53,7 @@
 //!
 //! # Not here yet
 //!
-//! No shader steps a field. Behind a cube on the floor of a turbulent channel the flow comes back to the floor 2.75 edges behind it with 8 cells
-//! an edge and 2.32 with 12, where 1.6 was measured (Martinuzzi and Tropea 1993; `.. floor` with `WELKIN_ACCEPT=1`). Inside of things the answer is that of the air beside them. No heat.
+//! No shader steps a field. Inside of things the answer is that of the air beside them. No heat.
 
 mod advect;
 mod desc;

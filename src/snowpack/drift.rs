@@ -3,7 +3,9 @@
 //! **Wind at the surface.** A wind that varies in space is taken as it is, with its direction, but for what blows against the mean wind. Else the surface's shape bends the mean wind: slopes that face
 //! it quicken it and lee slopes calm it by 0.58 of their slope (Liston and Elder 2006), crests quicken it and hollows calm it by 2 H / L
 //! (Jackson and Hunt 1975). Behind what stands up the wind is calmed below a line that falls by 1 in [`LEE_RUN`] from its top: the idea of
-//! Winstral and Marks (2002), with the length of drifts behind solid fences (Tabler 2003).
+//! Winstral and Marks (2002), with the length of drifts behind solid fences (Tabler 2003). Before it a line rises as steeply to
+//! its top, and the wind below is calmed by the fourth power of how far below: a tenth five heights before a wall and two thirds one height before
+//! it. The drift there ends up half as high as the wall, as fences get it to windward (Tabler 1980, J. Glaciol. 26, 405).
 //!
 //! **Transport.** Along the wind the flux goes to what the wind can carry ([`saltation_kg_m_s`]): upwards over [`ERODING_M`] where there is
 //! loose snow, downwards over [`LANDING_M`]. One sweep down the wind does this for a whole step, whatever its length and the cells' size:
@@ -35,8 +37,9 @@ const LEE_RUN: f64 = 12.0;
 const CALMED: f64 = 0.85;
 /// Least height of what casts a lee, m.
 const LEAST_M: f64 = 1.0;
-/// Distance over which the surface's shape is looked at, m.
+/// Distance over which the surface's shape is looked at, m, and the parts and multiples of it.
 const SHAPE_M: f64 = 10.0;
+const SHAPE_PARTS: [f64; 3] = [0.6, 1.0, 1.5];
 
 /// What comes over a cell's border with the wind.
 #[derive(Clone, Copy, Debug, Default)]
@@ -54,6 +57,9 @@ pub(super) struct Edges {
     left: [Vec<Air>; 2],
     /// Wind over each cell: its parts along the sweep, m/s, or its speed over the mean wind's and nothing.
     wind: Vec<[f64; 2]>,
+    /// What stands to its lee calms the wind below a height, m, along each row and each column where the wind comes in; then how high that
+    /// stands, m. Empty where nothing does.
+    fronts: [Vec<Option<[f64; 2]>>; 2],
     /// Of the sweep that it was in last.
     swept: u64,
     /// Snow may lie on it or come to it in this sweep; and some may lie to its lee.
@@ -68,6 +74,8 @@ pub(super) struct Drift {
     order: Vec<u32>,
     /// What comes to a patch: along each row, and along each column.
     coming: [Vec<Air>; 2],
+    /// Of the patches to the lee: see [`Edges`].
+    fronts: [Vec<Option<[f64; 2]>>; 2],
     sweeps: u64,
 }
 
@@ -144,7 +152,8 @@ fn smooth(x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Height of ground and snow so many cells along an axis from a cell, m, and how many they were: fewer at the end of the ground.
+/// Height of ground and snow so many cells along an axis from a cell, m, and how many they were: fewer at the end of the ground, and none
+/// where something stands.
 fn along(field: &Field, (patch, place): (usize, [usize; 2]), axis: usize, up: bool, cells: usize) -> (f64, usize) {
     let (mut at, mut patch, mut left) = (place, patch, cells);
     loop {
@@ -161,26 +170,31 @@ fn along(field: &Field, (patch, place): (usize, [usize; 2]), axis: usize, up: bo
         (patch, at[axis]) = (next as usize, if up { 0 } else { field.size[axis] - 1 });
     }
     let (patch, cell) = (&field.patches[patch], at[1] * field.size[0] + at[0]);
-    if patch.is_hole(cell) { (f64::NAN, 0) } else { (patch.surface_m(cell), cells - left) }
+    if patch.is_blocked(cell) { (f64::NAN, 0) } else { (patch.surface_m(cell), cells - left) }
 }
 
-/// What the surface's shape makes of the wind at a cell, up to a factor.
+/// What the surface's shape makes of the wind at a cell, up to a factor. It is looked at over several distances: by one alone each drift would
+/// have its echo at that distance before it.
 fn shaped(field: &Field, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
-    let reach = (SHAPE_M / field.cell_m).round().max(1.0) as usize;
     let here = field.patches[patch].surface_m(place[1] * field.size[0] + place[0]);
-    let at = |axis: usize, up: bool| match along(field, (patch, place), axis, up, reach) {
-        (_, 0) => (here, 0.0),
-        (height, cells) => (height, cells as f64 * field.cell_m),
-    };
-    let (mut slope, mut over) = (DVec2::ZERO, 0.0);
-    for axis in 0..2 {
-        let ((low, before), (high, after)) = (at(axis, false), at(axis, true));
-        slope[axis] = if before + after > 0.0 { (high - low) / (before + after) } else { 0.0 };
-        over += 0.25 * (2.0 * here - low - high);
+    let (mut steep, mut crest) = (0.0, 0.0);
+    for part in SHAPE_PARTS {
+        let reach = (SHAPE_M * part / field.cell_m).round().max(1.0) as usize;
+        let at = |axis: usize, up: bool| match along(field, (patch, place), axis, up, reach) {
+            (_, 0) => (here, 0.0),
+            (height, cells) => (height, cells as f64 * field.cell_m),
+        };
+        let (mut slope, mut over) = (DVec2::ZERO, 0.0);
+        for axis in 0..2 {
+            let ((low, before), (high, after)) = (at(axis, false), at(axis, true));
+            slope[axis] = if before + after > 0.0 { (high - low) / (before + after) } else { 0.0 };
+            over += 0.25 * (2.0 * here - low - high);
+        }
+        steep += slope.dot(unit);
+        crest += 8.0 * over / (reach as f64 * field.cell_m);
     }
-    let along = slope.dot(unit).clamp(-0.5, 0.5);
-    let crest = (8.0 * over / (reach as f64 * field.cell_m)).clamp(-0.4, 0.4);
-    1.0 + 0.58 * along + crest
+    let share = 1.0 / SHAPE_PARTS.len() as f64;
+    1.0 + 0.58 * (share * steep).clamp(-0.5, 0.5) + (share * crest).clamp(-0.4, 0.4)
 }
 
 /// What a lee leaves of the wind at a cell, up to a factor, and the line over it.
@@ -203,6 +217,29 @@ fn calmed(patch: &Patch, cell: usize, way: &Way, before: [Air; 2]) -> (f64, Opti
     }
 }
 
+/// What the calm before what stands to the lee leaves of the wind at a cell, up to a factor, and the line over it.
+fn dammed(patch: &Patch, cell: usize, way: &Way, behind: [Option<[f64; 2]>; 2]) -> (f64, Option<[f64; 2]>) {
+    let (mut line, mut height, mut sum) = (0.0, 0.0, 0.0);
+    for (share, front) in way.shares.into_iter().zip(behind).filter_map(|(share, front)| Some((share, front?))) {
+        line += share * front[0];
+        height += share * front[1];
+        sum += share;
+    }
+    let fallen = (sum > 0.0).then(|| [line / sum - way.through_m / LEE_RUN, height / sum]);
+    if patch.is_hole(cell) {
+        return (1.0, fallen);
+    }
+    let (ground, stands) = (patch.surface_m(cell), patch.obstacle_m(cell));
+    let own = [ground + stands, stands];
+    match fallen.filter(|fallen| fallen[0] > own[0]) {
+        Some(front) => {
+            let below = ((front[0] - ground) / front[1]).min(1.0);
+            (1.0 - CALMED * below.powi(4), Some(front))
+        }
+        None => (1.0, (stands > 0.0).then_some(own)),
+    }
+}
+
 impl Drift {
     /// Carries snow by the wind of a step, if that is strong enough anywhere.
     pub fn blow(&mut self, field: &mut Field, step: &Step<'_>) {
@@ -217,6 +254,9 @@ impl Drift {
         self.choose(field, &way, inflow != [[0; 2]; 2]);
         if self.winds(field, step, &way) <= DRY_THRESHOLD_M_S {
             return;
+        }
+        if step.wind.local.is_none() {
+            self.dam(field, &way);
         }
         self.sweeps += 1;
         let sweep = Sweep {
@@ -289,6 +329,40 @@ impl Drift {
             field.patches[at].edges.wind = wind;
         }
         strongest
+    }
+
+    /// Calms the wind before what stands up, from patch to patch against the wind.
+    fn dam(&mut self, field: &mut Field, way: &Way) {
+        let [nx, ny] = field.size;
+        for at in self.order.iter().rev().map(|at| *at as usize) {
+            let mut any = field.patches[at].has_obstacles();
+            for (axis, fronts) in self.fronts.iter_mut().enumerate() {
+                let behind = way.beside(&field.patches[at], axis, true);
+                fronts.clear();
+                fronts.extend(field.patches.get(behind as usize).into_iter().flat_map(|p| &p.edges.fronts[axis]));
+                any |= fronts.iter().any(Option::is_some);
+                fronts.resize(field.size[1 - axis], None);
+            }
+            let patch = &mut *field.patches[at];
+            if !any || !patch.edges.has_snow {
+                patch.edges.fronts.iter_mut().for_each(Vec::clear);
+                continue;
+            }
+            let [by_rows, by_columns] = &mut self.fronts;
+            for j in 0..ny {
+                let row = if way.back[1] { j } else { ny - 1 - j };
+                for i in 0..nx {
+                    let column = if way.back[0] { i } else { nx - 1 - i };
+                    let cell = row * nx + column;
+                    let (left, front) = dammed(patch, cell, way, [by_rows[row], by_columns[column]]);
+                    patch.edges.wind[cell][0] *= left;
+                    (by_rows[row], by_columns[column]) = (front, front);
+                }
+            }
+            for (own, fronts) in patch.edges.fronts.iter_mut().zip(&mut self.fronts) {
+                std::mem::swap(own, fronts);
+            }
+        }
     }
 
     /// Finds what comes to a patch: from those up the wind, or what the country about the field yields.

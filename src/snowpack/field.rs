@@ -107,6 +107,10 @@ impl Patch {
         self.obstacles_m.get(cell).copied().unwrap_or(0.0)
     }
 
+    pub fn has_obstacles(&self) -> bool {
+        self.obstacles_m.iter().any(|height| *height > 0.0)
+    }
+
     /// Whether no snow lies on a cell because something stands on it or there is no ground.
     pub fn is_blocked(&self, cell: usize) -> bool {
         self.obstacle_m(cell) > 0.0 || self.is_hole(cell)

@@ -267,11 +267,12 @@ impl HeldSnow {
         if let (Some(site), Some(field)) = (&mut self.site, &mut state.field) {
             let revision = self.revision + 1;
             // Asked as it stands at the step's end: of a solved field nothing earlier is known.
-            let wind = site.wind(world, end_s, &c);
-            let local = wind.as_ref().map(|wind| wind as WindAt<'_>);
-            if site.shade(field, &c, (&world.set.shelters, local)) {
+            let air = site.air(world, end_s, &c);
+            if site.shade(field, &c, &world.set.shelters, air.as_ref()) {
                 field.clear_blocked(revision);
             }
+            let over = air.as_ref().map(|air| |place: [i32; 2], surface_m: f64| air.over(place, surface_m));
+            let local = over.as_ref().map(|over| over as WindAt<'_>);
             let site = &*site;
             let sunlight_w_m2 = state.sunlight_w_m2;
             let falls = |place: [i32; 2], height_m: f64| {

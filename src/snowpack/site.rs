@@ -8,13 +8,17 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::{
     column::Column,
-    field::{Field, Patch, WindAt},
+    field::{Field, Patch},
 };
 use crate::{
     falling::flakes::aggregate_speed_m_s,
-    surroundings::{Shelter, TerrainHeights, shelter::sheltered},
+    surroundings::{
+        Shelter, TerrainHeights,
+        shelter::{met_at, sheltered},
+    },
     terrain::{Terrain, TileKey},
     weather::Conditions,
+    wind::WindVolume,
     world::World,
 };
 
@@ -26,6 +30,9 @@ const GAP_M: f64 = 0.3;
 const ABOVE_M: f64 = 3.0;
 /// Height at which a wind that varies in space is asked, m.
 const ASKED_M: f64 = 2.0;
+/// Parts of a flake's way back from the ground to the top of a box in calm air, and the most that are looked at.
+const WAY_PARTS: f64 = 12.0;
+const MOST_PARTS: u32 = 24;
 /// The flakes whose fall decides what boxes keep off, mm.
 const FLAKE_MM: f64 = 4.0;
 
@@ -47,6 +54,8 @@ pub(super) struct Site {
     cell_m: f64,
     boxes: Vec<Shelter>,
     slant: DVec3,
+    /// Revision of the wind that varies in space in which the boxes were looked at; 0 in one that does not.
+    air: u64,
     /// Ground has changed since the boxes were looked at.
     stale: bool,
 }
@@ -56,7 +65,7 @@ pub(super) type About = [Option<((usize, usize), f64)>; 4];
 
 impl Site {
     fn new(ground: Ground, (origin, to_enu): (DVec3, DMat3), cell_m: f64) -> Self {
-        Self { ground, origin, to_enu, cell_m, boxes: Vec::new(), slant: DVec3::ZERO, stale: true }
+        Self { ground, origin, to_enu, cell_m, boxes: Vec::new(), slant: DVec3::ZERO, air: 0, stale: true }
     }
 
     /// Of a grid. The snow that lies on one with nodes at the same places stays, be it `old`'s or loaded; on another it is as deep as on
@@ -216,23 +225,19 @@ impl Site {
         (p.z <= ground_m(field, &about) + ABOVE_M).then_some(about)
     }
 
-    /// Finds what the standing boxes keep off and stop under a weather whose flakes go with `local` where the wind varies in space. Says
+    /// Finds what the standing boxes keep off and stop under a weather whose flakes go with `air` where the wind varies in space. Says
     /// whether something new stands on cells.
-    pub fn shade(
-        &mut self,
-        field: &mut Field,
-        c: &Conditions,
-        (shelters, local): (&[Shelter], Option<WindAt<'_>>),
-    ) -> bool {
+    pub fn shade(&mut self, field: &mut Field, c: &Conditions, shelters: &[Shelter], air: Option<&Air<'_>>) -> bool {
         let fall = aggregate_speed_m_s(FLAKE_MM, c.air.temperature_c);
         let slant = slant(DVec2::new(c.wind.east_m_s, c.wind.north_m_s), fall);
+        let revision = air.map_or(0, |air| air.volume.revision());
         let standing = || shelters.iter().filter(|s| s.stands());
         let same = self.boxes.iter().eq(standing()) && !self.stale;
-        if same && ((slant == self.slant && local.is_none()) || self.boxes.is_empty()) {
+        if same && ((slant == self.slant && revision == self.air) || self.boxes.is_empty()) {
             return false;
         }
         let had_any = !self.boxes.is_empty();
-        (self.slant, self.stale) = (slant, false);
+        (self.slant, self.air, self.stale) = (slant, revision, false);
         self.boxes.clear();
         self.boxes.extend(standing());
         if self.boxes.is_empty() && !had_any && field.patches.iter().all(|p| p.sheltered.is_empty()) {
@@ -244,7 +249,7 @@ impl Site {
                 patch.obstacles_m.clear();
             }
             for shelter in &self.boxes {
-                self.shade_box((patch, field.size), shelter, !same, local.map(|local| (local, fall)));
+                self.shade_box((patch, field.size), shelter, !same, air.map(|air| (air, fall)));
             }
         }
         !same
@@ -255,13 +260,13 @@ impl Site {
         (patch, size): (&mut Patch, [usize; 2]),
         shelter: &Shelter,
         stands_anew: bool,
-        local: Option<(WindAt<'_>, f64)>,
+        air: Option<(&Air<'_>, f64)>,
     ) {
         let corner = [0, 1].map(|i| f64::from(patch.key[i]) * size[i] as f64);
         let middle = self.local(shelter.center_m);
         let radius = shelter.half_size_m.length() + self.cell_m;
         let over = (middle.z + radius - patch.lowest_m).max(0.0);
-        let (back, on) = match local {
+        let (back, on) = match air {
             // Whichever way the wind turns round it.
             Some(_) => (DVec2::splat(-over), DVec2::splat(over)),
             None => (self.slant.truncate().min(DVec2::ZERO) * over, self.slant.truncate().max(DVec2::ZERO) * over),
@@ -278,11 +283,12 @@ impl Site {
                 let cell = row * size[0] + column;
                 let plan = DVec2::new(corner[0] + column as f64, corner[1] + row as f64) * self.cell_m;
                 let ground = self.position(plan.extend(f64::from(patch.heights_m[cell])));
-                let slant = local.map_or(self.slant, |(local, fall)| {
-                    let on = [corner[0] as i32 + column as i32, corner[1] as i32 + row as i32];
-                    slant(local(on, patch.surface_m(cell)), fall)
-                });
-                if sheltered(shelter, ground + up * SURFACE_M, self.to_enu.transpose() * slant) {
+                let landed = ground + up * SURFACE_M;
+                let is_kept_off = match air {
+                    Some((air, fall)) => self.meets(shelter, landed, air, fall),
+                    None => sheltered(shelter, landed, self.to_enu.transpose() * self.slant),
+                };
+                if is_kept_off {
                     patch.sheltered.resize(size[0] * size[1], false);
                     patch.sheltered[cell] = true;
                 }
@@ -293,6 +299,28 @@ impl Site {
                 }
             }
         }
+    }
+
+    /// Whether flakes on their way to a place of the host's world meet a box: the way is followed back until it is above the box.
+    fn meets(&self, shelter: &Shelter, landed: DVec3, air: &Air<'_>, fall: f64) -> bool {
+        let up = self.to_enu.row(2);
+        let half_height = (shelter.axes.transpose() * up).abs().dot(shelter.half_size_m);
+        let top = up.dot(shelter.center_m - landed) + half_height;
+        let seconds = top / (WAY_PARTS * fall);
+        let (mut at, mut height) = (landed, 0.0);
+        for _ in 0..MOST_PARTS {
+            if height >= top {
+                return false;
+            }
+            let wind = air.at(at, height);
+            let flake = slanted(wind.truncate(), fall).extend((wind.z - fall).min(-0.25 * fall));
+            let before = at - self.to_enu.transpose() * flake * seconds;
+            if met_at(shelter, at, before).is_some() {
+                return true;
+            }
+            (at, height) = (before, height - flake.z * seconds);
+        }
+        false
     }
 
     /// How high a box that reaches the ground stands over it at a cell, m; 0 where it does not.
@@ -313,34 +341,57 @@ impl Site {
         if touches { top } else { 0.0 }
     }
 
-    /// The wind at 10 m over a place of the lattice where it varies in space, by the logarithmic law from 2 m over the snow; none where
-    /// it does not vary at that time in the weather `c`.
-    pub fn wind<'w>(
-        &self,
-        world: &'w World,
-        time_s: f64,
-        c: &Conditions,
-    ) -> Option<impl Fn([i32; 2], f64) -> DVec2 + use<'w>> {
-        let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
+    /// The wind where it varies in space; none where it does not at that time in the weather `c`.
+    pub fn air<'w>(&self, world: &'w World, time_s: f64, c: &'w Conditions) -> Option<Air<'w>> {
         let volume = world.wind_volume(time_s)?;
-        let asked_m = ASKED_M.max(volume.cell_m.z);
-        let speed = c.wind.speed_m_s();
-        let lower = if speed > 0.0 { c.wind.speed_at_height_m_s(asked_m) / speed } else { 1.0 };
-        let (origin, from_enu, cell_m) = (self.origin, self.to_enu.transpose(), self.cell_m);
-        Some(move |place: [i32; 2], surface_m: f64| {
-            let plan = DVec2::new(f64::from(place[0]), f64::from(place[1])) * cell_m;
-            let at = origin + from_enu * plan.extend(surface_m + asked_m);
-            let about = volume.wind(at, (mean * lower).extend(0.0));
-            about.map_or(mean, |w| w.truncate() / lower.max(0.1))
-        })
+        let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
+        Some(Air { volume, mean, c, origin: self.origin, from_enu: self.to_enu.transpose(), cell_m: self.cell_m })
     }
 }
 
-/// How flakes of this fall speed go with a wind, m/s: over their fall, in sixteenths.
+/// A wind that varies in space, over a site.
+pub(super) struct Air<'w> {
+    volume: &'w WindVolume,
+    /// The weather's at 10 m, m/s.
+    mean: DVec2,
+    c: &'w Conditions,
+    origin: DVec3,
+    from_enu: DMat3,
+    cell_m: f64,
+}
+
+impl Air<'_> {
+    /// The weather's wind so high over the ground, over that at 10 m.
+    fn lower(&self, height_m: f64) -> f64 {
+        let speed = self.c.wind.speed_m_s();
+        if speed > 0.0 { self.c.wind.speed_at_height_m_s(height_m) / speed } else { 1.0 }
+    }
+
+    /// At a place of the host's world, so high over the ground: east, north, up, m/s.
+    fn at(&self, position: DVec3, height_m: f64) -> DVec3 {
+        let weathers = (self.mean * self.lower(height_m)).extend(0.0);
+        self.volume.wind(position, weathers).unwrap_or(weathers)
+    }
+
+    /// At 10 m over a place of the lattice, by the logarithmic law from 2 m over the snow.
+    pub fn over(&self, place: [i32; 2], surface_m: f64) -> DVec2 {
+        let asked_m = ASKED_M.max(self.volume.cell_m.z);
+        let lower = self.lower(asked_m);
+        let plan = DVec2::new(f64::from(place[0]), f64::from(place[1])) * self.cell_m;
+        let at = self.origin + self.from_enu * plan.extend(surface_m + asked_m);
+        let about = self.volume.wind(at, (self.mean * lower).extend(0.0));
+        about.map_or(self.mean, |w| w.truncate() / lower.max(0.1))
+    }
+}
+
+/// How flakes of this fall speed go with a wind, m/s: eddies bring them into the lee, so that no shadow is longer than its box is high.
+fn slanted(wind: DVec2, fall: f64) -> DVec2 {
+    wind * (fall / wind.length().max(fall))
+}
+
+/// The same over their fall, in sixteenths.
 fn slant(wind: DVec2, fall: f64) -> DVec3 {
-    // Eddies bring flakes into the lee, so that no shadow is longer than its box is high.
-    let across = wind * (fall / wind.length().max(fall));
-    ((across / fall * 16.0).round() / 16.0).extend(-1.0)
+    (slanted(wind, fall) / fall * 16.0).round().extend(-16.0) / 16.0
 }
 
 /// Height of the ground about a place, m.

@@ -48,7 +48,10 @@ fn after(
         ..WindFieldDesc::default()
     };
     context.set_wind_field(Some(&field), 0.0).unwrap();
-    context.update(hours * 3600.0).unwrap();
+    // Of a time more than a minute away a field knows nothing.
+    for half_minute in 1..=(hours * 120.0) as u32 {
+        context.update(30.0 * f64::from(half_minute)).unwrap();
+    }
     context
 }
 

@@ -111,6 +111,25 @@ fn the_wind_of_a_field_is_the_weathers_at_its_sides_and_slow_behind_a_house() {
 }
 
 #[test]
+fn a_field_that_rests_is_still_there_minutes_later() {
+    let mut bench = Bench::new(WindFieldMode::Steady);
+    let behind = dvec3(2.0, 0.0, 3.0);
+    bench.to(50.0);
+    let early = bench.wind(behind);
+    for time_s in [100.0, 155.0, 1000.0 / 3.0, 350.0, 400.0, 459.0] {
+        bench.to(time_s);
+        let ahead = bench.world.wind_at(behind, time_s + 57.0).expect("a wind").velocity_m_s;
+        let now = bench.wind(behind);
+        println!("{time_s}: {now} {ahead} {early}");
+        assert!(
+            now.x < 0.3 * bench.wind(dvec3(2.0, 0.0, 200.0)).x && ahead.x < 0.3 * 8.0,
+            "{time_s}: {now}, {ahead}, first {early}"
+        );
+    }
+    assert!(bench.report().rests);
+}
+
+#[test]
 fn channels_with_other_frame_rates_have_the_same_field_to_the_bit() {
     for mode in [WindFieldMode::Running, WindFieldMode::Steady] {
         let states = [1.0 / 30.0, 1.0 / 60.0, 0.7, 6.0].map(|frame_s: f64| {
