@@ -28,7 +28,7 @@ use crate::{
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Frames that are timed one after the other, and rounds of them.
+/// Frames of a scene in a round, and rounds.
 const FRAMES: u64 = 8;
 const ROUNDS: usize = 4;
 const CLEARED: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::BLACK);

@@ -25,7 +25,7 @@ fn by([x, y, z]: [u32; 3]) -> String {
     format!("{x} x {y} x {z}")
 }
 
-/// Frames of large flakes in hardly any wind, and steps of a wind round a house.
+/// Times frames of large flakes in a light wind, and steps of the wind round a house.
 pub fn measure(series: &mut Series<'_>) -> Result<()> {
     let device = series.lab.device.clone();
     let host = |number| -> Result<rain::Host> {

@@ -79,7 +79,7 @@ impl Turbulence {
         Some(Self(std::array::from_fn(wave)))
     }
 
-    /// The velocity at a place in the air that carries them, m, in standard deviations of whirls of all lengths.
+    /// Velocity at a place that moves with the air, m; 1 is the standard deviation of whirls of all lengths.
     pub fn at(&self, place_m: DVec3) -> DVec3 {
         self.0.iter().fold(DVec3::ZERO, |sum, wave| {
             let (sin, cos) = libm::sincos(wave.k_per_m.dot(place_m));

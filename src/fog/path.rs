@@ -116,7 +116,7 @@ fn ray_course(m: &FogModel, h0: f64, mu: f64, t: f64) -> RayCourse {
     RayCourse { end_altitude, end_mu, level, passes, falls, low, low_mu, before, after, high, bend }
 }
 
-/// Where a ray enters and leaves a slab whose lower and upper end it meets after `reach`, counted from its lowest place.
+/// Distances along a ray at which it enters and leaves a slab. `reach`: distances of the slab's lower and upper edge from the ray's lowest point.
 fn slab_ends(c: &RayCourse, t: f64, reach: [f64; 2]) -> (f64, f64) {
     let [near, far] = reach.map(|x| x.min(c.before));
     if c.passes {
@@ -213,7 +213,7 @@ fn exponential_path(m: &FogModel, h0: f64, mu: f64, t: f64, end_altitude: f64, e
     at(low) * (exponential_up(k, scale, 0.0, h0 - low) + exponential_up(k, scale, 0.0, end_altitude - low))
 }
 
-/// A ray's way through two media: the optical depth of both, and between their ends by what each has of it.
+/// A ray's way through two media: the sum of their optical depths; its ends are the means of theirs, weighted by those depths.
 pub(super) fn both_paths(fog: &LayerPath, falling: &LayerPath) -> LayerPath {
     let depth = fog.depth + falling.depth;
     let share = if fog.depth > 0.0 { falling.depth / depth } else { 1.0 };

@@ -37,9 +37,8 @@ const LEE_RUN: f64 = 12.0;
 const CALMED: f64 = 0.85;
 /// Least height of what casts a lee, m.
 const LEAST_M: f64 = 1.0;
-/// Distance over which the surface's shape is looked at, m, and the parts and multiples of it.
-const SHAPE_M: f64 = 10.0;
-const SHAPE_PARTS: [f64; 3] = [0.6, 1.0, 1.5];
+/// Distances over which slope and curvature of the surface are taken, m.
+const SHAPES_M: [f64; 3] = [6.0, 10.0, 15.0];
 
 /// What comes over a cell's border with the wind.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,8 +56,8 @@ pub(super) struct Edges {
     left: [Vec<Air>; 2],
     /// Wind over each cell: its parts along the sweep, m/s, or its speed over the mean wind's and nothing.
     wind: Vec<[f64; 2]>,
-    /// What stands to its lee calms the wind below a height, m, along each row and each column where the wind comes in; then how high that
-    /// stands, m. Empty where nothing does.
+    /// The line of the calm before what stands to its lee, along each row and each column where the wind comes in: its height and that of
+    /// what casts it, m. Empty where nothing stands.
     fronts: [Vec<Option<[f64; 2]>>; 2],
     /// Of the sweep that it was in last.
     swept: u64,
@@ -173,13 +172,13 @@ fn along(field: &Field, (patch, place): (usize, [usize; 2]), axis: usize, up: bo
     if patch.is_blocked(cell) { (f64::NAN, 0) } else { (patch.surface_m(cell), cells - left) }
 }
 
-/// What the surface's shape makes of the wind at a cell, up to a factor. It is looked at over several distances: by one alone each drift would
-/// have its echo at that distance before it.
+/// Factor on the wind at a cell by the surface's slope and curvature, in the mean of several distances: over a single one each drift would be
+/// repeated at that distance up the wind.
 fn shaped(field: &Field, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
     let here = field.patches[patch].surface_m(place[1] * field.size[0] + place[0]);
     let (mut steep, mut crest) = (0.0, 0.0);
-    for part in SHAPE_PARTS {
-        let reach = (SHAPE_M * part / field.cell_m).round().max(1.0) as usize;
+    for shape_m in SHAPES_M {
+        let reach = (shape_m / field.cell_m).round().max(1.0) as usize;
         let at = |axis: usize, up: bool| match along(field, (patch, place), axis, up, reach) {
             (_, 0) => (here, 0.0),
             (height, cells) => (height, cells as f64 * field.cell_m),
@@ -193,19 +192,25 @@ fn shaped(field: &Field, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
         steep += slope.dot(unit);
         crest += 8.0 * over / (reach as f64 * field.cell_m);
     }
-    let share = 1.0 / SHAPE_PARTS.len() as f64;
+    let share = 1.0 / SHAPES_M.len() as f64;
     1.0 + 0.58 * (share * steep).clamp(-0.5, 0.5) + (share * crest).clamp(-0.4, 0.4)
+}
+
+/// A calm's line over a cell, from the lines over its two neighbours on the side of what casts it: its height, m, lower by the way through the
+/// cell, and the height of what casts it, m.
+fn fallen(way: &Way, beside: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
+    let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
+    for (share, known) in way.shares.into_iter().zip(beside).filter_map(|(share, known)| Some((share, known?))) {
+        line += share * known[0];
+        caster += share * known[1];
+        sum += share;
+    }
+    (sum > 0.0).then(|| [line / sum - way.through_m / LEE_RUN, caster / sum])
 }
 
 /// What a lee leaves of the wind at a cell, up to a factor, and the line over it.
 fn calmed(patch: &Patch, cell: usize, way: &Way, before: [Air; 2]) -> (f64, Option<[f64; 2]>) {
-    let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
-    for (share, lee) in way.shares.into_iter().zip(before).filter_map(|(share, air)| Some((share, air.lee?))) {
-        line += share * lee[0];
-        caster += share * lee[1];
-        sum += share;
-    }
-    let fallen = (sum > 0.0).then(|| [line / sum - way.through_m / LEE_RUN, (caster / sum).max(LEAST_M)]);
+    let fallen = fallen(way, before.map(|air| air.lee)).map(|[line, caster]| [line, caster.max(LEAST_M)]);
     if patch.is_hole(cell) {
         return (1.0, fallen);
     }
@@ -219,13 +224,7 @@ fn calmed(patch: &Patch, cell: usize, way: &Way, before: [Air; 2]) -> (f64, Opti
 
 /// What the calm before what stands to the lee leaves of the wind at a cell, up to a factor, and the line over it.
 fn dammed(patch: &Patch, cell: usize, way: &Way, behind: [Option<[f64; 2]>; 2]) -> (f64, Option<[f64; 2]>) {
-    let (mut line, mut height, mut sum) = (0.0, 0.0, 0.0);
-    for (share, front) in way.shares.into_iter().zip(behind).filter_map(|(share, front)| Some((share, front?))) {
-        line += share * front[0];
-        height += share * front[1];
-        sum += share;
-    }
-    let fallen = (sum > 0.0).then(|| [line / sum - way.through_m / LEE_RUN, height / sum]);
+    let fallen = fallen(way, behind);
     if patch.is_hole(cell) {
         return (1.0, fallen);
     }

@@ -225,8 +225,8 @@ impl Site {
         (p.z <= ground_m(field, &about) + ABOVE_M).then_some(about)
     }
 
-    /// Finds what the standing boxes keep off and stop under a weather whose flakes go with `air` where the wind varies in space. Says
-    /// whether something new stands on cells.
+    /// Finds the cells that standing boxes shelter from falling snow, and those that they stand on. Flakes go with `air` where the wind varies
+    /// in space. Says whether the boxes or the ground have changed.
     pub fn shade(&mut self, field: &mut Field, c: &Conditions, shelters: &[Shelter], air: Option<&Air<'_>>) -> bool {
         let fall = aggregate_speed_m_s(FLAKE_MM, c.air.temperature_c);
         let slant = slant(DVec2::new(c.wind.east_m_s, c.wind.north_m_s), fall);
