@@ -210,15 +210,15 @@ impl RustHost {
             })
         });
         let (idle, held) = idle(&device.device, &list);
-        let color = texture(&device, (64, 36), wgpu::TextureFormat::Rgba16Float, 1);
+        let color = texture(&device, (128, 72), wgpu::TextureFormat::Rgba16Float, 1);
         Self {
             target: color.create_view(&Default::default()),
             kinds: device.caps().software.then(|| {
-                texture(&device, (64, 36), wgpu::TextureFormat::Depth32Float, 1).create_view(&Default::default())
+                texture(&device, (128, 72), wgpu::TextureFormat::Depth32Float, 1).create_view(&Default::default())
             }),
             color,
-            copy: texture(&device, (64, 36), wgpu::TextureFormat::Rgba16Float, 1),
-            depth: texture(&device, (64, 36), wgpu::TextureFormat::Depth32Float, 1),
+            copy: texture(&device, (128, 72), wgpu::TextureFormat::Rgba16Float, 1),
+            depth: texture(&device, (128, 72), wgpu::TextureFormat::Depth32Float, 1),
             device,
             context,
             view,
@@ -237,8 +237,8 @@ impl RustHost {
         host
     }
 
-    /// The same wgpu calls without Welkin: uploads, a copy, a pass that finds drops, one that draws them, and one for the
-    /// picture.
+    /// The same wgpu calls without Welkin: uploads, a copy, a pass that finds drops, one that draws them, and those of the
+    /// composition.
     fn bare(&self) {
         let device = &self.device.device;
         for _ in 0..6 {
@@ -254,7 +254,9 @@ impl RustHost {
         }
         pass.dispatch_workgroups_indirect(&self.times, 0);
         drop(pass);
-        for label in ["drops", "composite"] {
+        // A software driver's composition begins with a grid of the weather.
+        let grid = ["grid", "cells"].into_iter().filter(|_| self.kinds.is_some());
+        for label in grid.chain(["drops", "composite"]) {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some(label),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -269,7 +271,7 @@ impl RustHost {
                 }),
                 ..Default::default()
             });
-            pass.set_viewport(0.0, 0.0, 64.0, 36.0, 0.0, 1.0);
+            pass.set_viewport(0.0, 0.0, 128.0, 72.0, 0.0, 1.0);
             if label == "drops" {
                 pass.set_vertex_buffer(0, self.list.slice(..));
             }
@@ -334,7 +336,7 @@ impl CHost {
             cloud_count: 2,
             ..init("wk_weather")
         };
-        let texture = wk_texture_desc { width: 64, height: 36, ..init("wk_texture_desc") };
+        let texture = wk_texture_desc { width: 128, height: 72, ..init("wk_texture_desc") };
         let color = wk_texture_desc { format: WK_FORMAT_RGBA16_FLOAT, ..texture };
         let depth = wk_texture_desc { format: WK_FORMAT_R32_FLOAT, ..texture };
         // SAFETY: live pointers.

@@ -1,9 +1,6 @@
 // The sky in a direction, fog left out: behind everything in the picture, in mirrors, in the cube map.
 //!include "between/hung.wgsl"
 
-// How much of what hangs behind the sky's own light stands in the night floor's place.
-var<private> behind_share: f32;
-
 fn night_light(hung: Hung) -> vec3f {
     return mix(frame.night_floor, hung.behind, behind_share);
 }

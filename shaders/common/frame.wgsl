@@ -82,6 +82,8 @@ struct FrameUniform {
     mean_cloud: vec4f,
     // Of falling snow, as drops: what drawn flakes hide, 1/m, up to which distance, m.
     flakes: vec2f,
+    // A power of two: what light is multiplied by to be about 1 where it is white (frame/even.wgsl).
+    even_scale: f32,
     // What bows add to the phase function of drops, 1/sr a channel: two tables over the angle (between/bow.wgsl).
     bows: array<vec4f, 320>,
 }

@@ -1,67 +1,16 @@
 // One pixel of the frame: sky behind, water on surfaces, air and fog between, tone on top. Host colour x T + L throughout.
 //!include "common/fullscreen.wgsl"
 //!include "frame/color_space.wgsl"
-//!include "between/sky.wgsl"
-//!include "between/veil.wgsl"
-//!include "sky/disc.wgsl"
 //!include "frame/on_surfaces.wgsl"
+//!include "between/hung.wgsl"
 //!include "between/shaft_light.wgsl"
+//!include "frame/weather_seen.wgsl"
 
-override BACKGROUND: bool = true;
-override MEDIUM: bool = true;
 override TONE: bool = true;
 override PARTICLES: bool = false;
 
-// Where nothing is drawn, the pixels of a pipeline may lie above the level of the eye, and below it.
-override FAR_ABOVE: bool = true;
-override FAR_BELOW: bool = true;
 // Clouds cast shadows on what the host drew.
 override CLOUD_SHADOWS: bool = false;
-// Optical depth of clouds over what of it is left when what they scatter straight on counts as not scattered.
-const CLOUD_STRAIGHT: f32 = 1.8;
-// The discs of sun and moon: the host has their light otherwise where it asks for the sky alone.
-override DISCS: bool = true;
-
-// The planet's own ground as far as it lies under a deck, whose light on it is that of an overcast sky: 7 pi / 9 of its zenith's
-// luminance (Moon and Spencer 1942). The air before it is lit by the deck too (air_on).
-fn ground_under_deck(path: SkyPath) -> vec3f {
-    let transmittance = exp(-path.depth);
-    let ground = sky_view.air.ground_albedo * (7.0 / 9.0) * f32(path.ray.grounded);
-    return frame.deck * mix(vec3f(overcast_gradation(0.0)), ground, transmittance);
-}
-
-// The discs of sun and moon behind clouds, which let through less of their light straight than all that they scatter straight on. A disc
-// takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
-fn disc_light(radiance: Radiance, hung: Hung) -> vec3f {
-    if !DISCS {
-        return vec3f(0.0);
-    }
-    let through = select(1.0, pow(hung.clouds.a, CLOUD_STRAIGHT - 1.0), CLOUDS);
-    return max(color_of(radiance * (through * hung.disc)), vec3f(0.0));
-}
-
-// What stands behind all that the host drew and behind clouds, above the level of the eye.
-fn behind_above(d: vec3f, hung: Hung) -> vec3f {
-    if !CLEAR_SKY || deck_hides_all() || drawn.z == 0.0 {
-        return open_sky(d, vec3f(0.0), hung);
-    }
-    let disc = disc_light(disc_radiance_above(d, frame.pixel_angle), hung);
-    return open_sky(d, color_of(sky_radiance_above(d)) * air_lit + disc, hung);
-}
-
-// The same below the level of the eye: the planet's own ground with the air before it; from high up also sky, down to the horizon.
-fn behind_below(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
-    if deck_hides_all() {
-        return ground_under_deck(path) + night_light(hung);
-    }
-    let air = sky_radiance_on(path, d);
-    var clear = color_of(air + ground_radiance_on(path, d)) * frame.medium_share;
-    if CLOUD_SHAFTS {
-        clear += color_of(air) * (air_lit - 1.0) * frame.medium_share;
-    }
-    clear += disc_light(disc_radiance_on(path, d, frame.pixel_angle), hung);
-    return mix(clear, ground_under_deck(path), frame.deck_cover) + night_light(hung);
-}
 
 // What the shadow of clouds leaves of the light on what the host drew, of that on the mean over places, in which the host lit it.
 fn under_clouds(hung: Hung, range: f32) -> vec3f {
@@ -75,37 +24,6 @@ fn under_clouds(hung: Hung, range: f32) -> vec3f {
 fn display(luminance: vec3f) -> vec3f {
     // Saturated spectra lie outside of Rec. 709 and have negative parts there.
     return tone_curve(frame.tone, max(luminance, vec3f(0.0)) * frame.exposure);
-}
-
-// What weather adds to a pixel. `range` along the ray and `plane` from the camera's plane are RANGE_SKY where the host
-// drew nothing.
-fn weather_over(ray: ViewRay, range: f32, plane: f32, hung: Hung) -> Veil {
-    let sky = range >= RANGE_SKY;
-    let above = FAR_ABOVE && (!FAR_BELOW || ray.direction.z >= 0.0);
-    var veil = Veil(vec3f(0.0), vec3f(1.0));
-    // One path for ground and air: a driver that compiles both ways, and takes both, does its part once. The sky needs none.
-    var path: SkyPath;
-    if !(sky && above) {
-        path = sky_path(ray.direction, range);
-    }
-    if BACKGROUND && sky {
-        var behind = vec3f(0.0);
-        if above {
-            behind = behind_above(ray.direction, hung);
-        } else {
-            behind = behind_below(path, ray.direction, hung);
-        }
-        veil = Veil(before_sky(behind, ray.direction, hung), vec3f(0.0));
-    } else if MEDIUM && !sky {
-        veil = air_on(path, ray.direction);
-    }
-    if MEDIUM {
-        veil = veil_before(ray, range, plane, veil, hung);
-    }
-    if FLASH && MEDIUM {
-        veil.light += flash_before(ray, range, hung);
-    }
-    return veil;
 }
 
 // Drops before everything (rain/drops.wgsl), on which the exposure is already.
@@ -126,7 +44,7 @@ fn compose(host: vec4f, seen: Seen) -> vec4f {
     if CLOUD_SHAFTS {
         air_lit = shaft_light(ray.direction, hung.shafts);
     }
-    var veil = weather_over(ray, seen.range, seen.plane, hung);
+    var veil = weather_seen(ray, seen, hung);
     veil = on_surface(veil, linear_host(host.rgb), ray, seen);
     veil.transmittance *= under_clouds(hung, seen.range);
     if PARTICLES {

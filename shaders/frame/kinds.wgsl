@@ -11,13 +11,22 @@ const KIND_ABOVE: f32 = 0.0;
 const KIND_BELOW: f32 = 0.5;
 const KIND_DRAWN: f32 = 1.0;
 
-@fragment
-fn kinds(in: FullscreenVarying) -> @builtin(frag_depth) f32 {
+struct Kind {
+    kind: f32,
+    range: f32,
+}
+
+fn kind_of(in: FullscreenVarying) -> Kind {
     let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
     let far = select(KIND_BELOW, KIND_ABOVE, view_ray(frame.depth, ndc).direction.z >= 0.0);
     if !HAS_DEPTH {
-        return far;
+        return Kind(far, RANGE_SKY);
     }
-    let depth = textureLoad(host_depth, vec2i(in.position.xy), 0).r;
-    return select(far, KIND_DRAWN, view_range(frame.depth, depth, ndc) < RANGE_SKY);
+    let range = view_range(frame.depth, textureLoad(host_depth, vec2i(in.position.xy), 0).r, ndc);
+    return Kind(select(far, KIND_DRAWN, range < RANGE_SKY), range);
+}
+
+@fragment
+fn kinds(in: FullscreenVarying) -> @builtin(frag_depth) f32 {
+    return kind_of(in).kind;
 }

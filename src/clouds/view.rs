@@ -271,6 +271,9 @@ impl DrawnEffect for CloudsView {
         }
         let is_there = self.is_there(shot.frame, to.stages) && self.passes.is_some() && is_drawn;
         to.between_and_veil("CLOUDS", yes(is_there), yes(is_there));
+        if is_there {
+            to.is_fine();
+        }
         to.between("DECK_CLOSED", 0.0, yes(to.block.deck_cover >= 1.0));
         let deck = yes(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
         to.between("DECK_BEHIND", deck, deck);

@@ -2,7 +2,11 @@
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use super::{kinds::Pixels, wind_picture::WindPicture};
+use super::{
+    even::{self, EvenLayouts},
+    kinds::Pixels,
+    wind_picture::WindPicture,
+};
 use crate::{
     effects::{BLOCK_BYTES, tables_layout},
     error::{Error, Result, Status},
@@ -43,10 +47,16 @@ impl Variant {
     fn program(&self) -> (String, &'static str) {
         let [(composed, entry), _] = self.sampling.shaders();
         let diagnoses = self.constants.composed.value("DIAGNOSTIC") > 0.0;
-        let (name, entry) = if diagnoses { (self.sampling.diagnostic(), "diagnose") } else { (composed, entry) };
+        let (name, entry) = match self.pixels {
+            Pixels::Grid => ("frame/even_grid.wgsl", "even_grid"),
+            _ if diagnoses => (self.sampling.diagnostic(), "diagnose"),
+            _ => (composed, entry),
+        };
         let clear = if self.constants.traits.veils_all { "" } else { ":clear" };
         let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
-        (format!("{name}{clear}{dry}"), entry)
+        // What is looked up has no fog of its own.
+        let (clear, even) = if self.pixels.are_even() { ("", ":even") } else { (clear, "") };
+        (format!("{name}{clear}{dry}{even}"), entry)
     }
 
     /// Values of the shader's `override` constants.
@@ -76,6 +86,9 @@ impl Variant {
 /// a software driver one may take more than 10 MB.
 const MOST_PIPELINES: usize = 32;
 
+/// Likewise those of the weather's grid and of the pixels that look it up: two or three for each weather.
+const MOST_EVEN: usize = 32;
+
 /// Likewise those that tell kinds of pixels apart.
 const MOST_KINDS: usize = 8;
 
@@ -84,7 +97,9 @@ const MOST_KINDS: usize = 8;
 struct KindsPipeline {
     format: wgpu::TextureFormat,
     sampling: Sampling,
-    constants: [Constant; 2],
+    constants: [Constant; 3],
+    /// Those between which the weather is even are kinds of their own.
+    with_even: bool,
 }
 
 /// The composition of a device, for all its views. Any thread.
@@ -115,12 +130,15 @@ pub(super) struct Composite {
     layout_tables: wgpu::BindGroupLayout,
     layout_around: wgpu::BindGroupLayout,
     pipelines: Recent<Variant, wgpu::RenderPipeline, MOST_PIPELINES>,
+    evens: Recent<Variant, wgpu::RenderPipeline, MOST_EVEN>,
     kinds: Recent<KindsPipeline, wgpu::RenderPipeline, MOST_KINDS>,
     none: wgpu::TextureView,
     /// The same as a texture of layers.
     no_layers: wgpu::TextureView,
     reads_samples: bool,
     wind: WindPicture,
+    pub even: EvenLayouts,
+    even_cells: Option<wgpu::RenderPipeline>,
 }
 
 fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
@@ -152,11 +170,14 @@ impl Composite {
             layout_tables: tables_layout(device),
             layout_around: around_layout(&device.device),
             pipelines: Recent::new(),
+            evens: Recent::new(),
             kinds: Recent::new(),
             no_layers: bind::as_layers(none.texture()),
             none,
             reads_samples: multi,
             wind: WindPicture::new(device),
+            even: EvenLayouts::new(&device.device),
+            even_cells: None,
         }
     }
 
@@ -216,18 +237,24 @@ impl Composite {
     /// # Errors
     /// A missing shader file.
     pub fn pipeline(&mut self, device: &Arc<Device>, variant: Variant) -> Result<&wgpu::RenderPipeline> {
-        let layouts = [&self.layouts[variant.sampling as usize], &self.layout_tables, &self.layout_around];
-        self.pipelines.get_or_make(
-            |made| *made == variant,
-            || {
-                let ((shader, entry), constants) = (variant.program(), variant.constants());
-                let shader = &shader;
-                let targets = [variant.target(wgpu::ColorWrites::ALL)];
-                let (constants, samples) = (constants.all(), variant.samples);
-                let desc = FullscreenDesc { shader, entry, layouts: &layouts, targets: &targets, constants, samples };
-                Ok((variant, pass::fullscreen_at(device, &desc, variant.pixels.test())?))
-            },
-        )
+        let layouts =
+            [&self.layouts[variant.sampling as usize], &self.layout_tables, &self.layout_around, &self.even.grid];
+        let layouts = if variant.pixels.are_even() { &layouts[..] } else { &layouts[..3] };
+        let make = || {
+            let ((shader, entry), constants) = (variant.program(), variant.constants());
+            let shader = &shader;
+            let targets = match variant.pixels {
+                Pixels::Grid => EvenLayouts::targets().0.to_vec(),
+                _ => vec![variant.target(wgpu::ColorWrites::ALL)],
+            };
+            let (constants, samples) = (constants.all(), variant.samples);
+            let desc = FullscreenDesc { shader, entry, layouts, targets: &targets, constants, samples };
+            Ok((variant, pass::fullscreen_at(device, &desc, variant.pixels.test())?))
+        };
+        match variant.pixels {
+            Pixels::Grid | Pixels::Even | Pixels::EvenDrawn => self.evens.get_or_make(|made| *made == variant, make),
+            _ => self.pipelines.get_or_make(|made| *made == variant, make),
+        }
     }
 
     /// The pipeline that draws a picture of the wind in the place of `variant`'s, and its group 1, after the frame's.
@@ -265,28 +292,52 @@ impl Composite {
         Ok((pipeline.clone(), group))
     }
 
-    /// The pipeline that writes the kinds of the pixels of `variant`, compiled at its first use.
+    /// The pipelines of the grid of `all`'s weather and of its cells, compiled at their first use.
     ///
     /// # Errors
     /// A missing shader file.
-    pub fn kinds(&mut self, device: &Arc<Device>, variant: &Variant) -> Result<&wgpu::RenderPipeline> {
-        let layouts = [&self.layouts[variant.sampling as usize], &self.layout_tables, &self.layout_around];
+    pub fn even(&mut self, device: &Arc<Device>, all: &Variant) -> Result<[wgpu::RenderPipeline; 2]> {
+        let grid = self.pipeline(device, even::grid_of(all))?.clone();
+        if let Some(cells) = &self.even_cells {
+            return Ok([grid, cells.clone()]);
+        }
+        let desc = FullscreenDesc {
+            shader: "frame/even_cells.wgsl",
+            entry: "even_cells",
+            layouts: &[&self.even.weather],
+            targets: &[EvenLayouts::targets().1],
+            constants: &[],
+            samples: 1,
+        };
+        let cells = self.even_cells.insert(pass::fullscreen(device, &desc)?);
+        Ok([grid, cells.clone()])
+    }
+
+    /// The pipeline that writes the kinds of the pixels of `variant`, compiled at its first use; `with_even` those too between which the
+    /// weather is even.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn kinds(&mut self, device: &Arc<Device>, variant: &Variant, with_even: bool) -> Result<&wgpu::RenderPipeline> {
+        let layouts =
+            [&self.layouts[variant.sampling as usize], &self.layout_tables, &self.layout_around, &self.even.grid];
+        let layouts = if with_even { &layouts[..] } else { &layouts[..3] };
         let between = &variant.constants.between;
-        let constants = [("DEPTH_KINDS", between.value("DEPTH_KINDS")), ("HAS_DEPTH", yes(variant.images[0]))];
-        let kinds = KindsPipeline { format: variant.format, sampling: variant.sampling, constants };
+        let constants = [
+            ("DEPTH_KINDS", between.value("DEPTH_KINDS")),
+            ("HAS_DEPTH", yes(variant.images[0])),
+            ("SURFACE", yes(variant.stages.has(Stages::SURFACE))),
+        ];
+        let kinds = KindsPipeline { format: variant.format, sampling: variant.sampling, constants, with_even };
         self.kinds.get_or_make(
             |made| *made == kinds,
             || {
                 let targets = [variant.target(wgpu::ColorWrites::empty())];
-                let (shader, constants) = (variant.sampling.kinds(), &kinds.constants);
-                let desc = FullscreenDesc {
-                    shader,
-                    entry: "kinds",
-                    layouts: &layouts,
-                    targets: &targets,
-                    constants,
-                    samples: 1,
+                let (shader, entry, constants) = match with_even {
+                    true => ("frame/kinds_even.wgsl", "kinds_even", &kinds.constants[..]),
+                    false => (variant.sampling.kinds(), "kinds", &kinds.constants[..2]),
                 };
+                let desc = FullscreenDesc { shader, entry, layouts, targets: &targets, constants, samples: 1 };
                 Ok((kinds, pass::fullscreen_at(device, &desc, Some(Pixels::writes()))?))
             },
         )

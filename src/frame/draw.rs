@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{
     View,
     composite::Variant,
+    even,
     froxels::Froxels,
     kinds::{self, Pixels},
     planned::{present, situation},
@@ -164,19 +165,33 @@ impl View {
         let groups = [group, tables, self.surroundings.bind_group()];
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let least = Variant { constants: composition.least, ..*whole };
-        let draws = if self.device.caps().software { kinds::draws(&least) } else { [Some(*whole), None, None] };
+        let grid = self.even.as_ref().filter(|_| even::may_be(&least));
+        let draws = match self.device.caps().software {
+            true => kinds::draws(&least, grid.is_some()),
+            false => [Some(*whole), None, None, None, None],
+        };
         match (draws, &self.kinds) {
-            ([Some(all), None, None], _) if all.pixels == Pixels::All => {
+            ([Some(all), None, None, None, None], _) if all.pixels == Pixels::All => {
                 let pipeline = composite.pipeline(&self.device, all)?;
                 pass::draw(to.encoder, "composite", pipeline, &groups, target);
                 to.passes += 1;
             }
             (draws, Some(kinds)) if draws.iter().any(Option::is_some) => {
-                let mut pipelines = [Some(composite.kinds(&self.device, &least)?.clone()), None, None, None];
+                let grid = grid.filter(|_| draws.iter().flatten().any(|variant| variant.pixels.are_even()));
+                if let Some(grid) = grid {
+                    let [weather, cells] = composite.even(&self.device, &least)?;
+                    grid.draw(to.encoder, [&weather, &cells], &groups);
+                    to.passes += 2;
+                }
+                let [frame, between, around] = groups;
+                let with_grid = grid.map(|grid| [frame, between, around, &grid.group]);
+                let groups = with_grid.as_ref().map_or(&groups[..], |four| four);
+                let first = composite.kinds(&self.device, &least, grid.is_some())?.clone();
+                let mut pipelines = [Some(first), None, None, None, None, None];
                 for (pipeline, variant) in pipelines[1..].iter_mut().zip(draws) {
                     *pipeline = variant.map(|v| composite.pipeline(&self.device, v).cloned()).transpose()?;
                 }
-                kinds.draw(to.encoder, pipelines.iter().flatten(), &groups, target);
+                kinds.draw(to.encoder, pipelines.iter().flatten(), groups, target);
                 to.passes += 1;
             }
             _ => {}

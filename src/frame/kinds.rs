@@ -2,7 +2,8 @@
 //!
 //! Such a driver takes both ways of every branch: a pixel of the sky pays for the air before things, a thing for the sky behind it, and the sky
 //! for the planet's ground below it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their
-//! own kind only, before their shader runs. All of them are in one pass. A GPU branches, and keeps one draw with one pipeline.
+//! own kind only, before their shader runs. All of them are in one pass. Pixels between which the weather is even ([`super::even`]) are kinds
+//! of their own. A GPU branches, and keeps one draw with one pipeline.
 
 use super::composite::Variant;
 use crate::{gpu::flat_texture, stage::Stages};
@@ -21,18 +22,31 @@ pub(super) enum Pixels {
     Below,
     /// Those on which the host drew.
     Drawn,
+    /// Those of any of these between which the weather is even ([`super::even`]).
+    Even,
+    /// Those of them on which the host drew, where something is drawn on surfaces.
+    EvenDrawn,
+    /// No pixels of the picture, but the texels of the weather's grid.
+    Grid,
 }
 
 impl Pixels {
     /// The depth that stands for them (`shaders/frame/kinds.wgsl`) and the test that lets only them pass; no test for all.
     pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
         let depth = match self {
-            Self::All => return None,
+            Self::All | Self::Grid => return None,
             Self::Above => 0.0,
+            Self::Even => 0.25,
             Self::Below => 0.5,
+            Self::EvenDrawn => 0.75,
             Self::Drawn => 1.0,
         };
         Some((depth, state(wgpu::CompareFunction::Equal, false)))
+    }
+
+    /// Whether they are of those between which the weather is even.
+    pub fn are_even(self) -> bool {
+        matches!(self, Self::Even | Self::EvenDrawn)
     }
 
     /// The test of the draw that writes the kinds.
@@ -52,11 +66,11 @@ fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState
 }
 
 /// Most draws of a picture.
-const DRAWS: usize = 3;
+const DRAWS: usize = 5;
 
 /// The draws that together draw `all` where kinds of pixels are told apart; those that would change nothing are left out. A single one
-/// where samples have depths of their own, or rays are marched.
-pub(super) fn draws(all: &Variant) -> [Option<Variant>; DRAWS] {
+/// where samples have depths of their own, or rays are marched. With a `grid` those too of pixels between which the weather is even.
+pub(super) fn draws(all: &Variant, grid: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];
     let veils_all = stages.has(Stages::MEDIUM) && traits.veils_all;
@@ -64,7 +78,7 @@ pub(super) fn draws(all: &Variant) -> [Option<Variant>; DRAWS] {
     let everywhere = stages.has(Stages::PARTICLES.with(Stages::TONE));
     let behind = stages.has(Stages::BACKGROUND);
     if all.samples > 1 || traits.is_marched {
-        return [Some(*all), None, None];
+        return [Some(*all), None, None, None, None];
     }
     let far = |pixels| Variant {
         stages: stages.without(Stages::SURFACE),
@@ -75,7 +89,16 @@ pub(super) fn draws(all: &Variant) -> [Option<Variant>; DRAWS] {
     let drawn = Variant { stages: stages.without(Stages::BACKGROUND), pixels: Pixels::Drawn, ..*all };
     let is_far = behind || veils_all || everywhere;
     let is_drawn = has_depth && (veils_drawn || everywhere || stages.has(Stages::SURFACE));
-    [is_far.then(|| far(Pixels::Above)), is_far.then(|| far(Pixels::Below)), is_drawn.then_some(drawn)]
+    // A grid is of all of the picture.
+    let grid = grid && is_far && (is_drawn || !has_depth);
+    let on_surfaces = grid && has_depth && stages.has(Stages::SURFACE);
+    [
+        is_far.then(|| far(Pixels::Above)),
+        is_far.then(|| far(Pixels::Below)),
+        is_drawn.then_some(drawn),
+        grid.then(|| far(Pixels::Even)),
+        on_surfaces.then_some(Variant { pixels: Pixels::EvenDrawn, ..*all }),
+    ]
 }
 
 /// The depth attachment of a view: the kinds of its picture's pixels.
@@ -142,7 +165,7 @@ mod tests {
     use crate::stage::{Pipeline, Sampling, Traits};
 
     fn variant(stages: Stages, has_depth: bool, veils_all: bool) -> Variant {
-        let traits = Traits { veils_all, veils_drawn: true, is_marched: false };
+        let traits = Traits { veils_all, veils_drawn: true, is_marched: false, is_fine: false };
         let constants = Pipeline { traits, ..Pipeline::NONE };
         Variant {
             stages,
@@ -156,7 +179,7 @@ mod tests {
     }
 
     fn drawn(all: &Variant) -> Vec<Pixels> {
-        draws(all).iter().flatten().map(|v| v.pixels).collect()
+        draws(all, false).iter().flatten().map(|v| v.pixels).collect()
     }
 
     #[test]
@@ -172,19 +195,28 @@ mod tests {
             (between, false, true, &[Above, Below]),
             (surfaces, true, true, &[Drawn]),
             (Stages::TONE, true, false, &[Above, Below, Drawn]),
+            (Stages::ALL, true, true, &[Above, Below, Drawn]),
         ] {
             let all = variant(stages, has_depth, veils_all);
             assert_eq!(drawn(&all), expected, "{stages:?}, depth {has_depth}, before all {veils_all}");
             assert_eq!(drawn(&Variant { samples: 4, ..all }), [All], "samples have depths of their own");
+            let even: Vec<_> = draws(&all, true).iter().flatten().map(|v| v.pixels).filter(|p| p.are_even()).collect();
+            let whole = expected.contains(&Above) && (!has_depth || expected.contains(&Drawn));
+            assert_eq!(!even.is_empty(), whole, "{stages:?}: a grid is for all of the picture");
+            assert_eq!(even.contains(&Pixels::EvenDrawn), whole && has_depth && stages.has(surfaces));
         }
     }
 
     #[test]
     fn depths_of_kinds_are_those_that_the_shader_writes() {
-        let shader = crate::gpu::shader::assemble("frame/kinds.wgsl").unwrap();
-        for (name, pixels) in
-            [("KIND_ABOVE", Pixels::Above), ("KIND_BELOW", Pixels::Below), ("KIND_DRAWN", Pixels::Drawn)]
-        {
+        let shader = crate::gpu::shader::assemble("frame/kinds_even.wgsl").unwrap();
+        for (name, pixels) in [
+            ("KIND_ABOVE", Pixels::Above),
+            ("KIND_BELOW", Pixels::Below),
+            ("KIND_DRAWN", Pixels::Drawn),
+            ("KIND_EVEN", Pixels::Even),
+            ("KIND_EVEN_DRAWN", Pixels::EvenDrawn),
+        ] {
             let depth = pixels.test().unwrap().0;
             assert!(shader.contains(&format!("const {name}: f32 = {depth:?};")), "{name} {depth}");
         }

@@ -9,6 +9,7 @@ mod composite;
 mod diagnose;
 mod draw;
 mod environment;
+mod even;
 mod froxels;
 mod kinds;
 mod light;

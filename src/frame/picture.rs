@@ -1,6 +1,6 @@
 //! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
 
-use super::{View, environment::EnvironmentMap, froxels::Froxels, kinds::KindAttachment};
+use super::{View, environment::EnvironmentMap, even::EvenGrid, froxels::Froxels, kinds::KindAttachment};
 use crate::{
     error::Result,
     gpu::{KeptLayer, Layer, is_kept},
@@ -30,7 +30,8 @@ impl View {
             texel * u64::from(c.width()) * u64::from(c.height()) * u64::from(c.sample_count())
         });
         let effects: u64 = self.effects.all().iter().map(|effect| effect.bytes()).sum();
-        let kinds = self.kinds.as_ref().map_or(0, KindAttachment::bytes);
+        let kinds =
+            self.kinds.as_ref().map_or(0, KindAttachment::bytes) + self.even.as_ref().map_or(0, EvenGrid::bytes);
         let environment = self.environment.as_deref().map_or(0, EnvironmentMap::bytes);
         copy + kinds + environment + self.blocks.bytes() + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
     }
@@ -51,15 +52,20 @@ impl View {
         Ok(!fits)
     }
 
-    /// Makes the attachment for kinds of pixels anew if it does not serve, where they are told apart.
-    pub(super) fn hold_kinds(&mut self, color: &wgpu::Texture) {
+    /// Makes the attachment for kinds of pixels and the weather's grid anew if they do not serve, where kinds are told apart.
+    pub(super) fn hold_kinds(&mut self, color: &wgpu::Texture) -> Result<()> {
         let apart = self.device.caps().software && color.sample_count() == 1;
         if self.kinds.as_ref().is_some_and(|kinds| !apart || !kinds.fits(color)) {
             self.kinds = None;
         }
+        if self.even.as_ref().is_some_and(|even| !apart || !even.fits(color)) {
+            self.even = None;
+        }
         if apart && self.kinds.is_none() {
             self.kinds = Some(KindAttachment::new(&self.device.device, color.size()));
+            self.even = EvenGrid::new(&self.device, &self.composite.lock()?.even, color);
         }
+        Ok(())
     }
 
     /// Brings the colour copy up to date with all that was recorded.

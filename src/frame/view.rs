@@ -10,6 +10,7 @@ use super::{
     composite::SharedComposite,
     draw::Call,
     environment::EnvironmentMap,
+    even::EvenGrid,
     froxels::{FrameTextures, Froxels},
     kinds::KindAttachment,
     opaque::OpaqueStep,
@@ -45,6 +46,7 @@ pub struct View {
     pub(super) froxels: Option<Froxels>,
     pub(super) environment: Option<Box<EnvironmentMap>>,
     pub(super) kinds: Option<KindAttachment>,
+    pub(super) even: Option<EvenGrid>,
     pub(super) opaque: Option<OpaqueStep>,
     pub(super) surroundings: SurroundingsBlock,
     pub(super) planner: Planner<Unseen>,
@@ -86,6 +88,7 @@ impl View {
             froxels: None,
             environment: None,
             kinds: None,
+            even: None,
             opaque: None,
             surroundings,
             planner,
@@ -154,9 +157,16 @@ impl View {
 
     /// Lets go what the view holds of the picture's size.
     fn forget_images(&mut self) {
-        (self.bound, self.copy, self.kinds, self.opaque) = (None, None, None, None);
+        (self.bound, self.copy, self.opaque) = (None, None, None);
+        (self.kinds, self.even) = (None, None);
         self.environment.iter_mut().for_each(|map| map.forget());
         self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
+    }
+
+    /// Draws the weather at every pixel from now on.
+    #[cfg(test)]
+    pub(crate) fn forget_grid(&mut self) {
+        self.even = None;
     }
 
     /// Makes what the view needs of the picture's size, before anything of the frame is recorded: a large target is what memory
@@ -164,7 +174,7 @@ impl View {
     fn hold_images(&mut self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let Some(color) = frame.color else { return Ok(()) };
         let (made, bytes) = (self.hold_copy(color)?, self.bytes());
-        self.hold_kinds(color);
+        self.hold_kinds(color)?;
         self.effects.each().into_iter().for_each(|effect| effect.hold(&self.device, color, stages));
         if made || self.bytes() != bytes { self.device.check_made() } else { Ok(()) }
     }

@@ -176,7 +176,8 @@ mod tests {
         let has = |file: &str| text.contains(&format!("// ---- {file}\n"));
         let words = VARIANTS.iter().filter(|(_, file)| has(file)).map(|(word, _)| format!(":{word}"));
         let several = ["", ":multi", ":resolved"].map(|host| format!("{host}:clear:dry"));
-        let several = several.into_iter().filter(|_| name == "frame/composite_view.wgsl");
+        let several = several.into_iter().chain([":even", ":dry:even"].map(String::from));
+        let several = several.filter(|_| name == "frame/composite_view.wgsl");
         std::iter::once(String::new()).chain(words).chain(several).map(|words| format!("{name}{words}")).collect()
     }
 

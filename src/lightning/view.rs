@@ -281,6 +281,7 @@ impl DrawnEffect for LightningView {
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         to.constant("FLASH", yes(self.storms), yes(self.lit.is_some()));
         let Some(lit) = &self.lit else { return Ok(()) };
+        to.is_fine();
         lit.write(shot, to);
         if !lit.has_line || !to.asked.has(Stages::PARTICLES) {
             return Ok(());

@@ -90,6 +90,8 @@ pub(crate) struct Traits {
     pub veils_drawn: bool,
     /// Rays are marched in every pixel alike: nothing is gained by a draw for each kind of pixels.
     pub is_marched: bool,
+    /// Something is in the picture that changes from pixel to pixel, as clouds and stars do: it cannot be looked up in a grid.
+    pub is_fine: bool,
 }
 
 /// The constants of a pipeline, and what follows of them for the frame.
@@ -111,7 +113,7 @@ impl Pipeline {
         between: Constants::NONE,
         of_veil: Constants::NONE,
         composed: Constants::NONE,
-        traits: Traits { veils_all: false, veils_drawn: false, is_marched: false },
+        traits: Traits { veils_all: false, veils_drawn: false, is_marched: false, is_fine: false },
     };
 }
 
@@ -160,6 +162,11 @@ impl Composition {
     pub fn between(&mut self, name: &'static str, whole: f64, least: f64) {
         self.whole.between.push((name, whole));
         self.least.between.push((name, least));
+    }
+
+    /// Says that something is in the picture that changes from pixel to pixel.
+    pub fn is_fine(&mut self) {
+        (self.whole.traits.is_fine, self.least.traits.is_fine) = (true, true);
     }
 
     /// The same of one by which pipelines for hosts' own shaders differ too.

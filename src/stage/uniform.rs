@@ -2,6 +2,7 @@
 
 use super::{ColorSpace, Frame};
 use crate::{
+    light::Exposure,
     moment::Moment,
     scene::{DepthUniform, MAX_FLASH_LAMPS, ViewRays},
 };
@@ -67,7 +68,9 @@ pub(crate) struct FrameUniform {
     pub mean_cloud: [f32; 4],
     /// As `drops`, of flakes.
     pub flakes: [f32; 2],
-    pub pad: [f32; 2],
+    /// A power of two: what light is multiplied by to be about 1 where it is white.
+    pub even_scale: f32,
+    pub pad: f32,
     /// What bows add to the phase function of drops in the low air, and in columns under rain areas, 1/sr a channel, over the angle.
     pub bows: [[[f32; 4]; BOW_ENTRIES]; 2],
 }
@@ -79,6 +82,13 @@ pub(crate) const BOW_ENTRIES: usize = 160;
 pub(crate) fn is_float(format: wgpu::TextureFormat) -> bool {
     use wgpu::TextureFormat as F;
     matches!(format, F::Rgba16Float | F::Rgba32Float | F::Rg11b10Ufloat)
+}
+
+/// By what eyes adapt to, so that it holds for a scene-linear picture whatever its host exposes it by; by a display's exposure where that
+/// shows darker things. Of both only the power of two, so that another one rounds nothing anew.
+fn even_scale(adaptation_cd_m2: f64, display_exposure: f64) -> f32 {
+    let eyes = Exposure::Auto { compensation_ev: 0.0 }.factor(adaptation_cd_m2);
+    eyes.max(display_exposure).log2().floor().clamp(-100.0, 100.0).exp2() as f32
 }
 
 /// The block of a frame before any effect has added to it: nothing is drawn of them. `tone` says that the whole picture is tone-mapped.
@@ -136,7 +146,8 @@ pub(crate) fn uniform(
         clouds_over: 0.0,
         mean_cloud: [0.0; 4],
         flakes: [0.0; 2],
-        pad: [0.0; 2],
+        even_scale: even_scale(scene.ground.adaptation_cd_m2, if display { exposure } else { 0.0 }),
+        pad: 0.0,
         bows: [[[0.0; 4]; BOW_ENTRIES]; 2],
     }
 }
@@ -187,6 +198,7 @@ mod tests {
                 clouds_over,
                 mean_cloud,
                 flakes,
+                even_scale,
                 bows
             ]
         );

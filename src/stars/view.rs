@@ -193,6 +193,7 @@ impl DrawnEffect for StarsView {
         let (is_there, share) = (self.is_there(to.stages), shot.share(&STARS, 0));
         to.constant("STARS", yes(is_there), yes(is_there && share > 0.0));
         if let Some(tonight) = self.tonight.as_ref().filter(|_| is_there) {
+            to.is_fine();
             to.block.behind = [(1.0 / tonight.seen(shot, 0.0).scale) as f32, share];
             to.block.behind_drawn = share * to.block.drawn[2];
             let layer = self.layer(shot.device, shot.color.texture).clone();

@@ -1,4 +1,5 @@
 //! Tests of several rooms together that look at what no host can see.
 
+mod even;
 mod moment;
 mod opaque;

@@ -131,8 +131,8 @@ fn agrees_with_pictures(mut host: Host) {
                     let pixel = drawn[(row + 1) * SIZE as usize - 1 - column];
                     let want = [0, 1, 2].map(|k| f64::from(pixel[k]));
                     let off = (luminance(&texel) / luminance(&want) - 1.0).abs();
-                    // Of rain, a picture leaves to drops what those near the eye hide.
-                    let documented = if w == 5 { 0.02 } else { 2e-3 };
+                    // Of rain, a picture leaves to drops what those near the eye hide. A thousandth or two are those of light that is looked up.
+                    let documented = if w == 5 { 0.02 } else { 4e-3 };
                     assert!(
                         off < documented,
                         "weather {w}, sun {sun_deg}, face {face}, {d:.3}: {texel:?} in the cube, {want:?} drawn"

@@ -1,0 +1,14 @@
+// The grid of the weather: what it adds to every fourth pixel of a picture, for draws of pixels between which it is even
+// (src/frame/even.rs).
+
+// Pixels between texels of the grid. The first texel lies as much before the picture's first pixel, the last ones beyond its last.
+const EVEN_PIXELS: i32 = 4;
+// White in the grid (of light by frame.even_scale), at most: halves have as much room above it as dark things need below it.
+const EVEN_WHITE: f32 = 64.0;
+// What is lighter is too light for halves.
+const EVEN_MOST: f32 = 60000.0;
+
+// The texel whose place is at a pixel or before it.
+fn even_texel(pixel: vec2i) -> vec2i {
+    return pixel / EVEN_PIXELS + 1;
+}

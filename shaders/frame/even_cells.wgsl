@@ -1,0 +1,58 @@
+// Finds where the weather is even between four texels of its grid: there the curves through it and its neighbours are within a
+// thousandth of straight lines. Output: log2 of the least and the greatest range of the four, m; for others the least is the greater.
+//!include "common/fullscreen.wgsl"
+//!include "frame/even.wgsl"
+
+@group(0) @binding(0) var even_weather: texture_2d_array<f32>;
+
+// Of light and a two-hundredth of white, and of what gets through.
+const LEAST_LIGHT: f32 = 0.005 * EVEN_WHITE;
+const MOST_ERROR: f32 = 1e-3;
+
+struct Row {
+    // How far a line between the middle two texels is off, over what is allowed.
+    bend: f32,
+    // Least and greatest range.
+    reach: vec2f,
+    // Above 0 where it is next to a disc or too light.
+    disc: f32,
+}
+
+fn texel(at: vec2i) -> array<vec4f, 2> {
+    let last = vec2i(textureDimensions(even_weather)) - 1;
+    let p = clamp(at, vec2i(0), last);
+    return array(textureLoad(even_weather, p, 0, 0), textureLoad(even_weather, p, 1, 0));
+}
+
+// Four texels in a row, from the one before `at`.
+fn row(at: vec2i, along: vec2i) -> Row {
+    let a = texel(at - along);
+    let b = texel(at);
+    let c = texel(at + along);
+    let d = texel(at + 2 * along);
+    // A line through the middle two is off by an eighth of the second difference; over a step there are two that cancel each other.
+    let bent = max(abs(a[0].rgb - 2.0 * b[0].rgb + c[0].rgb), abs(b[0].rgb - 2.0 * c[0].rgb + d[0].rgb)) / 8.0;
+    let dimmed = max(abs(a[1].rgb - 2.0 * b[1].rgb + c[1].rgb), abs(b[1].rgb - 2.0 * c[1].rgb + d[1].rgb)) / 8.0;
+    // What stands between the two at another range than the line's has the weather of any range between theirs.
+    let apart = select(0.0, 0.5, abs(b[0].a - c[0].a) > 0.5);
+    let light = max(bent, apart * abs(b[0].rgb - c[0].rgb));
+    let through = max(dimmed, apart * abs(b[1].rgb - c[1].rgb));
+    let allowed = MOST_ERROR * (max(b[0].rgb, c[0].rgb) + LEAST_LIGHT);
+    let bends = max(light / allowed, through / MOST_ERROR);
+    let reach = vec2f(min(b[0].a, c[0].a), max(b[0].a, c[0].a));
+    let is_too_light = any(max(b[0].rgb, c[0].rgb) >= vec3f(0.99 * EVEN_MOST));
+    return Row(max(max(bends.x, bends.y), bends.z), reach, max(max(b[1].a, c[1].a), f32(is_too_light)));
+}
+
+@fragment
+fn even_cells(in: FullscreenVarying) -> @location(0) vec2f {
+    let cell = vec2i(in.position.xy);
+    let rows = array(row(cell, vec2i(1, 0)), row(cell + vec2i(0, 1), vec2i(1, 0)));
+    let columns = array(row(cell, vec2i(0, 1)), row(cell + vec2i(1, 0), vec2i(0, 1)));
+    let bend = max(rows[0].bend, rows[1].bend) + max(columns[0].bend, columns[1].bend);
+    // What is no number is not even.
+    if !(bend <= 1.0) || rows[0].disc + rows[1].disc > 0.0 {
+        return vec2f(1.0, -1.0) * 1000.0;
+    }
+    return vec2f(min(rows[0].reach.x, rows[1].reach.x), max(rows[0].reach.y, rows[1].reach.y));
+}

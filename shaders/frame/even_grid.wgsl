@@ -1,0 +1,43 @@
+// Draws the grid of the weather.
+//!include "frame/even.wgsl"
+//!include "frame/composite_view.wgsl"
+
+struct EvenTexel {
+    // By EVEN_WHITE * frame.even_scale; log2 of the range, m.
+    @location(0) light: vec4f,
+    // And 1 next to a disc of sun or moon, which may fit between texels.
+    @location(1) transmittance: vec4f,
+}
+
+// Whether the disc of a lamp is seen within this angle of a direction, rad.
+fn is_near_disc(d: vec3f, angle: f32) -> bool {
+    let real = unrefracted(d);
+    for (var i = 0u; i < SKY_DISCS; i++) {
+        let lamp = sky_view.lamps[i];
+        if length(real - lamp.toward) < lamp.angular_radius + angle {
+            return true;
+        }
+    }
+    return false;
+}
+
+@fragment
+fn even_grid(in: FullscreenVarying) -> EvenTexel {
+    let at = (vec2i(in.position.xy) - 1) * EVEN_PIXELS;
+    let pixel = clamp(at, vec2i(0), vec2i(frame.picture) - 1);
+    let uv = (vec2f(at) + 0.5) / frame.picture;
+    let ndc = vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign);
+    var seen = Seen(pixel, 0, ndc, 0.0, RANGE_SKY, RANGE_SKY, 0.0);
+    if HAS_DEPTH {
+        seen.depth = textureLoad(host_depth, pixel, 0).r;
+        seen.range = view_range(frame.depth, seen.depth, ndc);
+        seen.plane = view_plane(frame.depth, seen.depth, ndc);
+    }
+    drawn = frame.drawn;
+    behind_share = frame.behind_drawn;
+    let ray = view_ray(frame.depth, ndc);
+    let veil = weather_over(ray, seen.range, seen.plane, hung_in(pixel, seen.range));
+    let disc = BACKGROUND && DISCS && is_near_disc(ray.direction, 2.0 * f32(EVEN_PIXELS) * frame.pixel_angle);
+    let light = min(veil.light * (EVEN_WHITE * frame.even_scale), vec3f(EVEN_MOST));
+    return EvenTexel(vec4f(light, log2(max(seen.range, 1e-3))), vec4f(veil.transmittance, f32(disc)));
+}

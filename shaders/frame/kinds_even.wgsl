@@ -1,0 +1,24 @@
+// As kinds.wgsl, where pixels between which the weather is even are kinds of their own.
+//!include "frame/even.wgsl"
+//!include "frame/kinds.wgsl"
+
+@group(3) @binding(2) var even_cells: texture_2d<f32>;
+
+// What is drawn on surfaces has a draw of its own.
+override SURFACE: bool = false;
+
+const KIND_EVEN: f32 = 0.25;
+const KIND_EVEN_DRAWN: f32 = 0.75;
+// Ranges so near those of a cell's texels, in octaves, are among them: halves hold no more of them.
+const REACH_SLACK: f32 = 0.02;
+
+@fragment
+fn kinds_even(in: FullscreenVarying) -> @builtin(frag_depth) f32 {
+    let seen = kind_of(in);
+    let reach = textureLoad(even_cells, even_texel(vec2i(in.position.xy)), 0).rg;
+    let range = log2(max(seen.range, 1e-3));
+    if range < reach.x - REACH_SLACK || range > reach.y + REACH_SLACK {
+        return seen.kind;
+    }
+    return select(KIND_EVEN, KIND_EVEN_DRAWN, SURFACE && seen.kind == KIND_DRAWN);
+}

@@ -1,0 +1,118 @@
+//! The grid of the weather against pictures that are drawn pixel by pixel.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::{
+    context::{Context, ContextDesc, GivenDirection},
+    frame::{Frame, Shared, Stages, View},
+    gpu::{Device, DeviceOptions, readback},
+    scene::Camera,
+    sky::SkySettings,
+    weather::{Fog, FogKind, Weather},
+};
+
+const SIZE: (u32, u32) = (320, 180);
+const EYE_M: f64 = 12.0;
+
+/// The picture of a weather, looked up and drawn pixel by pixel.
+struct Pictures {
+    looked_up: Vec<[f32; 4]>,
+    drawn: Vec<[f32; 4]>,
+    passes: [u32; 2],
+}
+
+/// Level ground with posts on it: one a pixel wide, a board, and thin ones far off.
+fn depths() -> Vec<f32> {
+    let (width, half) = (SIZE.0, 0.5 * f64::from(SIZE.1));
+    let of = |i: u32| {
+        let (x, y) = (i % width, i / width);
+        let down = (f64::from(y) + 0.5 - half) / half * 0.5_f64.tan();
+        let post = match x {
+            60 if (40..150).contains(&y) => 15.0,
+            100..=130 if (70..140).contains(&y) => 60.0,
+            _ if x % 17 == 3 && (84..95).contains(&y) => 900.0,
+            _ => f64::INFINITY,
+        };
+        let ground = if down > 0.0 { EYE_M / down } else { f64::INFINITY };
+        (0.1 / post.min(ground)) as f32
+    };
+    (0..SIZE.0 * SIZE.1).map(of).collect()
+}
+
+fn pictures(weather: &Weather, (azimuth_deg, elevation_deg): (f64, f64), stages: Stages) -> Pictures {
+    let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+    let shared = Arc::new(Shared::new(&device).expect("shared"));
+    let sky = SkySettings { orders: 4, suns: 48, altitudes: 12, ..SkySettings::default() };
+    let mut context = Context::new(device.clone(), shared, ContextDesc { sky, ..ContextDesc::default() }).expect("one");
+    context.set_sun(Some(GivenDirection { azimuth_deg, elevation_deg })).expect("a sun");
+    context.set_moon(Some(GivenDirection { azimuth_deg: 30.0, elevation_deg: -50.0 })).expect("a moon");
+    context.set_weather(weather, 0.0, 0.0).expect("a weather");
+    let mut view = View::new(&context).expect("a view");
+    let texture = |format| {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST;
+        crate::gpu::flat_texture(&device.device, "test", SIZE, format, usage)
+    };
+    let (color, depth) = (texture(wgpu::TextureFormat::Rgba32Float), texture(wgpu::TextureFormat::R32Float));
+    let write = |to: &wgpu::Texture, bytes: &[u8], texel: u32| {
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * SIZE.0), rows_per_image: None };
+        device.queue.write_texture(to.as_image_copy(), bytes, layout, to.size());
+    };
+    write(&depth, bytemuck::cast_slice(&depths()), 4);
+    let grey: Vec<f32> = (0..SIZE.0 * SIZE.1).flat_map(|i| [2000.0 + 500.0 * (i % 7) as f32; 4]).collect();
+    let eye = DVec3::new(0.0, 0.0, EYE_M);
+    let camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 1.0, 16.0 / 9.0, 0.1);
+    let mut id = 0;
+    let mut draw = |view: &mut View| {
+        id += 1;
+        write(&color, bytemuck::cast_slice(&grey), 16);
+        view.record(&context, &Frame::new(id, camera, &color, Some(&depth)), stages).expect("a frame");
+        *view.report()
+    };
+    let mut quiet = 0;
+    while quiet < 12 {
+        quiet = if draw(&mut view).tables_rebuilt > 0 { 0 } else { quiet + 1 };
+    }
+    let first = draw(&mut view).passes;
+    let looked_up = readback::rgba(&device, &color).expect("read");
+    view.forget_grid();
+    let second = draw(&mut view).passes;
+    let drawn = readback::rgba(&device, &color).expect("read");
+    Pictures { looked_up, drawn, passes: [first, second] }
+}
+
+#[test]
+fn nobody_sees_what_is_looked_up() {
+    let of = |name: &str| Weather::preset(name).expect("a preset");
+    let mist = Fog { kind: FogKind::Shallow, top_m: Some(2.0), coverage: None, visibility_inside_m: None };
+    let all = Stages::ALL.without(Stages::TONE).without(Stages::PARTICLES);
+    let two = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM);
+    for (name, weather, sun, stages) in [
+        ("clear", of("clear"), (200.0, 60.0), two),
+        ("a low sun in the picture", of("clear"), (8.0, 3.0), two),
+        ("fog", of("fog"), (200.0, 40.0), two),
+        ("haze", Weather { visibility_m: 3000.0, ..Weather::default() }, (10.0, 20.0), two),
+        ("shallow fog", Weather { fog: mist, ..Weather::default() }, (200.0, 40.0), two),
+        ("rain", of("rain"), (200.0, 40.0), all),
+    ] {
+        let found = pictures(&weather, sun, stages);
+        let [with, without] = found.passes;
+        assert_eq!(with, without + 2, "{name}");
+        let mean = found.drawn.iter().map(|p| f64::from(p[1])).sum::<f64>() / found.drawn.len() as f64;
+        let of = |(a, b): (&[f32; 4], &[f32; 4])| {
+            (0..3).map(|c| f64::from((a[c] - b[c]).abs()) / (f64::from(b[c]) + 0.01 * mean)).fold(0.0, f64::max)
+        };
+        let mut errors: Vec<f64> = found.looked_up.iter().zip(&found.drawn).map(of).collect();
+        let changed = errors.iter().filter(|e| **e > 0.0).count() as f64 / errors.len() as f64;
+        errors.sort_by(f64::total_cmp);
+        let [p95, worst] = [0.95, 1.0].map(|share| errors[((errors.len() - 1) as f64 * share) as usize]);
+        println!("{name}: looked up {changed:.2} of it; off {p95:.5} at p95, {worst:.5} at worst");
+        assert!(changed > 0.15, "{name}: {changed}");
+        assert!(p95 < 1e-3 && worst < 5e-3, "{name}: {p95} {worst}");
+    }
+}
