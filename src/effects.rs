@@ -20,7 +20,7 @@ use crate::{
     clouds::{self, CloudsView, HeldClouds},
     error::Result,
     flow::HeldFlow,
-    fog::{self, FogUniform, FogView, HeldFog},
+    fog::{self, FogView, HeldFog, LowAirUniform},
     glass::GlassView,
     gpu::{Device, Shared, blocks::Blocks},
     ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
@@ -208,7 +208,7 @@ pub(crate) fn together(scene: &Scene) -> ([usize; 2], StepWork) {
 }
 
 /// Sizes of the blocks by [`Block`](crate::stage::Block).
-pub(crate) const BLOCK_BYTES: [usize; 2] = [size_of::<FogUniform>(), size_of::<GroundUniform>()];
+pub(crate) const BLOCK_BYTES: [usize; 2] = [size_of::<LowAirUniform>(), size_of::<GroundUniform>()];
 
 /// Layout of the look-up tables of what lies behind and between.
 pub(crate) fn tables_layout(device: &Device) -> wgpu::BindGroupLayout {

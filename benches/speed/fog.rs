@@ -6,8 +6,8 @@ use std::time::Instant;
 use glam::DVec3;
 use welkin::{
     fog::{
-        CompatibilityLaw, DistanceKind, FogLayer, FogLight, FogModel, Law, Patches, Phase, Profile, Viewpoint,
-        laws::Curve,
+        CompatibilityLaw, DistanceKind, FogLayer, FogLight, FogModel, Law, LowAirUniform, Patches, Phase, Profile,
+        Viewpoint, laws::Curve,
     },
     gpu::{Device, DeviceOptions, shader},
     scene::{Camera, DepthMapping, ViewRays},
@@ -105,7 +105,7 @@ impl Bench {
         bytes.extend_from_slice(bytemuck::bytes_of(&rays()?.uniform()));
         let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size: bytes.len() as u64,
+            size: bytes.len().max(size_of::<LowAirUniform>()) as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });

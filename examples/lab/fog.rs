@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use welkin::candidates::Method as LibraryMethod;
 use welkin::fog::candidates::FogMethod;
 use welkin::fog::reference::fog_along;
-use welkin::fog::{FogModel, Law, Viewpoint};
+use welkin::fog::{FogModel, Law, LowAirUniform, Viewpoint};
 use welkin::gpu::{Device, flat_texture, pass, readback, shader};
 use welkin::scene::depth::RANGE_SKY_M;
 use welkin::scene::{Camera, DepthMapping, ViewRays};
@@ -205,7 +205,7 @@ impl Bench {
         bytes.extend_from_slice(bytemuck::bytes_of(&host.rays.uniform()));
         let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
             label: Some("lab fog"),
-            size: bytes.len() as u64,
+            size: bytes.len().max(size_of::<LowAirUniform>()) as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });

@@ -14,9 +14,9 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     }
     // What drops and flakes near the eye hide is drawn as such.
     let hidden = drawn.w * depth_of_drawn(range);
-    var f = fog_beside_drops(fog, ray.origin, ray.direction, range, plane, hidden);
+    var f = fog_beside_drops(low_air.fog, ray.origin, ray.direction, range, plane, hidden);
     if BOW {
-        f.radiance = max(f.radiance + f.once * bow_phase(BOW_LOW_AIR, ray.direction, fog.to_sun), vec3f(0.0));
+        f.radiance = max(f.radiance + f.once * bow_phase(BOW_LOW_AIR, ray.direction, low_air.fog.to_sun), vec3f(0.0));
     }
     f.radiance *= drawn.y * air_lit;
     f.transmittance = mix(vec3f(1.0), f.transmittance, drawn.y);

@@ -1,4 +1,4 @@
 // The fog of a frame.
 //!include "fog/uniform.wgsl"
 
-@group(0) @binding(4) var<uniform> fog: FogUniform;
+@group(0) @binding(4) var<uniform> low_air: LowAir;

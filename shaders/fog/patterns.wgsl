@@ -1,9 +1,13 @@
-// Patches of fog and curtains of rain, of the bound `fog`: an index into a copy of it would copy all of it. The f64 twin and the
+// Patches of fog and curtains of rain, of the bound `low_air`: an index into a copy of it would copy all of it. The f64 twin and the
 // derivation are in src/fog/patterns.rs.
 //!include "fog/binding.wgsl"
 
 // Half of a path on which a wave of the pattern fades to a half, in its length / 2 pi.
 const PATCH_ROW: f32 = 8.0;
+// Obstacles to the wind lead the patches.
+override FOG_DETOUR: bool = false;
+// Parts of a ray over a map of detours.
+const DETOUR_PARTS: u32 = 8u;
 // Distance at which curtains of rain begin, m.
 const CURTAIN_START: f32 = 30.0;
 
@@ -18,16 +22,70 @@ fn wave_mean(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f3
     return vec2f(cos(wave.w + dot(wave.xyz, origin) + along * middle) * size, size * size);
 }
 
+fn detour_node(x: u32, y: u32) -> vec2f {
+    let node = y * DETOUR_SIDE + x;
+    let two = low_air.lags[node / 2u];
+    return select(two.zw, two.xy, node % 2u == 0u);
+}
+
+// How far the air at a place relative to the camera is behind, m.
+fn detour_lag(place: vec3f) -> vec2f {
+    let last = f32(DETOUR_SIDE - 1u);
+    let at = clamp(low_air.detour_camera + place.xy * low_air.detour_scale, vec2f(0.0), vec2f(last));
+    let low = min(floor(at), vec2f(last - 1.0));
+    let part = at - low;
+    let node = vec2u(low);
+    let south = mix(detour_node(node.x, node.y), detour_node(node.x + 1u, node.y), part.x);
+    let north = mix(detour_node(node.x, node.y + 1u), detour_node(node.x + 1u, node.y + 1u), part.x);
+    return mix(south, north, part.y) * (1.0 - smoothstep(0.0, 1.0, (place.z - low_air.detour_floor) * low_air.detour_fade));
+}
+
+// What detours add to the sum of the patches' waves.
+fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
+    let at = low_air.detour_camera + origin.xy * low_air.detour_scale;
+    let flat_way = direction.xy * low_air.detour_scale;
+    let way = select(flat_way, vec2f(1e-9), abs(flat_way) < vec2f(1e-9));
+    let a = -at / way;
+    let b = (f32(DETOUR_SIDE - 1u) - at) / way;
+    let enters = min(a, b);
+    let leaves = max(a, b);
+    let start = max(max(enters.x, enters.y), first);
+    let end = min(min(leaves.x, leaves.y), last);
+    if end <= start {
+        return 0.0;
+    }
+    let h = 0.5 * (end - start) / f32(DETOUR_PARTS);
+    var sum = 0.0;
+    for (var n = 0u; n < DETOUR_PARTS; n++) {
+        let place = origin + direction * (start + f32(2u * n + 1u) * h);
+        let lag = detour_lag(place);
+        for (var i = 0u; i < low_air.fog.waves.x; i++) {
+            let wave = low_air.fog.patch_waves[i];
+            let x = dot(wave.xyz, direction) * h;
+            let near = abs(x) < 1e-2;
+            let sinc = select(sin(x) / select(x, 1.0, near), 1.0 - x * x / 6.0, near);
+            // As long rows fade with all of a ray, so do they here.
+            let row = PATCH_ROW / (PATCH_ROW + length(wave.xyz) * 0.5 * (last - first));
+            let phase = wave.w + dot(wave.xyz, place);
+            sum += (cos(phase + dot(wave.xy, lag)) - cos(phase)) * sinc * row;
+        }
+    }
+    return sum * 2.0 * h / (last - first);
+}
+
 // Both sums are loops whose ends no compiler knows: written out, their sines take a software driver longer to compile than all the
 // rest of a pixel.
 fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let m = 0.5 * (first + last);
     let h = 0.5 * (last - first);
     var sum = 0.0;
-    for (var i = 0u; i < fog.waves.x; i++) {
-        sum += wave_mean(fog.patch_waves[i], origin, direction, m, h).x;
+    for (var i = 0u; i < low_air.fog.waves.x; i++) {
+        sum += wave_mean(low_air.fog.patch_waves[i], origin, direction, m, h).x;
     }
-    return max(1.0 + fog.patch_amount * 0.5 * sum, 0.0);
+    if FOG_DETOUR {
+        sum += detoured(origin, direction, first, last);
+    }
+    return max(1.0 + low_air.fog.patch_amount * 0.5 * sum, 0.0);
 }
 
 // What curtains add between two distances, over what an even layer has there, and the variance of that.
@@ -35,10 +93,10 @@ fn curtain_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f
     let start = max(first, CURTAIN_START);
     let m = 0.5 * (start + last);
     let h = 0.5 * max(last - start, 0.0);
-    let part = fog.curtain_amount * 2.0 * h / max(last - first, 1e-3);
+    let part = low_air.fog.curtain_amount * 2.0 * h / max(last - first, 1e-3);
     var sum = vec2f(0.0);
-    for (var i = 0u; i < fog.waves.y; i++) {
-        sum += wave_mean(fog.curtain_waves[i], origin, direction, m, h);
+    for (var i = 0u; i < low_air.fog.waves.y; i++) {
+        sum += wave_mean(low_air.fog.curtain_waves[i], origin, direction, m, h);
     }
     return vec2f(part, 0.5 * part * part) * sum;
 }

@@ -11,7 +11,7 @@ fn fog_probe(in: FullscreenVarying) -> @location(0) vec4f {
     let depth = textureLoad(depth_texture, vec2i(in.position.xy), 0).r;
     let ray = view_ray(probe_depth, ndc);
     let range = view_range(probe_depth, depth, ndc);
-    let seen = fog_along(fog, ray.origin, ray.direction, range, view_plane(probe_depth, depth, ndc));
+    let seen = fog_along(low_air.fog, ray.origin, ray.direction, range, view_plane(probe_depth, depth, ndc));
     let white = fog_apply(seen, vec3f(1.0));
     let black = fog_apply(seen, vec3f(0.0));
     return vec4f(white.g, black.g, seen.transmittance.g, 1.0);

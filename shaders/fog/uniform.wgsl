@@ -62,3 +62,18 @@ struct FogUniform {
     // Waves of the patches and of the curtains, 0 where there are none.
     waves: vec2u,
 }
+
+const DETOUR_SIDE: u32 = 24u;
+
+// With how obstacles lead its patches (src/wind/detour.rs): LowAirUniform of src/fog/uniforms.rs.
+struct LowAir {
+    fog: FogUniform,
+    // Cells a metre, and the cell of the camera: east, north.
+    detour_scale: vec2f,
+    detour_camera: vec2f,
+    // Height of the map's floor over the camera, m; 1/height over it at which nothing is left of a detour, 1/m.
+    detour_floor: f32,
+    detour_fade: f32,
+    // How far the air is behind at two nodes, m east and north: eastern neighbours beside each other, then northern.
+    lags: array<vec4f, 288>,
+}

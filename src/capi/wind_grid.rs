@@ -1,8 +1,8 @@
 //! Wind that varies in space
 //!
 //! If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
-//! They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on drops and flakes near a camera, in
-//! place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's wind.
+//! They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, on patches of fog and dust, and on drops and
+//! flakes near a camera, in place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's wind.
 
 use std::{ffi::c_void, ptr::null};
 

@@ -16,6 +16,8 @@
 //!   ([`light`]); the first scattering keeps its true phase function (Nakajima and Tanaka 1988). Both are integrated
 //!   along the pixel's ray in closed form. So fog conserves energy: it neither glows nor blackens, is bright at noon,
 //!   brighter toward a low sun, dark at night, and everything far away converges to the same radiance, ground or sky.
+//! * Patches are waves whose mean along a ray is closed form too ([`patterns`]). They go with the air; where the wind goes round something, a
+//!   ray over that place takes the lag of the air there in eight parts (`wind/detour.rs`).
 //! * The compatibility laws of older simulators (linear, exponential, exponential squared, on range or plane
 //!   distance) are [`CompatibilityLaw`].
 //!
@@ -66,7 +68,7 @@ pub use queries::{
     vertical_visibility_m, visibility_between_m,
 };
 pub use reference::{FallingModel, FogKind, FogModel, FogSample};
-pub use uniforms::{FogUniform, FogVariant};
+pub use uniforms::{FogUniform, FogVariant, LowAirUniform};
 
 pub(crate) use held::HeldFog;
 pub(crate) use of_weather::{LowAir, dim};

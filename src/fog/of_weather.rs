@@ -15,6 +15,7 @@ use crate::{
     moment::{GroundLight, Light, Scene},
     scene::Place,
     weather::{Conditions, lifting, smoothstep},
+    wind::Detour,
 };
 
 /// Least change of the optical depth of the longest curtain that shows.
@@ -25,12 +26,18 @@ const LEAST_SHOWN: f64 = 1e-3;
 pub(crate) struct LowAir {
     layer: Option<FogLayer>,
     falling: FallingLayer,
+    detour: Option<Detour>,
 }
 
 impl LowAir {
     /// Of a weather. Patches of fog go with the air: `drift_m` is how far the wind has carried it (east, north).
     pub fn new(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Self {
-        Self { layer: ground_layer(c, seed, drift_m), falling: FallingLayer::new(c) }
+        Self { layer: ground_layer(c, seed, drift_m), falling: FallingLayer::new(c), detour: None }
+    }
+
+    /// With patches that go round what the wind goes round.
+    pub fn led_by(self, detour: Option<Detour>) -> Self {
+        Self { detour, ..self }
     }
 
     /// The same without patches.
@@ -49,7 +56,7 @@ impl LowAir {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn model(&self, light: &FogLight, view: &Viewpoint) -> Result<FogModel> {
-        FogModel::of_weather(self.layer.as_ref(), &self.falling, light, view)
+        Ok(FogModel::of_weather(self.layer.as_ref(), &self.falling, light, view)?.led_by(self.detour.clone()))
     }
 }
 
@@ -195,6 +202,11 @@ impl Scene {
 }
 
 impl FogModel {
+    /// With patches that go round what the wind goes round.
+    pub(crate) fn led_by(self, detour: Option<Detour>) -> Self {
+        Self { detour: detour.filter(|_| self.patch_amount > 0.0), ..self }
+    }
+
     /// Optical depth straight up from an altitude. The older laws have no height: what they say of the light above the ground is
     /// nothing.
     pub(crate) fn depth_above(&self, altitude_m: f64) -> f64 {

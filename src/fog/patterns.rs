@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::reference::FogModel;
-use crate::light::sinc;
+use crate::{light::sinc, wind::Detour};
 
 /// Half of a path on which a wave of a pattern fades to a half, in its length / 2 pi: `PATCH_ROW` of
 /// `shaders/fog/patterns.wgsl`.
@@ -66,9 +66,38 @@ fn wave_mean((wave, phase): (DVec3, f64), origin: DVec3, direction: DVec3, middl
 /// Mean of the patches' pattern along a ray between `first` and `last` metres: 1 for an even layer.
 pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, last: f64) -> f64 {
     let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
-    let sum: f64 = m.patch_waves.iter().map(|w| wave_mean(*w, origin, direction, middle, half).0).sum();
+    let mut sum: f64 = m.patch_waves.iter().map(|w| wave_mean(*w, origin, direction, middle, half).0).sum();
+    if let Some(detour) = &m.detour {
+        sum += detoured(m, detour, (origin, direction), [first, last]);
+    }
     // Pairs of four unit waves: |sum of four|^2 / 4 = 1 + 1/2 sum of cosines, never negative.
     (1.0 + m.patch_amount * 0.5 * sum).max(0.0)
+}
+
+/// Parts of a ray over a map of detours, each with the detour of its middle: `DETOUR_PARTS` of `shaders/fog/patterns.wgsl`.
+const DETOUR_PARTS: usize = 8;
+
+/// What detours add to the sum of the waves' means.
+fn detoured(m: &FogModel, detour: &Detour, (origin, direction): (DVec3, DVec3), [first, last]: [f64; 2]) -> f64 {
+    let [enters, leaves] = detour.over(origin, direction);
+    let (from, to) = (enters.max(first), leaves.min(last));
+    if to <= from {
+        return 0.0;
+    }
+    let half = 0.5 * (to - from) / DETOUR_PARTS as f64;
+    let part = |n: usize| {
+        let middle = from + (2 * n + 1) as f64 * half;
+        let place = origin + direction * middle;
+        let lag = detour.lag_m(place).extend(0.0);
+        let moved = |(wave, phase): &(DVec3, f64)| {
+            let at = phase + wave.dot(place);
+            // As long rows fade with all of a ray, so do they here.
+            let row = PATCH_ROW / (PATCH_ROW + wave.length() * 0.5 * (last - first));
+            ((at + wave.dot(lag)).cos() - at.cos()) * sinc(wave.dot(direction) * half) * row
+        };
+        m.patch_waves.iter().map(moved).sum::<f64>()
+    };
+    (0..DETOUR_PARTS).map(part).sum::<f64>() * 2.0 * half / (last - first)
 }
 
 #[cfg(test)]

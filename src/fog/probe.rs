@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{FogLayer, FogLight, FogModel, FogUniform, Law, Profile, Viewpoint, koschmieder_extinction_per_m};
+use super::{FogLayer, FogLight, FogModel, Law, LowAirUniform, Profile, Viewpoint, koschmieder_extinction_per_m};
 use crate::{
     error::{Result, check_range},
     gpu::{
@@ -42,7 +42,8 @@ pub fn probe(device: &Device, visibility_m: f64, distances_m: &[f64]) -> Result<
     // The numbers a host would pass are f32.
     camera.projection = camera.projection.as_mat4().as_dmat4();
     let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..Default::default() })?;
-    let fog = model(visibility_m)?.uniform();
+    let mut fog = LowAirUniform::default();
+    fog.set(&model(visibility_m)?);
     let depths: Vec<f32> = (0..WIDTH * height)
         .map(|i| {
             let pixel = DVec2::new(f64::from(i % WIDTH) + 0.5, f64::from(i / WIDTH) + 0.5);
@@ -68,7 +69,7 @@ fn model(visibility_m: f64) -> Result<FogModel> {
 
 fn draw(
     device: &Device,
-    (depth, fog): (&DepthUniform, &FogUniform),
+    (depth, fog): (&DepthUniform, &LowAirUniform),
     depths: &[f32],
     height: u32,
 ) -> Result<Vec<[f32; 4]>> {
@@ -123,7 +124,10 @@ fn draw(
 }
 
 fn layout(gpu: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let slots =
-        [(0, Slot::Uniform(size_of::<DepthUniform>())), (1, Slot::Texels), (4, Slot::Uniform(size_of::<FogUniform>()))];
+    let slots = [
+        (0, Slot::Uniform(size_of::<DepthUniform>())),
+        (1, Slot::Texels),
+        (4, Slot::Uniform(size_of::<LowAirUniform>())),
+    ];
     bind::layout(gpu, "fog probe", wgpu::ShaderStages::FRAGMENT, &slots)
 }

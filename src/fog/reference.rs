@@ -26,6 +26,7 @@ use super::patterns::{Curtains, PATCH_WAVES, patch_mean};
 use super::phase::{fog_phase_after, share_unscattered};
 use crate::light::PhaseLobes;
 use crate::scene::depth::RANGE_SKY_M;
+use crate::wind::Detour;
 
 /// What a model does: the shader's switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +69,7 @@ impl Term {
 }
 
 /// All that a frame's fog needs, prepared in f64; [`FogModel::uniform`] is its form for shaders.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FogModel {
     /// What is drawn.
     pub kind: FogKind,
@@ -135,6 +136,8 @@ pub struct FogModel {
     pub patch_amount: f64,
     /// See `patch_amount`.
     pub patch_waves: [(DVec3, f64); PATCH_WAVES],
+    /// How obstacles to the wind lead the patches.
+    pub(crate) detour: Option<Detour>,
     /// What falls through it and above it.
     pub falling: FallingModel,
 }

@@ -12,6 +12,7 @@ use crate::{
     falling::FallingLayer,
     light::PhaseLobes,
     weather::smoothstep,
+    wind::DETOUR_SIDE,
 };
 
 /// Wavelengths of the channels, nm: those at which the sky's three-channel tables stand; green is Koschmieder's 550.
@@ -134,6 +135,7 @@ impl FogModel {
             lit: 1.0,
             patch_amount: 0.0,
             patch_waves: [(DVec3::ZERO, 0.0); PATCH_WAVES],
+            detour: None,
             falling: FallingModel::NONE,
         }
     }
@@ -328,6 +330,7 @@ impl FogModel {
             curtains: self.falling.curtains.amount > 0.0,
             falling: self.falling.extinction > 0.0,
             neutral: even(self.ratio) && even(self.scaling) && even(self.k),
+            detour: self.detour.is_some(),
             lifted: self.kind == FogKind::Slab && self.knots[1] > self.ground.min(self.altitude) - MARGIN_M,
         }
     }
@@ -391,6 +394,8 @@ pub struct FogVariant {
     pub absorbing: bool,
     /// Layers in patches.
     pub patches: bool,
+    /// Patches that go round obstacles to the wind.
+    pub detour: bool,
     /// What falls.
     pub falling: bool,
     /// Curtains of rain among it.
@@ -402,17 +407,31 @@ pub struct FogVariant {
 }
 
 impl FogVariant {
-    /// Everything.
-    pub const ALL: Self =
-        Self { kinds: 63, absorbing: true, patches: true, falling: true, curtains: true, neutral: false, lifted: true };
+    /// Everything but detours.
+    pub const ALL: Self = Self {
+        kinds: 63,
+        absorbing: true,
+        patches: true,
+        detour: false,
+        falling: true,
+        curtains: true,
+        neutral: false,
+        lifted: true,
+    };
+
+    /// Everything, and detours if the model has any.
+    pub fn all_of(model: &FogModel) -> Self {
+        Self { detour: model.detour.is_some(), ..Self::ALL }
+    }
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 7] {
+    pub fn constants(&self) -> [(&'static str, f64); 8] {
         let flag = |b: bool| f64::from(u8::from(b));
         [
             ("FOG_KINDS", f64::from(self.kinds)),
             ("FOG_ABSORBING", flag(self.absorbing)),
             ("FOG_PATCHES", flag(self.patches)),
+            ("FOG_DETOUR", flag(self.detour)),
             ("FOG_FALLING", flag(self.falling)),
             ("FOG_CURTAINS", flag(self.curtains)),
             ("FOG_NEUTRAL", flag(self.neutral)),
@@ -480,4 +499,37 @@ pub struct FogUniform {
     pub lit: f32,
     pub curtain_amount: f32,
     pub waves: [u32; 2],
+}
+
+/// `LowAir` of `shaders/fog/uniform.wgsl`: what is bound, the fog of a frame and the detours of its patches.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[allow(missing_docs)] // As above.
+pub struct LowAirUniform {
+    pub fog: FogUniform,
+    pub detour_scale: [f32; 2],
+    pub detour_camera: [f32; 2],
+    pub detour_floor: f32,
+    pub detour_fade: f32,
+    pub pad: [f32; 2],
+    pub lags: [[f32; 4]; DETOUR_SIDE * DETOUR_SIDE / 2],
+}
+
+impl Default for LowAirUniform {
+    fn default() -> Self {
+        bytemuck::Zeroable::zeroed()
+    }
+}
+
+impl LowAirUniform {
+    /// Takes up a frame's fog; without detours those of an earlier frame stay, and nothing reads them.
+    pub fn set(&mut self, model: &FogModel) {
+        self.fog = model.uniform();
+        let Some(detour) = &model.detour else { return };
+        self.detour_scale = detour.scale.as_vec2().to_array();
+        self.detour_camera = detour.camera.as_vec2().to_array();
+        self.detour_floor = detour.floor_m as f32;
+        self.detour_fade = detour.fade_per_m as f32;
+        self.lags.as_flattened_mut().copy_from_slice(detour.map.lags_m.as_flattened());
+    }
 }

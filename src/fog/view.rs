@@ -1,6 +1,6 @@
 //! What a view draws of the fog: its block of numbers, and the constants of the composition.
 
-use super::{FogKind, FogModel, FogUniform, FogVariant, Law, candidates};
+use super::{FogKind, FogModel, FogVariant, Law, LowAirUniform, candidates};
 use crate::{
     error::Result,
     gpu::{
@@ -14,6 +14,7 @@ use crate::{
 /// The fog of a view.
 pub(crate) struct FogView {
     block: UniformBlock,
+    uniform: Box<LowAirUniform>,
     model: Option<FogModel>,
     /// What shaders must be able to draw of it, if there is any.
     variant: Option<FogVariant>,
@@ -23,8 +24,8 @@ pub(crate) struct FogView {
 
 impl FogView {
     pub fn new(device: &Device, blocks: &Blocks) -> Self {
-        let block = blocks.block(device, size_of::<FogUniform>());
-        Self { block, model: None, variant: None, software: device.caps().software }
+        let block = blocks.block(device, size_of::<LowAirUniform>());
+        Self { block, uniform: Box::default(), model: None, variant: None, software: device.caps().software }
     }
 
     /// Takes the fog of a moment, by the host's `law` if it asked for one.
@@ -32,10 +33,11 @@ impl FogView {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn gather(&mut self, now: &Moment<'_>, law: Option<&Law>) -> Result<()> {
-        let model = now.scene.fog_model(law, now.seed, now.planet_radius_m)?;
-        // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes.
+        let model = now.scene.fog_model(law, now.seed, now.planet_radius_m)?.led_by(now.detour.clone());
+        // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes. Detours, which few scenes
+        // have, would cost every other one registers.
         self.variant = (model.kind != FogKind::Clear || model.falling.extinction > 0.0)
-            .then(|| if self.software { model.variant() } else { FogVariant::ALL });
+            .then(|| if self.software { model.variant() } else { FogVariant::all_of(&model) });
         self.model = Some(model);
         Ok(())
     }
@@ -68,7 +70,8 @@ impl DrawnEffect for FogView {
         to.block.drawn[1] = share;
         to.set_block(Block::Between, &self.block);
         if let (Some(model), true) = (&self.model, self.variant.is_some()) {
-            self.block.write(bytemuck::bytes_of(&model.uniform()));
+            self.uniform.set(model);
+            self.block.write(bytemuck::bytes_of(&*self.uniform));
         }
         Ok(())
     }

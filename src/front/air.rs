@@ -85,7 +85,8 @@ impl Context {
         let medium = Medium::of(&scene.planet);
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
         let mut through = medium.transmittance(&ray.columns(&medium, 0.0, distance));
-        let low = LowAir::new(&scene.conditions, self.world.seed, scene.drift_m);
+        let detour = self.world.detour(from, &scene.conditions, time_s);
+        let low = LowAir::new(&scene.conditions, self.world.seed, scene.drift_m).led_by(detour);
         if !low.is_clear() {
             let view = Viewpoint {
                 altitude_m: scene.place.altitude_m,

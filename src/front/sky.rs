@@ -44,7 +44,8 @@ impl Context {
         }
         let skies = self.shared().get(|| Ok(SolvedSkies::default()))?;
         let law = self.fog_law();
-        let fog = scene.fog_model(law, self.world.seed, self.world.set.planet.bottom_radius_m)?;
+        let detour = self.world.detour(position, &scene.conditions, time_s);
+        let fog = scene.fog_model(law, self.world.seed, self.world.set.planet.bottom_radius_m)?.led_by(detour);
         let fog_depth = fog.depth_above(scene.place.altitude_m);
         let night = NightBehind::new(&scene, self.world.utc_at(time_s), self.stars(), fog_depth)?;
         let clouds = self.cloud_rays((&scene, position), time_s)?;

@@ -21,7 +21,7 @@ use crate::{
     scene::{FlashLamp, HostLight, MAX_FLASH_LAMPS, Place},
     surroundings::{HostSurroundings, OccluderMaps, Shelter, WindMap, WindTexture, WindView},
     weather::Conditions,
-    wind::{Carrying, WindVolume},
+    wind::{Carrying, Detour, WindVolume},
 };
 
 /// Largest extinction that is accepted, 1/m: a visibility of 30 cm.
@@ -57,6 +57,8 @@ pub(crate) struct Moment<'a> {
     /// The wind that varies in space: a host's grid, or a solved field.
     pub wind_volume: Option<&'a WindVolume>,
     pub wind_texture: &'a WindTexture,
+    /// How that leads the patches of the weather's low layer, where they show it.
+    pub detour: Option<Detour>,
     pub carried: OnceCell<Carrying<'a>>,
     /// Light of flashes of lightning in this frame, once it is known.
     pub flash: OnceCell<FlashLight>,

@@ -344,6 +344,11 @@ impl GroundLayer {
         lifted: 0.0,
     };
 
+    /// Whether it is unlike from place to place.
+    pub fn is_patchy(&self) -> bool {
+        self.extinction_per_m > 0.0 && (self.coverage < 1.0 || self.lifted > 0.0)
+    }
+
     /// Extinction at each wavelength (nm), 1/m, inside the layer.
     pub fn extinction_at(&self, wavelengths_nm: [f64; 3]) -> [f64; 3] {
         wavelengths_nm.map(|l| self.extinction_per_m * libm::pow(l / 550.0, -self.angstrom_exponent))

@@ -10,6 +10,7 @@
 //! What the wind carries is moved by the displacement, never by velocity times time: then no change throws it.
 
 mod carrying;
+mod detour;
 mod drift;
 mod grid;
 mod gusts;
@@ -21,6 +22,7 @@ mod volume;
 use glam::{DVec2, DVec3};
 
 pub(crate) use carrying::{Carrying, Remembered, WindOver};
+pub(crate) use detour::{DETOUR_SIDE, Detour, DetourMap};
 use drift::Walk;
 pub use drift::{Blowing, Drift};
 pub use grid::{MAX_NODES, WindGrid, WindGridKind};

@@ -34,6 +34,7 @@ pub(crate) use lights::color_of;
 pub(crate) use saved::{LoadedWorld, SavedWorld, parse_error};
 pub(crate) use saved_settings::{values, words};
 pub(crate) use scene::{light_above_clouds, night_share, zenith_depth};
+use wind::KeptDetours;
 
 use crate::{
     almanac::{
@@ -156,6 +157,7 @@ pub(crate) struct World {
     /// The wind round terrain and boxes, where something has solved for it.
     pub solved_wind: Option<Box<WindVolume>>,
     wind_texture: WindTexture,
+    detours: KeptDetours,
     /// The lying snow, where it is led through time.
     pub snow: Option<Box<LyingSnow>>,
     pub time_s: f64,
@@ -222,6 +224,7 @@ impl World {
             host_wind: None,
             solved_wind: None,
             wind_texture: WindTexture::default(),
+            detours: KeptDetours::default(),
             snow: None,
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
@@ -345,6 +348,7 @@ impl World {
             lamps: &self.lights,
             wind_volume: self.wind_volume(self.time_s),
             wind_texture: &self.wind_texture,
+            detour: self.detour(eye, &scene.conditions, self.time_s),
             carried: carried.map_or_else(OnceCell::new, OnceCell::from),
             flash: OnceCell::new(),
             scene,

@@ -118,6 +118,7 @@ impl World {
             host_wind: _,
             solved_wind: _,
             wind_texture: _,
+            detours: _,
             time_s: _,
             ephemeris: _,
             couplings: _,

@@ -222,8 +222,7 @@ impl World {
         let above_fog = self.ground_light((&planet, &local.place), (overhead, ground_albedo), &lights, night_lux);
         let [(sun, under_sun), (moon, _)] = lights;
         // Only patches and curtains show where the air has gone.
-        let patchy =
-            conditions.fog.extinction_per_m > 0.0 && (conditions.fog.coverage < 1.0 || conditions.fog.lifted > 0.0);
+        let patchy = conditions.fog.is_patchy();
         let curtained = curtain::variation(&conditions.precipitation) > 0.0;
         let wind = (patchy || curtained).then(|| self.over().wind_at(time_s)).transpose()?;
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.

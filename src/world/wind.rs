@@ -1,14 +1,34 @@
 //! The wind at a place: the weather's, and what varies in space about it.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::World;
 use crate::{
     error::Result,
-    wind::{WindAt, WindGrid, WindVolume},
+    weather::Conditions,
+    wind::{Detour, DetourMap, WindAt, WindGrid, WindVolume},
 };
+
+/// Optical depths of the low layer beyond which nobody sees its patches.
+const SEEN_DEPTHS: f64 = 8.0;
+/// Steps of the weather's wind by which detours are worked out anew, m/s.
+const WIND_STEP_M_S: f64 = 0.125;
+
+/// All that detours follow from.
+#[derive(Clone, Copy, PartialEq)]
+struct DetourInputs {
+    volume: u64,
+    terrain: u64,
+    /// At two heights over the ground.
+    weathers_m_s: [DVec2; 2],
+    life_m: f64,
+}
+
+/// The last detours that were asked for.
+#[derive(Default)]
+pub(super) struct KeptDetours(Mutex<Option<(DetourInputs, Option<Arc<DetourMap>>)>>);
 
 impl World {
     /// The wind that varies in space at a time: the host's grid if there is one, else the solved field.
@@ -27,6 +47,45 @@ impl World {
     pub(super) fn show_wind_grid(&mut self) {
         let volume = |g: &Arc<WindGrid>| Box::new(WindVolume::of_grid(g, self.frame.frame_at(g.origin).world_to_enu));
         self.host_wind = self.wind_grid.as_ref().map(volume);
+    }
+
+    /// How far the air about a camera at `eye` is behind that which the wind's displacement brings, where patches of the weather's low
+    /// layer show it.
+    pub fn detour(&self, eye: DVec3, c: &Conditions, time_s: f64) -> Option<Detour> {
+        // Patches of a host's law are the host's.
+        if self.set.undimmed || !c.fog.is_patchy() {
+            return None;
+        }
+        let volume = self.wind_volume(time_s)?;
+        if volume.distance_m(eye) * c.fog.extinction_per_m > SEEN_DEPTHS {
+            return None;
+        }
+        let weathers_m_s = |height_m: f64| {
+            let mean = DVec2::from_array(c.wind.mean_at_height_m_s(height_m));
+            (mean / WIND_STEP_M_S).round() * WIND_STEP_M_S
+        };
+        let (terrain, tiles) = (self.set.terrain.as_deref(), self.set.tiles.as_deref());
+        let inputs = DetourInputs {
+            volume: volume.revision(),
+            terrain: terrain.map(|t| t.hash).or(tiles.map(|t| t.revision)).unwrap_or_default(),
+            weathers_m_s: [2.0, 20.0].map(weathers_m_s),
+            life_m: c.fog.patch_size_m,
+        };
+        let mut kept = self.detours.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, map)) = kept.as_ref().filter(|(from, _)| *from == inputs) {
+            return map.as_ref().map(|map| map.about(eye));
+        }
+        let origin = terrain.map(|t| t.origin).or(tiles.map(|t| t.desc.origin));
+        let from_terrain = origin.map_or(DVec3::ZERO, |o| volume.to_enu * (volume.origin - o));
+        let level_m = c.air.station_altitude_m - self.frame.frame_at(volume.origin).place.altitude_m;
+        let ground_m = |place: DVec2| {
+            let at = place + from_terrain.truncate();
+            let height_m = terrain.map(|t| t.height_m(at)).or_else(|| tiles?.height_near(at));
+            height_m.map_or(level_m, |height| height - from_terrain.z)
+        };
+        let map = DetourMap::new(volume, &ground_m, &weathers_m_s, inputs.life_m).map(Arc::new);
+        *kept = Some((inputs, map.clone()));
+        map.map(|map| map.about(eye))
     }
 
     /// The wind with gusts at a place and time; height counts from the station's altitude.

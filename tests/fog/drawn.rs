@@ -2,9 +2,9 @@
 
 use glam::{DVec2, DVec3};
 use welkin::fog::patterns::Curtains;
-use welkin::fog::reference::{FallingModel, FogModel, fog_along, fog_beside_drops};
+use welkin::fog::reference::{FogModel, fog_along, fog_beside_drops};
 use welkin::fog::{
-    CompatibilityLaw, DistanceKind, FallingLayer, FogLayer, FogUniform, Law, Patches, Phase, Viewpoint,
+    CompatibilityLaw, DistanceKind, FallingLayer, FogLayer, FogUniform, Law, LowAirUniform, Patches, Phase, Viewpoint,
     koschmieder_extinction_per_m, laws::Curve,
 };
 use welkin::gpu::shader;
@@ -173,7 +173,8 @@ fn curtains_are_drawn_as_the_reference_has_them() {
         };
         let even = with_falling(None, &rain(1e-3), &view(h, EARTH_M));
         let curtains = Curtains { amount: 0.245, waves: std::array::from_fn(wave) };
-        let m = FogModel { falling: FallingModel { curtains, ..even.falling }, ..even };
+        let mut m = even.clone();
+        m.falling.curtains = curtains;
         compare(&format!("curtains h {h}"), &m, 2e-3);
         let changed = rays().iter().filter(|i| (twin(&m, **i)[1] - twin(&even, **i)[1]).abs() > 0.03).count();
         assert!(h > 500.0 || changed > 3, "{h} m: {changed} rays differ");
@@ -345,6 +346,7 @@ fn offsets_are_those_of_the_shader() {
     let text = shader::assemble("fog/lookup.wgsl").unwrap();
     let (size, members) = shader::struct_layout(&text, "FogUniform").unwrap();
     assert_eq!(size as usize, size_of::<FogUniform>());
+    assert_eq!(shader::struct_layout(&text, "LowAir").unwrap().0 as usize, size_of::<LowAirUniform>());
     macro_rules! offsets { ($($f:ident),*) => { vec![$((stringify!($f).to_owned(), std::mem::offset_of!(FogUniform, $f) as u32)),*] } }
     let ours = offsets!(
         to_sun,

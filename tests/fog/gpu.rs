@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, OnceLock};
 
+use welkin::fog::LowAirUniform;
 use welkin::gpu::{Device, DeviceOptions, flat_texture, pass, readback, shader};
 
 use crate::fullscreen;
@@ -47,7 +48,8 @@ pub fn evaluate_with(
     let target = float_texture(WIDTH, height, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC);
     let buffer = d.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
-        size: uniform.len() as u64,
+        // As much as the fog's own binding has with the detours of its patches.
+        size: uniform.len().max(size_of::<LowAirUniform>()) as u64,
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });

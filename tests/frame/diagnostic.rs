@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use welkin::{
+    fog::{FogLayer, Law, Patches},
     frame::{ColorSpace, Diagnostic, Exposure, Frame, FrameFlags, Stages, tone},
     plan::Budget,
     rain::{RainModel, RainSettings},
@@ -114,6 +115,43 @@ fn optical_depth_is_that_of_the_query() {
         let last = depths.last().unwrap().0;
         assert!(if name == "clear" { last < 0.15 } else { last > 0.2 }, "{name}: {last}");
     }
+}
+
+/// Patches of fog pass a place where the air hardly moves: they are held up there, in pictures as in queries.
+#[test]
+fn patches_go_round_what_the_wind_goes_round() {
+    let mut host = Host::new(HALF);
+    let mut weather = Weather {
+        visibility_m: 600.0,
+        fog: Fog { top_m: Some(80.0), ..Fog::of(FogKind::Patches) },
+        ..Weather::default()
+    };
+    (weather.wind.speed_m_s, weather.wind.from_deg) = (5.0, 270.0);
+    host.context.set_weather(&weather, 0.0, 0.0).unwrap();
+    let nodes = [33, 33, 3];
+    let (origin, cell_m) = (DVec3::new(-192.0, 20.0, -10.0), DVec3::new(12.0, 12.0, 30.0));
+    let slow = |i: u32| {
+        let at = DVec2::new(f64::from(i % 33), f64::from(i / 33 % 33)) - DVec2::splat(16.0);
+        [if at.length() < 10.0 { 0.5 } else { 5.0 }, 0.0, 0.0]
+    };
+    let velocities_m_s = (0..33 * 33 * 3).map(slow).collect();
+    let free = optical_depths(&mut host, 1, 0.0, 420.0);
+    let grid = WindGrid { origin, cell_m, nodes, kind: WindGridKind::Whole, velocities_m_s };
+    host.context.set_wind_grid(Some(grid)).unwrap();
+    let held_up = optical_depths(&mut host, 2, 0.0, 420.0);
+    for (got, expected) in &held_up {
+        assert!((got - expected).abs() < 0.005, "{got} {expected}");
+    }
+    let changed = free.iter().zip(&held_up).filter(|(free, held)| (free.1 - held.1).abs() > 0.05).count();
+    assert!(changed > held_up.len() / 20, "{changed} of {}", held_up.len());
+    // A law of the host's has patches of its own.
+    let patches = Patches { amount: 1.0, size_m: 200.0, seed: 3, drift_m: [0.0; 2] };
+    let layer = FogLayer { patches: Some(patches), ..FogLayer::ground_fog(0.002, 80.0, 10.0) };
+    host.context.set_fog_law(Some(Law::Layer(layer))).unwrap();
+    let by_law = optical_depths(&mut host, 3, 0.0, 420.0);
+    host.context.set_wind_grid(None).unwrap();
+    let without_grid = optical_depths(&mut host, 4, 0.0, 420.0);
+    assert!(by_law.iter().zip(&without_grid).all(|(a, b)| a.0 == b.0));
 }
 
 #[test]

@@ -1,0 +1,315 @@
+//! How obstacles hold up and turn aside what drifts with the wind near the ground: patches of fog and of dust.
+//!
+//! Patches go with the displacement of the weather's wind, the same everywhere. Where the wind varies in space the air at a place has
+//! come another way. It is followed back along the level wind w near the ground; with e the wind that enters the grid, both over the speed of
+//! e, and s the way of free air, the air at a place is behind by
+//!
+//! L = integral of (e - w) e^(-s / life) ds,
+//!
+//! so that a patch is what it would be L farther on. Eddies stir patches: what happened to air more than the life of a patch ago shows no
+//! more, and no lag grows longer than that life. With an endless life L would be the drift of Darwin (1953).
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::WindVolume;
+
+/// Nodes of a map on each side: `DETOUR_SIDE` of `shaders/fog/uniform.wgsl`.
+pub(crate) const DETOUR_SIDE: usize = 24;
+/// Height over the ground of the wind that patches are followed in, m.
+const HEIGHT_M: f64 = 2.0;
+/// Speed of the wind that enters below which nothing drifts, m/s.
+const LEAST_WIND_M_S: f64 = 0.2;
+/// Steps back over three lives of a patch.
+const STEPS: usize = 48;
+/// Part of the map on each side over which detours fade, so that the pattern is whole beyond. A solved field goes over into the weather's
+/// wind there: what enters is asked within.
+const EDGE: f64 = 0.15;
+/// Heights over the ground at which a grid is asked how high its obstacles reach.
+const LEVELS: usize = 12;
+
+/// How far the air about a grid of wind is behind the free air, near the ground.
+#[derive(Debug, PartialEq)]
+pub(crate) struct DetourMap {
+    /// The node farthest to the south-west, in the host's world, on the grid's floor.
+    origin: DVec3,
+    /// Turns the host's axes at the origin to east, north, up.
+    to_enu: DMat3,
+    /// From node to node, m.
+    cell_m: DVec2,
+    /// East and north, m; eastern neighbours beside each other, then northern.
+    pub lags_m: Vec<[f32; 2]>,
+    /// Height over the floor at which half of the detour is left, m.
+    half_height_m: f64,
+}
+
+/// A map as it lies about a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Detour {
+    pub map: Arc<DetourMap>,
+    /// Cells a metre, and the cell of the camera: east, north.
+    pub scale: DVec2,
+    pub camera: DVec2,
+    /// Height of the floor over the camera, m.
+    pub floor_m: f64,
+    /// 1/height over the floor at which nothing is left of a detour, 1/m.
+    pub fade_per_m: f64,
+}
+
+/// The level wind of a grid so high over the ground.
+struct Level<'a> {
+    volume: &'a WindVolume,
+    ground_m: &'a dyn Fn(DVec2) -> f64,
+    weathers_m_s: DVec2,
+    height_m: f64,
+}
+
+impl Level<'_> {
+    /// At a place so many metres east and north of the grid's origin, m/s.
+    fn at(&self, place: DVec2) -> Option<DVec2> {
+        let up = (self.ground_m)(place) + self.height_m;
+        let found = self.volume.at((place.extend(up)) / self.volume.cell_m)?;
+        Some(found.truncate().truncate() + self.weathers_m_s * (1.0 - found.w))
+    }
+
+    /// The mean of what enters the inner part of an area of this size.
+    fn entering(&self, size: DVec2) -> DVec2 {
+        let along = |i: usize| (i as f64 + 0.5) / DETOUR_SIDE as f64;
+        let sides = [
+            (DVec2::X, DVec2::ZERO, DVec2::Y),
+            (-DVec2::X, DVec2::X, DVec2::Y),
+            (DVec2::Y, DVec2::ZERO, DVec2::X),
+            (-DVec2::Y, DVec2::Y, DVec2::X),
+        ];
+        let winds = sides.map(|(inward, start, way)| {
+            let places = (0..DETOUR_SIDE).map(|i| (EDGE + (1.0 - 2.0 * EDGE) * (start + way * along(i))) * size);
+            let (sum, count) = places.filter_map(|p| self.at(p)).fold((DVec2::ZERO, 0), |(s, n), w| (s + w, n + 1));
+            (inward, sum, f64::from(count))
+        });
+        let mean = |chosen: &dyn Fn(DVec2) -> bool| {
+            let of = winds.iter().filter(|w| chosen(w.0));
+            let (sum, count) = of.fold((DVec2::ZERO, 0.0), |(s, n), w| (s + w.1, n + w.2));
+            sum / f64::max(count, 1.0)
+        };
+        let toward = mean(&|_| true).normalize_or_zero();
+        mean(&|inward| inward.dot(toward) > 0.5)
+    }
+}
+
+impl DetourMap {
+    /// Of a grid of wind in the weather's. `ground_m` answers the ground's height over the grid's origin so many metres east and north of
+    /// it, `weathers_m_s` the weather's wind so high over the ground; `life_m` is how far free air comes while a patch lives, a sixth of the grid at most, so that lags are gone at its edges. None
+    /// where no wind blows.
+    pub fn new(
+        volume: &WindVolume,
+        ground_m: &dyn Fn(DVec2) -> f64,
+        weathers_m_s: &dyn Fn(f64) -> DVec2,
+        life_m: f64,
+    ) -> Option<Self> {
+        let size = (DVec3::from(volume.nodes.map(|n| f64::from(n.max(1) - 1))) * volume.cell_m).truncate();
+        let cell_m = size / (DETOUR_SIDE - 1) as f64;
+        let level = |height_m: f64| Level { volume, ground_m, weathers_m_s: weathers_m_s(height_m), height_m };
+        let places = || (0..DETOUR_SIDE * DETOUR_SIDE).map(|i| [i % DETOUR_SIDE, i / DETOUR_SIDE]);
+        let place = |[i, j]: [usize; 2]| DVec2::new(i as f64, j as f64) * cell_m;
+        let life_m = life_m.min(size.min_element() / 6.0);
+        let low = level(HEIGHT_M);
+        let entering = low.entering(size);
+        if cell_m.min_element() <= 0.0 || entering.length() < LEAST_WIND_M_S {
+            return None;
+        }
+        let lag = |at: [usize; 2]| {
+            let edge = (place(at) / size).min(1.0 - place(at) / size).min_element() / EDGE;
+            let share = edge.min(1.0);
+            followed(&low, (entering, size), place(at), life_m) * (share * share * (3.0 - 2.0 * share))
+        };
+        let lags_m = places().map(|at| lag(at).as_vec2().to_array()).collect();
+        // How much the wind of a height varies over the area.
+        let varies = |height_m: f64| {
+            let level = level(height_m);
+            let free = level.entering(size);
+            let of = places().filter_map(|at| level.at(place(at)));
+            of.map(|w| (w - free).length_squared()).sum::<f64>().sqrt() / free.length().max(LEAST_WIND_M_S)
+        };
+        let step_m = f64::from(volume.nodes[2].max(2) - 1) * volume.cell_m.z / LEVELS as f64;
+        let heights = (0..LEVELS).map(|k| (k as f64 + 0.5) * step_m);
+        let (most, sum) = heights.map(varies).fold((0.0, 0.0), |(most, sum), v| (f64::max(most, v), sum + v));
+        let half_height_m = if most > 0.0 { (sum * step_m / most).max(HEIGHT_M) } else { HEIGHT_M };
+        Some(Self { origin: volume.origin, to_enu: volume.to_enu, cell_m, lags_m, half_height_m })
+    }
+
+    /// As it lies about a camera at `eye` in the host's world.
+    pub fn about(self: &Arc<Self>, eye: DVec3) -> Detour {
+        let camera = self.to_enu * (eye - self.origin);
+        Detour {
+            map: self.clone(),
+            scale: 1.0 / self.cell_m,
+            camera: camera.truncate() / self.cell_m,
+            floor_m: -camera.z,
+            fade_per_m: 0.5 / self.half_height_m,
+        }
+    }
+}
+
+/// How far the air at a place of an area of this size is behind; `entering` is the wind of free air.
+fn followed(level: &Level<'_>, (entering, size): (DVec2, DVec2), mut place: DVec2, life_m: f64) -> DVec2 {
+    let (free, speed) = (entering.normalize_or_zero(), entering.length());
+    let step = 3.0 * life_m / STEPS as f64;
+    let (mut behind, mut was_within) = (DVec2::ZERO, false);
+    for n in 0..STEPS {
+        // Before it came in and since it went out air is free.
+        let is_within = place.cmpge(size * EDGE).all() && place.cmple(size * (1.0 - EDGE)).all();
+        if was_within && !is_within {
+            break;
+        }
+        was_within |= is_within;
+        if !is_within {
+            place -= free * step;
+            continue;
+        }
+        let Some(first) = level.at(place) else { break };
+        let middle = place - first / speed * (0.5 * step);
+        let Some(wind) = level.at(middle) else { break };
+        let way = wind / speed * step;
+        behind += (free * step - way) * (-(n as f64 + 0.5) * step / life_m).exp();
+        place -= way;
+    }
+    behind
+}
+
+impl Detour {
+    /// How far the air at a place relative to the camera is behind, m (east, north).
+    pub fn lag_m(&self, place: DVec3) -> DVec2 {
+        let last = (DETOUR_SIDE - 1) as f64;
+        let at = (self.camera + place.truncate() * self.scale).clamp(DVec2::ZERO, DVec2::splat(last));
+        let low = at.floor().min(DVec2::splat(last - 1.0));
+        let part = at - low;
+        let node = |i: usize, j: usize| {
+            let [x, y] = self.map.lags_m[(low.y as usize + j) * DETOUR_SIDE + low.x as usize + i];
+            DVec2::new(f64::from(x), f64::from(y))
+        };
+        let row = |j: usize| node(0, j).lerp(node(1, j), part.x);
+        let x = ((place.z - self.floor_m) * self.fade_per_m).clamp(0.0, 1.0);
+        row(0).lerp(row(1), part.y) * (1.0 - x * x * (3.0 - 2.0 * x))
+    }
+
+    /// Where a ray is over the map: distances from its origin, m; the second is less than the first where it is not.
+    pub fn over(&self, origin: DVec3, direction: DVec3) -> [f64; 2] {
+        let at = self.camera + origin.truncate() * self.scale;
+        let way = direction.truncate() * self.scale;
+        let way = DVec2::select(way.abs().cmplt(DVec2::splat(1e-9)), DVec2::splat(1e-9), way);
+        let (a, b) = (-at / way, (DVec2::splat((DETOUR_SIDE - 1) as f64) - at) / way);
+        [a.min(b).max_element(), a.max(b).min_element()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wind::{WindGrid, WindGridKind};
+
+    /// Radius of a pillar at the middle of an area of 240 m, m.
+    const PILLAR_M: f64 = 12.0;
+    const HALF_M: f64 = 120.0;
+
+    /// Level flow without friction round the pillar at the origin, east at 5 m/s far off.
+    fn round_pillar(p: DVec2) -> DVec2 {
+        let r2 = p.length_squared();
+        if r2 <= PILLAR_M * PILLAR_M {
+            return DVec2::ZERO;
+        }
+        let k = PILLAR_M * PILLAR_M / (r2 * r2);
+        DVec2::new(1.0 - k * (p.x * p.x - p.y * p.y), -2.0 * k * p.x * p.y) * 5.0
+    }
+
+    fn volume(kind: WindGridKind, wind: impl Fn(DVec3) -> DVec2) -> WindVolume {
+        let (nodes, cell_m) = ([121, 121, 5], DVec3::new(2.0, 2.0, 4.0));
+        let place = |i: u32| DVec3::new(f64::from(i % 121), f64::from(i / 121 % 121), f64::from(i / 14641)) * cell_m;
+        let velocity = |i| wind(place(i) - DVec2::splat(HALF_M).extend(0.0)).extend(0.0).as_vec3().to_array();
+        let velocities_m_s = (0..121 * 121 * 5).map(velocity).collect();
+        let origin = DVec3::new(-HALF_M, -HALF_M, 0.0);
+        WindVolume::of_grid(&WindGrid { origin, cell_m, nodes, kind, velocities_m_s }, DMat3::IDENTITY)
+    }
+
+    fn map(volume: &WindVolume, weathers_m_s: DVec2, life_m: f64) -> Option<Arc<DetourMap>> {
+        DetourMap::new(volume, &|_| 0.0, &|_| weathers_m_s, life_m).map(Arc::new)
+    }
+
+    fn lag(map: &Arc<DetourMap>, place: DVec2) -> DVec2 {
+        map.about(DVec3::ZERO).lag_m(place.extend(0.0))
+    }
+
+    /// The definition by small steps of Runge and Kutta's second order through the exact flow.
+    fn truth(mut p: DVec2, life_m: f64) -> DVec2 {
+        let step = 0.01;
+        let (mut behind, mut s) = (DVec2::ZERO, 0.0);
+        while s < 4.0 * life_m {
+            let w = round_pillar(p - round_pillar(p) / 5.0 * (0.5 * step)) / 5.0;
+            behind += (DVec2::X - w) * (-(s + 0.5 * step) / life_m).exp() * step;
+            (p, s) = (p - w * step, s + step);
+        }
+        behind
+    }
+
+    #[test]
+    fn air_is_behind_as_the_exact_flow_round_a_pillar_has_it() {
+        let life_m = 40.0;
+        let map = map(&volume(WindGridKind::Whole, |p| round_pillar(p.truncate())), DVec2::ZERO, life_m).expect("wind");
+        let mut most = 0f64;
+        // At the map's nodes, away from the edges where it fades.
+        for (i, j) in (4..20).flat_map(|i| (4..20).map(move |j| (i, j))) {
+            let p = DVec2::new(f64::from(i), f64::from(j)) * (2.0 * HALF_M / 23.0) - HALF_M;
+            if p.length() < 1.5 * PILLAR_M {
+                continue;
+            }
+            let (got, want) = (lag(&map, p), truth(p, life_m));
+            most = most.max(want.length());
+            assert!((got - want).length() < 0.015 * life_m, "{p}: {got}, by the exact flow {want}");
+        }
+        assert!(most > 0.09 * life_m, "{most}");
+        // Before the pillar air is held up, beside it it runs ahead, and it goes round on both sides alike.
+        let [before, beside] = [DVec2::new(-25.0, 0.0), DVec2::new(0.0, 28.0)].map(|p| lag(&map, p).x);
+        assert!(before > 2.0 && beside < -0.5, "{before} {beside}");
+        let [left, right] = [14.0, -14.0].map(|y| lag(&map, DVec2::new(-20.0, y)));
+        assert!(left.y < -0.5 && (left.y + right.y).abs() < 1e-3, "{left} {right}");
+        // Nothing at the edge, and nothing far over the ground.
+        assert_eq!(lag(&map, DVec2::new(0.0, HALF_M)), DVec2::ZERO);
+        assert_eq!(map.about(DVec3::ZERO).lag_m(DVec3::new(-25.0, 0.0, 100.0)), DVec2::ZERO);
+    }
+
+    #[test]
+    fn free_wind_leaves_nothing_behind_however_it_is_told() {
+        let even = |v: DVec2| move |_: DVec3| v;
+        for (volume, weathers) in [
+            (volume(WindGridKind::Whole, even(DVec2::new(3.0, -2.0))), DVec2::new(40.0, 1.0)),
+            (volume(WindGridKind::Added, even(DVec2::ZERO)), DVec2::new(3.0, -2.0)),
+            (volume(WindGridKind::Whole, |p| DVec2::new(3.0, -2.0) * (0.5 + 0.1 * p.z)), DVec2::ZERO),
+        ] {
+            let map = map(&volume, weathers, 100.0).expect("wind");
+            assert!(map.lags_m.as_flattened().iter().all(|v| v.abs() < 1e-3));
+        }
+        assert_eq!(
+            map(&volume(WindGridKind::Whole, even(DVec2::ZERO)), DVec2::X, 100.0),
+            None,
+            "a calm carries nothing"
+        );
+    }
+
+    /// A wall of 6 m in a field of 16 m holds up what is low, and air over a hill what is over its slopes.
+    #[test]
+    fn detours_end_over_what_makes_them_and_follow_the_ground() {
+        let wall = volume(WindGridKind::Whole, |p| {
+            let low = if p.z < 6.0 && p.truncate().length() < 30.0 { 0.2 } else { 1.0 };
+            DVec2::X * (5.0 * low)
+        });
+        let map = map(&wall, DVec2::ZERO, 40.0).expect("wind");
+        let seen = map.about(DVec3::ZERO);
+        let at = |z: f64| seen.lag_m(DVec3::new(10.0, 0.0, z)).x;
+        assert!(at(0.0) > 15.0, "{}", at(0.0));
+        let half = at(map.half_height_m) / at(0.0);
+        assert!((half - 0.5).abs() < 1e-9 && (4.0..10.0).contains(&map.half_height_m), "{half} {}", map.half_height_m);
+        // The same layer of slow air over a hill that is as high as the wall: there the ground is asked above it.
+        let hill = DetourMap::new(&wall, &|_| 7.0, &|_| DVec2::ZERO, 40.0).expect("wind");
+        assert!(hill.lags_m.as_flattened().iter().all(|v| v.abs() < 1e-3));
+    }
+}
