@@ -4,7 +4,7 @@
 
 use std::{fs, sync::Arc};
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3};
 use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, FrameFlags, Shared, Stages, View},
@@ -14,7 +14,8 @@ use welkin::{
     },
     ground::SurfaceClass,
     scene::Camera,
-    weather::{Surface, SurfaceState, Weather},
+    weather::{Fog, FogKind, Surface, SurfaceState, Weather},
+    wind::{WindGrid, WindGridKind},
 };
 
 use crate::textures;
@@ -24,6 +25,8 @@ type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
 /// Copies in one submission, so that a submission's own work is next to nothing beside them.
 const COPIES: u32 = 16;
+/// Where the sun stands.
+const HIGH_SUN_DEG: f64 = 60.0;
 /// Rounds of all scenes; the median of each counts.
 const ROUNDS: usize = 9;
 /// Frames without work on tables after which there is none.
@@ -117,6 +120,10 @@ pub struct Scene {
     pub camera: Camera,
     /// How far the camera turns from frame to frame, about the vertical.
     pub turn_rad: f64,
+    /// How far it climbs from frame to frame, m.
+    pub climb_m: f64,
+    /// How far the sun moves from frame to frame, degrees; other than 0 only in a context of its own.
+    pub sun_deg: f64,
     pub flags: FrameFlags,
     pub calls: Vec<Stages>,
     pub has_depth: bool,
@@ -134,6 +141,8 @@ impl Scene {
             view: View::new(context)?,
             camera: Camera::look_to(eye, ahead, DVec3::Z, 0.9, 16.0 / 9.0, 0.1),
             turn_rad: 0.0,
+            climb_m: 0.0,
+            sun_deg: 0.0,
             flags: FrameFlags::default(),
             calls: vec![Stages::ALL.without(Stages::TONE)],
             has_depth: true,
@@ -175,6 +184,12 @@ impl Scene {
         if self.turn_rad != 0.0 {
             self.camera.view *= DMat4::from_rotation_z(self.turn_rad);
         }
+        self.camera.position.z += self.climb_m;
+        if self.sun_deg != 0.0 {
+            let elevation_deg = HIGH_SUN_DEG + self.sun_deg * self.frame_id as f64;
+            let context = Arc::get_mut(&mut self.context).ok_or("the sun moves in a context of its own")?;
+            context.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg }))?;
+        }
         let before = processor_ns()?;
         for stages in &self.calls {
             let frame = Frame { flags: self.flags, ..Frame::new(self.frame_id, self.camera, color, depth) };
@@ -188,12 +203,27 @@ impl Scene {
 /// A world under a high sun and a moon at an elevation, degrees.
 pub fn world(device: &Arc<Device>, shared: &Arc<Shared>, weather: &Weather, moon_deg: f64) -> Fallible<Arc<Context>> {
     let mut context = Context::new(device.clone(), shared.clone(), ContextDesc::default())?;
-    context.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg: 60.0 }))?;
+    context.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg: HIGH_SUN_DEG }))?;
     context.set_moon(Some(GivenDirection { azimuth_deg: 20.0, elevation_deg: moon_deg }))?;
     context.set_default_surface_class(SurfaceClass::Paved);
     context.set_weather(weather, 0.0, 0.0)?;
     context.update(0.0)?;
     Ok(Arc::new(context))
+}
+
+/// A wind that is slow within 60 m of a place 150 m ahead.
+fn slow_place() -> WindGrid {
+    let speed = |i: u32| {
+        let from = DVec2::new(f64::from(i % 33), f64::from(i / 33 % 33)) - 16.0;
+        [if from.length() < 6.0 { 0.5 } else { 5.0 }, 0.0, 0.0]
+    };
+    WindGrid {
+        origin: DVec3::new(-160.0, -10.0, 0.0),
+        cell_m: DVec3::new(10.0, 10.0, 30.0),
+        nodes: [33, 33, 3],
+        kind: WindGridKind::Whole,
+        velocities_m_s: (0..33 * 33 * 3).map(speed).collect(),
+    }
 }
 
 /// The scenes: weathers in one call, clear noon in calls of its own for each stage, and a picture of nothing but sky.
@@ -227,6 +257,20 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
     ] {
         made.push(Scene { calls: calls.to_vec(), has_depth, ..Scene::new(name, &worlds[world], 0.0)? });
     }
+    let clear = |name| Scene::new(name, &worlds[0], 0.0);
+    made.push(Scene { turn_rad: 0.01, ..clear("clear noon, the camera turning")? });
+    made.push(Scene { climb_m: 0.05, ..clear("clear noon, the camera climbing by 5 cm a frame")? });
+    for (name, a_second_deg) in
+        [("clear noon, the sun moving", 15.0 / 3600.0), ("clear noon, the sun moving by 1 degree a second", 1.0)]
+    {
+        let own = world(device, &shared, &weathers[0], -60.0)?;
+        made.push(Scene { sun_deg: a_second_deg / 60.0, ..Scene::new(name, &own, 0.0)? });
+    }
+    let patches = Weather { visibility_m: 400.0, fog: Fog::of(FogKind::Patches), ..Weather::default() };
+    made.push(Scene::new("patches of fog", &world(device, &shared, &patches, -60.0)?, 0.0)?);
+    let mut led = world(device, &shared, &patches, -60.0)?;
+    Arc::get_mut(&mut led).ok_or("a new context")?.set_wind_grid(Some(slow_place()))?;
+    made.push(Scene::new("patches of fog led round a slow place", &led, 0.0)?);
     Ok(made)
 }
 

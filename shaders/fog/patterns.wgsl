@@ -11,14 +11,17 @@ const DETOUR_PARTS: u32 = 8u;
 // Distance at which curtains of rain begin, m.
 const CURTAIN_START: f32 = 30.0;
 
+fn wave_sinc(x: f32) -> f32 {
+    let near = abs(x) < 1e-2;
+    return select(sin(x) / select(x, 1.0, near), 1.0 - x * x / 6.0, near);
+}
+
 // Mean of a wave along a ray, and the square of how large it may be there.
 fn wave_mean(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f32) -> vec2f {
     let along = dot(wave.xyz, direction);
     let x = along * half;
-    let near = abs(x) < 1e-2;
-    let sinc = select(sin(x) / select(x, 1.0, near), 1.0 - x * x / 6.0, near);
     // No row goes on for ever: a ray along one meets others after some.
-    let size = sinc * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * half);
+    let size = wave_sinc(x) * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * half);
     return vec2f(cos(wave.w + dot(wave.xyz, origin) + along * middle) * size, size * size);
 }
 
@@ -55,20 +58,23 @@ fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
         return 0.0;
     }
     let h = 0.5 * (end - start) / f32(DETOUR_PARTS);
-    var sum = 0.0;
+    var lags: array<vec2f, DETOUR_PARTS>;
     for (var n = 0u; n < DETOUR_PARTS; n++) {
-        let place = origin + direction * (start + f32(2u * n + 1u) * h);
-        let lag = detour_lag(place);
-        for (var i = 0u; i < low_air.fog.waves.x; i++) {
-            let wave = low_air.fog.patch_waves[i];
-            let x = dot(wave.xyz, direction) * h;
-            let near = abs(x) < 1e-2;
-            let sinc = select(sin(x) / select(x, 1.0, near), 1.0 - x * x / 6.0, near);
-            // As long rows fade with all of a ray, so do they here.
-            let row = PATCH_ROW / (PATCH_ROW + length(wave.xyz) * 0.5 * (last - first));
-            let phase = wave.w + dot(wave.xyz, place);
-            sum += (cos(phase + dot(wave.xy, lag)) - cos(phase)) * sinc * row;
+        lags[n] = detour_lag(origin + direction * (start + f32(2u * n + 1u) * h));
+    }
+    var sum = 0.0;
+    for (var i = 0u; i < low_air.fog.waves.x; i++) {
+        let wave = low_air.fog.patch_waves[i];
+        let along = dot(wave.xyz, direction);
+        let phase = wave.w + dot(wave.xyz, origin) + along * start;
+        var part = 0.0;
+        for (var n = 0u; n < DETOUR_PARTS; n++) {
+            part += cos(phase + along * f32(2u * n + 1u) * h + dot(wave.xy, lags[n]));
         }
+        // Less what all parts have without detours. As long rows fade with all of a ray, so do they here.
+        let half = 0.5 * (end - start);
+        let free = cos(phase + along * half) * wave_sinc(along * half) * f32(DETOUR_PARTS);
+        sum += (part * wave_sinc(along * h) - free) * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * 0.5 * (last - first));
     }
     return sum * 2.0 * h / (last - first);
 }

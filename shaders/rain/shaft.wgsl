@@ -175,8 +175,8 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let rest = column_pattern(i, q, u, origin.z, d.z, cut, end);
     fell *= mix(rest, front, (cut - begin) / (end - begin));
     var own = shaft.own;
-    if FOG && FOG_FALLING && FOG_CURTAINS && own > 0.0 && fog.curtain_amount > 0.0 {
-        own += fog.falling.x * curtain_mean(origin, d, begin, end).x;
+    if FOG && FOG_FALLING && FOG_CURTAINS && own > 0.0 && low_air.fog.curtain_amount > 0.0 {
+        own += low_air.fog.falling.x * curtain_mean(origin, d, begin, end).x;
     }
     var depth = columns.list[i].extinction * fell - own * shared_own;
     // What drops near the eye hide is drawn as drops.

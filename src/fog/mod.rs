@@ -25,11 +25,13 @@
 //! The shader follows [`mod@reference`] to f32. The light of [`mod@reference`] itself, against adding and doubling over optical depths
 //! from 0.3 to 16 and three heights of the sun, more than 8 degrees from the sun: median 4.5 %, 95th percentile 19 %, the mean
 //! over directions within 12 %, in haze and in droplets (`cargo test --test fog adding_and_doubling`). A layer's transmittance
-//! is exact.
+//! is exact. The mean of led patches along a ray is within 1.4 % of the layer's mean density of a fine sum at p95 (`cargo test --lib
+//! tests::detour -- --nocapture`).
 //!
 //! # Cost
 //! One function call in the full-screen composition (`shaders/fog/lookup.wgsl`, `fog_along`): no loop, no texture, no
-//! table; about 12 exponentials and 12 square roots a pixel, fewer where light is neutral.
+//! table; about 12 exponentials and 12 square roots a pixel, fewer where light is neutral. On a software driver a frame in patches takes 25
+//! copies of a picture, and 38 where the wind leads them (`cargo bench --bench speed -- copies`).
 //!
 //! # Axes
 //! Rays and directions are (east, north, up) at the camera, as everywhere in a frame.
