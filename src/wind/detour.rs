@@ -99,8 +99,8 @@ impl Level<'_> {
 
 impl DetourMap {
     /// Of a grid of wind in the weather's. `ground_m` answers the ground's height over the grid's origin so many metres east and north of
-    /// it, `weathers_m_s` the weather's wind so high over the ground; `life_m` is how far free air comes while a patch lives, a sixth of the grid at most, so that lags are gone at its edges. None
-    /// where no wind blows.
+    /// it, `weathers_m_s` the weather's wind so high over the ground; `life_m` is how far free air comes while a patch lives, a sixth of
+    /// the grid at most, so that lags are gone at its edges. None where no wind blows.
     pub fn new(
         volume: &WindVolume,
         ground_m: &dyn Fn(DVec2) -> f64,

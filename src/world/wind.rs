@@ -13,8 +13,10 @@ use crate::{
 
 /// Optical depths of the low layer beyond which nobody sees its patches.
 const SEEN_DEPTHS: f64 = 8.0;
-/// Steps of the weather's wind by which detours are worked out anew, m/s.
+/// Steps of the weather's wind, m/s, and of the doublings of a patch's size by which detours are worked out anew: while a weather changes
+/// not in every frame.
 const WIND_STEP_M_S: f64 = 0.125;
+const SIZE_STEP: f64 = 1.0 / 32.0;
 
 /// All that detours follow from.
 #[derive(Clone, Copy, PartialEq)]
@@ -69,7 +71,7 @@ impl World {
             volume: volume.revision(),
             terrain: terrain.map(|t| t.hash).or(tiles.map(|t| t.revision)).unwrap_or_default(),
             weathers_m_s: [2.0, 20.0].map(weathers_m_s),
-            life_m: c.fog.patch_size_m,
+            life_m: ((c.fog.patch_size_m.clamp(5.0, 1e5).log2() / SIZE_STEP).round() * SIZE_STEP).exp2(),
         };
         let mut kept = self.detours.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, map)) = kept.as_ref().filter(|(from, _)| *from == inputs) {
