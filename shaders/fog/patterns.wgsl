@@ -43,7 +43,7 @@ fn detour_lag(place: vec3f) -> vec2f {
     return mix(south, north, part.y) * (1.0 - smoothstep(0.0, 1.0, (place.z - low_air.detour_floor) * low_air.detour_fade));
 }
 
-// What detours add to the sum of the patches' waves.
+// What the lags along a ray add to the sum of the patches' waves.
 fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let at = low_air.detour_camera + origin.xy * low_air.detour_scale;
     let flat_way = direction.xy * low_air.detour_scale;

@@ -3,7 +3,7 @@
 
 // Pixels between texels of the grid. The first texel lies as much before the picture's first pixel, the last ones beyond its last.
 const EVEN_PIXELS: i32 = 4;
-// White in the grid (of light by frame.even_scale), at most: halves have as much room above it as dark things need below it.
+// Light in the grid is multiplied by this and by frame.even_scale: white then lies in the middle of a half float's range.
 const EVEN_WHITE: f32 = 64.0;
 // What is lighter is too light for halves.
 const EVEN_MOST: f32 = 60000.0;

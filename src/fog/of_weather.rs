@@ -94,7 +94,7 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
     let gusts = if f.lifted > 0.0 { f.lifted * lifting::unevenness(&c.wind) } else { 0.0 };
     let amount = covered.max(gusts);
     let amount = (amount - LEAST_PATCHES) / (1.0 - LEAST_PATCHES);
-    let patches = (amount > 0.0).then_some(Patches { amount, size_m: f.patch_size_m.clamp(5.0, 1e5), seed, drift_m });
+    let patches = (amount > 0.0).then_some(Patches { amount, size_m: f.drawn_patch_m(), seed, drift_m });
     // Dust takes blue, soot every colour: absorption has a power of the wavelength of its own.
     let absorbed = 1.0 - f.single_scattering_albedo.clamp(0.0, 1.0);
     let dust = lifting::DUST_ABSORPTION_EXPONENT;

@@ -77,7 +77,7 @@ pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, las
 /// Parts of a ray over a map of detours, each with the detour of its middle: `DETOUR_PARTS` of `shaders/fog/patterns.wgsl`.
 const DETOUR_PARTS: usize = 8;
 
-/// What detours add to the sum of the waves' means.
+/// What the lags along a ray add to the sum of the waves' means.
 fn detoured(m: &FogModel, detour: &Detour, (origin, direction): (DVec3, DVec3), [first, last]: [f64; 2]) -> f64 {
     let [enters, leaves] = detour.over(origin, direction);
     let (from, to) = (enters.max(first), leaves.min(last));

@@ -10,6 +10,7 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
+        flat_texture,
     },
     stage::{Sampling, Stages},
 };
@@ -89,20 +90,17 @@ impl EvenGrid {
         // One texel before the picture, and two after the last pixel's.
         let size = picture.map(|side| (side - 1) / PIXELS + 4);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-        let texture = |label, format, layers| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
-        let weather = texture("even weather", WEATHER, 2);
-        let cells = texture("even cells", CELLS, 1).create_view(&Default::default());
+        let weather = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("even weather"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 2 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: WEATHER,
+            usage,
+            view_formats: &[],
+        });
+        let cells = flat_texture(device, "even cells", size.into(), CELLS, usage).create_view(&Default::default());
         let all = bind::as_layers(&weather);
         let group = |layout, entries: &[wgpu::BindGroupEntry<'_>]| {
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("even"), layout, entries })

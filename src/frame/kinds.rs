@@ -2,8 +2,8 @@
 //!
 //! Such a driver takes both ways of every branch: a pixel of the sky pays for the air before things, a thing for the sky behind it, and the sky
 //! for the planet's ground below it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their
-//! own kind only, before their shader runs. All of them are in one pass. Pixels between which the weather is even ([`super::even`]) are kinds
-//! of their own. A GPU branches, and keeps one draw with one pipeline.
+//! own kind only, before their shader runs. All of them are in one pass. Pixels whose weather is looked up in its grid ([`super::even`])
+//! are kinds of their own. A GPU branches, and keeps one draw with one pipeline.
 
 use super::composite::Variant;
 use crate::{gpu::flat_texture, stage::Stages};

@@ -344,6 +344,11 @@ impl GroundLayer {
         lifted: 0.0,
     };
 
+    /// The size of a patch as it is drawn, m.
+    pub fn drawn_patch_m(&self) -> f64 {
+        self.patch_size_m.clamp(5.0, 1e5)
+    }
+
     /// Whether it is unlike from place to place.
     pub fn is_patchy(&self) -> bool {
         self.extinction_per_m > 0.0 && (self.coverage < 1.0 || self.lifted > 0.0)

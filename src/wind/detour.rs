@@ -73,7 +73,7 @@ impl Level<'_> {
         Some(found.truncate().truncate() + self.weathers_m_s * (1.0 - found.w))
     }
 
-    /// The mean of what enters the inner part of an area of this size.
+    /// The mean wind on those sides of an area's inner part through which it enters; `size` is the area's, m.
     fn entering(&self, size: DVec2) -> DVec2 {
         let along = |i: usize| (i as f64 + 0.5) / DETOUR_SIDE as f64;
         let sides = [
@@ -272,7 +272,7 @@ mod tests {
         assert!(before > 2.0 && beside < -0.5, "{before} {beside}");
         let [left, right] = [14.0, -14.0].map(|y| lag(&map, DVec2::new(-20.0, y)));
         assert!(left.y < -0.5 && (left.y + right.y).abs() < 1e-3, "{left} {right}");
-        // Nothing at the edge, and nothing far over the ground.
+        // Lags end at the map's edge, and far above the ground.
         assert_eq!(lag(&map, DVec2::new(0.0, HALF_M)), DVec2::ZERO);
         assert_eq!(map.about(DVec3::ZERO).lag_m(DVec3::new(-25.0, 0.0, 100.0)), DVec2::ZERO);
     }

@@ -71,7 +71,7 @@ impl World {
             volume: volume.revision(),
             terrain: terrain.map(|t| t.hash).or(tiles.map(|t| t.revision)).unwrap_or_default(),
             weathers_m_s: [2.0, 20.0].map(weathers_m_s),
-            life_m: ((c.fog.patch_size_m.clamp(5.0, 1e5).log2() / SIZE_STEP).round() * SIZE_STEP).exp2(),
+            life_m: ((c.fog.drawn_patch_m().log2() / SIZE_STEP).round() * SIZE_STEP).exp2(),
         };
         let mut kept = self.detours.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, map)) = kept.as_ref().filter(|(from, _)| *from == inputs) {
