@@ -4423,7 +4423,7 @@ typedef uint32_t wk_rain_model;
 /** No drops: all rain is extinction in the air. */
 #define WK_RAIN_MODEL_VEIL 1
 /**
- * Streaks on four nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
+ * Streaks on three nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
  * rain without compute shaders (wk_caps.tier 0). No splashes.
  */
 #define WK_RAIN_MODEL_CONES 2

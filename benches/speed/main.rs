@@ -1,11 +1,12 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (clouds, copies, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, sky, wind).
+//! (clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, sky, wind).
 
 mod clouds;
 mod copies;
 #[path = "../../tests/support/depth_texture.rs"]
 mod depth_texture;
 mod environment;
+mod falling;
 mod first;
 mod fog;
 #[path = "../../tests/support/fullscreen.rs"]
@@ -31,6 +32,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("clouds") {
         clouds::run()?;
+    }
+    if wanted("falling") {
+        falling::run()?;
     }
     if wanted("record") {
         record::run()?;

@@ -230,7 +230,7 @@ fn fog_section(out: &mut String, t: &Table) {
     );
 }
 
-const RAIN_SAYS: &str = "\n`drops-and-cones` is the default: single drops to 1.9 m, cones beyond. `cones` are streaks on four nested cones; \
+const RAIN_SAYS: &str = "\n`drops-and-cones` is the default: single drops to 1.9 m, cones beyond. `cones` are streaks on three nested cones; \
     they cost the same at any rate and have no splashes. `drops-N` are at most N drops without a state to 4 m, each in \
     its own place on every channel. `veil` has no drops. The truth is every drop before the camera up to 14.8 m, one by \
     one in f64. `truth-again` is all drops in other places: no way to draw can be nearer to the truth. No two ways put \

@@ -81,6 +81,18 @@ fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return clamp(w, 0.0, RANGE_SKY);
 }
 
+// What view_depth says of a thing of such a clip w, so far from the eye, that counts as so much nearer; and metres per unit of it there.
+fn depth_of(u: DepthUniform, clip_w: f32, distance: f32, nearer: f32) -> vec2f {
+    let slant = distance / max(clip_w, 0.05 * distance);
+    let parallel = (DEPTH_KINDS & 2u) != 0u && u.kind == 1u;
+    return select(vec2f(clip_w - nearer / slant, slant), vec2f(distance - nearer, 1.0), parallel);
+}
+
+// Share of a thing that the host's picture leaves at a pixel: none from an eighth of a metre behind what it shows.
+fn share_before(shown: f32, depth: vec2f) -> f32 {
+    return clamp((shown - depth.x) * (4.0 * depth.y) + 0.5, 0.0, 1.0);
+}
+
 // ln(1 + x) without cancellation at small x >= 0.
 fn depth_ln_1p(x: f32) -> f32 {
     let series = x * (1.0 - x * (0.5 - x * (0.33333333 - x * (0.25 - x * (0.2 - x * 0.16666667)))));

@@ -1,11 +1,12 @@
 // The block of rain on cones; src/rain/cones.rs explains the model.
 
-const CONES: u32 = 4u;
+const CONES: u32 = 3u;
+const STRETCHES: u32 = 4u;
 
 struct ConeUniform {
     // Where the drops go as seen from the camera, and two directions across.
     axis: vec3f,
-    // Mean fall speed, m/s.
+    // Fall speed of those that shelters are asked for, m/s: as far as they go in a wind while they fall a metre, all go on the mean.
     fall: f32,
     east: vec3f,
     // Nearest cone that shows anything.
@@ -17,8 +18,13 @@ struct ConeUniform {
     // Per cone: tiles round the axis at right angles to it; Mercator's latitude of a tile; drops per steradian; least
     // latitude of a tile at right angles to the axis, so that no streak is shorter than a pixel.
     shapes: array<vec4f, CONES>,
+    // Per cone: share of the light of its middle that what lies between lets through; level of detail at right angles to the
+    // axis; how often its tiles can be halved.
+    looks: array<vec4f, CONES>,
+    // Ends of the stretches along a ray of which it is asked what keeps rain off: a band each, the outermost in two halves, m.
+    stretches: array<vec4f, STRETCHES>,
     // Per cone two sets: how far they have come, in latitude; share of the drops; offset.
-    sets: array<vec4f, 8>,
+    sets: array<vec4f, 6>,
 }
 
 @group(1) @binding(0) var<uniform> cones: ConeUniform;

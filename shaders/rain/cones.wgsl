@@ -1,4 +1,4 @@
-// Rain on four nested cones about the camera; the model is explained in src/rain/cones.rs.
+// Rain on three nested cones about the camera; the model is explained in src/rain/cones.rs.
 // The entry points read the depth: cones_view.wgsl.
 //!include "common/fullscreen.wgsl"
 //!include "rain/drops.wgsl"
@@ -12,29 +12,44 @@ const CONE_SIDE: f32 = 256.0;
 
 @group(1) @binding(1) var streaks: texture_2d<f32>;
 @group(1) @binding(2) var streaks_sampler: sampler;
-// Of each cone's band, a layer each, the open shares of its parts (rain/open.wgsl).
+// Of each stretch, a layer each, the open shares of its quarters (rain/open.wgsl).
 @group(1) @binding(3) var open_parts: texture_2d_array<f32>;
 @group(1) @binding(4) var open_sampler: sampler;
 
-// Whether anything near keeps rain off.
+// Whether anything near keeps rain off, and whether the innermost cone shows anything.
 override SHELTERED: bool = false;
+override INNERMOST: bool = true;
 
 // A direction on the cones.
 struct OnCone {
-    // Turns of azimuth about the axis; Mercator's latitude; sine of the angle from the axis.
+    // Turns of azimuth about the axis; Mercator's latitude.
     turn: f32,
     latitude: f32,
-    sine: f32,
+    // Of the sine of the angle from the axis: its square, and how often it is halved.
+    square: f32,
+    halvings: f32,
+    // Times that the tiles about the axis are halved, and one over their number so.
+    octave: f32,
+    wider: f32,
 }
+
+// Tiles that columns are counted by, in which the rings where tiles are halved are broken.
+const COLUMNS: f32 = 512.0;
 
 fn on_cone(d: vec3f) -> OnCone {
     let c = dot(d, cones.axis);
     let across = vec2f(dot(d, cones.east), dot(d, cones.north));
-    let sine = max(length(across), 1e-4);
-    let latitude = log(sine / (1.0 + abs(c)));
+    let square = max(dot(across, across), 1e-8);
+    let halvings = -0.5 * log2(square);
+    let latitude = -0.6931472 * (halvings + log2(1.0 + abs(c)));
     // The azimuth at the axis itself is any.
-    let azimuth = atan2(across.y, select(across.x, 1e-4, sine <= 1e-4));
-    return OnCone(azimuth * 0.15915494, select(-latitude, latitude, c >= 0.0), sine);
+    let turn = 0.15915494 * atan2(across.y, select(across.x, 1e-4, square <= 1e-8));
+    // Each halving of the sine halves the tiles; where exactly differs from column to column, so that no ring shows.
+    let whole = floor(halvings);
+    let column = u32(i32(floor(turn * COLUMNS * exp2(-whole))));
+    let chance = f32(random3(vec3u(column, u32(whole), 0x51u)).x >> 8u) / 16777216.0;
+    let octave = whole + select(0.0, 1.0, halvings - whole > 0.25 + 0.75 * chance);
+    return OnCone(turn, select(-latitude, latitude, c >= 0.0), square, halvings, octave, exp2(octave));
 }
 
 // Where the texture is looked at for a cone, without what moves its sets.
@@ -48,20 +63,13 @@ struct Look {
     number: f32,
 }
 
-fn look_at(at: OnCone, shape: vec4f) -> Look {
-    // Each halving of the sine halves the tiles; where exactly differs from column to column, so that no ring shows.
-    let halvings = -log2(at.sine);
-    let whole = floor(halvings);
-    let column = u32(i32(floor(at.turn * max(round(shape.x * exp2(-whole)), 1.0) * (CONE_SIDE / 4.0))));
-    let chance = f32(random3(vec3u(column, u32(whole), 0x51u)).x >> 8u) / 16777216.0;
-    let octave = whole + select(0.0, 1.0, halvings - whole > 0.25 + 0.75 * chance);
-    let tiles = max(round(shape.x * exp2(-octave)), 1.0);
-    let tall = max(shape.y, shape.w * exp2(octave));
-    // A pixel in texels.
-    let pixel = rain.pixel_angle * CONE_SIDE / at.sine;
-    let level = max(log2(pixel * tiles * 0.15915494) - 1.0, 0.0);
-    let uv = vec2f(at.turn * tiles + 0.37 * octave, at.latitude / tall + 0.61 * octave);
-    return Look(uv, tall, level, shape.z * at.sine * at.sine * 6.2831853 / tiles * tall);
+fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
+    let tiles = max(round(shape.x / at.wider), 1.0);
+    let level = detail.y + at.halvings - min(at.octave, detail.z);
+    let tall = max(shape.y, shape.w * at.wider);
+    let uv = vec2f(at.turn * tiles + 0.37 * at.octave, at.latitude / tall + 0.61 * at.octave);
+    let number = shape.z * at.square * 6.2831853 * tall / tiles;
+    return Look(uv, tall, max(level, 0.0), number);
 }
 
 // Optical depth over its mean of a set of so many drops a tile: how far it has come, its share, its offset.
@@ -71,18 +79,15 @@ fn pattern(look: Look, moved: vec4f) -> f32 {
     // As many streaks as there are drops.
     let wanted = look.number * moved.y;
     let before = vec4f(0.0, STREAKS.x, STREAKS.x + STREAKS.y, ALL_STREAKS - STREAKS.w);
-    let shown = clamp((vec4f(wanted) - before) / STREAKS, vec4f(1.0, 0.0, 0.0, 0.0), vec4f(1.0));
-    let mean = dot(shown, STREAKS) / ALL_STREAKS;
-    return max(mix(1.0, dot(shown, seen) / mean, sqrt(min(ALL_STREAKS / max(wanted, 1.0), 1.0))), 0.0);
+    let shown = clamp((wanted - before) / STREAKS, vec4f(1.0, 0.0, 0.0, 0.0), vec4f(1.0));
+    let over_mean = dot(shown, seen) * (ALL_STREAKS / dot(shown, STREAKS));
+    return max(mix(1.0, over_mean, inverseSqrt(max(wanted / ALL_STREAKS, 1.0))), 0.0);
 }
 
-// Share of a band that the rain comes to and that lies before what is at `range`, for a pixel at `uv`.
+// Share of a stretch that the rain comes to and that lies before what is at `range`, for a pixel at `uv`.
 fn open_share(uv: vec2f, j: u32, range: f32) -> f32 {
-    let band = cones.bands[j];
-    let before = clamp((range - band.x) / (band.y - band.x), 0.0, 1.0);
-    if !SHELTERED {
-        return before;
-    }
+    let stretch = cones.stretches[j];
+    let before = clamp((range - stretch.x) / (stretch.y - stretch.x), 0.0, 1.0);
     let open = textureSampleLevel(open_parts, open_sampler, uv, j, 0.0);
     let seen = clamp(4.0 * before - vec4f(0.0, 1.0, 2.0, 3.0), vec4f(0.0), vec4f(1.0));
     // Of a quarter that ends behind what is at `range`, what was found there counts only as far as it lies before that.
@@ -90,31 +95,56 @@ fn open_share(uv: vec2f, j: u32, range: f32) -> f32 {
     return dot(sure * seen + (open - sure) * max(2.0 * seen - 1.0, vec4f(0.0)), vec4f(0.25));
 }
 
-// All cones before what is at `range` along the ray `d` of the pixel at `uv`: premultiplied light, and what they hide.
+// Likewise of a band: the outermost is two stretches, which are equally long.
+fn open_band(uv: vec2f, j: u32, range: f32) -> f32 {
+    if !SHELTERED {
+        let band = cones.bands[j];
+        return clamp((range - band.x) / (band.y - band.x), 0.0, 1.0);
+    }
+    if j < CONES - 1u {
+        return open_share(uv, j, range);
+    }
+    return 0.5 * (open_share(uv, j, range) + open_share(uv, j + 1u, range));
+}
+
+// What cone `j` has before what is at `range` along the ray `d` of the pixel at `uv`, as an optical depth.
+fn rain_on_cone(at: OnCone, d: vec3f, uv: vec2f, j: u32, range: f32) -> f32 {
+    var fall = 1.0;
+    if AREAS {
+        fall = local_cones(d * cones.bands[j].z);
+    }
+    var look = look_at(at, cones.shapes[j], cones.looks[j]);
+    look.number *= fall;
+    let a = cones.sets[2u * j];
+    let b = cones.sets[2u * j + 1u];
+    let depth = a.y * pattern(look, a) + b.y * pattern(look, b);
+    return fall * open_band(uv, j, range) * cones.bands[j].w * depth;
+}
+
+// Light of cone `j` where it hides so much, premultiplied, and what it hides, before what is behind it.
+fn before_others(d: vec3f, day: vec3f, j: u32, hidden: f32, seen: vec4f) -> vec4f {
+    let cover = (1.0 - exp(-hidden)) * cones.looks[j].x;
+    return seen + vec4f(day + lamp_light(d * cones.bands[j].z, d), 1.0) * (cover * (1.0 - seen.a));
+}
+
+// All cones before what is at `range`: premultiplied light, and what they hide. Without a loop: software drivers take twice as long
+// for one.
 fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
     let at = on_cone(d);
-    var seen = vec4f(0.0);
     let day = day_light(d);
-    for (var j = cones.first; j < CONES; j++) {
-        let band = cones.bands[j];
-        let p = d * band.z;
-        var fall = 1.0;
-        if AREAS {
-            fall = local_cones(p);
-        }
-        let before = fall * open_share(uv, j, range);
-        if before * band.w <= 0.0 {
-            continue;
-        }
-        var look = look_at(at, cones.shapes[j]);
-        look.number *= fall;
-        let a = cones.sets[2u * j];
-        let b = cones.sets[2u * j + 1u];
-        let depth = a.y * pattern(look, a) + b.y * pattern(look, b);
-        let cover = (1.0 - exp(-band.w * before * depth)) * exp(-rain.extinction * band.z);
-        // Only lamps light one band otherwise than another.
-        let light = day + lamp_light(p, d);
-        seen += vec4f(light, 1.0) * (cover * (1.0 - seen.a));
+    var hidden = vec3f(0.0, rain_on_cone(at, d, uv, 1u, range), rain_on_cone(at, d, uv, 2u, range));
+    if INNERMOST {
+        hidden.x = rain_on_cone(at, d, uv, 0u, range);
     }
-    return seen;
+    if !LAMPS {
+        // One light for all: what each hides of the next is of second order, and what is before them does not count there.
+        let clear = vec3f(cones.looks[0].x, cones.looks[1].x, cones.looks[2].x);
+        return vec4f(day, 1.0) * (1.0 - exp(-dot(clear, hidden)));
+    }
+    var seen = vec4f(0.0);
+    if INNERMOST {
+        seen = before_others(d, day, 0u, hidden.x, seen);
+    }
+    seen = before_others(d, day, 1u, hidden.y, seen);
+    return before_others(d, day, 2u, hidden.z, seen);
 }

@@ -1,14 +1,6 @@
 // Which drops of the lattice can be in the picture: a few in a hundred, but each must be asked. Then their number, for the draw.
 //!include "rain/cull_list.wgsl"
-
-struct Found {
-    // Vertices, instances, first of either: of the draw.
-    draw: vec4u,
-    // Workgroups of rain/cull_streaks.wgsl.
-    groups: vec3u,
-}
-
-@group(1) @binding(2) var<storage, read_write> found: Found;
+//!include "falling/order.wgsl"
 
 // A word of bits a thread.
 @compute @workgroup_size(64)
@@ -32,33 +24,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     blocks[s * shell_blocks() + id.x / WORDS].seen[id.x % WORDS] = seen;
 }
 
-const SUMS: u32 = 128u;
-var<workgroup> sums: array<u32, SUMS>;
-
-// Where each block's drops begin in the list, by one workgroup.
 @compute @workgroup_size(SUMS)
 fn order(@builtin(local_invocation_index) thread: u32) {
-    let all = rain.shells * shell_blocks();
-    let part = (all + SUMS - 1u) / SUMS;
-    let first = min(thread * part, all);
-    let end = min(first + part, all);
-    var sum = 0u;
-    for (var i = first; i < end; i++) {
-        sum += seen_in(i);
-    }
-    sums[thread] = sum;
-    workgroupBarrier();
-    var before = 0u;
-    for (var i = 0u; i < thread; i++) {
-        before += sums[i];
-    }
-    for (var i = first; i < end; i++) {
-        blocks[i].before = before;
-        before += seen_in(i);
-    }
-    if thread == SUMS - 1u {
-        // A full list has no room for what is last in it: the outermost shells.
-        let count = min(before, arrayLength(&streaks));
-        found = Found(vec4u(4u, count, 0u, 0u), vec3u((count + 63u) / 64u, 1u, 1u));
-    }
+    order_blocks(thread, rain.shells * shell_blocks(), arrayLength(&streaks));
 }

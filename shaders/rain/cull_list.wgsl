@@ -1,21 +1,11 @@
-// The list of drops that a picture shows, of all in the shells round the camera: which they are stands in a bit each, in the
-// lattice's order, so the list's order is that order and depends on no thread's haste.
+// The list of drops that a picture shows, of all in the shells round the camera, near shells first.
 //!include "rain/drops.wgsl"
 //!include "falling/state.wgsl"
+//!include "falling/list.wgsl"
 
 // Whether drops are stepped.
 override STEPPED: bool = false;
 
-// Words of bits of a block.
-const WORDS: u32 = 4u;
-
-struct Block {
-    seen: array<u32, WORDS>,
-    // Drops that are seen in the blocks before.
-    before: u32,
-}
-
-@group(1) @binding(0) var<storage, read_write> blocks: array<Block>;
 @group(1) @binding(1) var<storage, read_write> streaks: array<Streak>;
 // Place of the camera in the cell of each shell, with where the shell's drops begin; and the stepped drops.
 @group(3) @binding(0) var<uniform> eyes: array<vec4u, SHELLS>;
@@ -35,7 +25,7 @@ fn shell_drops() -> u32 {
 }
 
 fn shell_blocks() -> u32 {
-    return (rain.per_shell + 32u * WORDS - 1u) / (32u * WORDS);
+    return blocks_of(rain.per_shell);
 }
 
 // Drop `index` of its shell.
@@ -46,12 +36,4 @@ fn moving(in_shell: ClassInShell, index: u32) -> Moving {
     }
     let drop = drop_of(in_shell, index);
     return Moving(drop, rain.wind - vec3f(0.0, 0.0, drop.speed));
-}
-
-fn seen_in(block: u32) -> u32 {
-    var sum = 0u;
-    for (var i = 0u; i < WORDS; i++) {
-        sum += countOneBits(blocks[block].seen[i]);
-    }
-    return sum;
 }

@@ -149,7 +149,8 @@ struct RainVarying {
     @builtin(position) position: vec4f,
     // Premultiplied.
     @location(0) light: vec4f,
-    @location(1) range: f32,
+    // As depth_of has it.
+    @location(1) depth: vec2f,
     // Across the streak, -1 to 1, and along it from its middle, in radii of the drop as it is drawn; how far the drop's middle goes
     // to either side of that.
     @location(2) at: vec3f,
@@ -229,7 +230,8 @@ fn corner_of(streak: Streak, corner: u32) -> RainVarying {
     clip.y *= rain.y_sign;
     let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), streak.width > 0.0);
     let reach = reach_of(stretch, 0.5 * max(streak.width, 1e-9));
-    return RainVarying(position, streak.light, d, vec3f(side, along * (reach + 1.0), reach));
+    let depth = depth_of(rain.depth, (rain.clip * vec4f(streak.middle, 1.0)).w, d, 0.0);
+    return RainVarying(position, streak.light, depth, vec3f(side, along * (reach + 1.0), reach));
 }
 
 // Every drop of the lattice, where there are no compute shaders.
@@ -253,7 +255,7 @@ fn listed_vertex(@builtin(vertex_index) corner: u32, listed: Listed) -> RainVary
     return corner_of(Streak(listed.middle_width.xyz, listed.middle_width.w, listed.half, listed.light), corner);
 }
 
-fn streak(in: RainVarying, range: f32) -> vec4f {
-    let soft = clamp((range - in.range) * 4.0 + 0.5, 0.0, 1.0);
-    return in.light * (passing(in.at.xy, in.at.z) * soft);
+// `shown`: depth of the host's picture.
+fn streak(in: RainVarying, shown: f32) -> vec4f {
+    return in.light * (passing(in.at.xy, in.at.z) * share_before(shown, in.depth));
 }

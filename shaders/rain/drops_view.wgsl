@@ -43,21 +43,21 @@ fn splash_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) sl
     return crown_corner(splashed(slot), corner, slot);
 }
 
-// Range of the host's picture at a pixel.
-fn range_at(position: vec4f) -> f32 {
-    let uv = position.xy / vec2f(textureDimensions(host_depth));
+// Depth of the host's picture at a pixel, as view_depth counts it.
+fn shown_at(position: vec4f) -> f32 {
     if HAS_DEPTH {
-        return view_range(rain.depth, depth_at(uv), ndc_of(uv));
+        let ndc = ndc_of(position.xy / vec2f(textureDimensions(host_depth)));
+        return view_depth(rain.depth, textureLoad(host_depth, vec2i(position.xy), 0).r, ndc);
     }
     return RANGE_SKY;
 }
 
 @fragment
 fn rain_fragment(in: RainVarying) -> @location(0) vec4f {
-    return streak(in, range_at(in.position));
+    return streak(in, shown_at(in.position));
 }
 
 @fragment
 fn crown_fragment(in: CrownVarying) -> @location(0) vec4f {
-    return crown_color(in, range_at(in.position), fwidth(in.at.y));
+    return crown_color(in, shown_at(in.position), fwidth(in.at.y));
 }

@@ -4,7 +4,7 @@
 //!include "rain/drops.wgsl"
 //!include "rain/cone_block.wgsl"
 
-// Of the band of each cone the shares of its four quarters, near to far, that the mean drop comes to.
+// Of each stretch the shares of its four quarters, near to far, that the mean drop comes to.
 struct OpenParts {
     @location(0) first: vec4f,
     @location(1) second: vec4f,
@@ -14,13 +14,13 @@ struct OpenParts {
 
 // `between` is the angle from one ray of the grid to the next.
 fn open_quarters(j: u32, d: vec3f, between: f32) -> vec4f {
-    let band = cones.bands[j];
+    let stretch = cones.stretches[j];
     let velocity = rain.wind - vec3f(0.0, 0.0, cones.fall);
     var open = vec4f(1.0);
     for (var i = select(0u, 4u, j < cones.first); i < 4u; i++) {
         // The first at its near end: what it is asked for lies behind that.
         let at = select((f32(i) + 0.5) * 0.25, 0.0, i == 0u);
-        let range = mix(band.x, band.y, at);
+        let range = mix(stretch.x, stretch.y, at);
         // Boxes are as much wider as rays lie apart: what pixels take from the rays round them is never more than comes to their own.
         let shut = sheltered_nearby(d * range, velocity, range * between, true);
         open = select(open, vec4f(0.0), vec4u(select(4u, i, shut)) == vec4u(0u, 1u, 2u, 3u));

@@ -255,8 +255,8 @@ struct CrownVarying {
     @builtin(position) position: vec4f,
     // Premultiplied.
     @location(0) light: vec4f,
-    // m, and age.
-    @location(1) range_age: vec2f,
+    // As depth_of has it, and age.
+    @location(1) depth_age: vec3f,
     // Across, -1 to 1, and from the foot to the top, 0 to 1.
     @location(2) at: vec2f,
     // Of its own, 0 to 1.
@@ -277,7 +277,9 @@ fn crown_corner(crown: Crown, corner: u32, slot: u32) -> CrownVarying {
     clip.y *= rain.y_sign;
     let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), crown.width > 0.0);
     let chance = vec2f(random3(vec3u(slot, rain.seed, 5u)).xy >> vec2u(8u)) / 16777216.0;
-    return CrownVarying(position, crown.light, vec2f(d - 0.2, crown.age), vec2f(side, top), chance);
+    // A little nearer than its foot, which stands on what the picture shows.
+    let depth = depth_of(rain.depth, (rain.clip * vec4f(crown.at, 1.0)).w, d, 0.2);
+    return CrownVarying(position, crown.light, vec3f(depth, crown.age), vec2f(side, top), chance);
 }
 
 // Droplets of a crown.
@@ -301,10 +303,10 @@ fn crown_profile(at: vec2f, age: f32, chance: vec2f) -> f32 {
     return 1.85 * (sheet + 2.0 * drops);
 }
 
-// `pixel`: how much of the quad's height a pixel is. What is no larger than some pixels has no shape, only its mean.
-fn crown_color(in: CrownVarying, range: f32, pixel: f32) -> vec4f {
-    let soft = clamp((range - in.range_age.x) * 4.0 + 0.5, 0.0, 1.0);
-    let shape = min(crown_profile(in.at, in.range_age.y, in.chance), 3.0);
+// `shown`: depth of the host's picture; `pixel`: how much of the quad's height a pixel is. What is no larger than some pixels has no shape, only its mean.
+fn crown_color(in: CrownVarying, shown: f32, pixel: f32) -> vec4f {
+    let soft = share_before(shown, in.depth_age.xy);
+    let shape = min(crown_profile(in.at, in.depth_age.z, in.chance), 3.0);
     let profile = mix(shape, 1.0 - in.at.x * in.at.x, smoothstep(0.15, 0.4, pixel));
     // Where it is thick it hides no more than all.
     return in.light * min(profile * soft, 1.0 / max(in.light.a, 1e-6));

@@ -161,14 +161,15 @@ struct StoneVarying {
     @location(0) light: vec3f,
     // How much it hides where it hides most.
     @location(1) cover: f32,
-    @location(2) range: f32,
+    // As depth_of has it, and the share of its light that what lies between lets through.
+    @location(2) depth_clear: vec3f,
     // Place in the quad in radii, across and along, and how far the middle's way reaches.
     @location(3) at: vec2f,
     @location(4) reach: f32,
 }
 
 fn no_stone() -> StoneVarying {
-    return StoneVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), 0.0, 0.0, vec2f(0.0), 0.0);
+    return StoneVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), 0.0, vec3f(0.0), vec2f(0.0), 0.0);
 }
 
 // A corner of what the stone covers while the shutter is open.
@@ -193,7 +194,8 @@ fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
     var clip = rain.clip * vec4f(p, 1.0);
     clip.y *= rain.y_sign;
     out.position = vec4f(clip.xy, 0.0, clip.w);
-    out.range = d - stone.diameter;
+    let depth = depth_of(rain.depth, (rain.clip * vec4f(stone.position, 1.0)).w, d, stone.diameter);
+    out.depth_clear = vec3f(depth, exp(-rain.extinction * d));
     out.reach = reach_of(stretch, radius);
     out.at = vec2f(side, end * (out.reach + 1.0));
     let thin = 0.5 * stone.diameter / radius;
@@ -221,8 +223,8 @@ fn hopping_corner(touch: Touch, surface: vec4f, corner: u32) -> StoneVarying {
 }
 
 // Premultiplied.
-fn stone_color(in: StoneVarying, range: f32) -> vec4f {
-    let soft = clamp((range - in.range) * 4.0 + 0.5, 0.0, 1.0);
-    let cover = min(in.cover * passing(in.at, in.reach), 1.0) * soft * exp(-rain.extinction * in.range);
+fn stone_color(in: StoneVarying, shown: f32) -> vec4f {
+    let soft = share_before(shown, in.depth_clear.xy);
+    let cover = min(in.cover * passing(in.at, in.reach), 1.0) * soft * in.depth_clear.z;
     return vec4f(in.light * cover, cover);
 }

@@ -10,5 +10,5 @@ fn hopping_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) i
 
 @fragment
 fn stone_fragment(in: StoneVarying) -> @location(0) vec4f {
-    return stone_color(in, range_at(in.position));
+    return stone_color(in, shown_at(in.position));
 }

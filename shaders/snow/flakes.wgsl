@@ -104,15 +104,28 @@ struct Own {
     speed: i32,
 }
 
-// Flake `index` of a shell.
-fn own_of(s: u32, index: u32) -> Own {
+// Flakes of one class in one shell.
+struct Run {
+    shell: u32,
+    size_class: u32,
+    // Of the shell's flakes, its first and the one behind its last.
+    first: u32,
+    end: u32,
+}
+
+// That of flake `index` of a shell.
+fn run_of(s: u32, index: u32) -> Run {
     var k = 0u;
     for (var step = CLASSES / 2u; step > 0u; step /= 2u) {
         k += select(0u, step, index >= flakes.upto[k + step - 1u][s]);
     }
-    let before = select(0u, flakes.upto[max(k, 1u) - 1u][s], k > 0u);
-    let random = random3(vec3u(flakes.seed, SALT | (s << 8u) | k, index - before));
-    return Own(s, k, random, scattered(i32(flakes.classes[k].y), random.x));
+    return Run(s, k, select(0u, flakes.upto[max(k, 1u) - 1u][s], k > 0u), flakes.upto[k][s]);
+}
+
+// Flake `index` of its shell.
+fn own_of(run: Run, index: u32) -> Own {
+    let random = random3(vec3u(flakes.seed, SALT | (run.shell << 8u) | run.size_class, index - run.first));
+    return Own(run.shell, run.size_class, random, scattered(i32(flakes.classes[run.size_class].y), random.x));
 }
 
 // From the camera to where the lattice has it, without its helix, in 2^-32 of the cell's side.
@@ -121,13 +134,22 @@ fn lattice_place(own: Own) -> vec3u {
     return own.random - vec3u(0u, 0u, bitcast<u32>(own.speed) * cell.w) - cell.xyz;
 }
 
-// Flake number `place` of all, the outermost shell's first.
-fn flake_of(instance: u32) -> Flake {
-    let place = flakes.count - 1u - instance;
-    let f = flakes.first;
-    let s = u32(place >= f.y) + u32(place >= f.z) + u32(place >= f.w);
-    let own = own_of(s, place - f[s]);
+// Shell of flake number `place` of all, the innermost shell's first.
+fn shell_of(place: u32) -> u32 {
+    return u32(place >= flakes.first.y) + u32(place >= flakes.first.z) + u32(place >= flakes.first.w);
+}
+
+// Flake `index` of its shell, where the lattice has it.
+fn flake_in(run: Run, index: u32) -> Flake {
+    let own = own_of(run, index);
     return flake_at(own, lattice_place(own), flakes.wind - vec3f(0.0, 0.0, f32(own.speed) * SPEED_UNIT));
+}
+
+// Flake number `place` of all.
+fn flake_of(place: u32) -> Flake {
+    let s = shell_of(place);
+    let index = place - flakes.first[s];
+    return flake_in(run_of(s, index), index);
 }
 
 // A flake so far from the camera, in 2^-32 of the cell's side, that goes with a velocity; both without its helix.
@@ -177,7 +199,8 @@ struct FlakeVarying {
     @location(0) light: vec3f,
     // Share of the flake's disc that hides what lies behind, where the streak hides most of it; and where its shape is drawn.
     @location(1) cover: vec2f,
-    @location(2) range: f32,
+    // As depth_of has it, and the share of its light that what lies between lets through.
+    @location(2) depth_clear: vec3f,
     // Place in the quad in radii, across and along its way, and how far the middle's way reaches.
     @location(3) at: vec3f,
     // Place on the flake in radii, and how much of its shape shows, 0 to 1.
@@ -186,7 +209,7 @@ struct FlakeVarying {
 }
 
 fn no_flake() -> FlakeVarying {
-    return FlakeVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), vec2f(0.0), 0.0, vec3f(0.0), vec3f(0.0), 0u);
+    return FlakeVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), vec2f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0u);
 }
 
 // Whether a disc of a radius about a line between two points can be in the picture.
@@ -200,22 +223,57 @@ fn in_picture(a: vec3f, b: vec3f, radius: f32) -> bool {
     return any(x < side) && any(-x < side) && any(y < side) && any(-y < side);
 }
 
-// A corner of what the flake covers while the shutter is open.
-fn flake_corner(flake: Flake, corner: u32) -> FlakeVarying {
-    let d = max(length(flake.position), 1e-3);
-    let toward = flake.position / d;
-    let part = part_drawn((flake.velocity - flakes.camera) * (0.5 * flakes.exposure), d);
-    let half = part.xyz;
-    let shows = flake.share > 0.0 && in_picture(flake.position - half, flake.position + half, flake.diameter);
+// Half of the way that is drawn of a flake, and what its cover is multiplied by.
+fn flake_part(flake: Flake) -> vec4f {
+    return part_drawn((flake.velocity - flakes.camera) * (0.5 * flakes.exposure), max(length(flake.position), 1e-3));
+}
+
+// Whether a flake can be in the picture, if nothing keeps it off.
+fn may_show(flake: Flake, half: vec3f) -> bool {
+    return flake.share > 0.0 && in_picture(flake.position - half, flake.position + half, flake.diameter);
+}
+
+// What a flake draws.
+struct Spot {
+    // Its middle, camera-relative, m.
+    middle: vec3f,
+    // m; 0: nothing is drawn.
+    diameter: f32,
+    // From the middle to the end of its way, m.
+    half: vec3f,
+    // Where on its helix it is, rad.
+    angle: f32,
+    light: vec3f,
+    // Flakes that it stands for, times the share of it that is drawn.
+    weight: f32,
+    // What its shape is made of.
+    shape: u32,
+}
+
+// Of a flake, if it `shows`.
+fn spot_of(flake: Flake, part: vec4f, shows: bool) -> Spot {
     if !shows || sheltered(flake.position, flake.mean_velocity, shows) {
+        return Spot();
+    }
+    let light = flake_light(flake.position, flake.position / max(length(flake.position), 1e-3));
+    let weight = flake.weight * flake.share * part.w * flakes.share;
+    return Spot(flake.position, flake.diameter, part.xyz, flake.angle, light, weight, flake.shape);
+}
+
+// A corner of what it covers while the shutter is open.
+fn flake_corner(spot: Spot, corner: u32) -> FlakeVarying {
+    if spot.diameter <= 0.0 {
         return no_flake();
     }
+    let d = max(length(spot.middle), 1e-3);
+    let toward = spot.middle / d;
+    let half = spot.half;
     var out = no_flake();
-    let radius = 0.5 * max(flake.diameter, max(flakes.pixel_angle * d * LEAST_PIXELS, 1e-6));
+    let radius = 0.5 * max(spot.diameter, max(flakes.pixel_angle * d * LEAST_PIXELS, 1e-6));
     // An axis of its own for each, turning as it falls: no direction of view is one along which all lose their sides.
-    let high = f32(flake.shape >> 16u) * (2.0 / 65535.0) - 1.0;
+    let high = f32(spot.shape >> 16u) * (2.0 / 65535.0) - 1.0;
     let level = sqrt(max(1.0 - high * high, 0.0));
-    let axis = vec3f(level * cos(flake.angle), level * sin(flake.angle), high);
+    let axis = vec3f(level * cos(spot.angle), level * sin(spot.angle), high);
     let right = normalize(cross(toward, axis) + vec3f(1e-6, 0.0, 1e-6));
     let up = cross(right, toward);
     let across_view = half - toward * dot(half, toward);
@@ -224,27 +282,49 @@ fn flake_corner(flake: Flake, corner: u32) -> FlakeVarying {
     let side = select(-1.0, 1.0, (corner & 1u) != 0u);
     let end = select(-1.0, 1.0, (corner & 2u) != 0u);
     let off = across_view * end + lengthwise * (end * radius) + cross(toward, lengthwise) * (side * radius);
-    var clip = flakes.clip * vec4f(flake.position + off + (half - across_view) * end, 1.0);
+    var clip = flakes.clip * vec4f(spot.middle + off + (half - across_view) * end, 1.0);
     clip.y *= flakes.y_sign;
     out.position = vec4f(clip.xy, 0.0, clip.w);
-    out.range = d - flake.diameter;
+    let depth = depth_of(flakes.depth, (flakes.clip * vec4f(spot.middle, 1.0)).w, d, spot.diameter);
+    out.depth_clear = vec3f(depth, exp(-flakes.extinction * d));
     let reach = reach_of(stretch, radius);
     out.at = vec3f(side, end * (reach + 1.0), reach);
-    let thin = 0.5 * flake.diameter / radius;
-    let shown = flake.share * part.w * flakes.share;
-    out.cover = vec2f(thin * thin * AREA_RATIO * longest_passing(reach), 1.0) * (flake.weight * shown);
+    let thin = 0.5 * spot.diameter / radius;
+    out.cover = vec2f(thin * thin * AREA_RATIO * longest_passing(reach), 1.0) * spot.weight;
     // Below some pixels a flake is a disc as faint as its ice is thin, and one that moves by more than itself a streak.
-    let pixels = flake.diameter / (flakes.pixel_angle * d);
+    let pixels = spot.diameter / (flakes.pixel_angle * d);
     out.own = vec3f(dot(off, right), dot(off, up), 0.0) / radius;
     out.own.z = smoothstep(3.0, 6.0, pixels) * (1.0 - smoothstep(0.5, 1.5, reach));
-    out.shape = flake.shape;
-    out.light = flake_light(flake.position, toward);
+    out.shape = spot.shape;
+    out.light = spot.light;
     return out;
 }
 
+fn lone_corner(flake: Flake, corner: u32) -> FlakeVarying {
+    let part = flake_part(flake);
+    return flake_corner(spot_of(flake, part, may_show(flake, part.xyz)), corner);
+}
+
+// Every flake, the outermost shell's first, where there are no compute shaders.
 @vertex
 fn flake_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> FlakeVarying {
-    return flake_corner(flake_of(instance), corner);
+    return lone_corner(flake_of(flakes.count - 1u - instance), corner);
+}
+
+struct ListedFlake {
+    @location(0) middle_diameter: vec4f,
+    @location(1) half_angle: vec4f,
+    @location(2) light_weight: vec4f,
+    @location(3) shape: u32,
+}
+
+// Those that were found to be in the picture (snow/cull.wgsl).
+@vertex
+fn listed_vertex(@builtin(vertex_index) corner: u32, listed: ListedFlake) -> FlakeVarying {
+    let middle = listed.middle_diameter;
+    let half = listed.half_angle;
+    let light = listed.light_weight;
+    return flake_corner(Spot(middle.xyz, middle.w, half.xyz, half.w, light.xyz, light.w, listed.shape), corner);
 }
 
 // One that is stepped: number `index` of its shell, with the place and velocity of its state (falling/state.wgsl).
@@ -257,14 +337,14 @@ fn stepped_vertex(
     @location(2) velocity: vec3f,
 ) -> FlakeVarying {
     let s = word & 0xffffu;
-    return flake_corner(flake_at(own_of(s, index), place - flakes.eye[s].xyz, velocity), corner);
+    return lone_corner(flake_at(own_of(run_of(s, index), index), place - flakes.eye[s].xyz, velocity), corner);
 }
 
 // Premultiplied.
-fn flake_color(in: FlakeVarying, range: f32) -> vec4f {
-    let soft = clamp((range - in.range) * 4.0 + 0.5, 0.0, 1.0);
+fn flake_color(in: FlakeVarying, shown: f32) -> vec4f {
+    let soft = share_before(shown, in.depth_clear.xy);
     let streak = in.cover.x * passing(in.at.xy, in.at.z);
     let shape = in.cover.y * flake_shape(in.own.xy, in.shape, in.own.z > 0.0);
-    let cover = min(mix(streak, shape, in.own.z), 1.0) * soft * exp(-flakes.extinction * in.range);
+    let cover = min(mix(streak, shape, in.own.z), 1.0) * soft * in.depth_clear.z;
     return vec4f(in.light * cover, cover);
 }

@@ -6,17 +6,17 @@
 
 override HAS_DEPTH: bool = true;
 
-// Range of the host's picture at a pixel.
-fn range_at(position: vec4f) -> f32 {
+// Depth of the host's picture at a pixel, as view_depth counts it.
+fn shown_at(position: vec4f) -> f32 {
     if HAS_DEPTH {
         let uv = position.xy / vec2f(textureDimensions(host_depth));
         let depth = textureLoad(host_depth, vec2i(position.xy), 0).r;
-        return view_range(flakes.depth, depth, vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * flakes.y_sign));
+        return view_depth(flakes.depth, depth, vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * flakes.y_sign));
     }
     return RANGE_SKY;
 }
 
 @fragment
 fn flake_fragment(in: FlakeVarying) -> @location(0) vec4f {
-    return flake_color(in, range_at(in.position));
+    return flake_color(in, shown_at(in.position));
 }

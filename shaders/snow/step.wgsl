@@ -10,7 +10,7 @@ fn step_flakes(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let slot = stepping.begins[s] + index;
-    let own = own_of(s, index);
+    let own = own_of(run_of(s, index), index);
     let terminal = f32(own.speed) * SPEED_UNIT;
     if index < stepping.known[s] {
         states[slot] = stepped(states[slot], s, index, terminal);

@@ -37,7 +37,7 @@ pub type wk_rain_model = u32;
 pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
 /// No drops: all rain is extinction in the air.
 pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
-/// Streaks on four nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
+/// Streaks on three nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
 /// rain without compute shaders (wk_caps.tier 0). No splashes.
 pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
 /// Single drops to 4 m, each where seed and time put it; cones beyond only where lamps light the rain.

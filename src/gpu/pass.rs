@@ -6,6 +6,29 @@
 use super::{Device, device::Shader};
 use crate::error::Result;
 
+/// Pipelines of a pass that are made when first drawn with, each known by what it was made for.
+pub(crate) struct Made<K, P>(Vec<(K, P)>);
+
+impl<K: PartialEq, P> Made<K, P> {
+    pub const NONE: Self = Self(Vec::new());
+
+    pub fn get(&self, key: &K) -> Option<&P> {
+        self.0.iter().find(|(k, _)| k == key).map(|(_, made)| made)
+    }
+
+    /// Makes the one for `key` if it is not there.
+    ///
+    /// # Errors
+    /// As `make`.
+    pub fn prepare(&mut self, key: K, make: impl FnOnce(&K) -> Result<P>) -> Result<()> {
+        if self.get(&key).is_none() {
+            let made = make(&key)?;
+            self.0.push((key, made));
+        }
+        Ok(())
+    }
+}
+
 /// What a full-screen pipeline is made of.
 pub struct FullscreenDesc<'a> {
     /// Shader file below `shaders/`; it includes `common/fullscreen.wgsl`.

@@ -27,8 +27,8 @@ const DROP: Units = Units { samples: 20.0, texels: 1.0, bytes: 13.0 };
 const STEP: Units = Units { samples: 2.0, texels: 1.0, bytes: 32.0 };
 /// Work that every pixel pays once anything falls: the layer cleared, read and put before the picture.
 const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
-/// A pixel's place on four cones, and eight looks at the streaks.
-const CONES: Units = Units { samples: 4.0, texels: 8.0, bytes: 0.0 };
+/// A pixel's place on three cones, and six looks at the streaks.
+const CONES: Units = Units { samples: 3.0, texels: 6.0, bytes: 0.0 };
 
 /// The cost of a setting.
 pub fn work(s: &RainSettings) -> Work {

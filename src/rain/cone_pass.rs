@@ -1,7 +1,7 @@
 //! The cones on the GPU: their texture, their block, one full-screen draw, and before it what keeps rain off them, if anything does.
 
 use super::{
-    cones::{CONES, ConeUniform, SIDE, texture},
+    cones::{ConeUniform, SIDE, STRETCHES, texture},
     open_pass::{self, OpenPass},
 };
 use crate::{
@@ -10,9 +10,9 @@ use crate::{
         Device,
         bind::{self, Slot},
         blocks::{BlockView, Blocks, UniformBlock},
-        pass::{FullscreenDesc, fullscreen},
+        pass::{FullscreenDesc, Made, fullscreen},
     },
-    stage::Recording,
+    stage::{DepthRead, Recording},
     surroundings::SurroundingsBlock,
 };
 
@@ -26,7 +26,7 @@ pub(super) struct ConePass {
     group: wgpu::BindGroup,
     open: Option<OpenPass>,
     bytes: u64,
-    pipelines: [Option<wgpu::RenderPipeline>; 16],
+    pipelines: Made<ConeKind, wgpu::RenderPipeline>,
     counts: bool,
 }
 
@@ -47,10 +47,10 @@ impl ConePass {
                 ..Default::default()
             })
         });
-        let one = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: CONES as u32 };
+        let one = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: STRETCHES as u32 };
         let none = open_pass::grid(&device.device, one);
         let group = group(&device.device, &layout, &block, &streaks, &samplers, &none);
-        Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: [const { None }; 16], counts }
+        Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: Made::NONE, counts }
     }
 
     /// Bytes of GPU memory held.
@@ -71,30 +71,8 @@ impl ConePass {
         kind: ConeKind,
     ) -> Result<()> {
         self.block.write(bytemuck::bytes_of(block));
-        let slot = &mut self.pipelines[kind.key()];
-        if slot.is_none() {
-            *slot = Some(fullscreen(
-                device,
-                &FullscreenDesc {
-                    shader: if kind.multi { "rain/cones_view.wgsl:multi" } else { "rain/cones_view.wgsl" },
-                    entry: if self.counts { "cones_counted" } else { "cones_fragment" },
-                    layouts: &[frame, &self.layout, around],
-                    targets: &[wgpu::ColorTargetState {
-                        format: super::passes::FORMAT,
-                        // Columns of rain areas may lie in the layer.
-                        blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    }],
-                    constants: &[
-                        ("HAS_DEPTH", f64::from(u8::from(kind.has_depth))),
-                        ("SHELTERED", f64::from(u8::from(kind.sheltered))),
-                        ("AREAS", f64::from(u8::from(kind.areas))),
-                    ],
-                    samples: 1,
-                },
-            )?);
-        }
-        Ok(())
+        let (own, counts) = (&self.layout, self.counts);
+        self.pipelines.prepare(kind, |_| pipeline(device, &[frame, own, around], kind, counts))
     }
 
     /// Asks what keeps rain off for a picture of this size, maps among it or not; `blocks` begin with the rain's.
@@ -119,7 +97,7 @@ impl ConePass {
 
     /// Draws what was prepared; the other groups are set.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: ConeKind) {
-        if let Some(pipeline) = &self.pipelines[kind.key()] {
+        if let Some(pipeline) = self.pipelines.get(&kind) {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &self.group, &[]);
             pass.draw(0..3, 0..1);
@@ -128,21 +106,48 @@ impl ConePass {
 }
 
 /// Which pipeline draws.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct ConeKind {
-    /// Depth of several samples.
-    pub multi: bool,
-    pub has_depth: bool,
+    pub depth: DepthRead,
     /// Something near keeps rain off.
     pub sheltered: bool,
     /// The rim of a rain area is near.
     pub areas: bool,
+    pub lamps: bool,
+    /// Columns of rain areas lie in the layer.
+    pub over: bool,
+    /// The innermost cone shows anything: not all near drops are drawn one by one.
+    pub innermost: bool,
 }
 
-impl ConeKind {
-    fn key(self) -> usize {
-        [self.areas, self.sheltered, self.multi, self.has_depth].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
-    }
+fn pipeline(
+    device: &Device,
+    layouts: &[&wgpu::BindGroupLayout],
+    kind: ConeKind,
+    counts: bool,
+) -> Result<wgpu::RenderPipeline> {
+    let flag = |name, on| (name, f64::from(u8::from(on)));
+    let [has_depth, kinds] = kind.depth.constants();
+    let desc = FullscreenDesc {
+        shader: &kind.depth.shader("rain/cones_view.wgsl"),
+        entry: if counts { "cones_counted" } else { "cones_fragment" },
+        layouts,
+        targets: &[wgpu::ColorTargetState {
+            format: super::passes::FORMAT,
+            blend: kind.over.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+            write_mask: wgpu::ColorWrites::ALL,
+        }],
+        constants: &[
+            has_depth,
+            kinds,
+            flag("SHELTERED", kind.sheltered),
+            flag("AREAS", kind.areas),
+            flag("LAMPS", kind.lamps),
+            flag("INNERMOST", kind.innermost),
+        ],
+        samples: 1,
+    };
+    fullscreen(device, &desc)
 }
 
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

@@ -1,7 +1,7 @@
-//! Rain on four nested cones about the camera (after Wang and Wade 2004): a texture of streaks, made once, moved as drops
+//! Rain on three nested cones about the camera (after Wang and Wade 2004): a texture of streaks, made once, moved as drops
 //! move.
 //!
-//! Each cone stands for the drops of a band of distances, each band twice as far and as wide as the last. Seen from the
+//! Each cone stands for the drops of a band of distances, the outer ones 2.8 times as far as the last. Seen from the
 //! camera, a drop at distance r that moves with velocity V relative to it keeps its azimuth about V and goes along Mercator's latitude
 //! s = ln tan(theta / 2), theta counted from V, at the even speed |V| / r; its streak is |V| x exposure / r long there, at any
 //! theta. So the texture is laid over (azimuth, s) and goes along s: streaks converge on both ends of V as they should.
@@ -28,13 +28,17 @@ use super::{
 };
 
 /// Cones.
-pub const CONES: usize = 4;
+pub const CONES: usize = 3;
 /// Distances, m, between which the drops of each cone are.
 pub const BANDS_M: [f64; CONES + 1] = {
     // Drops fade away about two of the inner ends: those of the innermost shell, and of all.
     let drops = HIDDEN_M;
-    [0.1875, 0.5 * drops, drops, 2.0 * drops, 4.0 * drops]
+    [0.1875, 0.5 * drops, 0.5 * FURTHER * drops, 4.0 * drops]
 };
+/// Far ends of the outer two bands over their near ones: the root of 8.
+const FURTHER: f64 = 2.828_427_124_746_190_3;
+/// Stretches along a ray of which it is asked what keeps rain off: a band each, the outermost in two halves.
+pub(super) const STRETCHES: usize = CONES + 1;
 /// Texels along either side of the texture.
 pub(crate) const SIDE: u32 = 256;
 /// Streaks in each channel.
@@ -58,6 +62,8 @@ pub(crate) struct ConeUniform {
     pub pad1: f32,
     pub bands: [[f32; 4]; CONES],
     pub shapes: [[f32; 4]; CONES],
+    pub looks: [[f32; 4]; CONES],
+    pub stretches: [[f32; 4]; STRETCHES],
     pub sets: [[f32; 4]; 2 * CONES],
 }
 
@@ -67,21 +73,25 @@ struct Mean {
     /// By what they hide: diameter, m, and fall speed, m/s.
     diameter_m: f64,
     fall_m_s: f64,
+    /// Time to fall a metre, s: as far as that the wind drives them in under a roof.
+    fall_s_per_m: f64,
 }
 
 impl Mean {
     fn of(classes: &Classes) -> Self {
-        let mut m = Self { diameter_m: 0.0, fall_m_s: 0.0 };
+        let mut m = Self { diameter_m: 0.0, fall_m_s: 0.0, fall_s_per_m: 0.0 };
         let mut discs = 0.0;
         for &(d, speed, flux) in classes.flux.iter().filter(|c| c.1 > 0.0) {
             let disc = flux / speed * d * d;
             discs += disc;
             m.diameter_m += disc * d * 1e-3;
             m.fall_m_s += disc * speed;
+            m.fall_s_per_m += disc / speed;
         }
         if discs > 0.0 {
             m.diameter_m /= discs;
             m.fall_m_s /= discs;
+            m.fall_s_per_m /= discs;
         }
         m
     }
@@ -106,7 +116,13 @@ impl ConeUniform {
         let (east, north) = frame(axis);
         let v = |d: DVec3| d.as_vec3().to_array();
         let pixel = shot.rays.pixel_angle(shot.height);
-        let mut c = Self { axis: v(axis), fall: mean.fall_m_s as f32, east: v(east), north: v(north), ..Self::zero() };
+        let mut c = Self {
+            axis: v(axis),
+            fall: (1.0 / mean.fall_s_per_m.max(1e-3)) as f32,
+            east: v(east),
+            north: v(north),
+            ..Self::zero()
+        };
         for j in 0..CONES {
             let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
             let middle = 0.5 * (near + far);
@@ -120,6 +136,8 @@ impl ConeUniform {
             c.bands[j] = [near, far, middle, depth].map(|x| x as f32);
             c.shapes[j] = [tiles, length * f64::from(SIDE) / LENGTH, number, 1.5 * pixel * f64::from(SIDE) / LENGTH]
                 .map(|x| x as f32);
+            let clear = (-air.extinction_per_m * middle).exp();
+            let level = (pixel * f64::from(SIDE) * tiles / std::f64::consts::TAU).log2() - 1.0;
             for p in 0..2 {
                 let life = LIFE_S * f64::from(1u32 << j);
                 let turns = air.time_s / life + 0.5 * f64::from(p);
@@ -132,7 +150,11 @@ impl ConeUniform {
                 let [x, y] = [chance[0], chance[1]].map(|r| f64::from(r) / 4_294_967_296.0);
                 c.sets[2 * j + p as usize] = [moved.dot(axis) / middle, share, x, y].map(|x| x as f32);
             }
+            c.looks[j] = [clear, level, tiles.log2(), 0.0].map(|x| x as f32);
         }
+        let [.., near, far] = BANDS_M;
+        let ends = [BANDS_M[0], BANDS_M[1], near, 0.5 * (near + far), far];
+        c.stretches = std::array::from_fn(|i| [ends[i] as f32, ends[i + 1] as f32, 0.0, 0.0]);
         c
     }
 
@@ -160,7 +182,7 @@ struct Streak {
     channel: usize,
 }
 
-/// Streaks of drops of 0.5 mm on in rain of 10 mm/h, in a band whose far end is twice as far as its near one.
+/// Streaks of drops of 0.5 mm on in rain of 10 mm/h, in one of the outer bands.
 fn streaks() -> Vec<Streak> {
     let sizes = DropSizes::of_rain(10.0, 1.0);
     let table = sizes.diameter_table(Weight::Number, 0.5);
@@ -170,8 +192,8 @@ fn streaks() -> Vec<Streak> {
         for i in 0..count {
             let [a, b] = [0, 1].map(|k| random3([0x5712_ea45, k << 8 | channel as u32, i]).map(share));
             let d = super::sizes::table_diameter_mm(&table, a[2]);
-            // Mean distance of a band: 1.55 times its near end.
-            let distance = libm::cbrt(1.0 + 7.0 * b[0]) / 1.55;
+            // Over that of a band's middle.
+            let distance = libm::cbrt(1.0 + (FURTHER.powi(3) - 1.0) * b[0]) / (0.5 * (1.0 + FURTHER));
             all.push(Streak {
                 middle: DVec2::new(a[0], a[1]) * f64::from(SIDE),
                 half_length: 0.5 * LENGTH * sizes.speed_m_s(d) / 6.0 / distance,

@@ -7,8 +7,9 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
-        pass::{self, ComputeDesc},
+        pass::{self, ComputeDesc, Made},
     },
+    stage::DepthRead,
 };
 
 /// Bytes of a `Crown` of `shaders/rain/splash.wgsl`.
@@ -19,18 +20,17 @@ pub(super) struct CrownPass {
     layout: wgpu::BindGroupLayout,
     crowns: wgpu::Buffer,
     group: wgpu::BindGroup,
-    /// Indexed by whether depth has several samples, and whether area rims and occluder maps are in use.
-    makes: [Option<wgpu::ComputePipeline>; 8],
-    /// For either kind of depth.
-    draws: [Option<wgpu::RenderPipeline>; 2],
+    makes: Made<CrownKind, wgpu::ComputePipeline>,
+    draws: Made<DepthRead, wgpu::RenderPipeline>,
     counts: bool,
 }
 
-/// Which shaders a frame needs: for depth of several samples, with rims of areas near, with occluder maps.
-pub(super) type CrownKind = [bool; 3];
-
-fn key(kind: CrownKind) -> usize {
-    kind.into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
+/// Which shaders a frame needs: for what depth, with rims of areas near, with occluder maps.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct CrownKind {
+    pub depth: DepthRead,
+    pub areas: bool,
+    pub maps: bool,
 }
 
 impl CrownPass {
@@ -47,7 +47,7 @@ impl CrownPass {
             layout: &layout,
             entries: &[bind::buffer(0, &crowns)],
         });
-        Self { layout, crowns, group, makes: [const { None }; 8], draws: [None, None], counts }
+        Self { layout, crowns, group, makes: Made::NONE, draws: Made::NONE, counts }
     }
 
     /// Bytes of GPU memory held.
@@ -66,27 +66,19 @@ impl CrownPass {
         [frame, around]: [&wgpu::BindGroupLayout; 2],
         kind: CrownKind,
     ) -> Result<()> {
-        let [multi, areas, maps] = kind;
-        let make = &mut self.makes[key(kind)];
-        if make.is_none() {
-            let shader = if multi { "rain/crowns_view.wgsl:multi" } else { "rain/crowns_view.wgsl" };
+        let CrownKind { depth, areas, maps } = kind;
+        let (layout, counts) = (&self.layout, self.counts);
+        self.makes.prepare(kind, |_| {
             let flag = |name, on| (name, f64::from(u8::from(on)));
-            let constants = [flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps)];
-            let layouts = [Some(frame), Some(&self.layout), Some(around)];
-            let desc = ComputeDesc { shader, entry: "make_crowns", layouts: &layouts, constants: &constants };
-            *make = Some(pass::compute(device, &desc)?);
-        }
-        let draw = &mut self.draws[usize::from(multi)];
-        if draw.is_none() {
-            let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
-            *draw = Some(listed_pipeline(
-                device,
-                frame,
-                (["crown_vertex", "crown_fragment"], &attributes, CROWN_BYTES),
-                ((multi, true), self.counts),
-            )?);
-        }
-        Ok(())
+            let [_, kinds] = depth.constants();
+            let constants = &[flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps), kinds];
+            let layouts = &[Some(frame), Some(layout), Some(around)];
+            let shader = &depth.shader("rain/crowns_view.wgsl");
+            pass::compute(device, &ComputeDesc { shader, entry: "make_crowns", layouts, constants })
+        })?;
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
+        let listed = (["crown_vertex", "crown_fragment"], &attributes[..], CROWN_BYTES);
+        self.draws.prepare(depth, |_| listed_pipeline(device, frame, listed, (depth, counts)))
     }
 
     /// Makes the crowns of that many slots; `frame` and `around` are bound as groups 0 and 2.
@@ -97,7 +89,7 @@ impl CrownPass {
         kind: CrownKind,
         slots: u32,
     ) {
-        let Some(make) = &self.makes[key(kind)] else { return };
+        let Some(make) = self.makes.get(&kind) else { return };
         pass.set_pipeline(make);
         pass.set_bind_group(0, frame, &[]);
         pass.set_bind_group(1, &self.group, &[]);
@@ -106,8 +98,8 @@ impl CrownPass {
     }
 
     /// Draws them; group 0 is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, [multi, ..]: CrownKind, slots: u32) {
-        let Some(draw) = &self.draws[usize::from(multi)] else { return };
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: CrownKind, slots: u32) {
+        let Some(draw) = self.draws.get(&kind.depth) else { return };
         pass.set_pipeline(draw);
         pass.set_vertex_buffer(0, self.crowns.slice(..));
         pass.draw(0..4, 0..slots);

@@ -1,10 +1,10 @@
-//! What comes through to the cones, on a coarse grid over the picture: each band's open shares, asked once a cell and looked up by
+//! What comes through to the cones, on a coarse grid over the picture: each stretch's open shares, asked once a cell and looked up by
 //! every pixel. Drawn only where something near keeps rain off.
 
 use std::sync::Arc;
 
 use super::{
-    cones::{CONES, ConeUniform},
+    cones::{ConeUniform, STRETCHES},
     uniforms::RainUniform,
 };
 use crate::{
@@ -20,7 +20,7 @@ use crate::{
 /// Pixels along a cell's side, and fewest cells along the picture's.
 const CELL: u32 = 10;
 const FEWEST: u32 = 40;
-/// Four quarters of a band.
+/// Four quarters of a stretch.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// The grid of a view, made when it first needs one.
@@ -30,14 +30,18 @@ pub(super) struct OpenPass {
     /// Without and with occluder maps.
     pipelines: [Option<wgpu::RenderPipeline>; 2],
     grid: wgpu::Texture,
-    /// A layer for each band.
-    layers: [wgpu::TextureView; CONES],
+    /// A layer for each stretch.
+    layers: [wgpu::TextureView; STRETCHES],
 }
 
 /// Cells of a grid over a picture.
 fn cells(picture: wgpu::Extent3d) -> wgpu::Extent3d {
     let along = |pixels: u32| pixels.div_ceil(CELL).max(FEWEST);
-    wgpu::Extent3d { width: along(picture.width), height: along(picture.height), depth_or_array_layers: CONES as u32 }
+    wgpu::Extent3d {
+        width: along(picture.width),
+        height: along(picture.height),
+        depth_or_array_layers: STRETCHES as u32,
+    }
 }
 
 /// A grid, which may be one cell for the cones to bind where nothing is asked.
@@ -79,7 +83,7 @@ impl OpenPass {
     /// Bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         let size = self.grid.size();
-        4 * CONES as u64 * u64::from(size.width) * u64::from(size.height)
+        4 * STRETCHES as u64 * u64::from(size.width) * u64::from(size.height)
     }
 
     /// The grid for a picture of this size, and whether it is a new one.
@@ -107,7 +111,7 @@ impl OpenPass {
         let slot = &mut self.pipelines[usize::from(maps)];
         if slot.is_none() {
             let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
-            let targets = [const { None }; CONES].map(|_: Option<()>| target.clone());
+            let targets = [const { None }; STRETCHES].map(|_: Option<()>| target.clone());
             *slot = Some(fullscreen(
                 device,
                 &FullscreenDesc {

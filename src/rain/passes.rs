@@ -6,11 +6,11 @@ use super::{
     LocalUniform, StoneDraw,
     cone_pass::{ConeKind, ConePass},
     cones::ConeUniform,
-    crown_pass::CrownPass,
+    crown_pass::{CrownKind, CrownPass},
     cull_pass::{CullPass, Lattice},
     integrated,
     splash::SplashUniform,
-    stone_pass::StonePass,
+    stone_pass::{StoneKind, StonePass},
     uniforms::RainUniform,
 };
 use crate::{
@@ -20,10 +20,11 @@ use crate::{
         bind::{self, Slot},
         blocks::{Blocks, UniformBlock},
         is_kept,
-        pass::{self, QuadsDesc},
+        pass::{self, Made, QuadsDesc},
     },
+    scene::ViewRays,
     stage::{
-        FallingTexture, Recording,
+        DepthRead, FallingTexture, Recording,
         stepping::{StepPass, Stepped},
     },
     surroundings::{self, SurroundingsBlock},
@@ -40,9 +41,8 @@ pub(crate) struct RainLayer {
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     surroundings: wgpu::BindGroupLayout,
-    /// Of drops and of splashes, for each kind of depth, with and without rims of areas near, and occluder maps; for devices
-    /// that cannot draw by lists.
-    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 16],
+    /// Of drops and of splashes, for devices that cannot draw by lists.
+    pipelines: Made<CrownKind, [wgpu::RenderPipeline; 2]>,
     listed: Option<Box<(CullPass, CrownPass)>>,
     cones: Option<ConePass>,
     stepped: Option<Box<StepPass>>,
@@ -62,10 +62,13 @@ pub(crate) struct LayerDraw<'a> {
     pub cones: Option<&'a ConeUniform>,
     /// Drops that are stepped in place of those without a state.
     pub stepped: Option<&'a Stepped<'a>>,
+    /// Of the camera.
+    pub rays: &'a ViewRays,
     /// What keeps rain off, and lamps.
     pub surroundings: &'a SurroundingsBlock,
-    /// Whether maps are among it.
+    /// Whether maps are among it, and lamps.
     pub maps: bool,
+    pub lamps: bool,
     /// Splashes, and how many slots of them there are.
     pub splash: &'a SplashUniform,
     pub splashes: u32,
@@ -111,7 +114,7 @@ impl RainLayer {
             local: bind::block(&device.device, "rain areas near", LOCAL.end),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             surroundings: surroundings::layout(&device.device),
-            pipelines: [const { [None, None] }; 16],
+            pipelines: Made::NONE,
             listed: None,
             cones: None,
             stepped: None,
@@ -144,14 +147,14 @@ impl RainLayer {
         &mut self,
         to: &mut Recording<'_>,
         drawn: &LayerDraw<'_>,
-        (picture, kind): (wgpu::Extent3d, (bool, bool, bool)),
+        picture: wgpu::Extent3d,
         cone_kind: ConeKind,
     ) -> Result<()> {
-        let (device, blocks) = (to.device, to.blocks);
-        let (frame, counts) = ([&self.layouts[usize::from(kind.0)], &self.surroundings], self.counts);
+        let (device, blocks, depth) = (to.device, to.blocks, cone_kind.depth);
+        let (frame, counts) = ([&self.layouts[usize::from(depth.multi)], &self.surroundings], self.counts);
         if let Some(stones) = &drawn.stones {
             let own = self.stones.get_or_insert_with(|| StonePass::new(device, blocks, counts));
-            own.prepare(device, stones, frame, FORMAT, kind)?;
+            own.prepare(device, stones, frame, FORMAT, StoneKind { depth, maps: drawn.maps })?;
         }
         if let Some(block) = drawn.cones {
             let cones = self.cones.get_or_insert_with(|| ConePass::new(device, blocks, counts));
@@ -177,22 +180,26 @@ impl RainLayer {
     ) -> Result<()> {
         let device = to.device;
         self.write(&device.queue, drawn);
-        let multi = depth.is_some_and(Layer::is_multisampled);
-        self.bind(device, depth, multi);
+        let read = DepthRead::of(depth, drawn.rays);
+        self.bind(device, depth, read.multi);
         self.texture.view(device, color.size());
-        let kind = (multi, depth.is_some(), drawn.maps);
-        let sheltered = drawn.surroundings.shelters();
-        let areas = drawn.local.is_some();
-        let cone_kind = ConeKind { multi, has_depth: depth.is_some(), sheltered, areas };
-        let key = [areas, drawn.maps, multi, depth.is_some()].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit));
+        let kind = CrownKind { depth: read, areas: drawn.local.is_some(), maps: drawn.maps };
+        let cone_kind = ConeKind {
+            depth: read,
+            sheltered: drawn.surroundings.shelters(),
+            areas: kind.areas,
+            lamps: drawn.lamps,
+            over: drawn.over,
+            innermost: drawn.cones.is_some_and(|c| c.first == 0),
+        };
         let over = (drawn.over, drawn.surroundings.bind_group());
-        self.prepare_far(to, drawn, (color.size(), kind), cone_kind)?;
+        self.prepare_far(to, drawn, color.size(), cone_kind)?;
         if drawn.rain.shells == 0 {
             self.draw_into(to.encoder, over, |pass, layer| {
                 if drawn.cones.is_some() {
                     layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
                 }
-                layer.draw_stones(pass, kind, drawn);
+                layer.draw_stones(pass, read, drawn);
             });
             return Ok(());
         }
@@ -202,17 +209,13 @@ impl RainLayer {
         }
         let splashes = drawn.splashes * u32::from(depth.is_some());
         if CullPass::serves(device) {
-            self.list(device, to.encoder, drawn, (multi, depth.is_some()), splashes)?;
+            self.list(device, to.encoder, drawn, kind, splashes)?;
         } else {
-            for (slot, entries) in self.pipelines[key]
-                .iter_mut()
-                .zip([["rain_vertex", "rain_fragment"], ["splash_vertex", "crown_fragment"]])
-            {
-                if slot.is_none() {
-                    let frame = [&self.layouts[usize::from(multi)], &self.surroundings];
-                    *slot = Some(pipeline(device, frame, entries, kind, [areas, self.counts])?);
-                }
-            }
+            let (frame, counts) = ([&self.layouts[usize::from(read.multi)], &self.surroundings], self.counts);
+            let make = |entries| pipeline(device, frame, entries, kind, counts);
+            self.pipelines.prepare(kind, |_| {
+                Ok([make(["rain_vertex", "rain_fragment"])?, make(["splash_vertex", "crown_fragment"])?])
+            })?;
         }
         self.draw_into(to.encoder, over, |pass, layer| {
             if drawn.cones.is_some() {
@@ -222,14 +225,14 @@ impl RainLayer {
                 pass.set_bind_group(2, None, &[]);
                 pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
             }
-            match (layer.listed.as_deref(), &layer.pipelines[key]) {
+            match (layer.listed.as_deref(), layer.pipelines.get(&kind)) {
                 (Some((cull, crowns)), _) => {
-                    cull.draw(pass, (multi, depth.is_some()));
+                    cull.draw(pass, read);
                     if splashes > 0 {
-                        crowns.draw(pass, [multi, areas, drawn.maps], splashes);
+                        crowns.draw(pass, kind, splashes);
                     }
                 }
-                (None, [Some(falling), Some(splashing)]) => {
+                (None, Some([falling, splashing])) => {
                     pass.set_pipeline(falling);
                     pass.draw(0..4, 0..drawn.rain.per_shell * drawn.rain.shells);
                     pass.set_pipeline(splashing);
@@ -237,7 +240,7 @@ impl RainLayer {
                 }
                 _ => {}
             }
-            layer.draw_stones(pass, kind, drawn);
+            layer.draw_stones(pass, read, drawn);
         });
         Ok(())
     }
@@ -248,31 +251,30 @@ impl RainLayer {
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         drawn: &LayerDraw<'_>,
-        depth: (bool, bool),
+        kind: CrownKind,
         splashes: u32,
     ) -> Result<()> {
-        let frame = [&self.layouts[usize::from(depth.0)], &self.surroundings];
+        let CrownKind { depth, areas, maps } = kind;
+        let frame = [&self.layouts[usize::from(depth.multi)], &self.surroundings];
         let (own, counts) = (&device.device, self.counts);
         let make = || Box::new((CullPass::new(own, (&self.block, &self.local), counts), CrownPass::new(own, counts)));
         let (cull, crowns) = &mut **self.listed.get_or_insert_with(make);
         let around = drawn.surroundings.bind_group();
         let states = self.stepped.as_ref().filter(|_| drawn.stepped.is_some()).and_then(|s| s.states());
-        let (areas, maps) = (drawn.local.is_some(), drawn.maps);
         cull.prepare_draw(device, frame[0], depth)?;
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         let lattice = Lattice { shells: drawn.rain.shells, per_shell: drawn.rain.per_shell, states, areas, maps };
         cull.find(device, &mut pass, (frame[1], around), lattice)?;
         if let (Some((.., own)), 1..) = (&self.bound, splashes) {
-            let kind = [depth.0, areas, maps];
             crowns.prepare(device, frame, kind)?;
             crowns.make(&mut pass, [own, around], kind, splashes);
         }
         Ok(())
     }
 
-    fn draw_stones(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool, bool), drawn: &LayerDraw<'_>) {
+    fn draw_stones(&self, pass: &mut wgpu::RenderPass<'_>, depth: DepthRead, drawn: &LayerDraw<'_>) {
         if let (Some(stones), Some(own)) = (&drawn.stones, &self.stones) {
-            own.draw(pass, kind, stones);
+            own.draw(pass, StoneKind { depth, maps: drawn.maps }, stones);
         }
     }
 
@@ -337,11 +339,10 @@ fn pipeline(
     device: &Device,
     [frame, around]: [&wgpu::BindGroupLayout; 2],
     [vertex, fragment]: [&str; 2],
-    (multi, has_depth, maps): (bool, bool, bool),
-    [areas, counts]: [bool; 2],
+    CrownKind { depth, areas, maps }: CrownKind,
+    counts: bool,
 ) -> Result<wgpu::RenderPipeline> {
-    let module = device.shader(if multi { "rain/drops_view.wgsl:multi" } else { "rain/drops_view.wgsl" })?;
-    let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
+    let module = device.shader(&depth.shader("rain/drops_view.wgsl"))?;
     // Mixtures take each column by itself: what lies over what is in their order.
     let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
     pass::quads(
@@ -349,7 +350,7 @@ fn pipeline(
         &QuadsDesc {
             label: "drops",
             vertex: (&module, vertex, &near),
-            fragment: (&module, fragment, &constants),
+            fragment: (&module, fragment, &depth.constants()),
             layouts: &[Some(frame), None, Some(around)],
             buffers: &[],
             format: FORMAT,

@@ -14,7 +14,7 @@ pub enum RainModel {
     Automatic,
     /// No drops: all rain is extinction. Costs nothing beyond the fog.
     Veil,
-    /// Streaks on four nested cones about the camera ([`super::cones`]). The cost depends only on the picture's size; it is
+    /// Streaks on three nested cones about the camera ([`super::cones`]). The cost depends only on the picture's size; it is
     /// below that of drops only without compute shaders. No splashes.
     Cones,
     /// Drops alone, to 4 m, each where (seed, number, time) puts it, without a state ([`super::lattice`]); cones beyond where

@@ -7,8 +7,9 @@ use crate::{
         Device,
         bind::{self, Slot},
         blocks::{Blocks, UniformBlock},
-        pass::{self, QuadsDesc},
+        pass::{self, Made, QuadsDesc},
     },
+    stage::DepthRead,
 };
 
 /// What a frame draws of stones.
@@ -31,16 +32,16 @@ pub(super) struct StonePass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
-    /// Falling and hopping, for each kind of depth.
-    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 8],
+    /// Falling and hopping.
+    pipelines: Made<StoneKind, [wgpu::RenderPipeline; 2]>,
     counts: bool,
 }
 
-/// The kind of depth that a pass has: several samples, any at all; and whether there are occluder maps.
-pub(super) type Depth = (bool, bool, bool);
-
-fn key((multi, any, maps): Depth) -> usize {
-    usize::from(maps) * 4 + usize::from(multi) * 2 + usize::from(any)
+/// Which pipelines draw: with what depth, and whether there are occluder maps.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct StoneKind {
+    pub depth: DepthRead,
+    pub maps: bool,
 }
 
 impl StonePass {
@@ -54,7 +55,7 @@ impl StonePass {
             layout: &layout,
             entries: &[block.entry(0)],
         });
-        Self { block, layout, group, pipelines: [const { [None, None] }; 8], counts }
+        Self { block, layout, group, pipelines: Made::NONE, counts }
     }
 
     /// Brings the block up, and makes the pipelines for a kind of depth if they are not there. `rain` and `around` are the
@@ -68,25 +69,21 @@ impl StonePass {
         drawn: &StoneDraw,
         [rain, around]: [&wgpu::BindGroupLayout; 2],
         format: wgpu::TextureFormat,
-        depth: Depth,
+        kind: StoneKind,
     ) -> Result<()> {
         self.block.write(bytemuck::bytes_of(&drawn.block));
-        for (slot, vertex) in self.pipelines[key(depth)].iter_mut().zip(["falling_vertex", "hopping_vertex"]) {
-            if slot.is_none() {
-                let layouts = [Some(rain), Some(&self.layout), Some(around)];
-                *slot = Some(pipeline(device, &layouts, (format, self.counts), vertex, depth)?);
-            }
-        }
-        Ok(())
+        let layouts = [Some(rain), Some(&self.layout), Some(around)];
+        let make = |vertex| pipeline(device, &layouts, (format, self.counts), vertex, kind);
+        self.pipelines.prepare(kind, |_| Ok([make("falling_vertex")?, make("hopping_vertex")?]))
     }
 
     /// Draws what was prepared, in a pass whose group 0 is the drops'.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, depth: Depth, drawn: &StoneDraw) {
-        let [Some(falling), Some(hopping)] = &self.pipelines[key(depth)] else { return };
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: StoneKind, drawn: &StoneDraw) {
+        let Some([falling, hopping]) = self.pipelines.get(&kind) else { return };
         pass.set_bind_group(1, &self.group, &[]);
         pass.set_pipeline(falling);
         pass.draw(0..4, 0..drawn.falling);
-        if depth.1 && drawn.landings > 0 {
+        if kind.depth.any && drawn.landings > 0 {
             pass.set_pipeline(hopping);
             pass.draw(0..4, 0..drawn.landings);
         }
@@ -98,17 +95,16 @@ fn pipeline(
     layouts: &[Option<&wgpu::BindGroupLayout>],
     (format, counts): (wgpu::TextureFormat, bool),
     vertex: &str,
-    (multi, has_depth, maps): Depth,
+    StoneKind { depth, maps }: StoneKind,
 ) -> Result<wgpu::RenderPipeline> {
-    let module = device.shader(if multi { "rain/stones_view.wgsl:multi" } else { "rain/stones_view.wgsl" })?;
-    let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
+    let module = device.shader(&depth.shader("rain/stones_view.wgsl"))?;
     let near = [("MAPS", f64::from(u8::from(maps)))];
     pass::quads(
         device,
         &QuadsDesc {
             label: "stones",
             vertex: (&module, vertex, &near),
-            fragment: (&module, "stone_fragment", &constants),
+            fragment: (&module, "stone_fragment", &depth.constants()),
             layouts,
             buffers: &[],
             format,

@@ -399,8 +399,10 @@ impl RainView {
             rain: &block,
             cones: cones.as_ref(),
             stepped: stepped.as_ref(),
+            rays: shot.rays,
             surroundings: with.surroundings,
             maps: now.has_maps(),
+            lamps: now.has_lamps(),
             splash: &splashes.uniform(
                 (camera.position_m, height_m),
                 air.time_s,

@@ -6,22 +6,31 @@ use crate::{
     gpu::{
         Device, KeptLayer, Layer,
         bind::{self, Slot},
-        blocks::{Blocks, UniformBlock},
+        blocks::{BlockView, Blocks, UniformBlock},
         is_kept,
-        pass::{self, QuadsDesc},
+        pass::{self, ComputeDesc, Made, QuadsDesc},
     },
+    scene::ViewRays,
     stage::{
-        LAYER_FORMAT, Recording,
+        DepthRead, LAYER_FORMAT, Recording,
+        listing::{BLOCK_THINGS, Listing},
         stepping::{STATE_BYTES, StepPass, Stepped},
     },
     surroundings::{self, SurroundingsBlock},
 };
+
+/// Bytes of a `Spot` of `shaders/snow/flakes.wgsl`.
+const SPOT_BYTES: u64 = 64;
+/// Flakes of a workgroup of `mark` of `shaders/snow/cull.wgsl`: 64 threads of 32.
+const MARK_FLAKES: u32 = 64 * 32;
 
 /// What a frame draws with and into.
 pub(super) struct FlakeDraw<'a> {
     pub block: &'a FlakesUniform,
     /// By what they are stepped, if they are.
     pub stepped: Option<&'a Stepped<'a>>,
+    /// Of the camera.
+    pub rays: &'a ViewRays,
     pub surroundings: &'a SurroundingsBlock,
     /// Whether occluder maps are among them.
     pub maps: bool,
@@ -38,8 +47,9 @@ pub(super) struct SnowPass {
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     surroundings: wgpu::BindGroupLayout,
-    /// By whether depth has several samples, is there at all, whether there are occluder maps, and whether flakes are stepped.
-    pipelines: [Option<wgpu::RenderPipeline>; 16],
+    pipelines: Made<FlakeKind, wgpu::RenderPipeline>,
+    /// Those that the picture shows, where there are compute shaders and no steps.
+    listed: Option<Box<ListedFlakes>>,
     step: Option<Box<StepPass>>,
     none: wgpu::TextureView,
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
@@ -58,7 +68,8 @@ impl SnowPass {
             block: blocks.block(device, size_of::<FlakesUniform>()),
             layouts: [layout(false), layout(true)],
             surroundings: surroundings::layout(own),
-            pipelines: [const { None }; 16],
+            pipelines: Made::NONE,
+            listed: None,
             step: None,
             none: bind::nothing(own, wgpu::TextureFormat::Rgba8Unorm),
             bound: None,
@@ -73,7 +84,7 @@ impl SnowPass {
 
     /// Bytes of GPU memory that it holds.
     pub fn bytes(&self) -> u64 {
-        self.step.as_ref().map_or(0, |step| step.bytes())
+        self.step.as_ref().map_or(0, |step| step.bytes()) + self.listed.as_ref().map_or(0, |l| l.listing.bytes())
     }
 
     /// Draws all flakes.
@@ -83,13 +94,17 @@ impl SnowPass {
     pub fn draw(&mut self, to: &mut Recording<'_>, drawn: &FlakeDraw<'_>) -> Result<()> {
         let device = to.device;
         self.block.write(bytemuck::bytes_of(drawn.block));
-        let several = drawn.depth.is_some_and(Layer::is_multisampled);
-        self.bind(device, drawn.depth, several);
-        let kind = [several, drawn.depth.is_some(), drawn.maps, drawn.stepped.is_some()];
-        let place = kind.into_iter().fold(0, |k, bit| 2 * k + usize::from(bit));
-        if self.pipelines[place].is_none() {
-            self.pipelines[place] = Some(self.pipeline(device, kind)?);
-        }
+        let depth = DepthRead::of(drawn.depth, drawn.rays);
+        self.bind(device, drawn.depth, depth.multi);
+        let source = match drawn.stepped {
+            Some(_) => Source::Stepped,
+            None if device.caps().tier > 0 => Source::Listed,
+            None => Source::All,
+        };
+        let kind = FlakeKind { depth, maps: drawn.maps, source };
+        let layouts = [Some(&self.layouts[usize::from(depth.multi)]), None, Some(&self.surroundings)];
+        let counts = self.counts;
+        self.pipelines.prepare(kind, |_| pipeline(device, &layouts, kind, counts))?;
         match drawn.stepped {
             Some(by) => {
                 let step = self.step.get_or_insert_with(|| Box::new(stepped::pass(device, to.blocks)));
@@ -97,7 +112,12 @@ impl SnowPass {
             }
             None => self.step = None,
         }
-        let (Some(pipeline), Some((_, group))) = (&self.pipelines[place], &self.bound) else { return Ok(()) };
+        if source == Source::Listed {
+            let list = || Box::new(ListedFlakes::new(&device.device, &self.block));
+            let listed = self.listed.get_or_insert_with(list);
+            listed.find(to, drawn, &self.surroundings)?;
+        }
+        let (Some(pipeline), Some((_, group))) = (self.pipelines.get(&kind), &self.bound) else { return Ok(()) };
         let load = if drawn.over { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
         let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("snow"),
@@ -112,13 +132,14 @@ impl SnowPass {
         pass.set_bind_group(0, group, &[]);
         pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
         pass.set_pipeline(pipeline);
-        match &self.step {
+        match (&self.step, &self.listed) {
             // The farthest first.
-            Some(step) => step.shells().rev().for_each(|(states, count)| {
+            (Some(step), _) => step.shells().rev().for_each(|(states, count)| {
                 pass.set_vertex_buffer(0, states);
                 pass.draw(0..4, 0..count);
             }),
-            None => pass.draw(0..4, 0..drawn.block.count),
+            (None, Some(listed)) => listed.listing.draw(&mut pass),
+            (None, None) => pass.draw(0..4, 0..drawn.block.count),
         }
         Ok(())
     }
@@ -136,30 +157,102 @@ impl SnowPass {
         });
         self.bound = Some((depth.map(Layer::kept), group));
     }
+}
 
-    fn pipeline(
-        &self,
-        device: &Device,
-        [several, has_depth, maps, stepped]: [bool; 4],
-    ) -> Result<wgpu::RenderPipeline> {
-        let module = device.shader(if several { "snow/flakes_view.wgsl:multi" } else { "snow/flakes_view.wgsl" })?;
-        let yes = |b: bool| f64::from(u8::from(b));
-        let state = [Some(wgpu::VertexBufferLayout {
-            array_stride: STATE_BYTES,
-            step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &wgpu::vertex_attr_array![0 => Uint32x3, 1 => Uint32, 2 => Float32x3],
-        })];
-        pass::quads(
-            device,
-            &QuadsDesc {
-                label: "snow",
-                vertex: (&module, if stepped { "stepped_vertex" } else { "flake_vertex" }, &[("MAPS", yes(maps))]),
-                fragment: (&module, "flake_fragment", &[("HAS_DEPTH", yes(has_depth))]),
-                layouts: &[Some(&self.layouts[usize::from(several)]), None, Some(&self.surroundings)],
-                buffers: if stepped { &state } else { &[] },
-                format: LAYER_FORMAT,
-                counts: self.counts,
-            },
-        )
+/// Where flakes that are drawn come from: the lattice, the list of those that show, or their states.
+#[derive(Clone, Copy, PartialEq)]
+enum Source {
+    All,
+    Listed,
+    Stepped,
+}
+
+/// Which pipeline draws: with what depth, whether there are occluder maps, and what.
+#[derive(Clone, Copy, PartialEq)]
+struct FlakeKind {
+    depth: DepthRead,
+    maps: bool,
+    source: Source,
+}
+
+fn pipeline(
+    device: &Device,
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+    FlakeKind { depth, maps, source }: FlakeKind,
+    counts: bool,
+) -> Result<wgpu::RenderPipeline> {
+    let module = device.shader(&depth.shader("snow/flakes_view.wgsl"))?;
+    const STATE: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Uint32x3, 1 => Uint32, 2 => Float32x3];
+    const SPOT: [wgpu::VertexAttribute; 4] =
+        wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Uint32];
+    let each = |array_stride, attributes| {
+        [Some(wgpu::VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Instance, attributes })]
+    };
+    let (state, spot) = (each(STATE_BYTES, &STATE[..]), each(SPOT_BYTES, &SPOT[..]));
+    let (vertex, buffers) = match source {
+        Source::All => ("flake_vertex", &[][..]),
+        Source::Listed => ("listed_vertex", &spot[..]),
+        Source::Stepped => ("stepped_vertex", &state[..]),
+    };
+    pass::quads(
+        device,
+        &QuadsDesc {
+            label: "snow",
+            vertex: (&module, vertex, &[("MAPS", f64::from(u8::from(maps)))]),
+            fragment: (&module, "flake_fragment", &depth.constants()),
+            layouts,
+            buffers,
+            format: LAYER_FORMAT,
+            counts,
+        },
+    )
+}
+
+/// The flakes that a picture shows ([`crate::stage::listing`]): shaders are `shaders/snow/cull.wgsl` and `cull_spots.wgsl`.
+struct ListedFlakes {
+    layout: wgpu::BindGroupLayout,
+    /// The flakes' block.
+    group: wgpu::BindGroup,
+    listing: Listing,
+    mark: Option<[wgpu::ComputePipeline; 2]>,
+    /// By whether there are occluder maps.
+    makes: Made<bool, wgpu::ComputePipeline>,
+}
+
+impl ListedFlakes {
+    fn new(device: &wgpu::Device, block: &BlockView) -> Self {
+        let slots = [(0, Slot::Uniform(size_of::<FlakesUniform>()))];
+        let layout = bind::layout(device, "snow list", wgpu::ShaderStages::COMPUTE, &slots);
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("snow list"),
+            layout: &layout,
+            entries: &[block.entry(0)],
+        });
+        Self { layout, group, listing: Listing::new(device, SPOT_BYTES), mark: None, makes: Made::NONE }
+    }
+
+    /// Records what finds them. The flakes' block is up.
+    fn find(&mut self, to: &mut Recording<'_>, drawn: &FlakeDraw<'_>, around: &wgpu::BindGroupLayout) -> Result<()> {
+        let (device, count) = (to.device, drawn.block.count);
+        self.listing.make_room(&device.device, u64::from(count.div_ceil(BLOCK_THINGS).next_power_of_two()));
+        let [list, made] = &self.listing.layouts;
+        let compute = |shader, entry, layouts: &[Option<&wgpu::BindGroupLayout>], constants: &[(&str, f64)]| {
+            pass::compute(device, &ComputeDesc { shader, entry, layouts, constants })
+        };
+        if self.mark.is_none() {
+            let layouts = [Some(&self.layout), Some(list)];
+            let make = |entry| compute("snow/cull.wgsl", entry, &layouts, &[]);
+            self.mark = Some([make("mark")?, make("order")?]);
+        }
+        let layouts = [Some(&self.layout), Some(made), Some(around)];
+        self.makes.prepare(drawn.maps, |maps| {
+            compute("snow/cull_spots.wgsl", "make_spots", &layouts, &[("MAPS", f64::from(u8::from(*maps)))])
+        })?;
+        let (Some([mark, order]), Some(make)) = (&self.mark, self.makes.get(&drawn.maps)) else { return Ok(()) };
+        let mut pass = to.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
+        self.listing.find(&mut pass, [mark, order, make], [count.div_ceil(MARK_FLAKES), 1]);
+        Ok(())
     }
 }

@@ -205,6 +205,7 @@ impl DrawnEffect for SnowView {
         let drawn = FlakeDraw {
             block: &block,
             stepped: stepped.as_ref(),
+            rays: shot.rays,
             surroundings: with.surroundings,
             maps: now.has_maps(),
             target: &target,

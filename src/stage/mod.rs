@@ -8,6 +8,7 @@
 mod composition;
 mod diagnostic;
 mod effect;
+pub(crate) mod listing;
 mod opaque;
 mod recording;
 pub(crate) mod stepping;
@@ -22,7 +23,7 @@ pub use opaque::DepthAccess;
 pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
 pub(crate) use recording::Recording;
 pub use recording::{CostItem, Costs, RainReport, Report, SnowReport};
-pub(crate) use streak::{FallingTexture, LAYER_FORMAT, StreakCamera, StreakContrast, Tone};
+pub(crate) use streak::{DepthRead, FallingTexture, LAYER_FORMAT, StreakCamera, StreakContrast, Tone};
 pub use target::{ColorSpace, Stages};
 pub(crate) use target::{
     Sampling, can_be_apart, can_copy, check_classes, check_color, check_depth, check_mask, check_normals,

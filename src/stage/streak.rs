@@ -5,7 +5,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::{DMat4, DVec2, DVec3};
 
 use super::Shot;
-use crate::{gpu::Device, light::luminance, scene::ViewRays};
+use crate::{
+    gpu::{Device, Layer},
+    light::luminance,
+    scene::ViewRays,
+};
 
 /// Light of what falls times the picture's exposure, and the share of what lies behind that it hides.
 pub(crate) const LAYER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -40,6 +44,33 @@ impl<'a> StreakCamera<'a> {
             exposure_s,
             gain,
         }
+    }
+}
+
+/// How pixels of what falls read the host's depth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DepthRead {
+    /// Of several samples.
+    pub multi: bool,
+    /// Whether there is any.
+    pub any: bool,
+    /// `DEPTH_KINDS` of `common/depth.wgsl`.
+    pub kinds: u32,
+}
+
+impl DepthRead {
+    pub fn of(depth: Option<Layer<'_>>, rays: &ViewRays) -> Self {
+        Self { multi: depth.is_some_and(Layer::is_multisampled), any: depth.is_some(), kinds: rays.depth_kinds() }
+    }
+
+    /// The shader file that reads it, of one which includes `common/host.wgsl`.
+    pub fn shader(self, name: &str) -> String {
+        format!("{name}{}", if self.multi { ":multi" } else { "" })
+    }
+
+    /// The constants of its fragment shaders.
+    pub fn constants(self) -> [(&'static str, f64); 2] {
+        [("HAS_DEPTH", f64::from(u8::from(self.any))), ("DEPTH_KINDS", self.kinds.into())]
     }
 }
 

@@ -4,7 +4,12 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use welkin::{
     context::GivenDirection,
     frame::Stages,
-    rain::{RainModel, RainSettings, cones::BANDS_M, contrast, lattice::HIDDEN_M},
+    rain::{
+        RainModel, RainSettings,
+        cones::{BANDS_M, CONES},
+        contrast,
+        lattice::HIDDEN_M,
+    },
     scene::Camera,
 };
 
@@ -53,13 +58,13 @@ fn cones_hide_as_much_as_the_drops_they_stand_for() {
             mean(&each.collect::<Vec<_>>())
         });
         // They stand for drops up to a greater distance.
-        let more = (BANDS_M[4] - BANDS_M[0]) / (HIDDEN_M - BANDS_M[0]);
+        let more = (BANDS_M[CONES] - BANDS_M[0]) / (HIDDEN_M - BANDS_M[0]);
         println!("{rate} mm/h: cones {:.4} of drops", seen[1] / seen[0] / more);
         assert!((seen[1] / seen[0] / more - 1.0).abs() < 0.07, "{rate} mm/h: {seen:?}");
         // A wall at 3.5 m hides what the two outer cones stand for.
         host.boxes[0] = upright([0.0, 3.5, 300.0], [2000.0, 1e-3, 2000.0]);
         let near = light(&mut host);
-        let part = (3.75 - BANDS_M[0]) / (BANDS_M[4] - BANDS_M[0]);
+        let part = (3.75 - BANDS_M[0]) / (BANDS_M[CONES] - BANDS_M[0]);
         assert!((near / seen[1] / part - 1.0).abs() < 0.3, "{near} of {}, {part}", seen[1]);
         host.boxes[0] = upright([0.0, 400.0, 0.0], [2000.0, 1.0, 2000.0]);
     }
@@ -77,7 +82,7 @@ fn what_cones_hide_is_the_optical_depth_of_their_drops() {
             mean(&through(&mut host))
         });
         let got = -mean(&each.collect::<Vec<_>>()).ln();
-        let want = 0.5 * classes(&weather, u32::MAX).extinction_per_m * (BANDS_M[4] - BANDS_M[0]);
+        let want = 0.5 * classes(&weather, u32::MAX).extinction_per_m * (BANDS_M[CONES] - BANDS_M[0]);
         println!("{rate} mm/h: {got:.5}, discs {want:.5}");
         assert!((got / want - 1.0).abs() < 0.06, "{rate} mm/h: {got} against {want}");
     }
@@ -274,7 +279,7 @@ fn streaks_stand_out_as_the_sum_of_their_squared_covers_says() {
         let classes = classes(&weather, u32::MAX);
         let fall = classes.flux[16].1;
         let along = DVec3::new(speed, 0.0, fall).length() / 60.0;
-        let want = contrast::cover_variance(&classes, pixel, (along, gain), (0.2, BANDS_M[4])).sqrt();
+        let want = contrast::cover_variance(&classes, pixel, (along, gain), (0.2, BANDS_M[CONES])).sqrt();
         let ratio = variance.sqrt() / want;
         println!(
             "{rate} mm/h at {speed} m/s, gain {gain}: deviation {:.5}, by the closed form {want:.5}, {ratio:.3}",

@@ -5,7 +5,12 @@ use glam::{DVec2, DVec3};
 use welkin::{
     context::GivenDirection,
     frame::Stages,
-    rain::{OccluderMap, RainModel, RainSettings, Shelter, Taken, cones::BANDS_M, shelter::sheltered, splash},
+    rain::{
+        OccluderMap, RainModel, RainSettings, Shelter, Taken,
+        cones::{BANDS_M, CONES},
+        shelter::sheltered,
+        splash,
+    },
     scene::Camera,
 };
 
@@ -114,7 +119,7 @@ fn share(host: &Host, deck: &Shelter, falls: &[(f64, DVec3)], i: usize) -> (f64,
     let (p, _) = host.cast(DVec2::new(at.x / 80.0 - 1.0, 1.0 - at.y / 45.0)).unwrap();
     let eye = host.camera.position;
     let plain = (p.z + eye.z).abs() > 0.01 || p.truncate().length() > splash::REACH_M;
-    let (d, far) = (p.normalize(), p.length().min(BANDS_M[4]));
+    let (d, far) = (p.normalize(), p.length().min(BANDS_M[CONES]));
     let places = (0..48).map(|k| BANDS_M[0] + (far - BANDS_M[0]) * (f64::from(k) + 0.5) / 48.0);
     let discs: f64 = falls.iter().map(|f| f.0).sum();
     let free = |p: DVec3| falls.iter().filter(|f| !sheltered(deck, eye + p, f.1)).map(|f| f.0).sum::<f64>() / discs;

@@ -4,7 +4,11 @@
 use glam::{DVec2, DVec3};
 use welkin::{
     gpu::{Device, DeviceOptions},
-    rain::{OccluderMap, RainModel, RainSettings, Shelter, Taken, cones::BANDS_M, shelter::sheltered},
+    rain::{
+        OccluderMap, RainModel, RainSettings, Shelter, Taken,
+        cones::{BANDS_M, CONES},
+        shelter::sheltered,
+    },
 };
 
 use crate::{
@@ -37,7 +41,7 @@ fn mean_fall(host: &Host, rate: f64, wind: f64) -> DVec3 {
 /// Whether the rain comes to all places before what a pixel shows and an eighth of a band beyond, or to none, on all rays up to three cells from it, if that does
 /// not hang on where within `slack_m` they are.
 fn agreed(host: &Host, boxes: &[Shelter], fall: DVec3, ndc: DVec2, slack_m: f64) -> Option<bool> {
-    let far = (host.cast(ndc).unwrap().0.length() * 1.125 + 0.21).min(BANDS_M[4]);
+    let far = (host.cast(ndc).unwrap().0.length() * 1.125 + 0.21).min(BANDS_M[CONES]);
     let mut first = None;
     for i in 0..49 {
         let off = DVec2::new(f64::from(i % 7) - 3.0, f64::from(i / 7) - 3.0) * (2.0 / CELLS);

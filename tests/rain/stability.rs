@@ -6,7 +6,7 @@ use welkin::{
     frame::Stages,
     rain::{
         Classes, RainModel, RainSettings,
-        cones::BANDS_M,
+        cones::{BANDS_M, CONES},
         lattice::{self, SHELLS},
     },
     weather::derive,
@@ -111,7 +111,7 @@ fn storms(host: &mut Host, mut t: f64, model: RainModel) -> f64 {
         host.context.set_weather(&weather, t, 0.0).unwrap();
         let classes = Classes::new(&derive(&weather).unwrap().precipitation, 1.0, 60_000);
         let wanted = match model {
-            RainModel::Automatic => 0.5 * classes.extinction_per_m * (BANDS_M[4] - BANDS_M[0]),
+            RainModel::Automatic => 0.5 * classes.extinction_per_m * (BANDS_M[CONES] - BANDS_M[0]),
             _ => depth_to(&classes, 400.0),
         };
         for (place, speed) in [(0.0, 0.0), (1e7, 0.0), (-1e7, 300.0)] {

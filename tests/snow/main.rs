@@ -13,7 +13,9 @@ use scene::{Host, upright};
 use welkin::{
     context::GivenDirection,
     frame::Stages,
+    gpu::{Device, DeviceOptions},
     rain::Shelter,
+    scene::{Camera, HostLight},
     snow::{
         SnowModel, SnowSettings,
         flakes::FlakeSizes,
@@ -157,6 +159,56 @@ fn flakes_are_where_the_reference_has_them() {
         found += u32::from(dark > 0.25);
     }
     assert!(looked >= 20 && f64::from(found) > 0.93 * f64::from(looked), "{found} of {looked}");
+}
+
+/// Flakes by a list of those that the picture shows, against all of them drawn one by one, without compute shaders.
+#[test]
+fn the_list_draws_what_all_flakes_draw() {
+    type Scene = (&'static str, fn(&mut Host));
+    let scenes: [Scene; 4] = [
+        ("looking up in a gale", |h| {
+            h.context.set_weather(&snow(PrecipitationKind::Snow, 2.0, 15.0), 200.0, 0.0).unwrap();
+            h.context.update(201.0).unwrap();
+            h.look(DVec3::new(3.0, -5.0, 1.7), DVec3::new(0.3, 1.0, 0.4));
+        }),
+        ("130 degrees wide", |h| {
+            let eye = DVec3::new(3.0, -5.0, 1.7);
+            h.camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 1.75, 16.0 / 9.0, scene::NEAR_M);
+        }),
+        ("beside a box", |h| h.context.set_shelters(&[upright([3.0, -2.0, 4.0], [1.0, 2.0, 0.1])]).unwrap()),
+        ("before a lamp", |h| {
+            let lamp = HostLight {
+                position_m: DVec3::new(2.0, -5.0, 2.0),
+                direction: DVec3::Y,
+                intensity_cd: [300_000.0; 3],
+                inner_deg: 10.0,
+                outer_deg: 30.0,
+            };
+            h.context.set_lights(&[lamp]).unwrap();
+        }),
+    ];
+    for backends in [DeviceOptions::default().backends, wgpu::Backends::GL] {
+        let mut hosts = [true, false].map(|force_tier0| {
+            let options = DeviceOptions { backends, force_tier0, ..DeviceOptions::default() };
+            let mut host = Host::on(Device::headless(&options).unwrap(), (240, 135));
+            assert_eq!(host.device.caps().tier, u32::from(!force_tier0));
+            host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
+            host
+        });
+        let mut before = Vec::new();
+        for (what, set) in scenes {
+            let [all, listed] = hosts.each_mut().map(|host| {
+                set(host);
+                through(host, SnowSettings::default())
+            });
+            let off: Vec<f64> = listed.iter().zip(&all).map(|(a, b)| (a - b).abs()).collect();
+            let apart = off.iter().filter(|off| **off > 2e-3).count();
+            println!("{backends:?}, {what}: {:.1e} apart on the mean, {apart} pixels of {}", mean(&off), off.len());
+            assert!(mean(&off) < 2e-5 && apart * 500 < off.len(), "{backends:?}, {what}: {} {apart}", mean(&off));
+            assert_ne!(before, listed, "{what} shows in the picture");
+            before = listed;
+        }
+    }
 }
 
 #[test]

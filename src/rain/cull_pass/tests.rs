@@ -16,6 +16,7 @@ use crate::{
         uniforms::{Classes, MovingAir, StreakCamera},
     },
     scene::{Camera, DepthMapping, ViewRays},
+    stage::listing,
     surroundings,
     weather::{Precipitation, PrecipitationKind, Weather, derive},
 };
@@ -80,8 +81,8 @@ impl Bench {
         self.pass.find(&self.device, &mut pass, (&layout, self.surroundings.bind_group()), lattice).unwrap();
         drop(pass);
         self.device.submit_and_wait(encoder).unwrap();
-        let found: Vec<u32> = self.read(&self.pass.found);
-        let streaks: Vec<[f32; 12]> = self.read(&self.pass.list.as_ref().unwrap().streaks);
+        let [found, streaks] = self.pass.listing.buffers();
+        let (found, streaks): (Vec<u32>, Vec<[f32; 12]>) = (self.read(found), self.read(streaks));
         assert_eq!(&found[4..7], &[found[1].div_ceil(64), 1, 1]);
         let shown = streaks[..found[1] as usize].iter().map(|s| ([s[0], s[1], s[2]], s[3])).collect();
         ([found[0], found[1], found[2], found[3]], shown)
@@ -149,8 +150,8 @@ fn the_list_has_what_the_picture_shows_in_the_lattices_order() {
 fn a_full_list_leaves_out_the_outermost_drops() {
     let mut bench = Bench::new(60.0);
     let (_, all) = bench.find(0.9);
-    bench.pass.list = None;
-    bench.pass.room = Some(1000);
+    bench.pass.listing.forget();
+    bench.pass.listing.room = Some(1000);
     let (draw, some) = bench.find(0.9);
     assert_eq!((draw[1], &some[..]), (1000, &all[..1000]));
 }
@@ -159,8 +160,8 @@ fn a_full_list_leaves_out_the_outermost_drops() {
 fn neither_wide_pictures_nor_fast_cameras_fill_the_list() {
     let mut bench = Bench::new(60.0);
     let drops = u64::from(bench.classes.per_shell) * SHELLS as u64;
-    let room = room(&bench.device.device, drops / u64::from(BLOCK_DROPS));
-    bench.pass.room = Some(drops);
+    let room = listing::room(&bench.device.device, drops / u64::from(BLOCK_THINGS), STREAK_BYTES);
+    bench.pass.listing.room = Some(drops);
     for (across_deg, velocity_m_s) in [
         (150.0f64, DVec3::ZERO),
         (90.0, DVec3::Y * 300.0),

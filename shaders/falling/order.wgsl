@@ -1,0 +1,39 @@
+// Where each block's things begin in the list, and how many there are, by one workgroup.
+//!include "falling/list.wgsl"
+
+struct Found {
+    // Vertices, instances, first of either: of the draw.
+    draw: vec4u,
+    // Workgroups of the pass that makes what is drawn.
+    groups: vec3u,
+}
+
+@group(1) @binding(2) var<storage, read_write> found: Found;
+
+const SUMS: u32 = 128u;
+var<workgroup> sums: array<u32, SUMS>;
+
+// Of `all` blocks, where room is for `room` things: a full list leaves out the last ones.
+fn order_blocks(thread: u32, all: u32, room: u32) {
+    let part = (all + SUMS - 1u) / SUMS;
+    let first = min(thread * part, all);
+    let end = min(first + part, all);
+    var sum = 0u;
+    for (var i = first; i < end; i++) {
+        sum += seen_in(i);
+    }
+    sums[thread] = sum;
+    workgroupBarrier();
+    var before = 0u;
+    for (var i = 0u; i < thread; i++) {
+        before += sums[i];
+    }
+    for (var i = first; i < end; i++) {
+        blocks[i].before = before;
+        before += seen_in(i);
+    }
+    if thread == SUMS - 1u {
+        let count = min(before, room);
+        found = Found(vec4u(4u, count, 0u, 0u), vec3u((count + 63u) / 64u, 1u, 1u));
+    }
+}

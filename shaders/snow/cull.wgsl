@@ -1,0 +1,33 @@
+// Which flakes of the lattice can be in the picture, and their number, for the draw: by their places among all, so near shells first.
+//!include "snow/flakes.wgsl"
+//!include "falling/order.wgsl"
+
+@group(1) @binding(1) var<storage, read_write> spots: array<Spot>;
+
+// A word of bits a thread.
+@compute @workgroup_size(64)
+fn mark(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= WORDS * blocks_of(flakes.count) {
+        return;
+    }
+    let first = 32u * id.x;
+    let last = min(first + 32u, flakes.count);
+    var seen = 0u;
+    // Flakes lie in the order of their shells and classes.
+    for (var place = first; place < last;) {
+        let s = shell_of(place);
+        let begin = flakes.first[s];
+        let run = run_of(s, place - begin);
+        let end = clamp(begin + run.end, place + 1u, last);
+        for (; place < end; place++) {
+            let flake = flake_in(run, place - begin);
+            seen |= select(0u, 1u << (place - first), may_show(flake, flake_part(flake).xyz));
+        }
+    }
+    blocks[id.x / WORDS].seen[id.x % WORDS] = seen;
+}
+
+@compute @workgroup_size(SUMS)
+fn order(@builtin(local_invocation_index) thread: u32) {
+    order_blocks(thread, blocks_of(flakes.count), arrayLength(&spots));
+}

@@ -1,0 +1,17 @@
+// What draws the flakes that snow/cull.wgsl has found, the farthest first: once a flake what it costs to know whether it got there, and
+// in what light.
+//!include "snow/flakes.wgsl"
+//!include "falling/list.wgsl"
+
+@group(1) @binding(1) var<storage, read_write> spots: array<Spot>;
+
+@compute @workgroup_size(64)
+fn make_spots(@builtin(global_invocation_id) id: vec3u) {
+    let all = blocks_of(flakes.count);
+    let count = listed(all, arrayLength(&spots));
+    if id.x >= count {
+        return;
+    }
+    let flake = flake_of(thing_at(id.x, all));
+    spots[count - 1u - id.x] = spot_of(flake, flake_part(flake), true);
+}
