@@ -16,6 +16,9 @@ type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 /// Visibility beside what falls, m.
 const VISIBILITY_M: f64 = 10_000.0;
 
+/// A time at which no cone of the rain exchanges its streaks, as in four frames of five, s; at 0 one does.
+const STEADY_S: f64 = 0.1;
+
 fn falls(kind: PrecipitationKind, rate_mm_h: f64) -> Weather {
     Weather { visibility_m: VISIBILITY_M, precipitation: Precipitation::of(kind, rate_mm_h), ..Weather::default() }
 }
@@ -40,7 +43,8 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
         ("standing water", lies(SurfaceState::StandingWater)),
         ("lying snow", lies(SurfaceState::Snow)),
     ] {
-        let own = world(device, &shared, &weather, -60.0)?;
+        let mut own = world(device, &shared, &weather, -60.0)?;
+        Arc::get_mut(&mut own).ok_or("a new context")?.update(STEADY_S)?;
         made.push(Scene::new(name, &own, 0.0)?);
         if weather.precipitation.rate_mm_h > 0.0 {
             for (which, left) in [
@@ -52,6 +56,10 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
             }
         }
     }
+    let exchanges = world(device, &shared, &falls(PrecipitationKind::Rain, 5.0), -60.0)?;
+    let calls = vec![all.without(Stages::SURFACE)];
+    let name = "rain of 5 mm/h while a cone exchanges its streaks, without what lies";
+    made.push(Scene { calls, ..Scene::new(name, &exchanges, 0.0)? });
     Ok(made)
 }
 

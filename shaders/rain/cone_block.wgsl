@@ -12,7 +12,8 @@ struct ConeUniform {
     // Nearest cone that shows anything.
     first: u32,
     north: vec3f,
-    pad1: f32,
+    // The cone that has two sets, if any has.
+    growing: u32,
     // Per cone: near end, far end and middle of its band, m; optical depth of its drops.
     bands: array<vec4f, CONES>,
     // Per cone: tiles round the axis at right angles to it; Mercator's latitude of a tile; drops per steradian; least
@@ -23,8 +24,9 @@ struct ConeUniform {
     looks: array<vec4f, CONES>,
     // Ends of the stretches along a ray of which it is asked what keeps rain off: a band each, the outermost in two halves, m.
     stretches: array<vec4f, STRETCHES>,
-    // Per cone two sets: how far they have come, in latitude; share of the drops; offset.
-    sets: array<vec4f, 6>,
+    // Per cone a set of streaks, and the one that grows in the place of one of them: how far it has come, in latitude; share of the
+    // drops; offset.
+    sets: array<vec4f, 4>,
 }
 
 @group(1) @binding(0) var<uniform> cones: ConeUniform;

@@ -16,9 +16,11 @@ const CONE_SIDE: f32 = 256.0;
 @group(1) @binding(3) var open_parts: texture_2d_array<f32>;
 @group(1) @binding(4) var open_sampler: sampler;
 
-// Whether anything near keeps rain off, and whether the innermost cone shows anything.
+// Whether anything near keeps rain off, whether the innermost cone shows anything, and whether a set of streaks grows in another's
+// place.
 override SHELTERED: bool = false;
 override INNERMOST: bool = true;
+override GROWING: bool = true;
 
 // A direction on the cones.
 struct OnCone {
@@ -107,18 +109,15 @@ fn open_band(uv: vec2f, j: u32, range: f32) -> f32 {
     return 0.5 * (open_share(uv, j, range) + open_share(uv, j + 1u, range));
 }
 
-// What cone `j` has before what is at `range` along the ray `d` of the pixel at `uv`, as an optical depth.
-fn rain_on_cone(at: OnCone, d: vec3f, uv: vec2f, j: u32, range: f32) -> f32 {
+// What a set of cone `j` has before what is at `range` along the ray `d` of the pixel at `uv`, as an optical depth.
+fn rain_on_cone(at: OnCone, d: vec3f, uv: vec2f, j: u32, moved: vec4f, range: f32) -> f32 {
     var fall = 1.0;
     if AREAS {
         fall = local_cones(d * cones.bands[j].z);
     }
     var look = look_at(at, cones.shapes[j], cones.looks[j]);
     look.number *= fall;
-    let a = cones.sets[2u * j];
-    let b = cones.sets[2u * j + 1u];
-    let depth = a.y * pattern(look, a) + b.y * pattern(look, b);
-    return fall * open_band(uv, j, range) * cones.bands[j].w * depth;
+    return fall * open_band(uv, j, range) * cones.bands[j].w * moved.y * pattern(look, moved);
 }
 
 // Light of cone `j` where it hides so much, premultiplied, and what it hides, before what is behind it.
@@ -132,9 +131,14 @@ fn before_others(d: vec3f, day: vec3f, j: u32, hidden: f32, seen: vec4f) -> vec4
 fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
     let at = on_cone(d);
     let day = day_light(d);
-    var hidden = vec3f(0.0, rain_on_cone(at, d, uv, 1u, range), rain_on_cone(at, d, uv, 2u, range));
+    let second = rain_on_cone(at, d, uv, 1u, cones.sets[1], range);
+    var hidden = vec3f(0.0, second, rain_on_cone(at, d, uv, 2u, cones.sets[2], range));
     if INNERMOST {
-        hidden.x = rain_on_cone(at, d, uv, 0u, range);
+        hidden.x = rain_on_cone(at, d, uv, 0u, cones.sets[0], range);
+    }
+    if GROWING {
+        let more = rain_on_cone(at, d, uv, cones.growing, cones.sets[3], range);
+        hidden += select(vec3f(0.0), vec3f(more), vec3u(0u, 1u, 2u) == vec3u(cones.growing));
     }
     if !LAMPS {
         // One light for all: what each hides of the next is of second order, and what is before them does not count there.

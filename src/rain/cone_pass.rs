@@ -118,6 +118,8 @@ pub(super) struct ConeKind {
     pub over: bool,
     /// The innermost cone shows anything: not all near drops are drawn one by one.
     pub innermost: bool,
+    /// A set of streaks grows in the place of another.
+    pub growing: bool,
 }
 
 fn pipeline(
@@ -144,6 +146,7 @@ fn pipeline(
             flag("AREAS", kind.areas),
             flag("LAMPS", kind.lamps),
             flag("INNERMOST", kind.innermost),
+            flag("GROWING", kind.growing),
         ],
         samples: 1,
     };

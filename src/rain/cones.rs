@@ -13,9 +13,9 @@
 //! drops would.
 //! What they hide on the mean is the optical depth of the band's drops.
 //!
-//! Nothing is carried from frame to frame. A cone is drawn twice, as two sets that grow and fade in turn, each with an offset by
-//! chance and moved by what the air, the fall and the camera have done since its birth, a few seconds ago: exact at any
-//! time, and the same on every channel.
+//! Nothing is carried from frame to frame. A cone shows a set of streaks, with an offset by chance and moved by what the air, the
+//! fall and the camera have done since its birth, a second ago at most: exact at any time, and the same on every channel. Then
+//! another grows in its place, in no two cones at once, so that a pixel has one look to spare for it.
 
 use glam::{DVec2, DVec3};
 use half::f16;
@@ -47,8 +47,14 @@ pub(crate) const STREAKS: [u32; 4] = [48, 192, 768, 3072];
 const LENGTH: f64 = 5.0;
 /// Half of a streak's width, texels: its profile is a parabola.
 const HALF_WIDTH: f64 = 0.8;
-/// Time from birth to end of a set of the innermost cone, s; each further one twice as long.
-const LIFE_S: f64 = 0.4;
+/// Time from a set of the innermost cone to the next, s; in each further one twice as long.
+const LIFE_S: f64 = 0.2;
+/// When sets come in, over the innermost cone's time: so that no two grow at once.
+const PHASES: [f64; CONES] = [0.5, 1.0, 0.0];
+/// Share of its time in which a set grows.
+const GROWS: f64 = 0.1;
+/// [`ConeUniform::growing`] where none does.
+pub(crate) const NONE_GROWS: u32 = CONES as u32;
 
 /// `ConeUniform` of `shaders/rain/cone_block.wgsl`, which explains the fields.
 #[repr(C)]
@@ -59,12 +65,12 @@ pub(crate) struct ConeUniform {
     pub east: [f32; 3],
     pub first: u32,
     pub north: [f32; 3],
-    pub pad1: f32,
+    pub growing: u32,
     pub bands: [[f32; 4]; CONES],
     pub shapes: [[f32; 4]; CONES],
     pub looks: [[f32; 4]; CONES],
     pub stretches: [[f32; 4]; STRETCHES],
-    pub sets: [[f32; 4]; 2 * CONES],
+    pub sets: [[f32; 4]; CONES + 1],
 }
 
 /// What all drops that are drawn have in common.
@@ -103,6 +109,19 @@ fn frame(axis: DVec3) -> (DVec3, DVec3) {
     (turn * DVec3::X, turn * DVec3::Y)
 }
 
+/// When set `number` of cone `j` is born, s: the same in every frame of its life.
+fn set_born_s(j: usize, number: f64) -> f64 {
+    LIFE_S * (PHASES[j] + number * f64::from(1u32 << j))
+}
+
+/// Number of the youngest set of cone `j` at a time, when it was born, and how far it has grown, 0 to 1.
+fn set_at(j: usize, time_s: f64) -> (f64, f64, f64) {
+    let life = LIFE_S * f64::from(1u32 << j);
+    let number = ((time_s - set_born_s(j, 0.0)) / life).floor();
+    let born_s = set_born_s(j, number);
+    (number, born_s, ((time_s - born_s) / (GROWS * life)).clamp(0.0, 1.0))
+}
+
 /// How far the wind has carried the air since a moment (s), m.
 pub(crate) type Carried<'a> = &'a dyn Fn(f64) -> DVec3;
 
@@ -117,6 +136,7 @@ impl ConeUniform {
         let v = |d: DVec3| d.as_vec3().to_array();
         let pixel = shot.rays.pixel_angle(shot.height);
         let mut c = Self {
+            growing: NONE_GROWS,
             axis: v(axis),
             fall: (1.0 / mean.fall_s_per_m.max(1e-3)) as f32,
             east: v(east),
@@ -138,17 +158,18 @@ impl ConeUniform {
                 .map(|x| x as f32);
             let clear = (-air.extinction_per_m * middle).exp();
             let level = (pixel * f64::from(SIDE) * tiles / std::f64::consts::TAU).log2() - 1.0;
-            for p in 0..2 {
-                let life = LIFE_S * f64::from(1u32 << j);
-                let turns = air.time_s / life + 0.5 * f64::from(p);
-                let age = turns - turns.floor();
-                // The same number in every frame of a set's life.
-                let born_s = (turns.floor() - 0.5 * f64::from(p)) * life;
-                let moved = carried(born_s) - (fall + shot.velocity_m_s) * (age * life);
-                let chance = random3([seed, (2 * j as u32) | p | 0x7000_0000, turns.floor() as i64 as u32]);
-                let share = 1.0 - (2.0 * age - 1.0).abs();
+            let (number, born_s, grown) = set_at(j, air.time_s);
+            let set = |number: f64, born_s: f64, share: f64| {
+                let moved = carried(born_s) - (fall + shot.velocity_m_s) * (air.time_s - born_s);
+                let chance = random3([seed, j as u32 | 0x7000_0000, number as i64 as u32]);
                 let [x, y] = [chance[0], chance[1]].map(|r| f64::from(r) / 4_294_967_296.0);
-                c.sets[2 * j + p as usize] = [moved.dot(axis) / middle, share, x, y].map(|x| x as f32);
+                [moved.dot(axis) / middle, share, x, y].map(|x| x as f32)
+            };
+            c.sets[j] = set(number, born_s, 1.0);
+            if grown < 1.0 {
+                c.sets[CONES] = set(number, born_s, grown);
+                c.sets[j] = set(number - 1.0, set_born_s(j, number - 1.0), 1.0 - grown);
+                c.growing = j as u32;
             }
             c.looks[j] = [clear, level, tiles.log2(), 0.0].map(|x| x as f32);
         }
@@ -247,5 +268,30 @@ pub(crate) fn texture() -> Vec<Vec<[f16; 4]>> {
                 std::array::from_fn(|k| 0.25 * four.iter().map(|t| t[k]).sum::<f64>())
             })
             .collect();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_set_grows_at_a_time_and_goes_on_from_where_it_was() {
+        let mut growing = 0;
+        for i in 0..160_000 {
+            let time_s = 1e5 + f64::from(i) * 1e-4;
+            let sets: [_; CONES] = std::array::from_fn(|j| set_at(j, time_s));
+            let grow = sets.iter().filter(|set| set.2 < 1.0).count();
+            growing += grow;
+            assert!(grow <= 1, "{time_s}: {sets:?}");
+            for (j, (number, born_s, grown)) in sets.into_iter().enumerate() {
+                let before = set_at(j, time_s - 1e-4);
+                assert!(number - before.0 <= 1.0 && born_s <= time_s + 1e-9, "{time_s}: {before:?} {number}");
+                let step = if number == before.0 { grown - before.2 } else { grown };
+                assert!((0.0..0.006).contains(&step), "{time_s}: cone {j} grows by {step}");
+            }
+        }
+        // Three cones, a tenth of the time each.
+        assert!((growing as f64 / 160_000.0 - 0.3).abs() < 0.01, "{growing}");
     }
 }

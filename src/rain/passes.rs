@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{
     LocalUniform, StoneDraw,
     cone_pass::{ConeKind, ConePass},
-    cones::ConeUniform,
+    cones::{self, ConeUniform},
     crown_pass::{CrownKind, CrownPass},
     cull_pass::{CullPass, Lattice},
     integrated,
@@ -191,6 +191,7 @@ impl RainLayer {
             lamps: drawn.lamps,
             over: drawn.over,
             innermost: drawn.cones.is_some_and(|c| c.first == 0),
+            growing: drawn.cones.is_some_and(|c| (c.first..cones::NONE_GROWS).contains(&c.growing)),
         };
         let over = (drawn.over, drawn.surroundings.bind_group());
         self.prepare_far(to, drawn, color.size(), cone_kind)?;
