@@ -221,8 +221,7 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surfac
     }
     // Hollows are those of paved ground; elsewhere a film lies as it does in the mean.
     let wanted = look.hollows > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0);
-    let waves = select(0u, HOLLOW_WAVES, wanted || SNOW);
-    let pattern = hollow_depth(place, across, along * (side / cosine), waves);
+    let pattern = hollow_depth(place, across, along * (side / cosine), wanted || SNOW);
     let hollow = vec2f(pattern.x * look.hollows, mix(1.0, pattern.y, look.hollows));
     var pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level) * look.hollows;
     pool *= mirror_left(facing.error, POOL_SLOPE);

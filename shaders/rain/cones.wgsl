@@ -67,7 +67,9 @@ struct Look {
 
 fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
     let tiles = max(round(shape.x / at.wider), 1.0);
-    let level = detail.y + at.halvings - min(at.octave, detail.z);
+    // Where no tile is left to halve, texels are smaller than pixels: no pixel takes what one of them has.
+    let beyond = max(at.octave - detail.z, 0.0);
+    let level = detail.y + at.halvings - at.octave + beyond + min(beyond, 1.0);
     let tall = max(shape.y, shape.w * at.wider);
     let uv = vec2f(at.turn * tiles + 0.37 * at.octave, at.latitude / tall + 0.61 * at.octave);
     let number = shape.z * at.square * 6.2831853 * tall / tiles;
@@ -78,10 +80,10 @@ fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
 fn pattern(look: Look, moved: vec4f) -> f32 {
     let uv = look.uv + vec2f(moved.z, moved.x / look.tall + moved.w);
     let seen = textureSampleLevel(streaks, streaks_sampler, uv, look.level);
-    // As many streaks as there are drops.
+    // As many streaks as there are drops, and no fewer than would stand out near the ends of the axis.
     let wanted = look.number * moved.y;
     let before = vec4f(0.0, STREAKS.x, STREAKS.x + STREAKS.y, ALL_STREAKS - STREAKS.w);
-    let shown = clamp((wanted - before) / STREAKS, vec4f(1.0, 0.0, 0.0, 0.0), vec4f(1.0));
+    let shown = clamp((wanted - before) / STREAKS, vec4f(1.0, 0.25, 0.0, 0.0), vec4f(1.0));
     let over_mean = dot(shown, seen) * (ALL_STREAKS / dot(shown, STREAKS));
     return max(mix(1.0, over_mean, inverseSqrt(max(wanted / ALL_STREAKS, 1.0))), 0.0);
 }

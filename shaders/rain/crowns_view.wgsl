@@ -1,11 +1,13 @@
-// The crowns of all slots, once each, before a host's picture.
+// The crowns of the slots that rain/crowns.wgsl has found, once each, before a host's picture.
 //!include "rain/drops_view.wgsl"
+//!include "falling/list.wgsl"
 
-@group(1) @binding(0) var<storage, read_write> crowns: array<Crown>;
+@group(1) @binding(1) var<storage, read_write> crowns: array<Crown>;
 
 @compute @workgroup_size(64)
 fn make_crowns(@builtin(global_invocation_id) id: vec3u) {
-    if id.x < splash.slots * splash.cells * splash.cells {
-        crowns[id.x] = splashed(id.x);
+    let all = blocks_of(splash.slots * splash.cells * splash.cells);
+    if id.x < listed(all, arrayLength(&crowns)) {
+        crowns[id.x] = splashed(thing_at(id.x, all));
     }
 }

@@ -40,7 +40,7 @@ fn splashed(slot: u32) -> Crown {
 // Every slot, where there are no compute shaders.
 @vertex
 fn splash_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) slot: u32) -> CrownVarying {
-    return crown_corner(splashed(slot), corner, slot);
+    return crown_corner(splashed(slot), corner);
 }
 
 // Depth of the host's picture at a pixel, as view_depth counts it.

@@ -55,6 +55,7 @@ struct Arrival {
     chance: f32,
     diameter: f32,
     speed: f32,
+    slot: u32,
 }
 
 // What lands in a slot at this moment, before it is known where its ground is.
@@ -79,7 +80,7 @@ fn arrival_of(instance: u32) -> Arrival {
     // Slopes to windward get more than level ground does: those of 45 degrees the most that is drawn.
     let most = 1.0 + length(rain.wind.xy) / size.y;
     let landing = Landing(xy, fract(time), select(0.0, fade, value.z < share * most));
-    return Arrival(landing, value.z / max(share, 1e-9), size.x, size.y);
+    return Arrival(landing, value.z / max(share, 1e-9), size.x, size.y, instance);
 }
 
 // Where in the picture a camera-relative point is: ndc, and 1 if it is in it.
@@ -221,6 +222,7 @@ struct Crown {
     height: f32,
     // 0 to 1.
     age: f32,
+    slot: u32,
 }
 
 // How many drops land on a surface of a `normal` for each that lands on level ground of the same extent seen from above.
@@ -248,7 +250,7 @@ fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
     // The water of the crown is a thin sheet and droplets: a third of what the quad covers.
     let thin = (shown.x * shown.y) / (size.x * size.y) * exp(-rain.extinction * d);
     let cover = gained(0.35 * thin) * (landing.fade * (1.0 - age * age));
-    return Crown(at, size.x, vec4f(drop_light(at, at / d) * cover, cover), normal.xy, size.y, age);
+    return Crown(at, size.x, vec4f(drop_light(at, at / d) * cover, cover), normal.xy, size.y, age, arrival.slot);
 }
 
 struct CrownVarying {
@@ -263,7 +265,7 @@ struct CrownVarying {
     @location(3) @interpolate(flat) chance: vec2f,
 }
 
-fn crown_corner(crown: Crown, corner: u32, slot: u32) -> CrownVarying {
+fn crown_corner(crown: Crown, corner: u32) -> CrownVarying {
     let d = max(length(crown.at), 1e-3);
     let toward = crown.at / d;
     let side = select(-1.0, 1.0, (corner & 1u) != 0u);
@@ -276,7 +278,7 @@ fn crown_corner(crown: Crown, corner: u32, slot: u32) -> CrownVarying {
     var clip = rain.clip * vec4f(place, 1.0);
     clip.y *= rain.y_sign;
     let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), crown.width > 0.0);
-    let chance = vec2f(random3(vec3u(slot, rain.seed, 5u)).xy >> vec2u(8u)) / 16777216.0;
+    let chance = vec2f(random3(vec3u(crown.slot, rain.seed, 5u)).xy >> vec2u(8u)) / 16777216.0;
     // A little nearer than its foot, which stands on what the picture shows.
     let depth = depth_of(rain.depth, (rain.clip * vec4f(crown.at, 1.0)).w, d, 0.2);
     return CrownVarying(position, crown.light, vec3f(depth, crown.age), vec2f(side, top), chance);
@@ -316,11 +318,13 @@ struct ListedCrown {
     @location(0) at_width: vec4f,
     @location(1) light: vec4f,
     @location(2) lean_height_age: vec4f,
+    @location(3) slot: u32,
 }
 
-// Crowns that were made before (rain/crowns_view.wgsl).
+// Those that the picture may show (rain/crowns.wgsl, crowns_view.wgsl).
 @vertex
-fn crown_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) slot: u32, listed: ListedCrown) -> CrownVarying {
+fn crown_vertex(@builtin(vertex_index) corner: u32, listed: ListedCrown) -> CrownVarying {
     let more = listed.lean_height_age;
-    return crown_corner(Crown(listed.at_width.xyz, listed.at_width.w, listed.light, more.xy, more.z, more.w), corner, slot);
+    let at = listed.at_width;
+    return crown_corner(Crown(at.xyz, at.w, listed.light, more.xy, more.z, more.w, listed.slot), corner);
 }

@@ -1,25 +1,29 @@
-//! Splashes where there are compute shaders: the place of each slot's crown is sought in the picture's depth once, not once a
-//! corner. The draw then only spreads corners.
+//! Splashes where there are compute shaders: a list of the slots whose splash the picture may show ([`crate::stage::listing`]), for
+//! each of which the place of its crown is sought in the picture's depth once. Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
 
-use super::{cull_pass::listed_pipeline, splash};
+use super::cull_pass::listed_pipeline;
 use crate::{
     error::Result,
     gpu::{
         Device,
-        bind::{self, Slot},
         pass::{self, ComputeDesc, Made},
     },
-    stage::DepthRead,
+    stage::{
+        DepthRead,
+        listing::{BLOCK_THINGS, Listing},
+    },
 };
 
 /// Bytes of a `Crown` of `shaders/rain/splash.wgsl`.
-const CROWN_BYTES: u64 = 48;
+const CROWN_BYTES: u64 = 64;
+/// Slots of a workgroup of `mark` of `shaders/rain/crowns.wgsl`: 64 threads of 32.
+const MARK_SLOTS: u32 = 64 * 32;
 
 /// What a view holds to make crowns.
 pub(super) struct CrownPass {
-    layout: wgpu::BindGroupLayout,
-    crowns: wgpu::Buffer,
-    group: wgpu::BindGroup,
+    listing: Listing,
+    /// What marks and orders, by whether rims of areas are near and depth has several samples.
+    marks: Made<[bool; 2], [wgpu::ComputePipeline; 2]>,
     makes: Made<CrownKind, wgpu::ComputePipeline>,
     draws: Made<DepthRead, wgpu::RenderPipeline>,
     counts: bool,
@@ -35,24 +39,13 @@ pub(super) struct CrownKind {
 
 impl CrownPass {
     pub fn new(device: &wgpu::Device, counts: bool) -> Self {
-        let layout = bind::layout(device, "crowns", wgpu::ShaderStages::COMPUTE, &[(0, Slot::Storage(CROWN_BYTES))]);
-        let crowns = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("crowns"),
-            size: CROWN_BYTES * u64::from(splash::MOST),
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX,
-            mapped_at_creation: false,
-        });
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("crowns"),
-            layout: &layout,
-            entries: &[bind::buffer(0, &crowns)],
-        });
-        Self { layout, crowns, group, makes: Made::NONE, draws: Made::NONE, counts }
+        let listing = Listing::new(device, CROWN_BYTES);
+        Self { listing, marks: Made::NONE, makes: Made::NONE, draws: Made::NONE, counts }
     }
 
     /// Bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
-        self.crowns.size()
+        self.listing.bytes()
     }
 
     /// Makes the pipelines that a frame needs, if they are not there. `frame` and `around` are the layouts of the drops' own
@@ -67,41 +60,52 @@ impl CrownPass {
         kind: CrownKind,
     ) -> Result<()> {
         let CrownKind { depth, areas, maps } = kind;
-        let (layout, counts) = (&self.layout, self.counts);
+        let ([list, made], counts) = (&self.listing.layouts, self.counts);
+        let flag = |name, on| (name, f64::from(u8::from(on)));
+        self.marks.prepare([areas, depth.multi], |_| {
+            let constants = &[flag("AREAS", areas), flag("OVERLAPS", false)];
+            let layouts = &[Some(frame), Some(list)];
+            let shader = "rain/crowns.wgsl";
+            let make = |entry| pass::compute(device, &ComputeDesc { shader, entry, layouts, constants });
+            Ok([make("mark")?, make("order")?])
+        })?;
         self.makes.prepare(kind, |_| {
-            let flag = |name, on| (name, f64::from(u8::from(on)));
             let [_, kinds] = depth.constants();
             let constants = &[flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps), kinds];
-            let layouts = &[Some(frame), Some(layout), Some(around)];
+            let layouts = &[Some(frame), Some(made), Some(around)];
             let shader = &depth.shader("rain/crowns_view.wgsl");
             pass::compute(device, &ComputeDesc { shader, entry: "make_crowns", layouts, constants })
         })?;
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Uint32];
         let listed = (["crown_vertex", "crown_fragment"], &attributes[..], CROWN_BYTES);
         self.draws.prepare(depth, |_| listed_pipeline(device, frame, listed, (depth, counts)))
     }
 
     /// Makes the crowns of that many slots; `frame` and `around` are bound as groups 0 and 2.
     pub fn make(
-        &self,
+        &mut self,
+        device: &wgpu::Device,
         pass: &mut wgpu::ComputePass<'_>,
         [frame, around]: [&wgpu::BindGroup; 2],
         kind: CrownKind,
         slots: u32,
     ) {
-        let Some(make) = self.makes.get(&kind) else { return };
-        pass.set_pipeline(make);
+        self.listing.make_room(device, u64::from(slots.div_ceil(BLOCK_THINGS).next_power_of_two()));
+        let (Some([mark, order]), Some(make)) =
+            (self.marks.get(&[kind.areas, kind.depth.multi]), self.makes.get(&kind))
+        else {
+            return;
+        };
         pass.set_bind_group(0, frame, &[]);
-        pass.set_bind_group(1, &self.group, &[]);
         pass.set_bind_group(2, around, &[]);
-        pass.dispatch_workgroups(slots.div_ceil(64), 1, 1);
+        self.listing.find(pass, [mark, order, make], [slots.div_ceil(MARK_SLOTS), 1]);
     }
 
     /// Draws them; group 0 is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: CrownKind, slots: u32) {
-        let Some(draw) = self.draws.get(&kind.depth) else { return };
-        pass.set_pipeline(draw);
-        pass.set_vertex_buffer(0, self.crowns.slice(..));
-        pass.draw(0..4, 0..slots);
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: CrownKind) {
+        if let Some(draw) = self.draws.get(&kind.depth) {
+            pass.set_pipeline(draw);
+            self.listing.draw(pass);
+        }
     }
 }

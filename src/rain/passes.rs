@@ -230,7 +230,7 @@ impl RainLayer {
                 (Some((cull, crowns)), _) => {
                     cull.draw(pass, read);
                     if splashes > 0 {
-                        crowns.draw(pass, kind, splashes);
+                        crowns.draw(pass, kind);
                     }
                 }
                 (None, Some([falling, splashing])) => {
@@ -268,7 +268,7 @@ impl RainLayer {
         cull.find(device, &mut pass, (frame[1], around), lattice)?;
         if let (Some((.., own)), 1..) = (&self.bound, splashes) {
             crowns.prepare(device, frame, kind)?;
-            crowns.make(&mut pass, [own, around], kind, splashes);
+            crowns.make(&device.device, &mut pass, [own, around], kind, splashes);
         }
         Ok(())
     }

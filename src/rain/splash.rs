@@ -17,8 +17,6 @@ pub const LIFE_S: f64 = 0.08;
 pub const REACH_M: f64 = 0.5 * SIDE_M * CELLS as f64;
 /// Most slots of a cell.
 const MOST_SLOTS: u32 = 8;
-/// Most slots that are looked at in one draw.
-pub(super) const MOST: u32 = MOST_SLOTS * CELLS * CELLS;
 /// Drops below this diameter make no crown that could be seen, mm.
 pub const LEAST_MM: f64 = 1.2;
 

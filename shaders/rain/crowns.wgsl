@@ -1,0 +1,30 @@
+// Which slots have a splash on a vertical that the picture shows, and their number, for the draw.
+//!include "rain/splash.wgsl"
+//!include "falling/order.wgsl"
+
+@group(1) @binding(1) var<storage, read_write> crowns: array<Crown>;
+
+fn all_slots() -> u32 {
+    return splash.slots * splash.cells * splash.cells;
+}
+
+// A word of bits a thread.
+@compute @workgroup_size(64)
+fn mark(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= WORDS * blocks_of(all_slots()) {
+        return;
+    }
+    let first = 32u * id.x;
+    var seen = 0u;
+    for (var slot = first; slot < min(first + 32u, all_slots()); slot++) {
+        let landing = arrival_of(slot).landing;
+        let search = search_from(landing, splash.ground);
+        seen |= select(0u, 1u << (slot - first), landing.fade > 0.0 && search.low < search.high);
+    }
+    blocks[id.x / WORDS].seen[id.x % WORDS] = seen;
+}
+
+@compute @workgroup_size(SUMS)
+fn order(@builtin(local_invocation_index) thread: u32) {
+    order_blocks(thread, blocks_of(all_slots()), arrayLength(&crowns));
+}
