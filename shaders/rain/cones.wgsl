@@ -125,7 +125,9 @@ fn rain_on_cone(at: OnCone, d: vec3f, uv: vec2f, j: u32, moved: vec4f, range: f3
 // Light of cone `j` where it hides so much, premultiplied, and what it hides, before what is behind it.
 fn before_others(d: vec3f, day: vec3f, j: u32, hidden: f32, seen: vec4f) -> vec4f {
     let cover = (1.0 - exp(-hidden)) * cones.looks[j].x;
-    return seen + vec4f(day + lamp_light(d * cones.bands[j].z, d), 1.0) * (cover * (1.0 - seen.a));
+    // A lamp by the eye lights the band on the mean as it does there.
+    let middle = sqrt(cones.bands[j].x * cones.bands[j].y);
+    return seen + vec4f(day + lamp_light(d * middle, d), 1.0) * (cover * (1.0 - seen.a));
 }
 
 // All cones before what is at `range`: premultiplied light, and what they hide. Without a loop: software drivers take twice as long
