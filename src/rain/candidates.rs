@@ -12,8 +12,8 @@ pub const RAIN: Part =
 
 /// Work of the layer of rain, its cones and splashes a pixel, and of a drop of the lattice that is drawn one by one, measured on a
 /// software driver (`cargo bench -- parts`) in units of a pixel with none of the parts.
-const LAYER_OF_PIXEL: f64 = 0.4;
-const ONE_DROP: f64 = 0.4;
+const LAYER_OF_PIXEL: f64 = 0.3;
+const ONE_DROP: f64 = 1.4;
 
 /// Work of the steps from drops to cones and from cones to a veil, in a picture of so many pixels and drops.
 pub(crate) fn rain_work(pixels: u64, drops: u32) -> [StepWork; 2] {

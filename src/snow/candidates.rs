@@ -7,10 +7,10 @@ use crate::plan::{Listed, StepWork, Units, Work};
 /// Flakes, at two rungs: each near the camera, or none, so that all snow is extinction in the fog's layer. Importance: as of rain.
 pub const SNOW: Part = Part { name: "snow", rungs: &["flakes", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work of the layer of what falls a pixel, and of a flake of the lattice, in units of a pixel with none of the parts: estimated from those
-/// of rain. `cargo bench -- parts` prints what a flake takes on a machine.
-const LAYER_OF_PIXEL: f64 = 0.2;
-const ONE_FLAKE: f64 = 0.6;
+/// Work of the layer of what falls a pixel, and of a flake of the lattice, in units of a pixel with none of the parts: from the copies that
+/// `cargo bench --bench speed -- falling` prints.
+const LAYER_OF_PIXEL: f64 = 0.1;
+const ONE_FLAKE: f64 = 0.5;
 
 /// Work of the step from flakes to a veil, in a picture of so many pixels and flakes.
 pub(crate) fn snow_work(pixels: u64, flakes: u32) -> [StepWork; 1] {
@@ -18,8 +18,8 @@ pub(crate) fn snow_work(pixels: u64, flakes: u32) -> [StepWork; 1] {
     [StepWork { fixed, ..StepWork::default() }]
 }
 
-/// Work of a flake of the lattice: its place for four corners, whether the picture shows it, and the pixels of the few that it shows.
-const FLAKE: Units = Units { samples: 30.0, texels: 1.0, bytes: 8.0 };
+/// Work of a flake of the lattice: its place, whether the picture shows it, and the pixels of the few that it shows.
+const FLAKE: Units = Units { samples: 8.0, texels: 1.0, bytes: 8.0 };
 /// Work that every pixel pays once anything falls: the layer cleared, read and put before the picture.
 const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
 
