@@ -31,7 +31,7 @@ use super::{
 pub const CONES: usize = 3;
 /// Distances, m, between which the drops of each cone are.
 pub const BANDS_M: [f64; CONES + 1] = {
-    // Drops fade away about two of the inner ends: those of the innermost shell, and of all.
+    // Drops of the innermost shell fade away about the first inner end.
     let drops = HIDDEN_M;
     [0.1875, 0.5 * drops, 0.5 * FURTHER * drops, 4.0 * drops]
 };
@@ -180,11 +180,19 @@ impl ConeUniform {
     }
 
     /// Where so large a share of the drops nearer than `distance_m` is drawn one by one, and all of what falls hides `share` times
-    /// what it does.
+    /// what it does. Single drops may reach into a band: its cone begins where they end.
     pub fn behind(mut self, (distance_m, drops): (f64, f64), share: f64) -> Self {
         for (j, band) in self.bands.iter_mut().enumerate() {
-            let nearer = BANDS_M[j] < 0.99 * distance_m;
-            band[3] *= (share * if nearer { 1.0 - drops } else { 1.0 }) as f32;
+            let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
+            let nearer = ((distance_m - near) / (far - near)).clamp(0.0, 1.0);
+            let left = 1.0 - nearer * drops;
+            band[3] *= (share * if left > 0.01 { left } else { 0.0 }) as f32;
+            if (0.01..0.99).contains(&nearer) && drops >= 1.0 {
+                band[0] = distance_m as f32;
+                self.stretches[j][0] = distance_m as f32;
+                let cubes = [distance_m, near, far].map(|r| r.powi(3));
+                self.shapes[j][2] *= ((cubes[2] - cubes[0]) / (cubes[2] - cubes[1])) as f32;
+            }
         }
         self.first = self.bands.iter().position(|b| b[3] > 0.0).unwrap_or(CONES) as u32;
         self
@@ -274,6 +282,26 @@ pub(crate) fn texture() -> Vec<Vec<[f16; 4]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn drops_and_cones_leave_no_gap_and_hide_nothing_twice() {
+        let bands = std::array::from_fn(|j| {
+            let (near, far) = (BANDS_M[j] as f32, BANDS_M[j + 1] as f32);
+            [near, far, 0.0, far - near]
+        });
+        let whole = ConeUniform { bands, stretches: [[1.0, 2.0, 0.0, 0.0]; STRETCHES], ..ConeUniform::zero() };
+        for (shells, drops) in [(0, 0.0), (1, 1.0), (1, 0.4), (4, 1.0)] {
+            let reach = super::super::lattice::hidden_m(shells);
+            let cones = whole.behind((reach, drops), 1.0);
+            let depth: f64 = cones.bands.iter().map(|b| f64::from(b[3])).sum();
+            // What drops hide from where they fade in, and cones from there on.
+            let all = depth + drops * (reach - BANDS_M[0]).max(0.0);
+            assert!((all / (BANDS_M[CONES] - BANDS_M[0]) - 1.0).abs() < 1e-6, "{shells} {drops}: {all}");
+            let begins = cones.bands.iter().filter(|b| b[3] > 0.0).map(|b| f64::from(b[0])).fold(f64::MAX, f64::min);
+            let expected = if drops < 1.0 { BANDS_M[0] } else { reach };
+            assert!((begins - expected).abs() < 1e-6, "{shells} {drops}: cones begin at {begins}");
+        }
+    }
 
     #[test]
     fn one_set_grows_at_a_time_and_goes_on_from_where_it_was() {
