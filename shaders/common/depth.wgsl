@@ -81,7 +81,8 @@ fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return clamp(w, 0.0, RANGE_SKY);
 }
 
-// What view_depth says of a thing of such a clip w, so far from the eye, that counts as so much nearer; and metres per unit of it there.
+// Depth of a thing as view_depth counts it, by its clip w and its distance from the eye, `nearer` metres before its place; and metres
+// along its ray per unit of that depth.
 fn depth_of(u: DepthUniform, clip_w: f32, distance: f32, nearer: f32) -> vec2f {
     let slant = distance / max(clip_w, 0.05 * distance);
     let parallel = (DEPTH_KINDS & 2u) != 0u && u.kind == 1u;

@@ -6,7 +6,7 @@ const STRETCHES: u32 = 4u;
 struct ConeUniform {
     // Where the drops go as seen from the camera, and two directions across.
     axis: vec3f,
-    // Fall speed of those that shelters are asked for, m/s: as far as they go in a wind while they fall a metre, all go on the mean.
+    // Fall speed with which shelters are asked, m/s: the harmonic mean, since wind drives drops as far as they take time to fall.
     fall: f32,
     east: vec3f,
     // Nearest cone that shows anything.

@@ -12,7 +12,7 @@ const CONE_SIDE: f32 = 256.0;
 
 @group(1) @binding(1) var streaks: texture_2d<f32>;
 @group(1) @binding(2) var streaks_sampler: sampler;
-// Of each stretch, a layer each, the open shares of its quarters (rain/open.wgsl).
+// A layer for each stretch: the share of each of its quarters that rain reaches (rain/open.wgsl).
 @group(1) @binding(3) var open_parts: texture_2d_array<f32>;
 @group(1) @binding(4) var open_sampler: sampler;
 
@@ -27,7 +27,7 @@ struct OnCone {
     // Turns of azimuth about the axis; Mercator's latitude.
     turn: f32,
     latitude: f32,
-    // Of the sine of the angle from the axis: its square, and how often it is halved.
+    // Of the sine of the angle from the axis: its square, and minus its binary logarithm.
     square: f32,
     halvings: f32,
     // Times that the tiles about the axis are halved, and one over their number so.
@@ -35,7 +35,7 @@ struct OnCone {
     wider: f32,
 }
 
-// Tiles that columns are counted by, in which the rings where tiles are halved are broken.
+// Columns about the axis, in each of which tiles are halved at another angle from it.
 const COLUMNS: f32 = 512.0;
 
 fn on_cone(d: vec3f) -> OnCone {
@@ -67,7 +67,7 @@ struct Look {
 
 fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
     let tiles = max(round(shape.x / at.wider), 1.0);
-    // Where no tile is left to halve, texels are smaller than pixels: no pixel takes what one of them has.
+    // With one tile left, texels become smaller than pixels: coarser levels keep them from aliasing.
     let beyond = max(at.octave - detail.z, 0.0);
     let level = detail.y + at.halvings - at.octave + beyond + min(beyond, 1.0);
     let tall = max(shape.y, shape.w * at.wider);
@@ -88,7 +88,7 @@ fn pattern(look: Look, moved: vec4f) -> f32 {
     return max(mix(1.0, over_mean, inverseSqrt(max(wanted / ALL_STREAKS, 1.0))), 0.0);
 }
 
-// Share of a stretch that the rain comes to and that lies before what is at `range`, for a pixel at `uv`.
+// Share of a stretch of the ray that rain reaches and that lies nearer than `range`, for the pixel at `uv`.
 fn open_share(uv: vec2f, j: u32, range: f32) -> f32 {
     let stretch = cones.stretches[j];
     let before = clamp((range - stretch.x) / (stretch.y - stretch.x), 0.0, 1.0);
@@ -122,7 +122,7 @@ fn rain_on_cone(at: OnCone, d: vec3f, uv: vec2f, j: u32, moved: vec4f, range: f3
     return fall * open_band(uv, j, range) * cones.bands[j].w * moved.y * pattern(look, moved);
 }
 
-// Light of cone `j` where it hides so much, premultiplied, and what it hides, before what is behind it.
+// Adds cone `j`, of an optical depth `hidden`, behind what is `seen` so far: premultiplied light, and what it hides.
 fn before_others(d: vec3f, day: vec3f, j: u32, hidden: f32, seen: vec4f) -> vec4f {
     let cover = (1.0 - exp(-hidden)) * cones.looks[j].x;
     // A lamp by the eye lights the band on the mean as it does there.

@@ -15,7 +15,7 @@
 //!
 //! Nothing is carried from frame to frame. A cone shows a set of streaks, with an offset by chance and moved by what the air, the
 //! fall and the camera have done since its birth, a second ago at most: exact at any time, and the same on every channel. Then
-//! another grows in its place, in no two cones at once, so that a pixel has one look to spare for it.
+//! another grows in its place, in no two cones at once, so that one more look a pixel does for all cones.
 
 use glam::{DVec2, DVec3};
 use half::f16;
@@ -31,7 +31,7 @@ use super::{
 pub const CONES: usize = 3;
 /// Distances, m, between which the drops of each cone are.
 pub const BANDS_M: [f64; CONES + 1] = {
-    // Drops of the innermost shell fade away about the first inner end.
+    // Single drops of the innermost shell fade out about the far end of the first band.
     let drops = HIDDEN_M;
     [0.1875, 0.5 * drops, 0.5 * FURTHER * drops, 4.0 * drops]
 };
@@ -79,7 +79,7 @@ struct Mean {
     /// By what they hide: diameter, m, and fall speed, m/s.
     diameter_m: f64,
     fall_m_s: f64,
-    /// Time to fall a metre, s: as far as that the wind drives them in under a roof.
+    /// Time to fall a metre, s: how far wind drives them in under a roof goes with it.
     fall_s_per_m: f64,
 }
 

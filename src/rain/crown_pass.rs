@@ -8,16 +8,11 @@ use crate::{
         Device,
         pass::{self, ComputeDesc, Made},
     },
-    stage::{
-        DepthRead,
-        listing::{BLOCK_THINGS, Listing},
-    },
+    stage::{DepthRead, listing::Listing},
 };
 
 /// Bytes of a `Crown` of `shaders/rain/splash.wgsl`.
 const CROWN_BYTES: u64 = 64;
-/// Slots of a workgroup of `mark` of `shaders/rain/crowns.wgsl`: 64 threads of 32.
-const MARK_SLOTS: u32 = 64 * 32;
 
 /// What a view holds to make crowns.
 pub(super) struct CrownPass {
@@ -90,7 +85,7 @@ impl CrownPass {
         kind: CrownKind,
         slots: u32,
     ) {
-        self.listing.make_room(device, u64::from(slots.div_ceil(BLOCK_THINGS).next_power_of_two()));
+        self.listing.make_room(device, [slots, 1]);
         let (Some([mark, order]), Some(make)) =
             (self.marks.get(&[kind.areas, kind.depth.multi]), self.makes.get(&kind))
         else {
@@ -98,7 +93,7 @@ impl CrownPass {
         };
         pass.set_bind_group(0, frame, &[]);
         pass.set_bind_group(2, around, &[]);
-        self.listing.find(pass, [mark, order, make], [slots.div_ceil(MARK_SLOTS), 1]);
+        self.listing.find(pass, [mark, order, make], [slots, 1]);
     }
 
     /// Draws them; group 0 is set.

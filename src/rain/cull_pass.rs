@@ -17,15 +17,14 @@ use crate::{
     },
     stage::{
         DepthRead,
-        listing::{BLOCK_THINGS, Listing},
+        listing::Listing,
         stepping::{STATE_BYTES, source_layout},
     },
 };
 
 /// Bytes of a `Streak` of `shaders/rain/drops.wgsl`.
 const STREAK_BYTES: u64 = 48;
-/// Threads of a workgroup, one for 32 drops.
-const MARK_DROPS: u32 = 64 * 32;
+
 /// What a view holds to draw drops by lists.
 pub(super) struct CullPass {
     /// Of the frame's blocks, and of stepped drops.
@@ -34,11 +33,11 @@ pub(super) struct CullPass {
     /// In place of stepped drops.
     unstepped: wgpu::BindGroup,
     listing: Listing,
-    /// With and without states.
-    marks: [Option<wgpu::ComputePipeline>; 2],
+    /// By whether drops are stepped.
+    marks: Made<bool, wgpu::ComputePipeline>,
     order: Option<wgpu::ComputePipeline>,
-    /// Indexed by whether drops are stepped, and whether area rims and occluder maps are in use.
-    makes: [Option<wgpu::ComputePipeline>; 8],
+    /// By whether drops are stepped, and whether area rims and occluder maps are in use.
+    makes: Made<[bool; 3], wgpu::ComputePipeline>,
     draws: Made<DepthRead, wgpu::RenderPipeline>,
     counts: bool,
 }
@@ -91,9 +90,9 @@ impl CullPass {
             unstepped: group(&source, &[bind::buffer(0, &eyes), bind::buffer(1, &states)]),
             layouts: [frame, source],
             listing: Listing::new(device, STREAK_BYTES),
-            marks: [None, None],
+            marks: Made::NONE,
             order: None,
-            makes: [const { None }; 8],
+            makes: Made::NONE,
             draws: Made::NONE,
             counts,
         }
@@ -115,23 +114,19 @@ impl CullPass {
         (around_layout, around): (&wgpu::BindGroupLayout, &wgpu::BindGroup),
         lattice: Lattice<'_>,
     ) -> Result<()> {
-        // Rain that grows makes lists anew now and then, not each frame.
-        let blocks =
-            u64::from(lattice.per_shell.div_ceil(BLOCK_THINGS).next_power_of_two()) * u64::from(lattice.shells);
-        self.listing.make_room(&device.device, blocks);
+        let drops = [lattice.per_shell, lattice.shells];
+        self.listing.make_room(&device.device, drops);
         self.prepare(device, around_layout, lattice)?;
         let stepped = lattice.states.is_some();
-        let make = key([stepped, lattice.areas, lattice.maps]);
         let (Some(mark), Some(order), Some(streaks)) =
-            (&self.marks[usize::from(stepped)], &self.order, &self.makes[make])
+            (self.marks.get(&stepped), &self.order, self.makes.get(&[stepped, lattice.areas, lattice.maps]))
         else {
             return Ok(());
         };
         pass.set_bind_group(0, &self.frame, &[]);
         pass.set_bind_group(2, around, &[]);
         pass.set_bind_group(3, lattice.states.unwrap_or(&self.unstepped), &[]);
-        let workgroups = [lattice.per_shell.div_ceil(MARK_DROPS).max(1), lattice.shells];
-        self.listing.find(pass, [mark, order, streaks], workgroups);
+        self.listing.find(pass, [mark, order, streaks], drops);
         Ok(())
     }
 
@@ -161,36 +156,25 @@ impl CullPass {
     fn prepare(&mut self, device: &Device, around: &wgpu::BindGroupLayout, lattice: Lattice<'_>) -> Result<()> {
         let Lattice { states, areas, maps, .. } = lattice;
         let ([frame, source], [found, streaks]) = (&self.layouts, &self.listing.layouts);
-        let stepped = ("STEPPED", f64::from(u8::from(states.is_some())));
-        let mark = &mut self.marks[usize::from(states.is_some())];
-        if mark.is_none() {
-            let layouts = [Some(frame), Some(found), None, Some(source)];
-            let (layouts, constants) = (&layouts, &[stepped]);
-            let desc = ComputeDesc { shader: "rain/cull.wgsl", entry: "mark", layouts, constants };
-            *mark = Some(pass::compute(device, &desc)?);
-        }
+        let is_stepped = states.is_some();
+        let flag = |name, on| (name, f64::from(u8::from(on)));
+        let stepped = flag("STEPPED", is_stepped);
+        let compute = |shader, entry, layouts: &[Option<&wgpu::BindGroupLayout>], constants: &[(&str, f64)]| {
+            pass::compute(device, &ComputeDesc { shader, entry, layouts, constants })
+        };
+        self.marks.prepare(is_stepped, |_| {
+            compute("rain/cull.wgsl", "mark", &[Some(frame), Some(found), None, Some(source)], &[stepped])
+        })?;
         if self.order.is_none() {
-            let layouts = [Some(frame), Some(found)];
-            let (layouts, constants) = (&layouts, &[]);
-            let desc = ComputeDesc { shader: "rain/cull.wgsl", entry: "order", layouts, constants };
-            self.order = Some(pass::compute(device, &desc)?);
+            self.order = Some(compute("rain/cull.wgsl", "order", &[Some(frame), Some(found)], &[])?);
         }
-        let make = &mut self.makes[key([states.is_some(), areas, maps])];
-        if make.is_none() {
-            let flag = |name, on| (name, f64::from(u8::from(on)));
+        self.makes.prepare([is_stepped, areas, maps], |_| {
             // Mixtures take each column by itself: what lies over what is in their order.
             let constants = [stepped, flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps)];
             let layouts = [Some(frame), Some(streaks), Some(around), Some(source)];
-            let (layouts, constants) = (&layouts, &constants);
-            let desc = ComputeDesc { shader: "rain/cull_streaks.wgsl", entry: "make_streaks", layouts, constants };
-            *make = Some(pass::compute(device, &desc)?);
-        }
-        Ok(())
+            compute("rain/cull_streaks.wgsl", "make_streaks", &layouts, &constants)
+        })
     }
-}
-
-fn key(bits: [bool; 3]) -> usize {
-    bits.into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
 }
 
 /// A draw of what compute shaders have made: what each instance brings to which entry points, in how many bytes.

@@ -13,7 +13,7 @@ use crate::{
     scene::ViewRays,
     stage::{
         DepthRead, LAYER_FORMAT, Recording,
-        listing::{BLOCK_THINGS, Listing},
+        listing::Listing,
         stepping::{STATE_BYTES, StepPass, Stepped},
     },
     surroundings::{self, SurroundingsBlock},
@@ -21,8 +21,6 @@ use crate::{
 
 /// Bytes of a `Spot` of `shaders/snow/flakes.wgsl`.
 const SPOT_BYTES: u64 = 64;
-/// Flakes of a workgroup of `mark` of `shaders/snow/cull.wgsl`: 64 threads of 32.
-const MARK_FLAKES: u32 = 64 * 32;
 
 /// What a frame draws with and into.
 pub(super) struct FlakeDraw<'a> {
@@ -234,7 +232,7 @@ impl ListedFlakes {
     /// Records what finds them. The flakes' block is up.
     fn find(&mut self, to: &mut Recording<'_>, drawn: &FlakeDraw<'_>, around: &wgpu::BindGroupLayout) -> Result<()> {
         let (device, count) = (to.device, drawn.block.count);
-        self.listing.make_room(&device.device, u64::from(count.div_ceil(BLOCK_THINGS).next_power_of_two()));
+        self.listing.make_room(&device.device, [count, 1]);
         let [list, made] = &self.listing.layouts;
         let compute = |shader, entry, layouts: &[Option<&wgpu::BindGroupLayout>], constants: &[(&str, f64)]| {
             pass::compute(device, &ComputeDesc { shader, entry, layouts, constants })
@@ -252,7 +250,7 @@ impl ListedFlakes {
         let mut pass = to.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_bind_group(0, &self.group, &[]);
         pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
-        self.listing.find(&mut pass, [mark, order, make], [count.div_ceil(MARK_FLAKES), 1]);
+        self.listing.find(&mut pass, [mark, order, make], [count, 1]);
         Ok(())
     }
 }

@@ -9,6 +9,8 @@ use crate::gpu::bind::{self, Slot};
 /// Bytes and things of a `Block` of `shaders/falling/list.wgsl`.
 const BLOCK_BYTES: u64 = 20;
 pub(crate) const BLOCK_THINGS: u32 = 128;
+/// Things of a workgroup that marks: 64 threads, a word of 32 bits each.
+const MARK_THINGS: u32 = 64 * 32;
 /// Bytes of `Found` of `shaders/falling/order.wgsl`, and where the workgroups stand in it.
 const FOUND_BYTES: u64 = 32;
 const GROUPS_AT: u64 = 16;
@@ -33,6 +35,11 @@ struct Held {
     blocks: wgpu::Buffer,
     things: wgpu::Buffer,
     groups: [wgpu::BindGroup; 2],
+}
+
+/// Blocks for so many things a row. A number that grows makes lists anew now and then, not each frame.
+fn blocks_of([things, rows]: [u32; 2]) -> u64 {
+    u64::from(things.div_ceil(BLOCK_THINGS).next_power_of_two()) * u64::from(rows)
 }
 
 /// Most things that a list has room for, of `blocks`. Within a shell's own reach are half of its things at most, and four in ten of
@@ -61,8 +68,9 @@ impl Listing {
         self.held.as_ref().map_or(0, |h| h.blocks.size() + h.things.size())
     }
 
-    /// Has room for `blocks` of things; made anew where there is too little.
-    pub fn make_room(&mut self, device: &wgpu::Device, blocks: u64) {
+    /// Has room for things in rows, each of blocks of its own; made anew where there is too little.
+    pub fn make_room(&mut self, device: &wgpu::Device, things: [u32; 2]) {
+        let blocks = blocks_of(things);
         if self.held.as_ref().is_some_and(|h| h.blocks.size() >= blocks * BLOCK_BYTES) {
             return;
         }
@@ -79,17 +87,17 @@ impl Listing {
         self.held = Some(Held { blocks, things, groups });
     }
 
-    /// Marks the things by so many workgroups, orders them, and makes what draws them; the other groups are set.
+    /// Marks the things of each row, orders them, and makes what draws them; the other groups are set.
     pub fn find(
         &self,
         pass: &mut wgpu::ComputePass<'_>,
         [mark, order, make]: [&wgpu::ComputePipeline; 3],
-        workgroups: [u32; 2],
+        [things, rows]: [u32; 2],
     ) {
         let Some(held) = &self.held else { return };
         pass.set_bind_group(1, &held.groups[0], &[]);
         pass.set_pipeline(mark);
-        pass.dispatch_workgroups(workgroups[0], workgroups[1], 1);
+        pass.dispatch_workgroups(things.div_ceil(MARK_THINGS).max(1), rows, 1);
         pass.set_pipeline(order);
         pass.dispatch_workgroups(1, 1, 1);
         pass.set_pipeline(make);

@@ -47,7 +47,7 @@ impl<'a> StreakCamera<'a> {
     }
 }
 
-/// How pixels of what falls read the host's depth.
+/// How the fragment shaders of rain and snow read the host's depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthRead {
     /// Of several samples.

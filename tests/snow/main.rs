@@ -161,7 +161,7 @@ fn flakes_are_where_the_reference_has_them() {
     assert!(looked >= 20 && f64::from(found) > 0.93 * f64::from(looked), "{found} of {looked}");
 }
 
-/// Flakes by a list of those that the picture shows, against all of them drawn one by one, without compute shaders.
+/// Flakes listed by compute shaders draw the same picture as every flake drawn without them.
 #[test]
 fn the_list_draws_what_all_flakes_draw() {
     type Scene = (&'static str, fn(&mut Host));

@@ -160,7 +160,7 @@ fn a_full_list_leaves_out_the_outermost_drops() {
 fn neither_wide_pictures_nor_fast_cameras_fill_the_list() {
     let mut bench = Bench::new(60.0);
     let drops = u64::from(bench.classes.per_shell) * SHELLS as u64;
-    let room = listing::room(&bench.device.device, drops / u64::from(BLOCK_THINGS), STREAK_BYTES);
+    let room = listing::room(&bench.device.device, drops / u64::from(listing::BLOCK_THINGS), STREAK_BYTES);
     bench.pass.listing.room = Some(drops);
     for (across_deg, velocity_m_s) in [
         (150.0f64, DVec3::ZERO),
