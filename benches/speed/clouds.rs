@@ -13,7 +13,10 @@ use welkin::{
     weather::{CloudKind, CloudLayer, Weather},
 };
 
-use crate::copies::{Scene, measured, median, processor_ns, quantile, texture, world};
+use crate::{
+    copies::{SIZE, Scene, measured, median, processor_ns, quantile, world},
+    textures::texture,
+};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -63,7 +66,7 @@ fn brute_force() -> Fallible<f64> {
     let device = Device::headless(&DeviceOptions::default())?;
     let context = under(&device, &Arc::new(Shared::new(&device)?), &cumulus(), CloudModel::Volume)?;
     let mut scene = Scene::new("", &context, PITCH_RAD)?;
-    let color = texture(&device, wgpu::TextureFormat::Rgba16Float);
+    let color = texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
     let mut picture = |fineness: f64| -> Fallible<Vec<f64>> {
         scene.view.set_clouds(CloudSettings { fineness, square_side: 1, ..Default::default() })?;
         scene.frame_id += 1;
@@ -108,7 +111,7 @@ fn changed() -> Fallible<()> {
     let mut scene = Scene::new("", &context.clone(), PITCH_RAD)?;
     // The scene's own hold on its context ends here, or nobody may change it.
     scene.context = under(&device, &Arc::new(Shared::new(&device)?), &[], CloudModel::Volume)?;
-    let (color, mut times) = (texture(&device, wgpu::TextureFormat::Rgba16Float), Vec::new());
+    let (color, mut times) = (texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1), Vec::new());
     for id in 1..=FRAMES[0] + FRAMES[1] {
         let time_s = id as f64 / 20.0;
         let before = processor_ns()?;

@@ -1,4 +1,5 @@
-//! What a frame takes on a software driver, in copies: a copy is a full-screen pass of the same size that loads one texel a pixel.
+//! What a frame takes on a software driver, in copies: a copy is a full-screen pass of the same size that loads one texel a pixel. Pictures
+//! are of 640x360; `SIZE="1280x720"` measures others.
 //!
 //! Counted is the processor time of all of the process's threads, so that what else the machine does falls on neither.
 
@@ -18,11 +19,12 @@ use welkin::{
     wind::{WindGrid, WindGridKind},
 };
 
-use crate::textures;
+use crate::textures::texture;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
+/// Size of pictures where nothing else is asked.
+pub const SIZE: (u32, u32) = (640, 360);
 /// Copies in one submission, so that a submission's own work is next to nothing beside them.
 const COPIES: u32 = 16;
 /// Where the sun stands.
@@ -63,7 +65,7 @@ struct Copying {
 }
 
 impl Copying {
-    fn new(device: &Device) -> Fallible<Self> {
+    fn new(device: &Device, size: (u32, u32)) -> Fallible<Self> {
         let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: None,
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -87,7 +89,7 @@ impl Copying {
             samples: 1,
         };
         let pipeline = fullscreen(device, &desc)?;
-        let [from, to] = [texture(device, format), texture(device, format)].map(|t| t.create_view(&Default::default()));
+        let [from, to] = [(); 2].map(|()| texture(device, size, format, 1).create_view(&Default::default()));
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &layout,
@@ -108,8 +110,10 @@ impl Copying {
     }
 }
 
-pub fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
-    textures::texture(device, (SIZE.width, SIZE.height), format, 1)
+/// What is asked by `SIZE=1280x720`.
+pub fn size_of(text: &str) -> Fallible<(u32, u32)> {
+    let (width, height) = text.split_once('x').ok_or_else(|| format!("{text} is not WIDTHxHEIGHT"))?;
+    Ok((width.parse()?, height.parse()?))
 }
 
 /// One weather over a picture, and the calls in which its frames are drawn.
@@ -162,7 +166,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Measures one frame between two copies.
+    /// Measures one frame between two copies, after one that is not counted: a software driver drops the code of shaders that it has not run
+    /// for long where there are many, and makes it again.
     fn measure(
         &mut self,
         device: &Device,
@@ -170,6 +175,7 @@ impl Scene {
         color: &wgpu::Texture,
         depth: &wgpu::Texture,
     ) -> Fallible<()> {
+        self.ns(device, color, depth)?;
         let before = copying.ns(device)?;
         let frame = self.ns(device, color, depth)?;
         let copy = 0.5 * (before + copying.ns(device)?);
@@ -289,10 +295,11 @@ pub fn level_ground(device: &Device, depth: &wgpu::Texture, pitch_rad: f64) {
 /// Measures scenes beside copies in turn, over level ground seen by eyes that look `pitch_rad` up, and prints on what.
 pub fn measured(pitch_rad: f64, scenes: impl Fn(&Arc<Device>) -> Fallible<Vec<Scene>>) -> Fallible<Vec<Scene>> {
     let device = Device::headless(&DeviceOptions::default())?;
-    let (color, depth) =
-        (texture(&device, wgpu::TextureFormat::Rgba16Float), texture(&device, wgpu::TextureFormat::R32Float));
+    let size = std::env::var("SIZE").map_or(Ok(SIZE), |asked| size_of(&asked))?;
+    let color = texture(&device, size, wgpu::TextureFormat::Rgba16Float, 1);
+    let depth = texture(&device, size, wgpu::TextureFormat::R32Float, 1);
     level_ground(&device, &depth, pitch_rad);
-    let copying = Copying::new(&device)?;
+    let copying = Copying::new(&device, size)?;
     let mut scenes = scenes(&device)?;
     for scene in &mut scenes {
         scene.settle(&device, &color, &depth)?;
@@ -302,7 +309,7 @@ pub fn measured(pitch_rad: f64, scenes: impl Fn(&Arc<Device>) -> Fallible<Vec<Sc
             scene.measure(&device, &copying, &color, &depth)?;
         }
     }
-    println!("frames of {} x {} in copies, {}:", SIZE.width, SIZE.height, device.caps().adapter_name);
+    println!("frames of {} x {} in copies, {}:", size.0, size.1, device.caps().adapter_name);
     Ok(scenes)
 }
 

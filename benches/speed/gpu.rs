@@ -20,7 +20,7 @@ use welkin::{
 
 use crate::{
     clouds,
-    copies::{SETTLED, level_ground, median, world},
+    copies::{SETTLED, level_ground, median, size_of, world},
     glass,
     record::empty_pass,
     textures,
@@ -348,11 +348,7 @@ const COLD: &str = "haze of 3 km, cold";
 /// Pictures that are measured.
 fn sizes() -> Fallible<Vec<(u32, u32)>> {
     let asked = std::env::var("SIZES").unwrap_or_else(|_| "1920x1080 3840x2160".into());
-    let size = |text: &str| -> Fallible<(u32, u32)> {
-        let (width, height) = text.split_once('x').ok_or_else(|| format!("SIZES: {text} is not WIDTHxHEIGHT"))?;
-        Ok((width.parse()?, height.parse()?))
-    };
-    asked.split_whitespace().map(size).collect()
+    asked.split_whitespace().map(size_of).collect()
 }
 
 /// What a reader of the table should know.

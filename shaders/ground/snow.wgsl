@@ -1,8 +1,6 @@
 // Lying snow on the surface that a pixel shows: where it covers the ground, and the light that it sends. How deep it lies is led on the
 // CPU (src/snowpack); cover_of of src/snowpack/laws.rs is `snow_amount`'s twin.
-//!include "between/sky.wgsl"
-//!include "ground/binding.wgsl"
-//!include "ground/hollows.wgsl"
+//!include "ground/spot.wgsl"
 
 // Colour of snow's albedo over that of its green: ice takes up a little red (Warren 1982).
 const SNOW_COLOR: vec3f = vec3f(0.985, 1.0, 1.012);
@@ -65,4 +63,31 @@ fn snow_light(snow: vec3f, normal: vec3f, up: vec3f, seen: vec3f, lamps: vec3f, 
     let sky = ground.sky_lux * (0.5 + 0.5 * dot(normal, up));
     let albedo = SNOW_COLOR * (snow.z * (1.0 - WET_SNOW * snow.y));
     return albedo * (lamp * (1.0 + glints) + sky + lamps) / SKY_PI;
+}
+
+struct SnowSeen {
+    light: vec3f,
+    // Share of the pixel's surface that it covers.
+    share: f32,
+}
+
+// `normal_given`: the host's image has the surface's normal.
+fn snow_on(spot: Spot, normal_given: bool) -> SnowSeen {
+    let here = spot.terrain;
+    var snow = ground.snow.xyz;
+    if TERRAIN && ground.snow.w > 0.0 {
+        let depth = mix(snow.x, here.snow.x, here.share);
+        // Where only one has snow, its properties count.
+        let known = select(select(here.share, 1.0, snow.x <= 0.0), 0.0, here.snow.x <= 0.0);
+        snow = vec3f(depth, mix(snow.yz, here.snow.zw, known));
+    }
+    // Far off a pixel's side along the ground is known too badly for patches: there they mix.
+    let patches = mix(spot.pattern, vec2f(0.0, 1.0), smoothstep(150.0, 800.0, spot.range));
+    let lies = snow_share(snow.x, patches, spot.level) * spot.ground.look.snow * spot.gets;
+    let soft = normalize(mix(spot.ground.facing.normal, spot.up, select(0.35, 0.0, here.share > 0.5 || normal_given)));
+    // Drifts and tracks lie over the ground that the host drew: what they rise by leans their light.
+    let heaped = normalize(soft - here.drift * (here.share * lies));
+    let glints = snow_glints(spot.place, spot.side, spot.to_eye) * (1.0 - snow.y);
+    let white = snow_light(snow, heaped, spot.up, spot.ground.albedo, host_lamps(spot.at, heaped), glints);
+    return SnowSeen(min(white, vec3f(ground.most)), lies);
 }

@@ -83,6 +83,13 @@ pub(crate) struct GroundUniform {
     pub waves: [[f32; 4]; WAVES],
 }
 
+impl GroundUniform {
+    /// Whether drops make rings in standing water.
+    pub fn has_rings(&self) -> bool {
+        self.ring_chance > 0.0 || self.ring_slope2 > 0.0
+    }
+}
+
 /// What a frame's wet surfaces depend on.
 pub(crate) struct WetScene<'a> {
     pub scene: &'a Scene,

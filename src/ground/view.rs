@@ -50,6 +50,7 @@ pub(crate) struct GroundView {
     block: Option<GroundUniform>,
     has_terrain: bool,
     has_snow: bool,
+    has_water: bool,
     /// Water and surface of the host's terrain.
     views: [Option<wgpu::TextureView>; 2],
     window: TerrainWindow,
@@ -60,7 +61,8 @@ impl GroundView {
     pub fn new(device: &Device, blocks: &Blocks) -> Self {
         let uniform = blocks.block(device, size_of::<GroundUniform>());
         let (window, drops) = (TerrainWindow::default(), DropsKept::default());
-        Self { uniform, block: None, has_terrain: false, has_snow: false, views: [None, None], window, drops }
+        let (has_terrain, has_snow, has_water) = (false, false, false);
+        Self { uniform, block: None, has_terrain, has_snow, has_water, views: [None, None], window, drops }
     }
 
     /// Takes what there is of a moment for a frame; `fog_depth` is the fog's optical depth straight up. Says whether there is anything
@@ -76,11 +78,11 @@ impl GroundView {
         fog_depth: f64,
     ) -> Result<bool> {
         let glaze = glaze(now);
-        let wet = held.has_wet_terrain || held.cover.wetness > 0.0 || held.cover.puddles > 0.0 || glaze > 0.0;
+        self.has_water = held.has_wet_terrain || held.cover.wetness > 0.0 || held.cover.puddles > 0.0 || glaze > 0.0;
         self.has_terrain = held.terrain.is_some();
         self.has_snow = held.snow.depth_m > 0.0 || held.has_snowy_terrain;
         self.block = None;
-        if let (true, Some(color), Some(_)) = (wet || self.has_snow, frame.color, frame.depth) {
+        if let (true, Some(color), Some(_)) = (self.has_water || self.has_snow, frame.color, frame.depth) {
             self.block = Some(wet_scene(now, (frame, color), held, glaze, fog_depth)?.uniform(&mut self.drops));
         }
         Ok(self.block.is_some())
@@ -113,6 +115,10 @@ impl DrawnEffect for GroundView {
         to.constant("TERRAIN", terrain, terrain);
         let snow = yes(drawn.is_some() && self.has_snow);
         to.constant("SNOW", snow, snow);
+        let water = yes(drawn.is_some() && self.has_water);
+        to.constant("WATER", water, water);
+        let rings = yes(self.has_water && drawn.is_some_and(GroundUniform::has_rings));
+        to.constant("RINGS", rings, rings);
         to.looks_round |= drawn.is_some();
         if let Some(block) = drawn {
             self.uniform.write(bytemuck::bytes_of(block));

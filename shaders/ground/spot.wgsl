@@ -1,0 +1,170 @@
+// A surface that a pixel shows: how it lies, what it is made of, and what of the rain and snow in the open gets to it.
+//!include "ground/binding.wgsl"
+//!include "ground/optics.wgsl"
+//!include "ground/hollows.wgsl"
+//!include "ground/class.wgsl"
+//!include "surroundings/lights_binding.wgsl"
+//!include "surroundings/shelter.wgsl"
+
+// Illuminance by the host's lamps.
+fn host_lamps(at: vec3f, normal: vec3f) -> vec3f {
+    var lux = vec3f(0.0);
+    if LAMPS {
+        for (var i = 0u; i < lights.count; i++) {
+            let to = at - lights.lamps[i].position;
+            let cosine = max(-dot(normal, to) * inverseSqrt(max(dot(to, to), 1e-6)), 0.0);
+            lux += light_at(lights.lamps[i], to) * cosine;
+        }
+    }
+    return lux / frame.exposure;
+}
+
+// The ground's own colour, from its luminance and the light that falls on it.
+fn dry_albedo(luminance: vec3f, normal: vec3f, up: vec3f, lamps: vec3f) -> vec3f {
+    let lamp = ground.lamp_lux * max(dot(normal, ground.to_lamp), 0.0);
+    let light = lamp + ground.sky_lux * (0.5 + 0.5 * dot(normal, up)) + lamps;
+    return luminance * SKY_PI / max(light, vec3f(1e-9));
+}
+
+// Where something stands off a surface, as far as depth may be wrong.
+fn off_surface(at: vec3f, normal: vec3f, range: f32) -> vec3f {
+    return at + normal * (0.02 + 0.002 * range);
+}
+
+// Whether a map keeps a drop of this fall speed off `p`.
+fn kept_off(p: vec3f, fall: f32, wanted: bool) -> f32 {
+    return select(0.0, 1.0, mapped_ground(p, ground.wind - vec3f(0.0, 0.0, fall), wanted));
+}
+
+// Of each twelfth of the water whether maps keep it off `p`. They are asked for the slowest and the fastest drops and two between,
+// and where two neighbours of these differ, by halves for the size from which on it is otherwise.
+fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
+    let falls = ground.falls;
+    let ends = vec4f(
+        kept_off(p, falls[0].x, true),
+        kept_off(p, falls[1].x, true),
+        kept_off(p, falls[2].x, true),
+        kept_off(p, falls[2].w, true),
+    );
+    let differ = ends.xyz != ends.yzw;
+    let between = vec3f(
+        kept_off(p, falls[0].z, differ.x),
+        kept_off(p, falls[1].z, differ.y),
+        kept_off(p, falls[2].z, differ.z),
+    );
+    let middles = select(ends.xyz, between, differ);
+    let below = ends.xyz != middles;
+    let asked = select(vec3f(falls[0].w, falls[1].w, 0.0), vec3f(falls[0].y, falls[1].y, falls[2].y), below);
+    let last = vec3f(
+        kept_off(p, asked.x, differ.x),
+        kept_off(p, asked.y, differ.y),
+        kept_off(p, asked.z, below.z),
+    );
+    let low = select(middles, last, below);
+    let high = select(middles, last, middles != ends.yzw);
+    return array<vec4f, 3>(
+        vec4f(ends.x, low.x, middles.x, high.x),
+        vec4f(ends.y, low.y, middles.y, high.y),
+        vec4f(ends.z, low.z, middles.z, ends.w),
+    );
+}
+
+// Share of the rain's water that gets to `p` past what keeps it off; `boxes`: past boxes too. Time in a box times fall speed goes
+// evenly with that speed, where a roof's underside and its edge bound it: asked for four drops, it says which of all twelfths
+// of the water come by.
+fn rained_on(p: vec3f, boxes: bool) -> f32 {
+    let falls = ground.falls;
+    let asked = vec4f(falls[0].x, 0.5 * (falls[0].w + falls[1].x), 0.5 * (falls[1].w + falls[2].x), falls[2].w);
+    let mapped = kept_off_twelfths(p);
+    var slow = asked.x * time_in_standing(p, ground.wind - vec3f(0.0, 0.0, asked.x), boxes);
+    var share = 0.0;
+    for (var i = 0u; i < 3u; i++) {
+        let fall = asked[i + 1u];
+        let fast = fall * time_in_standing(p, ground.wind - vec3f(0.0, 0.0, fall), boxes);
+        let within = mix(vec4f(slow), vec4f(fast), (falls[i] - asked[i]) / (fall - asked[i]));
+        let free = clamp(0.5 - within / max(0.25 * abs(fast - slow), 1e-6), vec4f(0.0), vec4f(1.0));
+        share += dot(free, vec4f(1.0) - mapped[i]) / 12.0;
+        slow = fast;
+    }
+    return share;
+}
+
+// How a surface lies, what it is made of, and its own colour.
+struct Wetted {
+    facing: Facing,
+    look: SurfaceLook,
+    albedo: vec3f,
+}
+
+// `host`, `albedo_known`: as of `wet_surface`.
+fn wetted(host: vec3f, albedo_known: bool, at: vec3f, up: vec3f, surface: HostSurface, here: TerrainPoint) -> Wetted {
+    let known = known_facing(surface, here);
+    if albedo_known {
+        let look = surface_look(surface, here, host);
+        return Wetted(settled_facing(known, up, look.level), look, clamp(host, vec3f(0.0), vec3f(look.most_albedo)));
+    }
+    let lamps = host_lamps(at, known.normal);
+    let look = surface_look(surface, here, dry_albedo(host, up, up, lamps));
+    let facing = settled_facing(known, up, look.level);
+    // The host lights natural ground by normals that go smoothly over its triangles: those of depth would show each of them.
+    // Gentle slopes are taken for level there, which is off by a tenth of the darkening at most.
+    let rough = smoothstep(0.0, 0.3, look.slope) * smoothstep(0.5, 0.8, dot(facing.normal, up));
+    let by_depth = surface.normal.w == 0.0;
+    let flat = select(0.0, max(rough, 1.0 - facing.sure) * (1.0 - here.share), by_depth);
+    let albedo = dry_albedo(host, normalize(mix(facing.normal, up, flat)), up, lamps);
+    return Wetted(facing, look, clamp(albedo, vec3f(0.0), vec3f(look.most_albedo)));
+}
+
+// A pixel's place on a surface.
+struct Spot {
+    // From the camera, upwards there, and towards the camera.
+    at: vec3f,
+    up: vec3f,
+    to_eye: vec3f,
+    range: f32,
+    terrain: TerrainPoint,
+    ground: Wetted,
+    // Cosine of its slope; 1 where depth does not tell.
+    level: f32,
+    // Side of the pixel across the look, m, and cosine of the look on the surface.
+    side: f32,
+    cosine: f32,
+    // On the ground's axes.
+    place: vec2f,
+    // Share of the rain and snow in the open that gets here.
+    gets: f32,
+    // Depth of the pattern of hollows and what of its variance is too small to see.
+    pattern: vec2f,
+}
+
+// `host`, `albedo_known`: as of `wet_surface`.
+fn spot_at(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: HostSurface) -> Spot {
+    let at = ray.origin + ray.direction * range;
+    let up = normalize(vec3f(at.xy * ground.curvature, 1.0));
+    var here = no_terrain();
+    if TERRAIN {
+        here = terrain_at(at);
+    }
+    let lies = wetted(host, albedo_known, at, up, surface, here);
+    let normal = lies.facing.normal;
+    // What depth does not tell is taken for level.
+    let level = mix(1.0, dot(normal, up), lies.facing.sure);
+
+    // The pixel's sides on the ground.
+    let side = range * frame.pixel_angle;
+    let cosine = max(-dot(normal, ray.direction), 0.02);
+    let view = vec2f(dot(ground.axis_u, ray.direction), dot(ground.axis_v, ray.direction));
+    let along = view * inverseSqrt(max(dot(view, view), 1e-8));
+    let across = vec2f(-along.y, along.x) * side;
+    let place = vec2f(dot(ground.axis_u, at), dot(ground.axis_v, at));
+
+    var gets = 1.0;
+    if SHELTER {
+        // What falls past boxes the terrain's cells know.
+        gets = rained_on(off_surface(at, normal, range), here.share < 0.5 || ground.glaze > 0.0);
+    }
+    // Hollows are those of paved ground; elsewhere a film lies as it does in the mean.
+    let wanted = lies.look.hollows > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0);
+    let pattern = hollow_depth(place, across, along * (side / cosine), wanted || SNOW);
+    return Spot(at, up, -ray.direction, range, here, lies, level, side, cosine, place, gets, pattern);
+}
