@@ -25,6 +25,9 @@ const GLOW_ALIKE: f32 = 12.0;
 // Texels along a side of the clouds of all directions.
 const ROUND_SIDE: f32 = 96.0;
 
+// Clouds where there are none: no light, and all let through.
+const NO_CLOUDS: vec4f = vec4f(0.0, 0.0, 0.0, 1.0);
+
 // With clouds drawn as a volume in the deck's place, as far as they are.
 fn hung_with(clouds: vec4f) -> Hung {
     var hung = hung_bare();
@@ -56,7 +59,7 @@ fn glow_in(pixel: vec2i, reach: f32) -> vec3f {
 
 // In a pixel of the picture, or one of its samples, where something is seen at this range.
 fn hung_in(pixel: vec2i, range: f32) -> Hung {
-    var clouds = vec4f(0.0, 0.0, 0.0, 1.0);
+    var clouds = NO_CLOUDS;
     if CLOUDS {
         clouds = textureLoad(sky_layers, pixel, 0, 0);
     }
@@ -79,7 +82,7 @@ fn hung_in(pixel: vec2i, range: f32) -> Hung {
 
 // In a direction, in or outside of the picture: clouds without their distance, and no stars.
 fn hung_toward(d: vec3f) -> Hung {
-    var clouds = vec4f(0.0, 0.0, 0.0, 1.0);
+    var clouds = NO_CLOUDS;
     if CLOUDS {
         let size = vec2f(textureDimensions(sky_layers));
         let at = vec2f(0.5, size.y - ROUND_SIDE + 0.5) + octahedron_place(d) * (ROUND_SIDE - 1.0);
@@ -105,7 +108,7 @@ fn with_clouds(behind: Veil, hung: Hung, range: f32) -> Veil {
     if range < RANGE_SKY {
         let reach = exp2(hung.reach.xy);
         let share = clamp((range - reach.x) / max(reach.y - reach.x, 1.0), 0.0, 1.0);
-        clouds = mix(vec4f(0.0, 0.0, 0.0, 1.0), clouds, share);
+        clouds = mix(NO_CLOUDS, clouds, share);
     }
     return Veil(behind.light * clouds.a + clouds.rgb / frame.exposure, behind.transmittance * clouds.a);
 }

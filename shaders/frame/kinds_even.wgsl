@@ -4,8 +4,8 @@
 
 @group(3) @binding(2) var even_cells: texture_2d<f32>;
 
-// What is drawn on surfaces has a draw of its own.
-override SURFACE: bool = false;
+// What the host drew has a draw of its own: something lies on it, or clouds stand before or behind it.
+override APART: bool = false;
 
 const KIND_EVEN: f32 = 0.25;
 const KIND_EVEN_DRAWN: f32 = 0.75;
@@ -20,5 +20,5 @@ fn kinds_even(in: FullscreenVarying) -> @builtin(frag_depth) f32 {
     if range < reach.x - REACH_SLACK || range > reach.y + REACH_SLACK {
         return seen.kind;
     }
-    return select(KIND_EVEN, KIND_EVEN_DRAWN, SURFACE && seen.kind == KIND_DRAWN);
+    return select(KIND_EVEN, KIND_EVEN_DRAWN, APART && seen.kind == KIND_DRAWN);
 }

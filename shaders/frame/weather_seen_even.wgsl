@@ -1,4 +1,5 @@
-// In place of weather_seen.wgsl for pixels between which the weather is even: it is looked up in its grid.
+// In place of weather_seen.wgsl for pixels between which the weather is even: it is looked up in its grid. Clouds, which are not in the grid,
+// come before it.
 //!include "between/air.wgsl"
 //!include "between/hung.wgsl"
 //!include "frame/even.wgsl"
@@ -8,9 +9,16 @@
 @group(3) @binding(0) var even_weather: texture_2d_array<f32>;
 @group(3) @binding(1) var even_sampler: sampler;
 
+override BACKGROUND: bool = true;
+override MEDIUM: bool = true;
+
 fn weather_seen(ray: ViewRay, seen: Seen, hung: Hung) -> Veil {
     let at = vec2f(seen.pixel) / f32(EVEN_PIXELS) + 1.5;
     let uv = at / vec2f(textureDimensions(even_weather));
     let light = textureSampleLevel(even_weather, even_sampler, uv, 0, 0.0).rgb;
-    return Veil(light / (EVEN_WHITE * frame.even_scale), textureSampleLevel(even_weather, even_sampler, uv, 1, 0.0).rgb);
+    let veil = Veil(light / (EVEN_WHITE * frame.even_scale), textureSampleLevel(even_weather, even_sampler, uv, 1, 0.0).rgb);
+    if !select(MEDIUM, BACKGROUND, seen.range >= RANGE_SKY) {
+        return veil;
+    }
+    return with_clouds(veil, hung, seen.range);
 }

@@ -271,9 +271,6 @@ impl DrawnEffect for CloudsView {
         }
         let is_there = self.is_there(shot.frame, to.stages) && self.passes.is_some() && is_drawn;
         to.between_and_veil("CLOUDS", yes(is_there), yes(is_there));
-        if is_there {
-            to.is_fine();
-        }
         to.between("DECK_CLOSED", 0.0, yes(to.block.deck_cover >= 1.0));
         let deck = yes(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
         to.between("DECK_BEHIND", deck, deck);
@@ -285,8 +282,13 @@ impl DrawnEffect for CloudsView {
         self.lamps = overhead.and_then(|o| LampsUniform::of(o, shot.now, shot.exposure, size));
         let glow = yes(self.lamps.is_some());
         to.between_and_veil("CLOUD_GLOW", glow, glow);
-        let shafts = yes(shadows && self.settings.shafts);
-        to.constant("CLOUD_SHAFTS", shafts, shafts);
+        let shafts = shadows && self.settings.shafts;
+        to.constant("CLOUD_SHAFTS", yes(shafts), yes(shafts));
+        if shafts {
+            to.is_fine();
+        } else if is_there {
+            to.has_clouds();
+        }
         if shadows {
             to.block.cloud_shadow = shadow_strength(&shot.now.scene);
         }

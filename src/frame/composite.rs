@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::{
     even::{self, EvenLayouts},
-    kinds::Pixels,
+    kinds::{self, Pixels},
     wind_picture::WindPicture,
 };
 use crate::{
@@ -326,7 +326,7 @@ impl Composite {
         let constants = [
             ("DEPTH_KINDS", between.value("DEPTH_KINDS")),
             ("HAS_DEPTH", yes(variant.images[0])),
-            ("SURFACE", yes(variant.stages.has(Stages::SURFACE))),
+            ("APART", yes(kinds::draws_apart(variant))),
         ];
         let kinds = KindsPipeline { format: variant.format, sampling: variant.sampling, constants, with_even };
         self.kinds.get_or_make(

@@ -3,7 +3,8 @@
 //! Sky, air and fog change slowly from pixel to pixel, but for edges. A small pass draws what they add to every fourth pixel of every
 //! fourth row, another one finds the cells in which straight lines between texels are within a thousandth of the curve through them and their
 //! neighbours. A pixel of such a cell takes what the four say if what it shows is as far away as what they show. All others are
-//! drawn as ever: edges, thin things, the edge of fog, the neighbourhood of the sun's disc.
+//! drawn as ever: edges, thin things, the edge of fog, the neighbourhood of the sun's disc. Clouds have their own texels and are laid over what
+//! is looked up.
 
 use super::{composite::Variant, kinds::Pixels};
 use crate::{
@@ -26,7 +27,9 @@ const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 /// have depths of their own.
 pub(super) fn may_be(all: &Variant) -> bool {
     let weather = all.stages.has(Stages::BACKGROUND) || all.stages.has(Stages::MEDIUM);
-    weather && !all.constants.traits.is_fine && all.samples == 1 && all.sampling == Sampling::Single
+    let traits = all.constants.traits;
+    let is_fine = traits.is_fine || traits.has_clouds && traits.veils_all;
+    weather && !is_fine && all.samples == 1 && all.sampling == Sampling::Single
 }
 
 /// The variant that draws the grid of `all`.

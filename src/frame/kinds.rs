@@ -24,7 +24,7 @@ pub(super) enum Pixels {
     Drawn,
     /// Those of any of these between which the weather is even ([`super::even`]).
     Even,
-    /// Those of them on which the host drew, where something is drawn on surfaces.
+    /// Those of them on which the host drew, where these are drawn apart.
     EvenDrawn,
     /// No pixels of the picture, but the texels of the weather's grid.
     Grid,
@@ -65,6 +65,12 @@ fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState
     }
 }
 
+/// Whether pixels that look up the weather have a draw of their own where the host drew something: what lies on it asks where it is, and so do
+/// clouds, which stand before or behind it.
+pub(super) fn draws_apart(all: &Variant) -> bool {
+    all.stages.has(Stages::SURFACE) || all.constants.traits.has_clouds
+}
+
 /// Most draws of a picture.
 const DRAWS: usize = 5;
 
@@ -91,13 +97,13 @@ pub(super) fn draws(all: &Variant, grid: bool) -> [Option<Variant>; DRAWS] {
     let is_drawn = has_depth && (veils_drawn || everywhere || stages.has(Stages::SURFACE));
     // A grid is of all of the picture.
     let grid = grid && is_far && (is_drawn || !has_depth);
-    let on_surfaces = grid && has_depth && stages.has(Stages::SURFACE);
+    let apart = grid && has_depth && draws_apart(all);
     [
         is_far.then(|| far(Pixels::Above)),
         is_far.then(|| far(Pixels::Below)),
         is_drawn.then_some(drawn),
         grid.then(|| far(Pixels::Even)),
-        on_surfaces.then_some(Variant { pixels: Pixels::EvenDrawn, ..*all }),
+        apart.then_some(Variant { pixels: Pixels::EvenDrawn, ..*all }),
     ]
 }
 
@@ -165,7 +171,7 @@ mod tests {
     use crate::stage::{Pipeline, Sampling, Traits};
 
     fn variant(stages: Stages, has_depth: bool, veils_all: bool) -> Variant {
-        let traits = Traits { veils_all, veils_drawn: true, is_marched: false, is_fine: false };
+        let traits = Traits { veils_all, veils_drawn: true, is_marched: false, is_fine: false, has_clouds: false };
         let constants = Pipeline { traits, ..Pipeline::NONE };
         Variant {
             stages,

@@ -90,8 +90,10 @@ pub(crate) struct Traits {
     pub veils_drawn: bool,
     /// Rays are marched in every pixel alike: nothing is gained by a draw for each kind of pixels.
     pub is_marched: bool,
-    /// Something is in the picture that changes from pixel to pixel, as clouds and stars do: it cannot be looked up in a grid.
+    /// Something is in the picture that changes from pixel to pixel, as stars do: it cannot be looked up in a grid.
     pub is_fine: bool,
+    /// Clouds hang in the sky, which are laid over what is looked up, but not behind a fog in it.
+    pub has_clouds: bool,
 }
 
 /// The constants of a pipeline, and what follows of them for the frame.
@@ -113,7 +115,7 @@ impl Pipeline {
         between: Constants::NONE,
         of_veil: Constants::NONE,
         composed: Constants::NONE,
-        traits: Traits { veils_all: false, veils_drawn: false, is_marched: false, is_fine: false },
+        traits: Traits { veils_all: false, veils_drawn: false, is_marched: false, is_fine: false, has_clouds: false },
     };
 }
 
@@ -164,16 +166,21 @@ impl Composition {
         self.least.between.push((name, least));
     }
 
-    /// Says that something is in the picture that changes from pixel to pixel.
-    pub fn is_fine(&mut self) {
-        (self.whole.traits.is_fine, self.least.traits.is_fine) = (true, true);
-    }
-
     /// The same of one by which pipelines for hosts' own shaders differ too.
     pub fn between_and_veil(&mut self, name: &'static str, whole: f64, least: f64) {
         self.between(name, whole, least);
         self.whole.of_veil.push((name, whole));
         self.least.of_veil.push((name, least));
+    }
+
+    /// Says that something is in the picture that changes from pixel to pixel.
+    pub fn is_fine(&mut self) {
+        (self.whole.traits.is_fine, self.least.traits.is_fine) = (true, true);
+    }
+
+    /// Says that clouds hang in the sky.
+    pub fn has_clouds(&mut self) {
+        (self.whole.traits.has_clouds, self.least.traits.has_clouds) = (true, true);
     }
 
     /// Adds a constant of the composition alone, likewise.
