@@ -68,7 +68,10 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     let size = vec2f(picture.size);
     let lost = any(was < vec2f(0.0)) || any(was > size);
     let within = clamp(was, vec2f(0.5), size - 0.5) / vec2f(textureDimensions(last));
-    let kept = textureSampleLevel(last, linear, within, 0, 0.0) * vec4f(vec3f(picture.exposed), 1.0);
+    // At rest the texel itself: a filter's least error, rounded down from frame to frame, would darken the clouds until they are marched again.
+    let filtered = textureSampleLevel(last, linear, within, 0, 0.0);
+    let texel = textureLoad(last, pixel, 0, 0);
+    let kept = select(filtered, texel, all(to == vec2f(0.0))) * vec4f(vec3f(picture.exposed), 1.0);
     let held = clamp(kept, textureLoad(least, square, 0), textureLoad(most, square, 0));
     let is_marched = all(marched_pixel(picture, square) == pixel);
     return ResolvedPixel(select(held, now, lost || is_marched), reach);

@@ -7,6 +7,10 @@
 // What the host drew has a draw of its own: something lies on it, or clouds stand before or behind it.
 override APART: bool = false;
 
+// The others have draws by what they show; else one draw has them all.
+override SPLITS: bool = true;
+
+const KIND_UNEVEN: f32 = 1.0;
 const KIND_EVEN: f32 = 0.25;
 const KIND_EVEN_DRAWN: f32 = 0.75;
 // Ranges so near those of a cell's texels, in octaves, are among them: halves hold no more of them.
@@ -18,7 +22,7 @@ fn kinds_even(in: FullscreenVarying) -> @builtin(frag_depth) f32 {
     let reach = textureLoad(even_cells, even_texel(vec2i(in.position.xy)), 0).rg;
     let range = log2(max(seen.range, 1e-3));
     if range < reach.x - REACH_SLACK || range > reach.y + REACH_SLACK {
-        return seen.kind;
+        return select(KIND_UNEVEN, seen.kind, SPLITS);
     }
     return select(KIND_EVEN, KIND_EVEN_DRAWN, APART && seen.kind == KIND_DRAWN);
 }

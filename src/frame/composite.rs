@@ -97,7 +97,7 @@ const MOST_KINDS: usize = 8;
 struct KindsPipeline {
     format: wgpu::TextureFormat,
     sampling: Sampling,
-    constants: [Constant; 3],
+    constants: [Constant; 4],
     /// Those between which the weather is even are kinds of their own.
     with_even: bool,
 }
@@ -327,6 +327,7 @@ impl Composite {
             ("DEPTH_KINDS", between.value("DEPTH_KINDS")),
             ("HAS_DEPTH", yes(variant.images[0])),
             ("APART", yes(kinds::draws_apart(variant))),
+            ("SPLITS", yes(device.caps().software)),
         ];
         let kinds = KindsPipeline { format: variant.format, sampling: variant.sampling, constants, with_even };
         self.kinds.get_or_make(

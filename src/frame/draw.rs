@@ -164,12 +164,10 @@ impl View {
         let mut composite = self.composite.lock()?;
         let groups = [group, tables, self.surroundings.bind_group()];
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
-        let least = Variant { constants: composition.least, ..*whole };
-        let grid = self.even.as_ref().filter(|_| even::may_be(&least));
-        let draws = match self.device.caps().software {
-            true => kinds::draws(&least, grid.is_some()),
-            false => [Some(*whole), None, None, None, None],
-        };
+        let splits = self.device.caps().software;
+        let of = Variant { constants: if splits { composition.least } else { composition.whole }, ..*whole };
+        let grid = self.even.as_ref().filter(|_| even::may_be(&of));
+        let draws = kinds::draws(&of, grid.is_some(), splits);
         match (draws, &self.kinds) {
             ([Some(all), None, None, None, None], _) if all.pixels == Pixels::All => {
                 let pipeline = composite.pipeline(&self.device, all)?;
@@ -179,14 +177,14 @@ impl View {
             (draws, Some(kinds)) if draws.iter().any(Option::is_some) => {
                 let grid = grid.filter(|_| draws.iter().flatten().any(|variant| variant.pixels.are_even()));
                 if let Some(grid) = grid {
-                    let [weather, cells] = composite.even(&self.device, &least)?;
+                    let [weather, cells] = composite.even(&self.device, &of)?;
                     grid.draw(to.encoder, [&weather, &cells], &groups);
                     to.passes += 2;
                 }
                 let [frame, between, around] = groups;
                 let with_grid = grid.map(|grid| [frame, between, around, &grid.group]);
                 let groups = with_grid.as_ref().map_or(&groups[..], |four| four);
-                let first = composite.kinds(&self.device, &least, grid.is_some())?.clone();
+                let first = composite.kinds(&self.device, &of, grid.is_some())?.clone();
                 let mut pipelines = [Some(first), None, None, None, None, None];
                 for (pipeline, variant) in pipelines[1..].iter_mut().zip(draws) {
                     *pipeline = variant.map(|v| composite.pipeline(&self.device, v).cloned()).transpose()?;

@@ -1,9 +1,9 @@
-//! Kinds of pixels that a software driver draws one after the other, each with no more of the composition than it needs.
+//! Kinds of pixels that are drawn one after the other, each with no more of the composition than it needs.
 //!
-//! Such a driver takes both ways of every branch: a pixel of the sky pays for the air before things, a thing for the sky behind it, and the sky
-//! for the planet's ground below it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their
-//! own kind only, before their shader runs. All of them are in one pass. Pixels whose weather is looked up in its grid ([`super::even`])
-//! are kinds of their own. A GPU branches, and keeps one draw with one pipeline.
+//! A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind only, before their
+//! shader runs. All of them are in one pass. Pixels whose weather is looked up in its grid ([`super::even`]) are kinds of their own. The others
+//! a software driver draws apart by what they show, since it takes both ways of every branch: a pixel of the sky would pay for the air before
+//! things, a thing for the sky behind it, and the sky for the planet's ground below it. A GPU branches, and draws them with one pipeline.
 
 use super::composite::Variant;
 use crate::{gpu::flat_texture, stage::Stages};
@@ -16,6 +16,8 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(super) enum Pixels {
     /// All of them.
     All,
+    /// All but those between which the weather is even.
+    Uneven,
     /// Those at the far depth, above the level of the eye: sky.
     Above,
     /// The same below it: the planet's own ground, and from high up the sky over it.
@@ -39,7 +41,7 @@ impl Pixels {
             Self::Even => 0.25,
             Self::Below => 0.5,
             Self::EvenDrawn => 0.75,
-            Self::Drawn => 1.0,
+            Self::Drawn | Self::Uneven => 1.0,
         };
         Some((depth, state(wgpu::CompareFunction::Equal, false)))
     }
@@ -74,9 +76,10 @@ pub(super) fn draws_apart(all: &Variant) -> bool {
 /// Most draws of a picture.
 const DRAWS: usize = 5;
 
-/// The draws that together draw `all` where kinds of pixels are told apart; those that would change nothing are left out. A single one
-/// where samples have depths of their own, or rays are marched. With a `grid` those too of pixels between which the weather is even.
-pub(super) fn draws(all: &Variant, grid: bool) -> [Option<Variant>; DRAWS] {
+/// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have depths of their own, or
+/// rays are marched. With a `grid` those too of pixels between which the weather is even. If it `splits`, the others are drawn apart by what they
+/// show.
+pub(super) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];
     let veils_all = stages.has(Stages::MEDIUM) && traits.veils_all;
@@ -97,13 +100,18 @@ pub(super) fn draws(all: &Variant, grid: bool) -> [Option<Variant>; DRAWS] {
     let is_drawn = has_depth && (veils_drawn || everywhere || stages.has(Stages::SURFACE));
     // A grid is of all of the picture.
     let grid = grid && is_far && (is_drawn || !has_depth);
-    let apart = grid && has_depth && draws_apart(all);
+    let even = grid.then(|| far(Pixels::Even));
+    let even_drawn = (grid && has_depth && draws_apart(all)).then_some(Variant { pixels: Pixels::EvenDrawn, ..*all });
+    if !splits {
+        let pixels = if grid { Pixels::Uneven } else { Pixels::All };
+        return [Some(Variant { pixels, ..*all }), even, even_drawn, None, None];
+    }
     [
         is_far.then(|| far(Pixels::Above)),
         is_far.then(|| far(Pixels::Below)),
         is_drawn.then_some(drawn),
-        grid.then(|| far(Pixels::Even)),
-        apart.then_some(Variant { pixels: Pixels::EvenDrawn, ..*all }),
+        even,
+        even_drawn,
     ]
 }
 
@@ -185,7 +193,7 @@ mod tests {
     }
 
     fn drawn(all: &Variant) -> Vec<Pixels> {
-        draws(all, false).iter().flatten().map(|v| v.pixels).collect()
+        draws(all, false, true).iter().flatten().map(|v| v.pixels).collect()
     }
 
     #[test]
@@ -206,11 +214,23 @@ mod tests {
             let all = variant(stages, has_depth, veils_all);
             assert_eq!(drawn(&all), expected, "{stages:?}, depth {has_depth}, before all {veils_all}");
             assert_eq!(drawn(&Variant { samples: 4, ..all }), [All], "samples have depths of their own");
-            let even: Vec<_> = draws(&all, true).iter().flatten().map(|v| v.pixels).filter(|p| p.are_even()).collect();
+            let even: Vec<_> =
+                draws(&all, true, true).iter().flatten().map(|v| v.pixels).filter(|p| p.are_even()).collect();
             let whole = expected.contains(&Above) && (!has_depth || expected.contains(&Drawn));
             assert_eq!(!even.is_empty(), whole, "{stages:?}: a grid is for all of the picture");
             assert_eq!(even.contains(&Pixels::EvenDrawn), whole && has_depth && stages.has(surfaces));
         }
+    }
+
+    #[test]
+    fn where_nothing_is_split_one_draw_has_all_that_is_not_even() {
+        let of =
+            |all: &Variant, grid| draws(all, grid, false).into_iter().flatten().map(|v| v.pixels).collect::<Vec<_>>();
+        let (all, behind) = (variant(Stages::ALL, true, true), variant(Stages::BACKGROUND, true, false));
+        assert_eq!(of(&all, false), [Pixels::All]);
+        assert_eq!(of(&all, true), [Pixels::Uneven, Pixels::Even, Pixels::EvenDrawn]);
+        assert_eq!(of(&behind, true), [Pixels::All], "no grid is drawn of a part of the picture");
+        assert_eq!(of(&variant(Stages::BACKGROUND, false, false), true), [Pixels::Uneven, Pixels::Even]);
     }
 
     #[test]
@@ -222,6 +242,7 @@ mod tests {
             ("KIND_DRAWN", Pixels::Drawn),
             ("KIND_EVEN", Pixels::Even),
             ("KIND_EVEN_DRAWN", Pixels::EvenDrawn),
+            ("KIND_UNEVEN", Pixels::Uneven),
         ] {
             let depth = pixels.test().unwrap().0;
             assert!(shader.contains(&format!("const {name}: f32 = {depth:?};")), "{name} {depth}");

@@ -52,9 +52,9 @@ impl View {
         Ok(!fits)
     }
 
-    /// Makes the attachment for kinds of pixels and the weather's grid anew if they do not serve, where kinds are told apart.
+    /// Makes the attachment for kinds of pixels and the weather's grid anew if they do not serve.
     pub(super) fn hold_kinds(&mut self, color: &wgpu::Texture) -> Result<()> {
-        let apart = self.device.caps().software && color.sample_count() == 1;
+        let apart = color.sample_count() == 1;
         if self.kinds.as_ref().is_some_and(|kinds| !apart || !kinds.fits(color)) {
             self.kinds = None;
         }

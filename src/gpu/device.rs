@@ -281,6 +281,12 @@ impl Device {
         &self.caps
     }
 
+    /// Draws as on a GPU from now on.
+    #[cfg(test)]
+    pub(crate) fn take_for_gpu(&mut self) {
+        self.caps.software = false;
+    }
+
     /// Makes the host's context current for as long as the answer lives; does nothing for own devices.
     ///
     /// # Errors

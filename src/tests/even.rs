@@ -10,7 +10,7 @@ use crate::{
     gpu::{Device, DeviceOptions, readback},
     scene::Camera,
     sky::SkySettings,
-    weather::{Fog, FogKind, Weather},
+    weather::{CloudKind, CloudLayer, Fog, FogKind, Weather},
 };
 
 const SIZE: (u32, u32) = (320, 180);
@@ -41,9 +41,13 @@ fn depths() -> Vec<f32> {
     (0..SIZE.0 * SIZE.1).map(of).collect()
 }
 
-fn pictures(weather: &Weather, (azimuth_deg, elevation_deg): (f64, f64), stages: Stages) -> Pictures {
-    let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
-    let shared = Arc::new(Shared::new(&device).expect("shared"));
+fn pictures(
+    device: &Arc<Device>,
+    weather: &Weather,
+    (azimuth_deg, elevation_deg): (f64, f64),
+    stages: Stages,
+) -> Pictures {
+    let shared = Arc::new(Shared::new(device).expect("shared"));
     let sky = SkySettings { orders: 4, suns: 48, altitudes: 12, ..SkySettings::default() };
     let mut context = Context::new(device.clone(), shared, ContextDesc { sky, ..ContextDesc::default() }).expect("one");
     context.set_sun(Some(GivenDirection { azimuth_deg, elevation_deg })).expect("a sun");
@@ -74,22 +78,33 @@ fn pictures(weather: &Weather, (azimuth_deg, elevation_deg): (f64, f64), stages:
         view.record(&context, &Frame::new(id, camera, &color, Some(&depth)), stages).expect("a frame");
         *view.report()
     };
+    // Clouds come in sixteen frames.
     let mut quiet = 0;
-    while quiet < 12 {
+    while quiet < 20 {
         quiet = if draw(&mut view).tables_rebuilt > 0 { 0 } else { quiet + 1 };
     }
     let first = draw(&mut view).passes;
-    let looked_up = readback::rgba(&device, &color).expect("read");
+    let looked_up = readback::rgba(device, &color).expect("read");
     view.forget_grid();
     let second = draw(&mut view).passes;
-    let drawn = readback::rgba(&device, &color).expect("read");
+    let drawn = readback::rgba(device, &color).expect("read");
     Pictures { looked_up, drawn, passes: [first, second] }
 }
 
-#[test]
-fn nobody_sees_what_is_looked_up() {
+/// A device that is drawn on as on a software driver, or as on a GPU.
+fn device(is_gpu: bool) -> Arc<Device> {
+    let mut device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+    if is_gpu {
+        Arc::get_mut(&mut device).expect("nobody else has it").take_for_gpu();
+    }
+    device
+}
+
+fn nobody_sees_what_is_looked_up(is_gpu: bool) {
+    let device = device(is_gpu);
     let of = |name: &str| Weather::preset(name).expect("a preset");
     let mist = Fog { kind: FogKind::Shallow, top_m: Some(2.0), coverage: None, visibility_inside_m: None };
+    let cumulus = CloudLayer::of(CloudKind::Cumulus, 0.5, 1000.0);
     let all = Stages::ALL.without(Stages::TONE).without(Stages::PARTICLES);
     let two = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM);
     for (name, weather, sun, stages) in [
@@ -99,8 +114,10 @@ fn nobody_sees_what_is_looked_up() {
         ("haze", Weather { visibility_m: 3000.0, ..Weather::default() }, (10.0, 20.0), two),
         ("shallow fog", Weather { fog: mist, ..Weather::default() }, (200.0, 40.0), two),
         ("rain", of("rain"), (200.0, 40.0), all),
+        ("broken clouds", Weather { clouds: vec![cumulus], ..Weather::default() }, (200.0, 40.0), all),
+        ("broken clouds, the sky alone", Weather { clouds: vec![cumulus], ..Weather::default() }, (8.0, 9.0), two),
     ] {
-        let found = pictures(&weather, sun, stages);
+        let found = pictures(&device, &weather, sun, stages);
         let [with, without] = found.passes;
         assert_eq!(with, without + 2, "{name}");
         let mean = found.drawn.iter().map(|p| f64::from(p[1])).sum::<f64>() / found.drawn.len() as f64;
@@ -115,4 +132,14 @@ fn nobody_sees_what_is_looked_up() {
         assert!(changed > 0.15, "{name}: {changed}");
         assert!(p95 < 1e-3 && worst < 5e-3, "{name}: {p95} {worst}");
     }
+}
+
+#[test]
+fn nobody_sees_what_a_software_driver_looks_up() {
+    nobody_sees_what_is_looked_up(false);
+}
+
+#[test]
+fn nobody_sees_what_a_gpu_looks_up() {
+    nobody_sees_what_is_looked_up(true);
 }
