@@ -1,4 +1,5 @@
 // A surface that a pixel shows: how it lies, what it is made of, and what of the rain and snow in the open gets to it.
+//!include "between/sky.wgsl"
 //!include "ground/binding.wgsl"
 //!include "ground/optics.wgsl"
 //!include "ground/hollows.wgsl"

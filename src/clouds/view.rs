@@ -287,7 +287,7 @@ impl DrawnEffect for CloudsView {
         if shafts {
             to.is_fine();
         } else if is_there {
-            to.has_clouds();
+            to.is_overlaid();
         }
         if shadows {
             to.block.cloud_shadow = shadow_strength(&shot.now.scene);

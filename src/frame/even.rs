@@ -28,7 +28,7 @@ const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 pub(super) fn may_be(all: &Variant) -> bool {
     let weather = all.stages.has(Stages::BACKGROUND) || all.stages.has(Stages::MEDIUM);
     let traits = all.constants.traits;
-    let is_fine = traits.is_fine || traits.has_clouds && traits.veils_all;
+    let is_fine = traits.is_fine || traits.is_overlaid && traits.veils_all;
     weather && !is_fine && all.samples == 1 && all.sampling == Sampling::Single
 }
 

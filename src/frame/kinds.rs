@@ -70,7 +70,7 @@ fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState
 /// Whether pixels that look up the weather have a draw of their own where the host drew something: what lies on it asks where it is, and so do
 /// clouds, which stand before or behind it.
 pub(super) fn draws_apart(all: &Variant) -> bool {
-    all.stages.has(Stages::SURFACE) || all.constants.traits.has_clouds
+    all.stages.has(Stages::SURFACE) || all.constants.traits.is_overlaid
 }
 
 /// Most draws of a picture.
@@ -179,7 +179,7 @@ mod tests {
     use crate::stage::{Pipeline, Sampling, Traits};
 
     fn variant(stages: Stages, has_depth: bool, veils_all: bool) -> Variant {
-        let traits = Traits { veils_all, veils_drawn: true, is_marched: false, is_fine: false, has_clouds: false };
+        let traits = Traits { veils_all, veils_drawn: true, is_marched: false, is_fine: false, is_overlaid: false };
         let constants = Pipeline { traits, ..Pipeline::NONE };
         Variant {
             stages,

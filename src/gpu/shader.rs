@@ -240,9 +240,9 @@ mod tests {
         assert_eq!(faults(given), ["f"], "one is found");
     }
 
-    /// WebGPU promises 16 textures a stage, and tier 0 devices have no more: four are left for what comes.
+    /// WebGPU promises 16 textures a stage, and tier 0 devices have no more: three are left for what comes.
     #[test]
-    fn no_shader_reads_more_than_twelve_textures() {
+    fn no_shader_reads_more_than_thirteen_textures() {
         use wgpu::naga::{ImageClass, TypeInner, front::wgsl::parse_str};
         let count = |name: &str| {
             let module = parse_str(&assemble(name).unwrap()).unwrap();
@@ -255,8 +255,8 @@ mod tests {
         let all: Vec<String> = names().flat_map(with_variants).collect();
         assert!(all.len() >= names().count() + 16, "variants are among them");
         let (most, name) = all.iter().map(|name| (count(name), name)).max().unwrap();
-        assert!(most <= 12, "{name}: {most}");
-        assert_eq!(count("frame/composite_view.wgsl"), most, "the count sees them");
+        assert!(most <= 13, "{name}: {most}");
+        assert_eq!(count("frame/composite_view.wgsl:even"), most, "the count sees them");
     }
 
     type Type = wgpu::naga::Handle<wgpu::naga::Type>;

@@ -12,7 +12,7 @@ pub(crate) fn yes(b: bool) -> f64 {
 }
 
 /// Most constants that the effects may add.
-const MOST: usize = 48;
+const MOST: usize = 56;
 
 /// A list of constants, without allocation.
 #[derive(Clone, Copy, Debug)]
@@ -93,7 +93,7 @@ pub(crate) struct Traits {
     /// Something is in the picture that changes from pixel to pixel, as stars do: it cannot be looked up in a grid.
     pub is_fine: bool,
     /// Clouds hang in the sky, which are laid over what is looked up, but not behind a fog in it.
-    pub has_clouds: bool,
+    pub is_overlaid: bool,
 }
 
 /// The constants of a pipeline, and what follows of them for the frame.
@@ -115,7 +115,7 @@ impl Pipeline {
         between: Constants::NONE,
         of_veil: Constants::NONE,
         composed: Constants::NONE,
-        traits: Traits { veils_all: false, veils_drawn: false, is_marched: false, is_fine: false, has_clouds: false },
+        traits: Traits { veils_all: false, veils_drawn: false, is_marched: false, is_fine: false, is_overlaid: false },
     };
 }
 
@@ -179,8 +179,8 @@ impl Composition {
     }
 
     /// Says that clouds hang in the sky.
-    pub fn has_clouds(&mut self) {
-        (self.whole.traits.has_clouds, self.least.traits.has_clouds) = (true, true);
+    pub fn is_overlaid(&mut self) {
+        (self.whole.traits.is_overlaid, self.least.traits.is_overlaid) = (true, true);
     }
 
     /// Adds a constant of the composition alone, likewise.
