@@ -58,14 +58,14 @@ pub fn median(of: &mut [f64]) -> f64 {
 }
 
 /// The clock: a pass that loads a texel and writes it.
-struct Copying {
+pub struct Copying {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
     target: wgpu::TextureView,
 }
 
 impl Copying {
-    fn new(device: &Device, size: (u32, u32)) -> Fallible<Self> {
+    pub fn new(device: &Device, size: (u32, u32)) -> Fallible<Self> {
         let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: None,
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -98,12 +98,16 @@ impl Copying {
         Ok(Self { pipeline, group, target: to })
     }
 
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
+        draw(encoder, "copy", &self.pipeline, &[&self.group], &self.target);
+    }
+
     /// Nanoseconds of one copy.
     fn ns(&self, device: &Device) -> Fallible<f64> {
         let before = processor_ns()?;
         let mut encoder = device.device.create_command_encoder(&Default::default());
         for _ in 0..COPIES {
-            draw(&mut encoder, "copy", &self.pipeline, &[&self.group], &self.target);
+            self.copy(&mut encoder);
         }
         device.submit_and_wait(encoder)?;
         Ok((processor_ns()? - before) as f64 / f64::from(COPIES))

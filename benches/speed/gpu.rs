@@ -20,7 +20,7 @@ use welkin::{
 
 use crate::{
     clouds,
-    copies::{SETTLED, level_ground, median, size_of, world},
+    copies::{Copying, SETTLED, level_ground, median, size_of, world},
     glass,
     record::empty_pass,
     textures,
@@ -167,6 +167,33 @@ impl Bench {
         }
     }
 
+    /// Keeps the GPU busy while what is measured is handed over.
+    fn fill(&self) {
+        let mut encoder = self.device.device.create_command_encoder(&Default::default());
+        for _ in 0..FILLING.0 {
+            empty_pass(&mut encoder, &self.filled, CLEARED, None);
+        }
+        self.device.submit(encoder);
+    }
+
+    /// Milliseconds of the GPU a full-screen pass that loads a texel and writes it, the median.
+    fn copy_ms(&self) -> Fallible<f64> {
+        let copying = Copying::new(&self.device, (self.color.width(), self.color.height()))?;
+        let mut gpu = Vec::new();
+        for _ in 0..ROUNDS {
+            self.fill();
+            self.clock.mark(&self.device, 0);
+            for i in 1..=FRAMES {
+                let mut encoder = self.device.device.create_command_encoder(&Default::default());
+                copying.copy(&mut encoder);
+                self.device.submit(encoder);
+                self.clock.mark(&self.device, i as u32);
+            }
+            gpu.extend(self.clock.between(&self.device)?);
+        }
+        Ok(median(&mut gpu))
+    }
+
     /// Milliseconds of the GPU and of the calling thread a frame of a scene, medians.
     fn measure(&self, scene: &mut Scene) -> Fallible<(f64, f64)> {
         let pictures = (&self.color, &self.depth);
@@ -180,11 +207,7 @@ impl Bench {
         }
         let (mut gpu, mut cpu) = (Vec::new(), Vec::new());
         for _ in 0..ROUNDS {
-            let mut encoder = self.device.device.create_command_encoder(&Default::default());
-            for _ in 0..FILLING.0 {
-                empty_pass(&mut encoder, &self.filled, CLEARED, None);
-            }
-            self.device.submit(encoder);
+            self.fill();
             self.clock.mark(&self.device, 0);
             for i in 1..=FRAMES {
                 cpu.push(scene.record(pictures)?);
@@ -402,6 +425,9 @@ pub fn run() -> Fallible<()> {
     );
     println!("| scene |{} beyond |{} record, ms | memory, MB |", named("ms"), named("more"));
     println!("|---|{}---|{}---|---|", "---|".repeat(sizes.len()), "---|".repeat(sizes.len()));
+    let copies = benches.iter().map(Bench::copy_ms).collect::<Fallible<Vec<_>>>()?;
+    let copies = copies.iter().map(|ms| format!(" {ms:.3} |")).collect::<String>();
+    println!("| a copy: a pass that loads a texel and writes it |{copies} |{} | |", " |".repeat(sizes.len()));
     let mut told: Vec<(&str, Vec<f64>)> = Vec::new();
     for scenes in [Maker::air, Maker::clouds, Maker::rain, Maker::snow] {
         for mut scene in scenes(&maker)? {

@@ -59,6 +59,12 @@ impl Variant {
         (format!("{name}{clear}{dry}{even}"), entry)
     }
 
+    /// Whether it is `other` with these constants.
+    pub fn is_with(&self, other: &Self, constants: &Pipeline) -> bool {
+        let of = |v: &Self| (v.stages, v.format, v.samples, v.sampling, v.images, v.pixels);
+        of(self) == of(other) && self.constants == *constants
+    }
+
     /// Values of the shader's `override` constants.
     pub fn constants(&self) -> Constants {
         let mut all = Constants::NONE;

@@ -5,15 +5,15 @@ use std::sync::Arc;
 use super::{
     View,
     composite::Variant,
-    even,
+    draws::{Drawn, Draws},
     froxels::Froxels,
-    kinds::{self, Pixels},
+    kinds::Pixels,
     planned::{present, situation},
 };
 use crate::{
     effects::PARTS,
-    error::Result,
-    gpu::{Device, Layer, pass},
+    error::{Error, Result},
+    gpu::{Device, Layer},
     moment::Moment,
     plan::parts::{MOST_PARTS, MOST_RUNGS},
     scene::ViewRays,
@@ -152,7 +152,7 @@ impl View {
         })
     }
 
-    /// The one full-screen pass; and the gauge of all of it, if one is due.
+    /// The pass over the picture; and the gauge of all of it, if one is due.
     fn compose(
         &mut self,
         shot: &Shot<'_>,
@@ -161,39 +161,18 @@ impl View {
         to: &mut Recording<'_>,
     ) -> Result<()> {
         let (Some((_, group, target)), Some((_, tables))) = (&self.bound, &composition.tables) else { return Ok(()) };
-        let mut composite = self.composite.lock()?;
         let groups = [group, tables, self.surroundings.bind_group()];
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let splits = self.device.caps().software;
-        let of = Variant { constants: if splits { composition.least } else { composition.whole }, ..*whole };
-        let grid = self.even.as_ref().filter(|_| even::may_be(&of));
-        let draws = kinds::draws(&of, grid.is_some(), splits);
-        match (draws, &self.kinds) {
-            ([Some(all), None, None, None, None], _) if all.pixels == Pixels::All => {
-                let pipeline = composite.pipeline(&self.device, all)?;
-                pass::draw(to.encoder, "composite", pipeline, &groups, target);
-                to.passes += 1;
-            }
-            (draws, Some(kinds)) if draws.iter().any(Option::is_some) => {
-                let grid = grid.filter(|_| draws.iter().flatten().any(|variant| variant.pixels.are_even()));
-                if let Some(grid) = grid {
-                    let [weather, cells] = composite.even(&self.device, &of)?;
-                    grid.draw(to.encoder, [&weather, &cells], &groups);
-                    to.passes += 2;
-                }
-                let [frame, between, around] = groups;
-                let with_grid = grid.map(|grid| [frame, between, around, &grid.group]);
-                let groups = with_grid.as_ref().map_or(&groups[..], |four| four);
-                let first = composite.kinds(&self.device, &of, grid.is_some())?.clone();
-                let mut pipelines = [Some(first), None, None, None, None, None];
-                for (pipeline, variant) in pipelines[1..].iter_mut().zip(draws) {
-                    *pipeline = variant.map(|v| composite.pipeline(&self.device, v).cloned()).transpose()?;
-                }
-                kinds.draw(to.encoder, pipelines.iter().flatten(), groups, target);
-                to.passes += 1;
-            }
-            _ => {}
-        }
+        let constants = if splits { &composition.least } else { &composition.whole };
+        let has_grid = self.even.is_some();
+        let make = || {
+            let drawn = Drawn { of: Variant { constants: *constants, ..*whole }, has_grid };
+            let draws = Draws::new(&self.device, &mut *self.composite.lock()?, &drawn, splits)?;
+            Ok::<_, Error>((drawn, draws))
+        };
+        let draws = self.draws.get_or_make(|drawn| drawn.is(whole, constants, has_grid), make)?;
+        to.passes += draws.record(to.encoder, (self.kinds.as_ref(), self.even.as_ref()), &groups, target);
         if !composition.stages.has(Stages::MEDIUM) {
             return Ok(());
         }
@@ -201,6 +180,7 @@ impl View {
         let effects = &mut self.effects;
         if let Some(gauge) = self.planner.due(&here, || effects.unseen(shot)) {
             let [_, (shader, _)] = whole.sampling.shaders();
+            let composite = self.composite.lock()?;
             let layouts = composite.layouts(whole.sampling);
             gauge.record(&self.device, to.encoder, (shader, whole.constants().all()), &layouts, &groups)?;
             to.passes += 1;

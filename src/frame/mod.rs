@@ -8,6 +8,7 @@ mod check;
 mod composite;
 mod diagnose;
 mod draw;
+mod draws;
 mod environment;
 mod even;
 mod froxels;

@@ -9,6 +9,7 @@ use super::{
     check::rays,
     composite::SharedComposite,
     draw::Call,
+    draws::{Drawn, Draws, MOST_DRAWS},
     environment::EnvironmentMap,
     even::EvenGrid,
     froxels::{FrameTextures, Froxels},
@@ -24,6 +25,7 @@ use crate::{
     gpu::{
         Device,
         blocks::{Blocks, UniformBlock},
+        recent::Recent,
     },
     plan::Planner,
     stage::{
@@ -47,6 +49,8 @@ pub struct View {
     pub(super) environment: Option<Box<EnvironmentMap>>,
     pub(super) kinds: Option<KindAttachment>,
     pub(super) even: Option<EvenGrid>,
+    /// Of the last calls.
+    pub(super) draws: Recent<Drawn, Draws, MOST_DRAWS>,
     pub(super) opaque: Option<OpaqueStep>,
     pub(super) surroundings: SurroundingsBlock,
     pub(super) planner: Planner<Unseen>,
@@ -89,6 +93,7 @@ impl View {
             environment: None,
             kinds: None,
             even: None,
+            draws: Recent::new(),
             opaque: None,
             surroundings,
             planner,

@@ -1,0 +1,105 @@
+//! The draws that together make a picture of a weather: its grid and cells, and one for each kind of pixels. They are found once, since to look
+//! for a pipeline among all that are made takes longer than to record a draw.
+
+use std::sync::Arc;
+
+use super::{
+    composite::{Composite, Variant},
+    even::{self, EvenGrid},
+    kinds::{self, KindAttachment, Pixels},
+};
+use crate::{
+    error::Result,
+    gpu::{Device, pass},
+    stage::Pipeline,
+};
+
+/// Calls of a frame whose draws a view keeps.
+pub(super) const MOST_DRAWS: usize = 4;
+
+/// What draws are made for.
+#[derive(PartialEq)]
+pub(super) struct Drawn {
+    pub of: Variant,
+    pub has_grid: bool,
+}
+
+impl Drawn {
+    /// Whether it is a variant with these constants.
+    pub fn is(&self, variant: &Variant, constants: &Pipeline, has_grid: bool) -> bool {
+        self.has_grid == has_grid && self.of.is_with(variant, constants)
+    }
+}
+
+/// The pipelines of a variant's draws.
+pub(super) struct Draws {
+    /// Of the grid and its cells, where any pixel looks the weather up.
+    even: Option<[wgpu::RenderPipeline; 2]>,
+    pixels: Kinds,
+}
+
+enum Kinds {
+    /// One draw of all pixels.
+    One(wgpu::RenderPipeline),
+    /// A draw that writes the kinds of the pixels, and one for each of them.
+    Several(Vec<wgpu::RenderPipeline>),
+    /// None changes.
+    None,
+}
+
+impl Draws {
+    /// Those of a variant. `splits` is that of [`kinds::draws`].
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn new(device: &Arc<Device>, composite: &mut Composite, drawn: &Drawn, splits: bool) -> Result<Self> {
+        let of = &drawn.of;
+        let draws = kinds::draws(of, drawn.has_grid && even::may_be(of), splits);
+        let is_one = draws.iter().flatten().all(|variant| variant.pixels == Pixels::All);
+        let looks_up = draws.iter().flatten().any(|variant| variant.pixels.are_even());
+        let even = looks_up.then(|| composite.even(device, of)).transpose()?;
+        let mut pipelines = Vec::new();
+        for variant in draws.into_iter().flatten() {
+            pipelines.push(composite.pipeline(device, variant)?.clone());
+        }
+        let pixels = match pipelines.pop() {
+            None => Kinds::None,
+            Some(only) if is_one => Kinds::One(only),
+            Some(last) => {
+                pipelines.push(last);
+                pipelines.insert(0, composite.kinds(device, of, looks_up)?.clone());
+                Kinds::Several(pipelines)
+            }
+        };
+        Ok(Self { even, pixels })
+    }
+
+    /// Records them with what the view holds for a picture. Answers the passes that they take.
+    pub fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        (attachment, grid): (Option<&KindAttachment>, Option<&EvenGrid>),
+        groups: &[&wgpu::BindGroup; 3],
+        target: &wgpu::TextureView,
+    ) -> u32 {
+        match (&self.pixels, attachment) {
+            (Kinds::One(pipeline), _) => {
+                pass::draw(encoder, "composite", pipeline, groups, target);
+                1
+            }
+            (Kinds::Several(pipelines), Some(attachment)) => match (&self.even, grid) {
+                (Some([weather, cells]), Some(grid)) => {
+                    grid.draw(encoder, [weather, cells], groups);
+                    let [frame, between, around] = *groups;
+                    attachment.draw(encoder, pipelines.iter(), &[frame, between, around, &grid.group], target);
+                    3
+                }
+                _ => {
+                    attachment.draw(encoder, pipelines.iter(), groups, target);
+                    1
+                }
+            },
+            _ => 0,
+        }
+    }
+}
