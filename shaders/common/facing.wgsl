@@ -13,32 +13,38 @@ struct Facing {
 // Error of a normal of which nothing is known, rad.
 const UNKNOWN_FACING: f32 = 10.0;
 
-struct DepthPoint {
-    at: vec3f,
+// A neighbour of the pixel's: how deep its surface lies, and where its pixel does.
+struct Beside {
     depth: f32,
+    ndc: vec2f,
 }
 
-fn depth_point(u: DepthUniform, depth: f32, ndc: vec2f) -> DepthPoint {
-    let ray = view_ray(u, ndc);
+fn beside(u: DepthUniform, depth: f32, ndc: vec2f) -> Beside {
     // Nothing is known beyond the picture's edge.
-    let w = select(view_depth(u, depth, ndc), RANGE_SKY, any(abs(ndc) > vec2f(1.0)));
-    return DepthPoint(ray.origin + ray.direction * (w * ray.slant), w);
+    return Beside(select(view_depth(u, depth, ndc), RANGE_SKY, any(abs(ndc) > vec2f(1.0))), ndc);
 }
 
-// The edge from the pixel to whichever neighbour on this axis lies nearer in depth: over a silhouette none is taken.
-fn surface_edge(here: DepthPoint, before: DepthPoint, after: DepthPoint) -> vec3f {
+fn depth_point(u: DepthUniform, there: Beside) -> vec3f {
+    let ray = view_ray(u, there.ndc);
+    return ray.origin + ray.direction * (there.depth * ray.slant);
+}
+
+// The edge from the pixel at `at` to whichever neighbour on this axis lies nearer in depth: over a silhouette none is taken.
+fn surface_edge(u: DepthUniform, here: Beside, at: vec3f, before: Beside, after: Beside) -> vec3f {
     let first = abs(before.depth - here.depth) < abs(after.depth - here.depth);
-    return select(after.at - here.at, here.at - before.at, first);
+    let nearer = Beside(select(after.depth, before.depth, first), select(after.ndc, before.ndc, first));
+    return (depth_point(u, nearer) - at) * select(1.0, -1.0, first);
 }
 
 // `around`: depths to the left, right, above and below; `pixel`: steps of ndc to the right and below; `grain`: by how much the
 // host's depth may be off, as a step and as a part of it.
 fn facing_of(u: DepthUniform, depth: f32, around: vec4f, ndc: vec2f, pixel: vec2f, grain: vec2f) -> Facing {
-    let here = depth_point(u, depth, ndc);
+    let here = beside(u, depth, ndc);
+    let at = depth_point(u, here);
     let x = vec2f(pixel.x, 0.0);
     let y = vec2f(0.0, pixel.y);
-    let edge_x = surface_edge(here, depth_point(u, around.x, ndc - x), depth_point(u, around.y, ndc + x));
-    let edge_y = surface_edge(here, depth_point(u, around.z, ndc - y), depth_point(u, around.w, ndc + y));
+    let edge_x = surface_edge(u, here, at, beside(u, around.x, ndc - x), beside(u, around.y, ndc + x));
+    let edge_y = surface_edge(u, here, at, beside(u, around.z, ndc - y), beside(u, around.w, ndc + y));
     let ray = view_ray(u, ndc);
     let across = cross(edge_x, edge_y);
     let area = length(across);

@@ -52,7 +52,8 @@ fn thing_at(rank: u32, all: u32) -> u32 {
         word += 1u;
         bits = blocks[block].seen[word];
     }
-    for (; left > 0u; left--) {
+    // No word has more, whatever a list holds that nothing has filled.
+    for (left = min(left, 31u); left > 0u; left--) {
         bits &= bits - 1u;
     }
     return 32u * (WORDS * block + word) + firstTrailingBit(bits);
