@@ -238,6 +238,12 @@ impl Composite {
         }))
     }
 
+    /// Whether the pipeline of `variant` is compiled.
+    pub fn has(&self, variant: &Variant) -> bool {
+        let is = |made: &Variant| made == variant;
+        if variant.pixels.uses_grid() { self.evens.has(is) } else { self.pipelines.has(is) }
+    }
+
     /// The pipeline of `variant`, compiled at its first use.
     ///
     /// # Errors
@@ -257,10 +263,8 @@ impl Composite {
             let desc = FullscreenDesc { shader, entry, layouts, targets: &targets, constants, samples };
             Ok((variant, pass::fullscreen_at(device, &desc, variant.pixels.test())?))
         };
-        match variant.pixels {
-            Pixels::Grid | Pixels::Even | Pixels::EvenDrawn => self.evens.get_or_make(|made| *made == variant, make),
-            _ => self.pipelines.get_or_make(|made| *made == variant, make),
-        }
+        let is = |made: &Variant| *made == variant;
+        if variant.pixels.uses_grid() { self.evens.get_or_make(is, make) } else { self.pipelines.get_or_make(is, make) }
     }
 
     /// The pipeline that draws a picture of the wind in the place of `variant`'s, and its group 1, after the frame's.

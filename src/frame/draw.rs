@@ -5,14 +5,14 @@ use std::sync::Arc;
 use super::{
     View,
     composite::Variant,
-    draws::{Drawn, Draws},
+    draws::{Drawn, Draws, Unmade},
     froxels::Froxels,
     kinds::Pixels,
     planned::{present, situation},
 };
 use crate::{
     effects::PARTS,
-    error::{Error, Result},
+    error::Result,
     gpu::{Device, Layer},
     moment::Moment,
     plan::parts::{MOST_PARTS, MOST_RUNGS},
@@ -166,13 +166,19 @@ impl View {
         let splits = self.device.caps().software;
         let constants = if splits { &composition.least } else { &composition.whole };
         let has_grid = self.even.is_some();
+        // A pure picture does not depend on how many frames were drawn before it.
+        let how = (splits, splits || shot.frame.is_pure());
         let make = || {
             let drawn = Drawn { of: Variant { constants: *constants, ..*whole }, has_grid };
-            let draws = Draws::new(&self.device, &mut *self.composite.lock()?, &drawn, splits)?;
-            Ok::<_, Error>((drawn, draws))
+            let draws = Draws::new(&self.device, &mut *self.composite.lock()?, &drawn, how)?;
+            Ok((drawn, draws))
         };
-        let draws = self.draws.get_or_make(|drawn| drawn.is(whole, constants, has_grid), make)?;
-        to.passes += draws.record(to.encoder, (self.kinds.as_ref(), self.even.as_ref()), &groups, target);
+        let held = (self.kinds.as_ref(), self.even.as_ref());
+        to.passes += match self.draws.get_or_make(|drawn| drawn.is(whole, constants, has_grid), make) {
+            Ok(draws) => draws.record(to.encoder, held, &groups, target),
+            Err(Unmade::Coming(draws)) => draws.record(to.encoder, held, &groups, target),
+            Err(Unmade::Failed(error)) => return Err(error),
+        };
         if !composition.stages.has(Stages::MEDIUM) {
             return Ok(());
         }

@@ -9,7 +9,7 @@ use super::{
     kinds::{self, KindAttachment, Pixels},
 };
 use crate::{
-    error::Result,
+    error::{Error, Result},
     gpu::{Device, pass},
     stage::Pipeline,
 };
@@ -47,16 +47,57 @@ enum Kinds {
     None,
 }
 
+/// Why there are no draws of a variant yet.
+pub(super) enum Unmade {
+    /// Not all of their pipelines are compiled: until they are, one draw stands for them.
+    Coming(Draws),
+    Failed(Error),
+}
+
+impl From<Error> for Unmade {
+    fn from(of: Error) -> Self {
+        Self::Failed(of)
+    }
+}
+
 impl Draws {
-    /// Those of a variant. `splits` is that of [`kinds::draws`].
+    /// Those of a variant, `at_once` or in as many frames as there are pipelines to compile: no frame waits for several. `splits` is that of
+    /// [`kinds::draws`].
     ///
     /// # Errors
-    /// A missing shader file.
-    pub fn new(device: &Arc<Device>, composite: &mut Composite, drawn: &Drawn, splits: bool) -> Result<Self> {
+    /// A missing shader file; what is to be drawn meanwhile.
+    pub fn new(
+        device: &Arc<Device>,
+        composite: &mut Composite,
+        drawn: &Drawn,
+        (splits, at_once): (bool, bool),
+    ) -> std::result::Result<Self, Unmade> {
         let of = &drawn.of;
         let draws = kinds::draws(of, drawn.has_grid && even::may_be(of), splits);
-        let is_one = draws.iter().flatten().all(|variant| variant.pixels == Pixels::All);
         let looks_up = draws.iter().flatten().any(|variant| variant.pixels.are_even());
+        if looks_up && !at_once {
+            let all = Variant { pixels: Pixels::All, ..*of };
+            let each = draws.iter().flatten().copied().chain([even::grid_of(of)]);
+            let mut missing = [all].into_iter().chain(each).filter(|variant| !composite.has(variant));
+            if let (Some(next), more) = (missing.next(), missing.next().is_some()) {
+                composite.pipeline(device, next)?;
+                if more {
+                    let one = Kinds::One(composite.pipeline(device, all)?.clone());
+                    return Err(Unmade::Coming(Self { even: None, pixels: one }));
+                }
+            }
+        }
+        Self::of(device, composite, of, (draws, looks_up)).map_err(Unmade::Failed)
+    }
+
+    /// Those of a variant, all of them now.
+    fn of(
+        device: &Arc<Device>,
+        composite: &mut Composite,
+        of: &Variant,
+        (draws, looks_up): ([Option<Variant>; kinds::DRAWS], bool),
+    ) -> Result<Self> {
+        let is_one = draws.iter().flatten().all(|variant| variant.pixels == Pixels::All);
         let even = looks_up.then(|| composite.even(device, of)).transpose()?;
         let mut pipelines = Vec::new();
         for variant in draws.into_iter().flatten() {

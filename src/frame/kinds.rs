@@ -51,6 +51,11 @@ impl Pixels {
         matches!(self, Self::Even | Self::EvenDrawn)
     }
 
+    /// Whether they are drawn into the grid or by it.
+    pub fn uses_grid(self) -> bool {
+        self == Self::Grid || self.are_even()
+    }
+
     /// The test of the draw that writes the kinds.
     pub fn writes() -> (f64, wgpu::DepthStencilState) {
         (0.0, state(wgpu::CompareFunction::Always, true))
@@ -74,7 +79,7 @@ pub(super) fn draws_apart(all: &Variant) -> bool {
 }
 
 /// Most draws of a picture.
-const DRAWS: usize = 5;
+pub(super) const DRAWS: usize = 5;
 
 /// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have depths of their own, or
 /// rays are marched. With a `grid` those too of pixels between which the weather is even. If it `splits`, the others are drawn apart by what they

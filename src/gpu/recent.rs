@@ -44,7 +44,12 @@ impl<K, V, const MOST: usize> Recent<K, V, MOST> {
         Ok(&self.all[at].value)
     }
 
-    /// The same for a value that is copied out and whose making cannot fail.
+    /// Whether there is a value of the key that `is` knows.
+    pub fn has(&self, is: impl Fn(&K) -> bool) -> bool {
+        self.all.iter().any(|held| is(&held.key))
+    }
+
+    /// As [`Self::get_or_make`] for a value that is copied out and whose making cannot fail.
     pub fn get_or_put(&mut self, key: &K, make: impl FnOnce() -> V) -> V
     where
         K: Copy + PartialEq,

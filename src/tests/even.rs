@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::{
     context::{Context, ContextDesc, GivenDirection},
-    frame::{Frame, Shared, Stages, View},
+    frame::{Frame, FrameFlags, Report, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
     scene::Camera,
     sky::SkySettings,
@@ -41,54 +41,78 @@ fn depths() -> Vec<f32> {
     (0..SIZE.0 * SIZE.1).map(of).collect()
 }
 
-fn pictures(
-    device: &Arc<Device>,
-    weather: &Weather,
-    (azimuth_deg, elevation_deg): (f64, f64),
-    stages: Stages,
-) -> Pictures {
-    let shared = Arc::new(Shared::new(device).expect("shared"));
-    let sky = SkySettings { orders: 4, suns: 48, altitudes: 12, ..SkySettings::default() };
-    let mut context = Context::new(device.clone(), shared, ContextDesc { sky, ..ContextDesc::default() }).expect("one");
-    context.set_sun(Some(GivenDirection { azimuth_deg, elevation_deg })).expect("a sun");
-    context.set_moon(Some(GivenDirection { azimuth_deg: 30.0, elevation_deg: -50.0 })).expect("a moon");
-    context.set_weather(weather, 0.0, 0.0).expect("a weather");
-    let mut view = View::new(&context).expect("a view");
-    let texture = |format| {
-        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST;
-        crate::gpu::flat_texture(&device.device, "test", SIZE, format, usage)
-    };
-    let (color, depth) = (texture(wgpu::TextureFormat::Rgba32Float), texture(wgpu::TextureFormat::R32Float));
-    let write = |to: &wgpu::Texture, bytes: &[u8], texel: u32| {
+/// A weather before those depths.
+struct Scene {
+    device: Arc<Device>,
+    context: Context,
+    view: View,
+    color: wgpu::Texture,
+    depth: wgpu::Texture,
+    frame_id: u64,
+}
+
+impl Scene {
+    fn new(device: &Arc<Device>, weather: &Weather, (azimuth_deg, elevation_deg): (f64, f64)) -> Self {
+        let shared = Arc::new(Shared::new(device).expect("shared"));
+        let sky = SkySettings { orders: 4, suns: 48, altitudes: 12, ..SkySettings::default() };
+        let desc = ContextDesc { sky, ..ContextDesc::default() };
+        let mut context = Context::new(device.clone(), shared, desc).expect("one");
+        context.set_sun(Some(GivenDirection { azimuth_deg, elevation_deg })).expect("a sun");
+        context.set_moon(Some(GivenDirection { azimuth_deg: 30.0, elevation_deg: -50.0 })).expect("a moon");
+        context.set_weather(weather, 0.0, 0.0).expect("a weather");
+        let view = View::new(&context).expect("a view");
+        let texture = |format| {
+            let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC
+                | wgpu::TextureUsages::COPY_DST;
+            crate::gpu::flat_texture(&device.device, "test", SIZE, format, usage)
+        };
+        let (color, depth) = (texture(wgpu::TextureFormat::Rgba32Float), texture(wgpu::TextureFormat::R32Float));
+        let made = Self { device: device.clone(), context, view, color, depth, frame_id: 0 };
+        made.write(&made.depth, bytemuck::cast_slice(&depths()), 4);
+        made
+    }
+
+    fn write(&self, to: &wgpu::Texture, bytes: &[u8], texel: u32) {
         let layout =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * SIZE.0), rows_per_image: None };
-        device.queue.write_texture(to.as_image_copy(), bytes, layout, to.size());
-    };
-    write(&depth, bytemuck::cast_slice(&depths()), 4);
-    let grey: Vec<f32> = (0..SIZE.0 * SIZE.1).flat_map(|i| [2000.0 + 500.0 * (i % 7) as f32; 4]).collect();
-    let eye = DVec3::new(0.0, 0.0, EYE_M);
-    let camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 1.0, 16.0 / 9.0, 0.1);
-    let mut id = 0;
-    let mut draw = |view: &mut View| {
-        id += 1;
-        write(&color, bytemuck::cast_slice(&grey), 16);
-        view.record(&context, &Frame::new(id, camera, &color, Some(&depth)), stages).expect("a frame");
-        *view.report()
-    };
-    // Clouds come in sixteen frames.
-    let mut quiet = 0;
-    while quiet < 20 {
-        quiet = if draw(&mut view).tables_rebuilt > 0 { 0 } else { quiet + 1 };
+        self.device.queue.write_texture(to.as_image_copy(), bytes, layout, to.size());
     }
-    let first = draw(&mut view).passes;
-    let looked_up = readback::rgba(device, &color).expect("read");
-    view.forget_grid();
-    let second = draw(&mut view).passes;
-    let drawn = readback::rgba(device, &color).expect("read");
-    Pictures { looked_up, drawn, passes: [first, second] }
+
+    /// Draws over a grey picture.
+    fn draw(&mut self, stages: Stages, flags: FrameFlags) -> Report {
+        let grey: Vec<f32> = (0..SIZE.0 * SIZE.1).flat_map(|i| [2000.0 + 500.0 * (i % 7) as f32; 4]).collect();
+        self.write(&self.color, bytemuck::cast_slice(&grey), 16);
+        let eye = DVec3::new(0.0, 0.0, EYE_M);
+        let camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 1.0, 16.0 / 9.0, 0.1);
+        self.frame_id += 1;
+        let frame = Frame { flags, ..Frame::new(self.frame_id, camera, &self.color, Some(&self.depth)) };
+        self.view.record(&self.context, &frame, stages).expect("a frame");
+        *self.view.report()
+    }
+
+    /// Draws until nothing changes any more. Clouds come in sixteen frames.
+    fn settle(&mut self, stages: Stages) {
+        let mut quiet = 0;
+        while quiet < 20 {
+            quiet = if self.draw(stages, FrameFlags::default()).tables_rebuilt > 0 { 0 } else { quiet + 1 };
+        }
+    }
+
+    fn picture(&self) -> Vec<[f32; 4]> {
+        readback::rgba(&self.device, &self.color).expect("read")
+    }
+}
+
+fn pictures(device: &Arc<Device>, weather: &Weather, sun: (f64, f64), stages: Stages) -> Pictures {
+    let mut scene = Scene::new(device, weather, sun);
+    scene.settle(stages);
+    let first = scene.draw(stages, FrameFlags::default()).passes;
+    let looked_up = scene.picture();
+    scene.view.forget_grid();
+    let second = scene.draw(stages, FrameFlags::default()).passes;
+    Pictures { looked_up, drawn: scene.picture(), passes: [first, second] }
 }
 
 /// A device that is drawn on as on a software driver, or as on a GPU.
@@ -142,4 +166,23 @@ fn nobody_sees_what_a_software_driver_looks_up() {
 #[test]
 fn nobody_sees_what_a_gpu_looks_up() {
     nobody_sees_what_is_looked_up(true);
+}
+
+/// A GPU compiles a pipeline a frame, and draws at every pixel until all are there; pure pictures do not depend on what was drawn before.
+#[test]
+fn pure_pictures_of_a_gpu_wait_for_no_pipeline() {
+    let stages = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM);
+    let haze = Weather { visibility_m: 3000.0, ..Weather::default() };
+    let mut scene = Scene::new(&device(true), &haze, (200.0, 40.0));
+    scene.draw(stages, FrameFlags::NO_HISTORY);
+    let first = scene.picture();
+    scene.settle(stages);
+    scene.draw(stages, FrameFlags::NO_HISTORY);
+    assert!(scene.picture() == first, "pure pictures are the same");
+
+    let mut other = Scene::new(&device(true), &haze, (200.0, 40.0));
+    other.draw(stages, FrameFlags::default());
+    let steps: Vec<u32> =
+        (0..4).map(|_| other.draw(Stages::BACKGROUND.with(Stages::MEDIUM), FrameFlags::default()).passes).collect();
+    assert_eq!(steps, [1, 1, 3, 3], "all pixels; grid, the uneven and the even ones are compiled one by one");
 }
