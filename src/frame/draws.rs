@@ -61,11 +61,10 @@ impl From<Error> for Unmade {
 }
 
 impl Draws {
-    /// Those of a variant, `at_once` or in as many frames as there are pipelines to compile: no frame waits for several. `splits` is that of
-    /// [`kinds::draws`].
+    /// Those of a variant, `at_once` or in as many frames as there are large pipelines to compile. `splits` is that of [`kinds::draws`].
     ///
     /// # Errors
-    /// A missing shader file; what is to be drawn meanwhile.
+    /// What is to be drawn meanwhile; a missing shader file.
     pub fn new(
         device: &Arc<Device>,
         composite: &mut Composite,
@@ -87,11 +86,11 @@ impl Draws {
                 }
             }
         }
-        Self::of(device, composite, of, (draws, looks_up)).map_err(Unmade::Failed)
+        Self::whole(device, composite, of, (draws, looks_up)).map_err(Unmade::Failed)
     }
 
-    /// Those of a variant, all of them now.
-    fn of(
+    /// All of them now.
+    fn whole(
         device: &Arc<Device>,
         composite: &mut Composite,
         of: &Variant,
@@ -103,16 +102,11 @@ impl Draws {
         for variant in draws.into_iter().flatten() {
             pipelines.push(composite.pipeline(device, variant)?.clone());
         }
-        let pixels = match pipelines.pop() {
-            None => Kinds::None,
-            Some(only) if is_one => Kinds::One(only),
-            Some(last) => {
-                pipelines.push(last);
-                pipelines.insert(0, composite.kinds(device, of, looks_up)?.clone());
-                Kinds::Several(pipelines)
-            }
-        };
-        Ok(Self { even, pixels })
+        if is_one {
+            return Ok(Self { even, pixels: pipelines.pop().map_or(Kinds::None, Kinds::One) });
+        }
+        pipelines.insert(0, composite.kinds(device, of, looks_up)?.clone());
+        Ok(Self { even, pixels: Kinds::Several(pipelines) })
     }
 
     /// Records them with what the view holds for a picture. Answers the passes that they take.
