@@ -98,6 +98,7 @@ impl Copying {
         Ok(Self { pipeline, group, target: to })
     }
 
+    /// Records one copy.
     pub fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
         draw(encoder, "copy", &self.pipeline, &[&self.group], &self.target);
     }

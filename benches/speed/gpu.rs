@@ -176,21 +176,30 @@ impl Bench {
         self.device.submit(encoder);
     }
 
-    /// Milliseconds of the GPU a full-screen pass that loads a texel and writes it, the median.
-    fn copy_ms(&self) -> Fallible<f64> {
-        let copying = Copying::new(&self.device, (self.color.width(), self.color.height()))?;
+    /// Milliseconds of the GPU that each of the frames takes which `record` hands over.
+    fn timed(&self, mut record: impl FnMut() -> Fallible<()>) -> Fallible<Vec<f64>> {
         let mut gpu = Vec::new();
         for _ in 0..ROUNDS {
             self.fill();
             self.clock.mark(&self.device, 0);
             for i in 1..=FRAMES {
-                let mut encoder = self.device.device.create_command_encoder(&Default::default());
-                copying.copy(&mut encoder);
-                self.device.submit(encoder);
+                record()?;
                 self.clock.mark(&self.device, i as u32);
             }
             gpu.extend(self.clock.between(&self.device)?);
         }
+        Ok(gpu)
+    }
+
+    /// Milliseconds of the GPU a full-screen pass that loads a texel and writes it, the median.
+    fn copy_ms(&self) -> Fallible<f64> {
+        let copying = Copying::new(&self.device, (self.color.width(), self.color.height()))?;
+        let mut gpu = self.timed(|| {
+            let mut encoder = self.device.device.create_command_encoder(&Default::default());
+            copying.copy(&mut encoder);
+            self.device.submit(encoder);
+            Ok(())
+        })?;
         Ok(median(&mut gpu))
     }
 
@@ -205,16 +214,11 @@ impl Bench {
             let is_quiet = scene.view.report().tables_rebuilt == 0 || scene.change != Change::Turns;
             since = if is_quiet { since + 1 } else { 0 };
         }
-        let (mut gpu, mut cpu) = (Vec::new(), Vec::new());
-        for _ in 0..ROUNDS {
-            self.fill();
-            self.clock.mark(&self.device, 0);
-            for i in 1..=FRAMES {
-                cpu.push(scene.record(pictures)?);
-                self.clock.mark(&self.device, i as u32);
-            }
-            gpu.extend(self.clock.between(&self.device)?);
-        }
+        let mut cpu = Vec::new();
+        let mut gpu = self.timed(|| {
+            cpu.push(scene.record(pictures)?);
+            Ok(())
+        })?;
         Ok((median(&mut gpu), median(&mut cpu)))
     }
 }

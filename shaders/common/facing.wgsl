@@ -13,7 +13,7 @@ struct Facing {
 // Error of a normal of which nothing is known, rad.
 const UNKNOWN_FACING: f32 = 10.0;
 
-// A neighbour of the pixel's: how deep its surface lies, and where its pixel does.
+// A pixel: the depth of the surface that it shows, as view_depth counts it, and its place.
 struct Beside {
     depth: f32,
     ndc: vec2f,

@@ -36,7 +36,7 @@ fn even_grid(in: FullscreenVarying) -> EvenTexel {
     drawn = frame.drawn;
     behind_share = frame.behind_drawn;
     let ray = view_ray(frame.depth, ndc);
-    // Clouds change from pixel to pixel: each of them puts its own before what it looks up.
+    // Clouds change from pixel to pixel: each pixel lays its own over what it looks up.
     let veil = weather_over(ray, seen.range, seen.plane, hung_with(NO_CLOUDS));
     let disc = BACKGROUND && DISCS && is_near_disc(ray.direction, 2.0 * f32(EVEN_PIXELS) * frame.pixel_angle);
     let light = min(veil.light * (EVEN_WHITE * frame.even_scale), vec3f(EVEN_MOST));

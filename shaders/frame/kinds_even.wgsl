@@ -4,10 +4,10 @@
 
 @group(3) @binding(2) var even_cells: texture_2d<f32>;
 
-// What the host drew has a draw of its own: something lies on it, or clouds stand before or behind it.
+// Even pixels on which the host drew have a draw of their own.
 override APART: bool = false;
 
-// The others have draws by what they show; else one draw has them all.
+// Uneven pixels are drawn apart by what they show; if not, one draw has them all.
 override SPLITS: bool = true;
 
 const KIND_UNEVEN: f32 = 1.0;

@@ -27,7 +27,7 @@ fn dry_albedo(luminance: vec3f, normal: vec3f, up: vec3f, lamps: vec3f) -> vec3f
     return luminance * SKY_PI / max(light, vec3f(1e-9));
 }
 
-// Where something stands off a surface, as far as depth may be wrong.
+// A point above a surface, by as much as the depth of `at` may be wrong.
 fn off_surface(at: vec3f, normal: vec3f, range: f32) -> vec3f {
     return at + normal * (0.02 + 0.002 * range);
 }
@@ -108,7 +108,7 @@ fn wetted(host: vec3f, albedo_known: bool, at: vec3f, up: vec3f, surface: HostSu
     let look = surface_look(surface, here, dry_albedo(host, up, up, lamps));
     let facing = settled_facing(known, up, look.level);
     // The host lights natural ground by normals that go smoothly over its triangles: those of depth would show each of them.
-    // Gentle slopes are taken for level there, which is off by a tenth of the darkening at most.
+    // There gentle slopes count as level, an error of a tenth of the darkening at most.
     let rough = smoothstep(0.0, 0.3, look.slope) * smoothstep(0.5, 0.8, dot(facing.normal, up));
     let by_depth = surface.normal.w == 0.0;
     let flat = select(0.0, max(rough, 1.0 - facing.sure) * (1.0 - here.share), by_depth);
@@ -127,7 +127,7 @@ struct Spot {
     ground: Wetted,
     // Cosine of its slope; 1 where depth does not tell.
     level: f32,
-    // Side of the pixel across the look, m, and cosine of the look on the surface.
+    // Width of the pixel across the ray, m; cosine between the ray and the surface's normal.
     side: f32,
     cosine: f32,
     // On the ground's axes.

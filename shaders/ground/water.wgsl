@@ -43,7 +43,7 @@ fn mirror(film: Film, to_eye: vec3f) -> Mirror {
     return Mirror(share, reflect(-to_eye, facet), ground.lamp_lux * lamp);
 }
 
-// Slopes of thin and closed films (src/ground/uniform.rs).
+// Root mean square slopes of thin and closed films; their twins are in src/ground/uniform.rs.
 const THIN_FILM_SLOPE: f32 = 0.3;
 const CLOSED_FILM_SLOPE: f32 = 0.15;
 

@@ -27,7 +27,7 @@ struct OnCone {
     // Turns of azimuth about the axis; Mercator's latitude.
     turn: f32,
     latitude: f32,
-    // Of the sine of the angle from the axis: its square, and minus its binary logarithm.
+    // The sine of the angle from the axis squared; minus the binary logarithm of that sine.
     square: f32,
     halvings: f32,
     // Times that the tiles about the axis are halved, and one over their number so.

@@ -59,10 +59,12 @@ impl Variant {
         (format!("{name}{clear}{dry}{even}"), entry)
     }
 
-    /// Whether it is `other` with these constants.
+    /// Whether it is `other` with these constants, which need not be copied for it.
     pub fn is_with(&self, other: &Self, constants: &Pipeline) -> bool {
-        let of = |v: &Self| (v.stages, v.format, v.samples, v.sampling, v.images, v.pixels);
-        of(self) == of(other) && self.constants == *constants
+        let Self { stages, format, samples, sampling, images, constants: own, pixels } = self;
+        (*stages, *format, *samples, *sampling, *images, *pixels)
+            == (other.stages, other.format, other.samples, other.sampling, other.images, other.pixels)
+            && own == constants
     }
 
     /// Values of the shader's `override` constants.

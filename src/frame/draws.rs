@@ -18,7 +18,6 @@ use crate::{
 pub(super) const MOST_DRAWS: usize = 4;
 
 /// What draws are made for.
-#[derive(PartialEq)]
 pub(super) struct Drawn {
     pub of: Variant,
     pub has_grid: bool,
@@ -61,10 +60,11 @@ impl From<Error> for Unmade {
 }
 
 impl Draws {
-    /// Those of a variant, `at_once` or in as many frames as there are large pipelines to compile. `splits` is that of [`kinds::draws`].
+    /// The draws of a variant. If they are not wanted `at_once`, each call compiles one large pipeline, and until all are there it answers
+    /// with one draw of all pixels. `splits` is that of [`kinds::draws`].
     ///
     /// # Errors
-    /// What is to be drawn meanwhile; a missing shader file.
+    /// That one draw; a missing shader file.
     pub fn new(
         device: &Arc<Device>,
         composite: &mut Composite,

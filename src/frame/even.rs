@@ -3,8 +3,8 @@
 //! Sky, air and fog change slowly from pixel to pixel, but for edges. A small pass draws what they add to every fourth pixel of every
 //! fourth row, another one finds the cells in which straight lines between texels are within a thousandth of the curve through them and their
 //! neighbours. A pixel of such a cell takes what the four say if what it shows is as far away as what they show. All others are
-//! drawn as ever: edges, thin things, the edge of fog, the neighbourhood of the sun's disc. Clouds have their own texels and are laid over what
-//! is looked up.
+//! drawn as ever: edges, thin things, the edge of fog, the neighbourhood of the sun's disc. The grid has no clouds: each pixel lays its own over
+//! what it looks up.
 
 use super::{composite::Variant, kinds::Pixels};
 use crate::{

@@ -26,7 +26,7 @@ pub(super) enum Pixels {
     Drawn,
     /// Those of any of these between which the weather is even ([`super::even`]).
     Even,
-    /// Those of them on which the host drew, where these are drawn apart.
+    /// Those of them on which the host drew, where they have a draw of their own ([`draws_apart`]).
     EvenDrawn,
     /// No pixels of the picture, but the texels of the weather's grid.
     Grid,
@@ -72,8 +72,8 @@ fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState
     }
 }
 
-/// Whether pixels that look up the weather have a draw of their own where the host drew something: what lies on it asks where it is, and so do
-/// clouds, which stand before or behind it.
+/// Whether pixels that look the weather up and on which the host drew have a draw of their own, which reads depth: water and snow lie on them,
+/// and clouds may stand before them.
 pub(super) fn draws_apart(all: &Variant) -> bool {
     all.stages.has(Stages::SURFACE) || all.constants.traits.is_overlaid
 }
@@ -82,7 +82,7 @@ pub(super) fn draws_apart(all: &Variant) -> bool {
 pub(super) const DRAWS: usize = 5;
 
 /// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have depths of their own, or
-/// rays are marched. With a `grid` those too of pixels between which the weather is even. If it `splits`, the others are drawn apart by what they
+/// rays are marched. With a `grid` those too of pixels between which the weather is even. `splits`: the other pixels are drawn apart by what they
 /// show.
 pub(super) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);

@@ -111,14 +111,13 @@ impl DrawnEffect for GroundView {
 
     fn compose(&mut self, _: &Shot<'_>, to: &mut Composition) -> Result<()> {
         let drawn = self.block.as_ref().filter(|_| to.stages.has(Stages::SURFACE));
-        let terrain = yes(drawn.is_some() && self.has_terrain);
-        to.constant("TERRAIN", terrain, terrain);
-        let snow = yes(drawn.is_some() && self.has_snow);
-        to.constant("SNOW", snow, snow);
-        let water = yes(drawn.is_some() && self.has_water);
-        to.constant("WATER", water, water);
-        let rings = yes(self.has_water && drawn.is_some_and(GroundUniform::has_rings));
-        to.constant("RINGS", rings, rings);
+        let has_rings = self.has_water && drawn.is_some_and(GroundUniform::has_rings);
+        for (name, is_there) in
+            [("TERRAIN", self.has_terrain), ("SNOW", self.has_snow), ("WATER", self.has_water), ("RINGS", has_rings)]
+        {
+            let value = yes(drawn.is_some() && is_there);
+            to.constant(name, value, value);
+        }
         to.looks_round |= drawn.is_some();
         if let Some(block) = drawn {
             self.uniform.write(bytemuck::bytes_of(block));

@@ -92,7 +92,7 @@ pub(crate) struct Traits {
     pub is_marched: bool,
     /// Something is in the picture that changes from pixel to pixel, as stars do: it cannot be looked up in a grid.
     pub is_fine: bool,
-    /// Clouds hang in the sky, which are laid over what is looked up, but not behind a fog in it.
+    /// Each pixel lays clouds over what it looks up in the grid. Fog lies before clouds: where both are, nothing is looked up.
     pub is_overlaid: bool,
 }
 
@@ -173,20 +173,20 @@ impl Composition {
         self.least.of_veil.push((name, least));
     }
 
+    /// Adds a constant of the composition alone, likewise.
+    pub fn constant(&mut self, name: &'static str, whole: f64, least: f64) {
+        self.whole.composed.push((name, whole));
+        self.least.composed.push((name, least));
+    }
+
     /// Says that something is in the picture that changes from pixel to pixel.
     pub fn is_fine(&mut self) {
         (self.whole.traits.is_fine, self.least.traits.is_fine) = (true, true);
     }
 
-    /// Says that clouds hang in the sky.
+    /// Says that each pixel has clouds to lay over what it looks up.
     pub fn is_overlaid(&mut self) {
         (self.whole.traits.is_overlaid, self.least.traits.is_overlaid) = (true, true);
-    }
-
-    /// Adds a constant of the composition alone, likewise.
-    pub fn constant(&mut self, name: &'static str, whole: f64, least: f64) {
-        self.whole.composed.push((name, whole));
-        self.least.composed.push((name, least));
     }
 
     /// Gives a block.

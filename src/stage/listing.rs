@@ -68,7 +68,7 @@ impl Listing {
         self.held.as_ref().map_or(0, |h| h.blocks.size() + h.things.size())
     }
 
-    /// Has room for things in rows, each of blocks of its own; made anew where there is too little.
+    /// Makes room for so many things a row and so many rows; each row begins a block. A list that is too small is replaced.
     pub fn make_room(&mut self, device: &wgpu::Device, things: [u32; 2]) {
         let blocks = blocks_of(things);
         if self.held.as_ref().is_some_and(|h| h.blocks.size() >= blocks * BLOCK_BYTES) {

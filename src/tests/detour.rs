@@ -33,7 +33,7 @@ fn models(size_m: f64, width_m: f64) -> [FogModel; 2] {
     [free.clone(), free.led_by(Some(map.about(DVec3::new(0.0, 0.0, 2.0))))]
 }
 
-/// Mean of the pattern along a ray, summed over many points, each shifted by its own lag.
+/// Mean of the pattern over many points of a ray, each of them shifted by its own lag.
 fn by_points(m: &FogModel, direction: DVec3, length: f64) -> f64 {
     const POINTS: usize = 2000;
     let detour = m.detour.as_ref().expect("led");
