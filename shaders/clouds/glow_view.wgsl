@@ -10,7 +10,7 @@
 fn glow(in: FullscreenVarying) -> @location(0) vec4f {
     drawn = frame.drawn;
     let uv = (in.position.xy - vec2f(0.0, lamps.row)) / lamps.size;
-    let ray = view_ray(frame.depth, vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign));
+    let ray = view_ray(frame.depth, frame_ndc(uv));
     cloud_origin = ray.origin;
     let seen = clouds_along(ray.direction, RANGE_SKY, clouds.jitter);
     let cover = 1.0 - seen.transmittance;

@@ -35,17 +35,17 @@ struct ResolvedPixel {
 }
 
 // Where the depth has several samples a pixel, the first stands for all: shadows of clouds have no sharp edges.
-fn shadow_on(pixel: vec2u) -> vec2f {
+fn shadow_on(pixel: vec2u, ndc: vec2f) -> vec2f {
     if !SHADOWS {
         return vec2f(1.0, 0.0);
     }
-    let ndc = pixel_ndc(picture, pixel, frame.y_sign);
-    let range = view_range(frame.depth, textureLoad(host_depth, vec2i(pixel), 0).r, ndc);
-    let ray = view_ray(frame.depth, ndc);
-    let share = cloud_shadow(shadows, shadow_map, repeating, ray.origin + ray.direction * range);
+    let depth = view_depth(frame.depth, textureLoad(host_depth, vec2i(pixel), 0).r, ndc);
+    let share = cloud_shadow(shadows, shadow_map, repeating, view_point(frame.depth, depth, ndc));
     if !SHAFTS {
         return vec2f(share, 0.0);
     }
+    let ray = view_ray(frame.depth, ndc);
+    let range = min(depth * ray.slant, RANGE_SKY);
     let between = shaft_between(vec2f(pixel));
     return vec2f(share, cloud_shafts(shadows, shadow_map, repeating, ray.origin, ray.direction, range, between));
 }
@@ -58,7 +58,7 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     // What this frame's rays do not see, but the last picture held, stands far off: never before what the host drew.
     let cover = 1.0 - now.a;
     let stands = textureSampleLevel(marched_reach, linear, among, 0.0).rg / max(cover, 1e-4);
-    let reach = vec4f(select(vec2f(NOWHERE), stands, cover > 1e-4), shadow_on(pixel));
+    let reach = vec4f(select(vec2f(NOWHERE), stands, cover > 1e-4), shadow_on(pixel, frame_ndc(in.uv)));
     if !HISTORY {
         return ResolvedPixel(now, reach);
     }

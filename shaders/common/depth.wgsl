@@ -41,14 +41,22 @@ struct ViewRay {
     slant: f32,
 }
 
-fn view_ray(u: DepthUniform, ndc: vec2f) -> ViewRay {
-    var origin = u.origin;
-    if (DEPTH_KINDS & 2u) != 0u {
-        origin += ndc.x * u.origin_dx + ndc.y * u.origin_dy;
+fn view_origin(u: DepthUniform, ndc: vec2f) -> vec3f {
+    if (DEPTH_KINDS & 2u) == 0u {
+        return u.origin;
     }
-    let d = u.direction + ndc.x * u.direction_dx + ndc.y * u.direction_dy;
-    let slant = length(d);
-    return ViewRay(origin, d / slant, slant);
+    return u.origin + ndc.x * u.origin_dx + ndc.y * u.origin_dy;
+}
+
+// Along the ray, by what view_depth counts.
+fn view_step(u: DepthUniform, ndc: vec2f) -> vec3f {
+    return u.direction + ndc.x * u.direction_dx + ndc.y * u.direction_dy;
+}
+
+fn view_ray(u: DepthUniform, ndc: vec2f) -> ViewRay {
+    let step = view_step(u, ndc);
+    let slant = length(step);
+    return ViewRay(view_origin(u, ndc), step / slant, slant);
 }
 
 // e^x - 1 without cancellation at small x >= 0.
@@ -105,6 +113,11 @@ fn depth_ln_1p(x: f32) -> f32 {
 fn written_depth(u: DepthUniform, w: f32) -> f32 {
     let e = depth_ln_1p(max(w, 0.0) / u.inverse_c) / u.log_far;
     return clamp((e - u.turn_offset) / u.turn_scale, 0.0, 1.0);
+}
+
+// The place at this depth, as view_depth counts it.
+fn view_point(u: DepthUniform, depth: f32, ndc: vec2f) -> vec3f {
+    return view_origin(u, ndc) + view_step(u, ndc) * depth;
 }
 
 // Metres along the pixel's ray.

@@ -25,8 +25,7 @@ fn beside(u: DepthUniform, depth: f32, ndc: vec2f) -> Beside {
 }
 
 fn depth_point(u: DepthUniform, there: Beside) -> vec3f {
-    let ray = view_ray(u, there.ndc);
-    return ray.origin + ray.direction * (there.depth * ray.slant);
+    return view_point(u, there.depth, there.ndc);
 }
 
 // The edge from the pixel at `at` to whichever neighbour on this axis lies nearer in depth: over a silhouette none is taken.

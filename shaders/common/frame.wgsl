@@ -96,6 +96,11 @@ fn color_of(spectrum: vec3f) -> vec3f {
 
 @group(0) @binding(0) var<uniform> frame: FrameUniform;
 
+// Of a place in the picture; (0, 0) is its upper left corner.
+fn frame_ndc(uv: vec2f) -> vec2f {
+    return vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign);
+}
+
 // As frame.drawn; the gauge (plan/gauge.wgsl) sets it to see what a part is worth.
 var<private> drawn: vec4f;
 

@@ -5,7 +5,7 @@
 // The pixel of `in`, or one sample of it.
 fn composed(in: FullscreenVarying, sample: i32) -> vec4f {
     let pixel = vec2i(in.position.xy);
-    let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
+    let ndc = frame_ndc(in.uv);
     var seen = Seen(pixel, sample, ndc, 0.0, RANGE_SKY, RANGE_SKY, 0.0);
     if HAS_DEPTH {
         seen.depth = textureLoad(host_depth, pixel, sample).r;

@@ -26,7 +26,7 @@ fn even_grid(in: FullscreenVarying) -> EvenTexel {
     let at = (vec2i(in.position.xy) - 1) * EVEN_PIXELS;
     let pixel = clamp(at, vec2i(0), vec2i(frame.picture) - 1);
     let uv = (vec2f(at) + 0.5) / frame.picture;
-    let ndc = vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign);
+    let ndc = frame_ndc(uv);
     var seen = Seen(pixel, 0, ndc, 0.0, RANGE_SKY, RANGE_SKY, 0.0);
     if HAS_DEPTH {
         seen.depth = textureLoad(host_depth, pixel, 0).r;

@@ -28,7 +28,7 @@ fn scale_color(share: f32) -> vec3f {
 // What the host's images say of a pixel; of several samples the first.
 fn seen_at(in: FullscreenVarying) -> Seen {
     let pixel = vec2i(in.position.xy);
-    let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
+    let ndc = frame_ndc(in.uv);
     var seen = Seen(pixel, 0, ndc, 0.0, RANGE_SKY, RANGE_SKY, 0.0);
     if HAS_DEPTH {
         seen.depth = textureLoad(host_depth, pixel, 0).r;

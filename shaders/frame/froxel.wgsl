@@ -27,7 +27,7 @@ fn froxel_place(position: vec2f) -> FroxelPlace {
     let slice = tile.x + tile.y * FROXEL_TILES.x;
     // Texel centres at the tile's edge lie on the picture's edge, so that no lookup leaves the tile.
     let uv = inside / (FROXEL_TILE - 1.0);
-    let ndc = vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign);
+    let ndc = frame_ndc(uv);
     return FroxelPlace(ndc, FROXEL_NEAR * (exp(slice / 31.0 * FROXEL_LOG) - 1.0));
 }
 

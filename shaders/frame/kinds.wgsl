@@ -17,7 +17,7 @@ struct Kind {
 }
 
 fn kind_of(in: FullscreenVarying) -> Kind {
-    let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
+    let ndc = frame_ndc(in.uv);
     let far = select(KIND_BELOW, KIND_ABOVE, view_ray(frame.depth, ndc).direction.z >= 0.0);
     if !HAS_DEPTH {
         return Kind(far, RANGE_SKY);

@@ -1,7 +1,8 @@
 // What the ground is made of, and how water shows on it. The table is src/ground/class.rs.
 //!include "ground/normal.wgsl"
 
-const VEGETATION: u32 = 4u;
+// Of vegetation.
+const PLANTS: SurfaceLook = SurfaceLook(0.15, 0.0, 0.6, 50.0, 0.4, 0.0, 0.0, 1.0);
 
 fn mix_looks(a: SurfaceLook, b: SurfaceLook, share: f32) -> SurfaceLook {
     return SurfaceLook(
@@ -33,7 +34,7 @@ fn look_of(number: u32, unspecified: SurfaceLook) -> SurfaceLook {
 
 // What the host's image says, else its terrain, else the context's default, of which green parts are plants.
 fn surface_look(surface: HostSurface, here: TerrainPoint, albedo: vec3f) -> SurfaceLook {
-    var look = mix_looks(ground.looks[0], ground.looks[VEGETATION], plants(albedo));
+    var look = mix_looks(ground.looks[0], PLANTS, plants(albedo));
     if TERRAIN {
         let n = vec4u(here.classes + 0.5);
         let south = mix_looks(look_of(n.x, look), look_of(n.y, look), here.part.x);

@@ -20,22 +20,34 @@ fn sines(turns: vec4f) -> vec4f {
     return quarter * (1.5706268 + square * (0.0727102 * square - 0.6432292));
 }
 
-// Depth by four waves from `first` on, and the variance of it that a pixel keeps, whose sides on the ground are `across` and `along`.
-fn four_waves(first: u32, at: vec2f, across: vec2f, along: vec2f) -> vec2f {
-    // Of the bound block: an index into a copy of it would copy all of it.
-    let a = ground.waves[first];
-    let b = ground.waves[first + 1u];
-    let c = ground.waves[first + 2u];
-    let d = ground.waves[first + 3u];
-    let east = vec4f(a.x, b.x, c.x, d.x);
-    let north = vec4f(a.y, b.y, c.y, d.y);
+// Wave vectors of the hollows in turns per metre, and amplitudes.
+const WAVES_EAST: array<vec4f, 4> = array<vec4f, 4>(
+    vec4f(0.0513, -0.0684, 0.0569, -0.0043),
+    vec4f(-0.0706, 0.1295, -0.1672, 0.0531),
+    vec4f(0.1352, -0.2875, 0.3489, -0.1736),
+    vec4f(-0.2345, 0.6797, -0.9348, 0.6685),
+);
+const WAVES_NORTH: array<vec4f, 4> = array<vec4f, 4>(
+    vec4f(0.0432, 0.0028, -0.0567, 0.0940),
+    vec4f(-0.0846, 0.0174, 0.1164, -0.2365),
+    vec4f(0.2357, -0.0916, -0.1613, 0.4151),
+    vec4f(-0.6515, 0.3570, 0.2467, -1.0404),
+);
+const WAVES_HIGH: array<vec4f, 4> = array<vec4f, 4>(
+    vec4f(0.3872983, 0.3872983, 0.3872983, 0.3872983),
+    vec4f(0.3872983, 0.3872983, 0.3415650, 0.3415650),
+    vec4f(0.3415650, 0.3415650, 0.3415650, 0.3415650),
+    vec4f(0.3162278, 0.3162278, 0.3162278, 0.3162278),
+);
+
+// Depth by four waves, and the variance of it that a pixel keeps, whose sides on the ground are `across` and `along`.
+fn four_waves(east: vec4f, north: vec4f, high: vec4f, phases: vec4f, at: vec2f, across: vec2f, along: vec2f) -> vec2f {
     let x = east * across.x + north * across.y;
     let y = east * along.x + north * along.y;
     // exp(-(2 pi)^2 x^2 / 24): a pixel's box has the variance 1/12.
     let q = (x * x + y * y) * 1.6449341;
-    let keep = vec4f(a.w, b.w, c.w, d.w) / (1.0 + q * (1.0 + 0.5 * q));
-    let turns = vec4f(a.z, b.z, c.z, d.z) + east * at.x + north * at.y;
-    return vec2f(dot(keep, sines(turns)), 0.5 * dot(keep, keep));
+    let keep = high / (1.0 + q * (1.0 + 0.5 * q));
+    return vec2f(dot(keep, sines(phases + east * at.x + north * at.y)), 0.5 * dot(keep, keep));
 }
 
 // Depth of the hollows below the mean ground in units of its root mean square, and how much of its variance is too small for the
@@ -44,8 +56,11 @@ fn hollow_depth(at: vec2f, across: vec2f, along: vec2f, wanted: bool) -> vec2f {
     if !wanted {
         return vec2f(0.0, 1.0);
     }
-    let near = four_waves(0u, at, across, along) + four_waves(4u, at, across, along);
-    let sum = near + four_waves(8u, at, across, along) + four_waves(12u, at, across, along);
+    // Indices that are no variables: no table is copied.
+    let sum = four_waves(WAVES_EAST[0], WAVES_NORTH[0], WAVES_HIGH[0], ground.phases[0], at, across, along)
+        + four_waves(WAVES_EAST[1], WAVES_NORTH[1], WAVES_HIGH[1], ground.phases[1], at, across, along)
+        + four_waves(WAVES_EAST[2], WAVES_NORTH[2], WAVES_HIGH[2], ground.phases[2], at, across, along)
+        + four_waves(WAVES_EAST[3], WAVES_NORTH[3], WAVES_HIGH[3], ground.phases[3], at, across, along);
     return vec2f(sum.x, max(1.0 - sum.y, 0.0));
 }
 
@@ -57,6 +72,8 @@ fn normal_share(x: f32) -> f32 {
 
 // Beyond this many root mean squares there are no hollows.
 const FARTHEST_LEVEL: f32 = 6.0;
+// Level of what fills none, however rare.
+const NO_LEVEL: f32 = 1000.0;
 
 // Level above which the share `covered` of the hollows lies: the inverse of `normal_share`, y + 0.044715 y^3 = the logarithm of the
 // odds over 1.5957691, by the hyperbolic sine of a third of an angle, as cubics with one root are solved.

@@ -1,5 +1,5 @@
 // Lying snow on the surface that a pixel shows: where it covers the ground, and the light that it sends. How deep it lies is led on the
-// CPU (src/snowpack); cover_of of src/snowpack/laws.rs is `snow_amount`'s twin.
+// CPU (src/snowpack); snow_cover of src/weather/surface.rs is `snow_level`'s twin.
 //!include "ground/spot.wgsl"
 
 // Colour of snow's albedo over that of its green: ice takes up a little red (Warren 1982).
@@ -16,19 +16,15 @@ const SHADOWED: vec2f = vec2f(0.015, 0.05);
 const FINEST_GLINT: f32 = 6.0;
 const GLINT_SHARE: f32 = 0.02;
 
-// Share of level ground that snow of this depth covers.
-fn snow_amount(depth: f32) -> f32 {
-    return tanh(min(depth / 0.025, 10.0));
+// Level of the hollows up to which snow of this depth covers level ground: patches begin in those that puddles have.
+fn snow_level(depth: f32) -> f32 {
+    return select(level_of(tanh(min(depth / 0.025, 10.0))), NO_LEVEL, depth <= 0.0);
 }
 
-// Share of a pixel under snow: patches begin in the hollows of the pattern that puddles have. `level`: cosine of the slope.
-fn snow_share(depth: f32, pattern: vec2f, level: f32) -> f32 {
-    if depth <= 0.0 {
-        return 0.0;
-    }
-    let lies = covered_share(pattern, level_of(snow_amount(depth)), SNOW_EDGE);
+// Share of a pixel under snow that fills the hollows from `level` down. `cosine`: of the slope.
+fn snow_share(level: f32, pattern: vec2f, cosine: f32) -> f32 {
     // Snow lies up to its angle of repose, and thinly some way beyond.
-    return lies * smoothstep(0.6, 0.82, level);
+    return covered_share(pattern, level, SNOW_EDGE) * smoothstep(0.6, 0.82, cosine);
 }
 
 // One size of glints: cells of the ground with a grain each, of which few mirror the lamp towards the eye.
@@ -75,18 +71,21 @@ struct SnowSeen {
 fn snow_on(spot: Spot, normal_given: bool) -> SnowSeen {
     let here = spot.terrain;
     var snow = ground.snow.xyz;
-    if TERRAIN && ground.snow.w > 0.0 {
-        let depth = mix(snow.x, here.snow.x, here.share);
+    if TERRAIN && ground.snow.w >= 0.0 {
+        let depth = ground.snow.w;
         // Where only one has snow, its properties count.
-        let known = select(select(here.share, 1.0, snow.x <= 0.0), 0.0, here.snow.x <= 0.0);
-        snow = vec3f(depth, mix(snow.yz, here.snow.zw, known));
+        let known = select(select(here.share, 1.0, depth <= 0.0), 0.0, here.snow.x <= 0.0);
+        snow = vec3f(snow_level(mix(depth, here.snow.x, here.share)), mix(snow.yz, here.snow.zw, known));
     }
     // Far off a pixel's side along the ground is known too badly for patches: there they mix.
     let patches = mix(spot.pattern, vec2f(0.0, 1.0), smoothstep(150.0, 800.0, spot.range));
     let lies = snow_share(snow.x, patches, spot.level) * spot.ground.look.snow * spot.gets;
     let soft = normalize(mix(spot.ground.facing.normal, spot.up, select(0.35, 0.0, here.share > 0.5 || normal_given)));
     // Drifts and tracks lie over the ground that the host drew: what they rise by leans their light.
-    let heaped = normalize(soft - here.drift * (here.share * lies));
+    var heaped = soft;
+    if TERRAIN {
+        heaped = normalize(soft - here.drift * (here.share * lies));
+    }
     let glints = snow_glints(spot.place, spot.side, spot.to_eye) * (1.0 - snow.y);
     let white = snow_light(snow, heaped, spot.up, spot.ground.albedo, host_lamps(spot.at, heaped), glints);
     return SnowSeen(min(white, vec3f(ground.most)), lies);

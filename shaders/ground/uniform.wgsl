@@ -1,7 +1,5 @@
 // What water on the ground needs to know of the frame.
 
-const HOLLOW_WAVES: u32 = 16u;
-
 // Classes of surface, and how water shows on one (src/ground/class.rs).
 const SURFACE_CLASSES: u32 = 7u;
 
@@ -37,12 +35,9 @@ struct GroundUniform {
     sky_lux: vec3f,
     // Share of that light that enters water.
     entering: f32,
-    // Luminance of the fog overhead and its optical depth straight up.
-    fog_light: vec3f,
-    fog_depth: f32,
     // Luminance of the lit ground round about, cd/m^2 a channel: what mirrors that face down see.
     ground_light: vec3f,
-    // The same of a film: above it the ground is bare.
+    // As `level`, of a film: above it the ground is bare.
     film_level: f32,
     // Axes of the pattern of hollows, and where the camera stands in a cell of the rings' grid, m.
     axis_u: vec3f,
@@ -75,6 +70,8 @@ struct GroundUniform {
     glaze: f32,
     // Of the air that carries the rain, m/s.
     wind: vec3f,
+    // Optical depth of the fog straight up.
+    fog_depth: f32,
     // Fall speeds of the drops in the middle of each twelfth of the water, m/s, slow ones first.
     falls: array<vec4f, 3>,
     // On the host's terrain: from camera-relative east, north and up to cells east and north of its first node and to metres
@@ -91,10 +88,11 @@ struct GroundUniform {
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
-    // On level, open ground: depth in m, wetness and albedo of the snow. Not 0 in the last: the terrain's cells have snow of their own.
+    // On level, open ground: level of the hollows up to which snow covers them, its wetness and its albedo; where the terrain's cells have
+    // snow of their own, its depth, m, else -1.
     snow: vec4f,
     // Of each class; the first one is the context's default.
     looks: array<SurfaceLook, SURFACE_CLASSES>,
-    // Wave vector of the hollows in turns per metre, phase at the camera in turns, amplitude.
-    waves: array<vec4f, HOLLOW_WAVES>,
+    // Of the waves of hollows at the camera, turns.
+    phases: array<vec4f, 4>,
 }

@@ -10,7 +10,7 @@ override RINGS: bool = true;
 fn mirrored_light(d: vec3f) -> vec3f {
     let up = normalize(vec3f(d.xy, max(d.z, 1e-3)));
     let through = exp(-ground.fog_depth / max(up.z, 0.02));
-    let sky = sky_toward(up) * through + ground.fog_light * (1.0 - through);
+    let sky = sky_toward(up) * through + ground.sky_lux * ((1.0 - through) / SKY_PI);
     return mix(ground.ground_light, sky, smoothstep(-0.1, 0.02, d.z));
 }
 

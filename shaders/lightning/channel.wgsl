@@ -123,7 +123,7 @@ fn is_open(in: ChannelVarying) -> bool {
     let uv = in.position.xy / channel.size;
     let texels = vec2f(textureDimensions(host_depth));
     let depth = textureLoad(host_depth, vec2i(clamp(uv * texels, vec2f(0.0), texels - 1.0)), 0).r;
-    let ndc = vec2f(2.0 * uv.x - 1.0, frame.y_sign * (1.0 - 2.0 * uv.y));
+    let ndc = frame_ndc(uv);
     return view_range(frame.depth, depth, ndc) >= in.middle.w;
 }
 

@@ -8,7 +8,7 @@ fn gauge(in: FullscreenVarying) -> @location(0) vec4u {
     let place = floor(in.uv * size);
     let pixel = vec2i(place);
     let uv = (place + 0.5) / size;
-    let ndc = vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign);
+    let ndc = frame_ndc(uv);
     var p = Looked(textureLoad(host_color, pixel, 0).rgb, RANGE_SKY, RANGE_SKY, ndc, 0.0, hung_in(pixel, RANGE_SKY));
     if HAS_DEPTH {
         let depth = textureLoad(host_depth, pixel, 0).r;

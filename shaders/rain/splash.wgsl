@@ -96,8 +96,7 @@ fn uv_of(ndc: vec2f) -> vec2f {
 
 // The point of the visible surface at `ndc`, camera-relative.
 fn surface_of(ndc: vec2f, depth: f32) -> vec3f {
-    let ray = view_ray(rain.depth, ndc);
-    return ray.origin + ray.direction * min(view_range(rain.depth, depth, ndc), 1e5);
+    return view_point(rain.depth, min(view_depth(rain.depth, depth, ndc), 1e5), ndc);
 }
 
 // Whether a surface is at the landing's own place: the search ends there where the picture shows the ground there.

@@ -36,6 +36,8 @@ struct SkyView {
     air: SkyAir,
     dims: SkyDims,
     edges: SkyEdges,
+    // Where the table of the sky above the horizon lies in its texture: the middle of its first texel, and how far from it the last one's is.
+    sky_above: vec4f,
     altitude: Length,
     lamp_count: u32,
     // 0: no refraction; 1: the Earth's standard air.
@@ -131,8 +133,14 @@ fn sky_radiance(dir: vec3f) -> Radiance {
 }
 
 fn sky_radiance_on(path: SkyPath, dir: vec3f) -> Radiance {
+    if (SKY_MARCH) {
+        return marched_light(path.ray, dir);
+    }
     let v = view_place(sky_view.edges, dir.z);
-    return sky_table_light(path.ray, dir, v) * select(air_opacity(path.depth), vec3f(1.0), v >= 0.0 || SKY_MARCH);
+    let dims = sky_view.dims;
+    let below = (f32(dims.sky_x) + view_row(v, dims.sky_above, dims.sky_below)) / f32(dims.tables_width);
+    let at = select(below, place_above(v), v >= 0.0);
+    return sky_table_light(dir, at) * select(air_opacity(path.depth), vec3f(1.0), v >= 0.0);
 }
 
 // The same for directions above the horizon alone.
@@ -140,24 +148,28 @@ fn sky_radiance_above(dir: vec3f) -> Radiance {
     if (SKY_MARCH) {
         return sky_radiance(dir);
     }
-    return sky_table_light(SkyRay(), dir, max(view_place(sky_view.edges, dir.z), 0.0));
+    return sky_table_light(dir, place_above(max(view_place(sky_view.edges, dir.z), 0.0)));
 }
 
-// As the table has it: below the horizon over the opacity of the air. The ray is read where pixels march.
-fn sky_table_light(ray: SkyRay, dir: vec3f, v: f32) -> vec3f {
-    let dims = sky_view.dims;
+fn marched_light(ray: SkyRay, dir: vec3f) -> vec3f {
     var out = vec3f(0.0);
-    if (SKY_MARCH) {
-        for (var i = 0u; i < sky_lamps(); i++) {
-            out += lamp_march(sky_view.lamps[i], dir, ray, ray.length);
-        }
-        return out;
+    for (var i = 0u; i < sky_lamps(); i++) {
+        out += lamp_march(sky_view.lamps[i], dir, ray, ray.length);
     }
-    let size = vec2f(f32(dims.tables_width), f32(dims.tables_height));
-    let first = vec2f(f32(dims.sky_x) + view_row(v, dims.sky_above, dims.sky_below), f32(dims.sky_y) + 0.5);
+    return out;
+}
+
+// Coordinate along x of place `v` above the horizon.
+fn place_above(v: f32) -> f32 {
+    return sky_view.sky_above.x + v * sky_view.sky_above.z;
+}
+
+// As the table has it at this coordinate: below the horizon over the opacity of the air.
+fn sky_table_light(dir: vec3f, x: f32) -> vec3f {
+    var out = vec3f(0.0);
     for (var i = 0u; i < sky_lamps(); i++) {
         let lamp = sky_view.lamps[i];
-        let uv = (first + vec2f(0.0, lamp_azimuth(lamp, dir) * f32(dims.sky_azimuths - 1u))) / size;
+        let uv = vec2f(x, sky_view.sky_above.y + lamp_azimuth(lamp, dir) * sky_view.sky_above.w);
         let a = textureSampleLevel(sky_tables, sky_sampler, uv, lamp.layer, 0.0);
         let b = textureSampleLevel(sky_tables, sky_sampler, uv, lamp.layer + 1u, 0.0);
         out += lamp_light(lamp, dir, a, b);

@@ -11,64 +11,85 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// The pattern repeats after this distance, m: a multiple of every wave.
 pub const PERIOD_M: f64 = 1e4;
-/// Waves of the pattern, as many as the shader's `HOLLOW_WAVES`.
+/// Waves of the pattern.
 pub const WAVES: usize = 16;
-/// Bands of lengths: the number of waves, the longest and the shortest, m, and their share of the variance. Each has waves
-/// enough that what a far pixel still sees looks as irregular as what a near one does.
-const BANDS: [(usize, f64, f64, f64); 3] = [(6, 17.0, 7.0, 0.45), (6, 5.3, 2.2, 0.35), (4, 1.7, 0.8, 0.2)];
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Wave {
-    /// Turns to [`PERIOD_M`] along both axes: whole numbers.
-    turns: DVec2,
-    /// Turns.
-    phase: f64,
-    amplitude: f64,
-}
+/// Turns to [`PERIOD_M`] along both axes, whole numbers: the wave vectors are the same in all worlds, so that the shader has them as
+/// constants (a read of a block by each pixel costs some drivers more than the wave), and their phases are the world's own. Three bands
+/// of lengths (17 to 7 m, 5.3 to 2.2 m, 1.7 to 0.8 m) have waves enough that what a far pixel still sees looks as irregular as what a
+/// near one does; by the golden angle no two waves run alike. Within their bands lengths are as seed 0 drew them.
+const TURNS: [(i32, i32); WAVES] = [
+    (513, 432),
+    (-684, 28),
+    (569, -567),
+    (-43, 940),
+    (-706, -846),
+    (1295, 174),
+    (-1672, 1164),
+    (531, -2365),
+    (1352, 2357),
+    (-2875, -916),
+    (3489, -1613),
+    (-1736, 4151),
+    (-2345, -6515),
+    (6797, 3570),
+    (-9348, 2467),
+    (6685, -10404),
+];
+/// Waves of each band, and its share of the variance.
+const BANDS: [(usize, f64); 3] = [(6, 0.45), (6, 0.35), (4, 0.2)];
 
 /// The hollows of a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hollows {
-    waves: [Wave; WAVES],
+    /// Of each wave, turns.
+    phases: [f64; WAVES],
+}
+
+/// Turns to [`PERIOD_M`] of a wave.
+fn turns(wave: usize) -> DVec2 {
+    let (east, north) = TURNS[wave];
+    DVec2::new(east.into(), north.into())
+}
+
+/// Of a wave, in units of the pattern's root mean square depth.
+fn amplitude(wave: usize) -> f64 {
+    let mut first = 0;
+    for (count, share) in BANDS {
+        if wave < first + count {
+            return (2.0 * share / count as f64).sqrt();
+        }
+        first += count;
+    }
+    0.0
 }
 
 impl Hollows {
     /// Those of a world with this seed.
     pub fn new(seed: u64) -> Self {
         let mut state = seed;
-        let mut waves = [Wave { turns: DVec2::ZERO, phase: 0.0, amplitude: 0.0 }; WAVES];
-        let each = BANDS.iter().flat_map(|band| (0..band.0).map(move |i| (band, i)));
-        for (k, (wave, (&(count, longest, shortest, share), i))) in waves.iter_mut().zip(each).enumerate() {
-            let length = longest * libm::pow(shortest / longest, (i as f64 + uniform(&mut state)) / count as f64);
-            // By the golden angle no two waves run alike.
-            let (sin, cos) = libm::sincos(k as f64 * 2.399_963_229_728_653 + 0.7);
-            wave.turns = (DVec2::new(cos, sin) * (PERIOD_M / length)).round();
-            wave.phase = uniform(&mut state);
-            wave.amplitude = (2.0 * share / count as f64).sqrt();
-        }
-        Self { waves }
+        // The second of two numbers each: seed 0 drew a length by the first.
+        let phases = [(); WAVES].map(|()| {
+            uniform(&mut state);
+            uniform(&mut state)
+        });
+        Self { phases }
     }
 
     /// Depth below the mean ground at a place of the pattern, in units of its root mean square.
     pub fn depth(&self, at: DVec2) -> f64 {
-        self.waves.iter().map(|w| w.amplitude * libm::sin(TAU * w.turns_at(at).fract())).sum()
+        (0..WAVES).map(|k| amplitude(k) * libm::sin(TAU * self.turns_at(k, at).fract())).sum()
     }
 
-    /// The waves as the shader reads them, for a camera at this place of the pattern: wave vector in turns per metre, phase
-    /// in turns, amplitude.
-    pub(super) fn seen_from(&self, at: DVec2) -> [[f32; 4]; WAVES] {
-        self.waves.map(|w| {
-            let k = w.turns / PERIOD_M;
-            [k.x as f32, k.y as f32, w.turns_at(at).rem_euclid(1.0) as f32, w.amplitude as f32]
-        })
+    /// Phases of the waves for a camera at this place of the pattern, in turns, by fours as the shader reads them.
+    pub(super) fn seen_from(&self, at: DVec2) -> [[f32; 4]; WAVES / 4] {
+        std::array::from_fn(|four| std::array::from_fn(|i| self.turns_at(4 * four + i, at).rem_euclid(1.0) as f32))
     }
-}
 
-impl Wave {
-    fn turns_at(&self, at: DVec2) -> f64 {
+    /// Phase of a wave at a place, turns.
+    fn turns_at(&self, wave: usize, at: DVec2) -> f64 {
         // Whole turns are dropped before they cost digits.
         let at = at.rem_euclid(DVec2::splat(PERIOD_M)) / PERIOD_M;
-        self.phase + self.turns.dot(at)
+        self.phases[wave] + turns(wave).dot(at)
     }
 }
 
@@ -120,5 +141,24 @@ mod tests {
             assert!((hollows.depth(at) - hollows.depth(at + far)).abs() < 1e-6);
         }
         assert!(Hollows::new(10).depth(at) != hollows.depth(at), "another seed is another ground");
+    }
+
+    #[test]
+    fn the_shader_has_the_same_waves() {
+        let text = crate::gpu::shader::assemble("ground/hollows.wgsl").unwrap();
+        let fours = |of: &dyn Fn(usize) -> String| {
+            let four = |first: usize| (first..first + 4).map(of).collect::<Vec<_>>().join(", ");
+            (0..WAVES).step_by(4).map(|first| format!("    vec4f({}),\n", four(first))).collect::<String>()
+        };
+        for (name, numbers) in [
+            ("WAVES_EAST", fours(&|k| format!("{:.4}", turns(k).x / PERIOD_M))),
+            ("WAVES_NORTH", fours(&|k| format!("{:.4}", turns(k).y / PERIOD_M))),
+            ("WAVES_HIGH", fours(&|k| format!("{:.7}", amplitude(k)))),
+        ] {
+            let table = format!("const {name}: array<vec4f, 4> = array<vec4f, 4>(\n{numbers});");
+            assert!(text.contains(&table), "{table}");
+        }
+        let variance: f64 = (0..WAVES).map(|k| 0.5 * amplitude(k).powi(2)).sum();
+        assert!((variance - 1.0).abs() < 1e-12, "{variance}");
     }
 }

@@ -18,7 +18,7 @@ use crate::{
     },
     moment::Scene,
     surroundings::SnowHere,
-    weather::{Falling, SurfaceCover},
+    weather::{Falling, SurfaceCover, snow_cover},
 };
 
 /// Twins of the constants of `shaders/ground/hollows.wgsl`.
@@ -44,8 +44,6 @@ pub(crate) struct GroundUniform {
     pub level: f32,
     pub sky_lux: [f32; 3],
     pub entering: f32,
-    pub fog_light: [f32; 3],
-    pub fog_depth: f32,
     pub ground_light: [f32; 3],
     pub film_level: f32,
     pub axis_u: [f32; 3],
@@ -67,7 +65,7 @@ pub(crate) struct GroundUniform {
     pub disc2: f32,
     pub glaze: f32,
     pub wind: [f32; 3],
-    pub pad: f32,
+    pub fog_depth: f32,
     pub falls: [[f32; 4]; 3],
     pub terrain_x: [f32; 4],
     pub terrain_y: [f32; 4],
@@ -80,7 +78,7 @@ pub(crate) struct GroundUniform {
     pub normal_z: [f32; 4],
     pub snow: [f32; 4],
     pub looks: [SurfaceLook; CLASSES],
-    pub waves: [[f32; 4]; WAVES],
+    pub phases: [[f32; 4]; WAVES / 4],
 }
 
 impl GroundUniform {
@@ -141,10 +139,12 @@ fn look_of(wetness: f64) -> (f64, f64) {
     (smooth(0.0, 0.3, wetness), smooth(0.3, 1.0, wetness))
 }
 
+/// Level of what fills no hollow, however rare; twin of the shader's.
+const NO_LEVEL: f32 = 1000.0;
+
 /// Depth of the hollows, in units of their root mean square, above which the share `covered` of the ground lies.
 fn level_of(covered: f64) -> f32 {
-    // Where there is no water no hollow holds any, however rare.
-    if covered <= 0.0 { 1e3 } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
+    if covered <= 0.0 { NO_LEVEL } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
 }
 
 /// What follows from the sizes of drops alone, kept while the same falls: sums over all sizes would cost more than the rest of a frame's
@@ -208,8 +208,6 @@ impl WetScene<'_> {
             level: level_of(cover.puddles),
             sky_lux: f(scene.ground.sky_lux),
             entering: self.entering(lamp.apparent.z, lamp_lux[1]) as f32,
-            fog_light: f(scene.ground.sky_lux.map(|e| e / PI)),
-            fog_depth: self.fog_depth as f32,
             ground_light: f([0, 1, 2].map(|i| {
                 let light = lamp_lux[i] * lamp.apparent.z.max(0.0) + scene.ground.sky_lux[i];
                 0.5 * scene.ground_albedo[i] * light / PI
@@ -234,7 +232,7 @@ impl WetScene<'_> {
             disc2: (lamp.angular_radius / 4.0).powi(2) as f32,
             glaze: self.glaze as f32,
             wind: self.wind_m_s.map_or([0.0; 3], |w| w.as_vec3().to_array()),
-            pad: 0.0,
+            fog_depth: self.fog_depth as f32,
             falls: self.wind_m_s.map_or([[0.0; 4]; 3], |_| drops.falls_m_s(scene)),
             terrain_x: rows[0],
             terrain_y: rows[1],
@@ -246,11 +244,12 @@ impl WetScene<'_> {
             normal_y: normals[1],
             normal_z: normals[2],
             snow: {
-                let own = f64::from(u8::from(self.terrain_has_snow));
-                [self.snow.depth_m, self.snow.wetness, self.snow.albedo, own].map(|v| v as f32)
+                let own = if self.terrain_has_snow { self.snow.depth_m as f32 } else { -1.0 };
+                let level = level_of(snow_cover(self.snow.depth_m));
+                [level, self.snow.wetness as f32, self.snow.albedo as f32, own]
             },
             looks: self.looks(),
-            waves: self.hollows.seen_from(at),
+            phases: self.hollows.seen_from(at),
         }
     }
 
@@ -297,8 +296,6 @@ mod tests {
                 level,
                 sky_lux,
                 entering,
-                fog_light,
-                fog_depth,
                 ground_light,
                 film_level,
                 axis_u,
@@ -319,8 +316,9 @@ mod tests {
                 ring_slope2,
                 disc2,
                 wind,
+                fog_depth,
                 falls,
-                waves,
+                phases,
                 glaze,
                 terrain_x,
                 terrain_y,
@@ -341,13 +339,17 @@ mod tests {
     fn constants_agree_with_the_shader() {
         let text = shader::assemble("ground/surface.wgsl").unwrap();
         let cells = (PERIOD_M / RING_CELL_M) as u32;
+        let look = SurfaceClass::Vegetation.surface_look();
+        let numbers: [f32; 8] = bytemuck::cast(look);
+        let plants =
+            format!("const PLANTS: SurfaceLook = SurfaceLook({});", numbers.map(|v| format!("{v:?}")).join(", "));
         for line in [
-            format!("const HOLLOW_WAVES: u32 = {WAVES}u;"),
             format!("const SURFACE_CLASSES: u32 = {CLASSES}u;"),
-            format!("const VEGETATION: u32 = {}u;", SurfaceClass::Vegetation as u8),
+            plants,
             format!("const RING_CELL: f32 = {RING_CELL_M};"),
             format!("const RING_CELLS: u32 = {cells}u;"),
             format!("const RING_SLOT: f32 = {RING_SLOT_S};"),
+            format!("const NO_LEVEL: f32 = {NO_LEVEL:?};"),
             format!("const RING_LAYERS: u32 = {RING_LAYERS}u;"),
             format!("const THIN_FILM_SLOPE: f32 = {THIN_FILM_SLOPE};"),
             format!("const CLOSED_FILM_SLOPE: f32 = {CLOSED_FILM_SLOPE};"),

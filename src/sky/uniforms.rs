@@ -163,6 +163,14 @@ impl DimsUniform {
             tables_height,
         }
     }
+
+    /// Where the table of the sky above the horizon lies in its texture: the middle of its first texel, and how far from it the last one's is.
+    pub fn sky_above(&self) -> [f32; 4] {
+        let [x, y, above, azimuths] =
+            [self.sky_x, self.sky_y, self.sky_above - 1, self.sky_azimuths - 1].map(f64::from);
+        let [width, height] = [self.tables_width, self.tables_height].map(f64::from);
+        [(x + 0.5) / width, (y + 0.5) / height, above / width, azimuths / height].map(|v| v as f32)
+    }
 }
 
 /// `SkyJob` of `sky/build.wgsl`.
@@ -242,6 +250,7 @@ pub(crate) struct ViewUniform {
     pub air: AirUniform,
     pub dims: DimsUniform,
     pub edges: EdgesUniform,
+    pub sky_above: [f32; 4],
     pub altitude: f32,
     pub lamp_count: u32,
     pub refraction: f32,
@@ -266,7 +275,7 @@ mod tests {
             (&lookup, "SkyDims", size_of::<DimsUniform>(), 20),
             (&lookup, "SkyEdges", size_of::<EdgesUniform>(), 4),
             (&lookup, "SkyLamp", size_of::<LampUniform>(), 14),
-            (&lookup, "SkyView", size_of::<ViewUniform>(), 8),
+            (&lookup, "SkyView", size_of::<ViewUniform>(), 9),
             (&build, "SkyJob", size_of::<JobUniform>(), 4),
             (&observer, "SkyObserver", size_of::<ObserverUniform>(), 5),
         ] {
@@ -287,6 +296,7 @@ mod tests {
         assert_eq!(at("SkyLamp", "depth_from"), offset_of!(LampUniform, depth_from));
         assert_eq!(at("SkyLamp", "depth"), offset_of!(LampUniform, depth));
         assert_eq!(at("SkyView", "edges"), offset_of!(ViewUniform, edges));
+        assert_eq!(at("SkyView", "sky_above"), offset_of!(ViewUniform, sky_above));
         assert_eq!(at("SkyView", "march_panels"), offset_of!(ViewUniform, march_panels));
         assert_eq!(at("SkyView", "lamps"), offset_of!(ViewUniform, lamps));
     }

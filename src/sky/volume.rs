@@ -259,10 +259,12 @@ impl SkyVolume {
             None => false,
         };
         let altitude_m = self.drawn[0].map_or(observer.altitude_m, |d| d.altitude_m).max(0.0);
+        let dims = DimsUniform::of(&self.kit.settings);
         let mut view = ViewUniform {
             air,
-            dims: DimsUniform::of(&self.kit.settings),
+            dims,
             edges: EdgesUniform::of(&air, altitude_m),
+            sky_above: dims.sky_above(),
             altitude: altitude_m as f32,
             lamp_count: lamps().count() as u32,
             refraction: observer.refraction as f32,
