@@ -48,7 +48,7 @@ fn view_origin(u: DepthUniform, ndc: vec2f) -> vec3f {
     return u.origin + ndc.x * u.origin_dx + ndc.y * u.origin_dy;
 }
 
-// Along the ray, by what view_depth counts.
+// The way along the ray per unit of what view_depth counts.
 fn view_step(u: DepthUniform, ndc: vec2f) -> vec3f {
     return u.direction + ndc.x * u.direction_dx + ndc.y * u.direction_dy;
 }

@@ -24,22 +24,18 @@ fn beside(u: DepthUniform, depth: f32, ndc: vec2f) -> Beside {
     return Beside(select(view_depth(u, depth, ndc), RANGE_SKY, any(abs(ndc) > vec2f(1.0))), ndc);
 }
 
-fn depth_point(u: DepthUniform, there: Beside) -> vec3f {
-    return view_point(u, there.depth, there.ndc);
-}
-
 // The edge from the pixel at `at` to whichever neighbour on this axis lies nearer in depth: over a silhouette none is taken.
 fn surface_edge(u: DepthUniform, here: Beside, at: vec3f, before: Beside, after: Beside) -> vec3f {
     let first = abs(before.depth - here.depth) < abs(after.depth - here.depth);
     let nearer = Beside(select(after.depth, before.depth, first), select(after.ndc, before.ndc, first));
-    return (depth_point(u, nearer) - at) * select(1.0, -1.0, first);
+    return (view_point(u, nearer.depth, nearer.ndc) - at) * select(1.0, -1.0, first);
 }
 
 // `around`: depths to the left, right, above and below; `pixel`: steps of ndc to the right and below; `grain`: by how much the
 // host's depth may be off, as a step and as a part of it.
 fn facing_of(u: DepthUniform, depth: f32, around: vec4f, ndc: vec2f, pixel: vec2f, grain: vec2f) -> Facing {
     let here = beside(u, depth, ndc);
-    let at = depth_point(u, here);
+    let at = view_point(u, here.depth, here.ndc);
     let x = vec2f(pixel.x, 0.0);
     let y = vec2f(0.0, pixel.y);
     let edge_x = surface_edge(u, here, at, beside(u, around.x, ndc - x), beside(u, around.y, ndc + x));

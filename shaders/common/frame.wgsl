@@ -96,7 +96,7 @@ fn color_of(spectrum: vec3f) -> vec3f {
 
 @group(0) @binding(0) var<uniform> frame: FrameUniform;
 
-// Of a place in the picture; (0, 0) is its upper left corner.
+// Normalised device coordinates of a place in the picture, of which (0, 0) is the upper left corner.
 fn frame_ndc(uv: vec2f) -> vec2f {
     return vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign);
 }

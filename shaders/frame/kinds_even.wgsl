@@ -7,7 +7,7 @@
 // Even pixels on which the host drew have a draw of their own.
 override APART: bool = false;
 
-// Uneven pixels are drawn apart by what they show; if not, one draw has them all.
+// Whether uneven pixels have a draw for each kind of what they show, or one for all.
 override SPLITS: bool = true;
 
 const KIND_UNEVEN: f32 = 1.0;

@@ -1,7 +1,7 @@
 // What the ground is made of, and how water shows on it. The table is src/ground/class.rs.
 //!include "ground/normal.wgsl"
 
-// Of vegetation.
+// The look of vegetation (src/ground/class.rs).
 const PLANTS: SurfaceLook = SurfaceLook(0.15, 0.0, 0.6, 50.0, 0.4, 0.0, 0.0, 1.0);
 
 fn mix_looks(a: SurfaceLook, b: SurfaceLook, share: f32) -> SurfaceLook {

@@ -33,7 +33,7 @@ const WAVES_NORTH: array<vec4f, 4> = array<vec4f, 4>(
     vec4f(0.2357, -0.0916, -0.1613, 0.4151),
     vec4f(-0.6515, 0.3570, 0.2467, -1.0404),
 );
-const WAVES_HIGH: array<vec4f, 4> = array<vec4f, 4>(
+const WAVES_AMPLITUDE: array<vec4f, 4> = array<vec4f, 4>(
     vec4f(0.3872983, 0.3872983, 0.3872983, 0.3872983),
     vec4f(0.3872983, 0.3872983, 0.3415650, 0.3415650),
     vec4f(0.3415650, 0.3415650, 0.3415650, 0.3415650),
@@ -41,12 +41,12 @@ const WAVES_HIGH: array<vec4f, 4> = array<vec4f, 4>(
 );
 
 // Depth by four waves, and the variance of it that a pixel keeps, whose sides on the ground are `across` and `along`.
-fn four_waves(east: vec4f, north: vec4f, high: vec4f, phases: vec4f, at: vec2f, across: vec2f, along: vec2f) -> vec2f {
+fn four_waves(east: vec4f, north: vec4f, amplitude: vec4f, phases: vec4f, at: vec2f, across: vec2f, along: vec2f) -> vec2f {
     let x = east * across.x + north * across.y;
     let y = east * along.x + north * along.y;
     // exp(-(2 pi)^2 x^2 / 24): a pixel's box has the variance 1/12.
     let q = (x * x + y * y) * 1.6449341;
-    let keep = high / (1.0 + q * (1.0 + 0.5 * q));
+    let keep = amplitude / (1.0 + q * (1.0 + 0.5 * q));
     return vec2f(dot(keep, sines(phases + east * at.x + north * at.y)), 0.5 * dot(keep, keep));
 }
 
@@ -56,11 +56,11 @@ fn hollow_depth(at: vec2f, across: vec2f, along: vec2f, wanted: bool) -> vec2f {
     if !wanted {
         return vec2f(0.0, 1.0);
     }
-    // Indices that are no variables: no table is copied.
-    let sum = four_waves(WAVES_EAST[0], WAVES_NORTH[0], WAVES_HIGH[0], ground.phases[0], at, across, along)
-        + four_waves(WAVES_EAST[1], WAVES_NORTH[1], WAVES_HIGH[1], ground.phases[1], at, across, along)
-        + four_waves(WAVES_EAST[2], WAVES_NORTH[2], WAVES_HIGH[2], ground.phases[2], at, across, along)
-        + four_waves(WAVES_EAST[3], WAVES_NORTH[3], WAVES_HIGH[3], ground.phases[3], at, across, along);
+    // By constant indices: a variable one would copy the tables.
+    let sum = four_waves(WAVES_EAST[0], WAVES_NORTH[0], WAVES_AMPLITUDE[0], ground.phases[0], at, across, along)
+        + four_waves(WAVES_EAST[1], WAVES_NORTH[1], WAVES_AMPLITUDE[1], ground.phases[1], at, across, along)
+        + four_waves(WAVES_EAST[2], WAVES_NORTH[2], WAVES_AMPLITUDE[2], ground.phases[2], at, across, along)
+        + four_waves(WAVES_EAST[3], WAVES_NORTH[3], WAVES_AMPLITUDE[3], ground.phases[3], at, across, along);
     return vec2f(sum.x, max(1.0 - sum.y, 0.0));
 }
 
@@ -72,7 +72,7 @@ fn normal_share(x: f32) -> f32 {
 
 // Beyond this many root mean squares there are no hollows.
 const FARTHEST_LEVEL: f32 = 6.0;
-// Level of what fills none, however rare.
+// A level deeper than any hollow: nothing lies in them.
 const NO_LEVEL: f32 = 1000.0;
 
 // Level above which the share `covered` of the hollows lies: the inverse of `normal_share`, y + 0.044715 y^3 = the logarithm of the

@@ -16,7 +16,7 @@ const SHADOWED: vec2f = vec2f(0.015, 0.05);
 const FINEST_GLINT: f32 = 6.0;
 const GLINT_SHARE: f32 = 0.02;
 
-// Level of the hollows up to which snow of this depth covers level ground: patches begin in those that puddles have.
+// Level in the hollows up to which snow of this depth covers level ground. The first patches lie in the deepest ones, where puddles do.
 fn snow_level(depth: f32) -> f32 {
     return select(level_of(tanh(min(depth / 0.025, 10.0))), NO_LEVEL, depth <= 0.0);
 }

@@ -88,8 +88,8 @@ struct GroundUniform {
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
-    // On level, open ground: level of the hollows up to which snow covers them, its wetness and its albedo; where the terrain's cells have
-    // snow of their own, its depth, m, else -1.
+    // Snow on level, open ground: the level in the hollows up to which it covers them, its wetness, its albedo; its depth, m, where the
+    // terrain's cells have snow of their own, else -1.
     snow: vec4f,
     // Of each class; the first one is the context's default.
     looks: array<SurfaceLook, SURFACE_CLASSES>,

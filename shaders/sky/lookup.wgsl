@@ -36,7 +36,7 @@ struct SkyView {
     air: SkyAir,
     dims: SkyDims,
     edges: SkyEdges,
-    // Where the table of the sky above the horizon lies in its texture: the middle of its first texel, and how far from it the last one's is.
+    // Texture coordinates of the sky above the horizon: of the centre of its first texel, and from there to that of its last one.
     sky_above: vec4f,
     altitude: Length,
     lamp_count: u32,
@@ -164,7 +164,7 @@ fn place_above(v: f32) -> f32 {
     return sky_view.sky_above.x + v * sky_view.sky_above.z;
 }
 
-// As the table has it at this coordinate: below the horizon over the opacity of the air.
+// The table's light at coordinate `x`. Below the horizon it is kept divided by the opacity of the air.
 fn sky_table_light(dir: vec3f, x: f32) -> vec3f {
     var out = vec3f(0.0);
     for (var i = 0u; i < sky_lamps(); i++) {

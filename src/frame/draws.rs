@@ -60,8 +60,8 @@ impl From<Error> for Unmade {
 }
 
 impl Draws {
-    /// The draws of a variant. If they are not wanted `at_once`, each call compiles one large pipeline, and until all are there it answers
-    /// with one draw of all pixels. `splits` is that of [`kinds::draws`].
+    /// The draws of a variant. Unless `at_once`, each call compiles one large pipeline; until all are there, the answer is one
+    /// draw of all pixels ([`Unmade`]). `splits` is that of [`kinds::draws`].
     ///
     /// # Errors
     /// That one draw; a missing shader file.

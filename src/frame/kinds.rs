@@ -82,8 +82,8 @@ pub(super) fn draws_apart(all: &Variant) -> bool {
 pub(super) const DRAWS: usize = 5;
 
 /// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have depths of their own, or
-/// rays are marched. With a `grid` those too of pixels between which the weather is even. `splits`: the other pixels are drawn apart by what they
-/// show.
+/// rays are marched. With a `grid` there are draws of the pixels too between which the weather is even. If `splits`, the other pixels have a draw for each
+/// kind of what they show.
 pub(super) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];

@@ -13,10 +13,11 @@ use glam::{DMat3, DVec2, DVec3};
 pub const PERIOD_M: f64 = 1e4;
 /// Waves of the pattern.
 pub const WAVES: usize = 16;
-/// Turns to [`PERIOD_M`] along both axes, whole numbers: the wave vectors are the same in all worlds, so that the shader has them as
-/// constants (a read of a block by each pixel costs some drivers more than the wave), and their phases are the world's own. Three bands
-/// of lengths (17 to 7 m, 5.3 to 2.2 m, 1.7 to 0.8 m) have waves enough that what a far pixel still sees looks as irregular as what a
-/// near one does; by the golden angle no two waves run alike. Within their bands lengths are as seed 0 drew them.
+/// Turns of each wave along both axes in [`PERIOD_M`]: whole numbers. They are the same in all worlds, and only phases depend on the seed:
+/// so the shader has them as constants, since some software drivers take longer to read a uniform block than to add a wave.
+///
+/// The waves are of three bands: 17 to 7 m, 5.3 to 2.2 m, 1.7 to 0.8 m. Each has enough of them that the pattern looks irregular also where
+/// pixels are too coarse for the shorter bands. The golden angle lies between the directions of one wave and the next.
 const TURNS: [(i32, i32); WAVES] = [
     (513, 432),
     (-684, 28),
@@ -67,7 +68,7 @@ impl Hollows {
     /// Those of a world with this seed.
     pub fn new(seed: u64) -> Self {
         let mut state = seed;
-        // The second of two numbers each: seed 0 drew a length by the first.
+        // The second of two numbers each: the lengths in TURNS are those that the first ones drew for seed 0.
         let phases = [(); WAVES].map(|()| {
             uniform(&mut state);
             uniform(&mut state)
@@ -153,7 +154,7 @@ mod tests {
         for (name, numbers) in [
             ("WAVES_EAST", fours(&|k| format!("{:.4}", turns(k).x / PERIOD_M))),
             ("WAVES_NORTH", fours(&|k| format!("{:.4}", turns(k).y / PERIOD_M))),
-            ("WAVES_HIGH", fours(&|k| format!("{:.7}", amplitude(k)))),
+            ("WAVES_AMPLITUDE", fours(&|k| format!("{:.7}", amplitude(k)))),
         ] {
             let table = format!("const {name}: array<vec4f, 4> = array<vec4f, 4>(\n{numbers});");
             assert!(text.contains(&table), "{table}");

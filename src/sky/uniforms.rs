@@ -164,7 +164,7 @@ impl DimsUniform {
         }
     }
 
-    /// Where the table of the sky above the horizon lies in its texture: the middle of its first texel, and how far from it the last one's is.
+    /// Texture coordinates of the sky above the horizon: of the centre of its first texel, and from there to that of its last one.
     pub fn sky_above(&self) -> [f32; 4] {
         let [x, y, above, azimuths] =
             [self.sky_x, self.sky_y, self.sky_above - 1, self.sky_azimuths - 1].map(f64::from);
