@@ -8,8 +8,8 @@
 // which on steps grow with it.
 override CLOUD_FINENESS: f32 = 1.0;
 override CLOUD_STEPS: u32 = 96u;
-override CLOUD_STEP_DEPTH: f32 = 0.5;
-override CLOUD_STEP_ANGLE: f32 = 0.004;
+override CLOUD_STEP_DEPTH: f32 = 0.4;
+override CLOUD_STEP_ANGLE: f32 = 0.0035;
 // Share of a layer's thickness that a step goes up or down at most.
 const CLOUD_STEP_RISE: f32 = 0.08;
 // Scaled depth of a step from which on its light is looked up where it is seen, not half-way.
@@ -80,23 +80,66 @@ fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     return vec2f(all - cloudy, cloudy);
 }
 
-// What a step in cloud sends to the eye, and how much of what is behind it hides.
-fn cloud_step(layer: CloudLayer, half_way: CloudPlace, here: CloudHere, stretch: CloudStretch, at_face: bool, halo: vec3f) -> vec4f {
-    let depth = here.extinction * layer.medium.y * stretch.length;
-    var at = half_way;
-    var seen = here;
-    if depth > CLOUD_THICK_STEP {
-        at = cloud_place(layer, stretch.direction, stretch.begun + cloud_seen_at(depth, at_face) * stretch.length);
-        seen.excess = cloud_here(layer, at).excess;
+// What a place on a ray is looked up for: to find cloud, to see more closely where it begins, or for the light of a thick step; and for nothing
+// more.
+const CLOUD_SEEKS: u32 = 0u;
+const CLOUD_AT_FACE: u32 = 1u;
+const CLOUD_WITHIN: u32 = 2u;
+const CLOUD_FOUND: u32 = 3u;
+
+// A step along a ray, and what is known of it.
+struct CloudStep {
+    looks_for: u32,
+    // Distances at which it begins, of the place that stands for it, and of the place that is looked up next; its length, m.
+    begun: f32,
+    at: f32,
+    next: f32,
+    length: f32,
+    at_face: bool,
+    // Where its light is looked up, and the cloud there.
+    place: CloudPlace,
+    here: CloudHere,
+}
+
+fn cloud_step_depth(layer: CloudLayer, step: CloudStep) -> f32 {
+    return step.here.extinction * layer.medium.y * step.length;
+}
+
+// The step after `next` was looked up, once cloud was found there or before. `clear`: the last place without cloud since the last with some, and
+// how much is wanting there, or 0.
+fn cloud_looked(before: CloudStep, layer: CloudLayer, place: CloudPlace, here: CloudHere, clear: vec2f, jitter: f32) -> CloudStep {
+    var step = before;
+    if before.looks_for == CLOUD_WITHIN {
+        step.place = place;
+        step.here.excess = here.excess;
+        step.looks_for = CLOUD_FOUND;
+    } else {
+        // A ray that comes into a cloud begins its steps at the face, wherever they lie: else faces show where steps begin.
+        let face = clear.x + (before.at - clear.x) * clear.y / max(clear.y + cloud_inside(here), 1e-6);
+        let at_face = before.looks_for == CLOUD_AT_FACE;
+        if here.extinction > 0.0 {
+            step.place = place;
+            step.here = here;
+            step.at = before.next;
+            step.begun = select(before.begun, before.next - jitter * before.length, at_face);
+            step.at_face = at_face;
+        }
+        let depth = cloud_step_depth(layer, step);
+        step.looks_for = select(CLOUD_FOUND, CLOUD_WITHIN, depth > CLOUD_THICK_STEP);
+        step.next = step.begun + cloud_seen_at(depth, step.at_face) * step.length;
+        if !at_face && clear.y > 0.0 && face > 0.0 {
+            step.looks_for = CLOUD_AT_FACE;
+            step.next = face + jitter * before.length;
+        }
     }
-    return vec4f(cloud_lit(layer, at, seen, stretch, halo), 1.0 - exp(-depth));
+    return step;
 }
 
 // One layer between two distances along a ray.
 fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32, seen: CloudMarch, jitter: f32) -> CloudMarch {
     var out = seen;
     let thickness = 1.0 / layer.size.y;
-    let fine = clamp(CLOUD_STEP_DEPTH / (layer.size.w * layer.medium.y), thickness / 64.0, thickness / 12.0) / CLOUD_FINENESS;
+    let fine = clamp(CLOUD_STEP_DEPTH / (layer.size.w * layer.medium.y), thickness / 96.0, thickness / 16.0) / CLOUD_FINENESS;
     let rise = abs(direction.z + first / (clouds.radius + cloud_eye()));
     let coarse = max(fine, CLOUD_STEP_RISE * thickness / (CLOUD_FINENESS * max(rise, 1e-6)));
     let most = u32(f32(CLOUD_STEPS) * CLOUD_FINENESS);
@@ -104,63 +147,49 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     var gone = first;
     var tried = 0u;
     // The last place without cloud since the last with some, and how much is wanting there, or 0.
-    var before = vec2f(first, 0.0);
+    var clear = vec2f(first, 0.0);
     // What of the ray has not ended yet, before gaps and before cloud, where it is looked at coarsely; share of cloud at the last place.
     var open = vec2f(out.transmittance, 0.0);
     var cloudy_share = 0.0;
     while out.transmittance > CLOUD_LEAST {
-        // To the next step with cloud in it: faces and light are looked up for those alone, all rays of a wave together.
-        var begun = gone;
-        var step = 0.0;
-        var t = 0.0;
-        var at: CloudPlace;
-        var here: CloudHere;
-        here.extinction = 0.0;
-        while here.extinction <= 0.0 && tried < most && gone < last {
-            begun = gone;
-            step = min(clamp(CLOUD_STEP_ANGLE / CLOUD_FINENESS * gone, fine, coarse), last - gone);
-            t = gone + jitter * step;
-            at = cloud_place(layer, direction, t);
-            if CLOUD_COARSE {
-                cloud_blur = cloud_blur_over(layer, cloud_pixel_width(layer, t, rise));
+        // To the next step with cloud in it. All rays of a wave look a place up at once, each for what it needs, and light for such steps alone.
+        var step: CloudStep;
+        while step.looks_for != CLOUD_FOUND && (step.looks_for != CLOUD_SEEKS || (tried < most && gone < last)) {
+            if step.looks_for == CLOUD_SEEKS {
+                step.begun = gone;
+                // The less of a step is seen, the longer it may be; the power is the chart's (docs/lab/clouds.csv).
+                let grown = select(inverseSqrt(sqrt(out.transmittance)), 1.0, clear.y > 0.0);
+                step.length = min(clamp(CLOUD_STEP_ANGLE / CLOUD_FINENESS * gone, fine, coarse) * grown, last - gone);
+                step.at = gone + jitter * step.length;
+                step.next = step.at;
+                if CLOUD_COARSE {
+                    cloud_blur = cloud_blur_over(layer, cloud_pixel_width(layer, step.at, rise));
+                }
+                tried++;
             }
-            here = cloud_here(layer, at);
-            here.extinction *= cloud_fades(t - first);
-            tried++;
-            if here.extinction <= 0.0 {
-                before = vec2f(t, -cloud_inside(here));
+            let place = cloud_place(layer, direction, step.next);
+            var here = cloud_here(layer, place);
+            here.extinction *= cloud_fades(step.at - first);
+            if step.looks_for == CLOUD_SEEKS && here.extinction <= 0.0 {
+                clear = vec2f(step.at, -cloud_inside(here));
                 open = vec2f(open.x + open.y, 0.0);
                 cloudy_share = 0.0;
-                gone += max(step, cloud_skip(layer, here, at.height, direction));
+                gone += max(step.length, cloud_skip(layer, here, place.height, direction));
+            } else {
+                step = cloud_looked(step, layer, place, here, clear, jitter);
             }
         }
-        if here.extinction <= 0.0 {
+        if step.looks_for != CLOUD_FOUND {
             break;
         }
-        // A ray that comes into a cloud begins its steps at the face, wherever they lie: else faces show where steps begin.
-        let face = before.x + (t - before.x) * before.y / max(before.y + cloud_inside(here), 1e-6);
-        var at_face = false;
-        if before.y > 0.0 && face > 0.0 {
-            let behind_face = cloud_place(layer, direction, face + jitter * step);
-            var behind = cloud_here(layer, behind_face);
-            behind.extinction *= cloud_fades(t - first);
-            if behind.extinction > 0.0 {
-                here = behind;
-                at = behind_face;
-                at_face = true;
-                t = face + jitter * step;
-                begun = face;
-            }
-        }
-        before.y = 0.0;
-        gone = begun + step;
-        open = cloud_open(open, vec2f(cloudy_share, here.share), length(direction.xy) * step * layer.size.z);
-        cloudy_share = here.share;
-        let stretch = CloudStretch(direction, begun, step, t, -log(max(open.y, 1e-9) / max(cloudy_share, 1e-6)));
-        let found = cloud_step(layer, at, here, stretch, at_face, halo);
-        let share = open.y * found.a;
-        out.light += found.rgb * share;
-        out.distance += vec2f(t, t * t * 1e-6) * share;
+        clear.y = 0.0;
+        gone = step.begun + step.length;
+        open = cloud_open(open, vec2f(cloudy_share, step.here.share), length(direction.xy) * step.length * layer.size.z);
+        cloudy_share = step.here.share;
+        let stretch = CloudStretch(direction, step.begun, step.length, step.at, -log(max(open.y, 1e-9) / max(cloudy_share, 1e-6)));
+        let share = open.y * (1.0 - exp(-cloud_step_depth(layer, step)));
+        out.light += cloud_lit(layer, step.place, step.here, stretch, halo) * share;
+        out.distance += vec2f(step.at, step.at * step.at * 1e-6) * share;
         open.y -= share;
         out.transmittance = open.x + open.y;
     }

@@ -50,8 +50,7 @@ fn shadow_on(pixel: vec2u, ndc: vec2f) -> vec2f {
     return vec2f(share, cloud_shafts(shadows, shadow_map, repeating, ray.origin, ray.direction, range, between));
 }
 
-@fragment
-fn resolve(in: FullscreenVarying) -> ResolvedPixel {
+fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     let pixel = vec2u(in.position.xy);
     let among = among_marched(picture, pixel) / vec2f(textureDimensions(marched));
     let now = textureSampleLevel(marched, linear, among, 0.0);
@@ -75,4 +74,31 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     let held = clamp(kept, textureLoad(least, square, 0), textureLoad(most, square, 0));
     let is_marched = all(marched_pixel(picture, square) == pixel);
     return ResolvedPixel(select(held, now, lost || is_marched), reach);
+}
+
+@fragment
+fn resolve(in: FullscreenVarying) -> ResolvedPixel {
+    return resolved(in);
+}
+
+// Where shadows have a draw of their own, a first one tells by depth the pixels on which the host drew.
+struct ResolvedKind {
+    @location(0) seen: vec4f,
+    @location(1) reach: vec4f,
+    @builtin(frag_depth) kind: f32,
+}
+
+const KIND_DRAWN: f32 = 1.0;
+
+@fragment
+fn resolve_kind(in: FullscreenVarying) -> ResolvedKind {
+    let pixel = resolved(in);
+    let depth = view_depth(frame.depth, textureLoad(host_depth, vec2i(in.position.xy), 0).r, frame_ndc(in.uv));
+    return ResolvedKind(pixel.seen, pixel.reach, select(0.0, KIND_DRAWN, depth < RANGE_SKY));
+}
+
+// Of the reach, the two that the first draw leaves out.
+@fragment
+fn resolve_shadow(in: FullscreenVarying) -> @location(1) vec4f {
+    return vec4f(0.0, 0.0, shadow_on(vec2u(in.position.xy), frame_ndc(in.uv)));
 }

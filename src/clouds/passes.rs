@@ -7,7 +7,7 @@ use super::{
     lamps::{LampsUniform, glow_size},
     overhead::Overhead,
     picture::{BEHIND, Picture, marched},
-    pipelines::{March, Part, Pipelines, Resolve, run},
+    pipelines::{March, Part, Pipelines, Resolve, run, run_each},
     round::{Around, Round},
     shadow_map::{Lie, Past, ShadowMap},
     tables::CloudTables,
@@ -329,7 +329,6 @@ impl CloudPasses {
             if of.wanted.round {
                 passes += round.draw(encoder, &[&group, of.sky.1], of.around, (of.past, of_shadows > 0));
             }
-            // The pass over the picture has cleared what lies below it.
             round.copy(encoder, made, picture.of.0.1);
         }
         (self.picture, self.pipelines) = (Some(picture), Some(pipelines));
@@ -349,8 +348,10 @@ impl CloudPasses {
         let has_shadows = of.shaded.is_some();
         let is_multisampled = has_shadows && of.is_multisampled;
         let has_shafts = has_shadows && of.has_shafts;
-        let kind = Resolve { has_history, has_shadows, has_shafts, is_multisampled, depth_kinds: of.depth_kinds };
-        let resolve = pipelines.resolve(device, kind)?;
+        // Shafts stand before the sky too.
+        let kinds = picture.kinds.as_ref().filter(|_| has_shadows && !has_shafts && !is_multisampled);
+        let (depth_kinds, shades_apart) = (of.depth_kinds, kinds.is_some());
+        let resolve = Resolve { has_history, has_shadows, has_shafts, is_multisampled, depth_kinds, shades_apart };
         self.picture_block.write(bytemuck::bytes_of(&of.picture));
         let layout = &pipelines.shadow_layouts[usize::from(is_multisampled)];
         let (shaded, of_shadows) = self.shade(device, encoder, layout, (of.shaded.as_ref(), of.past))?;
@@ -382,7 +383,8 @@ impl CloudPasses {
         let made = picture.to_make(of.wanted.is_begun);
         let [seen, reach] = &picture.whole[made].written;
         let past = picture.begun.as_ref().map_or(&groups[1 + (1 - made)], |(_, group)| group);
-        run(encoder, (&[seen, reach], Some(Part { first_row: 0, size: picture.of.0 })), &resolve, &[past, &shaded]);
+        let whole = Some(Part { first_row: 0, size: picture.of.0 });
+        run_each(encoder, (&[seen, reach], kinds, whole), pipelines.resolve(device, resolve)?, &[past, &shaded]);
         if let Some(lamps) = &of.lamps {
             self.lamps_block.write(bytemuck::bytes_of(lamps));
             let below = Part { first_row: picture.of.0.1, size: glow_size(picture.of.0) };

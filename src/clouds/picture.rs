@@ -1,12 +1,14 @@
 //! A picture's clouds from frame to frame: the pixels that a frame marches, and the whole picture that is made of them and of the last.
 
-use super::round;
-use crate::gpu::{Device, Layer, bind};
+use super::{pipelines::shades_apart, round};
+use crate::gpu::{Device, Layer, bind, flat_texture};
 
 /// Of what is seen of clouds.
 pub(super) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Of two numbers of a place in the picture.
 pub(super) const PAIR: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
+/// Of what tells the pixels apart on which the host drew.
+pub(super) const KINDS: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 /// Layers of the whole picture: what is seen of clouds and how far they reach, and what else stands behind the sky's own light. Below the
 /// picture there is room for the clouds of all directions.
 pub(super) const LAYERS: u32 = 3;
@@ -60,6 +62,8 @@ pub(super) struct Picture {
     /// Of each square the least and the most that is seen about it, and where it was in the last frame.
     pub followed: [wgpu::TextureView; 3],
     pub whole: [Whole; 2],
+    /// Which of its pixels the host drew on, where shadows have a draw of their own.
+    pub kinds: Option<wgpu::TextureView>,
     /// Which of the two is of the last frame that was drawn.
     pub newest: usize,
     /// What the passes after the march are bound to.
@@ -81,11 +85,16 @@ impl Picture {
     pub fn new(device: &Device, size: (u32, u32), side: u32) -> Self {
         let low = (size.0.div_ceil(side), size.1.div_ceil(side));
         let one = |format| texture(device, low, format, 1).create_view(&Default::default());
+        let kinds = shades_apart(device).then(|| {
+            let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+            flat_texture(&device.device, "clouds", with_round(size), KINDS, usage).create_view(&Default::default())
+        });
         Self {
             of: (size, side),
             marched: marched(device, size, side),
             followed: [one(SEEN), one(SEEN), one(PAIR)],
             whole: [Whole::new(device, size), Whole::new(device, size)],
+            kinds,
             newest: 0,
             groups: None,
             begun: None,
@@ -104,6 +113,7 @@ impl Picture {
         let whole = with_round((width, height));
         let begun = self.begun.as_ref().map_or(0, |_| u64::from(BEGUN_SIDE));
         let first = u64::from(width) * u64::from(height) * 12 / begun.max(1).pow(2) * begun.min(1);
-        2 * 8 * u64::from(LAYERS) * u64::from(whole.0) * u64::from(whole.1) + (3 * 8 + 2 * 4) * low + first
+        let kinds = self.kinds.as_ref().map_or(0, |_| 2);
+        (2 * 8 * u64::from(LAYERS) + kinds) * u64::from(whole.0) * u64::from(whole.1) + (3 * 8 + 2 * 4) * low + first
     }
 }

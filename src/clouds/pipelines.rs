@@ -2,7 +2,7 @@
 
 use super::{
     lamps::LampsUniform,
-    picture::{PAIR, SEEN},
+    picture::{KINDS, PAIR, SEEN},
     uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
 };
 use crate::{
@@ -38,6 +38,14 @@ pub(super) struct Resolve {
     /// The host's depth has several samples a pixel.
     pub is_multisampled: bool,
     pub depth_kinds: f64,
+    /// Shadows have a draw of their own, for the pixels on which the host drew.
+    pub shades_apart: bool,
+}
+
+/// Whether shadows may have a draw of their own: a software driver would work them out for the sky too, since it takes both ways of a branch.
+pub(super) fn shades_apart(device: &Device) -> bool {
+    let can = wgpu::DownlevelFlags::INDEPENDENT_BLEND;
+    device.caps().software && device.adapter.get_downlevel_capabilities().flags.contains(can)
 }
 
 /// The pipelines, and the layouts of their groups: of the march, of the passes after it, and of what shadows fall on by whether that has
@@ -52,7 +60,8 @@ pub(super) struct Pipelines {
     pub follow: wgpu::RenderPipeline,
     /// Those of the march and of the sky, which the clouds of all directions are marched with too.
     pub march_layouts: [wgpu::BindGroupLayout; 2],
-    resolve: Vec<(Resolve, wgpu::RenderPipeline)>,
+    /// One, or two that are drawn one after the other.
+    resolve: Vec<(Resolve, Vec<wgpu::RenderPipeline>)>,
 }
 
 fn make(
@@ -142,21 +151,51 @@ impl Pipelines {
         self.glow.get_or_make(|made| *made == of, make).cloned()
     }
 
-    pub fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<wgpu::RenderPipeline> {
-        if let Some((_, pipeline)) = self.resolve.iter().find(|(made, _)| *made == wanted) {
-            return Ok(pipeline.clone());
-        }
+    /// What makes the whole picture: one draw, or two.
+    pub fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<&[wgpu::RenderPipeline]> {
+        let made = match self.resolve.iter().position(|(made, _)| *made == wanted) {
+            Some(made) => made,
+            None => {
+                let pipelines = self.make_resolve(device, wanted)?;
+                self.resolve.push((wanted, pipelines));
+                self.resolve.len() - 1
+            }
+        };
+        Ok(&self.resolve[made].1)
+    }
+
+    fn make_resolve(&self, device: &Device, wanted: Resolve) -> Result<Vec<wgpu::RenderPipeline>> {
         let shader = if wanted.is_multisampled { "clouds/resolve.wgsl:multi" } else { "clouds/resolve.wgsl" };
-        let constants = [
-            ("HISTORY", yes(wanted.has_history)),
-            ("SHADOWS", yes(wanted.has_shadows)),
-            ("SHAFTS", yes(wanted.has_shafts)),
-            ("DEPTH_KINDS", wanted.depth_kinds),
-        ];
         let layouts = [&self.picture_layout, &self.shadow_layouts[usize::from(wanted.is_multisampled)]];
-        let pipeline = make(device, (shader, "resolve"), &layouts, &[SEEN, SEEN], &constants)?;
-        self.resolve.push((wanted, pipeline.clone()));
-        Ok(pipeline)
+        let make = |entry, shadows, masks: [wgpu::ColorWrites; 2], tested| {
+            let targets = masks.map(|write_mask| wgpu::ColorTargetState { write_mask, ..SEEN.into() });
+            let constants = [
+                ("HISTORY", yes(wanted.has_history)),
+                ("SHADOWS", yes(shadows)),
+                ("SHAFTS", yes(wanted.has_shafts)),
+                ("DEPTH_KINDS", wanted.depth_kinds),
+            ];
+            let (targets, constants) = (&targets[..], &constants[..]);
+            let desc = FullscreenDesc { shader, entry, layouts: &layouts, targets, constants, samples: 1 };
+            pass::fullscreen_at(device, &desc, tested)
+        };
+        let all = [wgpu::ColorWrites::ALL; 2];
+        if !wanted.shades_apart {
+            return Ok(vec![make("resolve", wanted.has_shadows, all, None)?]);
+        }
+        let shadow = [wgpu::ColorWrites::empty(), wgpu::ColorWrites::BLUE | wgpu::ColorWrites::ALPHA];
+        let test = |compare, write| wgpu::DepthStencilState {
+            format: KINDS,
+            depth_write_enabled: Some(write),
+            depth_compare: Some(compare),
+            stencil: Default::default(),
+            bias: Default::default(),
+        };
+        let (kind, drawn) = (test(wgpu::CompareFunction::Always, true), test(wgpu::CompareFunction::Equal, false));
+        Ok(vec![
+            make("resolve_kind", false, all, Some((0.0, kind)))?,
+            make("resolve_shadow", true, shadow, Some((1.0, drawn)))?,
+        ])
     }
 }
 
@@ -179,27 +218,43 @@ pub(super) struct Part {
     pub size: (u32, u32),
 }
 
-/// Runs one pass over its targets, which are empty before, or over a part of them. What lies above that part stays.
+/// Runs one pass over its targets, which are empty before, or over a part of them. What lies elsewhere stays.
 pub(super) fn run(
     encoder: &mut wgpu::CommandEncoder,
     (targets, part): (&[&wgpu::TextureView], Option<Part>),
     pipeline: &wgpu::RenderPipeline,
     groups: &[&wgpu::BindGroup],
 ) {
-    let keeps = part.is_some_and(|part| part.first_row > 0);
-    let load = if keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+    run_each(encoder, (targets, None, part), std::slice::from_ref(pipeline), groups);
+}
+
+/// The same with several draws, which tell kinds of pixels apart if there is an attachment for them.
+pub(super) fn run_each(
+    encoder: &mut wgpu::CommandEncoder,
+    (targets, kinds, part): (&[&wgpu::TextureView], Option<&wgpu::TextureView>, Option<Part>),
+    pipelines: &[wgpu::RenderPipeline],
+    groups: &[&wgpu::BindGroup],
+) {
+    let load = if part.is_some() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
     let attachments: [_; 3] = std::array::from_fn(|i| targets.get(i).and_then(|t| attachment(t, load)));
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("clouds"),
         color_attachments: &attachments[..targets.len()],
+        depth_stencil_attachment: kinds.map(|view| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            stencil_ops: None,
+        }),
         ..Default::default()
     });
     if let Some(Part { first_row, size: (width, height) }) = part {
         pass.set_viewport(0.0, first_row as f32, width as f32, height as f32, 0.0, 1.0);
     }
-    pass.set_pipeline(pipeline);
     for (i, group) in groups.iter().enumerate() {
         pass.set_bind_group(i as u32, *group, &[]);
     }
-    pass.draw(0..3, 0..1);
+    for pipeline in pipelines {
+        pass.set_pipeline(pipeline);
+        pass.draw(0..3, 0..1);
+    }
 }

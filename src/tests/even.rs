@@ -186,3 +186,26 @@ fn pure_pictures_of_a_gpu_wait_for_no_pipeline() {
         (0..4).map(|_| other.draw(Stages::BACKGROUND.with(Stages::MEDIUM), FrameFlags::default()).passes).collect();
     assert_eq!(steps, [1, 1, 3, 3], "all pixels; grid, the uneven and the even ones are compiled one by one");
 }
+
+/// A software driver works shadows of clouds out for the pixels on which the host drew alone, a GPU for all.
+#[test]
+fn shadows_drawn_apart_are_those_drawn_with_the_clouds() {
+    let cumulus = CloudLayer::of(CloudKind::Cumulus, 0.5, 1000.0);
+    let weather = Weather { clouds: vec![cumulus], ..Weather::default() };
+    let stages = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM).with(Stages::SURFACE);
+    let [apart, whole, bare] = [(false, stages), (true, stages), (false, stages.without(Stages::SURFACE))].map(
+        |(is_gpu, stages)| {
+            let mut scene = Scene::new(&device(is_gpu), &weather, (200.0, 40.0));
+            scene.draw(stages, FrameFlags::NO_HISTORY);
+            scene.picture()
+        },
+    );
+    let off = |a: &[[f32; 4]], b: &[[f32; 4]]| {
+        let off = |(a, b): (&[f32; 4], &[f32; 4])| f64::from((a[1] - b[1]).abs() / b[1]);
+        a.iter().zip(b).map(off).fold(0.0, f64::max)
+    };
+    let (ways, shadows) = (off(&apart, &whole), off(&apart, &bare));
+    println!("drawn apart: off by {ways:.5}; shadows change up to {shadows:.2}");
+    assert!(shadows > 0.2, "there are shadows: {shadows}");
+    assert!(ways < 2e-3, "{ways}");
+}
