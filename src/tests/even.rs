@@ -193,13 +193,12 @@ fn shadows_drawn_apart_are_those_drawn_with_the_clouds() {
     let cumulus = CloudLayer::of(CloudKind::Cumulus, 0.5, 1000.0);
     let weather = Weather { clouds: vec![cumulus], ..Weather::default() };
     let stages = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM).with(Stages::SURFACE);
-    let [apart, whole, bare] = [(false, stages), (true, stages), (false, stages.without(Stages::SURFACE))].map(
-        |(is_gpu, stages)| {
+    let [apart, whole, bare] =
+        [(false, stages), (true, stages), (false, stages.without(Stages::SURFACE))].map(|(is_gpu, stages)| {
             let mut scene = Scene::new(&device(is_gpu), &weather, (200.0, 40.0));
             scene.draw(stages, FrameFlags::NO_HISTORY);
             scene.picture()
-        },
-    );
+        });
     let off = |a: &[[f32; 4]], b: &[[f32; 4]]| {
         let off = |(a, b): (&[f32; 4], &[f32; 4])| f64::from((a[1] - b[1]).abs() / b[1]);
         a.iter().zip(b).map(off).fold(0.0, f64::max)
