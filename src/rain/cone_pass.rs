@@ -172,8 +172,7 @@ fn group(
     [repeated, clamped]: &[wgpu::Sampler; 2],
     open: &wgpu::Texture,
 ) -> wgpu::BindGroup {
-    let dimension = Some(wgpu::TextureViewDimension::D2Array);
-    let open = open.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() });
+    let open = bind::as_layers(open);
     let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("cones"),

@@ -8,6 +8,7 @@ mod drawn;
 #[allow(dead_code, reason = "tests of frames use all of it")]
 mod frame_host;
 mod host;
+mod logged;
 mod random;
 mod reports;
 mod seams;
