@@ -80,21 +80,27 @@ fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     return vec2f(all - cloudy, cloudy);
 }
 
-// What a place on a ray is looked up for: to find cloud, to see more closely where it begins, or for the light of a thick step; and for nothing
-// more.
+// What the next place on a ray is looked up for.
+// To find cloud.
 const CLOUD_SEEKS: u32 = 0u;
+// As the first step from the face of the cloud that was found.
 const CLOUD_AT_FACE: u32 = 1u;
+// For the light of a thick step, where that is seen.
 const CLOUD_WITHIN: u32 = 2u;
+// The step needs no further place.
 const CLOUD_FOUND: u32 = 3u;
 
 // A step along a ray, and what is known of it.
 struct CloudStep {
     looks_for: u32,
-    // Distances at which it begins, of the place that stands for it, and of the place that is looked up next; its length, m.
+    // Distance at which it begins, m.
     begun: f32,
+    // Distance of the place whose extinction stands for all of it, m.
     at: f32,
+    // Distance of the place that is looked up next, m.
     next: f32,
     length: f32,
+    // It begins at the face of a cloud.
     at_face: bool,
     // Where its light is looked up, and the cloud there.
     place: CloudPlace,

@@ -81,7 +81,7 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     return resolved(in);
 }
 
-// Where shadows have a draw of their own, a first one tells by depth the pixels on which the host drew.
+// Where shadows have a draw of their own, the one before it writes as depth on which pixels the host drew.
 struct ResolvedKind {
     @location(0) seen: vec4f,
     @location(1) reach: vec4f,

@@ -91,7 +91,7 @@ impl CloudPasses {
     pub fn new((device, blocks): (&Arc<Device>, &Blocks), seed: u64) -> Result<Self> {
         let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Ok(Self {
-            no_layers: bind::no_layers(&device.device, wgpu::TextureFormat::Rgba8Unorm),
+            no_layers: bind::no_layers(&device.device),
             none,
             tables: CloudTables::new(device, seed)?,
             pages: blocks.clone(),

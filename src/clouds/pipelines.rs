@@ -151,7 +151,7 @@ impl Pipelines {
         self.glow.get_or_make(|made| *made == of, make).cloned()
     }
 
-    /// What makes the whole picture: one draw, or two.
+    /// The draws that make the whole picture: one, or a second one for shadows ([`Resolve::shades_apart`]).
     pub fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<&[wgpu::RenderPipeline]> {
         let made = match self.resolve.iter().position(|(made, _)| *made == wanted) {
             Some(made) => made,
@@ -184,14 +184,8 @@ impl Pipelines {
             return Ok(vec![make("resolve", wanted.has_shadows, all, None)?]);
         }
         let shadow = [wgpu::ColorWrites::empty(), wgpu::ColorWrites::BLUE | wgpu::ColorWrites::ALPHA];
-        let test = |compare, write| wgpu::DepthStencilState {
-            format: KINDS,
-            depth_write_enabled: Some(write),
-            depth_compare: Some(compare),
-            stencil: Default::default(),
-            bias: Default::default(),
-        };
-        let (kind, drawn) = (test(wgpu::CompareFunction::Always, true), test(wgpu::CompareFunction::Equal, false));
+        let kind = pass::depth_test(KINDS, wgpu::CompareFunction::Always, true);
+        let drawn = pass::depth_test(KINDS, wgpu::CompareFunction::Equal, false);
         Ok(vec![
             make("resolve_kind", false, all, Some((0.0, kind)))?,
             make("resolve_shadow", true, shadow, Some((1.0, drawn)))?,
@@ -228,7 +222,7 @@ pub(super) fn run(
     run_each(encoder, (targets, None, part), std::slice::from_ref(pipeline), groups);
 }
 
-/// The same with several draws, which tell kinds of pixels apart if there is an attachment for them.
+/// As [`run`] with several draws, of which a depth attachment may let each draw its own pixels.
 pub(super) fn run_each(
     encoder: &mut wgpu::CommandEncoder,
     (targets, kinds, part): (&[&wgpu::TextureView], Option<&wgpu::TextureView>, Option<Part>),

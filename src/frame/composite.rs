@@ -180,7 +180,7 @@ impl Composite {
             pipelines: Recent::new(),
             evens: Recent::new(),
             kinds: Recent::new(),
-            no_layers: bind::no_layers(&device.device, wgpu::TextureFormat::Rgba8Unorm),
+            no_layers: bind::no_layers(&device.device),
             none,
             reads_samples: multi,
             wind: WindPicture::new(device),

@@ -6,7 +6,10 @@
 //! things, a thing for the sky behind it, and the sky for the planet's ground below it. A GPU branches, and draws them with one pipeline.
 
 use super::composite::Variant;
-use crate::{gpu::flat_texture, stage::Stages};
+use crate::{
+    gpu::{flat_texture, pass::depth_test},
+    stage::Stages,
+};
 
 /// Of the depth attachment: its values are exact.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -43,7 +46,7 @@ impl Pixels {
             Self::EvenDrawn => 0.75,
             Self::Drawn | Self::Uneven => 1.0,
         };
-        Some((depth, state(wgpu::CompareFunction::Equal, false)))
+        Some((depth, depth_test(FORMAT, wgpu::CompareFunction::Equal, false)))
     }
 
     /// Whether they are of those between which the weather is even.
@@ -58,17 +61,7 @@ impl Pixels {
 
     /// The test of the draw that writes the kinds.
     pub fn writes() -> (f64, wgpu::DepthStencilState) {
-        (0.0, state(wgpu::CompareFunction::Always, true))
-    }
-}
-
-fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState {
-    wgpu::DepthStencilState {
-        format: FORMAT,
-        depth_write_enabled: Some(write),
-        depth_compare: Some(compare),
-        stencil: Default::default(),
-        bias: Default::default(),
+        (0.0, depth_test(FORMAT, wgpu::CompareFunction::Always, true))
     }
 }
 
@@ -82,8 +75,8 @@ pub(super) fn draws_apart(all: &Variant) -> bool {
 pub(super) const DRAWS: usize = 5;
 
 /// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have depths of their own, or
-/// rays are marched. With a `grid` there are draws of the pixels too between which the weather is even. If `splits`, the other pixels have a draw for each
-/// kind of what they show.
+/// rays are marched. With a `grid` pixels between which the weather is even have draws of their own. If `splits`, the others have a draw for
+/// each kind of what they show.
 pub(super) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];

@@ -101,21 +101,21 @@ pub(crate) fn nothing(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgp
 }
 
 /// What stands for a texture of layers that is not there.
-pub(crate) fn no_layers(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::TextureView {
+pub(crate) fn no_layers(device: &wgpu::Device) -> wgpu::TextureView {
     as_layers(&device.create_texture(&wgpu::TextureDescriptor {
         label: Some("no layers"),
         size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 2 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format,
+        format: wgpu::TextureFormat::Rgba8Unorm,
         usage: wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     }))
 }
 
-/// All layers of a texture. wgpu's OpenGL backend takes a texture for layers by their number: more than one, and not as many as make cubes. OpenGL
-/// finds nothing in a single layer.
+/// All layers of a texture. With wgpu's OpenGL backend shaders find nothing in a view of one layer of several; and a texture of one layer is no
+/// array there, one of a multiple of six is of cubes.
 pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),

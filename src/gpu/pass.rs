@@ -100,6 +100,21 @@ pub(crate) fn fullscreen_at(
     }))
 }
 
+/// A test against a depth attachment, which may write it.
+pub(crate) fn depth_test(
+    format: wgpu::TextureFormat,
+    compare: wgpu::CompareFunction,
+    write: bool,
+) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format,
+        depth_write_enabled: Some(write),
+        depth_compare: Some(compare),
+        stencil: Default::default(),
+        bias: Default::default(),
+    }
+}
+
 /// A target whose pipeline llvmpipe compiles once instead of twice. It makes a second version of the shader for blocks of
 /// pixels that a triangle covers wholly, unless the target blends; a blend that replaces draws the same.
 fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::ColorTargetState {

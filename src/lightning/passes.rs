@@ -61,7 +61,7 @@ impl ChannelPass {
             block: blocks.block(device, size_of::<ChannelUniform>()),
             parts,
             layouts: [false, true].map(|multi| layout(&device.device, multi)),
-            no_layers: bind::no_layers(&device.device, wgpu::TextureFormat::Rgba8Unorm),
+            no_layers: bind::no_layers(&device.device),
             none,
             pipelines: Recent::new(),
             bound: None,

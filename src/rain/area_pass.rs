@@ -169,7 +169,7 @@ impl AreaPass {
             counts,
             blocks: blocks.block(device, size_of::<Blocks>()),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
-            no_layers: bind::no_layers(&device.device, wgpu::TextureFormat::Rgba8Unorm),
+            no_layers: bind::no_layers(&device.device),
             none,
             pipelines: Recent::new(),
             bound: None,

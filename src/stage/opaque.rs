@@ -3,7 +3,10 @@
 use glam::DMat4;
 
 use super::{Frame, Shot};
-use crate::scene::{ClipSpace, DepthKind};
+use crate::{
+    gpu::pass,
+    scene::{ClipSpace, DepthKind},
+};
 
 /// What Welkin may do with a host's depth.
 ///
@@ -48,13 +51,7 @@ impl OpaqueTarget {
     /// What is nearer passes and is written; of two at one depth the host's stays. Stencil is kept.
     pub fn depth_test(&self) -> wgpu::DepthStencilState {
         let nearer = if self.reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less };
-        wgpu::DepthStencilState {
-            format: self.depth,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(nearer),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }
+        pass::depth_test(self.depth, nearer, true)
     }
 
     /// Colour is replaced; the host's alpha stays, as in the composition.

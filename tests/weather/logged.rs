@@ -1,4 +1,4 @@
-//! What wgpu logs while weathers are drawn by OpenGL, whose drivers may refuse what wgpu calls an error.
+//! wgpu logs no error while weathers are drawn by OpenGL: the software driver is lenient where others may not be.
 
 use std::sync::Mutex;
 
