@@ -30,9 +30,9 @@ struct OnCone {
     // The sine of the angle from the axis squared; minus the binary logarithm of that sine.
     square: f32,
     halvings: f32,
-    // Times that the tiles about the axis are halved, and one over their number so.
+    // Times that the tiles about the axis are halved, and what is left of their number so.
     octave: f32,
-    wider: f32,
+    left: f32,
 }
 
 // Columns about the axis, in each of which tiles are halved at another angle from it.
@@ -48,17 +48,19 @@ fn on_cone(d: vec3f) -> OnCone {
     let turn = 0.15915494 * atan2(across.y, select(across.x, 1e-4, square <= 1e-8));
     // Each halving of the sine halves the tiles; where exactly differs from column to column, so that no ring shows.
     let whole = floor(halvings);
-    let column = u32(i32(floor(turn * COLUMNS * exp2(-whole))));
-    let chance = f32(random3(vec3u(column, u32(whole), 0x51u)).x >> 8u) / 16777216.0;
-    let octave = whole + select(0.0, 1.0, halvings - whole > 0.25 + 0.75 * chance);
-    return OnCone(turn, select(-latitude, latitude, c >= 0.0), square, halvings, octave, exp2(octave));
+    let left = exp2(-whole);
+    // Multiples of the golden ratio: evenly spread, and neighbours far apart.
+    let chance = fract(floor(turn * COLUMNS * left) * 0.61803399 + whole * 0.37);
+    let halved = halvings - whole > 0.25 + 0.75 * chance;
+    let octave = whole + select(0.0, 1.0, halved);
+    return OnCone(turn, select(-latitude, latitude, c >= 0.0), square, halvings, octave, left * select(1.0, 0.5, halved));
 }
 
 // Where the texture is looked at for a cone, without what moves its sets.
 struct Look {
     uv: vec2f,
-    // Latitude of a tile.
-    tall: f32,
+    // Tiles in a radian of latitude.
+    along: f32,
     // Level of detail.
     level: f32,
     // Drops in a tile.
@@ -66,26 +68,25 @@ struct Look {
 }
 
 fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
-    let tiles = max(round(shape.x / at.wider), 1.0);
+    let tiles = max(round(shape.x * at.left), 1.0);
     // With one tile left, texels become smaller than pixels: coarser levels keep them from aliasing.
     let beyond = max(at.octave - detail.z, 0.0);
     let level = detail.y + at.halvings - at.octave + beyond + min(beyond, 1.0);
-    let tall = max(shape.y, shape.w * at.wider);
-    let uv = vec2f(at.turn * tiles + 0.37 * at.octave, at.latitude / tall + 0.61 * at.octave);
-    let number = shape.z * at.square * 6.2831853 * tall / tiles;
-    return Look(uv, tall, max(level, 0.0), number);
+    let along = min(shape.y, shape.w * at.left);
+    let uv = vec2f(at.turn * tiles + 0.37 * at.octave, at.latitude * along + 0.61 * at.octave);
+    return Look(uv, along, max(level, 0.0), shape.z * at.square * 6.2831853 / (along * tiles));
 }
 
 // Optical depth over its mean of a set of so many drops a tile: how far it has come, its share, its offset.
 fn pattern(look: Look, moved: vec4f) -> f32 {
-    let uv = look.uv + vec2f(moved.z, moved.x / look.tall + moved.w);
+    let uv = look.uv + vec2f(moved.z, moved.x * look.along + moved.w);
     let seen = textureSampleLevel(streaks, streaks_sampler, uv, look.level);
     // As many streaks as there are drops, and no fewer than would stand out near the ends of the axis.
     let wanted = look.number * moved.y;
     let before = vec4f(0.0, STREAKS.x, STREAKS.x + STREAKS.y, ALL_STREAKS - STREAKS.w);
-    let shown = clamp((wanted - before) / STREAKS, vec4f(1.0, 0.25, 0.0, 0.0), vec4f(1.0));
+    let shown = clamp((wanted - before) * (1.0 / STREAKS), vec4f(1.0, 0.25, 0.0, 0.0), vec4f(1.0));
     let over_mean = dot(shown, seen) * (ALL_STREAKS / dot(shown, STREAKS));
-    return max(mix(1.0, over_mean, inverseSqrt(max(wanted / ALL_STREAKS, 1.0))), 0.0);
+    return max(mix(1.0, over_mean, inverseSqrt(max(wanted * (1.0 / ALL_STREAKS), 1.0))), 0.0);
 }
 
 // Share of a stretch of the ray that rain reaches and that lies nearer than `range`, for the pixel at `uv`.

@@ -154,8 +154,8 @@ impl ConeUniform {
                 f64::from(classes.per_shell) * classes.weight / SIDE_M.powi(3) * (far.powi(3) - near.powi(3)) / 3.0;
             let depth = 0.5 * classes.extinction_per_m * (far - near);
             c.bands[j] = [near, far, middle, depth].map(|x| x as f32);
-            c.shapes[j] = [tiles, length * f64::from(SIDE) / LENGTH, number, 1.5 * pixel * f64::from(SIDE) / LENGTH]
-                .map(|x| x as f32);
+            let in_a_radian = |streak: f64| LENGTH / f64::from(SIDE) / streak;
+            c.shapes[j] = [tiles, in_a_radian(length), number, in_a_radian(1.5 * pixel)].map(|x| x as f32);
             let clear = (-air.extinction_per_m * middle).exp();
             let level = (pixel * f64::from(SIDE) * tiles / std::f64::consts::TAU).log2() - 1.0;
             let (number, born_s, grown) = set_at(j, air.time_s);
