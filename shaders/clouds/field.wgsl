@@ -101,10 +101,10 @@ fn cloud_dome_over(layer: CloudLayer, excess: f32) -> f32 {
 
 // The map's number at a place of the pattern.
 fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
-    let cell = level * layer.size.z / MAP_CELLS;
+    let cell = level * (layer.size.z / MAP_CELLS);
     let turned = vec2f(SECOND_TURN.x * cell.x - SECOND_TURN.y * cell.y, SECOND_TURN.y * cell.x + SECOND_TURN.x * cell.y);
     let first = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.xy + cell, 0, cloud_blur.map);
-    let second_at = layer.sheets.zw + turned / SECOND_PERIOD;
+    let second_at = layer.sheets.zw + turned * (1.0 / SECOND_PERIOD);
     let second = textureSampleLevel(cloud_map, cloud_sampler, second_at, 1, max(cloud_blur.map - SECOND_LEVEL, 0.0));
     let c = layer.solid.w;
     let scale = inverseSqrt(2.0 * (c * c + (1.0 - c) * (1.0 - c)));
@@ -115,14 +115,14 @@ fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
 fn cloud_dome(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     let share = min(EDGE_M * layer.size.y, EDGE_SHARE);
     let edge = max(1.0 - height / share, 0.0);
-    let off = max(vec2f(ANVIL.x - height, height - ANVIL.y), vec2f(0.0)) / ANVIL_FACES;
-    return min(cloud_dome_over(layer, excess) * height * height + 0.25 * edge * edge * share / EDGE_SHARE, layer.lean.z + 3.0 * dot(off, off));
+    let off = max(vec2f(ANVIL.x - height, height - ANVIL.y), vec2f(0.0)) * (1.0 / ANVIL_FACES);
+    return min(cloud_dome_over(layer, excess) * height * height + 0.25 * edge * edge * share * (1.0 / EDGE_SHARE), layer.lean.z + 3.0 * dot(off, off));
 }
 
 // What the solid noise adds to the excess.
 fn cloud_frays(layer: CloudLayer, at: CloudPlace) -> f32 {
     let solid = vec3f(cloud_upright(layer, at), at.height / layer.size.y) * layer.medium.w + layer.solid.xyz;
-    let within = clamp((at.height - ANVIL.x) / 0.14 + 1.0, 0.0, 1.0);
+    let within = clamp((at.height - ANVIL.x) * (1.0 / 0.14) + 1.0, 0.0, 1.0);
     let smooth_share = 1.0 - ANVIL_SMOOTHER * within * clamp(-layer.lean.z / 0.2, 0.0, 1.0);
     return layer.shape.z * smooth_share * SOLID_GAIN * (textureSampleLevel(cloud_solid, cloud_sampler, solid, cloud_blur.solid).r - SOLID_MEAN);
 }
@@ -137,7 +137,7 @@ fn cloud_filled(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     let d = max(cloud_dome_over(layer, excess), 1e-3);
     let ends = min(sqrt(max(vec2f(excess - 1.0 / layer.shape.w, excess), vec2f(0.0)) / d), vec2f(1.0));
     let x = clamp(height, ends.x, ends.y);
-    let ramp = (excess - d * vec2f(x * x, ends.x * ends.x) / 3.0) * vec2f(x, ends.x) * layer.shape.w;
+    let ramp = (excess - d * vec2f(x * x, ends.x * ends.x) * (1.0 / 3.0)) * vec2f(x, ends.x) * layer.shape.w;
     // What of an anvil lies above the dome.
     let lowest = clamp(ends.y, ANVIL.x, ANVIL.y);
     let anvil = clamp((excess - layer.lean.z) * layer.shape.w, 0.0, 1.0) * (clamp(height, lowest, ANVIL.y) - lowest);

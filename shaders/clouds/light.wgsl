@@ -43,27 +43,27 @@ struct CloudScattered {
 }
 
 fn cloud_depth_place(depth: f32) -> f32 {
-    let x = select(1.0 + 2.0 * log2(max(depth, CLOUD_THINNEST) / CLOUD_THINNEST), depth / CLOUD_THINNEST, depth < CLOUD_THINNEST);
-    return clamp(x, 0.0, CLOUD_DEPTHS - 1.0);
+    let thin = depth * (1.0 / CLOUD_THINNEST);
+    return clamp(select(1.0 + 2.0 * log2(max(thin, 1.0)), thin, thin < 1.0), 0.0, CLOUD_DEPTHS - 1.0);
 }
 
 // Place of a leak among those that there are tables for.
 fn cloud_leak_place(leak: f32) -> f32 {
-    return min(4.0 * log(1.0 + sqrt(leak) / 0.03), CLOUD_LEAKS - 1.0);
+    return min(4.0 * log(1.0 + sqrt(leak) * (1.0 / 0.03)), CLOUD_LEAKS - 1.0);
 }
 
 // Rate at which light leaves a box from side to side along two axes.
 fn cloud_leak(widths: vec2f, turning: f32) -> f32 {
     let b = CLOUD_PI / (widths + 1.42 / turning);
-    return dot(b, b) / (3.0 * turning);
+    return dot(b, b) * (1.0 / (3.0 * turning));
 }
 
 // A table's source terms.
 fn cloud_table(table: f32, medium: f32, above: f32, below: f32, leak: f32) -> vec4f {
     let first = vec3f(table * CLOUD_DEPTHS, medium * CLOUD_DEPTHS, 0.0);
     let at = first + vec3f(cloud_depth_place(above), cloud_depth_place(below), cloud_leak_place(leak)) + 0.5;
-    let size = vec3f(3.0 * CLOUD_DEPTHS, 2.0 * CLOUD_DEPTHS, CLOUD_LEAKS);
-    return textureSampleLevel(cloud_tables, cloud_table_sampler, at / size, 0.0);
+    let texel = 1.0 / vec3f(3.0 * CLOUD_DEPTHS, 2.0 * CLOUD_DEPTHS, CLOUD_LEAKS);
+    return textureSampleLevel(cloud_tables, cloud_table_sampler, at * texel, 0.0);
 }
 
 fn cloud_legendre(terms: vec4f, x: f32) -> f32 {
@@ -81,11 +81,11 @@ fn cloud_across(near: f32, far: f32, turning: f32, height: f32, entered: f32) ->
     let b = CLOUD_PI / extent;
     let half = 0.5 * b * max(near + far, 1e-3);
     let off = 0.5 * b * (near - far);
-    let mean = sin(half) / half;
-    let sideways = height * height / (extent * extent);
+    let over_mean = half / sin(half);
+    let sideways = height * height;
     let set_in = 1.0 - exp(-turning * entered);
-    let share = min(2.0 * sideways / (1.0 + sideways), 1.0) * set_in;
-    return vec2f(1.0 + share * (cos(off) / mean - 1.0), -b * sin(off) / mean * set_in);
+    let share = min(2.0 * sideways / (extent * extent + sideways), 1.0) * set_in;
+    return vec2f(1.0 + share * (cos(off) * over_mean - 1.0), -b * sin(off) * over_mean * set_in);
 }
 
 // The two lobes of a phase function, 1/sr, at the angle whose 1 - cos is `versine`.
