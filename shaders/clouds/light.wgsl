@@ -42,6 +42,7 @@ struct CloudScattered {
     ground: f32,
 }
 
+// Constants' inverses are written out, here and in field.wgsl: a software driver divides where a shader does.
 fn cloud_depth_place(depth: f32) -> f32 {
     let thin = depth * (1.0 / CLOUD_THINNEST);
     return clamp(select(1.0 + 2.0 * log2(max(thin, 1.0)), thin, thin < 1.0), 0.0, CLOUD_DEPTHS - 1.0);
@@ -55,7 +56,7 @@ fn cloud_leak_place(leak: f32) -> f32 {
 // Rate at which light leaves a box from side to side along two axes.
 fn cloud_leak(widths: vec2f, turning: f32) -> f32 {
     let b = CLOUD_PI / (widths + 1.42 / turning);
-    return dot(b, b) * (1.0 / (3.0 * turning));
+    return dot(b, b) / (3.0 * turning);
 }
 
 // A table's source terms.

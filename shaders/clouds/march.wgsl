@@ -83,7 +83,7 @@ fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
 // What the next place on a ray is looked up for.
 // To find cloud.
 const CLOUD_SEEKS: u32 = 0u;
-// As the first step from the face of the cloud that was found.
+// To begin a cloud that was found, by the first step from its face.
 const CLOUD_AT_FACE: u32 = 1u;
 // For the light of a thick step, where that is seen.
 const CLOUD_WITHIN: u32 = 2u;
@@ -95,7 +95,7 @@ struct CloudStep {
     looks_for: u32,
     // Distance at which it begins, m.
     begun: f32,
-    // Distance of the place whose extinction stands for all of it, m.
+    // Distance of the place whose extinction stands for the whole step, m.
     at: f32,
     // Distance of the place that is looked up next, m.
     next: f32,

@@ -30,7 +30,7 @@ struct OnCone {
     // The sine of the angle from the axis squared; minus the binary logarithm of that sine.
     square: f32,
     halvings: f32,
-    // Times that the tiles about the axis are halved, and what is left of their number so.
+    // Times that the tiles about the axis are halved, and the share of their number that is left.
     octave: f32,
     left: f32,
 }
@@ -49,7 +49,7 @@ fn on_cone(d: vec3f) -> OnCone {
     // Each halving of the sine halves the tiles; where exactly differs from column to column, so that no ring shows.
     let whole = floor(halvings);
     let left = exp2(-whole);
-    // Multiples of the golden ratio: evenly spread, and neighbours far apart.
+    // Multiples of the golden ratio spread evenly, and those of neighbouring columns lie far apart.
     let chance = fract(floor(turn * COLUMNS * left) * 0.61803399 + whole * 0.37);
     let halved = halvings - whole > 0.25 + 0.75 * chance;
     let octave = whole + select(0.0, 1.0, halved);
@@ -81,6 +81,7 @@ fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
 fn pattern(look: Look, moved: vec4f) -> f32 {
     let uv = look.uv + vec2f(moved.z, moved.x * look.along + moved.w);
     let seen = textureSampleLevel(streaks, streaks_sampler, uv, look.level);
+    // Constants' inverses are written out: a software driver divides where a shader does.
     // As many streaks as there are drops, and no fewer than would stand out near the ends of the axis.
     let wanted = look.number * moved.y;
     let before = vec4f(0.0, STREAKS.x, STREAKS.x + STREAKS.y, ALL_STREAKS - STREAKS.w);

@@ -222,7 +222,7 @@ pub(super) fn run(
     run_each(encoder, (targets, None, part), std::slice::from_ref(pipeline), groups);
 }
 
-/// As [`run`] with several draws, of which a depth attachment may let each draw its own pixels.
+/// As [`run`], with several draws. A depth attachment may tell which pixels each of them draws.
 pub(super) fn run_each(
     encoder: &mut wgpu::CommandEncoder,
     (targets, kinds, part): (&[&wgpu::TextureView], Option<&wgpu::TextureView>, Option<Part>),

@@ -75,7 +75,7 @@ pub(super) fn draws_apart(all: &Variant) -> bool {
 pub(super) const DRAWS: usize = 5;
 
 /// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have depths of their own, or
-/// rays are marched. With a `grid` pixels between which the weather is even have draws of their own. If `splits`, the others have a draw for
+/// rays are marched. With a `grid`, pixels between which the weather is even have draws of their own. If `splits`, the others have a draw for
 /// each kind of what they show.
 pub(super) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);

@@ -1,4 +1,4 @@
-//! wgpu logs no error while weathers are drawn by OpenGL: the software driver is lenient where others may not be.
+//! wgpu logs no error while OpenGL draws weathers: the software driver lets pass what others may refuse.
 
 use std::sync::Mutex;
 
