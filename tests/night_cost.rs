@@ -2,6 +2,8 @@
 
 #[path = "support/coarse_sky.rs"]
 mod coarse_sky;
+#[path = "support/processor.rs"]
+mod processor;
 #[path = "support/textures.rs"]
 mod textures;
 
@@ -18,20 +20,8 @@ use welkin::{
 };
 
 use coarse_sky::coarse_sky;
+use processor::{median, processor_s};
 use textures::texture;
-
-/// Seconds that all threads of the process have run so far.
-fn processor_s() -> f64 {
-    let tasks = std::fs::read_dir("/proc/self/task").expect("a Linux");
-    let of = |task: std::fs::DirEntry| std::fs::read_to_string(task.path().join("schedstat")).ok();
-    let ns = |text: String| text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).unwrap_or(0.0);
-    tasks.flatten().filter_map(of).map(ns).sum::<f64>() * 1e-9
-}
-
-fn median(mut of: Vec<f64>) -> f64 {
-    of.sort_by(f64::total_cmp);
-    of[of.len() / 2]
-}
 
 #[test]
 fn a_picture_of_nothing_but_a_starry_sky_costs_a_sixth_more() {

@@ -2,6 +2,7 @@
 
 #[path = "../support/coarse_sky.rs"]
 mod coarse_sky;
+mod devices;
 mod kept;
 mod rain;
 mod scenes;

@@ -124,6 +124,11 @@ impl Bench {
         Self { device, context, view, plain, color, depth, time_s: 0.0, frame_id: 0, white: 1.0, host }
     }
 
+    /// A planned view that has seen nothing yet.
+    pub fn start_anew(&mut self) {
+        self.view = View::new(&self.context).unwrap();
+    }
+
     /// Draws clouds as a volume from now on.
     pub fn draw_volumes(&mut self) {
         self.context.set_cloud_model(CloudModel::Volume);

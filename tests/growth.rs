@@ -1,0 +1,117 @@
+//! How the cost of frames grows with the size of the picture and the number of views, in processor time on a software driver: alone in its
+//! binary.
+
+#[path = "support/coarse_sky.rs"]
+mod coarse_sky;
+#[path = "support/processor.rs"]
+mod processor;
+#[path = "support/textures.rs"]
+mod textures;
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+use welkin::{
+    context::{Context, ContextDesc, GivenDirection},
+    frame::{Frame, Shared, Stages, View},
+    gpu::{Device, DeviceOptions},
+    scene::Camera,
+    weather::Weather,
+};
+
+use coarse_sky::coarse_sky;
+use processor::{median, processor_s};
+use textures::texture;
+
+/// Frames that build tables and pipelines, and frames that count.
+const FRAMES: (usize, usize) = (40, 30);
+
+fn world(device: &Arc<Device>, weather: &str) -> Context {
+    let shared = Arc::new(Shared::new(device).unwrap());
+    let desc = ContextDesc { sky: coarse_sky(), ..ContextDesc::default() };
+    let mut context = Context::new(device.clone(), shared, desc).unwrap();
+    context.set_weather(&Weather::preset(weather).unwrap(), 0.0, 0.0).unwrap();
+    context.update(0.0).unwrap();
+    context
+}
+
+/// A view and its picture: level ground below the middle row, sky above.
+struct Channel {
+    view: View,
+    color: wgpu::Texture,
+    depth: wgpu::Texture,
+    yaw_rad: f64,
+}
+
+impl Channel {
+    fn new(device: &Device, context: &Context, (width, height): (u32, u32), yaw_rad: f64) -> Self {
+        let color = texture(device, (width, height), wgpu::TextureFormat::Rgba16Float, 1);
+        let depth = texture(device, (width, height), wgpu::TextureFormat::R32Float, 1);
+        let below = |y: u32| (f64::from(y) + 0.5) / f64::from(height) - 0.5;
+        let row = |y: u32| (0.1 * (2.0 * below(y)).max(0.0) * 0.45f64.tan() / 2.0) as f32;
+        let texels: Vec<f32> = (0..width * height).map(|i| row(i / width)).collect();
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * 4), rows_per_image: None };
+        device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, depth.size());
+        Self { view: View::new(context).unwrap(), color, depth, yaw_rad }
+    }
+
+    /// Draws frame `id` of a camera that turns, and waits for it.
+    fn draw(&mut self, device: &Device, context: &Context, id: u64) {
+        let mut camera = Camera::look_to(DVec3::Z * 2.0, DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, 0.1);
+        camera.view *= DMat4::from_rotation_z(self.yaw_rad + 0.01 * id as f64);
+        let frame = Frame::new(id, camera, &self.color, Some(&self.depth));
+        self.view.record(context, &frame, Stages::ALL).unwrap();
+        device.wait().unwrap();
+    }
+}
+
+/// Medians over frames of what each group of channels takes, s, drawn by turns; before each turn the sun moves on.
+fn seconds(device: &Device, context: &mut Context, groups: &mut [Vec<Channel>], sun_step_deg: f64) -> Vec<f64> {
+    let mut spent = vec![Vec::new(); groups.len()];
+    let mut sun = GivenDirection { azimuth_deg: 180.0, elevation_deg: 50.0 };
+    for id in 0..FRAMES.0 + FRAMES.1 {
+        for (group, spent) in groups.iter_mut().zip(&mut spent) {
+            sun.elevation_deg -= sun_step_deg;
+            let before = processor_s();
+            context.set_sun(Some(sun)).unwrap();
+            group.iter_mut().for_each(|channel| channel.draw(device, context, id as u64 + 1));
+            if id >= FRAMES.0 {
+                spent.push(processor_s() - before);
+            }
+        }
+    }
+    spent.into_iter().map(median).collect()
+}
+
+#[test]
+fn a_pixel_costs_no_more_in_a_larger_picture() {
+    let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+    let all = [(320, 180), (640, 360), (1280, 720), (1920, 1080)];
+    let sizes = if std::env::var_os("WELKIN_ACCEPT").is_some() { &all[..] } else { &all[..2] };
+    for weather in ["clear", "fog", "rain", "snow", "broken"] {
+        let mut context = world(&device, weather);
+        let mut groups: Vec<_> = sizes.iter().map(|size| vec![Channel::new(&device, &context, *size, 0.0)]).collect();
+        let times = seconds(&device, &mut context, &mut groups, 0.0);
+        let a_pixel: Vec<f64> =
+            times.iter().zip(sizes).map(|(s, (width, height))| 1e9 * s / f64::from(width * height)).collect();
+        println!("{weather}: {a_pixel:.1?} ns a pixel at {sizes:?}");
+        for (larger, smaller) in a_pixel[1..].iter().zip(&a_pixel) {
+            assert!(larger <= &(1.04 * smaller), "{weather}: {a_pixel:?}");
+        }
+    }
+}
+
+#[test]
+fn several_views_of_a_world_cost_no_more_than_as_often_one() {
+    let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+    for (weather, sun_step_deg) in [("clear", 0.0), ("clear", 0.02), ("rain", 0.0), ("broken", 0.0)] {
+        let mut context = world(&device, weather);
+        let channel = |i: u32| Channel::new(&device, &context, (320, 180), 0.7 * f64::from(i));
+        let mut groups: Vec<Vec<Channel>> = (0..4).map(|i| vec![channel(i)]).collect();
+        groups.push((0..4).map(channel).collect());
+        let times = seconds(&device, &mut context, &mut groups, sun_step_deg);
+        let alone: f64 = times[..4].iter().sum();
+        println!("{weather}, the sun by {sun_step_deg}: four views take {:.3} of four alone", times[4] / alone);
+        assert!(times[4] <= 1.03 * alone, "{weather}: {times:?}");
+    }
+}
