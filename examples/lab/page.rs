@@ -23,7 +23,8 @@ pub fn write(directory: &Path) -> Result<()> {
         "# The lab: speed against accuracy, and where methods fail\n\n\
          Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page. \
          [Rain](rain.md) and\n\
-         [wet ground](ground.md) have pages of what the tests measure; [on a GPU](gpu.md) has milliseconds of every effect.\n\n",
+         [wet ground](ground.md) have pages of what the tests measure; [on a GPU](gpu.md) has milliseconds of every effect,\n\
+         [counts](counts.md) what a GPU does for a pixel.\n\n",
     );
     if let Some(table) = &sky {
         sky_section(&mut out, table);

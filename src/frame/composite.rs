@@ -246,6 +246,13 @@ impl Composite {
         if variant.pixels.uses_grid() { self.evens.has(is) } else { self.pipelines.has(is) }
     }
 
+    /// For which pixels pipelines are held, by which shader and entry point, and the values of its constants.
+    #[cfg(test)]
+    pub fn held(&self) -> Vec<(Pixels, (String, &'static str), Constants)> {
+        let all = self.pipelines.keys().chain(self.evens.keys());
+        all.map(|variant| (variant.pixels, variant.program(), variant.constants())).collect()
+    }
+
     /// The pipeline of `variant`, compiled at its first use.
     ///
     /// # Errors

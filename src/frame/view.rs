@@ -174,6 +174,13 @@ impl View {
         self.even = None;
     }
 
+    /// The pipelines that the views of its device compose with: for which pixels, shader and entry point, constants.
+    #[cfg(test)]
+    pub(crate) fn composes_with(&self) -> Vec<(String, (String, &'static str), crate::stage::Constants)> {
+        let held = self.composite.lock().expect("no call has panicked").held();
+        held.into_iter().map(|(pixels, program, constants)| (format!("{pixels:?}"), program, constants)).collect()
+    }
+
     /// Makes what the view needs of the picture's size, before anything of the frame is recorded: a large target is what memory
     /// may be too small for.
     fn hold_images(&mut self, frame: &Frame<'_>, stages: Stages) -> Result<()> {

@@ -49,6 +49,12 @@ impl<K, V, const MOST: usize> Recent<K, V, MOST> {
         self.all.iter().any(|held| is(&held.key))
     }
 
+    /// The keys of all that are held.
+    #[cfg(test)]
+    pub fn keys(&self) -> impl Iterator<Item = &K> {
+        self.all.iter().map(|held| &held.key)
+    }
+
     /// As [`Self::get_or_make`] for a value that is copied out and whose making cannot fail.
     pub fn get_or_put(&mut self, key: &K, make: impl FnOnce() -> V) -> V
     where

@@ -24,7 +24,8 @@ struct Profile {
     drop: f64,
 }
 
-/// Mesa's software driver on two cores: `cargo bench --bench speed -- parts`, and nanoseconds of a drop by `-- rain`.
+/// Mesa's software driver: shares by `cargo bench --bench speed -- parts`, fog with the air before it by `-- copies` (5.3 copies beside a clear noon of
+/// 11.6), nanoseconds of a drop by `-- rain`.
 const SOFTWARE: Profile = Profile {
     name: "llvmpipe",
     pixel_ns: 67.0,
@@ -123,7 +124,7 @@ fn is_best(name: &str, profile: &Profile, share: f64, budget_ms: f64, of: &Settl
     let Settled { plan, drops, there, .. } = of;
     let missed = loss(plan, &plan.rungs());
     let fits = |rungs: &[usize], room: f64| profile.ms(share, *drops, there, rungs) <= room * budget_ms;
-    let better = |r: &[usize]| fits(r, 0.8) && loss(plan, r) < 0.999 * missed;
+    let better = |r: &[usize]| fits(r, 0.84) && loss(plan, r) < 0.999 * missed;
     let sets = all_rungs(there);
     assert!(!sets.iter().any(|r| better(r)), "{name}: {:?} of {plan:?}", plan.rungs());
     let any_fits = sets.iter().any(|r| fits(r, 1.0));
