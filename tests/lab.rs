@@ -40,6 +40,8 @@ mod page;
 mod painted;
 #[path = "../examples/lab/painted_chart.rs"]
 mod painted_chart;
+#[path = "../examples/lab/peers.rs"]
+mod peers;
 #[path = "../examples/lab/picture.rs"]
 mod picture;
 #[path = "../examples/lab/plot.rs"]
@@ -583,6 +585,28 @@ fn the_committed_rain_chart_says_what_is_drawn_today() {
 }
 
 /// Fog's chart end to end on the software driver, the cheapest chart.
+#[test]
+fn what_stands_beside_others_is_what_the_charts_say() {
+    let table = Table::read(&committed("peers.csv")).unwrap().unwrap();
+    let number = |name: &str, when: &str, column: &str| {
+        let row = table.rows.iter().find(|r| r[0] == name && r[1] == when).unwrap_or_else(|| panic!("{name}, {when}"));
+        table.number(row, column).unwrap_or_else(|| panic!("{name}, {when}: {column}"))
+    };
+    for (name, chart, default) in
+        [("rain of 5 mm/h", "rain", "drops-and-cones"), ("broken cumulus", "clouds", "volume-double-steps")]
+    {
+        let (said, charted) = (number(name, "now", "error"), charted(chart, default, "p95"));
+        assert!((said / charted - 1.0).abs() < 0.01, "{name}: {said}, charted {charted}");
+    }
+    for row in table.rows.iter().filter(|r| r[1] == "before") {
+        let cost = |when, column| number(&row[0], when, column);
+        assert!(cost("now", "cost_high") < cost("before", "cost_low"), "{}", row[0]);
+    }
+    let mut page = String::new();
+    peers::section(&mut page, &table);
+    assert!(page.contains("| sky and air | 13.6 to 14.6 (9 %) | 44 to 50 (1.1 %) | 11.4 to 11.8 (1.1 %) |"), "{page}");
+}
+
 #[test]
 fn no_fog_of_the_chart_is_better_than_the_default() {
     let dir = Scratch::new("fog");

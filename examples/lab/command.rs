@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use welkin::{Error, Result, Status};
 
 use crate::candidates::{Candidate, Effect, candidate};
-use crate::{chart, clouds, compare, genera, growth, painted_chart, regression, report, stability};
+use crate::{chart, clouds, compare, genera, growth, page, painted_chart, peers, regression, report, stability};
 
 const USAGE: &str =
     "usage: lab chart [sky|fog|rain|snow|stars|clouds|painted-clouds|quadrature]   cost against error, with plots
        lab growth                         how cost and bytes grow
        lab stability [MAP ..]             where methods fail
+       lab peers                          the recorded figures of others and of before, beside Welkin's
        lab compare A B [--scene NAME]     two candidates' pictures side by side
        lab report                         everything on one HTML page
        lab scenes DIR [--scene PART]      a PNG of every scene; of those whose names contain PART
@@ -80,6 +81,7 @@ pub fn run(arguments: &[String]) -> Result<bool> {
         ["chart", what] if chart::CHARTS.contains(what) => chart::run(what, &options),
         ["chart", other] => Err(usage(&format!("unknown effect `{other}`, one of {}", chart::CHARTS.join(", ")))),
         ["growth"] => growth::run(&options),
+        ["peers"] => peers::chart(&options.out).and_then(|()| page::write(&options.out)),
         ["stability", maps @ ..] => stability::run(maps, &options),
         ["compare", a, b] => compare::run(&find_candidate(a)?, &find_candidate(b)?, &options),
         ["compare", ..] => Err(usage("compare needs two candidates")),

@@ -25,6 +25,7 @@ mod growth;
 mod page;
 mod painted;
 mod painted_chart;
+mod peers;
 mod picture;
 mod plot;
 mod quadrature;

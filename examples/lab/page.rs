@@ -6,6 +6,7 @@ use std::path::Path;
 use welkin::Result;
 
 use crate::chart::points;
+use crate::peers;
 use crate::plot::short;
 use crate::stability;
 use crate::store::{Table, io};
@@ -18,7 +19,7 @@ pub fn write(directory: &Path) -> Result<()> {
     let read = |name: &str| Table::read(&directory.join(format!("{name}.csv")));
     let (sky, fog, quadrature, growth) = (read("sky")?, read("fog")?, read("quadrature")?, read("growth")?);
     let (rain, snow, stars, clouds) = (read("rain")?, read("snow")?, read("stars")?, read("clouds")?);
-    let painted = read("painted-clouds")?;
+    let (painted, others) = (read("painted-clouds")?, read("peers")?);
     let mut out = String::from(
         "# The lab: speed against accuracy, and where methods fail\n\n\
          Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page. \
@@ -26,6 +27,9 @@ pub fn write(directory: &Path) -> Result<()> {
          [wet ground](ground.md) have pages of what the tests measure; [on a GPU](gpu.md) has milliseconds of every effect,\n\
          [counts](counts.md) what a GPU does for a pixel.\n\n",
     );
+    if let Some(table) = &others {
+        peers::section(&mut out, table);
+    }
     if let Some(table) = &sky {
         sky_section(&mut out, table);
     }

@@ -206,6 +206,45 @@ pub fn scatter(points: &[Point], titles: &Titles<'_>) -> Canvas {
     canvas
 }
 
+/// What something costs and errs elsewhere, before, and now: cost, its lower and upper end, error.
+pub struct Move {
+    pub name: String,
+    pub at: [Option<[f64; 4]>; 3],
+}
+
+/// The chart of what has moved: hollow before, full now, a square elsewhere.
+pub fn moves(all: &[Move], titles: &Titles<'_>) -> Canvas {
+    let (width, height) = (1200, 760);
+    let mut canvas = Canvas::new(width, height);
+    let area = [LEFT, TOP, f64::from(width) - 24.0, f64::from(height) - BOTTOM];
+    let shown = || all.iter().flat_map(|m| m.at.iter().flatten());
+    let x = LogAxis::over(shown().flat_map(|p| [p[1], p[2]]), area[0], area[2]);
+    let y = LogAxis::over(shown().map(|p| p[3]), area[3], area[1]);
+    axes(&mut canvas, area, &x, &y, titles);
+    let (mut labels, mut bars) = (Vec::new(), Vec::new());
+    for (i, of) in all.iter().enumerate() {
+        let color = FAMILIES[i % FAMILIES.len()];
+        let place = |p: &[f64; 4]| (x.at(p[0]), y.at(p[3]));
+        if let [_, Some(before), Some(now)] = &of.at {
+            canvas.line(&[place(before), place(now)], pale(color), 2);
+        }
+        for (p, kind) in of.at.iter().zip(0..).filter_map(|(p, kind)| Some((p.as_ref()?, kind))) {
+            let (cx, cy) = place(p);
+            let (low, high) = (x.at(p[1]), x.at(p[2]));
+            canvas.line(&[(low, cy), (high, cy)], color, 2);
+            bars.push([low, cy - 2.0, high, cy + 2.0]);
+            match kind {
+                0 => canvas.fill([cx - 5.0, cy - 5.0, cx + 5.0, cy + 5.0], color),
+                _ => canvas.circle((cx, cy), 6.0, color, kind == 2),
+            }
+            let when = ["elsewhere", "before", "now"][kind];
+            labels.push((format!("{}, {when}", of.name), (cx, cy), INK));
+        }
+    }
+    place_labels(&mut canvas, area, &labels, bars);
+    canvas
+}
+
 /// A curve of growth.
 pub struct Line {
     pub name: String,
