@@ -593,7 +593,7 @@ fn what_stands_beside_others_is_what_the_charts_say() {
         table.number(row, column).unwrap_or_else(|| panic!("{name}, {when}: {column}"))
     };
     for (name, chart, default) in
-        [("rain of 5 mm/h", "rain", "drops-and-cones"), ("broken cumulus", "clouds", "volume-double-steps")]
+        [("rain of 5 mm/h", "rain.csv", "drops-and-cones"), ("broken cumulus", "clouds.csv", "volume-double-steps")]
     {
         let (said, charted) = (number(name, "now", "error"), charted(chart, default, "p95"));
         assert!((said / charted - 1.0).abs() < 0.01, "{name}: {said}, charted {charted}");
