@@ -3,6 +3,8 @@
 
 #[path = "support/coarse_sky.rs"]
 mod coarse_sky;
+#[path = "support/level_ground.rs"]
+mod level_ground;
 #[path = "support/processor.rs"]
 mod processor;
 #[path = "support/textures.rs"]
@@ -20,10 +22,11 @@ use welkin::{
 };
 
 use coarse_sky::coarse_sky;
-use processor::{median, processor_s};
+use level_ground::level_ground;
+use processor::{median, processor_ns};
 use textures::texture;
 
-/// Frames that build tables and pipelines, and frames that count.
+/// Frames before the measurement, in which tables and pipelines are built, and measured frames.
 const FRAMES: (usize, usize) = (40, 30);
 
 fn world(device: &Arc<Device>, weather: &str) -> Context {
@@ -47,11 +50,7 @@ impl Channel {
     fn new(device: &Device, context: &Context, (width, height): (u32, u32), yaw_rad: f64) -> Self {
         let color = texture(device, (width, height), wgpu::TextureFormat::Rgba16Float, 1);
         let depth = texture(device, (width, height), wgpu::TextureFormat::R32Float, 1);
-        let below = |y: u32| (f64::from(y) + 0.5) / f64::from(height) - 0.5;
-        let row = |y: u32| (0.1 * (2.0 * below(y)).max(0.0) * 0.45f64.tan() / 2.0) as f32;
-        let texels: Vec<f32> = (0..width * height).map(|i| row(i / width)).collect();
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * 4), rows_per_image: None };
-        device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, depth.size());
+        level_ground(device, &depth, 0.0);
         Self { view: View::new(context).unwrap(), color, depth, yaw_rad }
     }
 
@@ -65,22 +64,22 @@ impl Channel {
     }
 }
 
-/// Medians over frames of what each group of channels takes, s, drawn by turns; before each turn the sun moves on.
-fn seconds(device: &Device, context: &mut Context, groups: &mut [Vec<Channel>], sun_step_deg: f64) -> Vec<f64> {
+/// Medians over frames of what each group of channels takes, ns, drawn by turns; before each turn the sun moves on.
+fn nanoseconds(device: &Device, context: &mut Context, groups: &mut [Vec<Channel>], sun_step_deg: f64) -> Vec<f64> {
     let mut spent = vec![Vec::new(); groups.len()];
     let mut sun = GivenDirection { azimuth_deg: 180.0, elevation_deg: 50.0 };
     for id in 0..FRAMES.0 + FRAMES.1 {
         for (group, spent) in groups.iter_mut().zip(&mut spent) {
             sun.elevation_deg -= sun_step_deg;
-            let before = processor_s();
+            let before = processor_ns();
             context.set_sun(Some(sun)).unwrap();
             group.iter_mut().for_each(|channel| channel.draw(device, context, id as u64 + 1));
             if id >= FRAMES.0 {
-                spent.push(processor_s() - before);
+                spent.push((processor_ns() - before) as f64);
             }
         }
     }
-    spent.into_iter().map(median).collect()
+    spent.iter_mut().map(|spent| median(spent)).collect()
 }
 
 #[test]
@@ -91,9 +90,9 @@ fn a_pixel_costs_no_more_in_a_larger_picture() {
     for weather in ["clear", "fog", "rain", "snow", "broken"] {
         let mut context = world(&device, weather);
         let mut groups: Vec<_> = sizes.iter().map(|size| vec![Channel::new(&device, &context, *size, 0.0)]).collect();
-        let times = seconds(&device, &mut context, &mut groups, 0.0);
+        let times = nanoseconds(&device, &mut context, &mut groups, 0.0);
         let a_pixel: Vec<f64> =
-            times.iter().zip(sizes).map(|(s, (width, height))| 1e9 * s / f64::from(width * height)).collect();
+            times.iter().zip(sizes).map(|(ns, (width, height))| ns / f64::from(width * height)).collect();
         println!("{weather}: {a_pixel:.1?} ns a pixel at {sizes:?}");
         for (larger, smaller) in a_pixel[1..].iter().zip(&a_pixel) {
             assert!(larger <= &(1.04 * smaller), "{weather}: {a_pixel:?}");
@@ -109,7 +108,7 @@ fn several_views_of_a_world_cost_no_more_than_as_often_one() {
         let channel = |i: u32| Channel::new(&device, &context, (320, 180), 0.7 * f64::from(i));
         let mut groups: Vec<Vec<Channel>> = (0..4).map(|i| vec![channel(i)]).collect();
         groups.push((0..4).map(channel).collect());
-        let times = seconds(&device, &mut context, &mut groups, sun_step_deg);
+        let times = nanoseconds(&device, &mut context, &mut groups, sun_step_deg);
         let alone: f64 = times[..4].iter().sum();
         println!("{weather}, the sun by {sun_step_deg}: four views take {:.3} of four alone", times[4] / alone);
         // Three runs of these took 0.98 to 1.00.

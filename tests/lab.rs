@@ -584,7 +584,6 @@ fn the_committed_rain_chart_says_what_is_drawn_today() {
     }
 }
 
-/// Fog's chart end to end on the software driver, the cheapest chart.
 #[test]
 fn what_stands_beside_others_is_what_the_charts_say() {
     let table = Table::read(&committed("peers.csv")).unwrap().unwrap();
@@ -607,6 +606,7 @@ fn what_stands_beside_others_is_what_the_charts_say() {
     assert!(page.contains("| sky and air | 13.6 to 14.6 (9 %) | 44 to 50 (1.1 %) | 11.4 to 11.8 (1.1 %) |"), "{page}");
 }
 
+/// Fog's chart end to end on the software driver, the cheapest chart.
 #[test]
 fn no_fog_of_the_chart_is_better_than_the_default() {
     let dir = Scratch::new("fog");

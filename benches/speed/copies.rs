@@ -3,7 +3,7 @@
 //!
 //! Counted is the processor time of all of the process's threads, so that what else the machine does falls on neither.
 
-use std::{fs, sync::Arc};
+use std::sync::Arc;
 
 use glam::{DMat4, DVec2, DVec3};
 use welkin::{
@@ -19,7 +19,8 @@ use welkin::{
     wind::{WindGrid, WindGridKind},
 };
 
-use crate::textures::texture;
+pub use crate::processor::median;
+use crate::{level_ground::level_ground, processor::processor_ns, textures::texture};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -34,27 +35,10 @@ const ROUNDS: usize = 9;
 /// Frames without work on tables after which there is none.
 pub const SETTLED: u32 = 12;
 
-/// Nanoseconds that the threads of this process have run.
-pub fn processor_ns() -> Fallible<u64> {
-    let mut sum = 0;
-    for thread in fs::read_dir("/proc/self/task")? {
-        // A thread may end between the list and its file.
-        let Ok(text) = fs::read_to_string(thread?.path().join("schedstat")) else { continue };
-        sum += text.split(' ').next().unwrap_or("0").parse::<u64>()?;
-    }
-    Ok(sum)
-}
-
 /// The number below which such a share of numbers lies.
 pub fn quantile(of: &mut [f64], share: f64) -> f64 {
     of.sort_by(f64::total_cmp);
     of[((of.len() - 1) as f64 * share) as usize]
-}
-
-/// The median of numbers.
-pub fn median(of: &mut [f64]) -> f64 {
-    of.sort_by(f64::total_cmp);
-    of[of.len() / 2]
 }
 
 /// The clock: a pass that loads a texel and writes it.
@@ -105,13 +89,13 @@ impl Copying {
 
     /// Nanoseconds of one copy.
     fn ns(&self, device: &Device) -> Fallible<f64> {
-        let before = processor_ns()?;
+        let before = processor_ns();
         let mut encoder = device.device.create_command_encoder(&Default::default());
         for _ in 0..COPIES {
             self.copy(&mut encoder);
         }
         device.submit_and_wait(encoder)?;
-        Ok((processor_ns()? - before) as f64 / f64::from(COPIES))
+        Ok((processor_ns() - before) as f64 / f64::from(COPIES))
     }
 }
 
@@ -201,13 +185,13 @@ impl Scene {
             let context = Arc::get_mut(&mut self.context).ok_or("the sun moves in a context of its own")?;
             context.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg }))?;
         }
-        let before = processor_ns()?;
+        let before = processor_ns();
         for stages in &self.calls {
             let frame = Frame { flags: self.flags, ..Frame::new(self.frame_id, self.camera, color, depth) };
             self.view.record(&self.context, &frame, *stages)?;
         }
         device.wait()?;
-        Ok((processor_ns()? - before) as f64)
+        Ok((processor_ns() - before) as f64)
     }
 }
 
@@ -283,18 +267,6 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
     Arc::get_mut(&mut led).ok_or("a new context")?.set_wind_grid(Some(slow_place()))?;
     made.push(Scene::new("patches of fog led round a slow place", &led, 0.0)?);
     Ok(made)
-}
-
-/// Writes the depth of level ground 2 m below an eye that looks `pitch_rad` up.
-pub fn level_ground(device: &Device, depth: &wgpu::Texture, pitch_rad: f64) {
-    let (width, half) = (depth.width(), 0.5 * f64::from(depth.height()));
-    let row = |y: u32| {
-        let ahead = (half - 0.5 - f64::from(y)) / half * 0.45f64.tan();
-        0.1 * (-pitch_rad.sin() - ahead * pitch_rad.cos()).max(0.0) / 2.0
-    };
-    let texels: Vec<f32> = (0..width * depth.height()).map(|i| row(i / width) as f32).collect();
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * 4), rows_per_image: None };
-    device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, depth.size());
 }
 
 /// Measures scenes beside copies in turn, over level ground seen by eyes that look `pitch_rad` up, and prints on what.

@@ -20,8 +20,9 @@ use welkin::{
 
 use crate::{
     clouds,
-    copies::{Copying, SETTLED, level_ground, median, size_of, world},
+    copies::{Copying, SETTLED, median, size_of, world},
     glass,
+    level_ground::level_ground,
     record::empty_pass,
     textures,
 };

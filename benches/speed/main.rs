@@ -14,8 +14,12 @@ mod fullscreen;
 mod glass;
 mod gpu;
 mod ground;
+#[path = "../../tests/support/level_ground.rs"]
+mod level_ground;
 mod noise;
 mod parts;
+#[path = "../../tests/support/processor.rs"]
+mod processor;
 mod radiance;
 mod rain;
 mod record;

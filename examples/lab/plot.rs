@@ -206,7 +206,7 @@ pub fn scatter(points: &[Point], titles: &Titles<'_>) -> Canvas {
     canvas
 }
 
-/// What something costs and errs elsewhere, before, and now: cost, its lower and upper end, error.
+/// Cost (value, lower end, upper end) and error of one effect: in another system, in an earlier version, and now.
 pub struct Move {
     pub name: String,
     pub at: [Option<[f64; 4]>; 3],

@@ -42,7 +42,7 @@ struct CloudScattered {
     ground: f32,
 }
 
-// Constants' inverses are written out, here and in field.wgsl: a software driver divides where a shader does.
+// Here and in field.wgsl: products with inverses of constants. Software drivers do not turn a division by a constant into one.
 fn cloud_depth_place(depth: f32) -> f32 {
     let thin = depth * (1.0 / CLOUD_THINNEST);
     return clamp(select(1.0 + 2.0 * log2(max(thin, 1.0)), thin, thin < 1.0), 0.0, CLOUD_DEPTHS - 1.0);

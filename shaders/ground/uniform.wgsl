@@ -88,8 +88,8 @@ struct GroundUniform {
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
-    // Snow on level, open ground: the level in the hollows up to which it covers them, its wetness, its albedo, its depth, m, which is
-    // -1 unless the terrain's cells have snow of their own.
+    // Snow on level, open ground. x: level in the hollows up to which it covers them. y: wetness. z: albedo. w: depth, m; -1 where no cell of
+    // the terrain has snow of its own.
     snow: vec4f,
     // Of each class; the first one is the context's default.
     looks: array<SurfaceLook, SURFACE_CLASSES>,

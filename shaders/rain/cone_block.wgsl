@@ -16,8 +16,8 @@ struct ConeUniform {
     growing: u32,
     // Per cone: near end, far end and middle of its band, m; optical depth of its drops.
     bands: array<vec4f, CONES>,
-    // Per cone. x: tiles round the axis, at right angles to it. y: tiles in a radian of Mercator's latitude. z: drops per steradian.
-    // w: the largest y, at right angles to the axis, at which no streak is shorter than a pixel.
+    // Per cone, at right angles to the axis. x: tiles in a turn about the axis. y: tiles in a radian of Mercator's latitude. z: drops per
+    // steradian. w: upper bound of y; above it streaks would be shorter than a pixel.
     shapes: array<vec4f, CONES>,
     // Per cone: share of the light of its middle that what lies between lets through; level of detail at right angles to the
     // axis; how often its tiles can be halved.

@@ -81,7 +81,7 @@ fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
 fn pattern(look: Look, moved: vec4f) -> f32 {
     let uv = look.uv + vec2f(moved.z, moved.x * look.along + moved.w);
     let seen = textureSampleLevel(streaks, streaks_sampler, uv, look.level);
-    // Constants' inverses are written out: a software driver divides where a shader does.
+    // Products with inverses of constants: software drivers do not turn a division by a constant into one.
     // As many streaks as there are drops, and no fewer than would stand out near the ends of the axis.
     let wanted = look.number * moved.y;
     let before = vec4f(0.0, STREAKS.x, STREAKS.x + STREAKS.y, ALL_STREAKS - STREAKS.w);

@@ -1,8 +1,8 @@
-//! What a GPU does for a frame, counted where there is none: passes, bytes that a view holds a pixel, and for each draw of the composition what
-//! the dearest pixel may read and work out. The table of docs/lab/counts.md is held as it is: what makes a frame dearer changes it.
+//! The work of a GPU for a frame, counted without a GPU: passes, bytes of a view for each pixel, and for each draw of the composition the most
+//! texels and operations of a pixel. The test compares the counts with the table of docs/lab/counts.md.
 //!
-//! Counted is naga's form of the shaders with the constants of a GPU's pipelines: texels read, and operations on numbers. Of a branch
-//! that constants decide one side counts, of another the dearer; loops count once. What registers that takes is the driver's; it grows with both.
+//! The counts are static. Each shader is parsed by naga with the constants of a GPU's pipelines. Where a constant decides a branch, the side
+//! that is taken counts; elsewhere the dearer side does. The body of a loop counts once. The driver assigns registers, so they are not counted.
 
 use std::{collections::HashMap, sync::Arc};
 

@@ -1,14 +1,16 @@
-//! What work takes, in processor time of the whole process: what else the machine does falls on it least.
+//! Processor time of the whole process: what else the machine does falls on it least.
 
-/// Seconds that all threads of the process have run so far.
-pub fn processor_s() -> f64 {
-    let tasks = std::fs::read_dir("/proc/self/task").expect("a Linux");
-    let of = |task: std::fs::DirEntry| std::fs::read_to_string(task.path().join("schedstat")).ok();
-    let ns = |text: String| text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).unwrap_or(0.0);
-    tasks.flatten().filter_map(of).map(ns).sum::<f64>() * 1e-9
+/// Nanoseconds that the threads of this process have run.
+pub fn processor_ns() -> u64 {
+    let threads = std::fs::read_dir("/proc/self/task").expect("a Linux");
+    // A thread may end between the list and its file.
+    let of = |thread: std::fs::DirEntry| std::fs::read_to_string(thread.path().join("schedstat")).ok();
+    let ns = |text: String| text.split(' ').next().and_then(|ns| ns.parse::<u64>().ok()).unwrap_or(0);
+    threads.flatten().filter_map(of).map(ns).sum()
 }
 
-pub fn median(mut of: Vec<f64>) -> f64 {
+/// The median of numbers.
+pub fn median(of: &mut [f64]) -> f64 {
     of.sort_by(f64::total_cmp);
     of[of.len() / 2]
 }
