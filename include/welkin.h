@@ -1227,9 +1227,9 @@ typedef struct wk_vulkan_target {
      */
     const wk_vulkan_image *mask;
     /** Semaphores to wait for before drawing; the signal of a binary one must be submitted. At most 16. */
-    const wk_vulkan_semaphore *waits;
+    const wk_vulkan_semaphore *wait_semaphores;
     /** Semaphores to signal when all is drawn and the images are in their final layouts. At most 16. */
-    const wk_vulkan_semaphore *signals;
+    const wk_vulkan_semaphore *signal_semaphores;
     /** Number of waits. Default 0. */
     uint32_t wait_count;
     /** Bytes from one wait to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default. */
@@ -1259,8 +1259,8 @@ typedef struct wk_vulkan_target {
     /* color */ NULL, \
     /* depth */ NULL, \
     /* mask */ NULL, \
-    /* waits */ NULL, \
-    /* signals */ NULL, \
+    /* wait_semaphores */ NULL, \
+    /* signal_semaphores */ NULL, \
     /* wait_count */ 0, \
     /* wait_stride */ (uint32_t)sizeof(wk_vulkan_semaphore), \
     /* signal_count */ 0, \

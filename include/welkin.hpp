@@ -37,7 +37,7 @@ private:
 #endif
 
 /* Throws on a failure if exceptions are in use; returns the status. */
-inline wk_status check(wk_status status)
+inline wk_status checked(wk_status status)
 {
 #ifndef WELKIN_NO_EXCEPTIONS
     if (status < 0) throw error(status);
@@ -82,7 +82,7 @@ protected:
     wk_status adopt(wk_status status, T *made)
     {
         if (status >= 0) reset(made);
-        return check(status);
+        return checked(status);
     }
 
 private:
@@ -115,7 +115,7 @@ public:
         const wk_status status = wk_device_create_vulkan(&desc, &made);
         return adopt(status, made);
     }
-    wk_status get_caps(wk_caps &caps) const { return check(wk_device_get_caps(get(), &caps)); }
+    wk_status get_caps(wk_caps &caps) const { return checked(wk_device_get_caps(get(), &caps)); }
 };
 
 class texture : public handle<wk_texture, wk_texture_destroy> {
@@ -128,11 +128,11 @@ public:
     }
     wk_status write(const void *data, size_t size, uint32_t bytes_per_row)
     {
-        return check(wk_texture_write(get(), data, size, bytes_per_row));
+        return checked(wk_texture_write(get(), data, size, bytes_per_row));
     }
     wk_status read(void *data, size_t size, uint32_t bytes_per_row)
     {
-        return check(wk_texture_read(get(), data, size, bytes_per_row));
+        return checked(wk_texture_read(get(), data, size, bytes_per_row));
     }
 };
 
@@ -144,13 +144,13 @@ public:
         const wk_status status = wk_surface_create(parent.get(), &window, &made);
         return adopt(status, made);
     }
-    wk_status configure(const wk_surface_config &config) { return check(wk_surface_configure(get(), &config)); }
+    wk_status configure(const wk_surface_config &config) { return checked(wk_surface_configure(get(), &config)); }
     /* WK_PENDING and WK_ERROR_SURFACE_OUTDATED are normal for a window: neither throws. */
     wk_status acquire() { return unless_outdated(wk_surface_acquire(get())); }
     wk_status present() { return unless_outdated(wk_surface_present(get())); }
 
 private:
-    static wk_status unless_outdated(wk_status s) { return s == WK_ERROR_SURFACE_OUTDATED ? s : check(s); }
+    static wk_status unless_outdated(wk_status s) { return s == WK_ERROR_SURFACE_OUTDATED ? s : checked(s); }
 };
 
 class context : public handle<wk_context, wk_context_destroy> {
@@ -163,26 +163,26 @@ public:
     }
     wk_status set_weather(const wk_weather &weather, double start_time_s, double transition_s)
     {
-        return check(wk_context_set_weather(get(), &weather, start_time_s, transition_s));
+        return checked(wk_context_set_weather(get(), &weather, start_time_s, transition_s));
     }
-    wk_status set_clock(double utc_s, double time_s) { return check(wk_context_set_clock(get(), utc_s, time_s)); }
-    wk_status set_planet(const char *planet_toml) { return check(wk_context_set_planet(get(), planet_toml)); }
-    wk_status set_tone_curve(wk_tone_curve curve) { return check(wk_context_set_tone_curve(get(), curve)); }
+    wk_status set_clock(double utc_s, double time_s) { return checked(wk_context_set_clock(get(), utc_s, time_s)); }
+    wk_status set_planet(const char *planet_toml) { return checked(wk_context_set_planet(get(), planet_toml)); }
+    wk_status set_tone_curve(wk_tone_curve curve) { return checked(wk_context_set_tone_curve(get(), curve)); }
     wk_status set_sky_settings(const wk_sky_settings *settings = nullptr)
     {
-        return check(wk_context_set_sky_settings(get(), settings));
+        return checked(wk_context_set_sky_settings(get(), settings));
     }
     /* How the host should light its own objects in this frame. */
     wk_status get_frame_light(const wk_frame &frame, wk_frame_light &light) const
     {
-        return check(wk_context_get_frame_light(get(), &frame, &light));
+        return checked(wk_context_get_frame_light(get(), &frame, &light));
     }
     /* WK_PENDING: steps of a simulated ground remain; call it again with the same time. */
-    wk_status update(double time_s) { return check(wk_context_update(get(), time_s)); }
-    wk_status get_state_time(double &state_time_s) const { return check(wk_context_get_state_time(get(), &state_time_s)); }
+    wk_status update(double time_s) { return checked(wk_context_update(get(), time_s)); }
+    wk_status get_state_time(double &state_time_s) const { return checked(wk_context_get_state_time(get(), &state_time_s)); }
     wk_status build_sky(wk_progress_fn progress = nullptr, void *user = nullptr)
     {
-        return check(wk_context_build_sky(get(), progress, user));
+        return checked(wk_context_build_sky(get(), progress, user));
     }
 };
 
@@ -196,7 +196,7 @@ public:
     }
     wk_status record(const wk_frame &frame, wk_stage_flags stages = WK_STAGE_ALL)
     {
-        return check(wk_view_record(get(), &frame, stages));
+        return checked(wk_view_record(get(), &frame, stages));
     }
 };
 

@@ -88,6 +88,92 @@ fn header_compiles_under_every_standard_without_a_warning() {
     }
 }
 
+/// Words that other headers define as macros: as nothing, as a type, as a number or as a call.
+const FOREIGN_WORDS: &[(&str, &str)] = &[
+    ("Qt 5 and 6, qtmetamacros.h and qglobal.h", "signals slots emit foreach forever"),
+    (
+        "Windows, windows.h with what it includes",
+        "near far small hyper pascal cdecl interface FAR NEAR IN OUT OPTIONAL CONST VOID THIS PURE ERROR NO_ERROR DELETE STRICT \
+         TRUE FALSE BOOL CALLBACK WINAPI PASCAL CDECL INTERFACE INFINITE IGNORE ABSOLUTE RELATIVE OPAQUE TRANSPARENT WINDING PLANES \
+         ALTERNATE DIFFERENCE GetObject DrawText LoadImage CreateWindow SendMessage GetMessage PostMessage CreateFont \
+         GetUserName CreateEvent CreateSemaphore GetCurrentTime Yield min max rad1 rad2 grp1 grp2 stat_t",
+    ),
+    (
+        "X11, X.h, Xlib.h, Xutil.h and Xos.h",
+        "None Bool Status True False Success Always Complex Convex Nonconvex Unsorted YSorted YXSorted YXBanded CursorShape \
+         TileShape StippleShape KeyPress KeyRelease ButtonPress ButtonRelease FocusIn FocusOut Expose GravityNotify Above Below \
+         TopIf BottomIf Opposite ControlMask Button1 ParentRelative CopyFromParent AnyKey DestroyAll PseudoColor \
+         TrueColor DirectColor GrayScale StaticColor LineSolid CapRound JoinMiter WindingRule EvenOddRule AllValues NoValue \
+         XValue YValue WidthValue HeightValue AllTemporary CurrentTime InputOnly InputOutput Absolute Relative Xor Cursor",
+    ),
+    (
+        "C, complex.h, iso646.h and compilers",
+        "I complex imaginary and or not xor compl bitand bitor unix linux i386 vax sun",
+    ),
+    (
+        "POSIX and BSD, sysmacros.h, dir.h, term.h",
+        "lines columns bell newline erase clear st_atime st_mtime sa_handler",
+    ),
+    (
+        "other libraries",
+        "check verify require debug log assert_ text red green blue black white likely unlikely uint byte word",
+    ),
+];
+
+/// Compiles `text` after the standard's own headers, which use words that C and C++ reserve for them.
+fn compile_after_words(dir: &Path, file: &str, compiler: &[&str], words: &str, text: &str) -> Result<(), String> {
+    let standard = "#include <stddef.h>\n#include <stdint.h>\n#ifdef __cplusplus\n#include <stdexcept>\n#include <string>\n#endif\n";
+    let path = dir.join(file);
+    fs::write(&path, format!("{standard}{words}{text}")).expect("the folder is writable");
+    let mut command = Command::new(compiler[0]);
+    command.args(&compiler[1..]).args(["-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only", "-I"]);
+    let output = command.arg(root().join("include")).arg(&path).output().expect("a compiler");
+    match output.status.success() {
+        true => Ok(()),
+        false => Err(format!("{file}: {}", String::from_utf8_lossy(&output.stderr))),
+    }
+}
+
+/// Welkin's headers come after those of a toolkit, a window system or an operating system, and read the same.
+#[test]
+fn header_reads_the_same_after_the_macros_of_other_headers() {
+    let dir = scratch("foreign_words");
+    let all = every_struct_source();
+    let in_cpp = all.replacen("welkin.h", "welkin.hpp", 1);
+    for (whose, words) in FOREIGN_WORDS {
+        let object: String =
+            words.split_whitespace().map(|w| format!("#undef {w}\n#define {w} @of_another_header@\n")).collect();
+        for (file, compiler, text) in
+            [("words.c", ["gcc", "-std=c11"], &all), ("words.cpp", ["g++", "-std=c++17"], &in_cpp)]
+        {
+            // `and`, `or` and their like are operators in C++, which no macro can take.
+            if !words.contains("bitand") || compiler[0] == "gcc" {
+                compile_after_words(&dir, file, &compiler, &object, text).unwrap_or_else(|e| panic!("{whose}: {e}"));
+            }
+        }
+    }
+    // Each word that is a macro is found by the same way.
+    let signals = "#define signals @\nstruct x { int signals; };\n";
+    assert!(compile_after_words(&dir, "caught.c", &["gcc", "-std=c11"], "", signals).is_err());
+}
+
+/// The headers of the window system itself, where they are (`libx11-dev`), and C's complex numbers.
+#[test]
+fn header_reads_the_same_after_real_headers() {
+    let dir = scratch("real_headers");
+    let c = ["gcc", "-std=c11"];
+    let complex = "#include <complex.h>\n#include <iso646.h>\n";
+    compile_after_words(&dir, "complex.c", &c, complex, &every_struct_source()).unwrap_or_else(|e| panic!("{e}"));
+    let x11 = "#include <X11/Xlib.h>\n#include <X11/Xutil.h>\n#include <X11/Xos.h>\n";
+    if compile_after_words(&dir, "probe.c", &c, x11, "int main(void) { return 0; }\n").is_err() {
+        println!("skipped: X11's headers are not installed (libx11-dev)");
+        return;
+    }
+    compile_after_words(&dir, "x11.c", &c, x11, &every_struct_source()).unwrap_or_else(|e| panic!("{e}"));
+    let hpp = every_struct_source().replacen("welkin.h", "welkin.hpp", 1);
+    compile_after_words(&dir, "x11.cpp", &["g++", "-std=c++17"], x11, &hpp).unwrap_or_else(|e| panic!("{e}"));
+}
+
 /// A C program that prints each struct's size, alignment, field offsets and sizes, and the bytes of its INIT macro.
 fn layout_program() -> String {
     let mut text = String::from("#include \"welkin.h\"\n#include <stdio.h>\n#include <string.h>\n");

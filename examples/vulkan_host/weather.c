@@ -76,9 +76,9 @@ void weather_draw(const weather *w, const handover *over, uint64_t frame_id, dou
     target.color = &color;
     target.depth = &depth;
     if (over->mask.image) target.mask = &mask;
-    target.waits = waits;
+    target.wait_semaphores = waits;
     target.wait_count = over->wait != VK_NULL_HANDLE;
-    target.signals = signals;
+    target.signal_semaphores = signals;
     target.signal_count = over->signal != VK_NULL_HANDLE;
 
     wk_frame frame = WK_FRAME_INIT;

@@ -235,9 +235,9 @@ pub struct wk_vulkan_target {
     /// sample, another image. Default NULL.
     pub mask: *const wk_vulkan_image,
     /// Semaphores to wait for before drawing; the signal of a binary one must be submitted. At most 16.
-    pub waits: *const wk_vulkan_semaphore,
+    pub wait_semaphores: *const wk_vulkan_semaphore,
     /// Semaphores to signal when all is drawn and the images are in their final layouts. At most 16.
-    pub signals: *const wk_vulkan_semaphore,
+    pub signal_semaphores: *const wk_vulkan_semaphore,
     /// Number of waits. Default 0.
     pub wait_count: u32,
     /// Bytes from one wait to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
@@ -263,8 +263,8 @@ impl wk_vulkan_target {
         color: null(),
         depth: null(),
         mask: null(),
-        waits: null(),
-        signals: null(),
+        wait_semaphores: null(),
+        signal_semaphores: null(),
         wait_count: 0,
         wait_stride: struct_size::<wk_vulkan_semaphore>(),
         signal_count: 0,

@@ -82,9 +82,9 @@ fn c_hosts_get_the_same_picture_and_their_layouts_and_semaphores() {
         let target = wk_vulkan_target {
             color: &color,
             depth: &depths,
-            waits: &wait,
+            wait_semaphores: &wait,
             wait_count: 1,
-            signals: &signal,
+            signal_semaphores: &signal,
             signal_count: 1,
             ..init("wk_vulkan_target")
         };
@@ -148,12 +148,12 @@ fn what_a_c_host_has_wrong_is_named_as_in_the_header() {
     let semaphores = [
         ("frame.target.wait_count must be at most 16, got 17", 17, size_of::<wk_vulkan_semaphore>()),
         ("frame.target.wait_stride must be", 1, 4),
-        ("frame.target.waits[0].semaphore must be a live VkSemaphore", 1, size_of::<wk_vulkan_semaphore>()),
+        ("frame.target.wait_semaphores[0].semaphore must be a live VkSemaphore", 1, size_of::<wk_vulkan_semaphore>()),
     ];
     for (wanted, count, stride) in semaphores {
         let target = wk_vulkan_target {
             color: &good,
-            waits: many.as_ptr(),
+            wait_semaphores: many.as_ptr(),
             wait_count: count,
             wait_stride: stride as u32,
             ..init("wk_vulkan_target")

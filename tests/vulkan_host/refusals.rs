@@ -178,8 +178,8 @@ fn semaphores_that_do_not_fit_are_refused_by_name() {
     };
     let null = HostSemaphore { semaphore: vk::Semaphore::null(), value: None };
     let timeline = HostSemaphore { semaphore: binary, value: Some(3) };
-    assert_says(&submit(&[null], &[]), Status::InvalidArgument, &["waits[0].semaphore", "VK_NULL_HANDLE"]);
-    assert_says(&submit(&[], &[timeline]), Status::InvalidArgument, &["signals[0]", "timelineSemaphore"]);
+    assert_says(&submit(&[null], &[]), Status::InvalidArgument, &["wait_semaphores[0].semaphore", "VK_NULL_HANDLE"]);
+    assert_says(&submit(&[], &[timeline]), Status::InvalidArgument, &["signal_semaphores[0]", "timelineSemaphore"]);
     welkin.close().unwrap();
     host.destroy_semaphore(binary);
     host.finish();

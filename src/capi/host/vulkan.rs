@@ -130,8 +130,12 @@ pub(in crate::capi) unsafe fn record(
         depth.image.check_written("frame.target.depth")?;
     }
     // SAFETY: as above.
-    let (waits, signals) =
-        unsafe { (semaphores(&waits_of(&target), target.waits)?, semaphores(&signals_of(&target), target.signals)?) };
+    let (waits, signals) = unsafe {
+        (
+            semaphores(&waits_of(&target), target.wait_semaphores)?,
+            semaphores(&signals_of(&target), target.signal_semaphores)?,
+        )
+    };
     let layer = |i: &Option<Imported>| i.as_ref().map_or(0, |i| i.image.layer);
     let images = Images {
         layers: ImageLayers {
@@ -283,7 +287,7 @@ unsafe fn import(
 
 fn waits_of(target: &wk_vulkan_target) -> List<'static> {
     List {
-        name: "frame.target.waits",
+        name: "frame.target.wait_semaphores",
         count: Named("frame.target.wait_count", target.wait_count as usize),
         stride: Named("frame.target.wait_stride", target.wait_stride as usize),
         limit: MAX_SEMAPHORES,
@@ -292,7 +296,7 @@ fn waits_of(target: &wk_vulkan_target) -> List<'static> {
 
 fn signals_of(target: &wk_vulkan_target) -> List<'static> {
     List {
-        name: "frame.target.signals",
+        name: "frame.target.signal_semaphores",
         count: Named("frame.target.signal_count", target.signal_count as usize),
         stride: Named("frame.target.signal_stride", target.signal_stride as usize),
         limit: MAX_SEMAPHORES,

@@ -44,8 +44,8 @@ impl VulkanHost {
     /// The images are described truly and the semaphores live, of the kind that `value` says; the queue is used
     /// by the contract in the [module's words](super).
     pub unsafe fn submit(&self, mut encoder: wgpu::CommandEncoder, over: &HandOver<'_>) -> Result<()> {
-        self.check_semaphores("waits", over.wait)?;
-        self.check_semaphores("signals", over.signal)?;
+        self.check_semaphores("wait_semaphores", over.wait)?;
+        self.check_semaphores("signal_semaphores", over.signal)?;
         let home = over.images.iter().map(|&(image, role, texture)| wgpu::TextureTransition {
             texture,
             selector: Some(wgpu::wgt::TextureSelector { mips: 0..1, layers: image.layer..image.layer + 1 }),
