@@ -1,4 +1,5 @@
 // Water and clear ice on a surface, seen by the camera: the host's colour x through + light.
+//!include "common/guarded.wgsl"
 //!include "between/sky.wgsl"
 //!include "ground/spot.wgsl"
 
@@ -143,7 +144,8 @@ fn water_on(spot: Spot) -> Veil {
     let thin_share = thin.share * water.filmed * (1.0 - pool);
     let deep_share = deep.share * pool;
     let both = max(thin_share + deep_share, 1e-6);
-    let mirrored = normalize(thin.direction * (thin_share / both) + deep.direction * (deep_share / both));
+    // A surface without water mirrors nothing, and its mirror points nowhere: then up, times a share of 0.
+    let mirrored = unit_or(thin.direction * (thin_share / both) + deep.direction * (deep_share / both), spot.up);
     var sky = mirrored_light(mirrored);
     if SHELTER {
         // What keeps rain off hides the sky too: its underside is as bright as the ground that it sees.

@@ -25,7 +25,6 @@ fn source(name: &str) -> Option<&'static str> {
 }
 
 /// Words of variants, and a file of the shaders that have them.
-#[cfg(test)]
 const VARIANTS: [(&str, &str); 6] = [
     ("multi", "common/host.wgsl"),
     ("resolved", "common/host.wgsl"),
@@ -34,6 +33,20 @@ const VARIANTS: [(&str, &str); 6] = [
     ("box", "clouds/probe.wgsl"),
     ("lamps", "clouds/glow_view.wgsl"),
 ];
+
+/// Names of shader `name` and its variants of one word, and of the composition's of several, which stand for what others may use.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn with_variants(name: &str) -> Result<Vec<String>> {
+    let text = assemble(name)?;
+    let has = |file: &str| text.contains(&format!("// ---- {file}\n"));
+    let words = VARIANTS.iter().filter(|(_, file)| has(file)).map(|(word, _)| format!(":{word}"));
+    let several = ["", ":multi", ":resolved"].map(|host| format!("{host}:clear:dry"));
+    let several = several.into_iter().chain([":even", ":dry:even"].map(String::from));
+    let several = several.filter(|_| name == "frame/composite_view.wgsl");
+    Ok(std::iter::once(String::new()).chain(words).chain(several).map(|words| format!("{name}{words}")).collect())
+}
 
 /// The text of shader `name` with its includes put before it, each once, in order of first mention; of variants after colons.
 ///
@@ -170,23 +183,12 @@ mod tests {
         text
     }
 
-    /// A shader and its variants of one word, and the composition's of several, which stand for what others may use.
-    fn with_variants(name: &str) -> Vec<String> {
-        let text = assemble(name).unwrap();
-        let has = |file: &str| text.contains(&format!("// ---- {file}\n"));
-        let words = VARIANTS.iter().filter(|(_, file)| has(file)).map(|(word, _)| format!(":{word}"));
-        let several = ["", ":multi", ":resolved"].map(|host| format!("{host}:clear:dry"));
-        let several = several.into_iter().chain([":even", ":dry:even"].map(String::from));
-        let several = several.filter(|_| name == "frame/composite_view.wgsl");
-        std::iter::once(String::new()).chain(words).chain(several).map(|words| format!("{name}{words}")).collect()
-    }
-
     #[test]
     fn every_shader_assembles_and_validates() {
         let mut variants = 0;
         for name in names() {
             let text = valid(name);
-            for other in &with_variants(name)[1..] {
+            for other in &with_variants(name).unwrap()[1..] {
                 assert!(valid(other) != text, "{other}");
                 variants += 1;
             }
@@ -252,7 +254,7 @@ mod tests {
             };
             module.global_variables.iter().filter(|(_, v)| is_read(&module.types[v.ty].inner)).count()
         };
-        let all: Vec<String> = names().flat_map(with_variants).collect();
+        let all: Vec<String> = names().flat_map(|name| with_variants(name).unwrap()).collect();
         assert!(all.len() >= names().count() + 16, "variants are among them");
         let (most, name) = all.iter().map(|name| (count(name), name)).max().unwrap();
         assert!(most <= 13, "{name}: {most}");

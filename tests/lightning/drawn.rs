@@ -8,10 +8,11 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, FrameFlags, Shared, Stages, View},
     gpu::readback,
+    ground::SurfaceClass,
     light::{Exposure, ToneCurve, luminance, tone::srgb_encode},
     lightning::{FlashKind, FlashTrigger, LightningSettings, StormCell},
     scene::Camera,
-    weather::Weather,
+    weather::{Surface, SurfaceState, Weather},
 };
 
 use crate::device;
@@ -253,6 +254,30 @@ fn rain_and_wet_ground_are_lit() {
     println!("ground {ground} {ground_lit}, drops {drops} {drops_lit}");
     assert!(mean(&lit) > 5.0 * mean(&dark));
     assert!(ground_lit > 5.0 * ground && drops_lit > 5.0 * drops, "{ground} {ground_lit}, {drops} {drops_lit}");
+}
+
+/// Wet plants mirror nothing, and a flash that shines in the sky changes nothing of that.
+#[test]
+fn a_flash_leaves_wet_plants_dark() {
+    let wet = Surface { state: Some(SurfaceState::Wet), ..Surface::default() };
+    let weather = Weather { surface: wet, ..Weather::default() };
+    let most_of = |class| {
+        let mut night = Night::new(&weather, (64, 36));
+        night.context.set_default_surface_class(class);
+        night.forward = DVec3::new(0.0, 1.0, -0.3);
+        night.set_ground();
+        night.context.trigger_flash(&at(1.0, AHEAD, FlashKind::InCloud)).unwrap();
+        let black = vec![0.0; 4 * 64 * 36];
+        let picture = night.take_over(1.01, Stages::SURFACE, FrameFlags::NO_HISTORY, &black);
+        assert!(picture.iter().flatten().all(|v| v.is_finite()), "{class:?}");
+        most(&picture)
+    };
+    let soil = most_of(SurfaceClass::Soil);
+    for class in [SurfaceClass::Vegetation, SurfaceClass::Water, SurfaceClass::Rock, SurfaceClass::Unspecified] {
+        let found = most_of(class);
+        println!("{class:?}: {found} cd/m^2, of soil {soil}");
+        assert!(found <= 20.0 * soil, "{class:?}: {found}, of soil {soil}");
+    }
 }
 
 /// Rises and falls by more than a tenth of the brighter luminance, and when each ends.
