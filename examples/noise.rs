@@ -8,6 +8,10 @@
 //! Each FILE ends in .dds, .ktx2 (with mip levels) or .png (a look at one slice, N x N tiles of it). With a cutoff or a cover and a
 //! density the texels are opacities of clouds, and previews show them white on blue. Wrong input: exit code 2, nothing written.
 
+#[path = "shared/mod.rs"]
+#[allow(dead_code)] // It serves several examples.
+mod shared;
+
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -18,10 +22,29 @@ use welkin::{Error, Result, Status};
 const USAGE: &str = "usage: noise FILE.dds|FILE.ktx2|FILE.png.. [--kind gradient|cellular|both]\n       \
                      [--size WIDTHxHEIGHT[xDEPTH]] [--frequency CELLS[,CELLS[,CELLS]]] [--octaves N] [--amplitude A]\n       \
                      [--persistence P] [--seed N] [--preset overcast|broken|few] [--from FILE] [--gpu]\n       \
-                     [--cutoff C | --cover SHARE] [--density D] [--slice Z] [--tiles N]";
+                     [--cutoff C | --cover SHARE] [--density D] [--slice Z] [--tiles N]\n       \
+                     noise --help | --version";
 
 /// Edge of a preview, pixels.
 const LONGEST_PREVIEW: u64 = 16384;
+
+/// Options that take a value.
+const OPTIONS: [&str; 14] = [
+    "--kind",
+    "--size",
+    "--frequency",
+    "--octaves",
+    "--amplitude",
+    "--persistence",
+    "--seed",
+    "--preset",
+    "--from",
+    "--cutoff",
+    "--cover",
+    "--density",
+    "--slice",
+    "--tiles",
+];
 
 /// What the command line says.
 struct Job {
@@ -72,7 +95,10 @@ impl Job {
         while let Some(word) = words.next() {
             if word == "--gpu" {
                 job.gpu = true;
-            } else if word.starts_with("--") {
+            } else if word.starts_with('-') {
+                if !OPTIONS.contains(&word.as_str()) {
+                    return Err(usage(format_args!("unknown option `{word}`")));
+                }
                 let value = words.next().ok_or_else(|| usage(format_args!("{word} has no value")))?;
                 job.set(&word, &value)?;
             } else {
@@ -114,7 +140,7 @@ impl Job {
             "--density" => self.density = Some(number(name, value)?),
             "--slice" => self.slice = number(name, value)?,
             "--tiles" => self.tiles = number::<u32>(name, value)?.clamp(1, 8),
-            other => return Err(usage(format_args!("there is no option `{other}`"))),
+            other => return Err(usage(format_args!("unknown option `{other}`"))),
         }
         Ok(())
     }
@@ -152,12 +178,13 @@ impl Job {
         let contents =
             self.files.iter().map(|f| self.content(f, &image, cloud.is_some())).collect::<Result<Vec<_>>>()?;
         for (file, content) in self.files.iter().zip(contents) {
-            std::fs::write(file, content).map_err(|e| Error::new(Status::Io, format!("{file}: {e}")))?;
+            shared::write_whole(Path::new(file), &content)?;
         }
         let bytes = &noise.levels()[0];
         let mean = bytes.iter().map(|n| f64::from(*n)).sum::<f64>() / 255.0 / bytes.len() as f64;
         let [low, high] = [bytes.iter().min(), bytes.iter().max()].map(|n| n.copied().unwrap_or(0));
-        let mut said = format!("size {:?}, mean {mean:.3}, from {low} to {high}", noise.size());
+        let [width, height, depth] = noise.size();
+        let mut said = format!("size {width} x {height} x {depth}, mean {mean:.3}, from {low} to {high}");
         if let Some(cloud) = &cloud {
             said += &format!("\ncutoff {:.4}, cover {:.3}", cloud.cutoff(), noise.cover(cloud.cutoff()));
         }
@@ -203,7 +230,11 @@ pub fn run(words: impl Iterator<Item = String>) -> Result<String> {
 }
 
 fn main() -> ExitCode {
-    match run(std::env::args().skip(1)) {
+    if let Some(text) = shared::answered("noise", USAGE, std::env::args().skip(1)) {
+        print!("{text}");
+        return ExitCode::SUCCESS;
+    }
+    match shared::at_work("noise", "making noise", || run(std::env::args().skip(1))) {
         Ok(said) => {
             println!("{said}");
             ExitCode::SUCCESS

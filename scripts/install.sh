@@ -3,6 +3,10 @@
 #
 #   scripts/install.sh BUILD_DIR DESTDIR PREFIX VERSION ABI_MAJOR      (called by `make install`)
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/command_line.sh"
+answer_command_line "$@"
+case "${1:-}" in -*) refuse "$1" ;; esac
+[ $# -eq 5 ] || { echo "install.sh: five arguments are wanted, got $#; install.sh --help lists them" >&2; exit 2; }
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 build="$1" destdir="$2" prefix="$3" version="$4" abi="$5"

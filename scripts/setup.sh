@@ -5,6 +5,8 @@
 #   scripts/setup.sh          everything that `make test` and `make demo` use
 #   scripts/setup.sh build    only what the library itself needs (a Rust toolchain and a linker)
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/command_line.sh"
+answer_command_line "$@"
 
 readonly MIN_RUST=1.90
 
@@ -17,6 +19,7 @@ all_packages=(
     libglfw3-dev libx11-dev libxrandr-dev             # its window, and a window by native handle
     libopenscenegraph-dev                             # C++ OpenSceneGraph host
     libvulkan-dev                                     # C Vulkan host
+    qt6-base-dev libqt6opengl6-dev                    # C++ Qt host; half a minute to install
     libgl1-mesa-dri libegl1 libgl1 libvulkan1         # drivers, software ones included
     mesa-vulkan-drivers vulkan-validationlayers
     xvfb xauth valgrind                               # tests: a display without a screen, memory checks
@@ -104,6 +107,8 @@ check_rust() {
 }
 
 what="${1:-all}"
+case "$what" in all | build) ;; *) refuse "$what" ;; esac
+[ $# -le 1 ] || refuse "$2"
 if command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then
     if [ "$what" = build ]; then
         # Any C compiler will do for linking; do not replace a clang-only machine's choice.

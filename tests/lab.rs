@@ -56,6 +56,8 @@ mod regression;
 mod report;
 #[path = "../examples/lab/scenes.rs"]
 mod scenes;
+#[path = "../examples/shared/mod.rs"]
+mod shared;
 #[path = "../examples/lab/sky/mod.rs"]
 mod sky;
 #[path = "../examples/lab/snow.rs"]

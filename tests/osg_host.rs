@@ -259,6 +259,28 @@ fn the_cab_has_rain_on_its_windscreen() {
     assert!(wet > 4.0 && clear < 0.5 * wet, "drops on grey sky: {wet}, without: {clear}");
 }
 
+#[test]
+fn the_command_line_keeps_the_conventions() {
+    let ask = |arguments: &[&str]| {
+        let done = Command::new(built()).args(arguments).env_remove("DISPLAY").output().expect("the host runs");
+        let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+        (done.status.code(), text(done.stdout), text(done.stderr))
+    };
+    for (argument, wanted) in [("--help", "--precipitation"), ("--version", env!("CARGO_PKG_VERSION"))] {
+        let (code, out, errors) = ask(&[argument]);
+        assert!(code == Some(0) && out.contains(wanted) && errors.is_empty(), "{argument}: {code:?} {out} {errors}");
+    }
+    for (arguments, named) in [
+        (["--no-such-option"].as_slice(), "--no-such-option"),
+        (&["a.png"], "a.png"),
+        (&["--msaa", "eight"], "eight"),
+        (&["--frames"], "--frames"),
+    ] {
+        let (code, out, errors) = ask(arguments);
+        assert!(code == Some(2) && errors.contains(named) && out.is_empty(), "{arguments:?}: {code:?} {out} {errors}");
+    }
+}
+
 /// The tutorial's program, as it stands in the docs.
 #[test]
 fn the_tutorial_compiles_and_runs() {

@@ -63,6 +63,7 @@ static bool draw_all(demo *d, sheet *s, int first, int rows, const char *out, ui
         sheet_caption(s, row, caption);
         for (int h = 0; h < HOUR_COUNT; h++) {
             d->hour = h;
+            fprintf(stderr, "drawing %d of %d\n", row * HOUR_COUNT + h + 1, rows * HOUR_COUNT);
             if (!demo_next_hour(d, 0) || !draw(d, sum) || !save(d, s, row, out, rgb))
                 return false;
         }

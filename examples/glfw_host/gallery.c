@@ -88,23 +88,32 @@ static bool wanted(const shot *s, char *const *names, int count)
     return count == 0;
 }
 
+bool gallery_has(char *const *names, int count)
+{
+    for (int n = 0; n < count; n++) {
+        int i = 0;
+        while (i < SHOT_COUNT && strcmp(names[n], SHOTS[i].name) != 0)
+            i++;
+        if (i < SHOT_COUNT)
+            continue;
+        fprintf(stderr, "glfw_host: the gallery has no picture %s; it has:", names[n]);
+        for (i = 0; i < SHOT_COUNT; i++)
+            fprintf(stderr, " %s", SHOTS[i].name);
+        fputc('\n', stderr);
+        return false;
+    }
+    return true;
+}
+
 static bool take_all(demo *d, const char *out, char *const *names, int count)
 {
     uint8_t *rgb = malloc((size_t)d->picture.shown_width * (size_t)d->picture.shown_height * 3);
-    int taken = 0;
     bool ok = rgb != NULL;
-    for (int i = 0; i < SHOT_COUNT && ok; i++)
+    for (int i = 0, taken = 0; i < SHOT_COUNT && ok; i++)
         if (wanted(&SHOTS[i], names, count)) {
+            fprintf(stderr, "drawing %s, %d of %d\n", SHOTS[i].name, ++taken, count > 0 ? count : SHOT_COUNT);
             ok = take(d, &SHOTS[i], out, rgb);
-            taken++;
         }
-    if (ok && count > 0 && taken != count) {
-        fprintf(stderr, "the gallery has no picture of that name; it has:");
-        for (int i = 0; i < SHOT_COUNT; i++)
-            fprintf(stderr, " %s", SHOTS[i].name);
-        fputc('\n', stderr);
-        ok = false;
-    }
     free(rgb);
     return ok;
 }

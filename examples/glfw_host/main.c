@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../command_line.h"
 #include "contact.h"
 #include "gallery.h"
 #include "window.h"
@@ -20,7 +21,28 @@ static const char USAGE[] =
     "  --frames N   close the window after N frames\n"
     "  --report N   begin with report N; pictures of that one only\n"
     "  --planet FILE  a planet file, as examples/data/planet_dusty.toml, in place of the Earth\n"
-    "  --gallery    draw the README's pictures, or those of the names given, with 2 x 2 samples a pixel\n";
+    "  --gallery    draw the pictures of docs/gallery.md, or those of the names given, with 2 x 2 samples a pixel\n"
+    "  --help, --version\n";
+
+static const char NAME[] = "glfw_host";
+
+/* Options of a value; false, with a line on stderr, for a value that does not serve. */
+static bool read_size(const char *text, int *width, int *height)
+{
+    int end = 0;
+    const bool is_size = sscanf(text, "%dx%d%n", width, height, &end) == 2 && !text[end];
+    if (is_size && *width >= 16 && *height >= 16 && *width <= 8192 && *height <= 8192)
+        return true;
+    fprintf(stderr, "%s: --size must be WxH, each from 16 to 8192, got %s\n", NAME, text);
+    return false;
+}
+
+static bool is_one_of(const char *word, const char *const *words)
+{
+    while (*words && strcmp(word, *words) != 0)
+        words++;
+    return *words != NULL;
+}
 
 /* The text of a file, to be freed; NULL with a line on stderr if it cannot be read. */
 static char *text_of(const char *path)
@@ -45,34 +67,41 @@ int main(int argc, char **argv)
     bool headless = !window_possible(), gallery = false;
     char **names = argv; /* gathered where the arguments stood */
     int name_count = 0;
+    static const char *const WITH_VALUE[] = {"--data", "--out", "--planet", "--frames", "--report", "--size", NULL};
+    if (command_line_answered(argc, argv, NAME, USAGE))
+        return 0;
     for (int i = 1; i < argc; i++) {
-        bool more = i + 1 < argc;
-        if (strcmp(argv[i], "--data") == 0 && more)
+        const char *option = argv[i];
+        bool ok = true;
+        if (is_one_of(option, WITH_VALUE) && i + 1 == argc)
+            return command_line_refused(NAME, option, "no value after ");
+        if (strcmp(option, "--data") == 0)
             data = argv[++i];
-        else if (strcmp(argv[i], "--out") == 0 && more)
+        else if (strcmp(option, "--out") == 0)
             out = argv[++i];
-        else if (strcmp(argv[i], "--planet") == 0 && more)
+        else if (strcmp(option, "--planet") == 0)
             planet_file = argv[++i];
-        else if (strcmp(argv[i], "--frames") == 0 && more)
-            frames = atoi(argv[++i]);
-        else if (strcmp(argv[i], "--report") == 0 && more)
-            report = atoi(argv[++i]);
-        else if (strcmp(argv[i], "--headless") == 0)
+        else if (strcmp(option, "--frames") == 0)
+            ok = command_line_number(NAME, option, argv[++i], 0, 100000000, &frames);
+        else if (strcmp(option, "--report") == 0)
+            ok = command_line_number(NAME, option, argv[++i], 1, 1000, &report);
+        else if (strcmp(option, "--size") == 0)
+            ok = read_size(argv[++i], &width, &height);
+        else if (strcmp(option, "--headless") == 0)
             headless = true;
-        else if (strcmp(argv[i], "--gallery") == 0)
+        else if (strcmp(option, "--gallery") == 0)
             gallery = true;
-        else if (gallery && argv[i][0] != '-')
+        else if (gallery && option[0] != '-')
             names[name_count++] = argv[i];
-        else if (strcmp(argv[i], "--size") == 0 && more && sscanf(argv[i + 1], "%dx%d", &width, &height) == 2 &&
-                 width >= 16 && height >= 16 && width <= 8192 && height <= 8192)
-            i++;
-        else {
-            fputs(USAGE, stderr);
+        else
+            return command_line_unknown(NAME, option);
+        if (!ok)
             return 2;
-        }
     }
     if (width == 0)
         width = headless && !gallery ? 640 : 1280, height = headless && !gallery ? 360 : 720;
+    if (gallery && !gallery_has(names, name_count))
+        return 2;
     if (gallery)
         return gallery_run(data, out, width, height, names, name_count);
     char *planet = planet_file ? text_of(planet_file) : NULL;

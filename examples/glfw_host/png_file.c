@@ -6,6 +6,8 @@
 
 #include <png.h>
 
+#include "../command_line.h"
+
 static void on_fault(png_structp png, png_const_charp message)
 {
     fprintf(stderr, "%s: %s\n", (const char *)png_get_error_ptr(png), message);
@@ -58,9 +60,9 @@ bool png_read_grey16(const char *path, uint16_t **pixels, int *width, int *heigh
 static bool write_rows(const char *path, const uint8_t *pixels, int width, int height, const uint8_t (*colors)[3], int count)
 {
     const size_t row_bytes = (size_t)width * (colors ? 1 : 3);
-    FILE *file = fopen(path, "wb");
+    FILE *file = fopen(part_begin(path), "wb");
     if (!file)
-        return fail(path, "cannot be written");
+        return part_end(path, false) || fail(path, "cannot be written"); /* nothing of it is there */
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, (png_voidp)path, on_fault, NULL);
     png_infop info = png_create_info_struct(png);
     volatile bool ok = false;
@@ -83,7 +85,8 @@ static bool write_rows(const char *path, const uint8_t *pixels, int width, int h
         ok = true;
     }
     png_destroy_write_struct(&png, &info);
-    return fclose(file) == 0 && ok;
+    ok = fclose(file) == 0 && ok;
+    return part_end(path, ok) || (ok && fail(path, "cannot be written"));
 }
 
 bool png_write_rgb8(const char *path, const uint8_t *pixels, int width, int height)

@@ -1,4 +1,4 @@
-/* The pictures of the README's gallery: where each is taken from, when, and in what weather. */
+/* The pictures of docs/gallery.md: where each is taken from, when, and in what weather. */
 #ifndef SHOTS_H
 #define SHOTS_H
 

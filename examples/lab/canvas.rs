@@ -98,12 +98,13 @@ impl Canvas {
         });
         let fault = |e: String| Error::new(Status::Io, format!("{}: {e}", stem.display()));
         let svg = stem.with_extension("svg");
-        self.draw(SVGBackend::new(&svg, self.size).into_drawing_area()).map_err(fault)?;
+        let mut text = String::new();
+        self.draw(SVGBackend::with_string(&mut text, self.size).into_drawing_area()).map_err(fault)?;
+        crate::shared::write_whole(&svg, text.as_bytes())?;
         let png = stem.with_extension("png");
         let mut bytes = vec![0; (3 * self.size.0 * self.size.1) as usize];
         self.draw(BitMapBackend::with_buffer(&mut bytes, self.size).into_drawing_area()).map_err(fault)?;
-        let kind = image::ColorType::Rgb8;
-        image::save_buffer(&png, &bytes, self.size.0, self.size.1, kind).map_err(|e| fault(e.to_string()))
+        crate::shared::write_png(&png, &bytes, self.size.into())
     }
 
     fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> std::result::Result<(), String> {

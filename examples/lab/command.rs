@@ -7,7 +7,8 @@ use welkin::{Error, Result, Status};
 use crate::candidates::{Candidate, Effect, candidate};
 use crate::{chart, clouds, compare, genera, growth, page, painted_chart, peers, regression, report, stability};
 
-const USAGE: &str =
+/// Every command and option.
+pub const USAGE: &str =
     "usage: lab chart [sky|fog|rain|snow|stars|clouds|painted-clouds|quadrature]   cost against error, with plots
        lab growth                         how cost and bytes grow
        lab stability [MAP ..]             where methods fail
@@ -20,7 +21,8 @@ const USAGE: &str =
        lab painted DIR [--scene PART]     a PNG of every way to paint clouds, to be looked at
        lab thresholds                     of the clouds' map, as src/clouds/thresholds.in has them
        lab photons                        how far the clouds' light is from photons
-options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)";
+options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)
+         --help   --version";
 
 /// What was asked for.
 pub struct Options {

@@ -51,7 +51,8 @@ pub fn draw(dir: &Path, part: Option<&str>) -> Result<()> {
     for scene in GENERA.iter().filter(|s| part.is_none_or(|part| s.name.contains(part))) {
         let picture = Host::new(&device, scene, SIZE)?.whole(CloudSettings::default())?;
         let path = dir.join(format!("{}.png", scene.name));
-        picture.display(picture.white()).save(&path).map_err(|e| fault(&e))?;
+        let image = picture.display(picture.white());
+        crate::shared::write_png(&path, &image, image.dimensions().into())?;
         println!("{}", path.display());
     }
     Ok(())

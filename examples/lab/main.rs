@@ -33,6 +33,9 @@ mod rain;
 mod regression;
 mod report;
 mod scenes;
+#[path = "../shared/mod.rs"]
+#[allow(dead_code)] // Its charts say themselves how far they are.
+mod shared;
 mod sky;
 mod snow;
 mod source_lod;
@@ -46,6 +49,10 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(text) = shared::answered("lab", command::USAGE, arguments.iter().cloned()) {
+        print!("{text}");
+        return ExitCode::SUCCESS;
+    }
     match command::run(&arguments) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,

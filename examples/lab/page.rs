@@ -9,7 +9,7 @@ use crate::chart::points;
 use crate::peers;
 use crate::plot::short;
 use crate::stability;
-use crate::store::{Table, io};
+use crate::store::Table;
 
 /// Writes `README.md` into the lab's directory.
 ///
@@ -60,7 +60,7 @@ pub fn write(directory: &Path) -> Result<()> {
     stability::section(&mut out, directory)?;
     how_section(&mut out, [&sky, &fog, &rain, &snow, &stars, &clouds, &painted, &quadrature, &growth]);
     let path = directory.join("README.md");
-    std::fs::write(&path, out).map_err(|e| io(&path, &e))
+    crate::shared::write_whole(&path, out.as_bytes())
 }
 
 const QUADRATURE_SAYS: &str = "\nWith the sun up, nodes on the stretch err far less than on the plain ray, and Gauss panels far less than \

@@ -2,9 +2,9 @@
 
 use std::{path::Path, sync::Arc};
 
+use welkin::Result;
 use welkin::clouds::{CloudModel, CloudSettings};
 use welkin::gpu::{Device, DeviceOptions};
-use welkin::{Error, Result, Status};
 
 use crate::chart::Lab;
 use crate::command::Options;
@@ -47,7 +47,8 @@ pub fn draw(folder: &Path, part: Option<&str>) -> Result<()> {
             }
             let path = folder.join(format!("{name}.png"));
             let image = easel.pictures(paint, 0..1)?[0].display(white);
-            image.save(&path).map_err(|e| Error::new(Status::Io, format!("{}: {e}", path.display())))?;
+            crate::shared::write_png(&path, &image, image.dimensions().into())?;
+            println!("{}", path.display());
         }
     }
     Ok(())

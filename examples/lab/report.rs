@@ -50,7 +50,7 @@ pub fn run(options: &Options) -> Result<()> {
     }
     out.push_str("</body></html>\n");
     let path = directory.join("report.html");
-    fs::write(&path, out).map_err(|e| io(&path, &e))?;
+    crate::shared::write_whole(&path, out.as_bytes())?;
     println!("{}", path.display());
     Ok(())
 }

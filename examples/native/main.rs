@@ -2,8 +2,12 @@
 //!
 //! `cargo run --release --example native [-- FILE.png [METAR]]` writes one picture.
 
+#[path = "../shared/mod.rs"]
+mod shared;
 mod world;
 
+use std::path::Path;
+use std::process::ExitCode;
 use std::sync::Arc;
 
 use glam::{DVec3, Mat4, Vec2};
@@ -177,10 +181,10 @@ impl Host {
 }
 
 /// The host's world with the weather drawn into it.
-fn take(host: &Host, shared: &Arc<Shared>, metar: &str, path: &str) -> Fallible<()> {
+fn take(host: &Host, shared: &Arc<Shared>, weather: Weather, path: &str) -> Fallible<()> {
     let mut context = Context::new(host.device.clone(), shared.clone(), ContextDesc::default())?;
     let ground = f64::from(host.terrain.height(AT));
-    let weather = Weather { station_altitude_m: ground, ..Weather::from_metar(metar)?.weather };
+    let weather = Weather { station_altitude_m: ground, ..weather };
     context.set_sun(Some(GivenDirection { azimuth_deg: 70.0, elevation_deg: 35.0 }))?;
     context.set_weather(&weather, 0.0, 0.0)?;
     let eye = DVec3::new(f64::from(AT.x), f64::from(AT.y), ground + 1.8);
@@ -200,18 +204,43 @@ fn take(host: &Host, shared: &Arc<Shared>, metar: &str, path: &str) -> Fallible<
     let pixels = readback::rgba(&host.device, &host.color)?;
     let bytes =
         pixels.iter().flat_map(|p| [0, 1, 2].map(|c| (tone::srgb_encode(f64::from(p[c])) * 255.0).round() as u8));
-    image::save_buffer(path, &bytes.collect::<Vec<_>>(), SIZE.0, SIZE.1, image::ExtendedColorType::Rgb8)?;
-    Ok(())
+    Ok(shared::write_png(Path::new(path), &bytes.collect::<Vec<_>>(), SIZE.into())?)
 }
 
-fn main() -> Fallible<()> {
-    let mut arguments = std::env::args().skip(1);
-    let path = arguments.next().unwrap_or_else(|| "native.png".to_owned());
-    let metar = arguments.next().unwrap_or_else(|| "METAR KTRI 121800Z 24012KT 3SM RA OVC015 12/11 A2978".to_owned());
+const USAGE: &str =
+    "usage: native [FILE.png [METAR]]   one picture of the weather of a report (native.png, rain at Tri-Cities)
+       native --help | --version";
+
+/// Draws the picture that the arguments ask for.
+fn run(path: &str, metar: &str) -> Fallible<()> {
+    let weather = Weather::from_metar(metar)?.weather;
     let host = Host::new()?;
     println!("adapter: {} ({})", host.device.caps().adapter_name, host.device.caps().driver);
     let shared = Arc::new(Shared::new(&host.device)?);
-    take(&host, &shared, &metar, &path)?;
+    take(&host, &shared, weather, path)?;
     println!("{path}: {metar}");
     Ok(())
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(text) = shared::answered("native", USAGE, arguments.iter().cloned()) {
+        print!("{text}");
+        return ExitCode::SUCCESS;
+    }
+    let wrong = arguments.iter().position(|a| a.starts_with('-')).or((arguments.len() > 2).then_some(2));
+    if let Some(wrong) = wrong.and_then(|i| arguments.get(i)) {
+        let what = if wrong.starts_with('-') { "unknown option" } else { "unexpected argument" };
+        eprintln!("native: {what} `{wrong}`\n{USAGE}");
+        return ExitCode::from(2);
+    }
+    let path = arguments.first().map_or("native.png", String::as_str);
+    let metar = arguments.get(1).map_or("METAR KTRI 121800Z 24012KT 3SM RA OVC015 12/11 A2978", String::as_str);
+    match shared::at_work("native", "drawing", || run(path, metar)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(e) => {
+            eprintln!("native: {e}");
+            ExitCode::FAILURE
+        }
+    }
 }

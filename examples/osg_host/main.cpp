@@ -12,6 +12,7 @@
 #include <osgGA/TrackballManipulator>
 #include <osgViewer/CompositeViewer>
 
+#include "../command_line.h"
 #include "cab.hpp"
 #include "light.hpp"
 #include "state_check.hpp"
@@ -273,7 +274,7 @@ bool Host::write()
     for (size_t i = 0; i < read.size(); i++) {
         std::string path = options_.out;
         if (i > 0) path.insert(path.rfind('.'), "-" + std::to_string(i));
-        if (!osgDB::writeImageFile(*read[i], path)) return false;
+        if (!part_end(path.c_str(), osgDB::writeImageFile(*read[i], part_begin(path.c_str())))) return false;
         std::cout << "wrote " << path << ", " << read[i]->s() << " x " << read[i]->t() << std::endl;
     }
     return true;
@@ -313,6 +314,7 @@ int main(int argc, char **argv)
 {
     osg::ArgumentParser arguments(&argc, argv);
     Options options;
-    if (!read_options(arguments, options)) return 2;
+    const int status = read_options(arguments, options);
+    if (status >= 0) return status;
     return Host(options, arguments).run();
 }

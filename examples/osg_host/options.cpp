@@ -3,6 +3,8 @@
 #include <iostream>
 #include <map>
 
+#include "../command_line.h"
+
 namespace {
 
 template <class T> bool choose(const std::string &word, const std::map<std::string, T> &choices, const char *option, T &out)
@@ -20,7 +22,7 @@ template <class T> bool choose(const std::string &word, const std::map<std::stri
 
 } // namespace
 
-bool read_options(osg::ArgumentParser &arguments, Options &o)
+int read_options(osg::ArgumentParser &arguments, Options &o)
 {
     osg::ApplicationUsage &usage = *arguments.getApplicationUsage();
     usage.setCommandLineUsage("osg_host [options]");
@@ -56,16 +58,20 @@ bool read_options(osg::ArgumentParser &arguments, Options &o)
                                                     {"draw", Viewers::DrawThreadPerContext},
                                                     {"camera", Viewers::CullThreadPerCameraDrawThreadPerContext}},
                                              "--threading", o.threading) && ok;
-    if (arguments.read("--help")) {
+    option("--help", "this text");
+    option("--version", "Welkin's version");
+    if (arguments.read("--help") || arguments.read("-h")) {
         usage.write(std::cout, osg::ApplicationUsage::COMMAND_LINE_OPTION);
-        ok = false;
+        return 0;
     }
-    arguments.reportRemainingOptionsAsUnrecognized();
+    if (command_line_answered(arguments.argc(), arguments.argv(), "osg_host", "")) return 0;
+    /* What is left was understood by nobody. */
+    if (arguments.argc() > 1) return command_line_unknown("osg_host", arguments[1]);
     arguments.writeErrorMessages(std::cerr);
     if (o.window_target && o.shared) {
         std::cerr << "--window needs the host's own context: framebuffers are not shared" << std::endl;
         ok = false;
     }
     if ((!o.out.empty() || o.check) && o.frames == 0) o.frames = 12;
-    return ok && !arguments.errors();
+    return ok && !arguments.errors() ? -1 : 2;
 }

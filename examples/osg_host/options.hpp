@@ -23,7 +23,7 @@ struct Options {
     osgViewer::ViewerBase::ThreadingModel threading = osgViewer::ViewerBase::SingleThreaded;
 };
 
-/* False, with a line on stderr, for what is not understood. */
-bool read_options(osg::ArgumentParser &arguments, Options &options);
+/* The status to end with at once: 0 after --help and --version, 2 after a line on stderr for what is not understood; -1: go on. */
+int read_options(osg::ArgumentParser &arguments, Options &options);
 
 #endif

@@ -23,6 +23,9 @@ mod fog;
 mod lightning;
 mod rain;
 mod scene;
+#[path = "../shared/mod.rs"]
+#[allow(dead_code)] // It writes no files.
+mod shared;
 mod sky;
 mod snow;
 
@@ -47,7 +50,8 @@ const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model N
                      probe lightning --rate FLASHES_A_MINUTE --hours H\n       \
                      probe cavity --re R --n N\n       \
                      probe taylor-green --n N --cfl C [--scheme NAME]\n       \
-                     probe wind --scene FILE < places.csv";
+                     probe wind --scene FILE < places.csv\n       \
+                     probe --help | --version";
 
 /// Options by name, each with its value.
 struct Options(Vec<(String, String)>);
@@ -56,9 +60,10 @@ impl Options {
     fn parse(known: &[&str], mut rest: impl Iterator<Item = String>) -> Result<Self> {
         let mut out = Vec::new();
         while let Some(name) = rest.next() {
-            let value = rest.next().filter(|_| known.contains(&name.as_str()));
-            let value =
-                value.ok_or_else(|| usage(&format!("`{name}` is no option of this question or has no value")))?;
+            if !known.contains(&name.as_str()) {
+                return Err(usage(&format!("unknown option `{name}` of this question")));
+            }
+            let value = rest.next().ok_or_else(|| usage(&format!("{name} has no value")))?;
             out.push((name, value));
         }
         Ok(Self(out))
@@ -181,12 +186,17 @@ fn run() -> Result<String> {
         "cavity" => cavity(arguments),
         "wind" => wind(arguments),
         "taylor-green" => taylor_green(arguments),
+        other if other.starts_with('-') => Err(usage(&format!("unknown option `{other}`"))),
         other => Err(usage(&format!("unknown question `{other}`"))),
     }
 }
 
 fn main() -> ExitCode {
-    let done = run().and_then(|out| {
+    if let Some(text) = shared::answered("probe", USAGE, std::env::args().skip(1)) {
+        print!("{text}");
+        return ExitCode::SUCCESS;
+    }
+    let done = shared::at_work("probe", "working", run).and_then(|out| {
         let failed = |e: std::io::Error| Error::new(Status::Io, format!("writing the answers: {e}"));
         std::io::stdout().write_all(out.as_bytes()).map_err(failed)
     });

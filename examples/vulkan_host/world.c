@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "../command_line.h"
+
 static const double BOARD_M[BOARDS] = {100.0, 500.0, 1e3, 2e3, 5e3, 20e3};
 
 /* A matt surface. */
@@ -76,12 +78,13 @@ void world_check(const world *w, const float *rgb)
 
 void world_write(const world *w, const float *rgb, const char *path)
 {
-    FILE *f = fopen(path, "wb");
+    FILE *f = fopen(part_begin(path), "wb");
     EXPECT(f, "cannot write %s", path);
     fprintf(f, "P6\n%u %u\n255\n", w->width, w->height);
     for (uint32_t i = 0; i < 3 * w->width * w->height; i++) { /* IEC 61966-2-1 */
         const double v = rgb[i];
         fputc((int)(255.0 * (v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055) + 0.5), f);
     }
-    EXPECT(fclose(f) == 0, "cannot write %s", path);
+    const bool complete = fclose(f) == 0;
+    EXPECT(part_end(path, complete), "cannot write %s", path);
 }

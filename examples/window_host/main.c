@@ -18,6 +18,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../command_line.h"
+
 #define WK_CHECK(call)                                                                                 \
     do {                                                                                               \
         wk_status status_ = (call);                                                                    \
@@ -226,7 +228,7 @@ static XImage *draw_until_sky(app *a)
 
 static void write_picture(const char *path, XImage *image)
 {
-    FILE *f = fopen(path, "wb");
+    FILE *f = fopen(part_begin(path), "wb");
     EXPECT(f, "cannot write %s", path);
     fprintf(f, "P6\n%d %d\n255\n", image->width, image->height);
     for (int y = 0; y < image->height; y++) {
@@ -237,7 +239,8 @@ static void write_picture(const char *path, XImage *image)
             fputc(p.b, f);
         }
     }
-    EXPECT(fclose(f) == 0, "cannot write %s", path);
+    const bool complete = fclose(f) == 0;
+    EXPECT(part_end(path, complete), "cannot write %s", path);
 }
 
 static void check(app *a, const char *picture)
@@ -271,19 +274,32 @@ static void check(app *a, const char *picture)
     printf("ok\n");
 }
 
+static const char NAME[] = "window_host";
+
+static const char USAGE[] =
+    "window_host [--gl] [--check [PICTURE.ppm]]\n"
+    "  --gl       Welkin draws with OpenGL instead of the best interface there is\n"
+    "  --check    draw, resize, hide and show the window, look at its pixels, end\n"
+    "  PICTURE.ppm  where the window's pixels are written\n"
+    "  --help, --version\n";
+
 int main(int argc, char **argv)
 {
     wk_backend_flags backends = WK_BACKEND_ANY;
-    if (argc > 1 && strcmp(argv[1], "--gl") == 0) {
-        backends = WK_BACKEND_GL;
-        argc--, argv++;
+    bool checking = false;
+    const char *picture = NULL;
+    if (command_line_answered(argc, argv, NAME, USAGE)) return 0;
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--gl") == 0) backends = WK_BACKEND_GL;
+        else if (strcmp(argv[i], "--check") == 0) checking = true;
+        else if (argv[i][0] == '-' || !checking || picture) return command_line_unknown(NAME, argv[i]);
+        else picture = argv[i];
     }
-    const bool checking = argc > 1 && strcmp(argv[1], "--check") == 0;
     app a = {.width = 320, .height = 200, .outdated = true, .pitch = 0.3};
     open_window(&a);
     open_welkin(&a, backends);
     if (checking) {
-        check(&a, argc > 2 ? argv[2] : NULL);
+        check(&a, picture);
     } else {
         for (double degrees = 0.0; a.open; degrees += 0.2) {
             set_sun(&a, degrees, 40.0 * sin(degrees / 57.29578));

@@ -37,7 +37,7 @@ pub fn draw(dir: &Path, part: Option<&str>) -> Result<()> {
             continue;
         };
         let path = dir.join(format!("{}.png", scene.name));
-        picture.save(&path).map_err(|e| fault(&path, e))?;
+        crate::shared::write_png(&path, &picture, picture.dimensions().into())?;
         println!("{} {:.1} s", scene.name, began.elapsed().as_secs_f64());
         drawn += 1;
     }

@@ -171,7 +171,7 @@ fn keep(path: &PathBuf, numbers: &[f64]) -> Result<()> {
         std::fs::create_dir_all(directory).map_err(io)?;
     }
     let bytes: Vec<u8> = numbers.iter().flat_map(|v| v.to_le_bytes()).collect();
-    std::fs::write(path, bytes).map_err(io)
+    crate::shared::write_whole(path, &bytes)
 }
 
 /// A way to draw a sky, ready.

@@ -15,7 +15,7 @@ use crate::chart::{Lab, today};
 use crate::command::Options;
 use crate::page;
 use crate::plot::short;
-use crate::store::{Journal, Table, io};
+use crate::store::{Journal, Table};
 
 /// What came out at one place of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -272,7 +272,7 @@ fn write_cells(map: &Map, path: &Path) -> Result<()> {
             let _ = writeln!(out, "{},{x:.6e},{y:.6e},{},{error}", panel.title.replace(',', ";"), cell.kind());
         }
     }
-    std::fs::write(path, out).map_err(|e| io(path, &e))
+    crate::shared::write_whole(path, out.as_bytes())
 }
 
 const SIDE: f64 = 330.0;
