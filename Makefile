@@ -38,7 +38,7 @@ RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --no-fail-fast,cargo test
 
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
-.PHONY: help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench gallery lab
+.PHONY: ci help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench gallery lab
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -102,13 +102,15 @@ test: setup lint docs ## all checks, at most 25 minutes on two cores from a clea
 	cargo test --locked --doc
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/debug/$(SHARED))" $(RUN_TESTS)
 
+ci: test windows drivers ## what continuous integration runs: the three in this order
+
 accept: setup lint docs ## the long sweeps in release, and the benchmarks, at most 90 minutes
 	$(MAKE) --no-print-directory lib PROFILE=release
 	WELKIN_ACCEPT=1 cargo test --locked --release --doc
 	$(MAKE) --no-print-directory bench
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
 
-gallery: host ## draw the README's pictures anew into docs/gallery, by the demo's host (GALLERY="noon fog": these alone)
+gallery: host ## draw the pictures of docs/gallery.md anew, by the demo's host (GALLERY="noon fog": these alone)
 	"$(STAGE)/glfw_host/glfw_host" --data examples/data --out docs/gallery --gallery $(GALLERY)
 
 lab: setup-build ## chart speed against accuracy, map where methods fail (ARGS="chart sky"; without: what it can do)

@@ -167,17 +167,17 @@ fn the_gallery_has_smooth_edges_lamps_and_a_bridge() {
     assert!(!unknown.status.success() && said.contains("under_the_bridge"), "the names that there are: {said}");
 }
 
-/// The README shows each picture of the gallery, and `docs/gallery` holds no others but the OpenSceneGraph host's.
+/// The gallery's page shows each of its pictures, and `docs/gallery` holds no others but the OpenSceneGraph host's.
 #[test]
-fn the_readme_shows_the_gallery() {
-    let readme = fs::read_to_string(root().join("README.md")).expect("the README");
+fn the_page_shows_the_gallery() {
+    let page = fs::read_to_string(root().join("docs/gallery.md")).expect("the gallery's page");
     let shots = fs::read_to_string(root().join("examples/glfw_host/shots.c")).expect("the shots");
     let shots = shots.split("SHOTS[] = {").nth(1).expect("a table");
     let names = shots.lines().filter_map(|l| l.trim().strip_prefix("{\"")?.split('"').next());
     let mut shown: Vec<String> = names.map(|name| format!("{name}.png")).collect();
     assert!(shown.len() > 20, "{shown:?}");
     shown.extend(["osg_host.png", "osg_precipitation.png", "osg_cab.png"].map(str::to_owned));
-    assert!(shown.iter().all(|name| readme.contains(&format!("docs/gallery/{name}"))), "{shown:?}");
+    assert!(shown.iter().all(|name| page.contains(&format!("(gallery/{name})"))), "{shown:?}");
     let files = fs::read_dir(root().join("docs/gallery")).expect("the gallery").map(|f| f.expect("a file"));
     let (mut found, mut bytes) = (Vec::new(), 0);
     for file in files {
