@@ -1,6 +1,6 @@
 //! Draws and times every way to make a sky, and computes the truth.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use welkin::candidates::Method as LibraryMethod;
@@ -165,7 +165,7 @@ fn kept(path: &PathBuf, count: usize) -> Option<Vec<f64>> {
     (rest.is_empty() && numbers.len() == count).then(|| numbers.iter().map(|b| f64::from_le_bytes(*b)).collect())
 }
 
-fn keep(path: &PathBuf, numbers: &[f64]) -> Result<()> {
+fn keep(path: &Path, numbers: &[f64]) -> Result<()> {
     let io = |e: std::io::Error| crate::store::io(path, &e);
     if let Some(directory) = path.parent() {
         std::fs::create_dir_all(directory).map_err(io)?;
