@@ -1,7 +1,12 @@
 //! Weather reports and presets
 //!
-//! Turns a METAR or SPECI report, as airports send it, into a wk_weather. Fields that the report leaves out keep their
-//! defaults.
+//! Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads what is there, in any order up to the
+//! pressure. Fields that the report leaves out or marks as missing keep their defaults, or what the rest of the report makes
+//! likely, and have a bit in wk_metar.assumed; words that are no group of the code change nothing and are counted. So a
+//! calm wind (00000KT) and one that nobody measured (/////KT) differ by WK_METAR_ASSUMED_WIND.
+//!
+//! No report says how high its station lies: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up in your
+//! list of airports and set it, because cloud bases, visibility and temperature refer to that height.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -15,11 +20,11 @@ use super::{
     layout::{self, init_struct, struct_size},
     status::*,
     weather::{wk_cloud_layer, wk_weather},
-    weather_convert::weather_out,
+    weather_convert::{WeatherOut, weather_out},
 };
 use crate::{
-    error::{Error, Status},
-    weather::{MetarReport, Weather},
+    error::{Error, Result, Status},
+    weather::{ASSUMED_FIELDS, CloudAmountRule, MetarOptions, MetarReport, Weather},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_report.rs"));
@@ -35,7 +40,72 @@ pub const WK_METAR_CORRECTED: wk_metar_flags = 4;
 /// The report says only that visibility is at least so much (CAVOK, 9999, 10SM).
 pub const WK_METAR_VISIBILITY_IS_MINIMUM: wk_metar_flags = 8;
 
-/// Place and time of a report.
+/// Which fields a report leaves out or marks as missing.
+pub type wk_metar_assumed_flags = u32;
+/// wind_speed_m_s, with all of the wind: calm is assumed.
+pub const WK_METAR_ASSUMED_WIND: wk_metar_assumed_flags = 0x1;
+/// wind_from_deg: 0 is assumed.
+pub const WK_METAR_ASSUMED_WIND_DIRECTION: wk_metar_assumed_flags = 0x2;
+/// visibility_m: what humidity and what falls leave, at most 1 km in fog and 5 km in mist or haze.
+pub const WK_METAR_ASSUMED_VISIBILITY: wk_metar_assumed_flags = 0x4;
+/// The present weather (`//`): neither precipitation nor fog nor haze is assumed.
+pub const WK_METAR_ASSUMED_PRECIPITATION: wk_metar_assumed_flags = 0x8;
+/// The clouds (`//////`, or no group at all): none are assumed beside those that are reported.
+pub const WK_METAR_ASSUMED_CLOUDS: wk_metar_assumed_flags = 0x10;
+/// base_m of a layer (`BKN///`): 600 m is assumed.
+pub const WK_METAR_ASSUMED_CLOUD_BASE: wk_metar_assumed_flags = 0x20;
+/// cover of a layer (`///015`, `//////CB`): 3.5 eighths are assumed.
+pub const WK_METAR_ASSUMED_CLOUD_COVER: wk_metar_assumed_flags = 0x40;
+/// vertical_visibility_m (`VV///`): 60 m is assumed.
+pub const WK_METAR_ASSUMED_VERTICAL_VISIBILITY: wk_metar_assumed_flags = 0x80;
+/// temperature_c: 15, at most -1 where it snows or drops freeze, at most 1 where rain and snow fall together or what falls is unknown;
+/// from the dew point at 70 % if only that is there.
+pub const WK_METAR_ASSUMED_TEMPERATURE: wk_metar_assumed_flags = 0x100;
+/// relative_humidity: 0.7, or what a dew point gives at the assumed temperature.
+pub const WK_METAR_ASSUMED_HUMIDITY: wk_metar_assumed_flags = 0x200;
+/// pressure_hpa: 1013.25 is assumed.
+pub const WK_METAR_ASSUMED_PRESSURE: wk_metar_assumed_flags = 0x400;
+/// wk_metar.day, hour and minute: 0.
+pub const WK_METAR_ASSUMED_TIME: wk_metar_assumed_flags = 0x800;
+
+/// How the amounts of cloud groups count. Nations differ, and a report does not say which practice it follows.
+pub type wk_cloud_amount_rule = u32;
+/// By the station's first letters: sums in the United States with its territories and in Canada (K, C; P but for PC and PL; TI, TJ,
+/// NSTU, MUGM), layers elsewhere. American bases abroad report sums under the host country's letters: set the rule for them.
+pub const WK_CLOUD_AMOUNT_BY_STATION: wk_cloud_amount_rule = 0;
+/// Each group counts what its layer and all lower ones hide (Federal Meteorological Handbook No. 1, 9.4.2 b and 9.5.2).
+pub const WK_CLOUD_AMOUNT_SUMS: wk_cloud_amount_rule = 1;
+/// Each group counts its layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2).
+pub const WK_CLOUD_AMOUNT_LAYERS: wk_cloud_amount_rule = 2;
+
+/// How a report is read.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_metar_options {
+    /// sizeof(wk_metar_options) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_METAR_OPTIONS.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// How the amounts of cloud groups count. Default WK_CLOUD_AMOUNT_BY_STATION.
+    pub cloud_amounts: wk_cloud_amount_rule,
+    /// Must be 0.
+    pub reserved0: u32,
+}
+
+impl wk_metar_options {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_METAR_OPTIONS,
+        next: null(),
+        cloud_amounts: WK_CLOUD_AMOUNT_BY_STATION,
+        reserved0: 0,
+    };
+}
+
+/// Place and time of a report, and what of it the weather does not hold. Offsets and lengths are bytes in the text that you
+/// passed; 0 and 0 where the report has no such part.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_metar {
@@ -55,6 +125,33 @@ pub struct wk_metar {
     pub minute: u32,
     /// Flags of a report.
     pub flags: wk_metar_flags,
+    /// Which fields the report leaves out or marks as missing.
+    pub assumed: wk_metar_assumed_flags,
+    /// Rule by which the amounts of clouds were read: WK_CLOUD_AMOUNT_SUMS or WK_CLOUD_AMOUNT_LAYERS.
+    pub cloud_amounts: wk_cloud_amount_rule,
+    /// Lowest visibility in some direction, m, where the report states one beside the prevailing one (`4000 1500NE`, `9999 3100`), else 0.
+    /// For information: the weather has the prevailing one.
+    pub lowest_visibility_m: f64,
+    /// Where the runway visual ranges begin.
+    pub runways_offset: u32,
+    /// Bytes from the first to the last of them.
+    pub runways_length: u32,
+    /// Where the trend forecast begins, its first word (NOSIG, BECMG, TEMPO) included.
+    pub trend_offset: u32,
+    /// Bytes of the trend forecast.
+    pub trend_length: u32,
+    /// Where the remarks begin, after RMK.
+    pub remarks_offset: u32,
+    /// Bytes of the remarks.
+    pub remarks_length: u32,
+    /// Where the first word stands that is no group of the code.
+    pub unread_offset: u32,
+    /// Bytes of that word.
+    pub unread_length: u32,
+    /// Number of such words.
+    pub unread_count: u32,
+    /// Must be 0.
+    pub reserved0: u32,
 }
 
 impl wk_metar {
@@ -67,6 +164,19 @@ impl wk_metar {
         hour: 0,
         minute: 0,
         flags: 0,
+        assumed: 0,
+        cloud_amounts: WK_CLOUD_AMOUNT_BY_STATION,
+        lowest_visibility_m: 0.0,
+        runways_offset: 0,
+        runways_length: 0,
+        trend_offset: 0,
+        trend_length: 0,
+        remarks_offset: 0,
+        remarks_length: 0,
+        unread_offset: 0,
+        unread_length: 0,
+        unread_count: 0,
+        reserved0: 0,
     };
 
     fn of(report: &MetarReport) -> Self {
@@ -76,7 +186,23 @@ impl wk_metar {
             (report.corrected, WK_METAR_CORRECTED),
             (report.visibility_is_minimum, WK_METAR_VISIBILITY_IS_MINIMUM),
         ];
+        let bit = |name: &&str| ASSUMED_FIELDS.iter().position(|f| f == name).map_or(0, |i| 1 << i);
+        let places = &report.places;
+        let [runways, trend, remarks, unread] =
+            [&places.runways, &places.trend, &places.remarks, &places.unread].map(|p| [p.start as u32, p.len() as u32]);
         let mut answer = Self {
+            assumed: report.assumed.iter().map(bit).fold(0, |all, bit| all | bit),
+            cloud_amounts: report.cloud_amounts as u32,
+            lowest_visibility_m: report.lowest_visibility_m.unwrap_or(0.0),
+            runways_offset: runways[0],
+            runways_length: runways[1],
+            trend_offset: trend[0],
+            trend_length: trend[1],
+            remarks_offset: remarks[0],
+            remarks_length: remarks[1],
+            unread_offset: unread[0],
+            unread_length: unread[1],
+            unread_count: report.unread.len() as u32,
             day: report.day,
             hour: report.hour,
             minute: report.minute,
@@ -90,12 +216,13 @@ impl wk_metar {
     }
 }
 
-/// Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`. Its cloud layers go to
-/// `layers`, which has room for `layer_capacity` of `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 always
-/// suffice), and out_weather->clouds leads there: keep it as long as the weather. `out_metar` may be NULL.
+/// Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`, with cloud amounts by the
+/// station's rule. Its cloud layers go to `layers`, which has room for `layer_capacity` of `layer_size` bytes
+/// (sizeof(wk_cloud_layer) of your header; 16 always suffice), and out_weather->clouds leads there: keep it as long as the
+/// weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it from a list of airports.
 /// Thread: any.
-/// Errors: WK_ERROR_PARSE with line and column of the group at fault, what was expected there and what was found;
-/// WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
+/// Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the weather,
+/// with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_weather_from_metar(
     report: *const c_char,
@@ -107,21 +234,77 @@ pub unsafe extern "C" fn wk_weather_from_metar(
 ) -> wk_status {
     guard("wk_weather_from_metar", |_| {
         // SAFETY: the caller's promises.
-        let (text, weather) =
-            unsafe { (input::text("report", report)?, weather_out(layers, layer_capacity, layer_size, out_weather)?) };
-        let metar = if out_metar.is_null() {
-            None
-        } else {
-            // SAFETY: the caller's promise.
-            Some(unsafe { layout::out_struct(&"out_metar", out_metar)? })
-        };
-        let report = Weather::from_metar(text).map_err(|e| e.in_text("report"))?;
-        weather.set(&report.weather)?;
-        if let Some(metar) = metar {
-            metar.set(&wk_metar::of(&report));
-        }
-        Ok(Status::Ok)
+        let places = unsafe { places(layers, layer_capacity, layer_size, out_weather, out_metar)? };
+        // SAFETY: the caller's promise.
+        let text = unsafe { input::text("report", report)? };
+        answer(text, &MetarOptions::default(), places)
     })
+}
+
+/// Reads a report as wk_weather_from_metar does, and as `options` say. NULL is every default.
+/// Thread: any.
+/// Errors: as wk_weather_from_metar; WK_ERROR_INVALID_ARGUMENT for an unknown rule.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_weather_from_metar_with(
+    report: *const c_char,
+    options: *const wk_metar_options,
+    layers: *mut wk_cloud_layer,
+    layer_capacity: u32,
+    layer_size: u32,
+    out_weather: *mut wk_weather,
+    out_metar: *mut wk_metar,
+) -> wk_status {
+    guard("wk_weather_from_metar_with", |_| {
+        // SAFETY: the caller's promises.
+        let places = unsafe { places(layers, layer_capacity, layer_size, out_weather, out_metar)? };
+        // SAFETY: the caller's promise.
+        let text = unsafe { input::text("report", report)? };
+        // SAFETY: the caller's promise.
+        let c = unsafe { layout::read_or_default(&"options", options)? };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&"options", c.next, &[])? };
+        let rule = CloudAmountRule::from_u32(c.cloud_amounts).map_err(|e| e.within("options"))?;
+        answer(text, &MetarOptions { cloud_amounts: rule }, places)
+    })
+}
+
+/// The caller's room for a report.
+type Places = (WeatherOut, Option<layout::OutStruct<wk_metar>>);
+
+/// Checks the caller's room for a report.
+///
+/// # Safety
+/// As `weather_out`; `out_metar` is NULL or a `wk_metar`.
+///
+/// # Errors
+/// The wrong parameter by name.
+unsafe fn places(
+    layers: *mut wk_cloud_layer,
+    layer_capacity: u32,
+    layer_size: u32,
+    out_weather: *mut wk_weather,
+    out_metar: *mut wk_metar,
+) -> Result<Places> {
+    // SAFETY: the caller's promises.
+    let weather = unsafe { weather_out(layers, layer_capacity, layer_size, out_weather)? };
+    if out_metar.is_null() {
+        return Ok((weather, None));
+    }
+    // SAFETY: the caller's promise.
+    Ok((weather, Some(unsafe { layout::out_struct(&"out_metar", out_metar)? })))
+}
+
+/// Reads the report and writes what it says.
+///
+/// # Errors
+/// As [`Weather::from_metar`], about the parameter `report`; too little room for the layers.
+fn answer(text: &str, options: &MetarOptions, (weather, metar): Places) -> Result<Status> {
+    let report = Weather::from_metar_with(text, options).map_err(|e| e.in_text("report"))?;
+    weather.set(&report.weather)?;
+    if let Some(metar) = metar {
+        metar.set(&wk_metar::of(&report));
+    }
+    Ok(Status::Ok)
 }
 
 /// Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the
@@ -174,4 +357,36 @@ pub unsafe extern "C" fn wk_get_preset(
         }
         Ok(Status::Ok)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_assumed_field_has_its_bit() {
+        let bits = [
+            (WK_METAR_ASSUMED_WIND, "wind"),
+            (WK_METAR_ASSUMED_WIND_DIRECTION, "wind.from_deg"),
+            (WK_METAR_ASSUMED_VISIBILITY, "visibility_m"),
+            (WK_METAR_ASSUMED_PRECIPITATION, "precipitation"),
+            (WK_METAR_ASSUMED_CLOUDS, "clouds"),
+            (WK_METAR_ASSUMED_CLOUD_BASE, "clouds[].base_m"),
+            (WK_METAR_ASSUMED_CLOUD_COVER, "clouds[].cover"),
+            (WK_METAR_ASSUMED_VERTICAL_VISIBILITY, "vertical_visibility_m"),
+            (WK_METAR_ASSUMED_TEMPERATURE, "temperature_c"),
+            (WK_METAR_ASSUMED_HUMIDITY, "relative_humidity"),
+            (WK_METAR_ASSUMED_PRESSURE, "pressure_hpa"),
+            (WK_METAR_ASSUMED_TIME, "time"),
+        ];
+        assert_eq!(bits.map(|b| b.1), ASSUMED_FIELDS);
+        assert!(bits.iter().enumerate().all(|(i, b)| b.0 == 1 << i));
+        for (rule, value) in [
+            (CloudAmountRule::ByStation, WK_CLOUD_AMOUNT_BY_STATION),
+            (CloudAmountRule::Sums, WK_CLOUD_AMOUNT_SUMS),
+            (CloudAmountRule::Layers, WK_CLOUD_AMOUNT_LAYERS),
+        ] {
+            assert_eq!(rule as u32, value);
+        }
+    }
 }

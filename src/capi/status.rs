@@ -175,6 +175,8 @@ pub const WK_STRUCT_TYPE_ENVIRONMENT: wk_struct_type = 64;
 pub const WK_STRUCT_TYPE_CLOUD_SHADOWS: wk_struct_type = 85;
 /// wk_cloud_map
 pub const WK_STRUCT_TYPE_CLOUD_MAP: wk_struct_type = 86;
+/// wk_metar_options
+pub const WK_STRUCT_TYPE_METAR_OPTIONS: wk_struct_type = 90;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

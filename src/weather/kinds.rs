@@ -185,6 +185,20 @@ kinds! {
     }
 }
 
+kinds! {
+    /// How the cloud groups of a report count. National practices differ, and the report does not say which one it follows.
+    CloudAmountRule, "cloud_amounts" {
+        /// By the station's location indicator: [`CloudAmountRule::Sums`] where the United States or Canada report, else
+        /// [`CloudAmountRule::Layers`].
+        ByStation = 0, "by_station";
+        /// Each group counts the sky that its layer and all lower ones hide together (Federal Meteorological Handbook No. 1,
+        /// 9.4.2 b and 9.5.2).
+        Sums = 1, "sums";
+        /// Each group counts its own layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2).
+        Layers = 2, "layers";
+    }
+}
+
 impl PrecipitationKind {
     /// Mass fraction of what falls that is liquid, where the report does not say: 1 for rain, 0 for ice, 0.5 for sleet.
     pub fn default_liquid_fraction(self) -> f64 {
@@ -221,6 +235,7 @@ mod tests {
         numbers_are_dense(PrecipitationKind::ALL, PrecipitationKind::from_u32);
         numbers_are_dense(LoftedKind::ALL, LoftedKind::from_u32);
         numbers_are_dense(SurfaceState::ALL, SurfaceState::from_u32);
+        numbers_are_dense(CloudAmountRule::ALL, CloudAmountRule::from_u32);
         let e = CloudKind::from_u32(99).unwrap_err();
         assert!(e.to_string().contains("clouds[].kind") && e.to_string().contains("0..=11"), "{}", e);
     }

@@ -32,8 +32,8 @@ pub use conditions::{
     WindProfile,
 };
 pub use derive::{Overrides, derive, derive_with};
-pub use kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
-pub use metar::{MAX_METAR_BYTES, MetarReport, RunwayVisualRange};
+pub use kinds::{AerosolKind, CloudAmountRule, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
+pub use metar::{ASSUMED_FIELDS, MAX_METAR_BYTES, MetarOptions, MetarPlaces, MetarReport, RunwayVisualRange};
 pub use model::{
     Aerosol, CloudLayer, Fog, LayerWind, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Surface, Swell, Weather, Wind,
     cover_from_oktas, saturation_pressure_hpa,

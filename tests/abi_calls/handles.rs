@@ -301,6 +301,7 @@ const WITHOUT: &[&str] = &[
     "wk_weather_from_preset",
     "wk_get_preset",
     "wk_weather_from_metar",
+    "wk_weather_from_metar_with",
     "wk_fog_law_cull_distance",
     "wk_visibility_cull_distance",
     "wk_utc_from_calendar",

@@ -103,6 +103,11 @@ fn cases(world: &World) -> Vec<Case> {
                 )
             }
         }),
+        case("wk_metar_options", "options", true, |p| {
+            let mut weather = init("wk_weather");
+            let report = c"LBBG 041600Z 12012KT CAVOK 20/10 Q1013".as_ptr();
+            unsafe { wk_weather_from_metar_with(report, p.cast(), null_mut(), 0, 0, &mut weather, null_mut()) }
+        }),
         case("wk_shelter", "shelters[0]", true, move |p| unsafe {
             wk_context_set_shelters(context, p.cast(), 1, 1 << 24)
         }),

@@ -198,6 +198,78 @@ fn a_saved_state_comes_back_whole_or_not_at_all() {
     }
 }
 
+/// A report read by a rule, its covers in hundredths, and what the answer says.
+fn by_rule(report: &std::ffi::CStr, rule: wk_cloud_amount_rule) -> (wk_status, Vec<f64>, wk_metar, wk_weather) {
+    let options = wk_metar_options { cloud_amounts: rule, ..init("wk_metar_options") };
+    let (mut weather, mut metar) = (init::<wk_weather>("wk_weather"), init::<wk_metar>("wk_metar"));
+    let mut layers = [init::<wk_cloud_layer>("wk_cloud_layer"); 16];
+    let size = size_of::<wk_cloud_layer>() as u32;
+    // SAFETY: live pointers with the sizes given.
+    let status = unsafe {
+        let layers = layers.as_mut_ptr();
+        wk_weather_from_metar_with(report.as_ptr(), &options, layers, 16, size, &mut weather, &mut metar)
+    };
+    let covers = layers[..weather.cloud_count as usize].iter().map(|l| (l.cover * 100.0).round() / 100.0);
+    (status, covers.collect(), metar, weather)
+}
+
+#[test]
+fn cloud_amounts_follow_the_station_or_the_rule_that_is_set() {
+    let sums = vec![0.19, 0.31, 0.56];
+    let layers = vec![0.19, 0.44, 0.75];
+    let british = c"EGLL 121120Z 24010KT 9999 FEW010 SCT020 BKN040 10/05 Q1013";
+    let american = c"KADW 121120Z 24010KT 10SM FEW010 SCT020 BKN040 10/05 A3001";
+    for (report, rule, covers, taken) in [
+        (british, WK_CLOUD_AMOUNT_BY_STATION, &layers, WK_CLOUD_AMOUNT_LAYERS),
+        (american, WK_CLOUD_AMOUNT_BY_STATION, &sums, WK_CLOUD_AMOUNT_SUMS),
+        (british, WK_CLOUD_AMOUNT_SUMS, &sums, WK_CLOUD_AMOUNT_SUMS),
+        (american, WK_CLOUD_AMOUNT_LAYERS, &layers, WK_CLOUD_AMOUNT_LAYERS),
+    ] {
+        let (status, got, metar, _) = by_rule(report, rule);
+        assert_eq!((status, &got, metar.cloud_amounts), (WK_OK, covers, taken), "{report:?}: {}", message());
+    }
+    let (status, ..) = by_rule(british, 3);
+    assert_eq!(status, WK_ERROR_INVALID_ARGUMENT);
+    assert!(message().contains("options.cloud_amounts must be"), "{}", message());
+    assert!(message().contains("got 3"), "{}", message());
+}
+
+#[test]
+fn what_a_report_does_not_say_has_a_bit_and_its_parts_have_places() {
+    let of = |report| by_rule(report, WK_CLOUD_AMOUNT_BY_STATION);
+    let (status, _, calm, _) = of(c"EDDF 121320Z AUTO 00000KT 9999 NCD 10/05 Q1013");
+    assert_eq!((status, calm.assumed), (WK_OK, 0));
+    let (status, _, unknown, weather) = of(c"EDDF 121320Z AUTO /////KT 9999 NCD 10/05 Q1013");
+    assert_eq!((status, unknown.assumed, weather.wind_speed_m_s), (WK_OK, WK_METAR_ASSUMED_WIND, 0.0));
+    let (status, _, bare, _) = of(c"KNXP 111456Z AUTO A3030 RMK AO2 PWINO");
+    let all = WK_METAR_ASSUMED_WIND
+        | WK_METAR_ASSUMED_VISIBILITY
+        | WK_METAR_ASSUMED_PRECIPITATION
+        | WK_METAR_ASSUMED_CLOUDS
+        | WK_METAR_ASSUMED_TEMPERATURE
+        | WK_METAR_ASSUMED_HUMIDITY;
+    assert_eq!((status, bare.assumed), (WK_OK, all));
+    let text =
+        c"EDHI 180720Z 24004KT 2500 100NW R05/0300V0800U R23/P1500 FG FEW/// 13/13 Q1011 SLP162 TEMPO 0300 RMK QFE";
+    let (status, _, m, weather) = of(text);
+    assert_eq!((status, m.assumed, m.lowest_visibility_m), (WK_OK, WK_METAR_ASSUMED_CLOUD_BASE, 100.0));
+    let part = |at: u32, length: u32| &text.to_str().unwrap()[at as usize..(at + length) as usize];
+    assert_eq!(part(m.runways_offset, m.runways_length), "R05/0300V0800U R23/P1500");
+    assert_eq!(part(m.trend_offset, m.trend_length), "TEMPO 0300");
+    assert_eq!(part(m.remarks_offset, m.remarks_length), "QFE");
+    assert_eq!((part(m.unread_offset, m.unread_length), m.unread_count), ("SLP162", 1));
+    assert_eq!(weather.station_altitude_m, 0.0, "reports do not carry it");
+    // A caller of the first version has none of this, and all that it had.
+    let mut old = wk_metar { struct_size: 40, unread_count: 7, ..init("wk_metar") };
+    let mut weather = init::<wk_weather>("wk_weather");
+    // SAFETY: live pointers; no layers.
+    let status = unsafe {
+        let report = c"EDDF 121320Z AUTO /////KT 9999 NCD 10/05 Q1013";
+        wk_weather_from_metar(report.as_ptr(), null_mut(), 0, 0, &mut weather, &mut old)
+    };
+    assert_eq!((status, old.day, old.assumed, old.unread_count), (WK_OK, 12, 0, 7), "{}", message());
+}
+
 #[test]
 fn a_metar_report_comes_with_its_clouds_or_says_the_column() {
     let world = World::new();

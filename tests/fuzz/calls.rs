@@ -788,6 +788,19 @@ pub const CALLS: &[(&str, Call)] = &[
         };
         Answer::of(status, &out)
     }),
+    ("wk_weather_from_metar_with", |d, _| {
+        let report = CString::new(texts::metar(d)).expect("no zeros");
+        let mut options = Struct::random(d, "wk_metar_options", 2);
+        let (mut layers, mut out, mut metar) =
+            (Struct::random_list(d, "wk_cloud_layer", 1000).0, Struct::plain("wk_weather"), Struct::plain("wk_metar"));
+        let (room, size) = (d.below(MOST as usize + 1) as u32, layers.stride());
+        let status = unsafe {
+            let (options, layers) = (options.ptr().cast(), layers.ptr().cast());
+            let (out, metar) = (out.ptr().cast(), metar.ptr().cast());
+            wk_weather_from_metar_with(report.as_ptr(), options, layers, room, size, out, metar)
+        };
+        Answer::of(status, &out)
+    }),
     ("wk_weather_from_preset", |d, _| {
         let name = CString::new(d.pick(&["CLEAR", "clear", "rain", "", "storm_at_sea", "fog", "overcast", "\u{e9}"]))
             .expect("no zeros");

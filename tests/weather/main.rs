@@ -10,7 +10,9 @@ mod frame_host;
 mod host;
 mod logged;
 mod random;
+mod real_reports;
 mod reports;
 mod seams;
+mod second_opinion;
 #[path = "../support/textures.rs"]
 mod textures;

@@ -19,7 +19,7 @@ fn of(station: &str) -> MetarReport {
 }
 
 /// What a report must come out as: station; day, hour, minute; visibility m and whether it is a minimum; temperature, humidity (two
-/// digits); pressure; wind speed knots, direction, gust knots; clouds as (eighths as reported, feet); kind of precipitation, rate.
+/// digits); pressure; wind speed knots, direction, gust knots; clouds as (eighths, feet); kind of precipitation, rate.
 struct Expected {
     station: &'static str,
     time: (u32, u32, u32),
@@ -90,16 +90,7 @@ fn every_report_becomes_its_weather() {
         assert_eq!(w.wind.gust_m_s.map(|g| (g / KNOT).round()), gust, "{s}");
         let clouds: Vec<_> =
             w.clouds.iter().map(|c| ((c.cover * 80.0).round() / 10.0, (c.base_m / 0.3048).round(), c.kind)).collect();
-        // A group counts what lower ones hide; towers stand by themselves.
-        let mut below = 0.0;
-        let own = e.clouds.iter().map(|&(eighths, feet, kind)| {
-            let is_tower = matches!(kind, CloudKind::Cumulonimbus | CloudKind::ToweringCumulus);
-            let lower = if is_tower { 0.0 } else { below };
-            below = if is_tower { below } else { f64::max(below, eighths) };
-            let own = if eighths > lower { (eighths - lower) / (1.0 - lower / 8.0) } else { 0.0 };
-            ((own * 10.0).round() / 10.0, feet, kind)
-        });
-        assert_eq!(clouds, own.collect::<Vec<_>>(), "{s}");
+        assert_eq!(clouds, e.clouds, "{s}");
         let (kind, least, most) = e.falling;
         let p = &w.precipitation;
         assert!(p.kind == kind && (least..=most).contains(&p.rate_mm_h), "{s}: {p:?}");
@@ -160,48 +151,6 @@ fn what_follows_from_each_report_is_physical_and_keeps_its_visibility() {
 }
 
 #[test]
-fn another_grammar_reads_the_same_figures() {
-    use metar::{CloudDensity, Data, Metar, Pressure, Visibility};
-    for text in reports() {
-        let ours = Weather::from_metar(text).unwrap();
-        let theirs = Metar::parse(text).unwrap();
-        assert_eq!(ours.station, theirs.station);
-        assert_eq!(
-            (ours.day, ours.hour, ours.minute),
-            (theirs.time.date.into(), theirs.time.hour.into(), theirs.time.minute.into())
-        );
-        assert_eq!(Data::Known(ours.weather.temperature_c as i32), theirs.temperature);
-        if let Data::Known(dew) = theirs.dewpoint {
-            assert!((ours.weather.dew_point_c() - f64::from(dew)).abs() < 1e-6, "{text}");
-        }
-        let hpa = match theirs.pressure {
-            Pressure::Hectopascals(Data::Known(p)) => f64::from(p),
-            Pressure::InchesOfMercury(Data::Known(p)) => f64::from(p) * 33.8639,
-            _ => panic!("{text}: no pressure"),
-        };
-        assert!((ours.weather.pressure_hpa - hpa).abs() < 1e-3, "{text}");
-        match theirs.visibility {
-            Data::Known(Visibility::Metres(9999) | Visibility::CAVOK) => assert!(ours.visibility_is_minimum),
-            Data::Known(Visibility::Metres(m)) => assert_eq!(ours.weather.visibility_m, f64::from(m)),
-            Data::Known(Visibility::StatuteMiles(m)) if m < 10.0 => {
-                assert!((ours.weather.visibility_m - f64::from(m) * 1609.344).abs() < 0.01);
-            }
-            _ => assert!(ours.visibility_is_minimum),
-        }
-        assert_eq!(
-            (ours.weather.clouds.len(), ours.runways.len()),
-            (theirs.cloud_layers.len(), theirs.rvr.len()),
-            "{text}"
-        );
-        for (a, b) in ours.weather.clouds.iter().zip(&theirs.cloud_layers) {
-            let Data::Known(hundreds) = b.height else { panic!("{text}") };
-            assert!((a.base_m - f64::from(hundreds) * 30.48).abs() < 1e-9);
-            assert_eq!(a.cover == 1.0, b.density == Data::Known(CloudDensity::Overcast));
-        }
-    }
-}
-
-#[test]
 fn reports_that_airports_send_but_the_data_lacks() {
     let read = |text: &str| Weather::from_metar(text).unwrap_or_else(|e| panic!("{text}: {e}"));
     let r = read(
@@ -213,9 +162,11 @@ fn reports_that_airports_send_but_the_data_lacks() {
         "EGLL 060850Z 21006KT 4000 1000SW R27L/P1500U BCFG VCSH SCT/// 11/10 Q1009 RESHRA WS R27 W///S3 TEMPO 3000 RA",
     );
     assert_eq!((r.weather.fog.kind, r.weather.precipitation.kind), (FogKind::Patches, PrecipitationKind::None));
-    assert_eq!((r.trend.as_str(), r.assumed), ("TEMPO 3000 RA", vec!["clouds[].base_m"]));
+    assert_eq!(r.lowest_visibility_m, Some(1000.0));
+    assert_eq!((r.trend.as_str(), &r.assumed[..]), ("TEMPO 3000 RA", &["clouds[].base_m"][..]));
     let r = read("METAR EDDF 121320Z AUTO /////KT //// // ////// ///// Q////");
-    let missing = ["wind", "temperature_c", "relative_humidity", "pressure_hpa", "visibility_m", "clouds"];
+    let missing =
+        ["wind", "temperature_c", "relative_humidity", "pressure_hpa", "visibility_m", "precipitation", "clouds"];
     assert_eq!(r.assumed, missing);
     assert!(r.visibility_is_minimum && derive(&r.weather).is_ok());
     let r = read("METAR KXYZ 171853Z AUTO 24009KT CLR 28/04 A3012 RMK AO2 VISNO");
@@ -254,22 +205,11 @@ fn a_refusal_gives_the_column_and_what_was_expected() {
         ("", 1, "station"),
         ("METAR", 6, "station"),
         ("METAR K 171853Z", 7, "station"),
-        ("METAR KDEN 321853Z 24009KT 10SM CLR 28/04 A3012", 12, "day and time"),
-        ("METAR KDEN 172453Z 24009KT 10SM CLR 28/04 A3012", 12, "day and time"),
         ("METAR KDEN 171853Z NIL", 20, "observation"),
-        ("METAR KDEN 171853Z 2409KT 10SM CLR 28/04 A3012", 20, "wind"),
-        ("METAR KDEN 171853Z 24020G10KT 10SM CLR 28/04 A3012", 20, "wind"),
-        ("METAR KDEN 171853Z VRB05KT 010VVRB 10SM CLR 28/04 A3012", 28, "visibility"),
-        ("METAR KDEN 171853Z 24009KT XXSM CLR 28/04 A3012", 28, "visibility"),
-        ("METAR KDEN 171853Z 24009KT 1 1/0SM CLR 28/04 A3012", 28, "visibility"),
-        ("METAR KDEN 171853Z 24009KT", 27, "visibility"),
-        ("METAR EGLL 060850Z 21006KT 4500 -XX OVC006 11/10 Q1009", 33, "present weather"),
-        ("METAR EGLL 060850Z 21006KT 4500 -DZ BR OVC06 11/10 Q1009", 40, "cloud"),
-        ("METAR EGLL 060850Z 21006KT 4500 -DZ BR OVC006 11-10 Q1009", 47, "temperature"),
-        ("METAR EGLL 060850Z 21006KT 4500 -DZ BR OVC006 11/10 Q0009", 53, "pressure"),
-        ("METAR EGLL 060850Z 21006KT 4500 -DZ BR OVC006 11/10", 52, "pressure"),
-        ("METAR EGLL 060850Z 21006KT 4500 -DZ BR OVC006 11/10 Q1009 GARBAGE", 59, "trend"),
-        ("METAR EGLL 060850Z 21006KT CAVOK OVC006 11/10 Q1009 11/10", 53, "trend"),
+        ("METAR KDEN 171853Z", 19, "group of the weather"),
+        ("METAR KDEN 171853Z AUTO", 24, "group of the weather"),
+        ("METAR KDEN 321853Z", 12, "group of the weather"),
+        ("METAR KDEN 171853Z 2409KT XXSM", 20, "group of the weather"),
     ];
     for (text, column, expected) in cases {
         let e = Weather::from_metar(text).expect_err(text);
@@ -277,9 +217,32 @@ fn a_refusal_gives_the_column_and_what_was_expected() {
         assert!(e.to_string().contains(&format!("line 1, column {column}:")), "{text}: {e}");
         assert!(e.to_string().contains(expected), "{text}: {e}");
     }
-    let e = Weather::from_metar("METAR KDEN\n171853Z\n  24x09KT 10SM").unwrap_err();
+    let e = Weather::from_metar("METAR KDEN\n171853Z\n  24x09KT XXSM").unwrap_err();
     assert!(e.to_string().contains("line 3, column 3:") && e.to_string().contains("24x09KT"), "{e}");
     assert!(Weather::from_metar(&"METAR ".repeat(2000)).unwrap_err().to_string().contains("4096"));
+}
+
+#[test]
+fn a_group_at_fault_is_named_and_the_others_are_read() {
+    let cases = [
+        ("METAR KDEN 321853Z 24009KT 10SM CLR 28/04 A3012", "321853Z", "time"),
+        ("METAR KDEN 171853Z 2409KT 10SM CLR 28/04 A3012", "2409KT", "wind"),
+        ("METAR KDEN 171853Z 24020G10KT 10SM CLR 28/04 A3012", "24020G10KT", "wind"),
+        ("METAR KDEN 171853Z VRB05KT 010VVRB 10SM CLR 28/04 A3012", "010VVRB", ""),
+        ("METAR KDEN 171853Z 24009KT XXSM CLR 28/04 A3012", "XXSM", "visibility_m"),
+        ("METAR EGLL 060850Z 21006KT 4500 -XX OVC006 11/10 Q1009", "-XX", ""),
+        ("METAR EGLL 060850Z 21006KT 4500 -DZ BR OVC06 11/10 Q1009", "OVC06", "clouds"),
+        ("METAR EGLL 060850Z 21006KT 4500 -DZ BR OVC006 11-10 Q1009", "11-10", "temperature_c"),
+        ("METAR EGLL 060850Z 21006KT 4500 -DZ BR OVC006 11/10 Q0009", "Q0009", "pressure_hpa"),
+        ("METAR EGLL 060850Z 21006KT 4500 -DZ BR OVC006 11/10 Q1009 GARBAGE", "GARBAGE", ""),
+        ("METAR EGLL 060850Z 21006KT CAVOK OVC006 11/10 Q1009 12/10", "12/10", ""),
+    ];
+    for (text, word, assumed) in cases {
+        let r = Weather::from_metar(text).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert_eq!((r.unread.as_slice(), r.places.unread.start), (&[word.to_owned()][..], text.find(word).unwrap()));
+        assert!(r.assumed.is_empty() == assumed.is_empty(), "{text}: {:?}", r.assumed);
+        assert!(assumed.is_empty() || r.assumed.contains(&assumed), "{text}: {:?}", r.assumed);
+    }
 }
 
 /// One random damage to a report: characters replaced, words dropped, doubled, swapped, taken from other reports, or cut.
@@ -317,9 +280,26 @@ fn damage(text: &str, words: &[&str], dice: &mut Dice) -> String {
 #[test]
 fn no_text_panics_and_what_is_accepted_is_valid() {
     let rounds = if std::env::var_os("WELKIN_ACCEPT").is_some() { 2_000_000 } else { 60_000 };
-    let all = reports();
-    let words: Vec<&str> =
-        all.iter().flat_map(|l| l.split(' ')).chain(["R18R/0350N", "VV///", "é", "P99KT", "1", "+", "VC"]).collect();
+    let mut all = reports();
+    let real = include_str!("data/reports.csv").lines().skip(1).step_by(9);
+    all.extend(real.filter_map(|line| line.split(',').next()));
+    let odd = [
+        "R18R/0350N",
+        "VV///",
+        "é",
+        "P99KT",
+        "1",
+        "+",
+        "VC",
+        "M",
+        "SM",
+        "KT",
+        "SCT120BKN180",
+        "RMK",
+        "TEMPO",
+        "//////",
+    ];
+    let words: Vec<&str> = all.iter().flat_map(|l| l.split(' ')).chain(odd).collect();
     let mut dice = Dice(7);
     let (mut accepted, mut refused) = (0u32, 0u32);
     for _ in 0..rounds {
@@ -333,6 +313,10 @@ fn no_text_panics_and_what_is_accepted_is_valid() {
             Ok(r) => {
                 accepted += 1;
                 assert!(derive(&r.weather).is_ok(), "{text:?}");
+                for place in [r.places.runways, r.places.trend, r.places.remarks, r.places.unread] {
+                    assert!(text.get(place.clone()).is_some(), "{text:?}: {place:?}");
+                }
+                assert!(r.weather.clouds.iter().all(|c| c.cover > 0.0), "{text:?}");
             }
             Err(e) => {
                 refused += 1;
@@ -340,7 +324,7 @@ fn no_text_panics_and_what_is_accepted_is_valid() {
             }
         }
     }
-    assert!(accepted > rounds / 50 && refused > rounds / 3, "{accepted} accepted, {refused} refused");
+    assert!(accepted > rounds / 3 && refused > rounds / 20, "{accepted} accepted, {refused} refused");
 }
 
 /// All figures of some conditions, for finite differences: every number of their text form, in order.

@@ -32,8 +32,9 @@ pub(super) fn fault(report: &str, at: usize, expected: &str, found: Option<&str>
     let before = &report[..at.min(report.len())];
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-    // A long or binary word would drown the message.
-    let found = found.map_or_else(|| "the end".into(), |w| format!("{:?}", w.chars().take(24).collect::<String>()));
+    // A long or binary word would drown the message: escapes of a character take up to ten bytes.
+    let short = |w: &str| format!("{:?}", w.chars().take(24).collect::<String>()).chars().take(48).collect::<String>();
+    let found = found.map_or_else(|| "the end".into(), short);
     Error::new(Status::Parse, format!("METAR line {line}, column {column}: expected {expected}, found {found}"))
 }
 
@@ -56,5 +57,7 @@ mod tests {
             fault(text, 13, "a", Some("b")).to_string().starts_with("METAR line 2, column 2: expected a, found \"b\"")
         );
         assert!(fault(text, 999, "a", None).to_string().contains("found the end"));
+        let binary = "\u{10ffff}".repeat(1000);
+        assert!(fault(&binary, 0, "a", Some(&binary)).to_string().len() < 120);
     }
 }

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 
 use super::super::kinds::CloudKind;
 use super::RunwayVisualRange;
+use super::amounts::Amount;
 
 /// Metres in a foot and in a statute mile; metres a second in a knot.
 const FOOT_M: f64 = 0.3048;
@@ -25,6 +26,11 @@ fn digits(text: &str) -> Option<u32> {
 /// Whether `text` is nothing but slashes, `n` of them.
 fn missing(text: &str, n: usize) -> bool {
     text.len() == n && text.bytes().all(|b| b == b'/')
+}
+
+/// Whether `text` stands for figures that could not be measured: slashes, or the letter M of American stations.
+fn unmeasured(text: &str) -> bool {
+    !text.is_empty() && (text.bytes().all(|b| b == b'/') || text.bytes().all(|b| b == b'M'))
 }
 
 /// Splits after `n` bytes if that is a character's border.
@@ -49,26 +55,26 @@ fn speed(text: &str) -> Option<f64> {
 }
 
 /// `24009KT`, `18018G31KT`, `VRB02KT`, `02003MPS`, `24109G120KT`, `P99KT` speeds; the outer `None` is "not a wind", the inner one a
-/// wind that is missing (`/////KT`, `/////`).
+/// wind that is missing (`/////KT`). Nothing but zeros is calm, however many.
 pub(super) fn wind(text: &str) -> Option<Reading<WindGroup>> {
-    if missing(text, 5) {
-        return Some(None);
-    }
     let (figures, unit) = [("KT", KNOT_M_S), ("MPS", 1.0), ("KMH", 1.0 / 3.6), ("KPH", 1.0 / 3.6)]
         .iter()
         .find_map(|(suffix, unit)| text.strip_suffix(suffix).map(|f| (f, *unit)))?;
-    if missing(figures, 5) {
+    if unmeasured(&figures.replace('G', "")) {
         return Some(None);
+    }
+    if digits(figures) == Some(0) {
+        return Some(Some(WindGroup { speed_m_s: 0.0, from_deg: Some(0.0), gust_m_s: None, variable: false }));
     }
     let (direction, rest) = split(figures, 3)?;
     let (mean, gust) = rest.split_once('G').map_or((rest, None), |(m, g)| (m, Some(g)));
-    let speed_m_s = if missing(mean, 2) { return Some(None) } else { speed(mean)? * unit };
+    let speed_m_s = if unmeasured(mean) { return Some(None) } else { speed(mean)? * unit };
     let gust_m_s = match gust {
-        Some(g) if !missing(g, 2) => Some(speed(g)? * unit),
+        Some(g) if !unmeasured(g) => Some(speed(g)? * unit),
         _ => None,
     };
     let from_deg = match direction {
-        "VRB" | "///" => None,
+        "VRB" | "///" | "MMM" => None,
         d => Some(f64::from(digits(d).filter(|d| *d <= 360)?)),
     };
     let possible = speed_m_s <= 120.0 && gust_m_s.is_none_or(|g| g >= speed_m_s && g <= 150.0);
@@ -90,18 +96,19 @@ pub(super) struct VisibilityGroup {
     pub at_least: bool,
 }
 
-/// `0150`, `9999`, `4500NDV`, `4500SW` (older reports), `12KM`; the inner `None` is missing (`////`). 0000 is below 50 m: 25 m.
+/// `0150`, `9999`, `4500NDV`, `4500SW` (older reports), `12KM`; the inner `None` is missing (`////NDV`). 0000 is below 50 m: 25 m.
+/// 9999 and 10KM are lower bounds; more kilometres are seen.
 pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> {
-    if missing(text, 4) || text == "////NDV" {
+    if text == "////NDV" {
         return Some(None);
     }
     if let Some(km) = text.strip_suffix("KM").and_then(digits).filter(|km| (1..=999).contains(km)) {
-        return Some(Some(VisibilityGroup { metres: f64::from(km) * 1000.0, at_least: km >= 10 }));
+        return Some(Some(VisibilityGroup { metres: f64::from(km) * 1000.0, at_least: km == 10 }));
     }
     if let Some(metres) = directional_visibility(text) {
         return Some(Some(VisibilityGroup { metres, at_least: metres > 9998.0 }));
     }
-    let figures = text.strip_suffix("NDV").unwrap_or(text);
+    let figures = text.strip_suffix("NDV").or(text.strip_suffix('M')).unwrap_or(text);
     let metres = if figures.len() == 4 { digits(figures)? } else { return None };
     let group = match metres {
         9999 => VisibilityGroup { metres: 10_000.0, at_least: true },
@@ -111,11 +118,12 @@ pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> 
     Some(Some(group))
 }
 
-/// `10SM`, `P6SM`, `1/2SM`, `M1/4SM` in statute miles, `whole` a number of miles in the word before. 10 and more is a lower bound;
-/// M (less than) counts as the figure itself. The inner `None` is missing (`////SM`).
+/// `10SM`, `P6SM`, `1/2SM`, `M1/4SM` in statute miles, `whole` a number of miles in the word before. 10 is a lower bound, because
+/// automatic stations see no further and most observers report no more (FMH-1, table 12-1); 11 and more are seen. M (less than)
+/// counts as the figure itself. The inner `None` is missing (`////SM`).
 pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Reading<VisibilityGroup>> {
     let figures = text.strip_suffix("SM")?;
-    if whole.is_none() && missing(figures, 4) {
+    if whole.is_none() && unmeasured(figures) {
         return Some(None);
     }
     let more = whole.is_none() && figures.starts_with('P');
@@ -136,14 +144,16 @@ pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Readin
     };
     let miles = part + whole.map_or(Some(0.0), |w| digits(w).map(f64::from))?;
     let metres = (miles * MILE_M).max(25.0);
-    (miles <= 500.0).then_some(Some(VisibilityGroup { metres, at_least: more || miles >= 10.0 }))
+    (miles <= 500.0)
+        .then_some(Some(VisibilityGroup { metres, at_least: more || (miles == 10.0 && !figures.starts_with('M')) }))
 }
 
-/// `1000SW`: lowest visibility and where, metres. The direction is not kept.
-pub(super) fn directional_visibility(text: &str) -> Option<f64> {
-    let (figures, direction) = split(text, 4)?;
+/// `1000SW`, `100NW`: visibility in a direction, metres. The direction is not kept.
+fn directional_visibility(text: &str) -> Option<f64> {
+    let figures = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let direction = &text[figures.len()..];
     let known = matches!(direction, "N" | "NE" | "E" | "SE" | "S" | "SW" | "W" | "NW");
-    if known { digits(figures).map(|m| f64::from(m).max(25.0)) } else { None }
+    if known && (3..=4).contains(&figures.len()) { digits(figures).map(|m| f64::from(m).max(25.0)) } else { None }
 }
 
 /// `R18R/0350N`, `R04R/2600V5000FT`, `R27L/P1500U`, `R25/1800FT/D`; the inner `None` is missing (`R18R/////`).
@@ -179,8 +189,8 @@ pub(super) fn runway_visual_range(text: &str) -> Option<Reading<RunwayVisualRang
 /// Cloud of a report: a layer, a sky without, or one that is hidden.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum CloudGroup {
-    /// Cover as a fraction and base above the station, m, `None` where missing.
-    Layer { cover: f64, base_m: Reading<f64>, kind: CloudKind },
+    /// Amount, and base above the station, m; `None` where missing.
+    Layer { amount: Reading<Amount>, base_m: Reading<f64>, kind: CloudKind },
     /// Nothing (significant) there, or nothing seen by an instrument.
     Clear,
     /// Hidden, with the vertical visibility in m if known.
@@ -189,8 +199,7 @@ pub(super) enum CloudGroup {
     Missing,
 }
 
-/// `SCT042`, `BKN018CB`, `VV001`, `CLR`, `//////CB`. Covers are the middles of WMO's classes in eighths: FEW 1.5, SCT 3.5, BKN 6,
-/// OVC 8.
+/// `SCT042`, `BKN018CB`, `BKN015///`, `///015`, `VV001`, `CLR`, `//////CB`.
 pub(super) fn cloud(text: &str) -> Option<CloudGroup> {
     if matches!(text, "SKC" | "CLR" | "NSC" | "NCD") {
         return Some(CloudGroup::Clear);
@@ -205,33 +214,34 @@ pub(super) fn cloud(text: &str) -> Option<CloudGroup> {
     }
     let (amount, rest) = split(text, 3)?;
     let (base, kind) = split(rest, 3)?;
-    let kind = match kind {
-        "" | "///" => CloudKind::Unknown,
+    let kind = match kind.trim_end_matches('/') {
+        "" => CloudKind::Unknown,
         "CB" => CloudKind::Cumulonimbus,
         "TCU" => CloudKind::ToweringCumulus,
         _ => return None,
     };
-    let eighths = match amount {
-        "FEW" => 1.5,
-        "SCT" => 3.5,
-        "BKN" => 6.0,
-        "OVC" => 8.0,
-        "///" if kind == CloudKind::Unknown => return height(base).map(|_| CloudGroup::Missing),
-        "///" => 3.5,
+    let amount = match amount {
+        "FEW" => Some(Amount::Few),
+        "SCT" => Some(Amount::Scattered),
+        "BKN" => Some(Amount::Broken),
+        "OVC" => Some(Amount::Overcast),
+        "///" => None,
         _ => return None,
     };
-    Some(CloudGroup::Layer { cover: eighths / 8.0, base_m: height(base)?, kind })
+    let base_m = height(base)?;
+    let missing = amount.is_none() && base_m.is_none() && kind == CloudKind::Unknown;
+    Some(if missing { CloudGroup::Missing } else { CloudGroup::Layer { amount, base_m, kind } })
 }
 
 /// Temperatures that a report may carry, C: those that a `Weather` takes.
 const CELSIUS: RangeInclusive<f64> = -90.0..=60.0;
 
-/// A temperature: two digits, M for below zero, or missing.
+/// A temperature: two digits, M (or a minus) for below zero, or missing.
 fn celsius(text: &str) -> Option<Reading<f64>> {
-    if matches!(text, "//" | "" | "XX") {
+    if matches!(text, "//" | "" | "XX" | "M" | "MM") {
         return Some(None);
     }
-    let (figures, sign) = text.strip_prefix('M').map_or((text, 1.0), |t| (t, -1.0));
+    let (figures, sign) = text.strip_prefix(['M', '-']).map_or((text, 1.0), |t| (t, -1.0));
     if figures.len() != 2 {
         return None;
     }
@@ -240,11 +250,8 @@ fn celsius(text: &str) -> Option<Reading<f64>> {
     CELSIUS.contains(&t).then_some(Some(t))
 }
 
-/// `11/10`, `M03/M05`, `03/`, `///05`, `/////`: temperature and dew point.
+/// `11/10`, `M03/M05`, `03/`, `///05`, `M/M`: temperature and dew point.
 pub(super) fn temperatures(text: &str) -> Option<(Reading<f64>, Reading<f64>)> {
-    if missing(text, 5) {
-        return Some((None, None));
-    }
     let (t, d) = match (text.strip_suffix("///"), text.strip_prefix("///")) {
         (Some(t), _) => (t, "//"),
         (_, Some(d)) => ("//", d),
@@ -254,7 +261,7 @@ pub(super) fn temperatures(text: &str) -> Option<(Reading<f64>, Reading<f64>)> {
     if text.len() > 2 { Some((celsius(t)?, celsius(d)?)) } else { None }
 }
 
-/// `Q1009`, `A2986`, `Q////`: pressure at sea level, hPa.
+/// `Q1009`, `Q998`, `A2986`, `Q////`: pressure at sea level, hPa.
 pub(super) fn pressure(text: &str) -> Option<Reading<f64>> {
     let (unit, figures) = split(text, 1)?;
     let factor = match unit {
@@ -262,10 +269,11 @@ pub(super) fn pressure(text: &str) -> Option<Reading<f64>> {
         "A" => 0.01 * INCH_HG_HPA,
         _ => return None,
     };
-    if missing(figures, 4) {
+    if unmeasured(figures) {
         return Some(None);
     }
-    let hpa = if figures.len() == 4 { f64::from(digits(figures)?) * factor } else { return None };
+    let complete = figures.len() == 4 || (unit == "Q" && figures.len() == 3);
+    let hpa = if complete { f64::from(digits(figures)?) * factor } else { return None };
     (800.0..=1100.0).contains(&hpa).then_some(Some(hpa))
 }
 
@@ -314,10 +322,27 @@ mod tests {
         assert!(wind("VRB02KT").unwrap().unwrap().variable);
         assert_eq!(wind("24109G120KT").unwrap().unwrap().from_deg, Some(241.0));
         assert!(near(wind("270P99KT").unwrap().unwrap().speed_m_s, 50.93));
-        assert_eq!(wind("/////KT"), Some(None));
-        for bad in
-            ["2409KT", "36109KT", "24009", "24020G10KT", "24X09KT", "KT", "VR02KT", "240999KT", "24009GKT", "é4009KT"]
-        {
+        for missing in ["/////KT", "/////MPS", "/////G//KT", "240//KT", "///////KT", "MMMMMKT"] {
+            assert_eq!(wind(missing), Some(None), "{missing}");
+        }
+        for calm in ["00000KT", "0000KT", "000000KT", "00000MPS"] {
+            assert_eq!(wind(calm).unwrap().unwrap().speed_m_s, 0.0, "{calm}");
+        }
+        assert_eq!(wind("24009G//KT").unwrap().unwrap().gust_m_s, None);
+        assert_eq!(wind("///09KT").unwrap().unwrap().from_deg, None);
+        for bad in [
+            "2409KT",
+            "36109KT",
+            "24009",
+            "24020G10KT",
+            "24X09KT",
+            "KT",
+            "VR02KT",
+            "240999KT",
+            "24009GKT",
+            "é4009KT",
+            "/////",
+        ] {
             assert_eq!(wind(bad), None, "{bad}");
         }
         assert_eq!(
@@ -332,7 +357,10 @@ mod tests {
         assert_eq!(metres("0150"), Some(Some((150.0, false))));
         assert_eq!(metres("9999"), Some(Some((10_000.0, true))));
         assert_eq!(metres("9999NDV"), Some(Some((10_000.0, true))));
-        assert_eq!((metres("////"), metres("0000")), (Some(None), Some(Some((25.0, false)))));
+        assert_eq!((metres("////NDV"), metres("0000")), (Some(None), Some(Some((25.0, false)))));
+        assert_eq!(metres("10KM"), Some(Some((10_000.0, true))));
+        assert_eq!((metres("20KM"), metres("30KM")), (Some(Some((20_000.0, false))), Some(Some((30_000.0, false)))));
+        assert_eq!((metres("100NW"), metres("5000M")), (Some(Some((100.0, false))), Some(Some((5000.0, false)))));
         assert_eq!((metres("150"), metres("XX50"), metres("15000")), (None, None, None));
         let miles = |w, t| visibility_miles(w, t).and_then(|v| v.map(|v| (v.metres.round(), v.at_least)));
         assert_eq!(miles(Some("1"), "1/2SM"), Some((2414.0, false)));
@@ -340,11 +368,13 @@ mod tests {
         assert_eq!((miles(None, "11/2SM"), miles(None, "11/16SM")), (Some((2414.0, false)), Some((1106.0, false))));
         assert_eq!(miles(None, "M1/4SM"), Some((402.0, false)));
         assert_eq!(miles(None, "10SM"), Some((16_093.0, true)));
+        assert_eq!((miles(None, "12SM"), miles(None, "15SM")), (Some((19_312.0, false)), Some((24_140.0, false))));
+        assert_eq!((miles(None, "M10SM"), miles(None, "P15SM")), (Some((16_093.0, false)), Some((24_140.0, true))));
         assert_eq!(miles(None, "P6SM"), Some((9656.0, true)));
         for bad in ["XXSM", "1/0SM", "SM", "PM6SM", "/SM", "999999SM"] {
             assert_eq!(miles(None, bad), None, "{bad}");
         }
-        assert_eq!((directional_visibility("1000SW"), directional_visibility("1000Q")), (Some(1000.0), None));
+        assert_eq!((metres("1000SW"), metres("1000Q")), (Some(Some((1000.0, false))), None));
     }
 
     #[test]
@@ -364,10 +394,12 @@ mod tests {
 
     #[test]
     fn clouds_and_hidden_skies() {
-        let layer = |cover, feet: f64, kind| Some(CloudGroup::Layer { cover, base_m: Some(feet * FOOT_M), kind });
-        assert_eq!(cloud("SCT042"), layer(0.4375, 4200.0, CloudKind::Unknown));
-        assert_eq!(cloud("BKN018CB"), layer(0.75, 1800.0, CloudKind::Cumulonimbus));
-        assert_eq!(cloud("FEW030TCU"), layer(0.1875, 3000.0, CloudKind::ToweringCumulus));
+        let layer = |amount, feet: f64, kind| Some(CloudGroup::Layer { amount, base_m: Some(feet * FOOT_M), kind });
+        assert_eq!(cloud("SCT042"), layer(Some(Amount::Scattered), 4200.0, CloudKind::Unknown));
+        assert_eq!(cloud("BKN018CB"), layer(Some(Amount::Broken), 1800.0, CloudKind::Cumulonimbus));
+        assert_eq!(cloud("FEW030TCU"), layer(Some(Amount::Few), 3000.0, CloudKind::ToweringCumulus));
+        assert_eq!(cloud("BKN015////"), layer(Some(Amount::Broken), 1500.0, CloudKind::Unknown));
+        assert_eq!(cloud("///015"), layer(None, 1500.0, CloudKind::Unknown));
         assert_eq!((cloud("CLR"), cloud("VV///")), (Some(CloudGroup::Clear), Some(CloudGroup::Obscured(None))));
         assert_eq!(cloud("VV001"), Some(CloudGroup::Obscured(Some(100.0 * FOOT_M))));
         assert_eq!(cloud("//////"), Some(CloudGroup::Missing));
@@ -382,12 +414,17 @@ mod tests {
         assert_eq!(temperatures("M03/M05"), Some((Some(-3.0), Some(-5.0))));
         assert_eq!(temperatures("00/M01"), Some((Some(0.0), Some(-1.0))));
         assert_eq!((temperatures("03/"), temperatures("03///")), (Some((Some(3.0), None)), Some((Some(3.0), None))));
-        assert_eq!((temperatures("/////"), temperatures("/")), (Some((None, None)), None));
+        assert_eq!((temperatures("M/M"), temperatures("/")), (Some((None, None)), None));
+        assert_eq!(
+            (temperatures("M05/M"), temperatures("-05/-07")),
+            (Some((Some(-5.0), None)), Some((Some(-5.0), Some(-7.0))))
+        );
         assert_eq!(temperatures("///M05"), Some((None, Some(-5.0))));
         assert_eq!((temperatures("M90/M90"), temperatures("M91/M95")), (Some((Some(-90.0), Some(-90.0))), None));
         assert_eq!((temperatures("99/10"), temperatures("1/1"), temperatures("11-10")), (None, None, None));
         assert!(near(pressure("A2992").unwrap().unwrap(), 1_013.207_888));
         assert_eq!((pressure("Q0991"), pressure("Q////")), (Some(Some(991.0)), Some(None)));
+        assert_eq!((pressure("Q998"), pressure("AMMMM")), (Some(Some(998.0)), Some(None)));
         assert_eq!((pressure("Q0700"), pressure("Q99"), pressure("B1000"), pressure("")), (None, None, None, None));
         assert_eq!(sea("W10/S5"), Some(SeaGroup { temperature_c: Some(10.0), state: Some(5), wave_height_m: None }));
         assert_eq!(sea("WM01/S2").unwrap().temperature_c, Some(-1.0));

@@ -1,20 +1,20 @@
 //! What a report means: words of intensity become rates, classes become figures.
 
-use super::MetarReport;
+use super::amounts;
+use super::assumed;
 use super::groups::CloudGroup;
 use super::parse::Parsed;
 use super::phenomena::{Descriptor, Intensity, Phenomenon, WeatherGroup};
+use super::{MetarOptions, MetarReport};
 use crate::error::{Result, Status};
-use crate::weather::kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind};
-use crate::weather::model::{Aerosol, CloudLayer, Fog, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Weather, Wind};
+use crate::weather::kinds::{AerosolKind, CloudAmountRule, CloudKind, FogKind, LoftedKind, PrecipitationKind};
+use crate::weather::model::{Aerosol, CloudLayer, Fog, Lofted, Precipitation, Sea, Weather, Wind};
 use crate::weather::{LN_20, air, hydrometeors, particles};
 
 /// Base of a layer whose height a report leaves out, m.
 const ASSUMED_BASE_M: f64 = 600.0;
 /// Vertical visibility of a hidden sky without a figure, m.
 const ASSUMED_VERTICAL_M: f64 = 60.0;
-/// Relative humidity of a report without a dew point.
-const ASSUMED_HUMIDITY: f64 = 0.7;
 
 /// Rates of light, moderate and heavy, mm/h: middles of the classes (the heavy class is open).
 ///
@@ -70,7 +70,7 @@ fn falling_kind(g: &WeatherGroup, temperature_c: f64) -> (PrecipitationKind, Opt
     use {Phenomenon as P, PrecipitationKind as K};
     let has = |p: P| g.phenomena.contains(&p);
     let freezing = g.descriptor == Some(Descriptor::Freezing);
-    let first = g.phenomena.first().copied();
+    let first = g.phenomena.iter().copied().find(|p| p.falls());
     // The predominant part is named first (WMO-No. 306, 15.8.9).
     let liquid_first = first.is_some_and(|p| matches!(p, P::Rain | P::Drizzle));
     let part = Some(if liquid_first { 0.6 } else { 0.4 });
@@ -163,39 +163,31 @@ fn lift(w: &mut Weather, lofted: LoftedKind, aerosol: AerosolKind) {
     w.aerosol = Aerosol::of(aerosol);
 }
 
-/// Cover of a layer of its own whose group says `cover`, where all below it hide `below` of the sky. A group counts what is hidden by its
-/// layer and all lower ones (summation principle, Federal Meteorological Handbook No. 1, chapter 9); of what they leave open the layer covers
-/// (c - below) / (1 - below), if layers lie independently. Updates `below`.
-///
-/// Cumulonimbus and towering cumulus are reported beside the layers, with a cover of their own (WMO-No. 306, FM 15, 15.9).
-fn own_cover(cover: f64, kind: CloudKind, below: &mut f64) -> f64 {
-    if matches!(kind, CloudKind::Cumulonimbus | CloudKind::ToweringCumulus) {
-        return cover;
-    }
-    let own = if cover <= *below || *below >= 1.0 { 0.0 } else { (cover - *below) / (1.0 - *below) };
-    *below = below.max(cover);
-    own
-}
-
-fn clouds(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
-    let mut below = 0.0;
+/// Layers of the report by `rule`, and the vertical visibility.
+fn clouds(p: &Parsed, rule: CloudAmountRule, w: &mut Weather, assumed: &mut Vec<&'static str>) {
+    let groups =
+        p.clouds.iter().filter_map(|g| if let CloudGroup::Layer { amount, .. } = g { Some(*amount) } else { None });
+    let mut covers = amounts::covers(&groups.collect::<Vec<_>>(), rule).into_iter();
+    let mut assume = |name, missing| {
+        if missing && !assumed.contains(&name) {
+            assumed.push(name);
+        }
+    };
+    assume("clouds", p.clouds.is_empty() && !p.cavok);
     for group in &p.clouds {
         match *group {
-            CloudGroup::Layer { cover, base_m, kind } if w.clouds.len() < MAX_CLOUD_LAYERS => {
-                if base_m.is_none() && !assumed.contains(&"clouds[].base_m") {
-                    assumed.push("clouds[].base_m");
-                }
-                let cover = own_cover(cover, kind, &mut below);
+            CloudGroup::Layer { amount, base_m, kind } => {
+                assume("clouds[].base_m", base_m.is_none());
+                assume("clouds[].cover", amount.is_none());
+                let cover = covers.next().unwrap_or(0.0);
                 w.clouds.push(CloudLayer::of(kind, cover, base_m.unwrap_or(ASSUMED_BASE_M).min(20_000.0)));
             }
             CloudGroup::Obscured(vertical_m) => {
-                if vertical_m.is_none() {
-                    assumed.push("vertical_visibility_m");
-                }
+                assume("vertical_visibility_m", vertical_m.is_none());
                 w.vertical_visibility_m = Some(vertical_m.unwrap_or(ASSUMED_VERTICAL_M).min(10_000.0));
             }
-            CloudGroup::Missing => assumed.push("clouds"),
-            _ => {}
+            CloudGroup::Missing => assume("clouds", true),
+            CloudGroup::Clear => {}
         }
     }
     name_the_thundercloud(w);
@@ -232,53 +224,74 @@ fn wind(p: &Parsed, assumed: &mut Vec<&'static str>) -> Wind {
     }
 }
 
-fn air_of(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
-    match p.temperature_c {
-        Some(t) => w.temperature_c = t,
-        None => assumed.push("temperature_c"),
-    }
-    match (p.temperature_c, p.dew_point_c) {
-        (Some(_), Some(dew)) => w.set_dew_point_c(dew),
-        _ => {
-            w.relative_humidity = ASSUMED_HUMIDITY;
-            assumed.push("relative_humidity");
-        }
-    }
-    match p.pressure_hpa {
-        Some(hpa) => w.pressure_hpa = hpa,
-        None => assumed.push("pressure_hpa"),
-    }
-}
-
-/// Visibility as a figure; where the report says only "at least", what humidity and precipitation leave, at least that much.
+/// Visibility as a figure; where the report says only "at least", what humidity and precipitation leave, at least that much; where
+/// it says nothing, not more than its fog or haze leaves.
 fn visibility_m(p: &Parsed, w: &Weather, assumed: &mut Vec<&'static str>) -> f64 {
-    let floor = match p.visibility {
-        _ if p.cavok => 10_000.0,
+    let (least, most) = match p.visibility {
+        _ if p.cavok => (10_000.0, f64::INFINITY),
         Some(v) if !v.at_least => return v.metres.min(1e6),
-        Some(v) => v.metres,
+        Some(v) => (v.metres, f64::INFINITY),
         None => {
             assumed.push("visibility_m");
-            0.0
+            (0.0, assumed::visibility_bound_m(p))
         }
     };
     let falling = hydrometeors::falling(&w.precipitation).extinction_per_m();
-    particles::unlimited_visibility_m(w.relative_humidity, falling).max(floor)
+    particles::unlimited_visibility_m(w.relative_humidity, falling).clamp(least, most)
 }
 
 /// The weather and its surroundings.
 ///
 /// # Errors
 /// [`Status::Parse`] if the figures cannot stand together; the groups' own ranges keep that from happening.
-pub(super) fn report(p: &Parsed) -> Result<MetarReport> {
+pub(super) fn report(p: Parsed, options: &MetarOptions) -> Result<MetarReport> {
+    let rule = match options.cloud_amounts {
+        CloudAmountRule::ByStation => amounts::rule_of(&p.station),
+        set => set,
+    };
     let mut assumed = Vec::new();
-    let mut w = Weather { wind: wind(p, &mut assumed), ..Weather::default() };
-    air_of(p, &mut w, &mut assumed);
+    let weather = weather(&p, rule, &mut assumed)?;
+    if p.time.is_none() {
+        assumed.push("time");
+    }
+    let (day, hour, minute) = p.time.unwrap_or_default();
+    Ok(MetarReport {
+        weather,
+        day,
+        hour,
+        minute,
+        special: p.special,
+        automatic: p.automatic,
+        corrected: p.corrected,
+        visibility_is_minimum: p.cavok || p.visibility.is_none_or(|v| v.at_least),
+        lowest_visibility_m: p.lowest_visibility_m,
+        cloud_amounts: rule,
+        station: p.station,
+        runways: p.runways,
+        assumed,
+        unread: p.unread,
+        trend: p.trend,
+        remarks: p.remarks,
+        places: p.places,
+    })
+}
+
+fn weather(p: &Parsed, rule: CloudAmountRule, assumed: &mut Vec<&'static str>) -> Result<Weather> {
+    let mut w = Weather { wind: wind(p, assumed), ..Weather::default() };
+    assumed::temperature_and_humidity(p, &mut w, assumed);
+    match p.pressure_hpa {
+        Some(hpa) => w.pressure_hpa = hpa,
+        None => assumed.push("pressure_hpa"),
+    }
     obscurations(p, &mut w);
     // Snow's rate needs the visibility and an open-ended visibility needs the rate: a first figure serves the second.
     w.visibility_m = p.visibility.map_or(10_000.0, |v| v.metres);
     w.precipitation = precipitation(p, &w);
-    w.visibility_m = visibility_m(p, &w, &mut assumed);
-    clouds(p, &mut w, &mut assumed);
+    w.visibility_m = visibility_m(p, &w, assumed);
+    if p.weather_unknown && p.weather.is_empty() {
+        assumed.push("precipitation");
+    }
+    clouds(p, rule, &mut w, assumed);
     w.runway_visual_range_m = p.runways.iter().map(|r| r.range_m).min_by(f64::total_cmp).map(|m| m.min(10_000.0));
     if let Some(sea) = p.sea {
         let background = w.aerosol.kind == AerosolKind::Continental;
@@ -291,30 +304,17 @@ pub(super) fn report(p: &Parsed) -> Result<MetarReport> {
         };
     }
     w.validate().map_err(|e| e.with_status(Status::Parse).found_in("METAR line 1, column 1"))?;
-    Ok(MetarReport {
-        weather: w,
-        station: p.station.clone(),
-        day: p.day,
-        hour: p.hour,
-        minute: p.minute,
-        special: p.special,
-        automatic: p.automatic,
-        corrected: p.corrected,
-        visibility_is_minimum: p.cavok || p.visibility.is_none_or(|v| v.at_least),
-        runways: p.runways.clone(),
-        assumed,
-        trend: p.trend.clone(),
-        remarks: p.remarks.clone(),
-    })
+    Ok(w)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn covers(groups: &str) -> Vec<f64> {
-        let report = Weather::from_metar(&format!("METAR LOWI 121150Z 24008KT 9999 {groups} 12/08 Q1015")).unwrap();
-        report.weather.clouds.iter().map(|c| c.cover).collect()
+    fn covers(station: &str, rule: CloudAmountRule, groups: &str) -> (Vec<f64>, CloudAmountRule) {
+        let text = format!("METAR {station} 121150Z 24008KT 9999 {groups} 12/08 Q1015");
+        let report = Weather::from_metar_with(&text, &MetarOptions { cloud_amounts: rule }).unwrap();
+        (report.weather.clouds.iter().map(|c| c.cover).collect(), report.cloud_amounts)
     }
 
     fn assert_near(got: &[f64], want: &[f64]) {
@@ -323,21 +323,33 @@ mod tests {
     }
 
     #[test]
-    fn groups_count_what_lies_below_and_layers_do_not() {
-        let [few, sct, bkn] = [1.5, 3.5, 6.0].map(|oktas| oktas / 8.0);
-        assert_near(&covers("FEW020 SCT040 BKN100"), &[few, (sct - few) / (1.0 - few), (bkn - sct) / (1.0 - sct)]);
-        assert_near(&covers("SCT020 OVC040"), &[sct, 1.0]);
-        assert_near(&covers("BKN020 BKN040 SCT090 OVC200"), &[bkn, 0.0, 0.0, 1.0]);
-        assert_near(&covers("OVC010 OVC020 BKN090"), &[1.0, 0.0, 0.0]);
+    fn amounts_count_by_the_station_or_by_the_rule_that_is_set() {
+        use CloudAmountRule as R;
+        let [few, sct, bkn] = [1.5, 3.5, 6.0].map(|eighths| eighths / 8.0);
+        let groups = "FEW010 SCT020 BKN040";
+        let sums = [few, (sct - few) / (1.0 - few), (bkn - sct) / (1.0 - sct)];
+        for (station, set, taken) in [
+            ("EGLL", R::ByStation, R::Layers),
+            ("KADW", R::ByStation, R::Sums),
+            ("EGLL", R::Sums, R::Sums),
+            ("KADW", R::Layers, R::Layers),
+        ] {
+            let (got, said) = covers(station, set, groups);
+            assert_near(&got, &if taken == R::Sums { sums } else { [few, sct, bkn] });
+            assert_eq!(said, taken, "{station}");
+        }
+        assert_near(&covers("LFPG", R::ByStation, "OVC020 BKN045").0, &[1.0, bkn]);
         // What is hidden in all is what the highest group says.
-        let clear: f64 = covers("FEW020 SCT040 BKN100").iter().map(|c| 1.0 - c).product();
+        let clear: f64 = covers("KADW", R::ByStation, groups).0.iter().map(|c| 1.0 - c).product();
         assert!((1.0 - clear - bkn).abs() < 1e-12, "{clear}");
     }
 
     #[test]
-    fn towers_stand_beside_the_layers() {
-        let [few, sct, bkn] = [1.5, 3.5, 6.0].map(|oktas| oktas / 8.0);
-        assert_near(&covers("FEW015CB SCT020 BKN040"), &[few, sct, (bkn - sct) / (1.0 - sct)]);
-        assert_near(&covers("BKN020 FEW030TCU BKN090"), &[bkn, few, 0.0]);
+    fn towers_count_in_american_sums_and_beside_other_layers() {
+        use CloudAmountRule as R;
+        let [few, sct, bkn] = [1.5, 3.5, 6.0].map(|eighths| eighths / 8.0);
+        assert_near(&covers("LOWI", R::ByStation, "FEW015CB SCT020 BKN040").0, &[few, sct, bkn]);
+        let sums = [few, (sct - few) / (1.0 - few), (bkn - sct) / (1.0 - sct)];
+        assert_near(&covers("KABQ", R::ByStation, "FEW033 SCT075CB BKN100").0, &sums);
     }
 }

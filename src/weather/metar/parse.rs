@@ -1,10 +1,18 @@
-//! The order of the groups in a report, and which may be left out.
+//! The groups of a report, one after another: which word is which group, and which words are none.
+//!
+//! Stations leave out what they could not measure (FMH-1, 12.5), mark it (`////`, `M`), glue groups together, change their order
+//! and add words of their own. So a word is read as whatever group it is, in any order up to the pressure; what follows the
+//! pressure is no longer the weather at the time of the report. A word that is no group is kept as unread.
+
+use std::ops::Range;
 
 use super::fault::{Word, fault, words};
 use super::groups::{self, CloudGroup, Reading, SeaGroup, VisibilityGroup, WindGroup};
 use super::phenomena::{self, WeatherGroup};
-use super::{MAX_METAR_BYTES, RunwayVisualRange};
+use super::supplements;
+use super::{MAX_METAR_BYTES, MetarPlaces, RunwayVisualRange};
 use crate::error::{Error, Result, Status};
+use crate::weather::model::MAX_CLOUD_LAYERS;
 
 /// A report as it is written, before it means weather.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,9 +21,8 @@ pub(super) struct Parsed {
     pub automatic: bool,
     pub corrected: bool,
     pub station: String,
-    pub day: u32,
-    pub hour: u32,
-    pub minute: u32,
+    /// Day, hour and minute.
+    pub time: Option<(u32, u32, u32)>,
     pub wind: Reading<WindGroup>,
     pub wind_range: Option<(f64, f64)>,
     pub cavok: bool,
@@ -23,6 +30,8 @@ pub(super) struct Parsed {
     pub lowest_visibility_m: Option<f64>,
     pub runways: Vec<RunwayVisualRange>,
     pub weather: Vec<WeatherGroup>,
+    /// The station could not tell the present weather (`//`, PWINO).
+    pub weather_unknown: bool,
     pub clouds: Vec<CloudGroup>,
     pub temperature_c: Reading<f64>,
     pub dew_point_c: Reading<f64>,
@@ -30,6 +39,13 @@ pub(super) struct Parsed {
     pub sea: Option<SeaGroup>,
     pub trend: String,
     pub remarks: String,
+    /// Words that are no group, in the report's order.
+    pub unread: Vec<String>,
+    pub places: MetarPlaces,
+    /// Whether words from here on no longer say what the weather is now.
+    ended: bool,
+    /// Groups of the weather so far, those marked as missing included.
+    groups: usize,
 }
 
 /// The words still to read.
@@ -44,13 +60,6 @@ impl<'a> Reader<'a> {
         self.words.get(self.next + ahead).map(|w| w.text)
     }
 
-    /// Takes the next word if it is `word`.
-    fn accept(&mut self, word: &str) -> bool {
-        let found = self.peek(0) == Some(word);
-        self.next += usize::from(found);
-        found
-    }
-
     /// Takes the next word if `read` understands it.
     fn optional<T>(&mut self, read: impl Fn(&str) -> Option<T>) -> Option<T> {
         let value = read(self.peek(0)?)?;
@@ -58,108 +67,68 @@ impl<'a> Reader<'a> {
         Some(value)
     }
 
-    /// Takes the next word, which `read` must understand.
-    fn required<T>(&mut self, expected: &str, read: impl Fn(&str) -> Option<T>) -> Result<T> {
-        self.optional(read).ok_or_else(|| self.refuse(expected))
-    }
-
-    /// As [`Self::required`], but a group may be left out where a later one follows: American stations leave out what they could
-    /// not measure (FMH-1, 12.6). A report that merely ends is cut short, not complete.
-    fn unless_later<T>(
-        &mut self,
-        expected: &str,
-        later: fn(&str) -> bool,
-        read: impl Fn(&str) -> Option<Reading<T>>,
-    ) -> Result<Reading<T>> {
-        if let Some(value) = self.optional(read) {
-            return Ok(value);
-        }
-        if self.peek(0).is_some_and(later) { Ok(None) } else { Err(self.refuse(expected)) }
-    }
-
-    fn refuse(&self, expected: &str) -> Error {
+    /// Byte at which word `index` begins, or the last one ends.
+    fn at(&self, index: usize) -> usize {
         let end = self.words.last().map_or(0, |w| w.at + w.text.len());
-        let at = self.words.get(self.next).map_or(end, |w| w.at);
-        fault(self.report, at, expected, self.peek(0))
+        self.words.get(index).map_or(end, |w| w.at)
     }
 
-    /// The text from here to before a word that is `stop`, or to the end; takes those words.
-    fn rest_before(&mut self, stop: &str) -> String {
-        let from = self.next;
-        while self.peek(0).is_some_and(|w| w != stop) {
+    /// Bytes of the words from `first` up to the next one.
+    fn bytes_since(&self, first: usize) -> Range<usize> {
+        match self.words.get(first..self.next) {
+            Some([one, .., last]) => one.at..last.at + last.text.len(),
+            Some([one]) => one.at..one.at + one.text.len(),
+            _ => 0..0,
+        }
+    }
+
+    fn refuse(&self, index: usize, expected: &str) -> Error {
+        fault(self.report, self.at(index), expected, self.words.get(index).map(|w| w.text))
+    }
+
+    /// Text and bytes from here to before RMK or to the end; takes those words.
+    fn rest(&mut self, up_to_remarks: bool) -> (String, Range<usize>) {
+        let first = self.next;
+        while self.peek(0).is_some_and(|w| !(up_to_remarks && is_remarks(w))) {
             self.next += 1;
         }
-        self.words[from..self.next].iter().map(|w| w.text).collect::<Vec<_>>().join(" ")
+        let text = self.words[first..self.next].iter().map(|w| w.text).collect::<Vec<_>>().join(" ");
+        (text, self.bytes_since(first))
     }
 }
 
 /// Four letters or digits, the first a letter.
 fn station(text: &str) -> Option<String> {
     let good = text.len() == 4 && text.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit());
-    (good && text.as_bytes()[0].is_ascii_uppercase()).then(|| text.into())
+    (good && text.as_bytes()[0].is_ascii_uppercase() && text != "AUTO").then(|| text.into())
 }
 
-/// `171853Z`: day, hour and minute.
+/// `171853Z`: day, hour and minute; some leave out the Z.
 fn time(text: &str) -> Option<(u32, u32, u32)> {
-    let figures = text.strip_suffix('Z').filter(|f| f.len() == 6 && f.bytes().all(|b| b.is_ascii_digit()))?;
+    let figures = text.strip_suffix('Z').unwrap_or(text);
+    if figures.len() != 6 || !figures.bytes().all(|b| b.is_ascii_digit()) {
+        return None;
+    }
     let two = |i: usize| figures[i..i + 2].parse::<u32>().ok();
     let (day, hour, minute) = (two(0)?, two(2)?, two(4)?);
     ((1..=31).contains(&day) && hour < 24 && minute < 60).then_some((day, hour, minute))
 }
 
-/// Groups after the pressure that say nothing of the weather now: recent weather, wind shear, runway states, military colours.
-fn is_supplement(text: &str) -> bool {
-    let colour = matches!(text, "BLU+" | "BLU" | "WHT" | "GRN" | "YLO" | "YLO1" | "YLO2" | "AMB" | "RED");
-    let recent = text.strip_prefix("RE").is_some_and(|w| phenomena::weather(w).is_some());
-    let runway = text.strip_prefix('R').is_some_and(|r| r.contains('/') || r.starts_with(|c: char| c.is_ascii_digit()));
-    // Runway and state in eight figures, an older form: 88490391.
-    let figures = text.len() == 8 && text.bytes().all(|b| b.is_ascii_digit() || b == b'/') && text != "////////";
-    let shear = matches!(text, "WS" | "ALL" | "RWY" | "TKOF" | "LDG") || text.starts_with("RWY");
-    colour
-        || text.starts_with("BLACK")
-        || recent
-        || runway
-        || figures
-        || shear
-        || matches!(text, "$" | "SNOCLO" | "R/SNOCLO")
+/// Beginning of the remarks.
+fn is_remarks(text: &str) -> bool {
+    matches!(text, "RMK" | "RMKS")
 }
 
-/// Whether a word is a group that stands after the pressure.
-fn is_ending(text: &str) -> bool {
-    text == "RMK" || is_trend(text) || groups::sea(text).is_some() || is_supplement(text)
-}
-
-/// Whether a word is a group that stands after the temperatures.
-fn is_after_temperatures(text: &str) -> bool {
-    groups::pressure(text).is_some() || text == "RMK"
-}
-
-/// Whether a word is a group that stands after the visibility.
-fn is_after_visibility(text: &str) -> bool {
-    groups::runway_visual_range(text).is_some()
-        || phenomena::weather(text).is_some()
-        || groups::cloud(text).is_some()
-        || groups::temperatures(text).is_some()
-}
-
-/// Whether a word is a visibility or a group after it: what stands after the wind.
-fn is_after_wind(text: &str) -> bool {
-    text == "CAVOK"
-        || groups::visibility_metres(text).is_some()
-        || groups::visibility_miles(None, text).is_some()
-        || is_after_visibility(text)
-}
-
-/// Beginning of a trend forecast.
+/// Beginning of a trend forecast; TEMP0 is a frequent misspelling.
 fn is_trend(text: &str) -> bool {
     let from = text.strip_prefix("FM").is_some_and(|t| t.bytes().all(|b| b.is_ascii_digit()));
-    matches!(text, "NOSIG" | "BECMG" | "TEMPO" | "INTER") || from || text.starts_with("PROB")
+    matches!(text, "NOSIG" | "BECMG" | "TEMPO" | "TEMP0" | "INTER") || from || text.starts_with("PROB")
 }
 
-/// Reads the groups in their order.
+/// Reads all groups.
 ///
 /// # Errors
-/// [`Status::Parse`] with line, column and what was expected at the first word out of order.
+/// [`Status::Parse`] with line, column and what was expected where there is no station, no observation, or no group of the weather.
 pub(super) fn parse(report: &str) -> Result<Parsed> {
     if report.len() > MAX_METAR_BYTES {
         let message = format!("METAR must be at most {MAX_METAR_BYTES} bytes, got {}", report.len());
@@ -168,112 +137,222 @@ pub(super) fn parse(report: &str) -> Result<Parsed> {
     let mut r = Reader { report, words: words(report), next: 0 };
     let mut p = Parsed::default();
     heading(&mut r, &mut p)?;
-    wind_and_visibility(&mut r, &mut p)?;
-    while let Some(range) = r.optional(groups::runway_visual_range) {
-        p.runways.extend(range);
+    let (mut first_unread, mut remarked) = (None, false);
+    while let Some(word) = r.peek(0) {
+        if is_remarks(word) {
+            r.next += 1;
+            remarked = true;
+            (p.remarks, p.places.remarks) = r.rest(false);
+        } else if is_trend(word) {
+            (p.trend, p.places.trend) = r.rest(true);
+        } else if !group(&mut r, &mut p) {
+            first_unread.get_or_insert(r.next);
+            // After the temperatures a foreign word ends the groups as the pressure does: what follows may be a forecast.
+            p.ended |= p.temperature_c.is_some();
+            p.unread.push(word.into());
+            r.next += 1;
+        }
     }
-    while let Some(group) = r.optional(phenomena::weather) {
-        p.weather.extend(group);
+    p.places.unread = first_unread.map_or(0..0, |i| r.words[i].at..r.words[i].at + r.words[i].text.len());
+    // The present weather's identifier did not work (FMH-1, 12.7.2).
+    p.weather_unknown |= p.remarks.split(' ').any(|w| w == "PWINO");
+    // A station that could measure nothing still closes its report by remarks.
+    if p.groups == 0 && !remarked {
+        let expected = "a group of the weather, such as 24009KT, 4500, 10SM, -RA, SCT042, 11/10 or Q1009";
+        return Err(r.refuse(first_unread.unwrap_or(r.words.len()), expected));
     }
-    while let Some(cloud) = r.optional(groups::cloud) {
-        p.clouds.push(cloud);
-    }
-    temperature_and_pressure(&mut r, &mut p)?;
-    ending(&mut r, &mut p)?;
     Ok(p)
 }
 
 fn heading(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
-    p.special = r.accept("SPECI");
-    if !p.special {
-        r.accept("METAR");
+    while let Some(word @ ("METAR" | "SPECI" | "COR")) = r.peek(0) {
+        p.special |= word == "SPECI";
+        p.corrected |= word == "COR";
+        r.next += 1;
     }
-    p.corrected = r.accept("COR");
-    p.station = r.required("a station of four letters, such as EGLL", station)?;
-    (p.day, p.hour, p.minute) = r.required("day and time of the month as DDHHMMZ, such as 171853Z", time)?;
-    if r.peek(0) == Some("NIL") {
-        return Err(r.refuse("an observation; this station sent none"));
-    }
+    let expected = "a station of four letters, such as EGLL";
+    p.station = r.optional(station).ok_or_else(|| r.refuse(r.next, expected))?;
     loop {
         match r.peek(0) {
+            Some("NIL") => return Err(r.refuse(r.next, "an observation; this station sent none")),
             Some("AUTO") => p.automatic = true,
             Some("COR") => p.corrected = true,
             // Canada numbers its corrections by letters.
             Some(w) if w.len() == 3 && w.starts_with("CC") => p.corrected = true,
             // Sent late (Canada, United States).
             Some("RTD") => {}
+            Some(w) if p.time.is_none() && time(w).is_some() => p.time = time(w),
             _ => return Ok(()),
         }
         r.next += 1;
     }
 }
 
-fn wind_and_visibility(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
-    p.wind = r.unless_later(
-        "wind, such as 24009KT, 18018G31KT, VRB02KT or 02003MPS, the gust above the mean",
-        is_after_wind,
-        groups::wind,
-    )?;
-    p.wind_range = r.optional(groups::wind_range);
-    if r.accept("CAVOK") {
-        p.cavok = true;
-        return Ok(());
-    }
-    let expected = "visibility, such as 4500, 9999, 1 1/2SM, 10SM, CAVOK or ////";
-    let whole_miles = |w: &&str| w.len() <= 2 && w.bytes().all(|b| b.is_ascii_digit());
-    p.visibility = match r.peek(0).filter(whole_miles) {
-        Some(whole) => {
-            let miles =
-                r.peek(1).and_then(|t| groups::visibility_miles(Some(whole), t)).ok_or_else(|| r.refuse(expected))?;
-            r.next += 2;
-            miles
-        }
-        None => r.unless_later(expected, is_after_visibility, |t| {
-            groups::visibility_miles(None, t).or_else(|| groups::visibility_metres(t))
-        })?,
-    };
-    while let Some(metres) = r.optional(groups::directional_visibility) {
-        p.lowest_visibility_m = Some(p.lowest_visibility_m.map_or(metres, |m| m.min(metres)));
-    }
-    Ok(())
-}
-
-fn temperature_and_pressure(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
-    let expected = if !p.clouds.is_empty() || p.cavok {
-        "cloud, such as SCT042, or temperature and dew point, such as 11/10 or M03/M05 (M90 to 60)"
-    } else if !p.weather.is_empty() {
-        "present weather, such as -RA or BR, cloud, such as SCT042, VV001 or CLR, or temperature and dew point, such as 11/10"
+/// Takes the next group, of one word or of several; `false` if the next word is none.
+fn group(r: &mut Reader<'_>, p: &mut Parsed) -> bool {
+    let Some(word) = r.peek(0) else { return false };
+    let is_now = !p.ended;
+    let words = if missing(word, p) || air(word, p) || (is_now && runway(r, word, p)) {
+        1
+    } else if is_now && let taken @ 2.. = spaced(r, p) {
+        taken
     } else {
-        "runway visual range, such as R18R/0350N, present weather, such as -RA, cloud, such as SCT042, VV001 or CLR, or temperature and dew \
-         point, such as 11/10"
+        usize::from((is_now && pieces(word, p)) || sea(word, p))
     };
-    let both = |t: &str| groups::temperatures(t).map(Some);
-    (p.temperature_c, p.dew_point_c) = r.unless_later(expected, is_after_temperatures, both)?.unwrap_or((None, None));
-    let expected = "pressure, such as Q1009 or A2986, 800 to 1100 hPa";
-    p.pressure_hpa = r.unless_later(expected, is_ending, groups::pressure)?;
-    // Some stations give both units; the first counts.
-    while r.optional(groups::pressure).is_some() {}
-    Ok(())
+    p.groups += usize::from(words > 0);
+    r.next += words;
+    if words == 0 && supplements::is_supplement(word, p.ended) {
+        r.next += 1;
+        return true;
+    }
+    words > 0
 }
 
-fn ending(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
-    while let Some(word) = r.peek(0) {
-        match word {
-            "RMK" => {
-                r.next += 1;
-                p.remarks = r.rest_before("");
-            }
-            w if is_trend(w) => p.trend = r.rest_before("RMK"),
-            w if groups::sea(w).is_some() => {
-                p.sea = groups::sea(w);
-                r.next += 1;
-            }
-            w if is_supplement(w) => r.next += 1,
-            _ => {
-                let expected = "recent weather, wind shear, the sea, such as W10/S5, a trend, such as NOSIG, or RMK";
-                return Err(r.refuse(expected));
-            }
-        }
+fn runway(r: &Reader<'_>, word: &str, p: &mut Parsed) -> bool {
+    let Some(range) = groups::runway_visual_range(word) else { return false };
+    p.runways.extend(range);
+    let start = if p.places.runways.is_empty() { r.at(r.next) } else { p.places.runways.start };
+    p.places.runways = start..r.at(r.next) + word.len();
+    true
+}
+
+/// Marks in place of a group that could not be measured: slashes, and the letter M of American stations.
+fn missing(word: &str, p: &mut Parsed) -> bool {
+    let slashes = word.bytes().all(|b| b == b'/');
+    // Two stand for the present weather, six and more for the clouds.
+    p.weather_unknown |= slashes && word.len() == 2;
+    if slashes && word.len() >= 6 {
+        p.clouds.push(CloudGroup::Missing);
     }
-    Ok(())
+    slashes || matches!(word, "M" | "MM" | "MMM" | "MMMM" | "MMMMM" | "MISG" | "KT" | "MPS")
+}
+
+/// Temperatures and pressure, which are read wherever they stand. Some stations give the pressure in both units; the first counts.
+fn air(word: &str, p: &mut Parsed) -> bool {
+    if let Some(pressure) = groups::pressure(word) {
+        p.pressure_hpa = p.pressure_hpa.or(pressure);
+        p.ended = true;
+        return true;
+    }
+    let unread = p.temperature_c.is_none() && p.dew_point_c.is_none();
+    let Some(both) = groups::temperatures(word).filter(|_| unread) else { return false };
+    (p.temperature_c, p.dew_point_c) = both;
+    true
+}
+
+fn sea(word: &str, p: &mut Parsed) -> bool {
+    let group = groups::sea(word);
+    p.sea = p.sea.or(group);
+    group.is_some()
+}
+
+/// Reads a group whose figures and unit stand apart (`1 1/2SM`, `1/4 SM`, `24009 KT`); the number of its words, 0 if there is none.
+fn spaced(r: &Reader<'_>, p: &mut Parsed) -> usize {
+    let (Some(first), Some(second)) = (r.peek(0), r.peek(1)) else { return 0 };
+    let third = r.peek(2).unwrap_or("");
+    let is_whole = first.len() <= 2 && first.bytes().all(|b| b.is_ascii_digit());
+    let whole = |text: &str| if is_whole { groups::visibility_miles(Some(first), text) } else { None };
+    let joined = [first, second].concat();
+    let mut visibility = |group: Option<Reading<VisibilityGroup>>| {
+        let new = group.filter(|_| p.visibility.is_none());
+        p.visibility = new.flatten().or(p.visibility);
+        new.is_some()
+    };
+    if visibility(whole(second)) {
+        2
+    } else if third == "SM" && visibility(whole(&[second, third].concat())) {
+        3
+    } else if matches!(second, "SM" | "KM") && visibility(visibility_of(&joined)) {
+        2
+    } else if matches!(second, "KT" | "MPS" | "KMH") && one(&joined, p) {
+        2
+    } else {
+        0
+    }
+}
+
+/// A word as a group, or as several that lack the blank between them: `SCT120BKN180`.
+fn pieces(word: &str, p: &mut Parsed) -> bool {
+    if one(word, p) {
+        return true;
+    }
+    let mut all = p.clone();
+    let read = split(word, false).is_some_and(|parts| parts.iter().all(|t| one(t, &mut all) || air(t, &mut all)));
+    if read {
+        *p = all;
+    }
+    read
+}
+
+/// Longest word that is taken apart, bytes.
+const MAX_GLUED_BYTES: usize = 40;
+
+/// Groups that stand in a word without blanks, of which one at least has figures: letters alone make words of any language.
+fn split(word: &str, figures: bool) -> Option<Vec<&str>> {
+    let has_figures = |t: &str| {
+        groups::wind(t).flatten().is_some()
+            || groups::wind_range(t).is_some()
+            || visibility_of(t).flatten().is_some()
+            || matches!(
+                groups::cloud(t),
+                Some(CloudGroup::Layer { base_m: Some(_), .. } | CloudGroup::Obscured(Some(_)))
+            )
+            || groups::temperatures(t).is_some_and(|(a, _)| a.is_some())
+            || groups::pressure(t).flatten().is_some()
+    };
+    if word.len() > MAX_GLUED_BYTES || !word.is_ascii() {
+        return None;
+    }
+    (2..word.len().saturating_sub(1)).rev().find_map(|n| {
+        let (head, tail) = word.split_at(n);
+        let figures = figures || has_figures(head);
+        let known = has_figures(head) || phenomena::weather(head).is_some();
+        if !known {
+            return None;
+        }
+        if has_figures(tail) || (figures && phenomena::weather(tail).is_some()) {
+            return Some(vec![head, tail]);
+        }
+        let mut parts = split(tail, figures)?;
+        parts.insert(0, head);
+        Some(parts)
+    })
+}
+
+fn visibility_of(word: &str) -> Option<Reading<VisibilityGroup>> {
+    groups::visibility_miles(None, word).or_else(|| groups::visibility_metres(word))
+}
+
+/// Takes one word that says what wind, sight, weather or sky are now; `false` if it does not, or says it again.
+fn one(word: &str, p: &mut Parsed) -> bool {
+    if word == "CAVOK" {
+        p.cavok = true;
+    } else if let Some(wind) = groups::wind(word).filter(|_| p.wind.is_none()) {
+        p.wind = wind;
+    } else if let Some(range) = groups::wind_range(word) {
+        p.wind_range = Some(range);
+    } else if let Some(sight) = visibility_of(word).filter(|_| p.temperature_c.is_none()) {
+        return visibility(word, sight, p);
+    } else if let Some(weather) = phenomena::weather(word) {
+        p.weather.extend(weather);
+    } else if let Some(cloud) = groups::cloud(word).filter(|_| p.clouds.len() < MAX_CLOUD_LAYERS) {
+        p.clouds.push(cloud);
+    } else {
+        return false;
+    }
+    true
+}
+
+/// A visibility, or a further one: with a direction, or without where an automatic station cannot tell it (`9999 3100`). The
+/// first is the prevailing one.
+fn visibility(word: &str, sight: Reading<VisibilityGroup>, p: &mut Parsed) -> bool {
+    if p.visibility.is_none() && !p.cavok {
+        p.visibility = sight;
+        return true;
+    }
+    let beside = p.weather.is_empty() && p.clouds.is_empty() && p.runways.is_empty() && !p.cavok;
+    let metric = groups::visibility_metres(word).is_some();
+    let Some(further) = sight.filter(|_| beside && metric) else { return false };
+    p.lowest_visibility_m = Some(p.lowest_visibility_m.map_or(further.metres, |m| m.min(further.metres)));
+    true
 }

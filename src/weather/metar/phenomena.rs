@@ -124,7 +124,7 @@ fn fits(descriptor: Descriptor, phenomena: &[Phenomenon]) -> bool {
     match descriptor {
         D::Showers | D::Thunderstorm => falls,
         D::Freezing => !phenomena.is_empty() && (falls || phenomena == [P::Fog]),
-        D::Shallow | D::Partial | D::Patches => phenomena == [P::Fog],
+        D::Shallow | D::Partial | D::Patches => matches!(phenomena, [P::Fog | P::Mist]),
         D::Drifting => matches!(phenomena, [P::Snow | P::Dust | P::Sand]),
         D::Blowing => matches!(phenomena, [P::Snow | P::Dust | P::Sand | P::Spray]),
     }
@@ -144,14 +144,18 @@ pub(super) fn weather(text: &str) -> Option<Option<WeatherGroup>> {
     if !rest.is_ascii() || rest.is_empty() || rest.len() % 2 != 0 || rest.len() > 10 {
         return None;
     }
+    // Some write showers and thunder together.
+    rest = rest.strip_prefix("SHTS").map_or(rest, |_| &rest[2..]);
     let described = descriptor(&rest[..2]);
     if described.is_some() {
         rest = &rest[2..];
     }
+    if described == Some(Descriptor::Thunderstorm) {
+        rest = rest.strip_prefix("SH").unwrap_or(rest);
+    }
     let codes = rest.as_bytes().chunks(2).map(|c| std::str::from_utf8(c).ok());
     let phenomena: Vec<Phenomenon> = codes.map(|c| phenomenon(c?)).collect::<Option<_>>()?;
-    let mixed = phenomena.len() > 1 && !phenomena.iter().all(|p| p.falls());
-    let good = described.map_or(!phenomena.is_empty(), |d| fits(d, &phenomena)) && phenomena.len() <= 3 && !mixed;
+    let good = described.map_or(!phenomena.is_empty(), |d| fits(d, &phenomena)) && phenomena.len() <= 3;
     good.then_some(Some(WeatherGroup { intensity, descriptor: described, phenomena }))
 }
 
@@ -171,28 +175,18 @@ mod tests {
         assert_eq!(read("TS"), Some((I::Moderate, Some(D::Thunderstorm), vec![])));
         assert_eq!(read("FZFG"), Some((I::Moderate, Some(D::Freezing), vec![P::Fog])));
         assert_eq!(weather("//"), Some(None));
+        // Not in the code, but sent.
+        assert_eq!(read("-SHTSRA"), Some((I::Light, Some(D::Thunderstorm), vec![P::Rain])));
+        assert_eq!(read("TSSHRA"), Some((I::Moderate, Some(D::Thunderstorm), vec![P::Rain])));
+        assert_eq!(read("-RABR"), Some((I::Light, None, vec![P::Rain, P::Mist])));
+        assert_eq!(read("BCBR"), Some((I::Moderate, Some(D::Patches), vec![P::Mist])));
     }
 
     #[test]
     fn pairs_that_the_code_does_not_have_are_refused() {
-        for bad in [
-            "",
-            "-",
-            "+",
-            "VC",
-            "MI",
-            "BL",
-            "FZ",
-            "BLRA",
-            "MISN",
-            "FZHZ",
-            "RAFG",
-            "RASNDZPLGR",
-            "RAS",
-            "XY",
-            "BÄ",
-            "RARARARA",
-        ] {
+        for bad in
+            ["", "-", "+", "VC", "MI", "BL", "FZ", "BLRA", "MISN", "FZHZ", "RASNDZPLGR", "RAS", "XY", "BÄ", "RARARARA"]
+        {
             assert_eq!(weather(bad), None, "{bad}");
         }
     }

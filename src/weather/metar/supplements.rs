@@ -1,0 +1,53 @@
+//! Groups of a report that say nothing of the weather now: recent weather, wind shear, states of runways, military colours,
+//! rainfall so far.
+
+use super::phenomena;
+
+/// Whether a word is such a group. Some are as short as anything: after the pressure (`ended`) all that begin like a state of a
+/// runway count, before it only what cannot be another group.
+pub(super) fn is_supplement(text: &str, ended: bool) -> bool {
+    let colour = matches!(text, "BLU+" | "BLU" | "WHT" | "GRN" | "YLO" | "YLO1" | "YLO2" | "AMB" | "RED")
+        || text.starts_with("BLACK");
+    let recent = text.strip_prefix("RE").is_some_and(|w| phenomena::weather(w).is_some());
+    let shear = matches!(text, "WS" | "ALL" | "RWY" | "TKOF" | "LDG") || text.starts_with("RWY");
+    let out_of_order = matches!(text, "$" | "RVRNO" | "VISNO" | "SNOCLO" | "R/SNOCLO");
+    colour || recent || shear || out_of_order || is_runway_state(text) || (ended && begins_as_runway(text))
+}
+
+/// `R24/CLRD70`, `R88/290095`, `R01/SNOCLO`, and the older form in eight figures: `88490391`.
+fn is_runway_state(text: &str) -> bool {
+    let figures = |t: &str, n: usize| t.len() == n && t.bytes().all(|b| b.is_ascii_digit() || b == b'/');
+    if figures(text, 8) {
+        return text.bytes().any(|b| b != b'/');
+    }
+    let Some((runway, state)) = text.strip_prefix('R').and_then(|t| t.split_once('/')) else { return false };
+    let number = runway.trim_end_matches(['L', 'R', 'C']);
+    number.len() == 2
+        && number.bytes().all(|b| b.is_ascii_digit())
+        && (figures(state, 6) || state.starts_with("CLRD") || state == "SNOCLO")
+}
+
+/// Whatever begins with R and has a figure or a slash: runways in local forms, Australia's rainfall (`RF00.0/016.4`).
+fn begins_as_runway(text: &str) -> bool {
+    text.strip_prefix('R').is_some_and(|r| r.contains('/') || r.starts_with(|c: char| c.is_ascii_digit()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stands_beside_the_weather_is_known() {
+        for text in
+            ["RERA", "RE//", "WS", "RWY28", "BLU", "BLACKGRN", "R24/CLRD70", "R01/SNOCLO", "88490391", "8829//99", "$"]
+        {
+            assert!(is_supplement(text, false) && is_supplement(text, true), "{text}");
+        }
+        for text in ["RF00.0/016.4", "R27/49", "R88/60D", "R09L/D"] {
+            assert!(!is_supplement(text, false) && is_supplement(text, true), "{text}");
+        }
+        for text in ["SLP162", "TEMP0", "CB/NE/E/W", "REXX", "////////", "8849", "RA", "R18R/0350N"] {
+            assert!(!is_supplement(text, false), "{text}");
+        }
+    }
+}
