@@ -295,6 +295,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_CLOUD_SHADOWS 85
 /** wk_cloud_map */
 #define WK_STRUCT_TYPE_CLOUD_MAP 86
+/** wk_metar_options */
+#define WK_STRUCT_TYPE_METAR_OPTIONS 90
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -1880,8 +1882,13 @@ wk_status wk_weather_overrides_init(wk_weather_overrides *out,
  * ====================================================================================================
  * Weather reports and presets
  *
- * Turns a METAR or SPECI report, as airports send it, into a wk_weather. Fields that the report leaves out keep their
- * defaults.
+ * Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads what is there, in any order up
+ * to the pressure. Fields that the report leaves out or marks as missing keep their defaults, or what the rest of the
+ * report makes likely, and have a bit in wk_metar.assumed; words that are no group of the code change nothing and are
+ * counted. So a calm wind (00000KT) and one that nobody measured (/////KT) differ by WK_METAR_ASSUMED_WIND.
+ *
+ * No report says how high its station lies: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up in
+ * your list of airports and set it, because cloud bases, visibility and temperature refer to that height.
  * ====================================================================================================
  */
 
@@ -1897,7 +1904,57 @@ typedef uint32_t wk_metar_flags;
 /** The report says only that visibility is at least so much (CAVOK, 9999, 10SM). */
 #define WK_METAR_VISIBILITY_IS_MINIMUM 8
 
-/** Place and time of a report. */
+/** Which fields a report leaves out or marks as missing. */
+typedef uint32_t wk_metar_assumed_flags;
+
+/** wind_speed_m_s, with all of the wind: calm is assumed. */
+#define WK_METAR_ASSUMED_WIND 1
+/** wind_from_deg: 0 is assumed. */
+#define WK_METAR_ASSUMED_WIND_DIRECTION 2
+/** visibility_m: what humidity and what falls leave, at most 1 km in fog and 5 km in mist or haze. */
+#define WK_METAR_ASSUMED_VISIBILITY 4
+/** The present weather (`//`): neither precipitation nor fog nor haze is assumed. */
+#define WK_METAR_ASSUMED_PRECIPITATION 8
+/** The clouds (`//////`, or no group at all): none are assumed beside those that are reported. */
+#define WK_METAR_ASSUMED_CLOUDS 16
+/** base_m of a layer (`BKN///`): 600 m is assumed. */
+#define WK_METAR_ASSUMED_CLOUD_BASE 32
+/** cover of a layer (`///015`, `//////CB`): 3.5 eighths are assumed. */
+#define WK_METAR_ASSUMED_CLOUD_COVER 64
+/** vertical_visibility_m (`VV///`): 60 m is assumed. */
+#define WK_METAR_ASSUMED_VERTICAL_VISIBILITY 128
+/**
+ * temperature_c: 15, at most -1 where it snows or drops freeze, at most 1 where rain and snow fall together or what
+ * falls is unknown; from the dew point at 70 % if only that is there.
+ */
+#define WK_METAR_ASSUMED_TEMPERATURE 256
+/** relative_humidity: 0.7, or what a dew point gives at the assumed temperature. */
+#define WK_METAR_ASSUMED_HUMIDITY 512
+/** pressure_hpa: 1013.25 is assumed. */
+#define WK_METAR_ASSUMED_PRESSURE 1024
+/** wk_metar.day, hour and minute: 0. */
+#define WK_METAR_ASSUMED_TIME 2048
+
+/** How the amounts of cloud groups count. Nations differ, and a report does not say which practice it follows. */
+typedef uint32_t wk_cloud_amount_rule;
+
+/**
+ * By the station's first letters: sums in the United States with its territories and in Canada (K, C; P but for PC and
+ * PL; TI, TJ, NSTU, MUGM), layers elsewhere. American bases abroad report sums under the host country's letters: set
+ * the rule for them.
+ */
+#define WK_CLOUD_AMOUNT_BY_STATION 0
+/**
+ * Each group counts what its layer and all lower ones hide (Federal Meteorological Handbook No. 1, 9.4.2 b and 9.5.2).
+ */
+#define WK_CLOUD_AMOUNT_SUMS 1
+/** Each group counts its layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2). */
+#define WK_CLOUD_AMOUNT_LAYERS 2
+
+/**
+ * Place and time of a report, and what of it the weather does not hold. Offsets and lengths are bytes in the text that
+ * you passed; 0 and 0 where the report has no such part.
+ */
 typedef struct wk_metar {
     /** sizeof(wk_metar) of your header. */
     uint32_t struct_size;
@@ -1915,6 +1972,35 @@ typedef struct wk_metar {
     uint32_t minute;
     /** Flags of a report. */
     wk_metar_flags flags;
+    /** Which fields the report leaves out or marks as missing. */
+    wk_metar_assumed_flags assumed;
+    /** Rule by which the amounts of clouds were read: WK_CLOUD_AMOUNT_SUMS or WK_CLOUD_AMOUNT_LAYERS. */
+    wk_cloud_amount_rule cloud_amounts;
+    /**
+     * Lowest visibility in some direction, m, where the report states one beside the prevailing one (`4000 1500NE`,
+     * `9999 3100`), else 0. For information: the weather has the prevailing one.
+     */
+    double lowest_visibility_m;
+    /** Where the runway visual ranges begin. */
+    uint32_t runways_offset;
+    /** Bytes from the first to the last of them. */
+    uint32_t runways_length;
+    /** Where the trend forecast begins, its first word (NOSIG, BECMG, TEMPO) included. */
+    uint32_t trend_offset;
+    /** Bytes of the trend forecast. */
+    uint32_t trend_length;
+    /** Where the remarks begin, after RMK. */
+    uint32_t remarks_offset;
+    /** Bytes of the remarks. */
+    uint32_t remarks_length;
+    /** Where the first word stands that is no group of the code. */
+    uint32_t unread_offset;
+    /** Bytes of that word. */
+    uint32_t unread_length;
+    /** Number of such words. */
+    uint32_t unread_count;
+    /** Must be 0. */
+    uint32_t reserved0;
 } wk_metar;
 
 /** Every field of `wk_metar` at its default. */
@@ -1926,16 +2012,53 @@ typedef struct wk_metar {
     /* day */ 0, \
     /* hour */ 0, \
     /* minute */ 0, \
-    /* flags */ 0 \
+    /* flags */ 0, \
+    /* assumed */ 0, \
+    /* cloud_amounts */ WK_CLOUD_AMOUNT_BY_STATION, \
+    /* lowest_visibility_m */ 0.0, \
+    /* runways_offset */ 0, \
+    /* runways_length */ 0, \
+    /* trend_offset */ 0, \
+    /* trend_length */ 0, \
+    /* remarks_offset */ 0, \
+    /* remarks_length */ 0, \
+    /* unread_offset */ 0, \
+    /* unread_length */ 0, \
+    /* unread_count */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/** How a report is read. */
+typedef struct wk_metar_options {
+    /** sizeof(wk_metar_options) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_METAR_OPTIONS. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** How the amounts of cloud groups count. Default WK_CLOUD_AMOUNT_BY_STATION. */
+    wk_cloud_amount_rule cloud_amounts;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_metar_options;
+
+/** Every field of `wk_metar_options` at its default. */
+#define WK_METAR_OPTIONS_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_metar_options), \
+    /* struct_type */ WK_STRUCT_TYPE_METAR_OPTIONS, \
+    /* next */ NULL, \
+    /* cloud_amounts */ WK_CLOUD_AMOUNT_BY_STATION, \
+    /* reserved0 */ 0 \
 }
 
 /**
- * Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`. Its cloud layers go to
- * `layers`, which has room for `layer_capacity` of `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 always
- * suffice), and out_weather->clouds leads there: keep it as long as the weather. `out_metar` may be NULL.
- * Thread: any.
- * Errors: WK_ERROR_PARSE with line and column of the group at fault, what was expected there and what was found;
- * WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
+ * Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`, with cloud amounts by
+ * the station's rule. Its cloud layers go to `layers`, which has room for `layer_capacity` of `layer_size` bytes
+ * (sizeof(wk_cloud_layer) of your header; 16 always suffice), and out_weather->clouds leads there: keep it as long as
+ * the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it from a list of airports. Thread:
+ * any. Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the
+ * weather, with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers
+ * do not fit.
  */
 WK_API
 wk_status wk_weather_from_metar(const char *report,
@@ -1944,6 +2067,20 @@ wk_status wk_weather_from_metar(const char *report,
                                 uint32_t layer_size,
                                 wk_weather *out_weather,
                                 wk_metar *out_metar);
+
+/**
+ * Reads a report as wk_weather_from_metar does, and as `options` say. NULL is every default.
+ * Thread: any.
+ * Errors: as wk_weather_from_metar; WK_ERROR_INVALID_ARGUMENT for an unknown rule.
+ */
+WK_API
+wk_status wk_weather_from_metar_with(const char *report,
+                                     const wk_metar_options *options,
+                                     wk_cloud_layer *layers,
+                                     uint32_t layer_capacity,
+                                     uint32_t layer_size,
+                                     wk_weather *out_weather,
+                                     wk_metar *out_metar);
 
 /**
  * Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the
@@ -1965,6 +2102,14 @@ wk_status wk_weather_from_preset(const char *name,
  * Errors: WK_ERROR_INVALID_ARGUMENT beyond the last one.
  */
 WK_API wk_status wk_get_preset(uint32_t index, const char **out_name, const char **out_description);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_METAR_OPTIONS_INIT`. `struct_size` is `sizeof(wk_metar_options)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_metar_options_init(wk_metar_options *out,
+                                uint32_t struct_size);
 
 /**
  * Writes the default of every field: the same bytes as `WK_METAR_INIT`. `struct_size` is `sizeof(wk_metar)`

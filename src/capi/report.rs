@@ -1,12 +1,12 @@
 //! Weather reports and presets
 //!
-//! Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads what is there, in any order up to the
-//! pressure. Fields that the report leaves out or marks as missing keep their defaults, or what the rest of the report makes
-//! likely, and have a bit in wk_metar.assumed; words that are no group of the code change nothing and are counted. So a
-//! calm wind (00000KT) and one that nobody measured (/////KT) differ by WK_METAR_ASSUMED_WIND.
+//! Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads what is there, in any order up
+//! to the pressure. Fields that the report leaves out or marks as missing keep their defaults, or what the rest of the
+//! report makes likely, and have a bit in wk_metar.assumed; words that are no group of the code change nothing and are
+//! counted. So a calm wind (00000KT) and one that nobody measured (/////KT) differ by WK_METAR_ASSUMED_WIND.
 //!
-//! No report says how high its station lies: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up in your
-//! list of airports and set it, because cloud bases, visibility and temperature refer to that height.
+//! No report says how high its station lies: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up in
+//! your list of airports and set it, because cloud bases, visibility and temperature refer to that height.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -58,8 +58,8 @@ pub const WK_METAR_ASSUMED_CLOUD_BASE: wk_metar_assumed_flags = 0x20;
 pub const WK_METAR_ASSUMED_CLOUD_COVER: wk_metar_assumed_flags = 0x40;
 /// vertical_visibility_m (`VV///`): 60 m is assumed.
 pub const WK_METAR_ASSUMED_VERTICAL_VISIBILITY: wk_metar_assumed_flags = 0x80;
-/// temperature_c: 15, at most -1 where it snows or drops freeze, at most 1 where rain and snow fall together or what falls is unknown;
-/// from the dew point at 70 % if only that is there.
+/// temperature_c: 15, at most -1 where it snows or drops freeze, at most 1 where rain and snow fall together or what
+/// falls is unknown; from the dew point at 70 % if only that is there.
 pub const WK_METAR_ASSUMED_TEMPERATURE: wk_metar_assumed_flags = 0x100;
 /// relative_humidity: 0.7, or what a dew point gives at the assumed temperature.
 pub const WK_METAR_ASSUMED_HUMIDITY: wk_metar_assumed_flags = 0x200;
@@ -70,8 +70,9 @@ pub const WK_METAR_ASSUMED_TIME: wk_metar_assumed_flags = 0x800;
 
 /// How the amounts of cloud groups count. Nations differ, and a report does not say which practice it follows.
 pub type wk_cloud_amount_rule = u32;
-/// By the station's first letters: sums in the United States with its territories and in Canada (K, C; P but for PC and PL; TI, TJ,
-/// NSTU, MUGM), layers elsewhere. American bases abroad report sums under the host country's letters: set the rule for them.
+/// By the station's first letters: sums in the United States with its territories and in Canada (K, C; P but for PC and
+/// PL; TI, TJ, NSTU, MUGM), layers elsewhere. American bases abroad report sums under the host country's letters: set
+/// the rule for them.
 pub const WK_CLOUD_AMOUNT_BY_STATION: wk_cloud_amount_rule = 0;
 /// Each group counts what its layer and all lower ones hide (Federal Meteorological Handbook No. 1, 9.4.2 b and 9.5.2).
 pub const WK_CLOUD_AMOUNT_SUMS: wk_cloud_amount_rule = 1;
@@ -104,8 +105,8 @@ impl wk_metar_options {
     };
 }
 
-/// Place and time of a report, and what of it the weather does not hold. Offsets and lengths are bytes in the text that you
-/// passed; 0 and 0 where the report has no such part.
+/// Place and time of a report, and what of it the weather does not hold. Offsets and lengths are bytes in the text that
+/// you passed; 0 and 0 where the report has no such part.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_metar {
@@ -129,8 +130,8 @@ pub struct wk_metar {
     pub assumed: wk_metar_assumed_flags,
     /// Rule by which the amounts of clouds were read: WK_CLOUD_AMOUNT_SUMS or WK_CLOUD_AMOUNT_LAYERS.
     pub cloud_amounts: wk_cloud_amount_rule,
-    /// Lowest visibility in some direction, m, where the report states one beside the prevailing one (`4000 1500NE`, `9999 3100`), else 0.
-    /// For information: the weather has the prevailing one.
+    /// Lowest visibility in some direction, m, where the report states one beside the prevailing one (`4000 1500NE`,
+    /// `9999 3100`), else 0. For information: the weather has the prevailing one.
     pub lowest_visibility_m: f64,
     /// Where the runway visual ranges begin.
     pub runways_offset: u32,
@@ -216,13 +217,13 @@ impl wk_metar {
     }
 }
 
-/// Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`, with cloud amounts by the
-/// station's rule. Its cloud layers go to `layers`, which has room for `layer_capacity` of `layer_size` bytes
-/// (sizeof(wk_cloud_layer) of your header; 16 always suffice), and out_weather->clouds leads there: keep it as long as the
-/// weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it from a list of airports.
-/// Thread: any.
-/// Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the weather,
-/// with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
+/// Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`, with cloud amounts by
+/// the station's rule. Its cloud layers go to `layers`, which has room for `layer_capacity` of `layer_size` bytes
+/// (sizeof(wk_cloud_layer) of your header; 16 always suffice), and out_weather->clouds leads there: keep it as long as
+/// the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it from a list of airports. Thread:
+/// any. Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the
+/// weather, with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers
+/// do not fit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_weather_from_metar(
     report: *const c_char,

@@ -186,13 +186,14 @@ kinds! {
 }
 
 kinds! {
-    /// How the cloud groups of a report count. National practices differ, and the report does not say which one it follows.
+    /// How the cloud groups of a report count. National practices differ, and the report does not say which one it
+    /// follows.
     CloudAmountRule, "cloud_amounts" {
-        /// By the station's location indicator: [`CloudAmountRule::Sums`] where the United States or Canada report, else
-        /// [`CloudAmountRule::Layers`].
+        /// By the station's location indicator: [`CloudAmountRule::Sums`] where the United States or Canada report,
+        /// else [`CloudAmountRule::Layers`].
         ByStation = 0, "by_station";
-        /// Each group counts the sky that its layer and all lower ones hide together (Federal Meteorological Handbook No. 1,
-        /// 9.4.2 b and 9.5.2).
+        /// Each group counts the sky that its layer and all lower ones hide together (Federal Meteorological Handbook
+        /// No. 1, 9.4.2 b and 9.5.2).
         Sums = 1, "sums";
         /// Each group counts its own layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2).
         Layers = 2, "layers";

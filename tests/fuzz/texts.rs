@@ -4,6 +4,7 @@ use crate::dice::Dice;
 
 const PLANET: &str = include_str!("../../examples/data/planet_golden.toml");
 const REPORTS: &str = include_str!("../../examples/data/metar.txt");
+const REAL_REPORTS: &str = include_str!("../weather/data/reports.csv");
 
 /// Changes some bytes, cuts, doubles or lengthens; now and then leaves all as it is.
 pub fn damage(dice: &mut Dice, bytes: &mut Vec<u8>) {
@@ -54,7 +55,9 @@ pub fn planet(dice: &mut Dice) -> String {
 
 /// A weather report with groups exchanged, doubled or damaged.
 pub fn metar(dice: &mut Dice) -> String {
-    let reports: Vec<&str> = REPORTS.lines().filter(|l| !l.starts_with('#') && !l.is_empty()).collect();
+    let real = REAL_REPORTS.lines().skip(1).filter_map(|l| l.split(',').next());
+    let written = REPORTS.lines().filter(|l| !l.starts_with('#') && !l.is_empty());
+    let reports: Vec<&str> = if dice.one_in(2) { real.collect() } else { written.collect() };
     let report = dice.pick(&reports);
     let mut groups: Vec<&str> = report.split_whitespace().collect();
     for _ in 0..dice.below(4) {

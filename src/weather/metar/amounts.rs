@@ -29,8 +29,8 @@ impl Amount {
     /// Sky hidden by the layers up to group `nth` of `count` groups of this class that follow each other, eighths.
     ///
     /// One group alone hides the middle of its class. Of several the sums rise within the class as values do on average
-    /// that fall evenly between its bounds, nth / (count + 1) of the way. Groups of FEW have nothing below them and share
-    /// the middle in equal parts.
+    /// that fall evenly between its bounds, nth / (count + 1) of the way. Groups of FEW have nothing below them and
+    /// share the middle in equal parts.
     fn sum(self, nth: usize, count: usize) -> f64 {
         let part = nth as f64 / (count + 1) as f64;
         match self {
@@ -45,9 +45,10 @@ impl Amount {
 /// Cover of a layer whose group gives no amount, fraction: half the sky but a little, as SCT.
 const UNKNOWN_COVER: f64 = 3.5 / 8.0;
 
-/// Rule that a station follows, by its location indicator (ICAO Doc 7910): sums in the United States with its territories and in
-/// Canada (K, C; Alaska, Hawaii and the Pacific islands under P but for Kiribati's PC and PL; TI, TJ; NSTU, MUGM), each layer by
-/// itself elsewhere. American bases abroad follow their own handbook under the host country's letters, which cannot be told.
+/// Rule that a station follows, by its location indicator (ICAO Doc 7910): sums in the United States with its
+/// territories and in Canada (K, C; Alaska, Hawaii and the Pacific islands under P but for Kiribati's PC and PL; TI,
+/// TJ; NSTU, MUGM), each layer by itself elsewhere. American bases abroad follow their own handbook under the host
+/// country's letters, which cannot be told.
 pub(super) fn rule_of(station: &str) -> CloudAmountRule {
     let under = |prefixes: &[&str]| prefixes.iter().any(|p| station.starts_with(p));
     let american = under(&["K", "C", "P", "TI", "TJ", "NSTU", "MUGM"]) && !under(&["PC", "PL"]);
@@ -64,10 +65,11 @@ pub(super) fn covers(groups: &[Option<Amount>], rule: CloudAmountRule) -> Vec<f6
 
 /// Covers where each group counts the sky hidden up to its layer.
 ///
-/// A group whose class is below that of a lower one, or unknown, counts in that one's class: a sum cannot fall. Layers lie
-/// independently of each other (random overlap, as everywhere in Welkin), so that of the sky which those below leave open a
-/// layer covers (s - below) / (1 - below): each cover is above 0, and 1 minus the product of what they leave open stays within
-/// each group's class. What is reported above an overcast cannot be seen from the sums and has its own class.
+/// A group whose class is below that of a lower one, or unknown, counts in that one's class: a sum cannot fall. Layers
+/// lie independently of each other (random overlap, as everywhere in Welkin), so that of the sky which those below
+/// leave open a layer covers (s - below) / (1 - below): each cover is above 0, and 1 minus the product of what they
+/// leave open stays within each group's class. What is reported above an overcast cannot be seen from the sums and has
+/// its own class.
 fn covers_of_sums(groups: &[Option<Amount>]) -> Vec<f64> {
     let mut highest = Amount::Few;
     let classes: Vec<Amount> = groups

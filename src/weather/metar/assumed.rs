@@ -4,8 +4,8 @@ use super::parse::Parsed;
 use super::phenomena::{Descriptor, Intensity, Phenomenon, WeatherGroup};
 use crate::weather::model::{Weather, saturation_pressure_hpa};
 
-/// Names in [`super::MetarReport::assumed`], each the field of [`Weather`] that holds what is assumed; `time` is the report's own.
-/// The order is that of the bits in the C API and never changes.
+/// Names in [`super::MetarReport::assumed`], each the field of [`Weather`] that holds what is assumed; `time` is the
+/// report's own. The order is that of the bits in the C API and never changes.
 pub const ASSUMED_FIELDS: [&str; 12] = [
     "wind",
     "wind.from_deg",
@@ -26,12 +26,12 @@ const HUMIDITY: f64 = 0.7;
 
 /// Temperature where snow falls or lies in the wind, or drops freeze, C.
 ///
-/// Below -0.4 C more snow than rain falls at 97.5 % of 6883 stations of the northern hemisphere (Jennings, Winchell, Livneh and
-/// Molotch 2018, Nature Communications 9, 1148); freezing rain, freezing drizzle and ice pellets come most often slightly below
-/// 0 C (Cortinas, Bernstein, Robbins and Strapp 2004, Weather and Forecasting 19, 377).
+/// Below -0.4 C more snow than rain falls at 97.5 % of 6883 stations of the northern hemisphere (Jennings, Winchell,
+/// Livneh and Molotch 2018, Nature Communications 9, 1148); freezing rain, freezing drizzle and ice pellets come most
+/// often slightly below 0 C (Cortinas, Bernstein, Robbins and Strapp 2004, Weather and Forecasting 19, 377).
 const FROZEN_C: f64 = -1.0;
-/// Temperature where rain and snow fall together, or an instrument cannot tell which, C: at that of even chances, on average over
-/// the same stations (Jennings et al. 2018).
+/// Temperature where rain and snow fall together, or an instrument cannot tell which, C: at that of even chances, on
+/// average over the same stations (Jennings et al. 2018).
 const MIXED_C: f64 = 1.0;
 
 /// Temperature that a group of weather bounds from above, C; `None` if it may come at any.
@@ -53,10 +53,11 @@ fn temperature_of_dew_c(dew_c: f64) -> f64 {
     243.12 * x / (17.62 - x)
 }
 
-/// Sets temperature and humidity to what the report says, or to what its weather and dew point leave possible, and names what is
-/// assumed.
+/// Sets temperature and humidity to what the report says, or to what its weather and dew point leave possible, and
+/// names what is assumed.
 ///
-/// A missing temperature is 15 C, or follows from the dew point at 70 %; where the weather bounds it, it is not above that bound.
+/// A missing temperature is 15 C, or follows from the dew point at 70 %; where the weather bounds it, it is not above
+/// that bound.
 pub(super) fn temperature_and_humidity(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
     if let Some(t) = p.temperature_c {
         w.temperature_c = t;
@@ -76,8 +77,9 @@ pub(super) fn temperature_and_humidity(p: &Parsed, w: &mut Weather, assumed: &mu
     }
 }
 
-/// Farthest visibility that the present weather leaves where the report does not give it, m: below 1 km in fog and in storms of dust
-/// and sand, at most 5 km in mist, haze, smoke, dust and sand (WMO-No. 306, code table 4678 and 15.8.17); infinite without them.
+/// Farthest visibility that the present weather leaves where the report does not give it, m: below 1 km in fog and in
+/// storms of dust and sand, at most 5 km in mist, haze, smoke, dust and sand (WMO-No. 306, code table 4678 and
+/// 15.8.17); infinite without them.
 pub(super) fn visibility_bound_m(p: &Parsed) -> f64 {
     use {Descriptor as D, Phenomenon as P};
     let bound = |g: &WeatherGroup| {

@@ -1,5 +1,5 @@
-//! The groups of figures: wind, visibility, runway visual range, cloud, temperatures, pressure, sea. Each function reads one word
-//! and answers `None` if the word is not that group.
+//! The groups of figures: wind, visibility, runway visual range, cloud, temperatures, pressure, sea. Each function
+//! reads one word and answers `None` if the word is not that group.
 
 use std::ops::RangeInclusive;
 
@@ -54,8 +54,8 @@ fn speed(text: &str) -> Option<f64> {
     if (2..=3).contains(&figures.len()) { digits(figures).map(f64::from) } else { None }
 }
 
-/// `24009KT`, `18018G31KT`, `VRB02KT`, `02003MPS`, `24109G120KT`, `P99KT` speeds; the outer `None` is "not a wind", the inner one a
-/// wind that is missing (`/////KT`). Nothing but zeros is calm, however many.
+/// `24009KT`, `18018G31KT`, `VRB02KT`, `02003MPS`, `24109G120KT`, `P99KT` speeds; the outer `None` is "not a wind", the
+/// inner one a wind that is missing (`/////KT`). Nothing but zeros is calm, however many.
 pub(super) fn wind(text: &str) -> Option<Reading<WindGroup>> {
     let (figures, unit) = [("KT", KNOT_M_S), ("MPS", 1.0), ("KMH", 1.0 / 3.6), ("KPH", 1.0 / 3.6)]
         .iter()
@@ -96,8 +96,8 @@ pub(super) struct VisibilityGroup {
     pub at_least: bool,
 }
 
-/// `0150`, `9999`, `4500NDV`, `4500SW` (older reports), `12KM`; the inner `None` is missing (`////NDV`). 0000 is below 50 m: 25 m.
-/// 9999 and 10KM are lower bounds; more kilometres are seen.
+/// `0150`, `9999`, `4500NDV`, `4500SW` (older reports), `12KM`; the inner `None` is missing (`////NDV`). 0000 is below
+/// 50 m: 25 m. 9999 and 10KM are lower bounds; more kilometres are seen.
 pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> {
     if text == "////NDV" {
         return Some(None);
@@ -118,9 +118,9 @@ pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> 
     Some(Some(group))
 }
 
-/// `10SM`, `P6SM`, `1/2SM`, `M1/4SM` in statute miles, `whole` a number of miles in the word before. 10 is a lower bound, because
-/// automatic stations see no further and most observers report no more (FMH-1, table 12-1); 11 and more are seen. M (less than)
-/// counts as the figure itself. The inner `None` is missing (`////SM`).
+/// `10SM`, `P6SM`, `1/2SM`, `M1/4SM` in statute miles, `whole` a number of miles in the word before. 10 is a lower
+/// bound, because automatic stations see no further and most observers report no more (FMH-1, table 12-1); 11 and more
+/// are seen. M (less than) counts as the figure itself. The inner `None` is missing (`////SM`).
 pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Reading<VisibilityGroup>> {
     let figures = text.strip_suffix("SM")?;
     if whole.is_none() && unmeasured(figures) {
@@ -285,7 +285,8 @@ pub(super) struct SeaGroup {
     pub wave_height_m: Reading<f64>,
 }
 
-/// `W10/S5`, `WM01/S2`, `W///S3`, `W10/S/`, `W19/H75` (height in decimetres), `W///H///`: what could not be measured is slashes.
+/// `W10/S5`, `WM01/S2`, `W///S3`, `W10/S/`, `W19/H75` (height in decimetres), `W///H///`: what could not be measured is
+/// slashes.
 pub(super) fn sea(text: &str) -> Option<SeaGroup> {
     let body = text.strip_prefix('W')?;
     let (water, surface) = split(body, if body.starts_with('M') { 3 } else { 2 })?;

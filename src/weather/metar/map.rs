@@ -18,8 +18,8 @@ const ASSUMED_VERTICAL_M: f64 = 60.0;
 
 /// Rates of light, moderate and heavy, mm/h: middles of the classes (the heavy class is open).
 ///
-/// Rain: AMS Glossary (2.5 and 7.6 mm/h divide). Showers: WMO-No. 8 (2.5, 10 and 50). Drizzle: AMS (0.3 and 0.5). Snow in melted water:
-/// Rasmussen et al. 1999 (1.0 and 2.5); used only where visibility does not tell it.
+/// Rain: AMS Glossary (2.5 and 7.6 mm/h divide). Showers: WMO-No. 8 (2.5, 10 and 50). Drizzle: AMS (0.3 and 0.5). Snow
+/// in melted water: Rasmussen et al. 1999 (1.0 and 2.5); used only where visibility does not tell it.
 fn class_rate_mm_h(kind: PrecipitationKind, convective: bool) -> [f64; 3] {
     use PrecipitationKind as K;
     match kind {
@@ -39,8 +39,8 @@ fn class_rate_mm_h(kind: PrecipitationKind, convective: bool) -> [f64; 3] {
 const RAIN_CLASSES_MM_H: [[(f64, f64); 3]; 2] =
     [[(0.1, 2.5), (2.5, 7.6), (7.6, 50.0)], [(0.1, 2.5), (2.5, 10.0), (10.0, 50.0)]];
 
-/// Rate of rain, mm/h: the class's middle, or less where so much rain could not be seen through as far as the report says, but
-/// not below the class.
+/// Rate of rain, mm/h: the class's middle, or less where so much rain could not be seen through as far as the report
+/// says, but not below the class.
 fn rain_rate_mm_h(kind: PrecipitationKind, intensity: Intensity, convective: bool, extinction_per_m: f64) -> f64 {
     let (lo, hi) = RAIN_CLASSES_MM_H[usize::from(convective)][class(intensity)];
     let middle = class_rate_mm_h(kind, convective)[class(intensity)];
@@ -58,8 +58,8 @@ fn class(intensity: Intensity) -> usize {
     }
 }
 
-/// Melted rate of snow, mm/h: what makes the reported visibility (`extinction_per_m` after the air's), or six tenths of it where
-/// fog or blowing snow share the blame, held to the bounds of the reported intensity.
+/// Melted rate of snow, mm/h: what makes the reported visibility (`extinction_per_m` after the air's), or six tenths of
+/// it where fog or blowing snow share the blame, held to the bounds of the reported intensity.
 fn snow_rate_mm_h(intensity: Intensity, extinction_per_m: f64, shared: bool) -> f64 {
     let (lo, hi) = SNOW_CLASSES_MM_H[class(intensity)];
     hydrometeors::snow_rate_mm_h(extinction_per_m * if shared { 0.6 } else { 1.0 }).clamp(lo, hi)
@@ -193,7 +193,8 @@ fn clouds(p: &Parsed, rule: CloudAmountRule, w: &mut Weather, assumed: &mut Vec<
     name_the_thundercloud(w);
 }
 
-/// Thunder comes from a cumulonimbus: where no layer is named so, the lowest that covers half the sky is one, else the lowest.
+/// Thunder comes from a cumulonimbus: where no layer is named so, the lowest that covers half the sky is one, else the
+/// lowest.
 fn name_the_thundercloud(w: &mut Weather) {
     let named = w.clouds.iter().any(|c| c.kind == CloudKind::Cumulonimbus);
     if !w.precipitation.thunderstorm || named {
@@ -224,8 +225,8 @@ fn wind(p: &Parsed, assumed: &mut Vec<&'static str>) -> Wind {
     }
 }
 
-/// Visibility as a figure; where the report says only "at least", what humidity and precipitation leave, at least that much; where
-/// it says nothing, not more than its fog or haze leaves.
+/// Visibility as a figure; where the report says only "at least", what humidity and precipitation leave, at least that
+/// much; where it says nothing, not more than its fog or haze leaves.
 fn visibility_m(p: &Parsed, w: &Weather, assumed: &mut Vec<&'static str>) -> f64 {
     let (least, most) = match p.visibility {
         _ if p.cavok => (10_000.0, f64::INFINITY),

@@ -1,8 +1,8 @@
 //! Aerodrome reports (METAR and SPECI, WMO-No. 306 FM 15 and FM 16): from the text of an airport to a `Weather`.
 //!
-//! The grammar is our own. The crate `metar`, which reads the same code, panics on some malformed reports (`010VVRB`), refuses
-//! SPECI, winds of three digits and `M1/4SM`, and says what it expected letter by letter; a library that must neither panic nor
-//! print cannot stand on it. It stays as the tests' second opinion.
+//! The grammar is our own. The crate `metar`, which reads the same code, panics on some malformed reports (`010VVRB`),
+//! refuses SPECI, winds of three digits and `M1/4SM`, and says what it expected letter by letter; a library that must
+//! neither panic nor print cannot stand on it. It stays as the tests' second opinion.
 
 mod amounts;
 mod assumed;
@@ -54,8 +54,8 @@ pub struct MetarPlaces {
 /// What a report says: the weather, and what surrounds it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MetarReport {
-    /// The weather. `station_altitude_m` is 0, because reports do not carry it: look `station` up in a list of airports and set it
-    /// before use. Cloud bases, visibility and temperature refer to that height.
+    /// The weather. `station_altitude_m` is 0, because reports do not carry it: look `station` up in a list of airports
+    /// and set it before use. Cloud bases, visibility and temperature refer to that height.
     pub weather: Weather,
     /// ICAO location indicator, four letters or digits.
     pub station: String,
@@ -71,24 +71,25 @@ pub struct MetarReport {
     pub automatic: bool,
     /// A correction (COR).
     pub corrected: bool,
-    /// The report says only that visibility is at least so much (CAVOK, 9999, 10SM, P6SM). `weather.visibility_m` is then what
-    /// [`super::unlimited_visibility_m`] makes of humidity and precipitation, at least the reported figure.
+    /// The report says only that visibility is at least so much (CAVOK, 9999, 10SM, P6SM). `weather.visibility_m` is
+    /// then what [`super::unlimited_visibility_m`] makes of humidity and precipitation, at least the reported figure.
     pub visibility_is_minimum: bool,
-    /// Lowest visibility in some direction where the report states one beside the prevailing visibility (`4000 1500NE`, `9999 3100`), m.
-    /// For information: extinction follows the prevailing one.
+    /// Lowest visibility in some direction where the report states one beside the prevailing visibility (`4000 1500NE`,
+    /// `9999 3100`), m. For information: extinction follows the prevailing one.
     pub lowest_visibility_m: Option<f64>,
     /// Rule by which the amounts of clouds were read: sums or layers.
     pub cloud_amounts: CloudAmountRule,
     /// Runway visual ranges, in the report's order.
     pub runways: Vec<RunwayVisualRange>,
-    /// Fields of `weather` that the report leaves out or marks as missing: names from [`ASSUMED_FIELDS`]. They hold defaults, or what
-    /// the rest of the report makes likely.
+    /// Fields of `weather` that the report leaves out or marks as missing: names from [`ASSUMED_FIELDS`]. They hold
+    /// defaults, or what the rest of the report makes likely.
     pub assumed: Vec<&'static str>,
     /// Words that are no group of the code, in the report's order. They change nothing.
     pub unread: Vec<String>,
     /// Trend forecast (from NOSIG, BECMG or TEMPO on), empty without one. It is not parsed.
     pub trend: String,
-    /// Remarks (after RMK), empty without any. They are not parsed, but for PWINO, which says that the present weather is unknown.
+    /// Remarks (after RMK), empty without any. They are not parsed, but for PWINO, which says that the present weather
+    /// is unknown.
     pub remarks: String,
     /// Where these parts stand in the text.
     pub places: MetarPlaces,
@@ -114,14 +115,14 @@ pub struct RunwayVisualRange {
 impl Weather {
     /// Reads a METAR or SPECI report of at most [`MAX_METAR_BYTES`], with cloud amounts by the station's rule.
     ///
-    /// What is there is read, in any order up to the pressure. What is not is listed in [`MetarReport::assumed`], words that are no
-    /// group in [`MetarReport::unread`]. Rates of precipitation follow from kind, intensity and, for rain and snow, visibility. Feet,
-    /// knots, statute miles and inches become SI units.
+    /// What is there is read, in any order up to the pressure. What is not is listed in [`MetarReport::assumed`], words
+    /// that are no group in [`MetarReport::unread`]. Rates of precipitation follow from kind, intensity and, for rain
+    /// and snow, visibility. Feet, knots, statute miles and inches become SI units.
     ///
     /// # Errors
-    /// [`crate::Status::Parse`] for a text without a station, without an observation (NIL) or without any group of the weather; the
-    /// message gives line and column (both from 1, in characters), what was expected there and what was found. Never panics,
-    /// whatever the text.
+    /// [`crate::Status::Parse`] for a text without a station, without an observation (NIL) or without any group of the
+    /// weather; the message gives line and column (both from 1, in characters), what was expected there and what was
+    /// found. Never panics, whatever the text.
     pub fn from_metar(text: &str) -> Result<MetarReport> {
         Self::from_metar_with(text, &MetarOptions::default())
     }

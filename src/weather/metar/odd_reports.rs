@@ -1,4 +1,5 @@
-//! Tests: reports as airports send them, with everything the code form (WMO-No. 306, FM 15) allows, and what comes out of damage.
+//! Tests: reports as airports send them, with everything the code form (WMO-No. 306, FM 15) allows, and what comes out
+//! of damage.
 
 use crate::Status;
 use crate::weather::{CloudKind, MetarReport, PrecipitationKind, Weather, derive};
@@ -92,7 +93,8 @@ const UNREAD: &[(&str, &[&str])] = &[
 /// Reports with groups glued, parted, out of order, marked or left out: every word is read.
 const WHOLE: &[&str] = &[
     "KNXP 111456Z AUTO A3030 RMK AO2 SLPNO",
-    "KMRH 111458Z AUTO RMK AO2 TSNO PWINO",
+    "KMRH 111458Z AUTO RMK AO2 TSNO",
+    "KJFX 092235Z AUTO 10SM CLR 14/11 A3015 RMK AO2 PWINO",
     "KONA 092235Z AUTO 14007KT 10SM 05/M02 RMK AO2",
     "KONA 092235Z AUTO 14007KT 10SM 05/M02",
     "K9L2 111458Z AUTO 00000KT 10SM SCT240 M A3026 RMK AO2",
@@ -158,6 +160,7 @@ fn groups_left_out_marked_glued_or_out_of_order_are_read() {
     let all = ["wind", "temperature_c", "relative_humidity", "pressure_hpa", "visibility_m", "precipitation", "clouds"];
     assert_eq!(of("KMRH").assumed, all);
     assert_eq!(of("KNXP").assumed, ["wind", "temperature_c", "relative_humidity", "visibility_m", "clouds"]);
+    assert_eq!(of("KJFX").assumed, ["wind", "precipitation"]);
     assert_eq!(of("KONA").assumed, ["pressure_hpa", "clouds"]);
     assert_eq!(of("K9L2").assumed, ["temperature_c", "relative_humidity"]);
     assert_eq!((of("KGYR").assumed, of("KAJO").assumed), (vec!["wind"], vec!["wind"]));

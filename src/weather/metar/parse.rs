@@ -1,8 +1,9 @@
 //! The groups of a report, one after another: which word is which group, and which words are none.
 //!
-//! Stations leave out what they could not measure (FMH-1, 12.5), mark it (`////`, `M`), glue groups together, change their order
-//! and add words of their own. So a word is read as whatever group it is, in any order up to the pressure; what follows the
-//! pressure is no longer the weather at the time of the report. A word that is no group is kept as unread.
+//! Stations leave out what they could not measure (FMH-1, 12.5), mark it (`////`, `M`), glue groups together, change
+//! their order and add words of their own. So a word is read as whatever group it is, in any order up to the pressure;
+//! what follows the pressure is no longer the weather at the time of the report. A word that is no group is kept as
+//! unread.
 
 use std::ops::Range;
 
@@ -128,7 +129,8 @@ fn is_trend(text: &str) -> bool {
 /// Reads all groups.
 ///
 /// # Errors
-/// [`Status::Parse`] with line, column and what was expected where there is no station, no observation, or no group of the weather.
+/// [`Status::Parse`] with line, column and what was expected where there is no station, no observation, or no group of
+/// the weather.
 pub(super) fn parse(report: &str) -> Result<Parsed> {
     if report.len() > MAX_METAR_BYTES {
         let message = format!("METAR must be at most {MAX_METAR_BYTES} bytes, got {}", report.len());
@@ -147,15 +149,16 @@ pub(super) fn parse(report: &str) -> Result<Parsed> {
             (p.trend, p.places.trend) = r.rest(true);
         } else if !group(&mut r, &mut p) {
             first_unread.get_or_insert(r.next);
-            // After the temperatures a foreign word ends the groups as the pressure does: what follows may be a forecast.
+            // After the temperatures a foreign word ends the groups as the pressure does: what follows may be a
+            // forecast.
             p.ended |= p.temperature_c.is_some();
             p.unread.push(word.into());
             r.next += 1;
         }
     }
     p.places.unread = first_unread.map_or(0..0, |i| r.words[i].at..r.words[i].at + r.words[i].text.len());
-    // The present weather's identifier did not work (FMH-1, 12.7.2).
-    p.weather_unknown |= p.remarks.split(' ').any(|w| w == "PWINO");
+    // The present weather's identifier did not work (FMH-1, 12.7.2), or nothing did.
+    p.weather_unknown |= p.remarks.split(' ').any(|w| w == "PWINO") || p.groups == 0;
     // A station that could measure nothing still closes its report by remarks.
     if p.groups == 0 && !remarked {
         let expected = "a group of the weather, such as 24009KT, 4500, 10SM, -RA, SCT042, 11/10 or Q1009";
@@ -227,7 +230,8 @@ fn missing(word: &str, p: &mut Parsed) -> bool {
     slashes || matches!(word, "M" | "MM" | "MMM" | "MMMM" | "MMMMM" | "MISG" | "KT" | "MPS")
 }
 
-/// Temperatures and pressure, which are read wherever they stand. Some stations give the pressure in both units; the first counts.
+/// Temperatures and pressure, which are read wherever they stand. Some stations give the pressure in both units; the
+/// first counts.
 fn air(word: &str, p: &mut Parsed) -> bool {
     if let Some(pressure) = groups::pressure(word) {
         p.pressure_hpa = p.pressure_hpa.or(pressure);
@@ -246,7 +250,8 @@ fn sea(word: &str, p: &mut Parsed) -> bool {
     group.is_some()
 }
 
-/// Reads a group whose figures and unit stand apart (`1 1/2SM`, `1/4 SM`, `24009 KT`); the number of its words, 0 if there is none.
+/// Reads a group whose figures and unit stand apart (`1 1/2SM`, `1/4 SM`, `24009 KT`); the number of its words, 0 if
+/// there is none.
 fn spaced(r: &Reader<'_>, p: &mut Parsed) -> usize {
     let (Some(first), Some(second)) = (r.peek(0), r.peek(1)) else { return 0 };
     let third = r.peek(2).unwrap_or("");
@@ -276,8 +281,9 @@ fn pieces(word: &str, p: &mut Parsed) -> bool {
     if one(word, p) {
         return true;
     }
+    let Some(parts) = split(word, false) else { return false };
     let mut all = p.clone();
-    let read = split(word, false).is_some_and(|parts| parts.iter().all(|t| one(t, &mut all) || air(t, &mut all)));
+    let read = parts.iter().all(|part| one(part, &mut all) || air(part, &mut all));
     if read {
         *p = all;
     }
@@ -287,7 +293,8 @@ fn pieces(word: &str, p: &mut Parsed) -> bool {
 /// Longest word that is taken apart, bytes.
 const MAX_GLUED_BYTES: usize = 40;
 
-/// Groups that stand in a word without blanks, of which one at least has figures: letters alone make words of any language.
+/// Groups that stand in a word without blanks, of which one at least has figures: letters alone make words of any
+/// language.
 fn split(word: &str, figures: bool) -> Option<Vec<&str>> {
     let has_figures = |t: &str| {
         groups::wind(t).flatten().is_some()
@@ -343,8 +350,8 @@ fn one(word: &str, p: &mut Parsed) -> bool {
     true
 }
 
-/// A visibility, or a further one: with a direction, or without where an automatic station cannot tell it (`9999 3100`). The
-/// first is the prevailing one.
+/// A visibility, or a further one: with a direction, or without where an automatic station cannot tell it (`9999
+/// 3100`). The first is the prevailing one.
 fn visibility(word: &str, sight: Reading<VisibilityGroup>, p: &mut Parsed) -> bool {
     if p.visibility.is_none() && !p.cavok {
         p.visibility = sight;

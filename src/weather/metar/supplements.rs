@@ -1,10 +1,10 @@
-//! Groups of a report that say nothing of the weather now: recent weather, wind shear, states of runways, military colours,
-//! rainfall so far.
+//! Groups of a report that say nothing of the weather now: recent weather, wind shear, states of runways, military
+//! colours, rainfall so far.
 
 use super::phenomena;
 
-/// Whether a word is such a group. Some are as short as anything: after the pressure (`ended`) all that begin like a state of a
-/// runway count, before it only what cannot be another group.
+/// Whether a word is such a group. Some are as short as anything: after the pressure (`ended`) all that begin like a
+/// state of a runway count, before it only what cannot be another group.
 pub(super) fn is_supplement(text: &str, ended: bool) -> bool {
     let colour = matches!(text, "BLU+" | "BLU" | "WHT" | "GRN" | "YLO" | "YLO1" | "YLO2" | "AMB" | "RED")
         || text.starts_with("BLACK");
