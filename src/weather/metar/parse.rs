@@ -263,17 +263,13 @@ fn spaced(r: &Reader<'_>, p: &mut Parsed) -> usize {
         p.visibility = new.flatten().or(p.visibility);
         new.is_some()
     };
-    if visibility(whole(second)) {
-        2
-    } else if third == "SM" && visibility(whole(&[second, third].concat())) {
-        3
-    } else if matches!(second, "SM" | "KM") && visibility(visibility_of(&joined)) {
-        2
-    } else if matches!(second, "KT" | "MPS" | "KMH") && one(&joined, p) {
-        2
-    } else {
-        0
+    if third == "SM" && visibility(whole(&[second, third].concat())) {
+        return 3;
     }
+    let two = visibility(whole(second))
+        || (matches!(second, "SM" | "KM") && visibility(visibility_of(&joined)))
+        || (matches!(second, "KT" | "MPS" | "KMH") && one(&joined, p));
+    if two { 2 } else { 0 }
 }
 
 /// A word as a group, or as several that lack the blank between them: `SCT120BKN180`.
