@@ -13,7 +13,8 @@ pub fn write(model: &Model, capi: &Path, out_dir: &Path, config: &Path, version:
     for (i, section) in model.sections.iter().enumerate() {
         let body = bindings(section, capi, out_dir, &config);
         if i == 0 {
-            out.push_str(&comment(&section.article));
+            let article: Vec<String> = section.article.iter().cloned().chain(contents(&model.sections[1..])).collect();
+            out.push_str(&comment(&article));
             out.push_str(&opening(version));
         } else {
             let _ = write!(out, "\n{}{}", banner(section), arrange(section, &body));
@@ -67,10 +68,41 @@ fn comment(lines: &[String]) -> String {
     out
 }
 
+/// Topics of the table of contents, each by the section that it begins with.
+const TOPICS: [(&str, &str); 9] = [
+    ("status", "What every call answers"),
+    ("device", "Devices and hosts"),
+    ("weather_kinds", "Weather, place and time"),
+    ("conditions", "Questions"),
+    ("frame", "Pictures"),
+    ("rain", "What falls"),
+    ("wind_grid", "Wind, shelter and lamps"),
+    ("stars", "Stars, clouds and lightning"),
+    ("windscreen", "Glass and ground"),
+];
+
+/// The table of contents: a section's name in brackets, as its banner has it, and its title, under topics.
+fn contents(sections: &[Section]) -> Vec<String> {
+    let known = |name: &str| sections.iter().any(|s| s.module == name);
+    TOPICS.iter().for_each(|(name, topic)| assert!(known(name), "{topic} begins with {name}, which is no section"));
+    let mut lines = Vec::new();
+    for section in sections {
+        let topic = TOPICS.iter().find(|(name, _)| *name == section.module);
+        lines.extend(topic.into_iter().flat_map(|(_, topic)| [String::new(), format!(" {topic}")]));
+        lines.push(format!("   {:<17} {}", format!("[{}]", section.module), title(section)));
+    }
+    lines
+}
+
+/// A section's title: the first line of its article.
+fn title(section: &Section) -> &str {
+    section.article.first().expect("a section has an article").trim()
+}
+
 fn banner(section: &Section) -> String {
     let rule = "=".repeat(100);
-    let mut lines = vec![rule.clone()];
-    lines.extend(section.article.iter().cloned());
+    let mut lines = vec![rule.clone(), format!(" [{}] {}", section.module, title(section))];
+    lines.extend(section.article.iter().skip(1).cloned());
     lines.push(rule);
     comment(&lines) + "\n"
 }

@@ -1,8 +1,8 @@
 /*
  * Welkin: weather for simulators, drawn into the host's own picture.
  *
- * This header is the whole C API, in reading order: status, devices, the kinds of host (own, window, OpenGL, Vulkan),
- * weather, contexts, queries, frames, views. It is C99 and C++11 and later; welkin.hpp wraps it for C++.
+ * This header is the whole C API, in reading order; CONTENTS below names its sections. It is C99 and C++11 and later;
+ * welkin.hpp wraps it for C++.
  *
  * IN SHORT
  *
@@ -68,15 +68,76 @@
  *
  * Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a major
  * version, and later versions add new ones. Settled for what is planned, so that a host can prepare:
- * - Clouds: a layer's own wind is in wk_cloud_layer. They are drawn in the stages BACKGROUND and MEDIUM.
- * - Snow: it falls in the stage PARTICLES, as rain does; its kinds in rain areas are wk_area_snow; what lies on the terrain is
- *   wk_ground_texture.snow_texture.
- * - Terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new child of the context with its
- *   own functions. Terrain and sea test and write the host's depth, which a frame lends with wk_frame.depth_access.
- * - Bodies of water are new functions of the context; base colour and motion are images appended to the target structs.
+ * - The sea is drawn by new functions of the context. It tests and writes the host's depth, which a frame lends with
+ *   wk_frame.depth_access.
+ * - Soil materials of the terrain's tiles are new functions of the context.
+ * - Snow in rain areas is wk_rain_area.snow.
+ * - Base colour and motion are images appended to the target structs.
  * - Allocator and file callbacks come as extensions of wk_device_desc through `next`.
  *
  * A field, a bit or a value that this version does not draw yet is refused by name where it is set.
+ *
+ * CONTENTS
+ *
+ * Each section begins with its name in brackets, which stays from version to version: search for it.
+ *
+ * What every call answers
+ *   [status]          Status, versions, messages
+ *
+ * Devices and hosts
+ *   [device]          Devices
+ *   [texture]         Textures of an own device
+ *   [surface]         Windows
+ *   [opengl]          OpenGL hosts
+ *   [vulkan]          Vulkan hosts
+ *
+ * Weather, place and time
+ *   [weather_kinds]   Kinds of weather
+ *   [weather]         Weather
+ *   [report]          Weather reports and presets
+ *   [context]         Contexts
+ *   [sky]             How the sky is drawn
+ *   [timeline]        Weather over time
+ *   [fog_law]         Fog laws of older simulators
+ *
+ * Questions
+ *   [conditions]      Queries: conditions
+ *   [query]           Queries: light and visibility
+ *   [radiance]        Queries: the sky's light by direction
+ *   [wind]            Queries: wind and rain
+ *
+ * Pictures
+ *   [frame]           Frames and targets
+ *   [view]            Views
+ *   [veil]            Textures for the host's transparent things
+ *   [environment]     A cube map of what stands around the camera
+ *   [plan]            What a picture needs, and no more
+ *
+ * What falls
+ *   [rain]            Rain
+ *   [snow]            Snow
+ *   [area]            Rain areas
+ *
+ * Wind, shelter and lamps
+ *   [wind_grid]       Wind that varies in space
+ *   [wind_field]      Wind round terrain and buildings
+ *   [occluder]        Maps of what keeps rain off
+ *   [light]           Lamps
+ *
+ * Stars, clouds and lightning
+ *   [stars]           Stars
+ *   [cloud_map]       Cloud map
+ *   [clouds]          Clouds
+ *   [cloud_shadow]    Shadows of clouds as a texture
+ *   [lightning]       Lightning
+ *
+ * Glass and ground
+ *   [windscreen]      Water on the windscreen
+ *   [ground]          Wet ground
+ *   [ground_grid]     Water on the host's terrain
+ *   [ground_texture]  Water on the host's terrain as a texture
+ *   [snowpack]        Lying snow
+ *   [terrain]         Terrain in tiles
  */
 #ifndef WELKIN_H
 #define WELKIN_H
@@ -104,7 +165,7 @@ extern "C" {
 
 /*
  * ====================================================================================================
- * Status, versions, messages
+ * [status] Status, versions, messages
  *
  * Every call answers a wk_status. 0 and positive values are answers, negative ones failures. A failed call writes no
  * output. wk_last_error_message() then says which parameter was wrong and what is accepted, and wk_last_error_field()
@@ -335,7 +396,7 @@ WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_leve
 
 /*
  * ====================================================================================================
- * Devices
+ * [device] Devices
  *
  * A wk_device is one native queue or OpenGL context, with everything that its contexts share: pipelines, tables,
  * caches. Make one here (below), from the host's OpenGL context, from the host's Vulkan device, or, in Rust, from the
@@ -487,7 +548,7 @@ WK_API wk_status wk_caps_init(wk_caps *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Textures of an own device
+ * [texture] Textures of an own device
  *
  * For hosts without graphics of their own: programs that want pictures in memory, or that draw with Welkin only. Hosts
  * with OpenGL, Vulkan or wgpu hand over their own images instead and need none of this.
@@ -596,7 +657,7 @@ wk_status wk_texture_desc_init(wk_texture_desc *out,
 
 /*
  * ====================================================================================================
- * Windows
+ * [surface] Windows
  *
  * For hosts without graphics of their own: Welkin presents to a window that the host names by its native handle. The
  * host makes the window, keeps its event loop, and tells Welkin when its size changes. Resized, hidden, minimised and
@@ -770,7 +831,7 @@ wk_status wk_surface_config_init(wk_surface_config *out,
 
 /*
  * ====================================================================================================
- * OpenGL hosts
+ * [opengl] OpenGL hosts
  *
  * Welkin draws into the host's own textures, renderbuffers or framebuffers, in one of two ways.
  *
@@ -1002,7 +1063,7 @@ wk_status wk_opengl_target_init(wk_opengl_target *out,
 
 /*
  * ====================================================================================================
- * Vulkan hosts
+ * [vulkan] Vulkan hosts
  *
  * Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits its own work: when
  * wk_view_record returns, the work is on the queue. Only one thread at a time may use a VkQueue. So either keep other
@@ -1326,7 +1387,7 @@ wk_status wk_vulkan_target_init(wk_vulkan_target *out,
 
 /*
  * ====================================================================================================
- * Kinds of weather
+ * [weather_kinds] Kinds of weather
  *
  * Kinds that a report names by words. The numbers never change.
  * ====================================================================================================
@@ -1472,7 +1533,7 @@ typedef uint32_t wk_surface_state;
 
 /*
  * ====================================================================================================
- * Weather
+ * [weather] Weather
  *
  * A wk_weather describes the weather: plain data in SI units, which every call copies. Start from WK_WEATHER_INIT (a
  * clear standard day), a METAR report or a preset, and change what you know better. Zero is a value everywhere (0
@@ -1880,7 +1941,7 @@ wk_status wk_weather_overrides_init(wk_weather_overrides *out,
 
 /*
  * ====================================================================================================
- * Weather reports and presets
+ * [report] Weather reports and presets
  *
  * Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads what is there, in any order up
  * to the pressure. Fields that the report leaves out or marks as missing keep their defaults, or what the rest of the
@@ -2119,7 +2180,7 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Contexts
+ * [context] Contexts
  *
  * A wk_context has the weather, the time and the place that all views of a simulator share. It is a function of its
  * description, its timeline and its time: two contexts with the same input answer the same, on every machine.
@@ -2317,7 +2378,7 @@ wk_status wk_context_desc_init(wk_context_desc *out,
 
 /*
  * ====================================================================================================
- * How the sky is drawn
+ * [sky] How the sky is drawn
  *
  * Four models share the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
  * scattering in clear air and haze. The others are for comparison and for slow machines. A wk_sky_settings goes into
@@ -2423,7 +2484,7 @@ wk_status wk_sky_settings_init(wk_sky_settings *out,
 
 /*
  * ====================================================================================================
- * Weather over time
+ * [timeline] Weather over time
  *
  * The host owns simulation time: seconds in double precision, moved forward by wk_context_update. Weather is a
  * timeline of changes, each with an absolute start and a duration; between changes it stays. A change that begins
@@ -2582,7 +2643,7 @@ wk_status wk_given_direction_init(wk_given_direction *out,
 
 /*
  * ====================================================================================================
- * Fog laws of older simulators
+ * [fog_law] Fog laws of older simulators
  *
  * Fog follows from the weather and is lit by sun and sky. For pictures that must look as before, Welkin can draw the
  * laws of older systems instead: linear, exponential, exponential squared, on range or plane distance.
@@ -2695,7 +2756,7 @@ WK_API wk_status wk_fog_law_init(wk_fog_law *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Queries: conditions
+ * [conditions] Queries: conditions
  *
  * The weather as physical quantities, at any place and any past or future time that the timeline still knows. The
  * answers are in closed form and need no device. Heights are above the station unless stated otherwise. Every number
@@ -2937,7 +2998,7 @@ WK_API wk_status wk_conditions_init(wk_conditions *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Queries: light and visibility
+ * [query] Queries: light and visibility
  *
  * These answer at any place of the host's world, for the present or (functions that end in _at) for any past or future
  * simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or moon that
@@ -3204,7 +3265,7 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Queries: the sky's light by direction
+ * [radiance] Queries: the sky's light by direction
  *
  * For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as the
  * picture shows it where the host drew nothing. It has the clear air, clouds as the model draws them, fog with what
@@ -3257,7 +3318,7 @@ wk_status wk_context_get_sky_radiance_at(const wk_context *context,
 
 /*
  * ====================================================================================================
- * Queries: wind and rain
+ * [wind] Queries: wind and rain
  *
  * How the air moves and how far it has moved, what falls through it, and what lands on a surface, at any place and any
  * simulation time that the timeline still knows. The answers are in closed form and need no device. Vectors are (east,
@@ -3443,7 +3504,7 @@ WK_API wk_status wk_rainfall_init(wk_rainfall *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Frames and targets
+ * [frame] Frames and targets
  *
  * A wk_frame describes what the host has drawn: the camera, the meaning of the numbers in its depth and colour, and
  * the images. All matrices are column-major with column vectors (OpenGL, Vulkan, glm): m[4 * column + row].
@@ -3766,7 +3827,7 @@ wk_status wk_frame_light_init(wk_frame_light *out,
 
 /*
  * ====================================================================================================
- * Views
+ * [view] Views
  *
  * A wk_view is one camera or projector channel, with the data that it keeps between frames. A host draws opaque
  * things, then glass and lamps, then the cab, then the HUD. wk_view_record draws Welkin's stages between them:
@@ -4030,7 +4091,7 @@ WK_API wk_status wk_report_init(wk_report *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Textures for the host's transparent things
+ * [veil] Textures for the host's transparent things
  *
  * Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
  * the light that air, fog and rain add on the way to a point, and the share of the light behind it that gets through.
@@ -4103,7 +4164,7 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
 
 /*
  * ====================================================================================================
- * A cube map of what stands around the camera
+ * [environment] A cube map of what stands around the camera
  *
  * For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its clouds, fog and
  * rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the host lights by those
@@ -4178,7 +4239,7 @@ wk_status wk_environment_init(wk_environment *out,
 
 /*
  * ====================================================================================================
- * What a picture needs, and no more
+ * [plan] What a picture needs, and no more
  *
  * With a tolerance, a view gauges its own pictures. In every eighth frame it composes a grid of 64 x 36 of its pixels
  * with everything and without each part of the weather, and reads the differences back some frames later without
@@ -4530,7 +4591,7 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Rain
+ * [rain] Rain
  *
  * WK_STAGE_PARTICLES draws rain wherever the weather has it. The rate decides how many drops fall and how fast. Near
  * drops have places of their own, farther ones are streaks on cones. Both follow from seed and time alone, so all
@@ -4722,7 +4783,7 @@ wk_status wk_shelter_shape_init(wk_shelter_shape *out,
 
 /*
  * ====================================================================================================
- * Snow
+ * [snow] Snow
  *
  * WK_STAGE_PARTICLES draws falling snow wherever the weather has it: flakes of the sizes and speeds that rate, kind and
  * temperature give, each at a place that follows from seed and time alone, so all channels of a simulator draw the same
@@ -4791,7 +4852,7 @@ WK_API wk_status wk_snow_init(wk_snow *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Rain areas
+ * [area] Rain areas
  *
  * Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
  * weather's rain and drizzle give way to the area's, smoothly over the rim inside its border. Where areas overlap, a
@@ -4927,7 +4988,7 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Wind that varies in space
+ * [wind_grid] Wind that varies in space
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
  * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, on patches of fog and dust, and on drops and
@@ -5005,7 +5066,7 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Wind round terrain and buildings
+ * [wind_field] Wind round terrain and buildings
  *
  * A context can solve for the wind in a box of air about a place: it goes round the terrain of
  * wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
@@ -5168,7 +5229,7 @@ wk_status wk_wind_field_report_init(wk_wind_field_report *out,
 
 /*
  * ====================================================================================================
- * Maps of what keeps rain off
+ * [occluder] Maps of what keeps rain off
  *
  * For everything that boxes cannot describe, give up to four depth images of your world, of standing or moving things,
  * from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
@@ -5270,7 +5331,7 @@ wk_status wk_occluder_map_init(wk_occluder_map *out,
 
 /*
  * ====================================================================================================
- * Lamps
+ * [light] Lamps
  *
  * Head lights, work lights, search lights: the host's lamps light what Welkin draws in their beams (rain, snow, hail,
  * splashes and clouds) and shine in wet ground. The host lights its own world itself.
@@ -5332,7 +5393,7 @@ WK_API wk_status wk_light_init(wk_light *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Stars
+ * [stars] Stars
  *
  * At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the zodiacal light and
  * the Milky Way behind its sky, where they stand over the context's place by its clock; by day, in fog and under closed clouds there
@@ -5419,7 +5480,7 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Cloud map
+ * [cloud_map] Cloud map
  *
  * Where over the ground layers of cloud stand: a storm ahead of the runway, a clearing over the harbour. The map holds in
  * pictures, shadows, the light of a place and all questions about clouds. docs/clouds.md has an example.
@@ -5496,7 +5557,7 @@ WK_API wk_status wk_cloud_map_init(wk_cloud_map *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Clouds
+ * [clouds] Clouds
  *
  * Layers of cloud come with the weather: wk_cloud_layer, a report, a preset. wk_context_set_cloud_model says how views
  * draw them. Conditions, what falls and light on the mean are the same either way. docs/clouds.md has costs and errors.
@@ -5603,7 +5664,7 @@ WK_API wk_status wk_clouds_init(wk_clouds *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Shadows of clouds as a texture
+ * [cloud_shadow] Shadows of clouds as a texture
  *
  * For the host's own materials: the share of the direct light of sun or moon that broken clouds let through, as one native
  * texture for all places about the camera. The published sampling function, GLSL and WGSL, looks it up.
@@ -5696,7 +5757,7 @@ wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
 
 /*
  * ====================================================================================================
- * Lightning
+ * [lightning] Lightning
  *
  * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20 km, or
  * as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the storm
@@ -5946,7 +6007,7 @@ wk_status wk_flash_light_init(wk_flash_light *out,
 
 /*
  * ====================================================================================================
- * Water on the windscreen
+ * [windscreen] Water on the windscreen
  *
  * A view may look through a window. Rain lands on it at the rate and speed at which the window meets it. Beads merge,
  * run down by gravity or up by the air, are wiped, and bend the picture behind them. Mist on the inside blurs the
@@ -6167,7 +6228,7 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
 
 /*
  * ====================================================================================================
- * Wet ground
+ * [ground] Wet ground
  *
  * The stage SURFACE reads the host's depth and draws water onto its picture. Wet ground is darker and mirrors the sky,
  * paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in the display
@@ -6340,7 +6401,7 @@ WK_API wk_status wk_ground_init(wk_ground *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Water on the host's terrain
+ * [ground_grid] Water on the host's terrain
  *
  * Give the heights of your terrain on a grid, and Welkin computes wetness and puddles cell by cell. Rain areas and
  * standing boxes (wk_context_set_shelters) decide what falls where. Water runs off and fills the terrain's hollows
@@ -6456,7 +6517,7 @@ wk_status wk_ground_grid_init(wk_ground_grid *out,
 
 /*
  * ====================================================================================================
- * Water on the host's terrain as a texture
+ * [ground_texture] Water on the host's terrain as a texture
  *
  * For the host's own materials: the water of the terrain's cells as one native texture, of a grid
  * (wk_context_set_ground_grid) uploaded once for the host and for the stage SURFACE, of tiles (wk_context_set_terrain) those
@@ -6562,7 +6623,7 @@ wk_status wk_ground_texture_init(wk_ground_texture *out,
 
 /*
  * ====================================================================================================
- * Lying snow
+ * [snowpack] Lying snow
  *
  * The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it (wk_surface.snow_depth_m):
  * patches first, then whole, on what faces up. With WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a
@@ -6697,7 +6758,7 @@ WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
- * Terrain in tiles
+ * [terrain] Terrain in tiles
  *
  * The host's terrain as a lattice of equal cells, level and aligned to true north at its origin, cut into square tiles
  * with keys. Each cell has a height and a class of surface, or is a hole. Tiles are added, removed, and changed by

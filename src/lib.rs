@@ -1,8 +1,66 @@
 //! Welkin: weather for simulators, drawn into the host's own picture.
 //!
-//! This is the crate's front door. A Rust host creates a [`gpu::Device`], says what the weather is
-//! ([`weather::Weather`]), and records into its own targets through [`frame`]. C and C++ hosts use the same
-//! nouns and verbs through `include/welkin.h`, which [`capi`] implements as a thin shell.
+//! A Rust host says what the weather is and records it into its own [`wgpu`] textures, between its opaque world and its instruments. The
+//! sky of a weather report, whole:
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use glam::DVec3;
+//! use welkin::{
+//!     context::{Context, ContextDesc},
+//!     frame::{Frame, FrameFlags, Shared, Stages, View},
+//!     gpu::{Device, DeviceOptions, readback},
+//!     scene::Camera,
+//!     weather::Weather,
+//! };
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let device = Device::headless(&DeviceOptions::default())?; // Device::adopt takes yours
+//! let shared = Arc::new(Shared::new(&device)?); // what all contexts of a device use
+//! let mut context = Context::new(device.clone(), shared, ContextDesc::default())?;
+//! let report = Weather::from_metar("METAR LBBG 041600Z 12012KT CAVOK 20/12 Q1015")?;
+//! context.set_weather(&report.weather, 0.0, 0.0)?;
+//! let mut view = View::new(&context)?;
+//!
+//! let color = device.device.create_texture(&wgpu::TextureDescriptor {
+//!     label: None,
+//!     size: wgpu::Extent3d { width: 64, height: 36, depth_or_array_layers: 1 },
+//!     mip_level_count: 1,
+//!     sample_count: 1,
+//!     dimension: wgpu::TextureDimension::D2,
+//!     format: wgpu::TextureFormat::Rgba16Float,
+//!     usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+//!     view_formats: &[],
+//! });
+//! let (eye, north, up) = (DVec3::new(0.0, 0.0, 2.0), DVec3::Y, DVec3::Z);
+//! let camera = Camera::look_to(eye, north, up, 50_f64.to_radians(), 64.0 / 36.0, 0.1);
+//! // A host's own depth comes in place of `None`. Frames that follow each other leave NO_HISTORY out.
+//! let frame = Frame { flags: FrameFlags::NO_HISTORY, ..Frame::new(1, camera, &color, None) };
+//! context.update(0.0)?;
+//! view.record(&context, &frame, Stages::ALL)?;
+//!
+//! let pixels = readback::rgba(&device, &color)?;
+//! assert!(pixels[0][2] > pixels[0][0], "the sky is blue");
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The nouns:
+//!
+//! | noun | what it is |
+//! |---|---|
+//! | [`gpu::Device`] | a GPU, a host's own or one of Welkin's; [`gpu`] has the kinds of host |
+//! | [`context::Context`] | weather, time and place, and what is simulated: the same on every channel |
+//! | [`weather::Weather`] | what the weather is, from a report, a preset or fields in SI units |
+//! | [`frame::View`] | one camera, with what it remembers from frame to frame |
+//! | [`frame::Frame`] | one picture: camera, the host's images, what colour and depth mean |
+//! | [`plan`] | what a view leaves out to keep a tolerance or a time |
+//! | [`error::Error`] | a status, and a sentence that names the parameter and what is accepted |
+//!
+//! Each effect has a room with its model, settings and cost: [`sky`], [`stars`], [`clouds`], [`fog`], [`rain`], [`snow`], [`snowpack`],
+//! [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`]. The manual is `docs/README.md`. C and C++ hosts use the same nouns
+//! and verbs through `include/welkin.h`, which [`capi`] implements as a thin shell.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 
 // Tests of single rooms take helpers of `tests/support`, which name the crate as its users do.

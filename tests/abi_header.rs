@@ -47,6 +47,32 @@ fn committed_header_is_what_the_sources_give() {
     compare("include/welkin.h", abi::HEADER);
 }
 
+/// Each section of the header is found from the table of contents by its name, and they are listed in the header's order.
+#[test]
+fn contents_name_every_section_in_order() {
+    let (opening, sections) = abi::HEADER.split_once("#ifndef WELKIN_H").expect("a header");
+    let contents = opening.split("CONTENTS\n").nth(1).expect("a table of contents");
+    let entry = |line: &str| {
+        let (name, title) = line.trim_start_matches(" *").trim().strip_prefix('[')?.split_once(']')?;
+        Some((name.to_owned(), title.trim().to_owned()))
+    };
+    let listed: Vec<_> = contents.lines().filter_map(entry).collect();
+    let rule = format!(" * {}\n", "=".repeat(100));
+    // A banner has a rule at both ends.
+    let banners: Vec<_> = sections.split(&rule).skip(1).step_by(2).filter_map(|b| entry(b.lines().next()?)).collect();
+    assert!(listed.len() > 30, "{listed:?}");
+    assert_eq!(listed, banners);
+    let names: std::collections::BTreeSet<_> = listed.iter().map(|(name, _)| name).collect();
+    assert_eq!(names.len(), listed.len(), "a name stands for one section");
+    for (name, _) in &listed {
+        assert_eq!(
+            abi::HEADER.matches(&format!("[{name}]")).count(),
+            2,
+            "[{name}] is in the contents and at its section"
+        );
+    }
+}
+
 /// Both headers, every struct and every INIT macro.
 fn every_struct_source() -> String {
     let mut text = String::from("#include \"welkin.h\"\nint main(void)\n{\n");

@@ -1,7 +1,7 @@
 //! Welkin: weather for simulators, drawn into the host's own picture.
 //!
-//! This header is the whole C API, in reading order: status, devices, the kinds of host (own, window, OpenGL, Vulkan),
-//! weather, contexts, queries, frames, views. It is C99 and C++11 and later; welkin.hpp wraps it for C++.
+//! This header is the whole C API, in reading order; CONTENTS below names its sections. It is C99 and C++11 and later;
+//! welkin.hpp wraps it for C++.
 //!
 //! IN SHORT
 //!
@@ -69,12 +69,15 @@
 //!
 //! Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a major
 //! version, and later versions add new ones. Settled for what is planned, so that a host can prepare:
-//! - Clouds: a layer's own wind is in wk_cloud_layer. They are drawn in the stages BACKGROUND and MEDIUM.
-//! - Snow: it falls in the stage PARTICLES, as rain does; its kinds in rain areas are wk_area_snow; what lies on the terrain is
-//!   wk_ground_texture.snow_texture.
-//! - Terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new child of the context with its
-//!   own functions. Terrain and sea test and write the host's depth, which a frame lends with wk_frame.depth_access.
-//! - Bodies of water are new functions of the context; base colour and motion are images appended to the target structs.
+//! - The sea is drawn by new functions of the context. It tests and writes the host's depth, which a frame lends with
+//!   wk_frame.depth_access.
+//! - Soil materials of the terrain's tiles are new functions of the context.
+//! - Snow in rain areas is wk_rain_area.snow.
+//! - Base colour and motion are images appended to the target structs.
 //! - Allocator and file callbacks come as extensions of wk_device_desc through `next`.
 //!
 //! A field, a bit or a value that this version does not draw yet is refused by name where it is set.
+//!
+//! CONTENTS
+//!
+//! Each section begins with its name in brackets, which stays from version to version: search for it.
