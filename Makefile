@@ -38,7 +38,7 @@ RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --no-fail-fast,cargo test
 
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
-.PHONY: ci help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench gallery lab
+.PHONY: ci help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench fuzz gallery lab
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -112,6 +112,9 @@ accept: setup lint docs ## the long sweeps in release, and the benchmarks, at mo
 
 gallery: host ## draw the pictures of docs/gallery.md anew, by the demo's host (GALLERY="noon fog": these alone)
 	"$(STAGE)/glfw_host/glfw_host" --data examples/data --out docs/gallery --gallery $(GALLERY)
+
+fuzz: setup-build ## fuzz all that Welkin reads, 15 minutes a target (ARGS="--seconds 60 metar")
+	scripts/fuzz $(ARGS)
 
 lab: setup-build ## chart speed against accuracy, map where methods fail (ARGS="chart sky"; without: what it can do)
 	cargo run --locked --release --example lab -- $(ARGS)

@@ -166,6 +166,37 @@ fn parse(file: &[u8], key: u64, settings: &SkySettings) -> Option<Vec<Vec<u8>>> 
     rest.is_empty().then_some(tables)
 }
 
+/// Settings of small tables, for fuzzers.
+fn small() -> SkySettings {
+    SkySettings {
+        suns: 16,
+        altitudes: 8,
+        zeniths: 4,
+        azimuths: 3,
+        sky_azimuths: 8,
+        sky_above: 8,
+        sky_below: 8,
+        ..SkySettings::default()
+    }
+}
+
+/// Tables of zeros as they lie in a file between its key and its sum, for fuzzers.
+pub fn body_of_tables() -> Vec<u8> {
+    let table = |name: &Name| {
+        let (width, height) = name.result_size(&small());
+        let size = u64::from(width) * u64::from(height) * 8;
+        [size.to_le_bytes().to_vec(), vec![0; size as usize]].concat()
+    };
+    Name::RESULTS.iter().flat_map(table).collect()
+}
+
+/// Whether a file with this body is taken, for fuzzers: it gets the right key and the right sum, at which they would stop.
+pub fn takes_tables(body: &[u8]) -> bool {
+    let mut file = [MAGIC, 0_u64.to_le_bytes().as_slice(), body].concat();
+    file.extend(fnv(SEED, &file).to_le_bytes());
+    parse(&file, 0, &small()).is_some_and(|tables| tables.iter().all(|table| are_finite(table)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -74,6 +74,8 @@ pub mod volume;
 
 pub use crate::almanac::{celestial, moon, sun};
 pub use crate::planet::{self, Planet, spectral};
+#[doc(hidden)]
+pub use cache::{body_of_tables, takes_tables};
 pub use kit::SkyLibrary;
 pub use light::{LightTable, Sh9};
 pub use observer::{Disc, Lamp, Observer};

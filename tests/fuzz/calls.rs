@@ -161,6 +161,16 @@ impl World {
         }
     }
 
+    /// The first context, in which all has a state.
+    pub fn context(&self) -> *mut wk_context {
+        self.contexts[0]
+    }
+
+    /// The first view.
+    pub fn view(&self) -> *mut wk_view {
+        self.views[0]
+    }
+
     /// The same objects in the hands of another thread.
     pub fn shared(&self) -> Self {
         Self {

@@ -1,16 +1,34 @@
 //! Seeded random numbers, and values that a careless or hostile host might pass.
 
-/// The same sequence for the same seed, on every machine (Steele, Lea and Flood 2014, SplitMix64).
-pub struct Dice(u64);
+/// The same sequence for the same seed, on every machine (Steele, Lea and Flood 2014, SplitMix64); or what bytes say, two a
+/// throw, so that a fuzzer that changes a byte changes one throw.
+pub struct Dice {
+    state: u64,
+    /// Bytes still to be thrown, the last of them first.
+    told: Vec<u8>,
+}
 
 impl Dice {
     pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bd1_e995)
+        Self { state: seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bd1_e995, told: vec![] }
+    }
+
+    /// Throws what `bytes` say, then a sequence of its own.
+    pub fn of_bytes(bytes: &[u8]) -> Self {
+        Self { told: bytes.iter().rev().copied().collect(), ..Self::new(0) }
+    }
+
+    /// Whether all bytes are thrown.
+    pub fn is_spent(&self) -> bool {
+        self.told.is_empty()
     }
 
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
+        if let Some(first) = self.told.pop() {
+            self.state = u64::from(u16::from_le_bytes([first, self.told.pop().unwrap_or(0)]));
+        }
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.state;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)

@@ -4,12 +4,14 @@
 //! Seeded: `WELKIN_FUZZ_SEED=N` plays sequence N again and prints its calls.
 
 mod calls;
+mod corpora;
 mod dice;
 mod judge;
 mod noise_files;
 #[path = "../support/refusals.rs"]
 mod refusals;
 mod structs;
+mod targets;
 mod texts;
 
 use std::{

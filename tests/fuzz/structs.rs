@@ -33,7 +33,8 @@ impl Struct {
         Self::list(name, 1)
     }
 
-    fn list(name: &str, count: u32) -> Self {
+    /// A list of structs at their defaults.
+    pub fn list(name: &str, count: u32) -> Self {
         let (name, size) = known(name);
         let stride = size.next_multiple_of(8);
         let words = vec![0_u64; ((count as usize).max(1) * stride + ROOM) / 8];
