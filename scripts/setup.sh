@@ -23,6 +23,7 @@ all_packages=(
     libgl1-mesa-dri libegl1 libgl1 libvulkan1         # drivers, software ones included
     mesa-vulkan-drivers vulkan-validationlayers
     xvfb xauth valgrind                               # tests: a display without a screen, memory checks
+    glslang-tools spirv-tools                         # what strict drivers say of the shaders
 )
 
 fail() {

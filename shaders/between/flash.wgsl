@@ -23,7 +23,7 @@ fn flash_on_clouds(d: vec3f, way: f32) -> vec3f {
         return vec3f(0.0);
     }
     var sum = 0.0;
-    for (var i = 0u; i < frame.flash_count; i++) {
+    for (var i = 0u; i < (frame.flash_count & 15u); i++) {
         let source = frame.flashes[i];
         let to = d * way - source.position;
         let h = source.height;
@@ -46,7 +46,7 @@ fn flash_phase(cosine: f32) -> f32 {
 fn flash_in_air(ray: ViewRay, range: f32) -> vec3f {
     let taken = FLASH_TAKES * frame.flash_scattering;
     var sum = 0.0;
-    for (var i = 0u; i < frame.flash_count; i++) {
+    for (var i = 0u; i < (frame.flash_count & 15u); i++) {
         let source = frame.flashes[i];
         let to = source.position - ray.origin;
         let along = dot(to, ray.direction);

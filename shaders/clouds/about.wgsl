@@ -45,7 +45,8 @@ fn cloud_share(mean: f32, spread: f32) -> vec2f {
     let a = 1.702 * mean / spread;
     let share = 1.0 / (1.0 + exp(-a));
     let over = select(log(1.0 + exp(a)), a, a > 20.0) * spread / 1.702;
-    return vec2f(share, over / share);
+    // Far below the threshold both are 0.
+    return vec2f(share, over / max(share, 1e-30));
 }
 
 fn cloud_here(whole: CloudLayer, at: CloudPlace) -> CloudHere {

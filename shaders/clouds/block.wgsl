@@ -66,6 +66,11 @@ override CLOUD_COARSE: bool = false;
 
 @group(0) @binding(1) var<uniform> clouds: CloudsUniform;
 
+// How many layers there are, as lights_binding.wgsl cuts a count.
+fn cloud_layers() -> u32 {
+    return clouds.layer_count & 31u;
+}
+
 // Where a ray begins, relative to the camera (east, north, up), m: at the camera, but for rays of parallel views.
 var<private> cloud_origin: vec3f;
 

@@ -17,9 +17,9 @@ struct FollowedSquare {
 @fragment
 fn follow(in: FullscreenVarying) -> FollowedSquare {
     let square = vec2u(in.position.xy);
-    let own = textureLoad(marched, square, 0);
+    let own = textureLoad(marched, vec2i(square), 0);
     let cover = 1.0 - own.a;
-    let reach = textureLoad(marched_reach, square, 0).rg / max(cover, 1e-4);
+    let reach = textureLoad(marched_reach, vec2i(square), 0).rg / max(cover, 1e-4);
     let distance = select(1e6, exp2(0.5 * (reach.x + reach.y)), cover > 1e-4);
     let middle = min(square * picture.side + (picture.side >> 1u), picture.size - 1u);
     let ndc = pixel_ndc(picture, middle, frame.y_sign);

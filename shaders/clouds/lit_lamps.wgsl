@@ -142,7 +142,7 @@ fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudS
     let medium = clouds.media[u32(layer.medium.x)];
     let scaled = local.size.w * local.medium.y;
     var sum = vec3f(0.0);
-    for (var i = 0u; i < lamps.count; i++) {
+    for (var i = 0u; i < (lamps.count & 31u); i++) {
         let lamp = lamps.lamps[i];
         let from_origin = lamp.light.position - cloud_origin;
         let place = stretch.direction * stretch.at;

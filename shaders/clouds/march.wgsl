@@ -221,7 +221,7 @@ fn clouds_along(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
     let turns = select(2u, 1u, lowest > end);
     for (var turn = select(0u, 1u, lowest <= 0.0); turn < turns; turn++) {
         let falls = turn == 0u;
-        for (var k = 0u; k < clouds.layer_count; k++) {
+        for (var k = 0u; k < cloud_layers(); k++) {
             let layer = clouds.layers[select(k, clouds.layer_count - 1u - k, falls)];
             let base = cloud_crossings(direction, layer.size.x);
             let top = cloud_crossings(direction, layer.size.x + 1.0 / layer.size.y);

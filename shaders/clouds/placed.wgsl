@@ -44,7 +44,7 @@ fn cloud_local(layer: CloudLayer, level: vec2f) -> CloudLocal {
         here.steady = found.w;
     }
     var most = 0.0;
-    for (var i = 0u; i < u32(layer.filled.w); i++) {
+    for (var i = 0u; i < (u32(layer.filled.w) & 31u); i++) {
         let over = cloud_filled_over(clouds.areas[i], level);
         most = max(most, over.x);
         here.steady = min(here.steady, over.y);

@@ -62,16 +62,16 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
         return ResolvedPixel(now, reach);
     }
     let square = min(pixel >> vec2u(side_power(picture)), textureDimensions(marched) - 1u);
-    let to = textureLoad(back, square, 0).rg;
+    let to = textureLoad(back, vec2i(square), 0).rg;
     let was = in.position.xy + to;
     let size = vec2f(picture.size);
     let lost = any(was < vec2f(0.0)) || any(was > size);
     let within = clamp(was, vec2f(0.5), size - 0.5) / vec2f(textureDimensions(last));
     // At rest the texel itself: a filter's least error, rounded down from frame to frame, would darken the clouds until they are marched again.
     let filtered = textureSampleLevel(last, linear, within, 0, 0.0);
-    let texel = textureLoad(last, pixel, 0, 0);
+    let texel = textureLoad(last, vec2i(pixel), 0, 0);
     let kept = select(filtered, texel, all(to == vec2f(0.0))) * vec4f(vec3f(picture.exposed), 1.0);
-    let held = clamp(kept, textureLoad(least, square, 0), textureLoad(most, square, 0));
+    let held = clamp(kept, textureLoad(least, vec2i(square), 0), textureLoad(most, vec2i(square), 0));
     let is_marched = all(marched_pixel(picture, square) == pixel);
     return ResolvedPixel(select(held, now, lost || is_marched), reach);
 }

@@ -29,7 +29,7 @@ fn shadow_depth(layer: CloudLayer, level: vec2f) -> f32 {
 fn shadow(in: FullscreenVarying) -> @location(0) vec4f {
     let away = fract(in.position.xy / SHADOW_TEXELS - shadows.camera + 0.5) - 0.5;
     var depth = 0.0;
-    for (var k = 0u; k < clouds.layer_count; k++) {
+    for (var k = 0u; k < cloud_layers(); k++) {
         depth += shadow_depth(clouds.layers[k], away * shadows.period);
     }
     return vec4f(exp(-depth));

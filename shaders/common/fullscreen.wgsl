@@ -8,10 +8,17 @@ struct FullscreenVarying {
     @location(0) uv: vec2f,
 }
 
+// As the vertex shader writes it: several programs draw where depth is equal, so theirs must be the same to the bit. A struct of its own,
+// since naga would write `invariant` before a fragment shader's input too, which OpenGL ES refuses.
+struct FullscreenVertex {
+    @invariant @builtin(position) position: vec4f,
+    @location(0) uv: vec2f,
+}
+
 @vertex
-fn fullscreen_vertex(@builtin(vertex_index) index: u32) -> FullscreenVarying {
+fn fullscreen_vertex(@builtin(vertex_index) index: u32) -> FullscreenVertex {
     let uv = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
-    var out: FullscreenVarying;
+    var out: FullscreenVertex;
     out.uv = uv;
     out.position = vec4f(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, FULLSCREEN_DEPTH, 1.0);
     return out;

@@ -36,7 +36,7 @@ fn thing_at(rank: u32, all: u32) -> u32 {
     var block = 0u;
     var end = all;
     while end - block > 1u {
-        let middle = (block + end) / 2u;
+        let middle = block + (end - block) / 2u;
         if blocks[middle].before <= rank {
             block = middle;
         } else {

@@ -14,7 +14,8 @@ const SUMS: u32 = 128u;
 var<workgroup> sums: array<u32, SUMS>;
 
 // Of `all` blocks, where room is for `room` things: a full list leaves out the last ones.
-fn order_blocks(thread: u32, all: u32, room: u32) {
+fn order_blocks(thread: u32, blocks_seen: u32, room: u32) {
+    let all = min(blocks_seen, arrayLength(&blocks));
     let part = (all + SUMS - 1u) / SUMS;
     let first = min(thread * part, all);
     let end = min(first + part, all);

@@ -68,7 +68,7 @@ fn stepped(from_state: State, s: u32, index: u32, terminal: f32) -> State {
     var velocity = state.velocity;
     var way = vec3f(0.0);
     let at_rest = GRAVITY / terminal;
-    for (var i = 0u; i < stepping.steps; i++) {
+    for (var i = 0u; i < (stepping.steps & 63u); i++) {
         let air = air_at(away + way);
         let pull = clamp(length(velocity - air) / terminal, 0.25, 8.0);
         let rate = at_rest * select(pull, 1.0, stepping.dt * at_rest > 0.5);

@@ -63,7 +63,7 @@ fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
         lags[n] = detour_lag(origin + direction * (start + f32(2u * n + 1u) * h));
     }
     var sum = 0.0;
-    for (var i = 0u; i < low_air.fog.waves.x; i++) {
+    for (var i = 0u; i < (low_air.fog.waves.x & 7u); i++) {
         let wave = low_air.fog.patch_waves[i];
         let along = dot(wave.xyz, direction);
         let phase = wave.w + dot(wave.xyz, origin) + along * start;
@@ -85,7 +85,7 @@ fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let m = 0.5 * (first + last);
     let h = 0.5 * (last - first);
     var sum = 0.0;
-    for (var i = 0u; i < low_air.fog.waves.x; i++) {
+    for (var i = 0u; i < (low_air.fog.waves.x & 7u); i++) {
         sum += wave_mean(low_air.fog.patch_waves[i], origin, direction, m, h).x;
     }
     if FOG_DETOUR {
@@ -101,7 +101,7 @@ fn curtain_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f
     let h = 0.5 * max(last - start, 0.0);
     let part = low_air.fog.curtain_amount * 2.0 * h / max(last - first, 1e-3);
     var sum = vec2f(0.0);
-    for (var i = 0u; i < low_air.fog.waves.y; i++) {
+    for (var i = 0u; i < (low_air.fog.waves.y & 15u); i++) {
         sum += wave_mean(low_air.fog.curtain_waves[i], origin, direction, m, h);
     }
     return vec2f(part, 0.5 * part * part) * sum;

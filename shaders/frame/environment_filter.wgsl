@@ -36,7 +36,7 @@ fn environment_filter(in: FullscreenVarying) -> @location(0) vec4f {
     let a2 = face.alpha * face.alpha;
     var sum = vec3f(0.0);
     var weight = 0.0;
-    for (var i = 0u; i < u32(face.samples); i++) {
+    for (var i = 0u; i < (u32(face.samples) & 1023u); i++) {
         let x = (f32(i) + 0.5) / face.samples;
         // Points of a lattice by the golden ratio.
         let turn = 2.0 * PI * fract(f32(i) * 0.61803399);

@@ -7,7 +7,7 @@ fn froxels(in: FullscreenVarying) -> Froxel {
     let at = froxel_place(in.position.xy);
     var veil = froxel_veil(at);
     // From far to near, as the pass before the picture blends them.
-    for (var k = 0u; k < columns.count; k++) {
+    for (var k = 0u; k < column_count(); k++) {
         if shaft.rects[k].z <= shaft.rects[k].x {
             // The rest is not in the picture.
             break;

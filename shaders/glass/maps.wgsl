@@ -23,7 +23,7 @@ fn reach_by_maps(in: FullscreenVarying) -> @location(0) vec4u {
     let p = (pane.origin + pane.along * place.x + pane.up * place.y).xyz;
     var kept = 0.0;
     for (var k = 0u; k < SIZES; k++) {
-        for (var i = 0u; i < occluders.count; i++) {
+        for (var i = 0u; i < (occluders.count & 7u); i++) {
             if crosses(i, p, pane.drops[k].xyz) {
                 kept += pane.drops[k].w;
                 break;

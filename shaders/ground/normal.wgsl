@@ -1,5 +1,6 @@
 // Which way the ground that a pixel shows faces: as the host's image of normals says, else as its terrain lies, else by its depth.
 //!include "common/facing.wgsl"
+//!include "common/guarded.wgsl"
 //!include "ground/terrain.wgsl"
 
 // What is known of the surface that a pixel shows.
@@ -38,7 +39,7 @@ fn known_facing(surface: HostSurface, here: TerrainPoint) -> Facing {
     if TERRAIN {
         let agrees = smoothstep(0.64, 0.82, dot(f.normal, here.normal));
         let share = here.share * mix(1.0, agrees, f.sure);
-        f = Facing(normalize(mix(f.normal, here.normal, share)), mix(f.sure, 1.0, share), f.error * (1.0 - share));
+        f = Facing(unit_or(mix(f.normal, here.normal, share), here.normal), mix(f.sure, 1.0, share), f.error * (1.0 - share));
     }
     return f;
 }

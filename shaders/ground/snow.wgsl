@@ -45,7 +45,7 @@ fn glints_of(at: vec2f, level: f32, half_way: vec2f) -> f32 {
 fn snow_glints(at: vec2f, side: f32, to_eye: vec3f) -> f32 {
     let wanted = clamp(log2(RING_CELL / max(2.0 * side, 1e-4)), 0.0, FINEST_GLINT);
     let low = floor(wanted);
-    let middle = normalize(to_eye + ground.to_lamp).xy;
+    let middle = unit_or(to_eye + ground.to_lamp, to_eye).xy;
     let both = mix(glints_of(at, low, middle), glints_of(at, min(low + 1.0, FINEST_GLINT), middle), wanted - low);
     return both * (1.0 - smoothstep(0.005, 0.06, side));
 }
@@ -84,7 +84,7 @@ fn snow_on(spot: Spot, normal_given: bool) -> SnowSeen {
     // Drifts and tracks lie over the ground that the host drew: what they rise by leans their light.
     var heaped = soft;
     if TERRAIN {
-        heaped = normalize(soft - here.drift * (here.share * lies));
+        heaped = unit_or(soft - here.drift * (here.share * lies), soft);
     }
     let glints = snow_glints(spot.place, spot.side, spot.to_eye) * (1.0 - snow.y);
     let white = snow_light(snow, heaped, spot.up, spot.ground.albedo, host_lamps(spot.at, heaped), glints);

@@ -1,4 +1,5 @@
 // A surface that a pixel shows: how it lies, what it is made of, and what of the rain and snow in the open gets to it.
+//!include "common/guarded.wgsl"
 //!include "between/sky.wgsl"
 //!include "ground/binding.wgsl"
 //!include "ground/optics.wgsl"
@@ -11,7 +12,7 @@
 fn host_lamps(at: vec3f, normal: vec3f) -> vec3f {
     var lux = vec3f(0.0);
     if LAMPS {
-        for (var i = 0u; i < lights.count; i++) {
+        for (var i = 0u; i < light_count(); i++) {
             let to = at - lights.lamps[i].position;
             let cosine = max(-dot(normal, to) * inverseSqrt(max(dot(to, to), 1e-6)), 0.0);
             lux += light_at(lights.lamps[i], to) * cosine;
@@ -112,7 +113,7 @@ fn wetted(host: vec3f, albedo_known: bool, at: vec3f, up: vec3f, surface: HostSu
     let rough = smoothstep(0.0, 0.3, look.slope) * smoothstep(0.5, 0.8, dot(facing.normal, up));
     let by_depth = surface.normal.w == 0.0;
     let flat = select(0.0, max(rough, 1.0 - facing.sure) * (1.0 - here.share), by_depth);
-    let albedo = dry_albedo(host, normalize(mix(facing.normal, up, flat)), up, lamps);
+    let albedo = dry_albedo(host, unit_or(mix(facing.normal, up, flat), up), up, lamps);
     return Wetted(facing, look, clamp(albedo, vec3f(0.0), vec3f(look.most_albedo)));
 }
 

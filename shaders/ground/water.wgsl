@@ -1,5 +1,4 @@
 // Water and clear ice on a surface, seen by the camera: the host's colour x through + light.
-//!include "common/guarded.wgsl"
 //!include "between/sky.wgsl"
 //!include "ground/spot.wgsl"
 
@@ -38,7 +37,8 @@ fn mirror(film: Film, to_eye: vec3f) -> Mirror {
     let level = (to_eye - film.normal * cosine) / max(sine, 1e-4);
     let facet = normalize(film.normal + level * seen_slope(film.slope, sine / cosine));
     let share = fresnel_water(dot(facet, to_eye));
-    let middle = normalize(to_eye + ground.to_lamp);
+    // The light falls along the look where both are opposite: no facet mirrors it.
+    let middle = unit_or(to_eye + ground.to_lamp, film.normal);
     let pixel = 0.25 * frame.pixel_angle;
     let lamp = glitter(film.slope, ground.disc2 + pixel * pixel, film.normal, middle, to_eye, ground.to_lamp) * fresnel_water(dot(middle, to_eye));
     return Mirror(share, reflect(-to_eye, facet), ground.lamp_lux * lamp);
@@ -61,11 +61,11 @@ const LAMP_RADIUS: f32 = 0.1;
 fn mirrored_lamps(film: Film, at: vec3f, to_eye: vec3f) -> vec3f {
     var light = vec3f(0.0);
     if LAMPS {
-        for (var i = 0u; i < lights.count; i++) {
+        for (var i = 0u; i < light_count(); i++) {
             let to = at - lights.lamps[i].position;
             let near = inverseSqrt(max(dot(to, to), 1e-4));
             let to_lamp = -to * near;
-            let middle = normalize(to_eye + to_lamp);
+            let middle = unit_or(to_eye + to_lamp, film.normal);
             let disc = 0.25 * (LAMP_RADIUS * near + frame.pixel_angle);
             let share = glitter(film.slope, disc * disc, film.normal, middle, to_eye, to_lamp);
             light += light_at(lights.lamps[i], to) * (share * fresnel_water(dot(middle, to_eye)));

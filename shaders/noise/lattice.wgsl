@@ -37,9 +37,14 @@ fn ramp3(bits: u32, from_corner: vec3f) -> f32 {
     return select(u, -u, (bits & 1u) != 0u) + select(v, -v, (bits & 2u) != 0u);
 }
 
+// The cell after a cell on a ring of `period` cells. One by one: old GLSL chooses no integers by components.
+fn after(cell: u32, period: u32) -> u32 {
+    return select(cell + 1u, 0u, cell + 1u == period);
+}
+
 // Gradient noise in the plane, -0.85 to 0.85, 0 at the corners of cells (Perlin 2002).
 fn gradient2(cell: vec2u, at: vec2f, period: vec2u, key: u32) -> f32 {
-    let far = select(cell + 1u, vec2u(0u), cell + 1u == period);
+    let far = vec2u(after(cell.x, period.x), after(cell.y, period.y));
     let left = scramble(key + cell.x);
     let right = scramble(key + far.x);
     let t = fade2(at);
@@ -73,7 +78,7 @@ fn gradient_face(left: u32, right: u32, y: u32, far_y: u32, z: u32, at: vec3f, t
 
 // Gradient noise in space, about -1 to 1, 0 at the corners of cells (Perlin 2002).
 fn gradient3(cell: vec3u, at: vec3f, period: vec3u, key: u32) -> f32 {
-    let far = select(cell + 1u, vec3u(0u), cell + 1u == period);
+    let far = vec3u(after(cell.x, period.x), after(cell.y, period.y), after(cell.z, period.z));
     let left = scramble(key + cell.x);
     let right = scramble(key + far.x);
     let t = fade3(at);

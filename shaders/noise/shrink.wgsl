@@ -21,14 +21,14 @@ fn bytes_of(texel: vec4f) -> vec4u {
 fn shrink_plane(in: FullscreenVarying) -> @location(0) vec4f {
     let first = 2u * vec2u(in.position.xy);
     let last = min(first + 1u, shrink.above.xy - 1u);
-    let sum = bytes_of(textureLoad(plane, first, 0)) + bytes_of(textureLoad(plane, vec2u(last.x, first.y), 0))
-        + bytes_of(textureLoad(plane, vec2u(first.x, last.y), 0)) + bytes_of(textureLoad(plane, last, 0));
+    let sum = bytes_of(textureLoad(plane, vec2i(first), 0)) + bytes_of(textureLoad(plane, vec2i(vec2u(last.x, first.y)), 0))
+        + bytes_of(textureLoad(plane, vec2i(vec2u(first.x, last.y)), 0)) + bytes_of(textureLoad(plane, vec2i(last), 0));
     return vec4f((sum + 2u) >> vec4u(2u)) / 255.0;
 }
 
 fn sum_of_slice(first: vec2u, last: vec2u, z: u32) -> vec4u {
-    return bytes_of(textureLoad(volume, vec3u(first, z), 0)) + bytes_of(textureLoad(volume, vec3u(last.x, first.y, z), 0))
-        + bytes_of(textureLoad(volume, vec3u(first.x, last.y, z), 0)) + bytes_of(textureLoad(volume, vec3u(last, z), 0));
+    return bytes_of(textureLoad(volume, vec3i(vec3u(first, z)), 0)) + bytes_of(textureLoad(volume, vec3i(vec3u(last.x, first.y, z)), 0))
+        + bytes_of(textureLoad(volume, vec3i(vec3u(first.x, last.y, z)), 0)) + bytes_of(textureLoad(volume, vec3i(vec3u(last, z)), 0));
 }
 
 @fragment

@@ -54,7 +54,7 @@ fn gauged(p: Looked) -> vec4u {
     var shown = array<f32, 8>();
     let has_clouds = frame.mean_cloud.w > 0.0;
     let count = select(frame.compositions, IN_GAP + 1u, has_clouds);
-    for (var k = 0u; k < count; k++) {
+    for (var k = 0u; k < (count & 15u); k++) {
         drawn = select(vec4f(1.0), vec4f(0.0), vec4u(k) == vec4u(1u, 2u, 3u, 4u));
         behind_share = frame.behind.y * drawn.z;
         shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane, hung_for(k, ray, p.hung)));

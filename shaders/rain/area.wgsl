@@ -48,6 +48,11 @@ struct Columns {
 
 @group(0) @binding(7) var<uniform> columns: Columns;
 
+// How many there are, cut as lights_binding.wgsl cuts a count.
+fn column_count() -> u32 {
+    return columns.count & 31u;
+}
+
 // From east and north to right and ahead.
 fn column_turned(i: u32, v: vec2f) -> vec2f {
     let right = columns.list[i].right;
@@ -69,7 +74,7 @@ fn column_depth(i: u32, q: vec2f) -> f32 {
     var depth = (1.0 - k1) * select(slope, min(semi.x, semi.y), k1 < 1e-4);
     if POLYGONS && columns.list[i].corners > 0u {
         depth = 1e9;
-        for (var e = 0u; e < columns.list[i].corners; e++) {
+        for (var e = 0u; e < (columns.list[i].corners & 15u); e++) {
             let edge = columns.list[i].edges[e];
             depth = min(depth, dot(edge.xy, q) + edge.z);
         }
@@ -86,7 +91,7 @@ fn column_share(i: u32, p: vec3f) -> f32 {
 fn column_left(i: u32, p: vec3f) -> f32 {
     var share = column_share(i, p);
     if OVERLAPS {
-        for (var j = i + 1u; j < columns.count; j++) {
+        for (var j = i + 1u; j < column_count(); j++) {
             if (columns.list[i].later & (1u << j)) != 0u {
                 share *= 1.0 - column_share(j, p);
             }

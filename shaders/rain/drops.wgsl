@@ -133,7 +133,7 @@ fn day_light(d: vec3f) -> vec3f {
 // What lamps send through one at `p`.
 fn lamp_light(p: vec3f, d: vec3f) -> vec3f {
     var beams = vec3f(0.0);
-    for (var i = 0u; i < lights.count; i++) {
+    for (var i = 0u; i < light_count(); i++) {
         let to = p - lights.lamps[i].position;
         let from_lamp = to * inverseSqrt(max(dot(to, to), 1e-6));
         beams += light_at(lights.lamps[i], to) * drop_phase(-dot(d, from_lamp));

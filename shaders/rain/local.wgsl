@@ -23,7 +23,7 @@ struct Local {
 fn local_drops(k: u32, p: vec3f) -> vec2f {
     var kept = local.counts[k * LOCAL_ROWS].x;
     var standing = kept * local.weights[0].x;
-    for (var i = 0u; i < columns.count; i++) {
+    for (var i = 0u; i < column_count(); i++) {
         let share = column_share(i, p);
         let state = i + 1u;
         let count = local.counts[k * LOCAL_ROWS + state / 4u][state % 4u];
@@ -36,7 +36,7 @@ fn local_drops(k: u32, p: vec3f) -> vec2f {
 // Share of the splashes' slots that are taken at a place.
 fn local_splashes(p: vec3f) -> f32 {
     var taken = local.splashes[0].x;
-    for (var i = 0u; i < columns.count; i++) {
+    for (var i = 0u; i < column_count(); i++) {
         let state = i + 1u;
         taken = mix(taken, local.splashes[state / 4u][state % 4u], column_share(i, p));
     }
@@ -46,7 +46,7 @@ fn local_splashes(p: vec3f) -> f32 {
 // Drops at a place over those that the cones' block is made for.
 fn local_cones(p: vec3f) -> f32 {
     var fall = local.cones[0].x;
-    for (var i = 0u; i < columns.count; i++) {
+    for (var i = 0u; i < column_count(); i++) {
         let state = i + 1u;
         fall = mix(fall, local.cones[state / 4u][state % 4u], column_share(i, p));
     }

@@ -73,7 +73,7 @@ fn column_chord(i: u32, q: vec2f, u: vec2f, inset: f32) -> vec2f {
     var chord = select(vec2f(1.0, -1.0), vec2f(middle - half, middle + half), left > 0.0 && min(inner.x, inner.y) >= 1.0);
     if POLYGONS && columns.list[i].corners > 0u {
         chord = vec2f(-1e9, 1e9);
-        for (var k = 0u; k < columns.list[i].corners; k++) {
+        for (var k = 0u; k < (columns.list[i].corners & 15u); k++) {
             let edge = columns.list[i].edges[k];
             let f = dot(edge.xy, q) + edge.z - inset;
             let g = dot(edge.xy, u);

@@ -2,6 +2,7 @@
 // as the flux brings. Which slot splashes when follows from (seed, cell, slot, time).
 // The entry points read the depth: drops_view.wgsl.
 //!include "common/facing.wgsl"
+//!include "common/guarded.wgsl"
 //!include "rain/drops.wgsl"
 
 // Sizes of drops that splash, of which as many of each.
@@ -196,7 +197,7 @@ fn ndc_of(uv: vec2f) -> vec2f {
 fn plane_of(landing: Landing, uv: vec2f, size: vec2f, depth: f32, around: vec4f) -> vec4f {
     let ndc = ndc_of(uv);
     let facing = facing_of(rain.depth, depth, around, ndc, vec2f(2.0, -2.0 * rain.y_sign) / size, splash.depth_grain);
-    let normal = normalize(mix(vec3f(0.0, 0.0, 1.0), facing.normal, facing.sure) + vec3f(0.0, 0.0, 1e-6));
+    let normal = unit_or(mix(vec3f(0.0, 0.0, 1.0), facing.normal, facing.sure) + vec3f(0.0, 0.0, 1e-6), vec3f(0.0, 0.0, 1.0));
     let middle = surface_of(ndc, depth);
     let rise = dot(normal.xy, middle.xy - landing.xy) / max(normal.z, STEEPEST);
     return vec4f(normal, middle.z + rise);
@@ -270,7 +271,7 @@ fn crown_corner(crown: Crown, corner: u32) -> CrownVarying {
     let side = select(-1.0, 1.0, (corner & 1u) != 0u);
     let top = select(0.0, 1.0, (corner & 2u) != 0u);
     let normal = vec3f(crown.lean, sqrt(max(1.0 - dot(crown.lean, crown.lean), 0.0)));
-    let across = normalize(cross(toward, normal) + vec3f(1e-6, 0.0, 0.0));
+    let across = unit_or(cross(toward, normal) + vec3f(1e-6, 0.0, 0.0), vec3f(1.0, 0.0, 0.0));
     // Upwards in the picture, from the foot on: what is below it may be dry.
     let tall = cross(across, toward);
     let place = crown.at + across * (side * crown.width) + tall * (top * crown.height);

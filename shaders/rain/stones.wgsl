@@ -146,7 +146,7 @@ fn sphere_phase(c: f32) -> f32 {
 // behind.
 fn stone_light(p: vec3f, d: vec3f, clear: f32) -> vec3f {
     var beams = rain.sun * sphere_phase(-dot(d, rain.to_sun));
-    for (var i = 0u; i < lights.count; i++) {
+    for (var i = 0u; i < light_count(); i++) {
         let to = p - lights.lamps[i].position;
         let from_lamp = to * inverseSqrt(max(dot(to, to), 1e-6));
         beams += light_at(lights.lamps[i], to) * sphere_phase(dot(d, from_lamp));
@@ -183,7 +183,7 @@ fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
         return out;
     }
     let pixel = max(rain.pixel_angle * d * LEAST_PIXELS, 1e-6);
-    let level = normalize(cross(toward, vec3f(0.0, 0.0, 1.0)) + vec3f(1e-6, 0.0, 0.0));
+    let level = unit_or(cross(toward, vec3f(0.0, 0.0, 1.0)) + vec3f(1e-6, 0.0, 0.0), vec3f(1.0, 0.0, 0.0));
     let across_view = half - toward * dot(half, toward);
     let stretch = length(across_view);
     let lengthwise = select(cross(level, toward), across_view / max(stretch, 1e-9), stretch > 1e-6);

@@ -69,9 +69,9 @@ fn cosine_between(mu_a: Cosine, mu_b: Cosine, cos_azimuth: f32) -> Cosine {
 fn norm(in: FullscreenVarying) -> @location(0) vec4f {
     let here = place_of(in.position);
     var sum = 0.0;
-    for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+    for (var m = 0u; m < 2u * rule_zeniths(dims); m++) {
         let d = rule_row(here.altitude, m);
-        for (var p = 0u; p < dims.rule_azimuths; p++) {
+        for (var p = 0u; p < rule_azimuths(dims); p++) {
             sum += d.y * mie_phase(cosine_between(d.x, here.mu_s, rule_azimuth(p).x), air.asymmetry_g);
         }
     }
@@ -98,10 +98,10 @@ fn gather(in: FullscreenVarying) -> @location(0) vec4f {
     let nu = cosine_between(d.x, here.mu_s, rule_azimuth(here.tile.x).x);
     let below = here.tile.y < dims.rule_zeniths;
     let ray = sky_ray(air, here.altitude, d.x, below);
-    let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
+    let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, ray.length, min(dims.build_panels, MOST_BUILD_PANELS), here.mu_s, nu);
     var radiance = light.more;
     if (job.order == 1u) {
-        let peak = max(textureLoad(norms, here.at, 0).r, 1e-6);
+        let peak = max(textureLoad(norms, vec2i(here.at), 0).r, 1e-6);
         radiance = light.gas * rayleigh_phase(nu) + light.haze * mie_phase(nu, air.asymmetry_g) / peak;
     }
     if (below) {
@@ -113,7 +113,7 @@ fn gather(in: FullscreenVarying) -> @location(0) vec4f {
 
 fn gathered(here: Place, m: u32, p: u32) -> vec3f {
     let texel = vec2u(p, m) * vec2u(dims.suns, dims.altitudes) + here.at;
-    return sky_decode(textureLoad(radiances, texel, 0));
+    return sky_decode(textureLoad(radiances, vec2i(texel), 0));
 }
 
 struct Sums {
@@ -144,11 +144,11 @@ fn scatter(in: FullscreenVarying) -> Sums {
     var gas = vec3f(0.0);
     var haze = vec3f(0.0);
     var peak = 0.0;
-    for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+    for (var m = 0u; m < 2u * rule_zeniths(dims); m++) {
         let d = rule_row(here.altitude, m);
         let base = mu * d.x;
         let turn = azimuth * (sine * sqrt(max(1.0 - d.x * d.x, 0.0)));
-        for (var p = 0u; p < dims.rule_azimuths; p++) {
+        for (var p = 0u; p < rule_azimuths(dims); p++) {
             let light = d.y * gathered(here, m, p);
             // The direction and its mirror image.
             let part = turn * rule_azimuth(p);
@@ -168,10 +168,10 @@ fn scatter(in: FullscreenVarying) -> Sums {
     let texel = vec2u(in.position.xy);
     var sum = source;
     if (job.order > 1u) {
-        sum += sky_decode(textureLoad(sources_sum, texel, 0));
+        sum += sky_decode(textureLoad(sources_sum, vec2i(texel), 0));
     }
     if (job.last == 1u) {
-        sum += tail(sky_decode(textureLoad(sky_sources, texel, 0)), source);
+        sum += tail(sky_decode(textureLoad(sky_sources, vec2i(texel), 0)), source);
     }
     return Sums(sky_encode(source), sky_encode(sum));
 }
@@ -183,9 +183,9 @@ fn scatter(in: FullscreenVarying) -> Sums {
 fn light(in: FullscreenVarying) -> Sums {
     let here = place_of(in.position);
     var order = vec3f(0.0);
-    for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+    for (var m = 0u; m < 2u * rule_zeniths(dims); m++) {
         let d = rule_row(here.altitude, m);
-        for (var p = 0u; p < dims.rule_azimuths; p++) {
+        for (var p = 0u; p < rule_azimuths(dims); p++) {
             let x = sqrt(max(1.0 - d.x * d.x, 0.0)) * rule_azimuth(p).x;
             let yy = max(1.0 - d.x * d.x - x * x, 0.0);
             var f = max(d.x, 0.0);
@@ -205,10 +205,10 @@ fn light(in: FullscreenVarying) -> Sums {
     let texel = vec2u(in.position.xy);
     var sum = order;
     if (job.order > 1u) {
-        sum += textureLoad(lights_sum, texel, 0).rgb;
+        sum += textureLoad(lights_sum, vec2i(texel), 0).rgb;
     }
     if (job.last == 1u) {
-        let before = textureLoad(lights, texel, 0).rgb;
+        let before = textureLoad(lights, vec2i(texel), 0).rgb;
         let sign_kept = before * order > vec3f(0.0);
         sum += select(vec3f(0.0), sign(order) * tail(abs(before), abs(order)), sign_kept);
     }
@@ -223,7 +223,7 @@ fn isotropic_gather(in: FullscreenVarying) -> Sums {
     let nu = cosine_between(d.x, here.mu_s, rule_azimuth(here.tile.x).x);
     let below = here.tile.y < dims.rule_zeniths;
     let ray = sky_ray(air, here.altitude, d.x, below);
-    let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
+    let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, ray.length, min(dims.build_panels, MOST_BUILD_PANELS), here.mu_s, nu);
     var radiance = (light.gas + light.haze) / (4.0 * SKY_PI);
     if (below) {
         let mu_s_ground = clamp((ray.radius * here.mu_s + ray.length * nu) / air.bottom_m, -1.0, 1.0);
@@ -237,12 +237,12 @@ fn isotropic_scatter(in: FullscreenVarying) -> @location(0) vec4f {
     let here = place_of(in.position);
     var twice = vec3f(0.0);
     var back = vec3f(0.0);
-    for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+    for (var m = 0u; m < 2u * rule_zeniths(dims); m++) {
         let weight = rule_row(here.altitude, m).y;
-        for (var p = 0u; p < dims.rule_azimuths; p++) {
+        for (var p = 0u; p < rule_azimuths(dims); p++) {
             let texel = vec2u(p, m) * vec2u(dims.suns, dims.altitudes) + here.at;
             twice += weight * gathered(here, m, p);
-            back += weight * sky_decode(textureLoad(sky_sources, texel, 0));
+            back += weight * sky_decode(textureLoad(sky_sources, vec2i(texel), 0));
         }
     }
     // Both mirrored azimuths, over 4 pi.
@@ -265,6 +265,6 @@ fn once(in: FullscreenVarying) -> Once {
     let mu = once_mu(air, here.altitude, row);
     let nu = cosine_between(mu, here.mu_s, 1.0);
     let ray = sky_ray(air, here.altitude, mu, row >= ONCE_ROWS);
-    let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, ray.length, dims.sky_panels, here.mu_s, nu);
+    let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, ray.length, min(dims.sky_panels, MOST_SKY_PANELS), here.mu_s, nu);
     return Once(sky_encode(light.gas), sky_encode(light.haze));
 }

@@ -6,7 +6,7 @@
 // Texel by texel.
 @fragment
 fn copy(in: FullscreenVarying) -> @location(0) vec4f {
-    return textureLoad(copied, vec2u(in.position.xy), 0);
+    return textureLoad(copied, vec2i(in.position.xy), 0);
 }
 
 // Sun angles and altitudes of the light that is drawn; those of the one that is read follow from its size.
@@ -28,8 +28,8 @@ fn light(in: FullscreenVarying) -> @location(0) vec4f {
     let first = min(scaled / steps, size - 2u);
     let part = vec2f(scaled - first * steps) / vec2f(steps);
     let corner = vec2u(tile * size.x, 0u) + first;
-    let low = mix(textureLoad(copied, corner, 0), textureLoad(copied, corner + vec2u(1u, 0u), 0), part.x);
+    let low = mix(textureLoad(copied, vec2i(corner), 0), textureLoad(copied, vec2i(corner + vec2u(1u, 0u)), 0), part.x);
     let high =
-        mix(textureLoad(copied, corner + vec2u(0u, 1u), 0), textureLoad(copied, corner + vec2u(1u, 1u), 0), part.x);
+        mix(textureLoad(copied, vec2i(corner + vec2u(0u, 1u)), 0), textureLoad(copied, vec2i(corner + vec2u(1u, 1u)), 0), part.x);
     return mix(low, high, part.y);
 }

@@ -63,7 +63,7 @@ fn sky_lamps() -> u32 {
     if SKY_LAMPS < 2u {
         return SKY_LAMPS;
     }
-    return sky_view.lamp_count;
+    return sky_view.lamp_count & 3u;
 }
 
 struct Aerial {
@@ -102,7 +102,7 @@ fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     let mu_s = clamp((r * lamp.toward.z + ray.before * nu) / ray.radius, -1.0, 1.0);
     let place = marched_sources();
     let light =
-        sky_march(sky_view.air, sky_view.dims, sky_lights, place, sky_sampler, ray, 0.0, end, sky_view.march_panels, mu_s, nu);
+        sky_march(sky_view.air, sky_view.dims, sky_lights, place, sky_sampler, ray, 0.0, end, min(sky_view.march_panels, MOST_MARCH_PANELS), mu_s, nu);
     let once = light.gas * rayleigh_phase(nu) + light.haze * mie_phase(nu, sky_view.air.asymmetry_g);
     return lamp.irradiance * (once + light.more);
 }

@@ -30,6 +30,23 @@ struct SkyDims {
     tables_height: u32,
 }
 
+// Most directions and panels that the settings allow (src/sky/settings.rs): loops over them end whatever the block holds.
+const MOST_RULE_ZENITHS: u32 = 16u;
+const MOST_RULE_AZIMUTHS: u32 = 24u;
+const MOST_BUILD_PANELS: u32 = 16u;
+const MOST_SKY_PANELS: u32 = 32u;
+const MOST_AIR_PANELS: u32 = 16u;
+// Of a march in the picture, whose cells the settings limit to 4096.
+const MOST_MARCH_PANELS: u32 = 1024u;
+
+fn rule_zeniths(dims: SkyDims) -> u32 {
+    return min(dims.rule_zeniths, MOST_RULE_ZENITHS);
+}
+
+fn rule_azimuths(dims: SkyDims) -> u32 {
+    return min(dims.rule_azimuths, MOST_RULE_AZIMUTHS);
+}
+
 // Sun angle: even steps where the sun is below the middle of the terminator as the air's top and bottom see it, and
 // coarser with height above it. Ends where the shadow reaches twice as high as the air: nothing is lit there.
 const SUN_SPREAD: f32 = 0.3;

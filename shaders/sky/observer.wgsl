@@ -107,7 +107,7 @@ fn observed(in: FullscreenVarying) -> SkyTexel {
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
     let w = max(f32(slice), 0.05) / f32(dims.air_slices - 1u);
     let end = select(ray.length, slice_distance(w, ray.length), is_air);
-    let light = kept_light(ray, end, select(dims.sky_panels, dims.air_panels, is_air), view.nu);
+    let light = kept_light(ray, end, select(min(dims.sky_panels, MOST_SKY_PANELS), min(dims.air_panels, MOST_AIR_PANELS), is_air), view.nu);
     if !is_air && !view.below {
         return SkyTexel(sky_encode_signed(light.even), sky_encode_signed(light.haze));
     }

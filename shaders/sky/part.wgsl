@@ -7,5 +7,5 @@
 
 @fragment
 fn part(in: FullscreenVarying) -> @location(0) vec4f {
-    return vec4f(air_part(air, textureLoad(triple, vec2u(in.position.xy), 0).rgb), 1.0);
+    return vec4f(air_part(air, textureLoad(triple, vec2i(in.position.xy), 0).rgb), 1.0);
 }

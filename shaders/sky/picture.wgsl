@@ -1,4 +1,5 @@
 //!include "common/fullscreen.wgsl"
+//!include "common/guarded.wgsl"
 //!include "sky/disc.wgsl"
 // A plain perspective picture of sky and planet at 90 degrees across, with aerial perspective on a plain of things 3 km
 // away below the horizon: what benchmarks time.
@@ -12,7 +13,7 @@ struct PictureCamera {
 
 @fragment
 fn picture(in: FullscreenVarying) -> @location(0) vec4f {
-    let right = normalize(cross(camera.forward, vec3f(0.0, 0.0, 1.0)));
+    let right = unit_or(cross(camera.forward, vec3f(0.0, 0.0, 1.0)), vec3f(1.0, 0.0, 0.0));
     let up = cross(right, camera.forward);
     let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * camera.aspect);
     let dir = normalize(camera.forward + ndc.x * right + ndc.y * up);

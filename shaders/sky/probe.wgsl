@@ -16,13 +16,13 @@ fn answer(radiance: vec3f, transmittance: vec3f) -> Answer {
 
 @fragment
 fn probe_sky(in: FullscreenVarying) -> Answer {
-    let dir = textureLoad(questions, vec2u(in.position.xy), 0).xyz;
+    let dir = textureLoad(questions, vec2i(in.position.xy), 0).xyz;
     return answer(sky_radiance(dir), sky_transmittance(dir));
 }
 
 @fragment
 fn probe_aerial(in: FullscreenVarying) -> Answer {
-    let question = textureLoad(questions, vec2u(in.position.xy), 0);
+    let question = textureLoad(questions, vec2i(in.position.xy), 0);
     let seen = aerial(question.xyz, question.w);
     return answer(seen.radiance, seen.transmittance);
 }
@@ -31,7 +31,7 @@ fn probe_aerial(in: FullscreenVarying) -> Answer {
 @fragment
 fn probe_irradiance(in: FullscreenVarying) -> Answer {
     var direct = vec3f(0.0);
-    for (var i = 0u; i < sky_view.lamp_count; i++) {
+    for (var i = 0u; i < (sky_view.lamp_count & 3u); i++) {
         direct += lamp_irradiance(i, sky_view.altitude) * max(sky_view.lamps[i].toward.z, 0.0);
     }
     return answer(direct, sky_irradiance(sky_view.altitude));
@@ -40,6 +40,6 @@ fn probe_irradiance(in: FullscreenVarying) -> Answer {
 // The ground's own light, and the discs'.
 @fragment
 fn probe_ground(in: FullscreenVarying) -> Answer {
-    let dir = textureLoad(questions, vec2u(in.position.xy), 0).xyz;
+    let dir = textureLoad(questions, vec2i(in.position.xy), 0).xyz;
     return answer(ground_radiance(dir), disc_radiance(dir, 1e-4));
 }

@@ -1,6 +1,7 @@
 // Flakes without a state: where each is follows from (seed, id, time) alone, and one quad draws it.
 // The f64 twin and the derivation are in src/snow/lattice.rs and src/snow/reference.rs. The entry points read the depth: flakes_view.wgsl.
 //!include "common/depth.wgsl"
+//!include "common/guarded.wgsl"
 //!include "common/hash.wgsl"
 //!include "common/phase.wgsl"
 //!include "common/streak.wgsl"
@@ -186,7 +187,7 @@ fn flake_sky_share(z: f32) -> f32 {
 // Radiance of a flake at `p` seen along `d`.
 fn flake_light(p: vec3f, d: vec3f) -> vec3f {
     var beams = flakes.sun * flake_phase(dot(d, flakes.to_sun));
-    for (var i = 0u; i < lights.count; i++) {
+    for (var i = 0u; i < light_count(); i++) {
         let to = p - lights.lamps[i].position;
         let from_lamp = to * inverseSqrt(max(dot(to, to), 1e-6));
         beams += light_at(lights.lamps[i], to) * flake_phase(-dot(d, from_lamp));
@@ -274,7 +275,7 @@ fn flake_corner(spot: Spot, corner: u32) -> FlakeVarying {
     let high = f32(spot.shape >> 16u) * (2.0 / 65535.0) - 1.0;
     let level = sqrt(max(1.0 - high * high, 0.0));
     let axis = vec3f(level * cos(spot.angle), level * sin(spot.angle), high);
-    let right = normalize(cross(toward, axis) + vec3f(1e-6, 0.0, 1e-6));
+    let right = unit_or(cross(toward, axis) + vec3f(1e-6, 0.0, 1e-6), vec3f(1.0, 0.0, 0.0));
     let up = cross(right, toward);
     let across_view = half - toward * dot(half, toward);
     let stretch = length(across_view);

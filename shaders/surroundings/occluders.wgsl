@@ -40,7 +40,7 @@ struct Occluders {
 fn range_of(level: u32, cell: vec2f) -> vec2f {
     let row = select(0u, occluders.cells.y, level > 0u);
     let column = select(0u, occluders.cells.x, level > 1u);
-    return bitcast<vec2f>(textureLoad(map_ranges, vec2u(cell) + vec2u(column, row), 0).xy);
+    return bitcast<vec2f>(textureLoad(map_ranges, vec2i(vec2u(cell) + vec2u(column, row)), 0).xy);
 }
 
 // Whether the way that led to `p` with `velocity` crosses a surface of map `i`.

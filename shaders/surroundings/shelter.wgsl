@@ -45,7 +45,7 @@ fn time_nearby(i: u32, p: vec3f, velocity: vec3f, margin: f32) -> f32 {
     let high = max((-side - o) * inverse, (side - o) * inverse);
     var near = max(max(low.x, low.y), max(low.z, 0.0));
     var far = min(high.x, min(high.y, high.z));
-    for (var j = shelters.boxes[i].cuts.x; j < shelters.boxes[i].cuts.y; j++) {
+    for (var j = shelters.boxes[i].cuts.x; j < (shelters.boxes[i].cuts.y & 1023u); j++) {
         let plane = shelters.cuts[j];
         let rate = dot(plane.xyz, d);
         let out = margin * length(plane.x * rows[0].xyz + plane.y * rows[1].xyz + plane.z * rows[2].xyz);
@@ -64,13 +64,13 @@ fn sheltered(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
 
 // Likewise with boxes so many metres wider to all sides.
 fn sheltered_nearby(p: vec3f, velocity: vec3f, margin: f32, wanted: bool) -> bool {
-    for (var i = select(MAX_SHELTERS, 0u, wanted); i < shelters.near; i++) {
+    for (var i = select(MAX_SHELTERS, 0u, wanted); i < (shelters.near & 63u); i++) {
         if time_nearby(i, p, velocity, margin) >= 0.0 {
             return true;
         }
     }
     if MAPS {
-        for (var i = select(MAX_MAPS, 0u, wanted); i < occluders.count; i++) {
+        for (var i = select(MAX_MAPS, 0u, wanted); i < (occluders.count & 7u); i++) {
             if crosses(i, p, velocity) {
                 return true;
             }
@@ -82,7 +82,7 @@ fn sheltered_nearby(p: vec3f, velocity: vec3f, margin: f32, wanted: bool) -> boo
 // Likewise for ground, which remembers: what only passes by does not keep it dry.
 fn mapped_ground(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     if MAPS {
-        for (var i = select(MAX_MAPS, 0u, wanted); i < occluders.count; i++) {
+        for (var i = select(MAX_MAPS, 0u, wanted); i < (occluders.count & 7u); i++) {
             if occluders.maps[i].velocity.w == 0.0 && crosses(i, p, velocity) {
                 return true;
             }
@@ -94,7 +94,7 @@ fn mapped_ground(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
 // Longest time that what came to `p` was in a box that stands, as `time_within` has it.
 fn time_in_standing(p: vec3f, velocity: vec3f, wanted: bool) -> f32 {
     var time = -1e9;
-    for (var i = select(MAX_SHELTERS, 0u, wanted); i < shelters.count; i++) {
+    for (var i = select(MAX_SHELTERS, 0u, wanted); i < (shelters.count & 63u); i++) {
         if shelters.boxes[i].velocity.w == 0.0 {
             time = max(time, time_within(i, p, velocity));
         }
