@@ -205,7 +205,11 @@ fn every_reported_layer_is_there_and_american_sums_stay_in_their_classes() {
                 near("cover", row, 8.0 * layer.cover, MIDDLES[class], 1e-12);
             }
         }
-        let kept = derive(&r.weather).unwrap().clouds.iter().filter(|s| s.cover > 0.0).count();
+        let conditions = derive(&r.weather).unwrap();
+        let light = conditions.cloud_light(0.5, 0.2);
+        let parts = [light.direct, light.diffuse, light.direct + light.diffuse, light.sky];
+        assert!(parts.iter().all(|part| (0.0..=1.0).contains(part)), "{}: {light:?}", row.text);
+        let kept = conditions.clouds.iter().filter(|s| s.cover > 0.0).count();
         assert!(kept >= r.weather.clouds.len(), "{}: {kept} layers are left", row.text);
     }
     assert!(sums > 800 && layers > 80 && hidden == 14, "{sums} {layers} {hidden}");

@@ -119,6 +119,8 @@ impl Weather {
     /// that are no group in [`MetarReport::unread`]. Rates of precipitation follow from kind, intensity and, for rain
     /// and snow, visibility. Feet, knots, statute miles and inches become SI units.
     ///
+    /// The weather's `station_altitude_m` is 0, because no report carries it: set it from a list of airports.
+    ///
     /// # Errors
     /// [`crate::Status::Parse`] for a text without a station, without an observation (NIL) or without any group of the
     /// weather; the message gives line and column (both from 1, in characters), what was expected there and what was

@@ -14,16 +14,18 @@ pub(super) fn is_supplement(text: &str, ended: bool) -> bool {
     colour || recent || shear || out_of_order || is_runway_state(text) || (ended && begins_as_runway(text))
 }
 
-/// `R24/CLRD70`, `R88/290095`, `R01/SNOCLO`, and the older form in eight figures: `88490391`.
+/// `R24/CLRD70`, `R88/290095`, `R01/SNOCLO`, and the older forms: `88490391`, `08CLRD62`.
 fn is_runway_state(text: &str) -> bool {
     let figures = |t: &str, n: usize| t.len() == n && t.bytes().all(|b| b.is_ascii_digit() || b == b'/');
     if figures(text, 8) {
         return text.bytes().any(|b| b != b'/');
     }
+    let digits = |t: &str| t.len() == 2 && t.bytes().all(|b| b.is_ascii_digit());
+    if text.split_once("CLRD").is_some_and(|(runway, friction)| digits(runway) && figures(friction, 2)) {
+        return true;
+    }
     let Some((runway, state)) = text.strip_prefix('R').and_then(|t| t.split_once('/')) else { return false };
-    let number = runway.trim_end_matches(['L', 'R', 'C']);
-    number.len() == 2
-        && number.bytes().all(|b| b.is_ascii_digit())
+    digits(runway.trim_end_matches(['L', 'R', 'C']))
         && (figures(state, 6) || state.starts_with("CLRD") || state == "SNOCLO")
 }
 
@@ -38,15 +40,27 @@ mod tests {
 
     #[test]
     fn what_stands_beside_the_weather_is_known() {
-        for text in
-            ["RERA", "RE//", "WS", "RWY28", "BLU", "BLACKGRN", "R24/CLRD70", "R01/SNOCLO", "88490391", "8829//99", "$"]
-        {
+        for text in [
+            "RERA",
+            "RE//",
+            "WS",
+            "RWY28",
+            "BLU",
+            "BLACKGRN",
+            "R24/CLRD70",
+            "R01/SNOCLO",
+            "88490391",
+            "08CLRD62",
+            "88CLRD//",
+            "8829//99",
+            "$",
+        ] {
             assert!(is_supplement(text, false) && is_supplement(text, true), "{text}");
         }
         for text in ["RF00.0/016.4", "R27/49", "R88/60D", "R09L/D"] {
             assert!(!is_supplement(text, false) && is_supplement(text, true), "{text}");
         }
-        for text in ["SLP162", "TEMP0", "CB/NE/E/W", "REXX", "////////", "8849", "RA", "R18R/0350N"] {
+        for text in ["SLP162", "TEMP0", "CB/NE/E/W", "REXX", "////////", "8849", "8CLRD62", "RA", "R18R/0350N"] {
             assert!(!is_supplement(text, false), "{text}");
         }
     }
