@@ -127,6 +127,20 @@ fn weather_comes_and_goes_without_a_trace() {
     }
 }
 
+/// No display has a visual of 64 samples, and one without GLX has none at all.
+#[test]
+fn a_display_without_the_visual_is_named() {
+    let host = Host::new("visual");
+    let said = host.run("--check --frames 2 --size 160 90 --window --samples 64", None);
+    assert!(said.contains("no visual with 64 samples") && said.contains("\nok\n"), "{said}");
+    let server = Server::start_with(&["-extension", "GLX"]);
+    let mut without = Command::new(&host.program);
+    without.env("DISPLAY", &server.display).arg("--data").arg(root().join("examples/data"));
+    let output = without.args(["--check", "--size", "160", "90"]).output().expect("the host runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(1) && said.contains("no window with OpenGL"), "{}: {said}", output.status);
+}
+
 /// A multisampled texture of which Welkin draws every sample, and a window of four samples: the picture of one sample with smoother
 /// edges, and OpenGL as it was.
 #[test]

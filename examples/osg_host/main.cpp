@@ -119,7 +119,7 @@ public:
 
 private:
     bool open();
-    void open_window_of(Window &window, int number);
+    bool open_window_of(Window &window, int number);
     void draw(int frames, bool weather, double step_s);
     void catch_up();
     std::vector<osg::ref_ptr<osg::Image>> pictures(int frames, bool weather, double step_s);
@@ -139,9 +139,10 @@ private:
     double time_s_ = 0.0;
 };
 
-void Host::open_window_of(Window &window, int number)
+bool Host::open_window_of(Window &window, int number)
 {
     osg::ref_ptr<osg::GraphicsContext> context = open_window(options_, number);
+    if (!context) return false;
     osg::Camera *camera = window.view->getCamera();
     camera->setGraphicsContext(context);
     camera->setViewport(0, 0, options_.width, options_.height);
@@ -171,6 +172,7 @@ void Host::open_window_of(Window &window, int number)
     if (cab_) camera->addPreDrawCallback(new CabGlass(cab_.get(), window.weather));
     camera->addFinalDrawCallback(window.capture);
     viewer_.addView(window.view);
+    return true;
 }
 
 bool Host::open()
@@ -190,7 +192,8 @@ bool Host::open()
     viewer_.setRealizeOperation(weather_);
     viewer_.setThreadingModel(options_.threading);
     windows_.resize(size_t(options_.windows));
-    for (size_t i = 0; i < windows_.size(); i++) open_window_of(windows_[i], int(i));
+    for (size_t i = 0; i < windows_.size(); i++)
+        if (!open_window_of(windows_[i], int(i))) return false;
     viewer_.realize();
     if (cab_)
         for (Window &window : windows_) cab_->set_shelter(window.weather->weather->context());
@@ -303,7 +306,8 @@ int Host::run()
     /* The order of the end: drawing threads, Welkin while the windows' contexts live, windows. */
     viewer_.stopThreading();
     if (options_.close_window)
-        for (Window &window : windows_) window.view->getCamera()->getGraphicsContext()->close();
+        for (Window &window : windows_)
+            if (auto *context = window.view->getCamera()->getGraphicsContext()) context->close(); /* none where none opened */
     if (weather_) weather_->close();
     return ok ? 0 : 1;
 }

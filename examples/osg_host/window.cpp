@@ -7,6 +7,8 @@
 #include <osg/Texture2D>
 #include <osg/Texture2DMultisample>
 
+#include <iostream>
+
 namespace {
 
 const char *const PRESENT_VERTEX = R"(#version 130
@@ -109,7 +111,20 @@ osg::ref_ptr<osg::GraphicsContext> open_window(const Options &o, int number)
     traits->windowName = "osg_host";
     traits->depth = 24;
     if (o.window_target && o.msaa != Msaa::None) traits->samples = o.samples;
-    return osg::GraphicsContext::createGraphicsContext(traits);
+    /* OSG answers a context also where the display refuses its visual; such a one is not valid, and asking it for anything crashes. */
+    const auto create = [&traits] {
+        osg::ref_ptr<osg::GraphicsContext> context = osg::GraphicsContext::createGraphicsContext(traits);
+        return context && context->valid() ? context : nullptr;
+    };
+    osg::ref_ptr<osg::GraphicsContext> context = create();
+    if (!context && traits->samples > 0) {
+        std::cerr << "osg_host: the display has no visual with " << traits->samples << " samples; the window has one sample a pixel"
+                  << std::endl;
+        traits->samples = traits->sampleBuffers = 0;
+        context = create();
+    }
+    if (!context) std::cerr << "osg_host: the display opens no window with OpenGL" << std::endl;
+    return context;
 }
 
 void set_target(osgViewer::View &view, const Options &o, welkin_osg::View &weather)
