@@ -201,7 +201,9 @@ impl wk_opengl_target {
 /// `wk_device_destroy`; call that while the contexts live. Welkin never deletes the host's objects.
 /// Thread: the one on which the host's context is current.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or return NULL; WK_ERROR_WRONG_ORDER if no context
-/// is current, or the wrong one; WK_ERROR_UNSUPPORTED if it is too old; WK_ERROR_ALREADY_WRAPPED if it has a wk_device.
+/// is current, or the wrong one, or conditional rendering or a query that counts is active in WK_OPENGL_HOST_CONTEXT;
+/// WK_ERROR_UNSUPPORTED if it is too old; WK_ERROR_ALREADY_WRAPPED if it has a wk_device; WK_ERROR_NO_ADAPTER, with the
+/// driver's name, if its driver draws a few known texels wrong or does not finish them within 6 s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create_opengl(
     desc: *const wk_opengl_host_desc,

@@ -186,7 +186,7 @@ fn in_window(e: Error) -> Error {
 /// Makes an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
 /// WK_DEVICE_DESC_INIT. On success `*out_device` is a new handle for `wk_device_destroy`.
 /// Thread: any; on macOS the main one. With X11, call XInitThreads first if you use Xlib from several threads.
-/// Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window.
+/// Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window, or as wk_device_create.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create_for_window(
     desc: *const wk_device_desc,

@@ -6,13 +6,10 @@ use std::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
-    time::{Duration, Instant},
 };
 
+use super::known;
 use crate::error::{Error, Result, Status};
-
-/// After so long without an answer a GPU counts as lost. A software driver on a busy machine takes seconds for a pass.
-const LONGEST_WAIT: Duration = Duration::from_secs(60);
 
 /// What a device can do, as the host may ask before it creates anything.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,6 +150,8 @@ impl Drop for Entered<'_> {
 struct Faults {
     first: Mutex<Option<Error>>,
     lost: AtomicBool,
+    /// The GPU does not finish: see [`Device::give_up`].
+    hung: AtomicBool,
 }
 
 /// An assembled shader as the driver has it, and the names of its `override` constants.
@@ -225,10 +224,11 @@ impl Device {
         Self::adopt(instance, adapter, device, queue, options.force_tier0, None)
     }
 
-    /// Takes over ready wgpu objects: a Rust host's own, or those made round a GL or Vulkan host's handles.
+    /// Takes over ready wgpu objects: a Rust host's own, or those made round a GL or Vulkan host's handles. On OpenGL the driver first draws
+    /// what is known.
     ///
     /// # Errors
-    /// [`Status::Unsupported`] if the device lacks a format that Welkin needs.
+    /// [`Status::NoAdapter`] if an OpenGL driver draws that wrong or does not finish it.
     pub fn adopt(
         instance: wgpu::Instance,
         adapter: wgpu::Adapter,
@@ -237,6 +237,25 @@ impl Device {
         force_tier0: bool,
         binding: Option<Arc<dyn HostBinding>>,
     ) -> Result<Arc<Self>> {
+        // A host's context was asked already, when it was opened.
+        let is_unknown = binding.is_none() && adapter.get_info().backend == wgpu::Backend::Gl;
+        let own = Self::around(instance, adapter, device, queue, force_tier0, binding);
+        if is_unknown {
+            let driver = format!("{} ({})", own.caps.adapter_name, own.caps.driver);
+            known::ask(&own).map_err(|fault| fault.refuse(&driver))?;
+        }
+        Ok(own)
+    }
+
+    /// As [`Device::adopt`], from a driver that is trusted or is about to be asked.
+    pub(in crate::gpu) fn around(
+        instance: wgpu::Instance,
+        adapter: wgpu::Adapter,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        force_tier0: bool,
+        binding: Option<Arc<dyn HostBinding>>,
+    ) -> Arc<Self> {
         let info = adapter.get_info();
         let limits = device.limits();
         let needed = wgpu::DownlevelFlags::COMPUTE_SHADERS | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
@@ -273,7 +292,7 @@ impl Device {
             binding,
             _exit: exit,
         };
-        Ok(Arc::new(own))
+        Arc::new(own)
     }
 
     /// What this device can do.
@@ -437,31 +456,6 @@ impl Device {
     pub(crate) fn turn(&self) -> MutexGuard<'_, ()> {
         self.submission.lock().unwrap_or_else(PoisonError::into_inner)
     }
-
-    /// Submits, and waits until the GPU has finished. For queries, tests and measurements, not for frames.
-    ///
-    /// # Errors
-    /// [`Status::DeviceLost`], or the first GPU fault.
-    pub fn submit_and_wait(&self, encoder: wgpu::CommandEncoder) -> Result<()> {
-        self.submit(encoder);
-        self.wait()
-    }
-
-    /// Waits until the GPU has finished what was submitted.
-    ///
-    /// # Errors
-    /// [`Status::DeviceLost`], or the first GPU fault.
-    pub fn wait(&self) -> Result<()> {
-        let begun = Instant::now();
-        loop {
-            match self.device.poll(wgpu::PollType::wait_indefinitely()) {
-                Ok(_) => return self.check(),
-                // wgpu's OpenGL backend waits for i32::MAX ns at most: after 2.1 s it answers with a timeout, though the GPU still works.
-                Err(wgpu::PollError::Timeout) if begun.elapsed() < LONGEST_WAIT => self.check()?,
-                Err(e) => return Err(Error::new(Status::DeviceLost, format!("waiting for the GPU failed: {e}"))),
-            }
-        }
-    }
 }
 
 fn instance(backends: wgpu::Backends) -> wgpu::Instance {
@@ -509,6 +503,8 @@ fn watch(device: &wgpu::Device, faults: &Arc<Faults>) {
         }
     });
 }
+
+mod waits;
 
 #[cfg(test)]
 mod tests;

@@ -19,6 +19,7 @@ pub mod surface;
 pub mod vulkan;
 
 mod device;
+mod known;
 mod layer;
 mod shared;
 mod stand_in;

@@ -5,7 +5,10 @@
 //! a build is a submission of its own under the kit's lock, so that parts lie on the queue in their order whichever frames
 //! they belong to. Nothing here keeps tables alive: they go with the last who shows them.
 
+mod first;
+
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
 use super::Planet;
@@ -124,6 +127,8 @@ pub(crate) struct Kit {
     draft: Option<Level>,
     /// Where there are several triples.
     parts: Option<PartPass>,
+    /// Whether the first texel was drawn.
+    begun: AtomicBool,
     work: Mutex<Work>,
 }
 
@@ -149,6 +154,7 @@ impl Kit {
             draft: drafts.then(|| Level::new(device, &draft, Some(strip_cost))),
             whole,
             parts,
+            begun: AtomicBool::new(false),
             work: Mutex::default(),
         };
         device.check_made()?;
@@ -248,6 +254,7 @@ impl Kit {
             // Another who wanted it has finished it.
             return Ok((Step { work: 0.0, done: 1.0 }, Some(ticket.set.clone())));
         };
+        self.begin(&work.builds[i])?;
         let level = self.level(ticket.set.detail);
         let first = work.builds[i].next;
         let mut rest = share * self.whole.total_cost * (1.0 + 1e-6);
@@ -312,7 +319,7 @@ impl Kit {
         while next < end {
             let triple = next / count;
             let last = end.min((triple + 1) * count);
-            self.record_strips(encoder, build, triple, &level.strips[next % count..=(last - 1) % count]);
+            self.record_strips(encoder, build, triple, &level.strips[next % count..=(last - 1) % count], None);
             if last.is_multiple_of(count) {
                 self.record_part(encoder, build, triple);
             }
@@ -320,7 +327,15 @@ impl Kit {
         }
     }
 
-    fn record_strips(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, triple: usize, strips: &[Strip]) {
+    /// Records strips, or so much of them at their first corner.
+    fn record_strips(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        build: &Build,
+        triple: usize,
+        strips: &[Strip],
+        part: Option<(u32, u32)>,
+    ) {
         let level = self.level(build.set.detail);
         for strips in strips.chunk_by(|a, b| a.pass == b.pass) {
             let index = strips[0].pass;
@@ -344,7 +359,8 @@ impl Kit {
             recorded.set_bind_group(0, &build.triples[triple].0, &[level.blocks.job_offset(index)]);
             recorded.set_bind_group(1, &build.reads[index], &[]);
             let rows: u32 = strips.iter().map(|s| s.rows).sum();
-            recorded.set_scissor_rect(0, strips[0].first_row, pass.draws[0].size(&level.settings).0, rows);
+            let (width, height) = part.unwrap_or((pass.draws[0].size(&level.settings).0, rows));
+            recorded.set_scissor_rect(0, strips[0].first_row, width, height);
             recorded.draw(0..3, 0..1);
         }
     }

@@ -53,6 +53,24 @@ unsafe impl Sync for Egl {}
 const EGL_OPENGL_ES_API: u32 = 0x30A0;
 const EGL_OPENGL_API: u32 = 0x30A2;
 const EGL_PLATFORM_SURFACELESS_MESA: u32 = 0x31DD;
+const EGL_PLATFORM_DEVICE_EXT: u32 = 0x313F;
+
+/// The EGL device of this number.
+///
+/// # Safety
+/// `get_proc` is `eglGetProcAddress`.
+unsafe fn device(get_proc: unsafe extern "C" fn(*const c_char) -> Ptr, number: usize) -> *mut c_void {
+    type Query = unsafe extern "C" fn(i32, *mut *mut c_void, *mut i32) -> u32;
+    let (mut devices, mut count) = ([null_mut(); 16], 0);
+    // SAFETY: the extension's own function, with room for as many devices as are asked for.
+    unsafe {
+        let query = get_proc(c"eglQueryDevicesEXT".as_ptr());
+        assert!(!query.is_null(), "EGL_EXT_device_enumeration");
+        std::mem::transmute::<Ptr, Query>(query)(16, devices.as_mut_ptr(), &mut count);
+    }
+    assert!(number < count.max(0) as usize, "there are {count} EGL devices");
+    devices[number]
+}
 
 fn egl() -> &'static Egl {
     static EGL: OnceLock<Egl> = OnceLock::new();
@@ -64,11 +82,19 @@ fn egl() -> &'static Egl {
             let get_platform_display: unsafe extern "C" fn(u32, *mut c_void, *const isize) -> Ptr =
                 symbol(library, c"eglGetPlatformDisplay");
             let initialize: unsafe extern "C" fn(Ptr, *mut i32, *mut i32) -> u32 = symbol(library, c"eglInitialize");
-            let display = get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, null_mut(), null());
+            let get_proc: unsafe extern "C" fn(*const c_char) -> Ptr = symbol(library, c"eglGetProcAddress");
+            // Without a display server: a GPU's driver has its own way, by the number of a device.
+            let display = match std::env::var("WELKIN_EGL_DEVICE") {
+                Ok(number) => {
+                    let device = device(get_proc, number.parse().expect("WELKIN_EGL_DEVICE is a number"));
+                    get_platform_display(EGL_PLATFORM_DEVICE_EXT, device, null())
+                }
+                Err(_) => get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, null_mut(), null()),
+            };
             assert_eq!(initialize(display, null_mut(), null_mut()), 1, "EGL must open without a display server");
             Egl {
                 display,
-                get_proc: symbol(library, c"eglGetProcAddress"),
+                get_proc,
                 bind_api: symbol(library, c"eglBindAPI"),
                 choose_config: symbol(library, c"eglChooseConfig"),
                 create_context: symbol(library, c"eglCreateContext"),

@@ -152,6 +152,7 @@ gl_functions! {
         IsRenderbuffer = c"glIsRenderbuffer" (renderbuffer: u32) -> u8;
         FenceSync = c"glFenceSync" (condition: u32, flags: u32) -> Sync;
         WaitSync = c"glWaitSync" (sync: Sync, flags: u32, timeout_ns: u64);
+        ClientWaitSync = c"glClientWaitSync" (sync: Sync, flags: u32, timeout_ns: u64) -> u32;
         DeleteSync = c"glDeleteSync" (sync: Sync);
         Flush = c"glFlush" ();
         CreateShader = c"glCreateShader" (kind: u32) -> u32;
@@ -164,6 +165,8 @@ gl_functions! {
         DrawArrays = c"glDrawArrays" (mode: u32, first: i32, count: i32);
         BeginQuery = c"glBeginQuery" (target: u32, query: u32);
         EndQuery = c"glEndQuery" (target: u32);
+        BeginConditionalRender = c"glBeginConditionalRender" (query: u32, mode: u32);
+        EndConditionalRender = c"glEndConditionalRender" ();
         PauseTransformFeedback = c"glPauseTransformFeedback" ();
         ResumeTransformFeedback = c"glResumeTransformFeedback" ();
     }

@@ -48,6 +48,9 @@ const UNASKED: &[&str] = &[
     "GL_ARB_sampler_objects",
 ];
 
+/// With one of these wgpu writes buffers through memory that stays mapped and a copy on the GPU, else by `glBufferSubData`.
+pub(super) const STORAGE: [&str; 2] = ["GL_ARB_buffer_storage", "GL_EXT_buffer_storage"];
+
 const FLOATS: &str = "GL_ARB_color_buffer_float";
 
 /// What the two functions answer on this thread.
@@ -92,8 +95,8 @@ extern "system" fn get_string_i(name: u32, index: u32) -> *const u8 {
 pub(super) struct FaceGuard(());
 
 impl FaceGuard {
-    /// Shows the current context; `force_tier0` hides what OpenGL 3.3 or OpenGL ES 3.0 lacks.
-    pub(super) fn show(api: &Api, info: &GlInfo, force_tier0: bool) -> Option<Self> {
+    /// Shows the current context; `force_tier0` hides what OpenGL 3.3 or OpenGL ES 3.0 lacks, `no_storage` what [`STORAGE`] names.
+    pub(super) fn show(api: &Api, info: &GlInfo, force_tier0: bool, no_storage: bool) -> Option<Self> {
         let real = api.GetString?;
         let text = |t: String| CString::new(t).ok();
         let (version, shading_language) = match (force_tier0, info.is_es()) {
@@ -102,10 +105,9 @@ impl FaceGuard {
             (true, true) => (text("OpenGL ES 3.0".into()), text("OpenGL ES GLSL ES 3.00".into())),
         };
         let mut names = api.extensions();
-        if force_tier0 {
-            for name in names.iter_mut().filter(|n| NEWER.contains(&n.as_str())) {
-                *name = "GL_WELKIN_hidden".into();
-            }
+        let is_hidden = |n: &str| force_tier0 && NEWER.contains(&n) || no_storage && STORAGE.contains(&n);
+        for name in names.iter_mut().filter(|n| is_hidden(n)) {
+            *name = "GL_WELKIN_hidden".into();
         }
         if !info.is_es()
             && !names.iter().any(|n| n == FLOATS)

@@ -9,6 +9,7 @@ use super::{
     Handover, MakeCurrent, WhichContext,
     api::{Api, Sync as Fence},
     check::{self, GlInfo},
+    counting::Counting,
     gate::Gate,
     image::GlImage,
     mark::Mark,
@@ -60,7 +61,7 @@ pub(super) enum Sharing {
     /// A second context, with the functions of the host's own.
     Shared { switch: Switch, host: Box<Api>, handover: Handover, windows: Windows },
     /// The host's context, with what must be put back.
-    HostContext { state: Box<HostState>, switch: Option<Switch> },
+    HostContext { state: Box<HostState>, counting: Counting, switch: Option<Switch> },
 }
 
 /// What changes while drawing.
@@ -267,7 +268,11 @@ impl HostBinding for GlHost {
         inner.api.delete(Api::DeleteFramebuffers, inner.scratch);
         inner.api.delete(Api::DeleteFramebuffers, inner.probe.0);
         inner.probe.1.iter().for_each(|t| inner.api.delete(Api::DeleteTextures, *t));
+        let inner = &mut *inner;
         inner.mark.remove(&inner.api);
+        if let Sharing::HostContext { counting, .. } = &mut inner.sharing {
+            counting.delete(&inner.api);
+        }
     }
 
     fn forsaken(&self) {
@@ -304,7 +309,7 @@ impl Inner {
                 }
                 wait(&self.api, fence);
             }
-            Sharing::HostContext { state, switch } => {
+            Sharing::HostContext { state, counting, switch } => {
                 if let Some(switch) = switch {
                     switch.to(WhichContext::Host)?;
                 }
@@ -312,6 +317,10 @@ impl Inner {
                 check::can_draw_now(&self.api, info)?;
                 state.save(&self.api, self.probe.0);
                 state.normalise(&self.api, self.backend.vertex_array);
+                if let Err(e) = counting.allows(&self.api) {
+                    state.restore(&self.api);
+                    return Err(e);
+                }
             }
         }
         Ok(())

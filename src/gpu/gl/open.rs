@@ -4,6 +4,7 @@ use std::{
     ffi::{CStr, CString, c_void},
     panic::{AssertUnwindSafe, catch_unwind},
     sync::Arc,
+    time::{Duration, Instant},
 };
 
 use wgpu::hal::{api::Gles, gles};
@@ -12,9 +13,10 @@ use super::{
     GlHostDesc, GlMode, WhichContext,
     api::Api,
     check::{self, GlInfo},
-    face::FaceGuard,
+    counting::Counting,
+    face::{FaceGuard, STORAGE},
     host::{Backend, GlHost, Inner, Sharing, Switch},
-    image,
+    image, later,
     mark::Mark,
     names::*,
     state::HostState,
@@ -22,7 +24,10 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
-    gpu::Device,
+    gpu::{
+        Device,
+        known::{self, Fault},
+    },
 };
 
 /// A device round a host's OpenGL, and the way to the host's images.
@@ -48,7 +53,8 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 /// # Errors
 /// [`Status::InvalidArgument`] for missing or NULL-answering callbacks; [`Status::WrongOrder`] if no context is current or
 /// the wrong one; [`Status::Unsupported`] if it is older than OpenGL 3.3 or OpenGL ES 3.0;
-/// [`Status::AlreadyWrapped`] if it has a device already; [`Status::NoAdapter`] if wgpu cannot use it.
+/// [`Status::AlreadyWrapped`] if it has a device already; [`Status::NoAdapter`] if wgpu cannot use it, or its driver draws what is known
+/// wrong or not within 6 s.
 ///
 /// # Safety
 /// The callbacks are what they are declared to be, and stay so until the device is gone; the contexts outlive that, or are
@@ -62,8 +68,7 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
     let get = move |name: &CStr| unsafe { get_proc(user, name.as_ptr()) };
     let switch = desc.make_current.map(|call| Switch { call, user });
     check::loader_finds_all(&get)?;
-    let host = load(&get);
-    let host_info = GlInfo::query(&host)?;
+    let (host, host_info) = load(&get)?;
     check::can_draw_now(&host, &host_info)?;
     match desc.mode {
         GlMode::HostContext => {
@@ -77,12 +82,16 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
             state.restore(&host);
             state.save(&host, probe.0);
             state.normalise(&host, 0);
-            let opened = open(&host, &host_info, &get, desc);
+            let mut counting = Counting::new(&host, &host_info);
+            let opened = counting.opens(&host, || open_known(&host, &host_info, &get, desc));
             let opened = finish(opened, &host, probe, &host_info);
+            if opened.is_err() {
+                counting.delete(&host);
+            }
             let raised = state.restore(&host);
             let parts = opened?;
             log::debug!("OpenGL errors while opening: {raised:#x}");
-            parts.into_device(host, host_info, Sharing::HostContext { state: Box::new(state), switch }, desc)
+            parts.into_device(host, host_info, Sharing::HostContext { state: Box::new(state), counting, switch }, desc)
         }
         GlMode::Shared => {
             let Some(switch) = switch else {
@@ -91,8 +100,7 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
             let proof = Proof::leave(&host);
             host.Flush();
             let outcome = switch.to(WhichContext::Welkin).and_then(|()| {
-                let api = load(&get);
-                let info = GlInfo::query(&api)?;
+                let (api, info) = load(&get)?;
                 proof.check(&api)?;
                 if Mark::any_here(&api) {
                     return Err(already_wrapped());
@@ -101,7 +109,7 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
                 let mut state = HostState::new(&api, &info);
                 state.save(&api, probe.0);
                 state.normalise(&api, 0);
-                let parts = finish(open(&api, &info, &get, desc), &api, probe, &info)?;
+                let parts = finish(open_known(&api, &info, &get, desc), &api, probe, &info)?;
                 api.Flush();
                 Ok((parts, api, info))
             });
@@ -120,13 +128,18 @@ fn already_wrapped() -> Error {
     Error::new(Status::AlreadyWrapped, "this OpenGL context belongs to another device already: destroy that one first")
 }
 
-fn load(get: &dyn Fn(&CStr) -> *const c_void) -> Api {
+/// The current context's functions, by the names that it has them by, and what it is.
+fn load(get: &dyn Fn(&CStr) -> *const c_void) -> Result<(Api, GlInfo)> {
     // SAFETY: the caller of `adopt` vouches that `get` answers NULL or the named OpenGL function.
-    unsafe {
+    let by = |get: &dyn Fn(&CStr) -> *const c_void| unsafe {
         let mut api = Api::load(get);
         api.load_suffixed(get);
         api
-    }
+    };
+    let api = by(get);
+    let info = GlInfo::query(&api)?;
+    let api = by(&later::finder(&info, get));
+    Ok((api, info))
 }
 
 /// A framebuffer of ours that has everything, for asking about state; with its two textures.
@@ -199,12 +212,51 @@ struct Parts {
     scratch: u32,
 }
 
+/// Opens wgpu on the current context and has the driver draw what is known. Where shaders find other bytes in blocks than were written, wgpu
+/// is opened once more so that it writes them by `glBufferSubData`.
+fn open_known(
+    api: &Api,
+    info: &GlInfo,
+    get: &dyn Fn(&CStr) -> *const c_void,
+    desc: &GlHostDesc,
+) -> Result<(Backend, Opened)> {
+    let has_storage = !desc.force_tier0 && STORAGE.iter().any(|name| info.has(name));
+    let driver = format!("{} ({})", info.renderer, info.version_text);
+    let opened = open(api, info, get, desc, false)?;
+    match ask(&opened, api) {
+        Ok(backend) => Ok((backend, opened)),
+        Err(Fault::Blocks(what)) if has_storage => {
+            log::warn!("OpenGL driver {driver}: blocks that are written through mapped memory are wrong: {what}");
+            drop(opened);
+            let opened = open(api, info, get, desc, true)?;
+            ask(&opened, api).map(|backend| (backend, opened)).map_err(|fault| fault.refuse(&driver))
+        }
+        Err(fault) => Err(fault.refuse(&driver)),
+    }
+}
+
+/// Has the driver draw what is known.
+fn ask(opened: &Opened, api: &Api) -> std::result::Result<Backend, Fault> {
+    let Opened { instance, adapter, device, queue } = opened;
+    let trial = Device::around(instance.clone(), adapter.clone(), device.clone(), queue.clone(), true, None);
+    let backend = first_picture(&trial, api)?;
+    known::ask(&trial)?;
+    Ok(backend)
+}
+
 /// Opens wgpu on the current context, whose state is a fresh one's.
-fn open(api: &Api, info: &GlInfo, get: &dyn Fn(&CStr) -> *const c_void, desc: &GlHostDesc) -> Result<Opened> {
+fn open(
+    api: &Api,
+    info: &GlInfo,
+    get: &dyn Fn(&CStr) -> *const c_void,
+    desc: &GlHostDesc,
+    no_storage: bool,
+) -> Result<Opened> {
     let refused = |text: String| Error::new(Status::NoAdapter, text);
-    let shown = FaceGuard::show(api, info, desc.force_tier0);
+    let shown = FaceGuard::show(api, info, desc.force_tier0, no_storage);
+    let here = later::finder(info, get);
     let loader = |name: &str| match CString::new(name) {
-        Ok(name) => FaceGuard::resolve(&name, get(&name)),
+        Ok(name) => FaceGuard::resolve(&name, here(&name)),
         Err(_) => std::ptr::null(),
     };
     let options = wgpu::GlBackendOptions {
@@ -241,10 +293,9 @@ fn open(api: &Api, info: &GlInfo, get: &dyn Fn(&CStr) -> *const c_void, desc: &G
     Ok(Opened { instance, adapter, device, queue })
 }
 
-/// Learns the names of wgpu's own objects, and that a picture comes out as drawn. Leaves nothing behind on failure.
-fn finish(opened: Result<Opened>, api: &Api, probe: (u32, [u32; 2]), info: &GlInfo) -> Result<Parts> {
-    let outcome = opened.and_then(|opened| Ok((first_picture(&opened, api)?, opened)));
-    match outcome {
+/// Makes what stays in the context beside wgpu's own objects. Leaves nothing behind on failure.
+fn finish(opened: Result<(Backend, Opened)>, api: &Api, probe: (u32, [u32; 2]), info: &GlInfo) -> Result<Parts> {
+    match opened {
         Ok((backend, opened)) => {
             let scratch = api.one(Api::GenFramebuffers);
             Ok(Parts { opened, backend, mark: Mark::set(api), probe, scratch })
@@ -258,8 +309,8 @@ fn finish(opened: Result<Opened>, api: &Api, probe: (u32, [u32; 2]), info: &GlIn
     }
 }
 
-/// Clears one texel, copies it, and reads it; wgpu's framebuffers are still bound afterwards.
-fn first_picture(opened: &Opened, api: &Api) -> Result<Backend> {
+/// Clears one texel, copies it, and reads it; learns the names of wgpu's own objects.
+fn first_picture(opened: &Device, api: &Api) -> std::result::Result<Backend, Fault> {
     let vertex_array = api.uint(VERTEX_ARRAY_BINDING);
     let texture = |usage| {
         opened.device.create_texture(&wgpu::TextureDescriptor {
@@ -292,18 +343,36 @@ fn first_picture(opened: &Opened, api: &Api) -> Result<Backend> {
     encoder.copy_texture_to_texture(drawn.as_image_copy(), copied.as_image_copy(), drawn.size());
     opened.queue.submit([encoder.finish()]);
     let copy_framebuffer = api.uint(READ_FRAMEBUFFER_BINDING);
+    // Before the texel is read: reading waits as long as the driver likes.
+    if !finishes(api, known::LIMIT) {
+        opened.give_up();
+        return Err(Fault::Hang);
+    }
     let mut texel = [0u8; 4];
     // SAFETY: one texel of four bytes is read into four bytes; the copy's source is attached for reading.
     unsafe { api.ReadPixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, texel.as_mut_ptr().cast()) };
     drop((drawn, copied));
-    let _ = opened.device.poll(wgpu::PollType::wait_indefinitely());
+    let _ = opened.device.poll(wgpu::PollType::Poll);
     if texel != [255, 0, 255, 255] {
-        return Err(Error::new(
-            Status::NoAdapter,
-            format!("the OpenGL context does not draw what it is told: a texel should be magenta and is {texel:?}"),
-        ));
+        let text =
+            format!("the OpenGL context does not draw what it is told: a texel should be magenta and is {texel:?}");
+        return Err(Error::new(Status::NoAdapter, text).into());
     }
     Ok(Backend { vertex_array, draw_framebuffer, copy_framebuffer })
+}
+
+/// Whether the GPU finishes what the current context was told, within a limit.
+fn finishes(api: &Api, limit: Duration) -> bool {
+    let fence = api.FenceSync(SYNC_GPU_COMMANDS_COMPLETE, 0);
+    let begun = Instant::now();
+    let mut answer = TIMEOUT_EXPIRED;
+    while answer == TIMEOUT_EXPIRED && begun.elapsed() < limit {
+        let step = limit.saturating_sub(begun.elapsed()).min(Duration::from_millis(100));
+        answer = api.ClientWaitSync(fence, SYNC_FLUSH_COMMANDS_BIT, step.as_nanos() as u64);
+    }
+    api.DeleteSync(fence);
+    // A context without the function, or one that refuses the wait, has nothing to wait by: reading the texel then tells.
+    answer != TIMEOUT_EXPIRED
 }
 
 impl Parts {

@@ -6,8 +6,7 @@
 //! the default clip control, packed pixels, no logic operation, every sample covered, nothing clamped. `normalise` sets
 //! that. *Leaks out*: everything it sets. One list serves both: what is saved is the union.
 //!
-//! Not in the list because OpenGL cannot tell: conditional rendering (`glBeginConditionalRender`) must be ended by
-//! the host. Queries that count samples or primitives keep counting, so a host should end them as well.
+//! Not in the list because they cannot be put aside: conditional rendering and queries that count (the `counting` room refuses them).
 
 mod bind;
 mod pixel;

@@ -89,7 +89,13 @@ const CLAMPS: [u32; 3] = [CLAMP_READ_COLOR, CLAMP_VERTEX_COLOR, CLAMP_FRAGMENT_C
 impl Raster {
     pub(super) fn new(api: &Api, info: &GlInfo) -> Self {
         let many_views = info.knows((4, 1), (0, 0), &["GL_ARB_viewport_array"]);
-        let many_masks = info.at_least((3, 0), (3, 2));
+        // What a mask was is asked by a function of ES 3.1.
+        let indexed: &[&str] = match info.is_es() {
+            true if info.version >= (3, 1) => &["GL_EXT_draw_buffers_indexed", "GL_OES_draw_buffers_indexed"],
+            true => &[],
+            false => &["GL_ARB_draw_buffers_blend"],
+        };
+        let many_masks = info.knows((3, 0), (3, 2), indexed);
         let views = if many_views { api.uint(MAX_VIEWPORTS).clamp(1, 64) } else { 1 };
         let targets = if many_masks { api.uint(MAX_DRAW_BUFFERS).clamp(1, 32) } else { 1 };
         Self {
@@ -97,7 +103,7 @@ impl Raster {
             targets: vec![Target::default(); targets as usize],
             many_views,
             many_masks,
-            many_blends: info.knows((4, 0), (3, 2), &["GL_ARB_draw_buffers_blend"]),
+            many_blends: info.knows((4, 0), (3, 2), indexed),
             desktop: !info.is_es(),
             compatibility: info.profile == GlProfile::Compatibility,
             clip_control: info.knows((4, 5), (0, 0), &["GL_ARB_clip_control", "GL_EXT_clip_control"]),

@@ -1,0 +1,121 @@
+//! The host's conditional rendering and its queries that count, in the context in which Welkin draws.
+//!
+//! Both reach into what Welkin draws: under a conditional render whose query counted nothing no draw is made, so tables that are drawn
+//! once would stay empty; and a query counts Welkin's samples. Neither can be put aside and taken up again. OpenGL tells whether a query is
+//! active (`GL_CURRENT_QUERY`). It does not tell whether rendering is conditional, but refuses to begin that twice (OpenGL 4.6 core
+//! specification, section 10.9), so a trial tells.
+
+use super::{
+    api::Api,
+    check::{GlInfo, GlProfile},
+    names::*,
+};
+use crate::error::{Error, Result, Status};
+
+/// Targets of queries that count what Welkin draws, and their names.
+const COUNTING: [(u32, &str); 4] = [
+    (SAMPLES_PASSED, "GL_SAMPLES_PASSED"),
+    (ANY_SAMPLES_PASSED, "GL_ANY_SAMPLES_PASSED"),
+    (ANY_SAMPLES_PASSED_CONSERVATIVE, "GL_ANY_SAMPLES_PASSED_CONSERVATIVE"),
+    (PRIMITIVES_GENERATED, "GL_PRIMITIVES_GENERATED"),
+];
+
+/// What is asked before Welkin draws in a host's own context.
+pub(super) struct Counting {
+    /// Targets that this context knows.
+    targets: Vec<(u32, &'static str)>,
+    /// A query that has ended, for the trial; 0 where there is no conditional rendering, or a trial tells nothing.
+    trial: u32,
+}
+
+impl Counting {
+    /// Makes what asking needs. Leaves no error flag.
+    pub(super) fn new(api: &Api, info: &GlInfo) -> Self {
+        api.take_error();
+        let is_known = |(target, _): &(u32, &str)| {
+            active(api, *target);
+            api.take_error() == NO_ERROR
+        };
+        let targets = COUNTING.iter().copied().filter(is_known).collect();
+        let mut own = Self { targets, trial: 0 };
+        if info.profile != GlProfile::Es && own.counts(api).is_none() {
+            own.trial = api.one(Api::GenQueries);
+            api.BeginQuery(ANY_SAMPLES_PASSED, own.trial);
+            api.EndQuery(ANY_SAMPLES_PASSED);
+            api.take_error();
+        }
+        own
+    }
+
+    /// The name of an active query's target.
+    fn counts(&self, api: &Api) -> Option<&'static str> {
+        self.targets.iter().find(|(target, _)| active(api, *target)).map(|(_, name)| *name)
+    }
+
+    /// Whether rendering is conditional now.
+    fn is_conditional(&self, api: &Api) -> bool {
+        if self.trial == 0 {
+            return false;
+        }
+        api.take_error();
+        api.BeginConditionalRender(self.trial, QUERY_NO_WAIT);
+        let is_conditional = api.take_error() == INVALID_OPERATION;
+        if !is_conditional {
+            api.EndConditionalRender();
+        }
+        is_conditional
+    }
+
+    /// Opens a device, unless the host counts. Where rendering is conditional nothing is drawn, and opening fails; where it is said to be and
+    /// opening succeeds all the same, this driver's trials tell nothing and no more are made.
+    ///
+    /// # Errors
+    /// As [`Counting::allows`], and as `open`.
+    pub(super) fn opens<T>(&mut self, api: &Api, open: impl FnOnce() -> Result<T>) -> Result<T> {
+        let allowed = self.allows(api);
+        if self.trial == 0 {
+            allowed?;
+            return open();
+        }
+        match (allowed, open()) {
+            (Err(refusal), Err(_)) => Err(refusal),
+            (Err(_), Ok(opened)) => {
+                self.delete(api);
+                Ok(opened)
+            }
+            (Ok(()), outcome) => outcome,
+        }
+    }
+
+    /// Refuses to draw now. Asked with the host's error flag saved and its debug output off.
+    ///
+    /// # Errors
+    /// [`Status::WrongOrder`] naming what must end first.
+    pub(super) fn allows(&self, api: &Api) -> Result<()> {
+        let refuse = |text: String| Err(Error::new(Status::WrongOrder, text));
+        if let Some(name) = self.counts(api) {
+            return refuse(format!(
+                "a query of target {name} is active and would count what Welkin draws: call glEndQuery before this call"
+            ));
+        }
+        if self.is_conditional(api) {
+            return refuse(
+                "conditional rendering is active, in which nothing may be drawn: call glEndConditionalRender before this call"
+                    .into(),
+            );
+        }
+        Ok(())
+    }
+
+    pub(super) fn delete(&mut self, api: &Api) {
+        api.delete(Api::DeleteQueries, std::mem::take(&mut self.trial));
+    }
+}
+
+/// Whether a query of this target is active.
+fn active(api: &Api, target: u32) -> bool {
+    let mut current = 0;
+    // SAFETY: one integer is written.
+    unsafe { api.GetQueryiv(target, CURRENT_QUERY, &mut current) };
+    current != 0
+}
