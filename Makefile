@@ -38,7 +38,7 @@ RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --no-fail-fast,cargo test
 
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
-.PHONY: ci help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench fuzz gallery lab
+.PHONY: ci help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench fuzz gallery lab on-gpu-pack
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -118,6 +118,22 @@ fuzz: setup-build ## fuzz all that Welkin reads, 15 minutes a target (ARGS="--se
 
 lab: setup-build ## chart speed against accuracy, map where methods fail (ARGS="chart sky"; without: what it can do)
 	cargo run --locked --release --example lab -- $(ARGS)
+
+# Built programs for a machine with a GPU that has no compiler, no network and no display; `scripts/on-gpu` runs them.
+ON_GPU := $(TARGET_DIR)/on-gpu
+ON_GPU_TESTS := gl_host vulkan_host sky_gpu
+executable = sed -n 's/^ *Executable .*(\(.*\))$$/\1/p'
+
+on-gpu-pack: setup-build ## pack what `scripts/on-gpu` needs on a machine with a GPU into target/on-gpu, at most 60 MiB
+	cargo build --locked --release --example on_gpu
+	rm -rf "$(ON_GPU)" && mkdir -p "$(ON_GPU)/bin"
+	strip -o "$(ON_GPU)/bin/on_gpu" "$(TARGET_DIR)/release/examples/on_gpu"
+	for test in $(ON_GPU_TESTS); do \
+	    strip -o "$(ON_GPU)/bin/$$test" "$$(cargo test --locked --release --no-run --test $$test 2>&1 | $(executable))"; \
+	done
+	strip -o "$(ON_GPU)/bin/speed" "$$(cargo bench --locked --no-run --bench speed 2>&1 | $(executable))"
+	cp scripts/on-gpu "$(ON_GPU)/on-gpu"
+	@size=$$(du -sm "$(ON_GPU)" | cut -f1); echo "$(ON_GPU): $$size MiB"; [ "$$size" -le 60 ]
 
 bench: setup-build ## speed, as ratios measured within one run
 	$(if $(wildcard benches/*.rs benches/*/main.rs),cargo bench --locked --bench '*',@echo "bench: none yet")

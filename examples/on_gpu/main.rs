@@ -1,0 +1,93 @@
+//! Steps of `scripts/on-gpu`: each asks an OpenGL driver one question about the sky's first tables, in a process of its own, because an
+//! answer may be a GPU that hangs. Prints `RESULT ok ..`, `RESULT wrong ..` or `RESULT none ..`, or nothing where the driver does not finish.
+//!
+//! `on_gpu STEP`; `on_gpu --help` lists the steps.
+
+#[cfg(target_os = "linux")]
+#[path = "../../tests/gl_host/egl.rs"]
+#[allow(dead_code)] // the tests' hosts use more of it
+mod egl;
+#[cfg(target_os = "linux")]
+mod raw;
+#[cfg(target_os = "linux")]
+mod sky;
+
+/// What a step found out: the driver's answer is as it must be, or otherwise; or there is nothing to ask.
+#[derive(Debug, PartialEq)]
+pub enum Found {
+    Right(String),
+    Wrong(String),
+    Nothing(String),
+}
+
+pub type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
+
+#[cfg(target_os = "linux")]
+type Step = (&'static str, &'static str, fn() -> Fallible<Found>);
+
+#[cfg(target_os = "linux")]
+const STEPS: &[Step] = &[
+    ("vulkan", "which Vulkan driver there is, and a texel of the sky's first table by it", sky::vulkan),
+    ("opengl", "which OpenGL driver there is, and a texel cleared by it", sky::opengl),
+    ("blocks-read", "blocks made with contents, read back before anything is drawn", sky::blocks_read),
+    ("blocks-drawn", "blocks made with contents, drawn out as colours", sky::blocks_drawn),
+    ("blocks-drawn-written", "blocks written by the queue, drawn out as colours", sky::blocks_drawn_written),
+    ("blocks-drawn-plain", "blocks written by glBufferSubData, drawn out as colours", sky::blocks_drawn_plain),
+    ("raw-for", "a texel by plain loops in GLSL by hand, bounds from a block", raw::plain_loops),
+    ("raw-while", "a texel by loops in the form that wgpu's compiler writes, bounds from a block", raw::written_loops),
+    ("norm-constants", "a texel of the first table with constants for bounds", sky::norm_constants),
+    ("norm", "a texel of the first table as it is", sky::norm),
+    ("norm-written", "a texel of the first table, blocks written by the queue", sky::norm_written),
+    ("norm-plain", "a texel of the first table, blocks written by glBufferSubData", sky::norm_plain),
+    ("norm-own", "a texel of the first table in wgpu's own context", sky::norm_own),
+    ("norm-whole", "the whole first table in one draw", sky::norm_whole),
+    ("welkin-own", "a device of Welkin's own on OpenGL, and its whole sky", sky::welkin_own),
+];
+
+#[cfg(target_os = "linux")]
+fn main() -> std::process::ExitCode {
+    use std::process::ExitCode;
+    let mut arguments = std::env::args().skip(1);
+    let name = match (arguments.next(), arguments.next()) {
+        (Some(name), None) => name,
+        _ => "--help".to_owned(),
+    };
+    if name == "--help" {
+        println!(
+            "on_gpu STEP\n\nWELKIN_EGL_DEVICE=N asks the OpenGL driver of EGL's device N, 0 by default.\n\nSteps:"
+        );
+        STEPS.iter().for_each(|(step, what, _)| println!("  {step:22} {what}"));
+        return ExitCode::SUCCESS;
+    }
+    env_logger::init();
+    let Some((line, code)) = answer(&name) else {
+        eprintln!("on_gpu: {name} is no step: on_gpu --help lists them");
+        return ExitCode::from(2);
+    };
+    println!("{line}");
+    ExitCode::from(code)
+}
+
+/// What a step prints, and the program's status after it; nothing for what is no step.
+#[cfg(target_os = "linux")]
+pub fn answer(name: &str) -> Option<(String, u8)> {
+    let (_, _, step) = STEPS.iter().find(|(step, ..)| *step == name)?;
+    // The tests' hosts panic where there is no context to be had.
+    std::panic::set_hook(Box::new(|_| ()));
+    let found = std::panic::catch_unwind(step).unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<String>().cloned();
+        Ok(Found::Nothing(text.or_else(|| panic.downcast_ref::<&str>().map(|t| (*t).to_owned())).unwrap_or_default()))
+    });
+    let (word, text, code) = match found {
+        Ok(Found::Right(text)) => ("ok", text, 0),
+        Ok(Found::Wrong(text)) => ("wrong", text, 1),
+        Ok(Found::Nothing(text)) => ("none", text, 3),
+        Err(e) => ("wrong", e.to_string(), 1),
+    };
+    Some((format!("RESULT {word} {}", text.replace('\n', " ")), code))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn main() {
+    eprintln!("on_gpu: asks EGL, which is asked on Linux only");
+}
