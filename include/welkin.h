@@ -508,9 +508,12 @@ typedef struct wk_caps {
  * Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle,
  * which you destroy with `wk_device_destroy`; else it stays untouched.
  * Thread: any.
- * Errors: WK_ERROR_NO_ADAPTER if no driver fits the request; WK_ERROR_INVALID_ARGUMENT by name.
+ * Errors: WK_ERROR_NO_ADAPTER if no driver fits the request, or an OpenGL driver draws a few known texels wrong or does
+ * not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT by name.
  */
-WK_API wk_status wk_device_create(const wk_device_desc *desc, wk_device **out_device);
+WK_API
+wk_status wk_device_create(const wk_device_desc *desc,
+                           wk_device **out_device);
 
 /**
  * Destroys a device. NULL does nothing.
@@ -771,7 +774,7 @@ typedef struct wk_surface_config {
  * Makes an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
  * WK_DEVICE_DESC_INIT. On success `*out_device` is a new handle for `wk_device_destroy`.
  * Thread: any; on macOS the main one. With X11, call XInitThreads first if you use Xlib from several threads.
- * Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window.
+ * Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window, or as wk_device_create.
  */
 WK_API
 wk_status wk_device_create_for_window(const wk_device_desc *desc,
@@ -1039,7 +1042,9 @@ typedef uint32_t wk_opengl_context;
  * `wk_device_destroy`; call that while the contexts live. Welkin never deletes the host's objects.
  * Thread: the one on which the host's context is current.
  * Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or return NULL; WK_ERROR_WRONG_ORDER if no context
- * is current, or the wrong one; WK_ERROR_UNSUPPORTED if it is too old; WK_ERROR_ALREADY_WRAPPED if it has a wk_device.
+ * is current, or the wrong one, or conditional rendering or a query that counts is active in WK_OPENGL_HOST_CONTEXT;
+ * WK_ERROR_UNSUPPORTED if it is too old; WK_ERROR_ALREADY_WRAPPED if it has a wk_device; WK_ERROR_NO_ADAPTER, with the
+ * driver's name, if its driver draws a few known texels wrong or does not finish them within 6 s.
  */
 WK_API
 wk_status wk_device_create_opengl(const wk_opengl_host_desc *desc,

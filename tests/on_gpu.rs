@@ -66,8 +66,7 @@ fn a_software_driver_answers_every_step_right() {
     assert!(decision.contains("DECISION\nNO HANG") && decision.contains("The whole sky is drawn too"), "{page}");
     let steps = page.split("\nSTEPS\n").nth(1).unwrap().split("\n\n").next().unwrap();
     for name in ["vulkan", "opengl", "blocks-read", "blocks-drawn-plain", "raw-while", "norm-constants", "norm-whole"] {
-        let line = steps.lines().find(|line| line.split_whitespace().next() == Some(name));
-        assert_eq!(line.and_then(|l| l.split_whitespace().nth(1)), Some("ok"), "{name}: {page}");
+        assert!(steps.lines().any(|line| line.starts_with(&format!("{name:<30} ok "))), "{name}: {page}");
     }
 }
 
