@@ -132,7 +132,7 @@ on-gpu-pack: setup-build ## pack what `scripts/on-gpu` needs on a machine with a
 	    strip -o "$(ON_GPU)/bin/$$test" "$$(cargo test --locked --release --no-run --test $$test 2>&1 | $(executable))"; \
 	done
 	strip -o "$(ON_GPU)/bin/speed" "$$(cargo bench --locked --no-run --bench speed 2>&1 | $(executable))"
-	cp scripts/on-gpu "$(ON_GPU)/on-gpu"
+	mkdir "$(ON_GPU)/scripts" && cp scripts/on-gpu scripts/command_line.sh "$(ON_GPU)/scripts" && cp Cargo.toml "$(ON_GPU)"
 	@size=$$(du -sm "$(ON_GPU)" | cut -f1); echo "$(ON_GPU): $$size MiB"; [ "$$size" -le 60 ]
 
 bench: setup-build ## speed, as ratios measured within one run

@@ -105,7 +105,7 @@ fn assert_conventions(program: &Path, wrong: &[(&[&str], &str)]) {
 fn examples_in_rust_keep_the_conventions() {
     run(cargo()
         .args(["build", "--quiet", "--locked"])
-        .args(["noise", "probe", "native", "lab"].iter().flat_map(|e| ["--example", e])));
+        .args(["noise", "probe", "native", "lab", "on_gpu"].iter().flat_map(|e| ["--example", e])));
     let example = |name: &str| built().join("examples").join(name);
     assert_conventions(
         &example("noise"),
@@ -115,6 +115,7 @@ fn examples_in_rust_keep_the_conventions() {
             (&["a.xyz"], "a.xyz"),
         ],
     );
+    assert_conventions(&example("on_gpu"), &[(&["no-such-step"], "no-such-step"), (&[], "no step")]);
     assert_conventions(
         &example("probe"),
         &[

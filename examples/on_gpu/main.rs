@@ -1,7 +1,7 @@
 //! Steps of `scripts/on-gpu`: each asks an OpenGL driver one question about the sky's first tables, in a process of its own, because an
 //! answer may be a GPU that hangs. Prints `RESULT ok ..`, `RESULT wrong ..` or `RESULT none ..`, or nothing where the driver does not finish.
 //!
-//! `on_gpu STEP`; `on_gpu --help` lists the steps.
+//! `on_gpu --help` lists the steps.
 
 #[cfg(target_os = "linux")]
 #[path = "../../tests/gl_host/egl.rs"]
@@ -9,6 +9,10 @@
 mod egl;
 #[cfg(target_os = "linux")]
 mod raw;
+#[cfg(target_os = "linux")]
+#[path = "../shared/mod.rs"]
+#[allow(dead_code)] // it serves several examples
+mod shared;
 #[cfg(target_os = "linux")]
 mod sky;
 
@@ -47,18 +51,27 @@ const STEPS: &[Step] = &[
 #[cfg(target_os = "linux")]
 fn main() -> std::process::ExitCode {
     use std::process::ExitCode;
+    let steps: Vec<_> = STEPS.iter().map(|(step, what, _)| format!("  {step:22} {what}")).collect();
+    let usage = format!(
+        "usage: on_gpu STEP | --help | --version\n\nWELKIN_EGL_DEVICE=N asks the OpenGL driver of EGL's device N. Steps:\n{}",
+        steps.join("\n")
+    );
+    if let Some(text) = shared::answered("on_gpu", &usage, std::env::args().skip(1)) {
+        print!("{text}");
+        return ExitCode::SUCCESS;
+    }
     let mut arguments = std::env::args().skip(1);
     let name = match (arguments.next(), arguments.next()) {
         (Some(name), None) => name,
-        _ => "--help".to_owned(),
+        (None, _) => {
+            eprintln!("on_gpu: names no step: on_gpu --help lists them");
+            return ExitCode::from(2);
+        }
+        (_, Some(more)) => {
+            eprintln!("on_gpu: unexpected argument {more}: on_gpu --help says what it takes");
+            return ExitCode::from(2);
+        }
     };
-    if name == "--help" {
-        println!(
-            "on_gpu STEP\n\nWELKIN_EGL_DEVICE=N asks the OpenGL driver of EGL's device N, 0 by default.\n\nSteps:"
-        );
-        STEPS.iter().for_each(|(step, what, _)| println!("  {step:22} {what}"));
-        return ExitCode::SUCCESS;
-    }
     env_logger::init();
     let Some((line, code)) = answer(&name) else {
         eprintln!("on_gpu: {name} is no step: on_gpu --help lists them");

@@ -1,5 +1,7 @@
 //! Devices on every driver that is there: faults, waits and losses.
 
+use std::time::Instant;
+
 use super::*;
 
 #[test]
