@@ -42,8 +42,10 @@ enum Upload {
     Written,
 }
 
+type GetStringI = unsafe extern "system" fn(u32, u32) -> *const u8;
+
 thread_local! {
-    static GET_STRING_I: Cell<Option<unsafe extern "system" fn(u32, u32) -> *const u8>> = const { Cell::new(None) };
+    static GET_STRING_I: Cell<Option<GetStringI>> = const { Cell::new(None) };
 }
 
 /// Hides that buffers can stay mapped, upon which wgpu writes them by `glBufferSubData`.
@@ -69,7 +71,7 @@ impl Gpu {
                 return found;
             }
             // SAFETY: the address is that function's.
-            GET_STRING_I.set(Some(unsafe { std::mem::transmute::<*const c_void, _>(found) }));
+            GET_STRING_I.set(Some(unsafe { std::mem::transmute::<*const c_void, GetStringI>(found) }));
             without_storage as *const c_void
         };
         // SAFETY: the context is current, and stays so until this process ends.

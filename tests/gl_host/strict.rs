@@ -120,7 +120,9 @@ fn strict_contexts_before_es_3_2_draw_the_same_picture() {
         (0, false, GlMode::HostContext),
         (0, true, GlMode::Shared),
     ] {
-        (MINOR.set(minor), IS_NULL.set(is_null), WRONG.take());
+        MINOR.set(minor);
+        IS_NULL.set(is_null);
+        WRONG.take();
         let host = Host::new(Api::Es(3, minor as i32), Window::None, mode);
         let color = image_of(texture(&host.gl, glow::RGBA8));
         let depth = image_of(texture(&host.gl, glow::DEPTH_COMPONENT32F));
