@@ -110,6 +110,17 @@ accept: setup lint docs ## the long sweeps in release, and the benchmarks, at mo
 	$(MAKE) --no-print-directory bench
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
 
+# Other drivers are fetched into target/drivers and stay there; pictures and logs too. Uses the tests' quick build.
+.PHONY: drivers drivers-all
+drivers: setup ## twelve scenes on other drivers beside this system's, with validation, at most 10 minutes
+	$(MAKE) --no-print-directory stage PROFILE=dev
+	scripts/drivers.sh "$(abspath $(TARGET_DIR))/stage/dev" "$(abspath $(TARGET_DIR))/drivers"
+
+drivers-all: setup ## every scene, gallery and lab picture on every driver: hours, outside `make accept`
+	$(MAKE) --no-print-directory host PROFILE=release
+	cargo build --locked --release --example lab
+	scripts/drivers-all.sh "$(abspath $(TARGET_DIR))/stage/release" "$(abspath $(TARGET_DIR))/drivers"
+
 gallery: host ## draw the pictures of docs/gallery.md anew, by the demo's host (GALLERY="noon fog": these alone)
 	"$(STAGE)/glfw_host/glfw_host" --data examples/data --out docs/gallery --gallery $(GALLERY)
 

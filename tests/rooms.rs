@@ -456,3 +456,15 @@ fn files_that_texts_name_stand_where_they_say() {
     let missing: Vec<String> = texts.flat_map(|path| missing(&path)).collect();
     assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
+
+/// virgl sends the output of a fragment shader that has none at location 0 to the first image (docs/drivers.md).
+#[test]
+fn a_fragment_shader_names_the_first_output() {
+    let at_fault = files("shaders", "wgsl").into_iter().flat_map(|(_, path)| {
+        let text = read(&path);
+        let alone = |line: &str| line.split_once("-> @location(").is_some_and(|(_, rest)| !rest.starts_with('0'));
+        let lines: Vec<_> = text.lines().filter(|line| alone(line)).map(str::to_string).collect();
+        lines.into_iter().map(move |line| format!("{}: {line}", path.display()))
+    });
+    assert_eq!(at_fault.collect::<Vec<_>>(), Vec::<String>::new());
+}

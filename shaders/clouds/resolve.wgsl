@@ -97,8 +97,10 @@ fn resolve_kind(in: FullscreenVarying) -> ResolvedKind {
     return ResolvedKind(pixel.seen, pixel.reach, select(0.0, KIND_DRAWN, depth < RANGE_SKY));
 }
 
-// Of the reach, the two that the first draw leaves out.
+// The two components of the reach that the first draw leaves out. Nothing else is written, but both outputs are named: virgl sends the
+// output of a shader that has none at location 0 to the first image.
 @fragment
-fn resolve_shadow(in: FullscreenVarying) -> @location(1) vec4f {
-    return vec4f(0.0, 0.0, shadow_on(vec2u(in.position.xy), frame_ndc(in.uv)));
+fn resolve_shadow(in: FullscreenVarying) -> ResolvedPixel {
+    let shadow = shadow_on(vec2u(in.position.xy), frame_ndc(in.uv));
+    return ResolvedPixel(vec4f(0.0), vec4f(0.0, 0.0, shadow));
 }

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Draws every scene with every software driver: those of tests/drivers, the gallery and the lab's. Hours; not a test of
+# its own, but what docs/drivers.md is written from. Differences are printed, a scene that is not drawn fails.
+#
+#   scripts/drivers-all.sh STAGE DIR    STAGE holds the built library and glfw_host, DIR keeps drivers and pictures
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. scripts/drivers/fetch.sh
+. scripts/drivers/run.sh
+. scripts/drivers/every.sh
+
+readonly PACKAGES=(libgl1-mesa-dri libegl1 libgl1 libvulkan1 mesa-vulkan-drivers vulkan-validationlayers virgl-server
+    libglfw3 libpng16-16t64)
+
+stage="$(realpath "$1")"
+mkdir -p "$2"
+work="$(realpath "$2")"
+newer="$work/$SUITE-all"
+angle="$work/angle"
+readonly stage work newer angle
+
+build_scenes || { echo "drivers: 0 passed, 1 failed"; exit 1; }
+mapfile -t scenes < <(on_system "$work/scenes" list)
+no_newer="$(fetch_debian "$SUITE" "$newer" "${PACKAGES[@]}")"
+no_angle="$(fetch_angle "$ANGLE" "$angle")"
+write_layer_settings
+trap stop_virgl EXIT
+
+# The reference first, then each driver with what it can draw: small scenes, gallery (OpenGL), lab (Vulkan).
+every system-vulkan vulkan on_system "" system-vulkan
+every system-gl gl on_system "" system-gl
+every lavapipe vulkan in_folder "$no_newer" system-vulkan
+every llvmpipe gl in_folder "$no_newer" system-gl
+every zink gl on_zink "$no_newer" llvmpipe
+every virgl gl on_virgl "$no_newer" llvmpipe
+every swiftshader vulkan on_swiftshader "$no_angle" system-vulkan
+every angle es31 on_angle "$no_angle" system-gl
+every mesa-es es31 on_system "" system-gl
+finish
