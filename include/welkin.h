@@ -3044,7 +3044,7 @@ typedef struct wk_celestial {
     double lit;
     /** Vertical over horizontal diameter of the disc. */
     double flattening;
-    /** Share of its direct light that clouds let through. */
+    /** Share of its direct light that clouds above the place let through, on the mean over places at its height. */
     double direct_share;
 } wk_celestial;
 
@@ -3165,8 +3165,9 @@ wk_status wk_context_get_moon_at(const wk_context *context,
                                  wk_celestial *out_moon);
 
 /**
- * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. `position_size`
- * and `light_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
+ * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Clouds count by what of
+ * them lies above a place, as the mean over places at its height. `position_size` and `light_size` are the bytes from one
+ * element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
  * Thread: concurrent.
  */
 WK_API
@@ -5713,7 +5714,7 @@ typedef struct wk_cloud_shadows {
      * horizon. The texture means nothing then.
      */
     double told;
-    /** Height over the plane of the lowest clouds, m: from there on shadows are not told apart. */
+    /** Height over the plane, m, from which on shadows are not told apart: 100 m above the base of the lowest clouds. */
     double top_m;
 } wk_cloud_shadows;
 

@@ -56,7 +56,7 @@ pub struct wk_cloud_shadows {
     /// How far shadows are told apart, 0 to 1: 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and under a light near the
     /// horizon. The texture means nothing then.
     pub told: f64,
-    /// Height over the plane of the lowest clouds, m: from there on shadows are not told apart.
+    /// Height over the plane, m, from which on shadows are not told apart: 100 m above the base of the lowest clouds.
     pub top_m: f64,
 }
 

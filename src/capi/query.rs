@@ -60,7 +60,7 @@ pub struct wk_celestial {
     pub lit: f64,
     /// Vertical over horizontal diameter of the disc.
     pub flattening: f64,
-    /// Share of its direct light that clouds let through.
+    /// Share of its direct light that clouds above the place let through, on the mean over places at its height.
     pub direct_share: f64,
 }
 
@@ -254,8 +254,9 @@ pub(super) fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64>
     Ok(time_s)
 }
 
-/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. `position_size`
-/// and `light_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
+/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Clouds count by what of
+/// them lies above a place, as the mean over places at its height. `position_size` and `light_size` are the bytes from one
+/// element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(

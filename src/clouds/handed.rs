@@ -23,7 +23,7 @@ pub struct CloudShadows {
     pub mean_share: f64,
     /// How far shadows are told apart, 0 to 1: 0 without broken clouds, with the deck, and under a light near the horizon.
     pub told: f64,
-    /// Height over the plane of the lowest clouds, m: from there on shadows are not told apart.
+    /// Height over the plane, m, from which on shadows are not told apart: 100 m above the base of the lowest clouds.
     pub top_m: f64,
 }
 

@@ -31,6 +31,8 @@ mod layer_map;
 pub mod light;
 pub mod map;
 mod march;
+#[cfg(test)]
+mod mean_light;
 mod overhead;
 mod passes;
 mod picture;

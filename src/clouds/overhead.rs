@@ -227,23 +227,19 @@ impl Layer {
     }
 }
 
-/// Light on a layer from sun, sky and the layers above it, and from the ground; times `exposure`.
+/// Light on a layer from sun, sky and the layers above it, and from the ground and the layers below it; times `exposure`. It depends on where
+/// the layer lies, not on where the eye is.
 pub(super) fn light_on(scene: &Scene, shape: &Shape, exposure: f64) -> LayerLight {
-    let light = scene.brighter();
+    let (c, light) = (&scene.conditions, scene.brighter());
     let albedo = scene.ground_albedo;
     let top_m = shape.base_m + shape.thickness_m;
-    let over = scene.conditions.cloud_light_at(light.direction.z, albedo[1], top_m);
+    let over = c.cloud_light_at(light.direction.z, albedo[1], top_m);
     let (direct, sky) = light_above_clouds(scene, top_m);
     let level = light.direction.z.max(0.0);
-    let ground = &scene.ground;
-    let total = |i: usize| {
-        let direct =
-            ground.sun_lux[i] * scene.sun.direction.z.max(0.0) + ground.moon_lux[i] * scene.moon.direction.z.max(0.0);
-        (direct + ground.sky_lux[i]) * albedo[i] / PI * exposure
-    };
+    let under = albedo.map(|albedo| c.light_up_at(light.direction.z, albedo, shape.base_m));
     LayerLight {
         sun: direct.map(|v| v * over.direct * exposure),
         above: [0, 1, 2].map(|i| (sky[i] * over.sky + direct[i] * level * over.diffuse) / PI * exposure),
-        below: [0, 1, 2].map(total),
+        below: [0, 1, 2].map(|i| (direct[i] * level * under[i][0] + sky[i] * under[i][1]) / PI * exposure),
     }
 }

@@ -19,16 +19,18 @@ const STEPS: usize = 32;
 pub const LOWEST: f64 = 0.03;
 
 /// Optical depth of a layer on the way of light to a place (east, north, above the sea), m; `to_light` is a unit vector.
-fn depth(field: &Field<'_>, place_m: DVec3, to_light: DVec3) -> f64 {
+pub(super) fn depth(field: &Field<'_>, place_m: DVec3, to_light: DVec3) -> f64 {
     let s = &field.shape;
     let (from, to) = ((s.base_m - place_m.z).max(0.0), s.base_m + s.thickness_m - place_m.z);
     if to <= from {
         return 0.0;
     }
     let step = (to - from) / STEPS as f64;
-    let slant = to_light / to_light.z.max(LOWEST);
+    // Of a light below the horizon too, the way leads up.
+    let to_light = to_light.with_z(to_light.z.max(LOWEST));
+    let slant = to_light / to_light.z;
     let at = |i: usize| field.extinction_per_m(place_m + slant * (from + (i as f64 + 0.5) * step));
-    (0..STEPS).map(at).sum::<f64>() * step / to_light.z.max(LOWEST)
+    (0..STEPS).map(at).sum::<f64>() * step / to_light.z
 }
 
 /// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place.

@@ -34,6 +34,8 @@ const COARSE: u32 = 64;
 /// Rows that a frame makes anew, once as many have grown old, and in every frame while some of the map is coarse: in sixteen frames none is, as
 /// none of the picture is old.
 const ROWS: u32 = 32;
+/// Height above the lowest base over which, in the clouds themselves, shadows go over to the mean, m: that of the shaders and snippets.
+const ENDS_M: f64 = 100.0;
 /// Sines of the light's elevation between which shadows begin to be told apart.
 const TOLD: [f64; 2] = [LOWEST, 0.07];
 /// Time between two frames, s, the light's turn, and the change of a layer's threshold after which nothing of the map is kept.
@@ -159,7 +161,7 @@ impl Lie {
             period_m,
             mean: light.direct_share,
             told: smoothstep(TOLD[0], TOLD[1], light.direction.z),
-            top_m: (lowest_m - plane_m).max(0.0),
+            top_m: (lowest_m - plane_m).max(0.0) + ENDS_M,
             haze: haze(scene),
         }
     }

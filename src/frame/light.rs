@@ -16,11 +16,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::{ColorSpace, Frame, ToneCurve};
-use crate::{
-    context::Context,
-    error::Result,
-    light::{luminance, tone::srgb_encode},
-};
+use crate::{context::Context, error::Result, light::tone::srgb_encode};
 
 /// Albedo of the photographer's grey card.
 const GREY: f64 = 0.18;
@@ -52,8 +48,7 @@ impl Frame<'_> {
         let scene = context.scene_at(self.camera.position, context.time_s())?;
         let exposure = self.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
         let ground = &scene.ground;
-        let of_moon = luminance(&ground.moon_lux) > luminance(&ground.sun_lux);
-        let (main, facing, other, rest) = if of_moon {
+        let (main, facing, other, rest) = if scene.moon_is_brighter {
             (&scene.moon, ground.moon_lux, &scene.sun, ground.sun_lux)
         } else {
             (&scene.sun, ground.sun_lux, &scene.moon, ground.moon_lux)

@@ -227,16 +227,19 @@ fn kept(storms: &Storms<'_>, near_m: DVec2, time_s: f64) -> bool {
     limit::is_drawn(time_s, &times)
 }
 
+/// Depth over which what falls sets in below its cloud, m: `ONSET_M` of [`crate::falling`].
+const ONSET_M: f64 = 100.0;
+
 /// What scatters in the air about a camera, 1/m: air and haze, fog inside of it, and what falls below the clouds.
-fn scattering_per_m(c: &Conditions, altitude_m: f64, clouds: Option<CloudSpan>) -> f64 {
+fn scattering_per_m(c: &Conditions, altitude_m: f64) -> f64 {
     let height = altitude_m - c.air.station_altitude_m;
     let thin = |scale: f64| (-height.max(0.0) / scale.max(1.0)).exp();
     let air = c.air.rayleigh_extinction_per_m * thin(c.air.rayleigh_scale_height_m);
     let haze = c.aerosol.extinction_per_m * thin(c.aerosol.scale_height_m);
-    let in_fog = (c.fog.base_m..c.fog.top_m).contains(&height.max(0.0));
-    let fog = if in_fog { c.fog.extinction_per_m * c.fog.coverage } else { 0.0 };
-    let falls = clouds.is_none_or(|span| altitude_m < span.base_m);
-    air + haze + fog + if falls { c.precipitation.extinction_per_m() } else { 0.0 }
+    let thinned = ((c.fog.top_m - height.max(0.0)) / c.fog.softness_m.max(1.0)).clamp(0.0, 1.0);
+    let fog = if height.max(0.0) >= c.fog.base_m { c.fog.extinction_per_m * c.fog.coverage * thinned } else { 0.0 };
+    let falls = ((c.falling_top_m() + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0);
+    air + haze + fog + c.precipitation.extinction_per_m() * falls
 }
 
 impl Lit {
@@ -254,7 +257,7 @@ impl Lit {
         let cover = c.cloud_slabs().fold(1.0, |clear, s| clear * (1.0 - s.cover));
         block.flash_cover = if clouds.is_some() { (1.0 - cover) as f32 } else { 0.0 };
         block.flash_haze = (TAKES * (c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m)) as f32;
-        block.flash_scattering = scattering_per_m(c, self.eye_m, clouds) as f32;
+        block.flash_scattering = scattering_per_m(c, self.eye_m) as f32;
         for (uniform, (source, position)) in block.flashes.iter_mut().zip(&self.sources[..self.count]) {
             let height = (position.z - (face_m - self.eye_m)).abs().max(30.0);
             *uniform = FlashUniform {

@@ -159,7 +159,7 @@ pub struct Light {
     pub illuminance_lux: [f64; 3],
     /// Vertical over horizontal diameter of the disc, flattened by refraction.
     pub flattening: f64,
-    /// Share of the direct light that clouds let through.
+    /// Share of the direct light that clouds above the place let through, on the mean over places at its height.
     pub direct_share: f64,
     /// Whether it adds to the picture.
     pub matters: bool,
@@ -205,6 +205,8 @@ pub struct Scene {
     pub moon: Light,
     /// Linear Rec. 709 colours, cd/m^2 or lux, of light at the planet's three wavelengths under the sun of 1 au.
     pub color: [[f64; 3]; 3],
+    /// The moon gives more light here than the sun, above clouds and fog: under both, whichever stands higher would be left.
+    pub moon_is_brighter: bool,
     /// Light on the ground.
     pub ground: GroundLight,
     /// Share of it that the ground sends up again, at the planet's three wavelengths: the planet's, and as much as snow covers of it that
@@ -223,9 +225,9 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Whichever of sun and moon gives more light here.
+    /// Whichever of sun and moon gives more light here, above clouds and fog.
     pub fn brighter(&self) -> &Light {
-        if self.ground.sun_lux[1] >= self.ground.moon_lux[1] { &self.sun } else { &self.moon }
+        if self.moon_is_brighter { &self.moon } else { &self.sun }
     }
 
     /// Sun and moon, as far as they light the picture.

@@ -2,7 +2,7 @@
 
 use super::conditions::{CloudLightOverride, Conditions, clear_between};
 use super::model::Weather;
-use super::{air, cloud_light, hydrometeors, particles, surface};
+use super::{air, cloud_slabs, hydrometeors, particles, surface};
 use crate::error::{Result, check_range};
 
 /// The host's own figures in place of a coupling's. `None` leaves the law in force; default all `None`.
@@ -94,7 +94,7 @@ pub fn derive_with(weather: &Weather, overrides: &Overrides) -> Result<Condition
     let wind = surface::wind_profile(w);
     let mut ground = surface::surface_cover(&w.surface, w.temperature_c, w.relative_humidity, &falling);
     ground.wetness = o.wetness.unwrap_or(ground.wetness);
-    let clouds = cloud_light::cloud_slabs(w, &wind, o.rain_needs_cloud.unwrap_or(true));
+    let clouds = cloud_slabs::cloud_slabs(w, &wind, o.rain_needs_cloud.unwrap_or(true));
     Ok(Conditions {
         extinction_per_m: air.rayleigh_extinction_per_m + shares.aerosol_per_m + counted + falling.extinction_per_m(),
         air,

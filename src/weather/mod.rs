@@ -9,6 +9,8 @@ mod aloft;
 mod blend;
 mod cloud_light;
 mod cloud_map;
+mod cloud_part;
+mod cloud_slabs;
 mod conditions;
 mod derive;
 pub mod hydrometeors;
@@ -23,10 +25,10 @@ pub mod timeline;
 mod validate;
 
 pub(crate) use blend::smoothstep;
-pub use cloud_light::{
-    CloudLight, cloud_optical_depth, slab_diffuse_reflectance, slab_reflectance, water_path_for_rate_kg_m2,
-};
+pub use cloud_light::CloudLight;
 pub use cloud_map::{CloudMap, MAX_CLOUD_MAP_CELLS};
+pub use cloud_part::{slab_diffuse_reflectance, slab_reflectance};
+pub use cloud_slabs::{cloud_optical_depth, water_path_for_rate_kg_m2};
 pub use conditions::{
     AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, GroundLayer, LN_20, SeaState, SurfaceCover,
     WindProfile,

@@ -194,7 +194,7 @@ fn lowest_base_m(w: &Weather) -> Option<f64> {
 ///
 /// Shallow fog ends at 2 m by definition (WMO-No. 306, MI). An obscured sky says that fog is deeper than one sees upwards:
 /// twice the vertical visibility, 150 m at least. Without it the sky shows through, so the fog is about one visibility deep,
-/// 20 to 150 m. Mist reaches the lowest cloud between 60 and 600 m, else 300 m. Snow blows up to some tens of metres
+/// 20 to 150 m. Mist reaches the lowest cloud up to 600 m, 60 m at least, else 300 m. Snow blows up to some tens of metres
 /// (Budd, Dingle and Radok 1966) and drifts below eye height; spray keeps to 10 m.
 fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
     let through = (LN_20 / ground_per_m.max(1e-9)).clamp(20.0, 150.0);
@@ -208,7 +208,7 @@ fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
         (_, LoftedKind::DriftingSnow | LoftedKind::DriftingDust) => 1.5,
         (_, LoftedKind::BlowingSpray) => 10.0,
         _ if w.visibility_m < 1000.0 => w.vertical_visibility_m.map_or(through, |vv| (2.0 * vv).clamp(150.0, 600.0)),
-        _ => lowest_base_m(w).filter(|b| (60.0..=600.0).contains(b)).unwrap_or(300.0),
+        _ => lowest_base_m(w).filter(|b| *b <= 600.0).map_or(300.0, |b| b.max(60.0)),
     }
 }
 

@@ -219,7 +219,8 @@ impl World {
         let overhead = under_areas.as_ref().unwrap_or(shown);
         let lights = self.lights_over(&local.place, (overhead, land.albedo), time_s)?;
         let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;
-        let above_fog = self.ground_light((&planet, &local.place), (overhead, ground_albedo), &lights, night_lux);
+        let (above_fog, moon_is_brighter) =
+            self.ground_light((&planet, &local.place), (overhead, ground_albedo), &lights, night_lux);
         let [(sun, under_sun), (moon, _)] = lights;
         // Only patches and curtains show where the air has gone.
         let patchy = conditions.fog.is_patchy();
@@ -241,6 +242,7 @@ impl World {
             deck_cd_m2: above_fog.sky_lux.map(|e| e * 9.0 / (7.0 * PI)),
             deck_cover,
             medium_share: medium_share(&under_sun),
+            moon_is_brighter,
             ground: above_fog,
             ground_albedo,
             above_fog,
@@ -318,13 +320,14 @@ impl World {
         Ok((map(UNSEEN_NIGHT_CD_M2, lux.map(|e| e / PI), between), map(day, lux, between)))
     }
 
+    /// The light on the ground, and whether of direct light the moon gives more than the sun, clouds left out.
     fn ground_light(
         &self,
         (planet, place): (&Planet, &Place),
         (c, albedo): (&Conditions, [f64; 3]),
         lights: &[UnderClouds; 2],
         night_lux: [f64; 3],
-    ) -> GroundLight {
+    ) -> (GroundLight, bool) {
         let cloud_top_m = c.lit_top_m(place.altitude_m);
         let one = |(light, clouds): &UnderClouds| {
             let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
@@ -334,11 +337,13 @@ impl World {
             // What clouds pass on diffusely fell on their tops, through less air.
             let (on_top, _) = at(cloud_top_m);
             let level = light.direction.z.max(0.0);
-            (direct.map(|d| d * clouds.direct), map(on_top, sky, |d, s| s * clouds.sky + d * level * clouds.diffuse))
+            let diffuse = map(on_top, sky, |d, s| s * clouds.sky + d * level * clouds.diffuse);
+            (direct[1], direct.map(|d| d * clouds.direct), diffuse)
         };
-        let ((sun_lux, sun_sky), (moon_lux, moon_sky)) = (one(&lights[0]), one(&lights[1]));
+        let ((sun_clear, sun_lux, sun_sky), (moon_clear, moon_lux, moon_sky)) = (one(&lights[0]), one(&lights[1]));
         let sky_lux = [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + night_lux[i]);
-        GroundLight::new([sun_lux, moon_lux, sky_lux], [&lights[0].0, &lights[1].0], place.altitude_m)
+        let light = GroundLight::new([sun_lux, moon_lux, sky_lux], [&lights[0].0, &lights[1].0], place.altitude_m);
+        (light, moon_clear > sun_clear)
     }
 }
 

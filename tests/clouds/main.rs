@@ -21,3 +21,4 @@ mod shadows;
 mod shafts;
 #[path = "../support/textures.rs"]
 mod textures;
+mod told;

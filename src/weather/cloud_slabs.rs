@@ -1,0 +1,226 @@
+//! Clouds as slabs of water: what a layer that the host or a report states is made of. [`super::cloud_light`] has their light.
+
+use super::conditions::{CloudSlab, WindProfile};
+use super::kinds::{CloudKind, PrecipitationKind};
+use super::model::{CloudLayer, MAX_CLOUD_LAYERS, Weather};
+
+/// What a kind of cloud is made of, as means over its depth, and how it looks.
+struct Substance {
+    thickness_m: f64,
+    water_g_m3: f64,
+    droplet_radius_um: f64,
+    convection: f64,
+    ice_fraction: f64,
+    /// Distance from cloud to cloud over the thickness, for a layer of that thickness and near it.
+    spacing: f64,
+    cellular: f64,
+    fibre: f64,
+}
+
+/// Water and droplets of stratus and cumulus from Diem (1948) and aufm Kampe and Weickmann (1957) as commonly tabulated
+/// (stratus 0.2 g/m^3, 7 um; fair cumulus 0.5, 4). Towering cumulus fills half of its layer with the 2.5 g/m^3 of its core; a
+/// cumulonimbus is diluted by entrainment; ice from Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud
+/// atlas). Cells of stratocumulus are some three to five times as wide as deep, elements of altocumulus 1 to 5 degrees wide (WMO
+/// cloud atlas).
+fn substance(kind: CloudKind) -> Substance {
+    let s = |[thickness_m, water_g_m3, droplet_radius_um]: [f64; 3],
+             convection,
+             ice_fraction,
+             [spacing, cellular, fibre]: [f64; 3]| Substance {
+        thickness_m,
+        water_g_m3,
+        droplet_radius_um,
+        convection,
+        ice_fraction,
+        spacing,
+        cellular,
+        fibre,
+    };
+    match kind {
+        CloudKind::Stratus | CloudKind::Unknown => s([300.0, 0.2, 7.0], 0.0, 0.0, [8.0, 0.0, 0.0]),
+        CloudKind::Stratocumulus => s([400.0, 0.3, 8.0], 0.2, 0.0, [3.5, 0.7, 0.0]),
+        CloudKind::Cumulus => s([500.0, 0.5, 4.0], 0.5, 0.0, [2.0, 0.0, 0.0]),
+        CloudKind::ToweringCumulus => s([3000.0, 1.2, 10.0], 0.8, 0.1, [1.5, 0.0, 0.0]),
+        CloudKind::Cumulonimbus => s([9000.0, 0.6, 15.0], 1.0, 0.5, [1.5, 0.0, 0.0]),
+        CloudKind::Nimbostratus => s([3000.0, 0.3, 10.0], 0.0, 0.3, [3.0, 0.0, 0.0]),
+        CloudKind::Altocumulus => s([400.0, 0.1, 8.0], 0.3, 0.0, [1.8, 1.0, 0.0]),
+        CloudKind::Altostratus => s([1500.0, 0.05, 10.0], 0.0, 0.5, [4.0, 0.0, 0.2]),
+        CloudKind::Cirrus => s([1000.0, 0.005, 30.0], 0.1, 1.0, [5.0, 0.0, 1.0]),
+        CloudKind::Cirrostratus => s([1500.0, 0.01, 30.0], 0.0, 1.0, [10.0, 0.0, 0.4]),
+        CloudKind::Cirrocumulus => s([300.0, 0.01, 20.0], 0.3, 1.0, [1.2, 1.0, 0.2]),
+    }
+}
+
+/// How far from its kind's thickness a layer's clouds still grow wider or narrower with it.
+const WIDER: f64 = 3.0;
+
+/// Bases at which low, middle and high clouds divide, m (WMO levels of temperate latitudes).
+const MIDDLE_FROM_M: f64 = 2000.0;
+const HIGH_FROM_M: f64 = 6000.0;
+
+/// The kind of a layer whose kind nobody named: by level, by cover (more than half is a sheet), and by what falls from it
+/// (`raining` is more than drizzle, which falls from stratus).
+fn likely_kind(layer: &CloudLayer, raining: bool, showers: bool) -> CloudKind {
+    let sheet = layer.cover > 0.5;
+    match (layer.base_m, sheet) {
+        (b, true) if b < MIDDLE_FROM_M && raining && !showers => CloudKind::Nimbostratus,
+        (b, _) if b < MIDDLE_FROM_M && raining && showers => CloudKind::ToweringCumulus,
+        (b, true) if b < 450.0 => CloudKind::Stratus,
+        (b, true) if b < MIDDLE_FROM_M => CloudKind::Stratocumulus,
+        (b, false) if b < 150.0 => CloudKind::Stratus,
+        (b, false) if b < MIDDLE_FROM_M => CloudKind::Cumulus,
+        (b, true) if b < HIGH_FROM_M => CloudKind::Altostratus,
+        (b, false) if b < HIGH_FROM_M => CloudKind::Altocumulus,
+        (_, true) => CloudKind::Cirrostratus,
+        (_, false) => CloudKind::Cirrus,
+    }
+}
+
+/// Optical depth of water of `water_path_kg_m2` in droplets of `radius_um`: tau = 3 W / (2 rho r) (Stephens 1978), rho that of
+/// water or ice.
+pub fn cloud_optical_depth(water_path_kg_m2: f64, radius_um: f64, ice_fraction: f64) -> f64 {
+    let density = 1000.0 + (917.0 - 1000.0) * ice_fraction;
+    1.5 * water_path_kg_m2 / (density * radius_um * 1e-6)
+}
+
+/// Water that a cloud must hold for the rate it lets fall, kg/m^2: the rate over the pace at which cloud water turns into rain
+/// (Kessler 1969), 1e-3 1/s by drops growing together and 2.2 q^0.875 1/s by falling rain sweeping droplets up. q, rain water
+/// in air (kg/kg, density 1.2 kg/m^3), follows the rate by Marshall and Palmer's 0.072 R^0.88 g/m^3.
+pub fn water_path_for_rate_kg_m2(rate_mm_h: f64) -> f64 {
+    if rate_mm_h <= 0.0 {
+        return 0.0;
+    }
+    let rain_water = 0.072e-3 * libm::pow(rate_mm_h, 0.88) / 1.2;
+    rate_mm_h / 3600.0 / (1e-3 + 2.2 * libm::pow(rain_water, 0.875))
+}
+
+/// One layer as a slab, with `least_water_kg_m2` of water at least where there is cloud.
+fn slab(layer: &CloudLayer, kind: CloudKind, least_water_kg_m2: f64, wind: &WindProfile) -> CloudSlab {
+    let s = substance(kind);
+    let thickness = layer.thickness_m.unwrap_or(s.thickness_m);
+    let radius = layer.droplet_radius_um.unwrap_or(s.droplet_radius_um);
+    let water = (layer.water_g_m3.unwrap_or(s.water_g_m3) * 1e-3 * thickness).max(least_water_kg_m2);
+    CloudSlab {
+        cover: layer.cover,
+        base_m: layer.base_m,
+        thickness_m: thickness,
+        optical_depth: cloud_optical_depth(water, radius, s.ice_fraction),
+        droplet_radius_um: radius,
+        asymmetry: 0.85 + (0.77 - 0.85) * s.ice_fraction,
+        convection: s.convection,
+        ice_fraction: s.ice_fraction,
+        scale_m: layer
+            .spacing_m
+            .unwrap_or_else(|| s.spacing * thickness.clamp(s.thickness_m / WIDER, s.thickness_m * WIDER)),
+        cellular: s.cellular,
+        fibre: s.fibre,
+        wind_m_s: carrying_wind(layer, thickness, wind),
+        life_s: layer.life_s.unwrap_or(CloudSlab::NONE.life_s),
+    }
+}
+
+/// The wind that carries a layer: its own, or the weather's at its middle.
+fn carrying_wind(layer: &CloudLayer, thickness_m: f64, wind: &WindProfile) -> [f64; 2] {
+    let Some(own) = layer.wind else { return wind.mean_at_height_m_s(layer.base_m + 0.5 * thickness_m) };
+    let (sine, cosine) = libm::sincos(own.from_deg.to_radians());
+    [-own.speed_m_s * sine, -own.speed_m_s * cosine]
+}
+
+/// Index of the layer from which rain falls: the lowest that covers half the sky, else the one that covers most.
+fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
+    let low = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.base_m.total_cmp(&b.1.base_m);
+    let most = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.cover.total_cmp(&b.1.cover);
+    let all: Vec<(usize, &CloudLayer)> = layers.iter().enumerate().filter(|(_, l)| l.cover > 0.0).collect();
+    let tower = |k| matches!(k, CloudKind::Cumulonimbus | CloudKind::ToweringCumulus | CloudKind::Nimbostratus);
+    all.iter()
+        .find(|(_, l)| tower(l.kind))
+        .or_else(|| all.iter().filter(|(_, l)| l.cover >= 0.5).min_by(low))
+        .or_else(|| all.iter().max_by(most))
+        .map(|(i, _)| *i)
+}
+
+/// The slabs of the weather, each in the slot of its level so that a blend pairs low with low and high with high.
+///
+/// Rain needs cloud: the layer it falls from holds [`water_path_for_rate_kg_m2`] at least, and where the host named no cloud
+/// at all an overcast of nimbostratus at 600 m is there (`rain_needs_cloud` false switches both off). Ice crystals fall from
+/// a clear sky.
+pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: bool) -> [CloudSlab; MAX_CLOUD_LAYERS] {
+    let p = &w.precipitation;
+    let raining = p.rate_mm_h > 0.0 && p.kind != PrecipitationKind::IceCrystals;
+    let showers = p.showers || p.thunderstorm;
+    let drizzle = matches!(p.kind, PrecipitationKind::Drizzle | PrecipitationKind::FreezingDrizzle);
+    let mut layers = w.clouds.clone();
+    if raining && rain_needs_cloud && layers.iter().all(|l| l.cover <= 0.0) {
+        layers.clear();
+        layers.push(CloudLayer::new(1.0, 600.0));
+    }
+    let source = if raining { rain_layer(&layers) } else { None };
+    let mut made: Vec<CloudSlab> = Vec::with_capacity(layers.len());
+    for (i, layer) in layers.iter().enumerate().filter(|(_, l)| l.cover > 0.0) {
+        let rains = source == Some(i);
+        let known =
+            if layer.kind == CloudKind::Unknown { likely_kind(layer, rains && !drizzle, showers) } else { layer.kind };
+        let water = if rains && rain_needs_cloud { water_path_for_rate_kg_m2(p.rate_mm_h) } else { 0.0 };
+        made.push(slab(layer, known, water, wind));
+    }
+    into_slots(made)
+}
+
+/// First slots of low, middle and high clouds.
+const LEVEL_SLOTS: [usize; 3] = [0, 7, 11];
+
+/// Puts slabs, lowest first, into the slots of their level; where one has more than slots, the others make room. Slots are then
+/// in the order of heights, which is how light goes through them ([`Conditions::cloud_light`]).
+fn into_slots(mut slabs: Vec<CloudSlab>) -> [CloudSlab; MAX_CLOUD_LAYERS] {
+    slabs.sort_by(|a, b| a.base_m.total_cmp(&b.base_m));
+    let below = |limit_m: f64| slabs.partition_point(|s| s.base_m < limit_m);
+    let (middle, high) = (below(MIDDLE_FROM_M), below(HIGH_FROM_M));
+    let first_high =
+        (LEVEL_SLOTS[1].max(middle) + high - middle).max(LEVEL_SLOTS[2]).min(MAX_CLOUD_LAYERS - (slabs.len() - high));
+    let first_middle = LEVEL_SLOTS[1].max(middle).min(first_high - (high - middle));
+    let mut slots = [CloudSlab::NONE; MAX_CLOUD_LAYERS];
+    for (i, s) in slabs.into_iter().enumerate() {
+        let first = if i < middle {
+            0
+        } else if i < high {
+            first_middle - middle
+        } else {
+            first_high - high
+        };
+        slots[first + i] = s;
+    }
+    slots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet(optical_depth: f64, base_m: f64) -> CloudSlab {
+        CloudSlab { cover: 1.0, base_m, optical_depth, ..CloudSlab::NONE }
+    }
+
+    #[test]
+    fn published_extinctions_of_three_clouds() {
+        // 3 LWC / (2 rho r): congestus 2.5 g/m^3 in 10 um droplets is 0.375 1/m.
+        assert!((cloud_optical_depth(2.5e-3, 10.0, 0.0) - 0.375).abs() < 1e-12);
+        assert!((cloud_optical_depth(0.2e-3, 7.0, 0.0) - 0.042_857).abs() < 1e-6);
+    }
+
+    #[test]
+    fn rain_clouds_hold_about_a_kilogram_a_square_metre() {
+        // The order that microwave radiometers retrieve in rain: 0.2 kg/m^2 in light to about 1.5 in heavy rain.
+        let paths = [0.1, 1.0, 5.0, 20.0, 100.0].map(water_path_for_rate_kg_m2);
+        assert!(paths.windows(2).all(|p| p[1] > p[0]), "{paths:?}");
+        assert!((0.1..0.3).contains(&paths[1]) && (0.7..1.5).contains(&paths[3]) && paths[4] < 3.0, "{paths:?}");
+        assert_eq!(water_path_for_rate_kg_m2(0.0), 0.0);
+    }
+
+    #[test]
+    fn slots_keep_levels_apart_and_take_sixteen() {
+        let slabs: Vec<CloudSlab> = (0..16).map(|i| sheet(1.0, 100.0 * f64::from(i))).collect();
+        assert_eq!(into_slots(slabs).iter().filter(|s| s.cover > 0.0).count(), 16);
+        let slots = into_slots(vec![sheet(1.0, 9000.0), sheet(1.0, 500.0), sheet(1.0, 3000.0)]);
+        assert_eq!([slots[0].base_m, slots[7].base_m, slots[11].base_m], [500.0, 3000.0, 9000.0]);
+    }
+}
