@@ -201,7 +201,8 @@ pub(crate) fn over_place(
         let radius_m = (semi_m.x * semi_m.y).sqrt();
         open * (1.0 - view_factor(radius_m, height_m, (away / semi_m).length() * radius_m))
     });
-    Ok(Some(CloudSlab { cover: 1.0 - open, ..slab }))
+    // Where it is, it is whole: none of its cover is gaps between clouds.
+    Ok(Some(CloudSlab { cover: 1.0 - open, scale_m: f64::INFINITY, ..slab }))
 }
 
 /// The layer that a rain area brings where none is there that could make its rain, but for base and cover.

@@ -124,7 +124,7 @@ impl<'a> CloudRays<'a> {
         let lit = |(i, layer): (usize, &super::overhead::Layer)| Lit {
             field: grown.field(overhead, i),
             share: layer.share,
-            light: light_on(scene, &layer.shape, 1.0),
+            light: light_on(scene, (&layer.shape, overhead.is_placed()), 1.0),
             medium: layer.medium(),
             scale: media[layer.medium()].scattering.scale(),
         };

@@ -201,7 +201,7 @@ impl Overhead {
         let (mut light, mut clear, mut over) = ([0.0; 3], 1.0, f64::INFINITY);
         for layer in self.layers() {
             let (shape, cover) = (&layer.shape, layer.slab.cover);
-            let of = light_on(scene, shape, 1.0);
+            let of = light_on(scene, (shape, self.is_placed()), 1.0);
             // Bohren 1987 (American Journal of Physics 55, 524): what even cloud lets through, of g 0.85.
             let through = 2.0 / (2.0 + 0.15 * layer.slab.optical_depth);
             let is_over = shape.base_m > scene.place.altitude_m;
@@ -228,18 +228,28 @@ impl Layer {
 }
 
 /// Light on a layer from sun, sky and the layers above it, and from the ground and the layers below it; times `exposure`. It depends on where
-/// the layer lies, not on where the eye is.
-pub(super) fn light_on(scene: &Scene, shape: &Shape, exposure: f64) -> LayerLight {
+/// the layer lies, not on where the eye is. Only of clouds that a map or rain areas place is the ground under them not known: it counts as
+/// the ground at the eye.
+pub(super) fn light_on(scene: &Scene, (shape, is_placed): (&Shape, bool), exposure: f64) -> LayerLight {
     let (c, light) = (&scene.conditions, scene.brighter());
     let albedo = scene.ground_albedo;
     let top_m = shape.base_m + shape.thickness_m;
     let over = c.cloud_light_at(light.direction.z, albedo[1], top_m);
     let (direct, sky) = light_above_clouds(scene, top_m);
     let level = light.direction.z.max(0.0);
-    let under = albedo.map(|albedo| c.light_up_at(light.direction.z, albedo, shape.base_m));
+    let ground = &scene.ground;
+    let at_eye = |i: usize| {
+        let direct =
+            ground.sun_lux[i] * scene.sun.direction.z.max(0.0) + ground.moon_lux[i] * scene.moon.direction.z.max(0.0);
+        (direct + ground.sky_lux[i]) * albedo[i]
+    };
+    let under = |i: usize| {
+        let [beam, even] = c.light_up_at(light.direction.z, albedo[i], shape.base_m);
+        direct[i] * level * beam + sky[i] * even
+    };
     LayerLight {
         sun: direct.map(|v| v * over.direct * exposure),
         above: [0, 1, 2].map(|i| (sky[i] * over.sky + direct[i] * level * over.diffuse) / PI * exposure),
-        below: [0, 1, 2].map(|i| (direct[i] * level * under[i][0] + sky[i] * under[i][1]) / PI * exposure),
+        below: [0, 1, 2].map(|i| if is_placed { at_eye(i) } else { under(i) } / PI * exposure),
     }
 }

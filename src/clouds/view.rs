@@ -160,7 +160,7 @@ impl Overhead {
         let mut layers = [bytemuck::Zeroable::zeroed(); LAYERS];
         for (to, layer) in layers.iter_mut().zip(self.layers()) {
             let of = (layer.medium(), &passes.tables.light.media[layer.medium()].scattering);
-            let light = light_on(scene, &layer.shape, exposure);
+            let light = light_on(scene, (&layer.shape, self.is_placed()), exposure);
             *to = LayerUniform::new(&layer.shape, layer.share, self.place_m, &light, of);
         }
         self.place_uniforms(&mut layers);

@@ -40,9 +40,9 @@ impl CloudSlab {
         (2.0 * self.convection).min(1.0) * (1.0 - self.cellular)
     }
 
-    /// How far it is closed, 0 to 1.
+    /// How far it is closed, 0 to 1: a whole wherever it is, too, which has no next cloud.
     fn closed(&self) -> f64 {
-        smoothstep(CLOSES[0], CLOSES[1], self.cover)
+        if self.scale_m.is_finite() { smoothstep(CLOSES[0], CLOSES[1], self.cover) } else { 1.0 }
     }
 
     /// Share of its cover and of its optical depth above a height, of 1 from base to top.
