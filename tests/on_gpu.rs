@@ -65,7 +65,16 @@ fn a_software_driver_answers_every_step_right() {
     let decision = page.split("\nSTEPS\n").next().unwrap();
     assert!(decision.contains("DECISION\nNO HANG") && decision.contains("The whole sky is drawn too"), "{page}");
     let steps = page.split("\nSTEPS\n").nth(1).unwrap().split("\n\n").next().unwrap();
-    for name in ["vulkan", "opengl", "blocks-read", "blocks-drawn-plain", "raw-while", "norm-constants", "norm-whole"] {
+    for name in [
+        "vulkan",
+        "opengl",
+        "blocks-read",
+        "blocks-drawn-plain",
+        "raw-while",
+        "norm-constants",
+        "norm-whole",
+        "norm-uncapped",
+    ] {
         assert!(steps.lines().any(|line| line.starts_with(&format!("{name:<30} ok "))), "{name}: {page}");
     }
 }
@@ -79,7 +88,9 @@ fn the_decision_follows_what_the_steps_found() {
         ("uploads", "norm|norm-own", "none", false, "CAUSE 1, blocks: loops end with constants"),
         ("compiler", loops, "none", false, "CAUSE 2, the compiler"),
         ("contexts", "none", "none", true, "CAUSE 3, two contexts"),
+        ("garbage", "none", "norm|norm-own", false, "CAUSE 1, blocks: loops end with constants"),
         ("whole", "norm-whole", "none", false, "NONE OF THE THREE"),
+        ("caps", "norm-uncapped", "none", false, "MENDED"),
         ("nothing", "opengl", "none", false, "UNDECIDED: OpenGL does not come up"),
     ] {
         let on_gpu = format!(

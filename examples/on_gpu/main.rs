@@ -45,6 +45,7 @@ const STEPS: &[Step] = &[
     ("norm-plain", "a texel of the first table, blocks written by glBufferSubData", sky::norm_plain),
     ("norm-own", "a texel of the first table in wgpu's own context", sky::norm_own),
     ("norm-whole", "the whole first table in one draw", sky::norm_whole),
+    ("norm-uncapped", "a texel of the first table without the caps of its loops", sky::norm_uncapped),
     ("welkin-own", "a device of Welkin's own on OpenGL, and its whole sky", sky::welkin_own),
 ];
 

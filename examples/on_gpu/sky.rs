@@ -44,6 +44,17 @@ enum Upload {
 
 type GetStringI = unsafe extern "system" fn(u32, u32) -> *const u8;
 
+/// Where the loops of the first table have their bounds from.
+#[derive(Clone, Copy, PartialEq)]
+enum Bounds {
+    /// From a block, capped, as Welkin has them.
+    Capped,
+    /// From a block as they are.
+    Uncapped,
+    /// Written out.
+    Constants,
+}
+
 thread_local! {
     static GET_STRING_I: Cell<Option<GetStringI>> = const { Cell::new(None) };
 }
@@ -303,10 +314,19 @@ fn blocks_out(gpu: &Gpu, upload: Upload) -> Fallible<Found> {
 }
 
 /// Draws so much of the first table; its first texel must be that of a sum of weights, near 1.
-fn norm_of(gpu: &Gpu, upload: Upload, part: (u32, u32), constants: bool) -> Fallible<Found> {
+fn norm_of(gpu: &Gpu, upload: Upload, part: (u32, u32), bounds: Bounds) -> Fallible<Found> {
     let blocks = Blocks::new(gpu, upload);
     let mut text = shader::assemble("sky/build.wgsl")?;
-    if constants {
+    if bounds == Bounds::Uncapped {
+        for count in ["zeniths", "azimuths"] {
+            let capped = format!("min(dims.rule_{count}, MOST_RULE_{})", count.to_uppercase());
+            if !text.contains(&capped) {
+                return Ok(Found::Nothing(format!("the shader has no {capped}")));
+            }
+            text = text.replace(&capped, &format!("dims.rule_{count}"));
+        }
+    }
+    if bounds == Bounds::Constants {
         text = text
             .replace("dims.rule_zeniths", &format!("{}u", RULE.0))
             .replace("dims.rule_azimuths", &format!("{}u", RULE.1));
@@ -324,7 +344,7 @@ pub fn vulkan() -> Fallible<Found> {
         Ok(gpu) => gpu,
         Err(e) => return Ok(Found::Nothing(format!("there is no Vulkan driver: {e}"))),
     };
-    norm_of(&gpu, Upload::Contents, ONE, false)
+    norm_of(&gpu, Upload::Contents, ONE, Bounds::Capped)
 }
 
 pub fn opengl() -> Fallible<Found> {
@@ -380,27 +400,31 @@ pub fn blocks_drawn_plain() -> Fallible<Found> {
 }
 
 pub fn norm_constants() -> Fallible<Found> {
-    norm_of(&Gpu::in_context(false)?, Upload::Contents, ONE, true)
+    norm_of(&Gpu::in_context(false)?, Upload::Contents, ONE, Bounds::Constants)
 }
 
 pub fn norm() -> Fallible<Found> {
-    norm_of(&Gpu::in_context(false)?, Upload::Contents, ONE, false)
+    norm_of(&Gpu::in_context(false)?, Upload::Contents, ONE, Bounds::Capped)
 }
 
 pub fn norm_written() -> Fallible<Found> {
-    norm_of(&Gpu::in_context(false)?, Upload::Written, ONE, false)
+    norm_of(&Gpu::in_context(false)?, Upload::Written, ONE, Bounds::Capped)
 }
 
 pub fn norm_plain() -> Fallible<Found> {
-    norm_of(&Gpu::in_context(true)?, Upload::Contents, ONE, false)
+    norm_of(&Gpu::in_context(true)?, Upload::Contents, ONE, Bounds::Capped)
 }
 
 pub fn norm_own() -> Fallible<Found> {
-    norm_of(&Gpu::own(wgpu::Backends::GL)?, Upload::Contents, ONE, false)
+    norm_of(&Gpu::own(wgpu::Backends::GL)?, Upload::Contents, ONE, Bounds::Capped)
 }
 
 pub fn norm_whole() -> Fallible<Found> {
-    norm_of(&Gpu::in_context(false)?, Upload::Contents, SIZE, false)
+    norm_of(&Gpu::in_context(false)?, Upload::Contents, SIZE, Bounds::Capped)
+}
+
+pub fn norm_uncapped() -> Fallible<Found> {
+    norm_of(&Gpu::in_context(false)?, Upload::Contents, ONE, Bounds::Uncapped)
 }
 
 /// With all of Welkin's defence: the device is refused by name, or draws.
