@@ -38,7 +38,7 @@ RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --no-fail-fast,cargo test
 
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
-.PHONY: ci help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench fuzz gallery lab on-gpu-pack
+.PHONY: ci dist help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench fuzz gallery lab on-gpu-pack
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -56,6 +56,9 @@ lib: setup-build ## build the shared and the static library (PROFILE=release)
 
 install: lib ## install to PREFIX (/usr/local), below DESTDIR if set
 	scripts/install.sh "$(OUT_DIR)" "$(DESTDIR)" "$(PREFIX)" "$(VERSION)" "$(ABI_MAJOR)"
+
+dist: lib ## archives of a release in target/dist: a tar, a Debian package, what `make windows` packed, their sums
+	scripts/dist.sh "$(OUT_DIR)" "$(abspath $(TARGET_DIR))/dist" "$(VERSION)" "$(ABI_MAJOR)"
 
 uninstall: ## remove what `make install` put there
 	rm -rf "$(DESTDIR)$(PREFIX)/lib/cmake/welkin"
