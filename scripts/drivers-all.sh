@@ -4,6 +4,10 @@
 #
 #   scripts/drivers-all.sh STAGE DIR    STAGE holds the built library and glfw_host, DIR keeps drivers and pictures
 set -uo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/command_line.sh"
+answer_command_line "$@"
+case "${1:-}" in -*) refuse "$1" ;; esac
+[ $# -eq 2 ] || { echo "drivers-all.sh: two arguments are wanted, got $#; drivers-all.sh --help lists them" >&2; exit 2; }
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . scripts/drivers/fetch.sh
 . scripts/drivers/run.sh

@@ -8,6 +8,10 @@
 # differs from the reference by no more than the table says for these very versions of both. Other versions are drawn
 # and not compared: a notice, counted as skipped, as is a driver that cannot be had. The last line counts all.
 set -uo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/command_line.sh"
+answer_command_line "$@"
+case "${1:-}" in -*) refuse "$1" ;; esac
+[ $# -eq 2 ] || { echo "drivers.sh: two arguments are wanted, got $#; drivers.sh --help lists them" >&2; exit 2; }
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . scripts/drivers/fetch.sh
 . scripts/drivers/run.sh
