@@ -3,7 +3,7 @@
 use super::{View, draw::Call};
 use crate::{
     error::Result,
-    gpu::pass,
+    gpu::{Layer, pass},
     stage::{ColorSpace, Composition, CostItem, Diagnostic, Drawing, Recording, Stages, is_float, uniform, yes},
 };
 
@@ -48,7 +48,8 @@ impl View {
             effect.draw(&shot, &with, to)?;
         }
         self.take_picture(call.color, to)?;
-        let (Some((_, group, target)), Some((_, tables))) = (&self.bound, &composition.tables) else { return Ok(()) };
+        let (Some((_, group)), Some((_, tables))) = (&self.bound, &composition.tables) else { return Ok(()) };
+        let target = self.target.of(call.color, Layer::view);
         let mut composite = self.composite.lock()?;
         if frame.diagnostic == Diagnostic::Wind {
             let (pipeline, wind) = composite.wind(&self.device, variant, call.now)?;

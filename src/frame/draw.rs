@@ -160,7 +160,8 @@ impl View {
         whole: &Variant,
         to: &mut Recording<'_>,
     ) -> Result<()> {
-        let (Some((_, group, target)), Some((_, tables))) = (&self.bound, &composition.tables) else { return Ok(()) };
+        let (Some((_, group)), Some((_, tables))) = (&self.bound, &composition.tables) else { return Ok(()) };
+        let target = self.target.of(shot.color, Layer::view);
         let groups = [group, tables, self.surroundings.bind_group()];
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let splits = self.device.caps().software;
@@ -196,7 +197,7 @@ impl View {
 
     /// Fills the textures of the veil for the host's own shaders, if it has asked for them.
     fn fill_veil(&mut self, shot: &Shot<'_>, composition: &Composition, to: &mut Recording<'_>) -> Result<()> {
-        let (Some(froxels), Some((_, group, _)), Some((_, tables))) =
+        let (Some(froxels), Some((_, group)), Some((_, tables))) =
             (&mut self.froxels, &self.bound, &composition.tables)
         else {
             return Ok(());

@@ -418,7 +418,7 @@ impl View {
         composition: &Composition,
         to: &mut Recording<'_>,
     ) -> Result<()> {
-        let (Some(map), Some((_, group, _)), Some((_, tables))) =
+        let (Some(map), Some((_, group)), Some((_, tables))) =
             (&mut self.environment, &self.bound, &composition.tables)
         else {
             return Ok(());

@@ -5,7 +5,7 @@ use super::{View, draw::Call};
 use crate::{
     error::{Error, Result},
     gpu::{
-        Device, KeptLayer, Layer,
+        Device, KeptLayer, KeptView, Layer,
         bind::{self, Slot},
         blocks::BlockView,
         is_kept,
@@ -20,15 +20,15 @@ pub(super) struct OpaqueStep {
     layout: wgpu::BindGroupLayout,
     /// Stands for a mask where the host gives none.
     none: wgpu::TextureView,
+    color: KeptView,
     bound: Option<Bound>,
 }
 
-/// Views and bind group of a frame's images: made anew only when the host hands over others.
+/// Depth and bind group of a frame's images: made anew only when the host hands over others.
 struct Bound {
-    color: KeptLayer,
     depth: KeptLayer,
     mask: Option<KeptLayer>,
-    views: [wgpu::TextureView; 2],
+    depth_view: wgpu::TextureView,
     group: wgpu::BindGroup,
 }
 
@@ -36,7 +36,17 @@ impl OpaqueStep {
     fn new(device: &wgpu::Device) -> Self {
         let slots = [(0, Slot::Uniform(size_of::<FrameUniform>())), (1, Slot::Texels)];
         let layout = bind::layout(device, "opaque", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots);
-        Self { layout, none: bind::nothing(device, wgpu::TextureFormat::R8Unorm), bound: None }
+        Self {
+            layout,
+            none: bind::nothing(device, wgpu::TextureFormat::R8Unorm),
+            color: KeptView::default(),
+            bound: None,
+        }
+    }
+
+    /// Lets go the picture.
+    pub(super) fn forget_color(&mut self) {
+        self.color = KeptView::default();
     }
 
     fn bind(
@@ -45,12 +55,12 @@ impl OpaqueStep {
         block: &BlockView,
         [color, depth]: [Layer<'_>; 2],
         mask: Option<Layer<'_>>,
-    ) -> &Bound {
-        let same = |b: &Bound| color == b.color && depth == b.depth && is_kept(mask, b.mask.as_ref());
+    ) -> (&Bound, &wgpu::TextureView) {
+        let same = |b: &Bound| depth == b.depth && is_kept(mask, b.mask.as_ref());
         if self.bound.as_ref().is_some_and(|b| !same(b)) {
             self.bound = None;
         }
-        self.bound.get_or_insert_with(|| {
+        let bound = self.bound.get_or_insert_with(|| {
             let mask_view = mask.map(Layer::view);
             let resource = wgpu::BindingResource::TextureView(mask_view.as_ref().unwrap_or(&self.none));
             let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -58,9 +68,10 @@ impl OpaqueStep {
                 layout: &self.layout,
                 entries: &[block.entry(0), wgpu::BindGroupEntry { binding: 1, resource }],
             });
-            let views = [color.attached_view(), depth.attached_view()];
-            Bound { color: color.kept(), depth: depth.kept(), mask: mask.map(Layer::kept), views, group }
-        })
+            let depth_view = depth.attached_view();
+            Bound { depth: depth.kept(), mask: mask.map(Layer::kept), depth_view, group }
+        });
+        (bound, self.color.of(color, Layer::attached_view))
     }
 }
 
@@ -105,18 +116,18 @@ impl View {
         self.uniform.write(bytemuck::bytes_of(&block));
         let step = self.opaque.get_or_insert_with(|| OpaqueStep::new(&self.device.device));
         let layout = step.layout.clone();
-        let bound = step.bind(&self.device, &self.uniform, [color, depth], frame.mask_layer());
+        let (bound, color_view) = step.bind(&self.device, &self.uniform, [color, depth], frame.mask_layer());
         let keep = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
         let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("opaque"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &bound.views[0],
+                view: color_view,
                 depth_slice: None,
                 resolve_target: None,
                 ops: keep,
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &bound.views[1],
+                view: &bound.depth_view,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),

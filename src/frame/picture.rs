@@ -7,9 +7,8 @@ use crate::{
     stage::{Composition, Recording, Shot, can_copy, color_copy, is_copy_of},
 };
 
-/// The textures of one bind group: it is made anew only when the host hands over others.
+/// The textures of one bind group beside the copy of the picture: it is made anew only when the host hands over others.
 pub(super) struct Bound {
-    color: KeptLayer,
     depth: Option<KeptLayer>,
     mask: Option<KeptLayer>,
     surface_classes: Option<KeptLayer>,
@@ -83,16 +82,15 @@ impl View {
 
     /// Makes the bind group anew if the host's textures are others than last time.
     pub(super) fn bind(&mut self, shot: &Shot<'_>, composition: &Composition) -> Result<()> {
-        let (frame, color, own) = (shot.frame, shot.color, &composition.textures);
+        let (frame, own) = (shot.frame, &composition.textures);
         let of_host = |b: &Bound| {
-            color == b.color
-                && is_kept(frame.depth_layer(), b.depth.as_ref())
+            is_kept(frame.depth_layer(), b.depth.as_ref())
                 && is_kept(frame.mask_layer(), b.mask.as_ref())
                 && is_kept(frame.classes_layer(), b.surface_classes.as_ref())
                 && is_kept(frame.normals_layer(), b.normals.as_ref())
         };
         let mut before = None;
-        if let Some((bound, group, _)) = self.bound.as_mut().filter(|(b, ..)| of_host(b)) {
+        if let Some((bound, group)) = self.bound.as_mut().filter(|(b, _)| of_host(b)) {
             if bound.own == *own {
                 return Ok(());
             }
@@ -109,10 +107,8 @@ impl View {
         let Some(copy) = &self.copy else { return Ok(()) };
         let made = self.composite.lock()?.bind(&self.device, &self.uniform, copy, frame, composition);
         let Some(group) = made else { return Ok(()) };
-        let target = color.view();
         let kept = |layer: Option<Layer<'_>>| layer.map(Layer::kept);
         let bound = Bound {
-            color: color.kept(),
             depth: kept(frame.depth_layer()),
             mask: kept(frame.mask_layer()),
             surface_classes: kept(frame.classes_layer()),
@@ -120,7 +116,7 @@ impl View {
             own: own.clone(),
             before,
         };
-        self.bound = Some((bound, group, target));
+        self.bound = Some((bound, group));
         Ok(())
     }
 }

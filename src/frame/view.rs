@@ -23,14 +23,14 @@ use crate::{
     effects::{Effects, PARTS, Unseen},
     error::{Error, Result},
     gpu::{
-        Device,
+        Device, KeptView, Layer,
         blocks::{Blocks, UniformBlock},
         recent::Recent,
     },
     plan::Planner,
     stage::{
-        CostItem, Diagnostic, Frame, FrameFlags, FrameUniform, Prepare, Recording, Report, Stages, can_be_apart,
-        can_copy,
+        CostItem, Diagnostic, Frame, FrameFlags, FrameUniform, LensPicture, Prepare, Recording, Report, Stages,
+        can_be_apart, can_copy,
     },
     surroundings::SurroundingsBlock,
     world::KeptScene,
@@ -43,7 +43,9 @@ pub struct View {
     pub(super) blocks: Blocks,
     pub(super) uniform: UniformBlock,
     pub(super) copy: Option<wgpu::Texture>,
-    pub(super) bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
+    pub(super) bound: Option<(Bound, wgpu::BindGroup)>,
+    /// The host's picture, as it is drawn into.
+    pub(super) target: KeptView,
     pub(crate) effects: Effects,
     pub(super) froxels: Option<Froxels>,
     pub(super) environment: Option<Box<EnvironmentMap>>,
@@ -88,6 +90,7 @@ impl View {
             uniform,
             copy: None,
             bound: None,
+            target: KeptView::default(),
             effects,
             froxels: None,
             environment: None,
@@ -163,9 +166,19 @@ impl View {
     /// Lets go what the view holds of the picture's size.
     fn forget_images(&mut self) {
         (self.bound, self.copy, self.opaque) = (None, None, None);
+        self.target = KeptView::default();
         (self.kinds, self.even) = (None, None);
         self.environment.iter_mut().for_each(|map| map.forget());
         self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
+    }
+
+    /// Lets go the picture where it is a window's image: it goes to the screen next, and DXGI resizes a window only when
+    /// nobody holds its images.
+    fn let_go_of_window(&mut self, frame: &Frame<'_>) {
+        if frame.color.is_some_and(|color| self.device.is_of_window(color)) {
+            self.target = KeptView::default();
+            self.opaque.iter_mut().for_each(OpaqueStep::forget_color);
+        }
     }
 
     /// Draws the weather at every pixel from now on.
@@ -301,6 +314,7 @@ impl View {
             }
         }
         to.upload();
+        self.let_go_of_window(frame);
         self.recorded = self.recorded.with(asked);
         self.report.passes += to.passes;
         self.report.tables_rebuilt += to.tables_rebuilt;
@@ -334,6 +348,10 @@ impl View {
     fn draw_lens(&mut self, call: &Call<'_>, toned: bool, to: &mut Recording<'_>) -> Result<()> {
         self.take_picture(call.color, to)?;
         let Some(copy) = &self.copy else { return Ok(()) };
-        self.effects.each().into_iter().try_for_each(|effect| effect.draw_lens(call.frame, copy, toned, to))
+        let target = self.target.of(call.color, Layer::view);
+        self.effects
+            .each()
+            .into_iter()
+            .try_for_each(|effect| effect.draw_lens(call.frame, LensPicture { copy, target }, toned, to))
     }
 }

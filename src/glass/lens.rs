@@ -17,7 +17,7 @@ pub(crate) struct LensFrame<'a> {
     /// The finished picture, to read; as large as the target.
     pub picture: &'a wgpu::Texture,
     pub mask: Option<Layer<'a>>,
-    pub target: Layer<'a>,
+    pub target: &'a wgpu::TextureView,
     /// Its values follow the sRGB curve.
     pub encoded: bool,
     pub bottom_left: bool,

@@ -379,7 +379,6 @@ fn draw(
 /// The lens over one picture: its smaller copies and bind groups, made anew when the host hands over other textures.
 pub(super) struct LensPass {
     picture: wgpu::Texture,
-    target: (KeptLayer, wgpu::TextureView),
     mask: Option<KeptLayer>,
     smaller: [wgpu::TextureView; 2],
     shrinks: [wgpu::BindGroup; 2],
@@ -393,7 +392,6 @@ pub(super) struct LensPass {
 impl LensPass {
     pub fn new(device: &Device, kit: &GlassKit, frame: &LensFrame<'_>, lattice: Option<&Lattice>) -> Self {
         let (picture, mask) = (frame.picture, frame.mask);
-        let target = (frame.target.kept(), frame.target.view());
         let size = [picture.width().div_ceil(SMALLER), picture.height().div_ceil(SMALLER)];
         let smallest = size.map(|n| n.div_ceil(SMALLEST));
         let smaller =
@@ -420,7 +418,6 @@ impl LensPass {
         let lattice = lattice.map(|l| l.size);
         Self {
             picture: picture.clone(),
-            target,
             mask: mask.map(Layer::kept),
             smaller,
             shrinks,
@@ -434,7 +431,6 @@ impl LensPass {
     /// Whether it was made for these.
     pub fn serves(&self, frame: &LensFrame<'_>, lattice: Option<&Lattice>) -> bool {
         self.picture == *frame.picture
-            && frame.target == self.target.0
             && is_kept(frame.mask, self.mask.as_ref())
             && self.lattice == lattice.map(|l| l.size)
     }
@@ -449,7 +445,7 @@ impl LensPass {
         device: &Arc<Device>,
         kit: &mut GlassKit,
         encoder: &mut wgpu::CommandEncoder,
-        (uniform, variant): (&LensUniform, LensVariant),
+        (uniform, variant, target): (&LensUniform, LensVariant, &wgpu::TextureView),
         lattice: Option<&Lattice>,
     ) -> Result<u32> {
         device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
@@ -459,7 +455,7 @@ impl LensPass {
         let (snow, now) = lattice.map_or((0, 0), |l| (l.snow_now, l.now));
         let group = &self.groups[snow][now];
         let pipeline = kit.lens(device, variant)?;
-        pass::draw(encoder, "lens", pipeline, &[group], &self.target.1);
+        pass::draw(encoder, "lens", pipeline, &[group], target);
         Ok(3)
     }
 }

@@ -301,7 +301,7 @@ impl Glass {
         let uniform = LensUniform::of(&self.screen, &plane, frame, &shown)?;
         let variant =
             LensVariant { format: frame.picture.format(), encoded: frame.encoded, has_mask: frame.mask.is_some() };
-        lens.draw(device, kit, encoder, (&uniform, variant), lattice)
+        lens.draw(device, kit, encoder, (&uniform, variant, frame.target), lattice)
     }
 
     /// Water on the pane. Reads the cells back: waits for the GPU.

@@ -14,7 +14,9 @@ use crate::{
     falling::{drops::factor_in, sizes::DropSizes},
     gpu::{Device, Shared},
     moment::Moment,
-    stage::{ColorSpace, Composition, CostItem, DrawnEffect, Frame, Prepare, Recording, Shot, Stages, is_float},
+    stage::{
+        ColorSpace, Composition, CostItem, DrawnEffect, Frame, LensPicture, Prepare, Recording, Shot, Stages, is_float,
+    },
     surroundings::HostSurroundings,
 };
 
@@ -144,7 +146,7 @@ impl DrawnEffect for GlassView {
     fn draw_lens(
         &mut self,
         frame: &Frame<'_>,
-        picture: &wgpu::Texture,
+        picture: LensPicture<'_>,
         toned: bool,
         to: &mut Recording<'_>,
     ) -> Result<()> {
@@ -156,9 +158,9 @@ impl DrawnEffect for GlassView {
         let toned = toned && frame.color_space == ColorSpace::SceneLinear;
         let lens = LensFrame {
             camera: &frame.camera,
-            picture,
+            picture: picture.copy,
             mask: frame.mask_layer(),
-            target: layer,
+            target: picture.target,
             encoded: plain && (toned || frame.color_space == ColorSpace::DisplaySrgb),
             bottom_left: frame.origin_bottom_left,
         };

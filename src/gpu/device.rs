@@ -179,6 +179,8 @@ pub struct Device {
     faults: Arc<Faults>,
     submission: Mutex<()>,
     submissions: AtomicU64,
+    /// Images of windows that are in hand, each from its acquisition until it is presented or given back.
+    of_windows: Mutex<Vec<wgpu::Texture>>,
     binding: Option<Arc<dyn HostBinding>>,
     _exit: Option<Exit>,
 }
@@ -289,6 +291,7 @@ impl Device {
             faults,
             submission,
             submissions: AtomicU64::new(0),
+            of_windows: Mutex::default(),
             binding,
             _exit: exit,
         };
@@ -353,6 +356,16 @@ impl Device {
     /// A copy that the host's context refuses.
     pub(crate) fn refresh_depth(&self, depth: &wgpu::Texture) -> Result<()> {
         self.binding.as_ref().map_or(Ok(()), |b| b.refresh_depth(depth))
+    }
+
+    /// Whether `texture` is a window's image that is in hand.
+    pub(crate) fn is_of_window(&self, texture: &wgpu::Texture) -> bool {
+        self.of_windows().contains(texture)
+    }
+
+    /// The windows' images that are in hand.
+    pub(super) fn of_windows(&self) -> MutexGuard<'_, Vec<wgpu::Texture>> {
+        self.of_windows.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Whether the native device is gone.
@@ -463,7 +476,18 @@ fn instance(backends: wgpu::Backends) -> wgpu::Instance {
     desc.backends = backends;
     desc.flags = wgpu::InstanceFlags::empty();
     desc.backend_options.noop.enable = backends.contains(wgpu::Backends::NOOP);
+    before_opening(backends);
     wgpu::Instance::new(desc)
+}
+
+/// Called before an instance of wgpu opens these interfaces.
+pub(super) fn before_opening(backends: wgpu::Backends) {
+    #[cfg(windows)]
+    if backends.contains(wgpu::Backends::GL) {
+        super::win32::stay_loaded();
+    }
+    #[cfg(not(windows))]
+    let _ = backends;
 }
 
 /// The features and limits Welkin asks for: the adapter's own, so that a host's large targets fit.

@@ -64,6 +64,25 @@ impl PartialEq<KeptLayer> for Layer<'_> {
     }
 }
 
+/// The view of the layer that was drawn into last. A window's image is let go as soon as it is recorded
+/// (`View::let_go_of_window`): some systems change a window's size only when nobody holds its images.
+#[derive(Default)]
+pub(crate) struct KeptView(Option<(KeptLayer, wgpu::TextureView)>);
+
+impl KeptView {
+    /// The view of `layer`, which `make` makes where another was drawn into last.
+    pub fn of<'a>(
+        &mut self,
+        layer: Layer<'a>,
+        make: impl FnOnce(Layer<'a>) -> wgpu::TextureView,
+    ) -> &wgpu::TextureView {
+        if self.0.as_ref().is_some_and(|(kept, _)| layer != *kept) {
+            self.0 = None;
+        }
+        &self.0.get_or_insert_with(|| (layer.kept(), make(layer))).1
+    }
+}
+
 /// Whether an image of this frame, or none, is the one kept.
 pub(crate) fn is_kept(layer: Option<Layer<'_>>, kept: Option<&KeptLayer>) -> bool {
     match (layer, kept) {

@@ -126,7 +126,7 @@ impl NativeWindow {
 }
 
 impl NativeWindow {
-    /// Refuses an X11 window that is not there: drivers would crash on it.
+    /// Refuses a window that is not there: drivers crash on one of X11, and make of one of Windows what they like.
     ///
     /// # Safety
     /// The connection is live.
@@ -147,6 +147,12 @@ impl NativeWindow {
             if exists.flatten() == Some(false) {
                 return Err(gone());
             }
+        }
+        #[cfg(windows)]
+        if let Self::Win32 { hwnd, .. } = *self
+            && !super::win32::exists(hwnd)
+        {
+            return Err(gone());
         }
         Ok(())
     }
@@ -186,6 +192,7 @@ pub unsafe fn device_for_window(window: &NativeWindow, options: &DeviceOptions) 
     let mut desc = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(Display(display)));
     desc.backends = options.backends;
     desc.flags = wgpu::InstanceFlags::empty();
+    super::device::before_opening(desc.backends);
     let instance = wgpu::Instance::new(desc);
     // SAFETY: the caller vouches for the window.
     let surface = unsafe { create(&instance, window)? };
@@ -427,6 +434,7 @@ impl Surface {
             }
         };
         let picture = self.picture(&image);
+        device.of_windows().push(image.texture.clone());
         self.current = Some(image);
         Ok(picture)
     }
@@ -434,11 +442,18 @@ impl Surface {
     /// Lets an image in hand go undrawn. wgpu does not take it back from a lost device, and would panic when the surface goes
     /// before it: there it is destroyed, whoever else holds it.
     fn give_back(&mut self) {
-        if let Some(image) = self.current.take()
+        if let Some(image) = self.take_image()
             && self.device.is_lost()
         {
             image.texture.destroy();
         }
+    }
+
+    /// The image in hand, which nobody of the device knows from now on.
+    fn take_image(&mut self) -> Option<wgpu::SurfaceTexture> {
+        let image = self.current.take()?;
+        self.device.of_windows().retain(|known| *known != image.texture);
+        Some(image)
     }
 
     /// What the host draws into for an image in hand.
@@ -454,7 +469,7 @@ impl Surface {
     pub fn present(&mut self) -> Result<()> {
         let device = self.device.clone();
         let _entered = device.enter()?;
-        let Some(image) = self.current.take() else {
+        let Some(image) = self.take_image() else {
             return Err(Error::new(Status::WrongOrder, "there is no image to present: acquire one first"));
         };
         if let Some(stand_in) = &self.stand_in {
@@ -497,39 +512,4 @@ fn choose_format(offered: &[wgpu::TextureFormat], encoding: SurfaceEncoding) -> 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn null_handles_are_refused_by_name() {
-        let null = std::ptr::null_mut();
-        let some = std::ptr::dangling_mut::<u64>().cast::<c_void>();
-        let cases = [
-            (NativeWindow::Xlib { display: null, screen: 0, window: 1 }, "display"),
-            (NativeWindow::Xlib { display: some, screen: 0, window: 0 }, "window"),
-            (NativeWindow::Xcb { connection: null, screen: 0, window: 1 }, "connection"),
-            (NativeWindow::Xcb { connection: some, screen: 0, window: 0 }, "window"),
-            (NativeWindow::Wayland { display: null, surface: some }, "display"),
-            (NativeWindow::Wayland { display: some, surface: null }, "surface"),
-            (NativeWindow::Win32 { hwnd: null, hinstance: some }, "hwnd"),
-            (NativeWindow::Win32 { hwnd: some, hinstance: null }, "hinstance"),
-            (NativeWindow::AppKit { ns_view: null }, "ns_view"),
-        ];
-        for (window, name) in cases {
-            // SAFETY: the null handle is found before anything is used.
-            let e = unsafe { device_for_window(&window, &DeviceOptions::default()) }.err().expect("refused");
-            assert_eq!(e.status, Status::InvalidArgument);
-            assert!(e.to_string().starts_with(name), "{}", e);
-        }
-    }
-
-    #[test]
-    fn the_format_follows_the_encoding_in_the_windows_order() {
-        use wgpu::TextureFormat as F;
-        let offered = [F::Rgba16Float, F::Bgra8Unorm, F::Rgba8UnormSrgb, F::Bgra8UnormSrgb];
-        assert_eq!(choose_format(&offered, SurfaceEncoding::DisplayLinear).unwrap(), F::Rgba8UnormSrgb);
-        assert_eq!(choose_format(&offered, SurfaceEncoding::DisplaySrgb).unwrap(), F::Bgra8Unorm);
-        let e = choose_format(&[F::Rgba16Float], SurfaceEncoding::DisplayLinear).unwrap_err();
-        assert_eq!(e.status, Status::Unsupported);
-    }
-}
+mod tests;

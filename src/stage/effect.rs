@@ -26,6 +26,15 @@ pub(crate) struct Prepare<'a> {
     pub share: f32,
 }
 
+/// The finished picture, as a lens over it takes it.
+#[derive(Clone, Copy)]
+pub(crate) struct LensPicture<'a> {
+    /// A copy, to read.
+    pub copy: &'a wgpu::Texture,
+    /// The picture itself, to draw into.
+    pub target: &'a wgpu::TextureView,
+}
+
 /// What a draw is of.
 pub(crate) struct Shot<'a> {
     pub device: &'a Arc<Device>,
@@ -150,11 +159,11 @@ pub(crate) trait DrawnEffect {
         false
     }
 
-    /// Draws over the finished picture, of which `picture` is a copy; `toned` says that this call has tone-mapped it.
+    /// Draws over the finished picture; `toned` says that this call has tone-mapped it.
     fn draw_lens(
         &mut self,
         _frame: &Frame<'_>,
-        _picture: &wgpu::Texture,
+        _picture: LensPicture<'_>,
         _toned: bool,
         _to: &mut Recording<'_>,
     ) -> Result<()> {

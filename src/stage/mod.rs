@@ -18,7 +18,7 @@ mod uniform;
 
 pub(crate) use composition::{Block, Composition, Constant, Constants, Pipeline, Texture, Traits, yes};
 pub use diagnostic::Diagnostic;
-pub(crate) use effect::{Drawing, DrawnEffect, Prepare, PutPart, Shot};
+pub(crate) use effect::{Drawing, DrawnEffect, LensPicture, Prepare, PutPart, Shot};
 pub use opaque::DepthAccess;
 pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
 pub(crate) use recording::Recording;

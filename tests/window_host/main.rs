@@ -3,6 +3,7 @@
 #![cfg(target_os = "linux")]
 
 mod capi;
+mod held;
 #[path = "../support/refusals.rs"]
 mod refusals;
 mod x11;
