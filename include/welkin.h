@@ -857,7 +857,9 @@ wk_status wk_surface_config_init(wk_surface_config *out,
 
 /**
  * Returns the address of an OpenGL function, or NULL, as glfwGetProcAddress, SDL_GL_GetProcAddress, eglGetProcAddress
- * or glXGetProcAddress do. Called with the host's or Welkin's context current.
+ * or glXGetProcAddress do. With WGL, ask wglGetProcAddress, then GetProcAddress of opengl32.dll, which exports what
+ * OpenGL 1.1 had. Welkin reads 1, 2, 3 and -1 as NULL: some drivers' wglGetProcAddress returns them. Called with the
+ * host's or Welkin's context current.
  */
 typedef const void *(*wk_opengl_get_proc_fn)(void *user, const char *name);
 

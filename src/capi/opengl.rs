@@ -35,7 +35,9 @@ use crate::error::Status;
 include!(concat!(env!("OUT_DIR"), "/init_opengl.rs"));
 
 /// Returns the address of an OpenGL function, or NULL, as glfwGetProcAddress, SDL_GL_GetProcAddress, eglGetProcAddress
-/// or glXGetProcAddress do. Called with the host's or Welkin's context current.
+/// or glXGetProcAddress do. With WGL, ask wglGetProcAddress, then GetProcAddress of opengl32.dll, which exports what
+/// OpenGL 1.1 had. Welkin reads 1, 2, 3 and -1 as NULL: some drivers' wglGetProcAddress returns them. Called with the
+/// host's or Welkin's context current.
 pub type wk_opengl_get_proc_fn = Option<unsafe extern "C" fn(user: *mut c_void, name: *const c_char) -> *const c_void>;
 
 /// Makes a context current on the calling thread: `which` is WK_OPENGL_CONTEXT_HOST or WK_OPENGL_CONTEXT_WELKIN.

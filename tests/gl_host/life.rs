@@ -60,6 +60,42 @@ extern "system" fn old_es(_: u32) -> *const u8 {
     c"OpenGL ES 2.0 Ancient".as_ptr().cast()
 }
 
+/// What some drivers of Windows answer for a function that they have not.
+const NO_FUNCTIONS: [isize; 4] = [1, 2, 3, -1];
+
+/// A loader as wglGetProcAddress is on them: `user` for what is not there, and for the functions of OpenGL 1.1.
+unsafe extern "C" fn answers_numbers(user: *mut c_void, name: *const c_char) -> *const c_void {
+    // SAFETY: the name is NUL-terminated.
+    let (name, found) = unsafe { (CStr::from_ptr(name), get_proc(null_mut(), name)) };
+    if found.is_null() || name == c"glClear" { user } else { found }
+}
+
+/// As above, with the functions of OpenGL 1.1 and without all that a driver may leave out.
+unsafe extern "C" fn has_the_least(user: *mut c_void, name: *const c_char) -> *const c_void {
+    const LEFT_OUT: [&str; 2] = ["ClipControl", "PolygonOffsetClamp"];
+    // SAFETY: the name is NUL-terminated.
+    let (name, found) = unsafe { (CStr::from_ptr(name), get_proc(null_mut(), name)) };
+    let is_left_out = LEFT_OUT.iter().any(|part| name.to_string_lossy().contains(part));
+    if found.is_null() || is_left_out { user } else { found }
+}
+
+#[test]
+fn a_number_in_place_of_a_function_is_none() {
+    let context = Context::new(Api::Core(3, 3), Window::None);
+    assert!(context.make_current());
+    for number in NO_FUNCTIONS {
+        let user = number as *mut c_void;
+        let error = refusal(&GlHostDesc { get_proc: Some(answers_numbers), user, ..bare(GlMode::HostContext) });
+        assert_eq!(error.status, Status::InvalidArgument, "{number}: {error}");
+        assert!(error.to_string().contains("got NULL for glClear"), "{number}: {error}");
+        // What may be missing is missing, and all the rest draws.
+        let desc = GlHostDesc { get_proc: Some(has_the_least), user, ..bare(GlMode::HostContext) };
+        // SAFETY: the callbacks are those of this file, the context is live.
+        let adopted = unsafe { adopt(&desc) }.unwrap_or_else(|e| panic!("{number}: {e}"));
+        close(adopted);
+    }
+}
+
 /// A loader whose `glGetString` is `user`.
 unsafe extern "C" fn with_other_version(user: *mut c_void, name: *const c_char) -> *const c_void {
     // SAFETY: the name is NUL-terminated.

@@ -65,7 +65,7 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
     };
     let user = desc.user;
     // SAFETY: the caller vouches for `get_proc` and `user`; the name is NUL-terminated.
-    let get = move |name: &CStr| unsafe { get_proc(user, name.as_ptr()) };
+    let get = move |name: &CStr| function_or_null(unsafe { get_proc(user, name.as_ptr()) });
     let switch = desc.make_current.map(|call| Switch { call, user });
     check::loader_finds_all(&get)?;
     let (host, host_info) = load(&get)?;
@@ -122,6 +122,12 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
             parts.into_device(api, info, sharing, desc)
         }
     }
+}
+
+/// An address as a `get_proc` answers it. Some drivers' wglGetProcAddress says 1, 2, 3 or -1 for a function that they
+/// have not (OpenGL Wiki, Load OpenGL Functions); no system has a function there.
+fn function_or_null(address: *const c_void) -> *const c_void {
+    if matches!(address as isize, -1..=3) { std::ptr::null() } else { address }
 }
 
 fn already_wrapped() -> Error {
