@@ -29,6 +29,13 @@ unsafe extern "C" fn on_progress(user: *mut c_void, share: f64) -> i32 {
     i32::from(bar.told.len() >= bar.most)
 }
 
+/// A directory that cannot be on any system: what is above it is a file.
+fn below_a_file() -> PathBuf {
+    let file = std::env::temp_dir().join(format!("welkin-a-file-{}", std::process::id()));
+    std::fs::write(&file, b"no directory").unwrap();
+    file.join("no directory")
+}
+
 /// A device with one context on it that keeps its tables in a directory.
 struct Simulator {
     device: *mut wk_device,
@@ -114,7 +121,7 @@ fn tables_are_built_ahead_with_progress_and_come_back_from_a_file() {
         assert!(told.len() >= 14 && files(&cache).len() == 1, "{told:?}");
         // Shown already: by this context, and by another of the device. Frames then draw an observer's tables only.
         assert_eq!(build(host.context, usize::MAX), (WK_OK, vec![1.0]));
-        let other = context_on(host.device, c"/dev/null/no directory");
+        let other = context_on(host.device, &CString::new(below_a_file().to_str().unwrap()).unwrap());
         assert_eq!(tables_of_a_first_frame(other), 1);
         // SAFETY: live handles; NULL is no callback.
         unsafe {
@@ -136,10 +143,11 @@ fn tables_are_built_ahead_with_progress_and_come_back_from_a_file() {
     drop(host);
     std::fs::remove_dir_all(&cache).unwrap();
     // A directory that cannot be: said, and built all the same.
-    let host = Simulator::new(Path::new("/dev/null/no directory"));
+    let host = Simulator::new(&below_a_file());
     assert_eq!(build(host.context, usize::MAX).0, WK_OK);
     assert!(said("not kept"));
     drop(host);
+    std::fs::remove_file(below_a_file().parent().unwrap()).unwrap();
     // SAFETY: as above.
     assert_eq!(unsafe { wk_set_log_callback(None, null_mut(), WK_LOG_LEVEL_ERROR) }, WK_OK);
 }

@@ -2,6 +2,8 @@
 
 pub mod cloud_shadows;
 pub mod ground;
+// The limit on a process's memory is Linux's.
+#[cfg(target_os = "linux")]
 pub mod limited;
 pub mod loss;
 pub mod marks;

@@ -12,6 +12,7 @@ mod host;
 mod images;
 mod loss;
 mod marks;
+#[cfg(target_os = "linux")]
 mod memory;
 #[path = "../support/opaque.rs"]
 mod opaque;
