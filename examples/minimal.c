@@ -3,6 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <welkin.h>
+#ifdef _WIN32 /* where standard output is text until told otherwise */
+#include <fcntl.h>
+#include <io.h>
+#endif
 
 enum { WIDTH = 320, HEIGHT = 180 };
 
@@ -51,6 +55,9 @@ int main(void)
     frame.flags = WK_FRAME_DEPTH_REVERSED | WK_FRAME_NO_HISTORY;
     check(wk_view_record(view, &frame, WK_STAGE_ALL));
     check(wk_texture_read(color, pixels, sizeof pixels, WIDTH * 4));
+#ifdef _WIN32
+    _setmode(_fileno(stdout), _O_BINARY);
+#endif
     printf("P6 %d %d 255\n", WIDTH, HEIGHT);
     for (i = 0; i < WIDTH * HEIGHT; i++) fwrite(pixels[i / WIDTH][i % WIDTH], 3, 1, stdout);
     check(wk_texture_destroy(color));

@@ -2,7 +2,9 @@
 #include "demo.h"
 
 #include <stdio.h>
+#ifndef _WIN32 /* there the OpenGL header has brought windows.h */
 #include <time.h>
+#endif
 
 #include "objects.h"
 
@@ -42,9 +44,16 @@ static camera view_from(const demo *d)
 
 double demo_clock_ms(void)
 {
+#ifdef _WIN32 /* MinGW's C library has no timespec_get */
+    LARGE_INTEGER now, per_s;
+    QueryPerformanceCounter(&now);
+    QueryPerformanceFrequency(&per_s);
+    return (double)now.QuadPart * 1e3 / (double)per_s.QuadPart;
+#else
     struct timespec t;
     timespec_get(&t, TIME_UTC);
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+#endif
 }
 
 bool demo_open(demo *d, const platform *p, const char *data, const char *planet, int width, int height, int finer)

@@ -1,5 +1,23 @@
-/* OpenGL without a display, by EGL: no X server, no window, no surface where the driver can do without. */
+/* OpenGL without a display, by EGL: no X server, no window, no surface where the driver can do without. Windows has no
+ * such thing: there a window that is never shown serves. */
 #include "platform.h"
+
+#ifdef _WIN32
+
+#include "window.h"
+
+bool headless_open(platform *p)
+{
+    return window_contexts(p, 1, 1, false);
+}
+
+void headless_close(platform *p)
+{
+    (void)p;
+    window_end();
+}
+
+#else
 
 #include <stdio.h>
 #include <string.h>
@@ -119,3 +137,5 @@ void headless_close(platform *p)
     }
     eglTerminate(egl.display);
 }
+
+#endif

@@ -35,10 +35,14 @@ static void on_fault(int code, const char *message)
 
 bool window_possible(void)
 {
+#ifdef _WIN32
+    return true; /* a session without a desktop has no window station, and glfwInit says so */
+#else
     return getenv("DISPLAY") || getenv("WAYLAND_DISPLAY");
+#endif
 }
 
-static GLFWwindow *create(int width, int height, GLFWwindow *share)
+static GLFWwindow *create(int width, int height, GLFWwindow *share, bool visible)
 {
     static const int versions[][2] = {{4, 5}, {4, 3}, {3, 3}};
     glfwSetErrorCallback(NULL); /* a version that is not there is no fault */
@@ -48,12 +52,30 @@ static GLFWwindow *create(int width, int height, GLFWwindow *share)
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, versions[v][1]);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-        glfwWindowHint(GLFW_VISIBLE, share ? GLFW_FALSE : GLFW_TRUE);
+        glfwWindowHint(GLFW_VISIBLE, visible ? GLFW_TRUE : GLFW_FALSE);
         glfwWindowHint(GLFW_DEPTH_BITS, 0);
         w = glfwCreateWindow(width, height, "Welkin", NULL, share);
     }
     glfwSetErrorCallback(on_fault);
     return w;
+}
+
+bool window_contexts(platform *p, int width, int height, bool visible)
+{
+    *p = (platform){get_proc, make_current, NULL};
+    glfwSetErrorCallback(on_fault);
+    if (!glfwInit())
+        return false;
+    windows[CONTEXT_HOST] = create(width, height, NULL, visible);
+    windows[CONTEXT_WELKIN] = windows[CONTEXT_HOST] ? create(1, 1, windows[CONTEXT_HOST], false) : NULL;
+    if (!windows[CONTEXT_WELKIN])
+        fprintf(stderr, "this display has no OpenGL 3.3\n");
+    return windows[CONTEXT_WELKIN] && make_current(NULL, CONTEXT_HOST) == 0;
+}
+
+void window_end(void)
+{
+    glfwTerminate();
 }
 
 static void on_key(GLFWwindow *w, int key, int scancode, int action, int mods)
@@ -105,17 +127,10 @@ static void loop(GLFWwindow *w, demo *d, int frames)
 
 int window_run(const char *data, const char *planet, int width, int height, int frames, int first)
 {
-    platform p = {get_proc, make_current, NULL};
+    platform p;
     demo d;
     int code = 1;
-    glfwSetErrorCallback(on_fault);
-    if (!glfwInit())
-        return 1;
-    windows[CONTEXT_HOST] = create(width, height, NULL);
-    windows[CONTEXT_WELKIN] = windows[CONTEXT_HOST] ? create(1, 1, windows[CONTEXT_HOST]) : NULL;
-    if (!windows[CONTEXT_WELKIN]) {
-        fprintf(stderr, "this display has no OpenGL 3.3\n");
-    } else if (make_current(NULL, CONTEXT_HOST) == 0 && gl_load(&p) && demo_open(&d, &p, data, planet, width, height, 1)) {
+    if (window_contexts(&p, width, height, true) && gl_load(&p) && demo_open(&d, &p, data, planet, width, height, 1)) {
         printf("adapter: %s\nkeys: N next report, T time of day, C camera (Shift: back), W weather on and off, Q quit\n",
                weather_adapter(&d.weather));
         glfwSetWindowUserPointer(windows[CONTEXT_HOST], &d);
@@ -127,6 +142,6 @@ int window_run(const char *data, const char *planet, int width, int height, int 
         demo_close(&d);
         code = 0;
     }
-    glfwTerminate();
+    window_end();
     return code;
 }

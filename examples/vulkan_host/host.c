@@ -1,6 +1,6 @@
 /* The host's own Vulkan: instance with the validation layer, device, images. */
-#define VK_USE_PLATFORM_XLIB_KHR
 #include "host.h"
+#include "native.h"
 
 #include <string.h>
 
@@ -40,11 +40,11 @@ static bool layer_is_there(void)
 void host_open_instance(host *h, bool windowed)
 {
     *h = (host){.app = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_1}};
-    if (mtx_init(&h->queue_lock, mtx_plain) != thrd_success) exit(1);
+    lock_open(&h->queue_lock);
     const uint32_t validated = layer_is_there();
     if (windowed) {
         h->instance_extensions[h->instance_extension_count++] = VK_KHR_SURFACE_EXTENSION_NAME;
-        h->instance_extensions[h->instance_extension_count++] = VK_KHR_XLIB_SURFACE_EXTENSION_NAME;
+        h->instance_extensions[h->instance_extension_count++] = native_extension();
     }
     if (validated) h->instance_extensions[h->instance_extension_count++] = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
     const char *layers[] = {VALIDATION};
@@ -138,7 +138,7 @@ void host_close_instance(host *h)
         destroy(h->instance, h->messenger, NULL);
     }
     vkDestroyInstance(h->instance, NULL);
-    mtx_destroy(&h->queue_lock);
+    lock_close(&h->queue_lock);
 }
 
 static VkDeviceMemory allocate(host *h, VkMemoryRequirements needs, VkMemoryPropertyFlags flags)
@@ -203,9 +203,9 @@ void host_close_image(host *h, const image *i)
 
 void host_wait(host *h)
 {
-    mtx_lock(&h->queue_lock);
+    lock_take(&h->queue_lock);
     VK_CHECK(vkDeviceWaitIdle(h->device));
-    mtx_unlock(&h->queue_lock);
+    lock_give(&h->queue_lock);
 }
 
 VkCommandBuffer host_begin(host *h)
@@ -233,10 +233,10 @@ void host_submit(host *h, VkCommandBuffer commands, VkSemaphore wait, VkSemaphor
                                .signalSemaphoreCount = signal != VK_NULL_HANDLE,
                                .pSignalSemaphores = &signal};
     VK_CHECK(vkEndCommandBuffer(commands));
-    mtx_lock(&h->queue_lock);
+    lock_take(&h->queue_lock);
     VK_CHECK(vkQueueSubmit(h->queue, 1, &info, VK_NULL_HANDLE));
     if (finish) VK_CHECK(vkQueueWaitIdle(h->queue));
-    mtx_unlock(&h->queue_lock);
+    lock_give(&h->queue_lock);
     if (finish) {
         VK_CHECK(vkResetCommandPool(h->device, h->pool, VK_COMMAND_POOL_RESET_RELEASE_RESOURCES_BIT));
     }

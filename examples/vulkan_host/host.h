@@ -6,8 +6,9 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <threads.h>
 #include <vulkan/vulkan.h>
+
+#include "sync.h"
 
 /* Ends the program with a sentence if a Vulkan call fails. */
 #define VK_CHECK(call) vk_check((call), #call, __FILE__, __LINE__)
@@ -50,7 +51,7 @@ typedef struct host {
     uint32_t queue_family;
     VkDevice device;
     VkQueue queue;
-    mtx_t queue_lock; /* held round each use of the queue, vkQueuePresentKHR and vkDeviceWaitIdle included */
+    lock queue_lock; /* held round each use of the queue, vkQueuePresentKHR and vkDeviceWaitIdle included */
     VkCommandPool pool;
 } host;
 

@@ -5,9 +5,9 @@
 
 static const double VISIBILITY_M = 5e3;
 
-static void lock_queue(void *user) { mtx_lock(&((host *)user)->queue_lock); }
+static void lock_queue(void *user) { lock_take(&((host *)user)->queue_lock); }
 
-static void unlock_queue(void *user) { mtx_unlock(&((host *)user)->queue_lock); }
+static void unlock_queue(void *user) { lock_give(&((host *)user)->queue_lock); }
 
 weather weather_open(host *h)
 {

@@ -1,12 +1,11 @@
 /* A windowed engine in small: a swapchain, two frames in flight, a thread that uploads on the same queue, resize. Welkin
  * draws into the swapchain's images, or with several samples into the host's, which the host then resolves. Colours are
  * a display's already. */
-#define VK_USE_PLATFORM_XLIB_KHR
 #include "runs.h"
+#include "native.h"
 #include "weather.h"
 #include "world.h"
 
-#include <X11/Xlib.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -20,10 +19,7 @@ typedef struct in_flight {
 } in_flight;
 
 typedef struct window {
-    Display *display;
-    Window id;
-    Atom close;
-    bool open, resized;
+    native native;
     uint32_t samples;
     VkSurfaceKHR surface;
     VkSurfaceFormatKHR format;
@@ -43,36 +39,6 @@ typedef struct window {
 
 static const VkImageLayout ATTACHED = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 static const VkImageLayout DEPTH_READ = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-
-/* ---- X ---- */
-
-static void open_x(window *w, uint32_t width, uint32_t height)
-{
-    XInitThreads();
-    w->display = XOpenDisplay(NULL);
-    EXPECT(w->display, "no X display; is DISPLAY set?");
-    w->id = XCreateSimpleWindow(w->display, DefaultRootWindow(w->display), 0, 0, width, height, 0, 0, 0);
-    XStoreName(w->display, w->id, "Welkin on a host's Vulkan");
-    w->close = XInternAtom(w->display, "WM_DELETE_WINDOW", False);
-    XSetWMProtocols(w->display, w->id, &w->close, 1);
-    XSelectInput(w->display, w->id, StructureNotifyMask);
-    XMapWindow(w->display, w->id);
-    XSync(w->display, False);
-    w->open = true;
-}
-
-static void take_events(window *w)
-{
-    while (XPending(w->display)) {
-        XEvent event;
-        XNextEvent(w->display, &event);
-        if (event.type == ConfigureNotify) {
-            const uint32_t width = (uint32_t)event.xconfigure.width, height = (uint32_t)event.xconfigure.height;
-            w->resized |= width != w->world.width || height != w->world.height;
-        }
-        if (event.type == ClientMessage && (Atom)event.xclient.data.l[0] == w->close) w->open = false;
-    }
-}
 
 /* ---- what lasts as long as the window ---- */
 
@@ -219,7 +185,7 @@ static void close_images(host *h, const window *w)
 static void resize(host *h, window *w, const weather *welkin)
 {
     host_wait(h);
-    w->resized = false;
+    w->native.resized = false;
     const window old = *w;
     open_images(h, w, old.swapchain);
     close_images(h, &old);
@@ -250,9 +216,9 @@ static void submit(host *h, VkCommandBuffer commands, VkSemaphore wait, VkSemaph
                                .pCommandBuffers = &commands,
                                .signalSemaphoreCount = signal != VK_NULL_HANDLE,
                                .pSignalSemaphores = &signal};
-    mtx_lock(&h->queue_lock);
+    lock_take(&h->queue_lock);
     VK_CHECK(vkQueueSubmit(h->queue, 1, &info, fence));
-    mtx_unlock(&h->queue_lock);
+    lock_give(&h->queue_lock);
 }
 
 static void draw_world(window *w, in_flight *frame, uint32_t at)
@@ -306,8 +272,8 @@ static float *read_picture(host *h, window *w, uint32_t at)
 static void draw(host *h, window *w, const weather *welkin, float **rgb)
 {
     /* Not every driver says by itself that a swapchain no longer has the window's size. */
-    take_events(w);
-    if (w->resized) resize(h, w, welkin);
+    native_take_events(&w->native);
+    if (w->native.resized) resize(h, w, welkin);
     in_flight *frame = &w->frames[w->frame_id % IN_FLIGHT];
     VK_CHECK(vkWaitForFences(h->device, 1, &frame->done, VK_TRUE, UINT64_MAX));
     uint32_t at = 0;
@@ -341,9 +307,9 @@ static void draw(host *h, window *w, const weather *welkin, float **rgb)
                                       .swapchainCount = 1,
                                       .pSwapchains = &w->swapchain,
                                       .pImageIndices = &at};
-    mtx_lock(&h->queue_lock);
+    lock_take(&h->queue_lock);
     result = vkQueuePresentKHR(h->queue, &present);
-    mtx_unlock(&h->queue_lock);
+    lock_give(&h->queue_lock);
     w->frame_id++;
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) resize(h, w, welkin);
     else VK_CHECK(result);
@@ -355,18 +321,18 @@ typedef struct uploader {
     host *host;
     atomic_bool stop;
     unsigned submissions;
-    thrd_t thread;
+    thread thread;
 } uploader;
 
-static int upload(void *user)
+static THREAD_RESULT upload(void *user)
 {
     uploader *u = user;
     while (!atomic_load(&u->stop)) {
-        mtx_lock(&u->host->queue_lock);
+        lock_take(&u->host->queue_lock);
         VK_CHECK(vkQueueSubmit(u->host->queue, 0, NULL, VK_NULL_HANDLE));
-        mtx_unlock(&u->host->queue_lock);
+        lock_give(&u->host->queue_lock);
         u->submissions++;
-        thrd_sleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+        sleep_ms(2);
     }
     return 0;
 }
@@ -375,8 +341,7 @@ static void check(host *h, window *w, const weather *welkin, const char *picture
 {
     const uint32_t sizes[2][2] = {{480, 270}, {640, 360}};
     for (int s = 0; s < 2; s++) {
-        XResizeWindow(w->display, w->id, sizes[s][0], sizes[s][1]);
-        XSync(w->display, False);
+        native_resize(sizes[s][0], sizes[s][1]);
         for (int i = 0; i < 50 && w->world.width != sizes[s][0]; i++) draw(h, w, welkin, NULL);
         float *rgb = NULL;
         for (int i = 0; i < 6 && !rgb; i++) draw(h, w, welkin, i < 3 ? NULL : &rgb);
@@ -391,11 +356,9 @@ int run_window(uint32_t samples, bool only_check, const char *picture)
 {
     host h;
     window w = {.samples = samples};
-    open_x(&w, 320, 180);
+    native_open(&w.native, 320, 180);
     host_open_instance(&h, true);
-    const VkXlibSurfaceCreateInfoKHR surface = {
-        .sType = VK_STRUCTURE_TYPE_XLIB_SURFACE_CREATE_INFO_KHR, .dpy = w.display, .window = w.id};
-    VK_CHECK(vkCreateXlibSurfaceKHR(h.instance, &surface, NULL, &w.surface));
+    w.surface = native_surface(h.instance);
     host_open_device(&h, w.surface);
     w.format = choose_format(&h, w.surface);
     open_pass(&h, &w);
@@ -403,16 +366,16 @@ int run_window(uint32_t samples, bool only_check, const char *picture)
     open_images(&h, &w, VK_NULL_HANDLE);
     weather welkin = weather_open(&h);
     uploader u = {.host = &h};
-    EXPECT(thrd_create(&u.thread, upload, &u) == thrd_success, "no thread");
+    EXPECT(thread_start(&u.thread, upload, &u), "no thread");
 
     if (only_check) check(&h, &w, &welkin, picture);
-    while (w.open && !only_check) {
+    while (w.native.open && !only_check) {
         draw(&h, &w, &welkin, NULL);
     }
 
     /* The end: nobody uses the queue, Welkin goes, then what it drew into, the device, and last the window. */
     atomic_store(&u.stop, true);
-    thrd_join(u.thread, NULL);
+    thread_join(u.thread);
     EXPECT(u.submissions > 0, "the other thread never got the queue");
     weather_close(&welkin);
     host_wait(&h);
@@ -426,7 +389,6 @@ int run_window(uint32_t samples, bool only_check, const char *picture)
     host_close_device(&h);
     vkDestroySurfaceKHR(h.instance, w.surface, NULL);
     host_close_instance(&h);
-    XDestroyWindow(w.display, w.id);
-    XCloseDisplay(w.display);
+    native_close(&w.native);
     return h.complaints;
 }

@@ -1,22 +1,16 @@
-/* A host without graphics of its own: a plain X11 window, named to Welkin by its handle, that shows the sky.
+/* A host without graphics of its own: a window of X11 or Win32, named to Welkin by its handle, that shows the sky.
  *
  *     window_host [--gl]                    until the window is closed; the sun goes round, the left button looks about
- *     window_host [--gl] --check [OUT.ppm]  draws, resizes, hides and shows itself, and looks at its pixels in X
+ *     window_host [--gl] --check [OUT.ppm]  draws, resizes, hides and shows itself, and looks at the screen's pixels
  *
  * --gl has Welkin draw with OpenGL instead of the best interface there is.
  *
- * The host owns the window, its events and its size. What happens to the window comes back as a status. */
-#define _DEFAULT_SOURCE /* usleep */
-#include "welkin.h"
+ * The host owns the window, its events and its size (window.h; window_x11.c and window_win32.c). What happens to the
+ * window comes back as a status. */
+#include "window.h"
 
-#include <X11/Xlib.h>
-#include <X11/Xutil.h>
 #include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "../command_line.h"
 
@@ -29,22 +23,9 @@
         }                                                                                              \
     } while (0)
 
-#define EXPECT(condition, ...)                                              \
-    do {                                                                    \
-        if (!(condition)) {                                                 \
-            fprintf(stderr, "%s:%d: %s: ", __FILE__, __LINE__, #condition); \
-            fprintf(stderr, __VA_ARGS__);                                   \
-            fputc('\n', stderr);                                            \
-            exit(1);                                                        \
-        }                                                                   \
-    } while (0)
-
 typedef struct app {
-    Display *display;
-    Window window;
-    Atom close;
-    uint32_t width, height;
-    bool open, outdated;
+    host_window window;
+    bool outdated;
     double azimuth, pitch; /* where the camera looks, rad */
     wk_device *device;
     wk_surface *surface;
@@ -53,54 +34,14 @@ typedef struct app {
     uint64_t frame_id;
 } app;
 
-/* ---- the host's window ---- */
-
-static void open_window(app *a)
-{
-    XInitThreads(); /* the driver's threads use the connection too */
-    a->display = XOpenDisplay(NULL);
-    EXPECT(a->display, "no X display; is DISPLAY set?");
-    a->window = XCreateSimpleWindow(a->display, DefaultRootWindow(a->display), 0, 0, a->width, a->height, 0, 0, 0);
-    XStoreName(a->display, a->window, "Welkin");
-    XSelectInput(a->display, a->window, StructureNotifyMask | Button1MotionMask);
-    a->close = XInternAtom(a->display, "WM_DELETE_WINDOW", False);
-    XSetWMProtocols(a->display, a->window, &a->close, 1);
-    XMapWindow(a->display, a->window);
-    a->open = true;
-}
-
-static void take_events(app *a)
-{
-    XSync(a->display, False);
-    while (XPending(a->display)) {
-        XEvent event;
-        XNextEvent(a->display, &event);
-        if (event.type == ConfigureNotify) {
-            a->outdated |= a->width != (uint32_t)event.xconfigure.width || a->height != (uint32_t)event.xconfigure.height;
-            a->width = (uint32_t)event.xconfigure.width;
-            a->height = (uint32_t)event.xconfigure.height;
-        } else if (event.type == MotionNotify) {
-            a->azimuth = 6.2831853 * event.xmotion.x / a->width;
-            a->pitch = 1.5 * (0.5 - (double)event.xmotion.y / a->height);
-        } else if (event.type == ClientMessage && (Atom)event.xclient.data.l[0] == a->close) {
-            a->open = false;
-        }
-    }
-}
-
 /* ---- Welkin ---- */
 
 static void open_welkin(app *a, wk_backend_flags backends)
 {
     wk_device_desc desc = WK_DEVICE_DESC_INIT;
     desc.backends = backends;
-    wk_window window = WK_WINDOW_INIT;
-    window.kind = WK_WINDOW_XLIB;
-    window.display = a->display;
-    window.screen = DefaultScreen(a->display);
-    window.id = a->window;
-    WK_CHECK(wk_device_create_for_window(&desc, &window, &a->device));
-    WK_CHECK(wk_surface_create(a->device, &window, &a->surface));
+    WK_CHECK(wk_device_create_for_window(&desc, &a->window.named, &a->device));
+    WK_CHECK(wk_surface_create(a->device, &a->window.named, &a->surface));
     WK_CHECK(wk_context_create(a->device, NULL, &a->context));
     WK_CHECK(wk_view_create(a->context, NULL, &a->view));
     wk_caps caps = WK_CAPS_INIT;
@@ -119,8 +60,8 @@ static void close_welkin(app *a)
 static void configure(app *a)
 {
     wk_surface_config config = WK_SURFACE_CONFIG_INIT;
-    config.width = a->width;
-    config.height = a->height;
+    config.width = a->window.width;
+    config.height = a->window.height;
     WK_CHECK(wk_surface_configure(a->surface, &config));
     a->outdated = false;
 }
@@ -151,9 +92,21 @@ static void record(app *a)
     look(frame.view, a->azimuth, a->pitch);
     /* 60 degrees from top to bottom, reversed infinite depth, near plane at 0.1 m. */
     const double focal = 1.7320508;
-    const double projection[16] = {focal * a->height / a->width, 0, 0, 0, 0, focal, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0};
+    const double across = focal * a->window.height / a->window.width;
+    const double projection[16] = {across, 0, 0, 0, 0, focal, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0};
     memcpy(frame.projection, projection, sizeof projection);
     WK_CHECK(wk_view_record(a->view, &frame, WK_STAGE_ALL));
+}
+
+static void take_events(app *a)
+{
+    window_take_events(&a->window);
+    a->outdated |= a->window.resized;
+    if (a->window.dragged) {
+        a->azimuth = 6.2831853 * a->window.drag_x;
+        a->pitch = 1.5 * (0.5 - a->window.drag_y);
+    }
+    a->window.resized = a->window.dragged = false;
 }
 
 /* Draws and shows one frame if the window can show one now. */
@@ -186,60 +139,45 @@ static void set_sun(app *a, double azimuth_deg, double elevation_deg)
     WK_CHECK(wk_context_set_sun(a->context, &sun));
 }
 
-/* ---- looking at the pixels, from X's side ---- */
+/* ---- looking at the pixels, as the screen shows them ---- */
 
 typedef struct rgb {
     int r, g, b;
 } rgb;
 
-static rgb pixel(XImage *image, int x, int y)
+static rgb pixel(const app *a, const unsigned char *pixels, uint32_t x, uint32_t y)
 {
-    const unsigned long p = XGetPixel(image, x, y);
-    return (rgb){(int)(p >> 16 & 255), (int)(p >> 8 & 255), (int)(p & 255)};
-}
-
-static XImage *grab(app *a)
-{
-    XSync(a->display, False);
-    XImage *image = XGetImage(a->display, a->window, 0, 0, a->width, a->height, AllPlanes, ZPixmap);
-    EXPECT(image, "the window has no pixels");
-    return image;
+    const unsigned char *p = pixels + 3 * ((size_t)y * a->window.width + x);
+    return (rgb){p[0], p[1], p[2]};
 }
 
 static bool is_sky(rgb p) { return p.b > p.r && p.b > 40; }
 
 /* Frames until one has come to the screen and the corners show sky: presenting is not synchronous. */
-static XImage *draw_until_sky(app *a)
+static unsigned char *draw_until_sky(app *a)
 {
     for (int attempt = 0; attempt < 50; attempt++) {
         if (!draw(a)) continue;
-        usleep(20000);
-        XImage *image = grab(a);
-        const int right = (int)a->width - 1, bottom = (int)a->height - 1;
-        if (is_sky(pixel(image, 0, 0)) && is_sky(pixel(image, right, 0)) && is_sky(pixel(image, right, bottom)) &&
-            is_sky(pixel(image, 0, bottom))) {
-            return image;
+        window_sleep_ms(20);
+        unsigned char *pixels = window_pixels(&a->window);
+        const uint32_t right = a->window.width - 1, bottom = a->window.height - 1;
+        if (is_sky(pixel(a, pixels, 0, 0)) && is_sky(pixel(a, pixels, right, 0)) &&
+            is_sky(pixel(a, pixels, right, bottom)) && is_sky(pixel(a, pixels, 0, bottom))) {
+            return pixels;
         }
-        XDestroyImage(image);
+        free(pixels);
     }
-    EXPECT(false, "the sky never filled the window's %u x %u pixels", a->width, a->height);
+    EXPECT(false, "the sky never filled the window's %u x %u pixels", a->window.width, a->window.height);
     return NULL;
 }
 
-static void write_picture(const char *path, XImage *image)
+static void write_picture(const app *a, const char *path, const unsigned char *pixels)
 {
+    const size_t bytes = 3 * (size_t)a->window.width * a->window.height;
     FILE *f = fopen(part_begin(path), "wb");
     EXPECT(f, "cannot write %s", path);
-    fprintf(f, "P6\n%d %d\n255\n", image->width, image->height);
-    for (int y = 0; y < image->height; y++) {
-        for (int x = 0; x < image->width; x++) {
-            const rgb p = pixel(image, x, y);
-            fputc(p.r, f);
-            fputc(p.g, f);
-            fputc(p.b, f);
-        }
-    }
-    const bool complete = fclose(f) == 0;
+    fprintf(f, "P6\n%u %u\n255\n", a->window.width, a->window.height);
+    const bool written = fwrite(pixels, 1, bytes, f) == bytes, complete = fclose(f) == 0 && written;
     EXPECT(part_end(path, complete), "cannot write %s", path);
 }
 
@@ -248,29 +186,29 @@ static void check(app *a, const char *picture)
     a->pitch = 0.6; /* the horizon lies just below the picture */
     set_sun(a, 200.0, 35.0);
     configure(a);
-    XImage *image = draw_until_sky(a);
-    const rgb top = pixel(image, 160, 4), bottom = pixel(image, 160, (int)a->height - 5);
+    unsigned char *pixels = draw_until_sky(a);
+    const rgb top = pixel(a, pixels, 160, 4), bottom = pixel(a, pixels, 160, a->window.height - 5);
     EXPECT(bottom.r + bottom.g > top.r + top.g, "the sky is brighter and paler near the horizon");
-    if (picture) write_picture(picture, image);
-    XDestroyImage(image);
+    if (picture) write_picture(a, picture, pixels);
+    free(pixels);
 
-    XResizeWindow(a->display, a->window, 480, 300);
-    image = draw_until_sky(a);
-    EXPECT(a->width == 480 && a->height == 300, "the window is %u x %u now", a->width, a->height);
-    XDestroyImage(image);
+    window_resize(&a->window, 480, 300);
+    free(draw_until_sky(a));
+    EXPECT(a->window.width == 480 && a->window.height == 300, "the window is %u x %u now", a->window.width,
+           a->window.height);
 
-    XUnmapWindow(a->display, a->window);
+    window_show(&a->window, false);
     for (int i = 0; i < 3; i++) draw(a); /* whatever it answers, it answers */
-    XMapWindow(a->display, a->window);
+    window_show(&a->window, true);
     a->outdated = true;
-    XDestroyImage(draw_until_sky(a));
+    free(draw_until_sky(a));
 
     wk_surface_config minimised = WK_SURFACE_CONFIG_INIT;
     WK_CHECK(wk_surface_configure(a->surface, &minimised));
     EXPECT(wk_surface_acquire(a->surface) == WK_ERROR_SURFACE_OUTDATED, "no area, no image");
     EXPECT(wk_surface_present(a->surface) == WK_ERROR_WRONG_ORDER, "nothing was acquired");
     a->outdated = true;
-    XDestroyImage(draw_until_sky(a));
+    free(draw_until_sky(a));
     printf("ok\n");
 }
 
@@ -295,19 +233,18 @@ int main(int argc, char **argv)
         else if (argv[i][0] == '-' || !checking || picture) return command_line_unknown(NAME, argv[i]);
         else picture = argv[i];
     }
-    app a = {.width = 320, .height = 200, .outdated = true, .pitch = 0.3};
-    open_window(&a);
+    app a = {.outdated = true, .pitch = 0.3};
+    window_open(&a.window, 320, 200);
     open_welkin(&a, backends);
     if (checking) {
         check(&a, picture);
     } else {
-        for (double degrees = 0.0; a.open; degrees += 0.2) {
+        for (double degrees = 0.0; a.window.open; degrees += 0.2) {
             set_sun(&a, degrees, 40.0 * sin(degrees / 57.29578));
-            if (!draw(&a)) usleep(10000);
+            if (!draw(&a)) window_sleep_ms(10);
         }
     }
     close_welkin(&a);
-    XDestroyWindow(a.display, a.window);
-    XCloseDisplay(a.display);
+    window_close(&a.window);
     return 0;
 }
