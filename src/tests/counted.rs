@@ -294,6 +294,13 @@ fn counts(weather: &str) -> Counts {
     Counts { passes, bytes_a_pixel, draws }
 }
 
+/// Texels and operations of the dearest pixel that is drawn whole in a weather.
+pub(super) fn dearest_pixel(weather: &str) -> [u32; 2] {
+    let drawn = counts(weather).draws.into_iter().filter(|(pixels, _)| pixels == "Uneven");
+    let most = drawn.fold(Count::default(), |most, (_, count)| most.most(count));
+    [most.texels, most.operations]
+}
+
 /// What a pixel of each draw is, in the order of the table.
 const DRAWS: [(&str, &str); 4] = [
     ("Uneven", "drawn whole"),

@@ -3,5 +3,6 @@
 mod counted;
 mod detour;
 mod even;
+mod longest;
 mod moment;
 mod opaque;
