@@ -96,6 +96,13 @@ no_tool = echo "lint: $(1) is not installed (rustup component add $(1))" >&2; [ 
 header: setup-build ## write include/welkin.h and the ABI lists anew from the sources
 	WELKIN_BLESS=1 cargo test --locked --quiet --test abi_header
 
+.PHONY: windows windows-accept
+windows: setup-build ## welkin.dll by MinGW, packed for Windows projects and checked, at most 12 minutes on two cores
+	@scripts/windows/run.sh
+
+windows-accept: setup-build ## the library's Rust tests for Windows, under Wine
+	@scripts/windows/accept.sh
+
 docs: setup-build ## the Rust documentation, warnings are errors
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 
@@ -111,6 +118,7 @@ accept: setup lint docs ## the long sweeps in release, and the benchmarks, at mo
 	$(MAKE) --no-print-directory lib PROFILE=release
 	WELKIN_ACCEPT=1 cargo test --locked --release --doc
 	$(MAKE) --no-print-directory bench
+	$(MAKE) --no-print-directory windows-accept
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
 
 # Other drivers are fetched into target/drivers and stay there; pictures and logs too. Uses the tests' quick build.

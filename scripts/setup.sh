@@ -4,6 +4,7 @@
 #
 #   scripts/setup.sh          everything that `make test` and `make demo` use
 #   scripts/setup.sh build    only what the library itself needs (a Rust toolchain and a linker)
+#   scripts/setup.sh packages NAME..   these packages of Debian or Ubuntu
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/command_line.sh"
 answer_command_line "$@"
@@ -108,7 +109,14 @@ check_rust() {
 }
 
 what="${1:-all}"
-case "$what" in all | build) ;; *) refuse "$what" ;; esac
+case "$what" in
+packages)
+    install_packages "${@:2}"
+    exit 0
+    ;;
+all | build) ;;
+*) refuse "$what" ;;
+esac
 [ $# -le 1 ] || refuse "$2"
 if command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then
     if [ "$what" = build ]; then
