@@ -11,9 +11,18 @@ const JD_UNIX_EPOCH: f64 = 2_440_587.5;
 const FIRST_YEAR: f64 = -2000.0;
 const LAST_YEAR: f64 = 6000.0;
 
-/// Seconds since 1970 of the years -2000 to 6000, as the sun's series has them; the last hour is left to the difference
-/// between terrestrial and universal time.
-pub(crate) const UTC_RANGE_S: [f64; 2] = [-125_281_123_200.0, 127_206_111_600.0];
+/// Seconds since 1970 of the years -2000 to 6000, as the sun's series has them; the last 16 hours are left to the difference
+/// between terrestrial and universal time, which is 57,245 s then.
+pub(crate) const UTC_RANGE_S: [f64; 2] = [-125_281_123_200.0, 127_206_057_600.0];
+
+/// Years between which the difference of terrestrial and universal time is fitted to observations and simulations.
+const FITTED_YEARS: [f64; 2] = [-500.0, 3000.0];
+
+/// TT - UT1 over millennia, s (Morrison and Stephenson 2004, as Espenak and Meeus 2006 have it).
+fn long_term_s(year: f64) -> f64 {
+    let centuries = (year - 1820.0) / 100.0;
+    -20.0 + 32.0 * centuries * centuries
+}
 
 /// Days of a month of the proleptic Gregorian calendar.
 fn days_of(year: i32, month: u32) -> u32 {
@@ -73,10 +82,15 @@ impl Utc {
         (self.julian_date() + self.delta_t_s() / 86_400.0 - 2_451_545.0) / 36_525.0
     }
 
-    /// TT - UT1, s (the polynomials of Espenak and Meeus 2014, by the crate `solar-positioning`).
+    /// TT - UT1, s, without a step anywhere in the range: 69.1 s in 2026. The years -500 to 3000 are those of the crate
+    /// `solar-positioning`: the polynomials of Espenak and Meeus (2006, with Espenak's of 2014) until 2015, then a quartic through the
+    /// observations of IERS until the middle of 2026 and a quadratic through simulations (Agnew 2026). Before and after them it goes on
+    /// by the parabola of Morrison and Stephenson (2004), moved to where the fit ends: tidal friction, 32 s per century squared.
     pub fn delta_t_s(self) -> f64 {
         let year = 2000.0 + (self.julian_date() - 2_451_544.5) / 365.2425;
-        solar_positioning::delta_t::estimate(year).unwrap_or(69.0)
+        let fitted = year.clamp(FITTED_YEARS[0], FITTED_YEARS[1]);
+        // Inside of those years there is an estimate.
+        solar_positioning::delta_t::estimate(fitted).unwrap_or_default() + long_term_s(year) - long_term_s(fitted)
     }
 
     pub(crate) fn julian(self) -> Result<JulianDate> {
@@ -85,5 +99,54 @@ impl Utc {
 
     pub(crate) fn out_of_range(self) -> Error {
         Error::range("utc", "a time of the years -2000 to 6000 (seconds since 1970)", self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn in_year(year: f64) -> Utc {
+        Utc((year - 1970.0) * 365.2425 * 86_400.0)
+    }
+
+    #[test]
+    fn the_difference_of_times_has_no_step_in_all_the_range() {
+        // A day at a time: the parabola is steepest in the year 6000, 0.07 s a day; the polynomials meet within 0.4 s.
+        let mut before = Utc(UTC_RANGE_S[0]).delta_t_s();
+        for day in 1..=2_922_000 {
+            let utc = Utc(UTC_RANGE_S[0] + 86_400.0 * f64::from(day));
+            if utc.0 > UTC_RANGE_S[1] {
+                break;
+            }
+            let now = utc.delta_t_s();
+            assert!((now - before).abs() < 0.5, "{before} to {now} s in {}", 1970.0 + utc.0 / 86_400.0 / 365.2425);
+            before = now;
+        }
+        for border in FITTED_YEARS {
+            let step = in_year(border + 1e-6).delta_t_s() - in_year(border - 1e-6).delta_t_s();
+            assert!(step.abs() < 1e-3, "{step} s at {border}");
+        }
+        for (year, expected, within) in
+            // Espenak and Meeus (2006): the table of the years -500 and 1000, IERS in 2026; and the parabola where it is alone.
+            [
+                (-500.0, 17_190.0, 430.0),
+                (1000.0, 1570.0, 55.0),
+                (2026.5, 69.14, 0.1),
+                (-2000.0, 46_656.0, 100.0),
+            ]
+        {
+            let found = in_year(year).delta_t_s();
+            assert!((found - expected).abs() <= within, "{found} s in {year}");
+        }
+    }
+
+    #[test]
+    fn the_almanac_answers_at_both_ends_of_its_range() {
+        for end in UTC_RANGE_S {
+            assert!(Utc(end).julian().is_ok(), "{end}");
+        }
+        assert!(Utc(UTC_RANGE_S[0] - 86_400.0).julian().is_err() && Utc(UTC_RANGE_S[1] + 86_400.0).julian().is_err());
+        assert!(in_year(6000.999).delta_t_s() < 57_600.0);
     }
 }
