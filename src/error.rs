@@ -1,7 +1,7 @@
 //! What can go wrong, said in one way everywhere: a stable status code, the field that it is about as a value, and a
 //! sentence that begins with the field and says what is accepted.
 
-use std::fmt;
+use std::{borrow::Cow, fmt};
 
 /// Status of a call. The numbers are ABI: they never change and are never reused.
 #[repr(i32)]
@@ -71,7 +71,7 @@ impl Error {
 
     /// An error about a field; `rest` is the sentence without the field that it begins with.
     pub fn about(status: Status, field: impl Into<String>, rest: impl fmt::Display) -> Self {
-        Self { status, place: String::new(), field: field.into(), rest: format!(" {rest}") }
+        Self { status, place: String::new(), field: field.into(), rest: short_numerals(format!(" {rest}")) }
     }
 
     /// [`Status::InvalidArgument`] about a field: `get_proc must not be NULL`.
@@ -79,9 +79,10 @@ impl Error {
         Self::about(Status::InvalidArgument, field, rest)
     }
 
-    /// A field outside its range: `visibility_m must be in [1, 1e6] m, got -3`.
+    /// A field outside its range: `visibility_m must be in [1, 1e6] m, got -3`. Of what was given the beginning is shown if it is long.
     pub fn range(field: &str, accepted: &str, got: impl fmt::Display) -> Self {
-        Self::invalid(field, format_args!("must be {accepted}, got {got}"))
+        let got = short_numerals(got.to_string());
+        Self::invalid(field, format_args!("must be {accepted}, got {}", shown(&got)))
     }
 
     /// A feature that this device, tier or build does not have.
@@ -155,13 +156,23 @@ impl Error {
     /// All errors of a list in one, about the first one's field; `Ok` if there are none.
     ///
     /// # Errors
-    /// The first error, its sentence followed by the others'.
+    /// The first error, its sentence followed by the others', or by their number where they would make it long.
     pub fn all(errors: impl IntoIterator<Item = Self>) -> Result<()> {
-        let join = |mut all: Self, e: Self| {
-            all.rest = format!("{}; {e}", all.rest);
-            all
-        };
-        errors.into_iter().reduce(join).map_or(Ok(()), Err)
+        let mut errors = errors.into_iter();
+        let Some(mut all) = errors.next() else { return Ok(()) };
+        let mut left_out = 0;
+        for e in errors {
+            let next = format!("; {e}");
+            if left_out == 0 && all.to_string().len() + next.len() <= MOST_JOINED {
+                all.rest += &next;
+            } else {
+                left_out += 1;
+            }
+        }
+        if left_out > 0 {
+            all.rest += &format!("; and {left_out} more");
+        }
+        Err(all)
     }
 }
 
@@ -175,10 +186,41 @@ impl std::error::Error for Error {}
 
 /// Most characters of a host's text that an error repeats.
 const MOST_SHOWN: usize = 120;
+/// Most bytes of a sentence that errors make together.
+const MOST_JOINED: usize = 250;
+/// Most characters of a numeral; the shortest form of a number of usual size has no more.
+const MOST_NUMERAL: usize = 24;
+
+/// A sentence in which long numerals have an exponent: written out, the smallest number has 326 characters and the largest 309.
+fn short_numerals(sentence: String) -> String {
+    let is_numeral = |c: char| c.is_ascii_digit() || c == '.';
+    if !sentence.split(|c| !is_numeral(c)).any(|run| run.len() > MOST_NUMERAL) {
+        return sentence;
+    }
+    let mut short = String::new();
+    for piece in sentence.split_inclusive(|c| !is_numeral(c)) {
+        let run = piece.trim_end_matches(|c| !is_numeral(c));
+        match run.parse::<f64>() {
+            Ok(v) if run.len() > MOST_NUMERAL && v.is_finite() => short += &format!("{v:e}{}", &piece[run.len()..]),
+            _ => short += piece,
+        }
+    }
+    short
+}
+
+/// A number as an error shows it.
+pub(crate) fn number(v: f64) -> String {
+    short_numerals(v.to_string())
+}
 
 /// A host's text as an error repeats it: its beginning, if it is long.
-pub(crate) fn shown(text: &str) -> std::borrow::Cow<'_, str> {
-    match text.char_indices().nth(MOST_SHOWN) {
+pub(crate) fn shown(text: &str) -> Cow<'_, str> {
+    beginning(text, MOST_SHOWN)
+}
+
+/// A text up to so many characters.
+pub(crate) fn beginning(text: &str, most: usize) -> Cow<'_, str> {
+    match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}...", &text[..end]).into(),
         None => text.into(),
     }
@@ -218,6 +260,65 @@ mod tests {
         let e = toml::from_str::<toml::Table>(&text).unwrap_err();
         let fault = toml_fault(&text, &e);
         assert!(fault.starts_with("TOML parse error at line 2, column 50") && fault.len() < 300, "{fault}");
+    }
+
+    #[test]
+    fn messages_stay_short_whatever_is_given() {
+        let hostile = [
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::MAX,
+            f64::MIN,
+            f64::MIN_POSITIVE,
+            5e-324,
+            -4.9e-310,
+            1.7e-300,
+            -0.0,
+            1.0 / 3.0,
+            -123_456.789_012_345_67,
+            1e21,
+            f64::from(f32::MIN_POSITIVE),
+        ];
+        for v in hostile {
+            let matrix = glam::DMat4::from_cols_array(&[v; 16]);
+            let made = [
+                Error::range("camera.view", "a rigid world-to-eye matrix (rotation, no scale)", matrix),
+                Error::range(
+                    "shelter.axes",
+                    "three unit vectors at right angles",
+                    glam::DMat3::from_cols_array(&[v; 9]),
+                ),
+                Error::range("ray.direction", "finite", format!("{:?}", [v; 16])),
+                Error::range("position", "finite and within 1e12 m", glam::DVec3::splat(v)),
+                Error::range(
+                    "position",
+                    &format!("in [{v}, {v}] m"),
+                    format_args!("{v} m at {}", glam::DVec3::splat(v)),
+                ),
+                Error::about(Status::WrongOrder, "flash.time_s", format_args!("must be at least {v} s, got {v}")),
+                Error::invalid("value", format_args!("{}", v as f32)),
+                Error::range("name", "a name", "x".repeat(5000)),
+                Error::new(Status::WrongOrder, format!("time_s must be at least {} s, got {}", number(v), number(-v))),
+            ];
+            let checked = check_range("visibility_m", v, 5e-324, 5e-324, "m").err();
+            let joined = Error::all(vec![made[0].clone(); 9]).err();
+            for e in made.iter().chain(&checked).chain(&joined) {
+                let text = e.to_string();
+                assert!(text.len() < 300, "{} bytes: {text}", text.len());
+                let longest = text.split(|c: char| !(c.is_ascii_digit() || c == '.')).map(str::len).max();
+                assert!(longest <= Some(MOST_NUMERAL), "{text}");
+            }
+        }
+        let text = |v: f64| Error::range("a", "b", v).to_string();
+        assert_eq!(text(5e-324), "a must be b, got 5e-324");
+        assert_eq!(text(-f64::MAX), "a must be b, got -1.7976931348623157e308");
+        assert_eq!(text(0.1), "a must be b, got 0.1");
+        let two = Error::range("a", "b", glam::DVec2::new(-1e-310, 2.5)).to_string();
+        assert_eq!(two, "a must be b, got [-1e-310, 2.5]");
+        assert!(Error::range("name", "a name", "7".repeat(5000)).to_string().len() < 300);
+        let all = Error::all(vec![Error::range("a", "b", "c".repeat(100)); 4]).unwrap_err().to_string();
+        assert!(all.ends_with("; and 2 more"), "{all}");
     }
 
     #[test]

@@ -8,7 +8,7 @@
 use super::Context;
 use crate::{
     effects::LoadedHeld,
-    error::{Error, Result, Status, toml_fault},
+    error::{Error, Result, Status, number, toml_fault},
     world::{LoadedWorld, SavedWorld, parse_error},
 };
 
@@ -66,7 +66,7 @@ impl Context {
     fn saved(&self, for_hash: bool) -> Result<String> {
         if self.behind.is_some() {
             let wanted = "a state comes after wk_context_update has answered WK_OK: steps of the simulation remain";
-            return Err(Error::new(Status::WrongOrder, format!("{wanted} up to {} s", self.world.time_s)));
+            return Err(Error::new(Status::WrongOrder, format!("{wanted} up to {} s", number(self.world.time_s))));
         }
         let fault = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
         let mut table = toml::Table::try_from(self.world.saved(self.created())?).map_err(fault)?;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::Context;
 use crate::{
-    error::{Error, Result, Status, check_range},
+    error::{Error, Result, Status, check_range, number},
     weather::timeline::MAX_TIME_S,
     world::Within,
 };
@@ -43,7 +43,10 @@ impl Context {
         check_range("time_s", time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
         let now = self.world.time_s;
         if time_s < now {
-            return Err(Error::new(Status::WrongOrder, format!("time_s must be at least {now} s, got {time_s}")));
+            return Err(Error::new(
+                Status::WrongOrder,
+                format!("time_s must be at least {} s, got {}", number(now), number(time_s)),
+            ));
         }
         if self.behind.is_some() && self.lead(within)? == Status::Pending {
             return Ok(Status::Pending);
@@ -83,7 +86,12 @@ impl Context {
             effect.publish(&mut self.world);
             match led_to {
                 Ok(Status::Ok) => {}
-                other => led = other,
+                // Those after it read what it publishes: how far it gets in a call must not show in them.
+                Ok(status) => {
+                    led = Ok(status);
+                    break;
+                }
+                fault => led = fault,
             }
         }
         match (&mut behind, &led) {
@@ -91,10 +99,24 @@ impl Context {
             (None, Ok(Status::Pending)) => behind = Some(Box::new(self.world.set.clone())),
             (None, _) => {}
         }
-        if led != Ok(Status::Ok) {
+        if led == Ok(Status::Ok) {
+            self.settle();
+        } else {
             self.behind = behind;
         }
         led
+    }
+
+    /// Lets the effects take what the host has set since their last step, as far as it is a part of their state. While steps of an update
+    /// remain it waits for the last of them.
+    pub(crate) fn settle(&mut self) {
+        if self.behind.is_some() {
+            return;
+        }
+        for effect in self.held.each() {
+            effect.settle(&self.world);
+            effect.publish(&mut self.world);
+        }
     }
 
     /// Simulation time of what is simulated, s: the present, or earlier as long as [`Context::update_within`] answers that steps

@@ -45,7 +45,7 @@ impl Context {
 
     /// The wind that varies in space.
     pub fn wind_grid(&self) -> Option<&Arc<WindGrid>> {
-        self.world.wind_grid.as_ref()
+        self.world.set.host_wind.as_ref().map(|host| &host.grid)
     }
 
     /// How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m (east, north, up): the integral of

@@ -117,6 +117,9 @@ impl HeldFlow {
     fn go_on(&mut self, world: &World) -> Result<bool> {
         let Some(mut live) = self.live.take() else { return self.begin_field(world) };
         let outcome = self.lead_live(&mut live, world);
+        if matches!(outcome, Ok(Next::Changed)) {
+            live.shown_over = live.wind_over(world);
+        }
         if !matches!(outcome, Ok(Next::Gone)) {
             self.live = Some(live);
         }

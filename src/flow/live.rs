@@ -14,7 +14,7 @@ use crate::{
     surroundings::{Shelter, TerrainHeights},
     terrain::Terrain,
     weather::WindProfile,
-    wind::{Blowing, WindVolume},
+    wind::{Blowing, Drift, WindVolume},
     world::World,
 };
 
@@ -92,6 +92,13 @@ impl Inflow {
         let blowing = world.over().wind.at(time_s);
         let profile = world.timeline.at(time_s).wind;
         Self { blowing, profile, is_steady: mode == WindFieldMode::Steady }
+    }
+
+    /// The mean wind of a profile.
+    fn of_mean(profile: WindProfile) -> Self {
+        let mean_m_s = DVec2::new(profile.east_m_s, profile.north_m_s);
+        let blowing = Blowing { drift: Drift::ZERO, mean_m_s, turned_m_s: DVec2::ZERO, gust_m_s: DVec2::ZERO };
+        Self { blowing, profile, is_steady: true }
     }
 
     /// The wind at a height above the ground, m/s.
@@ -242,6 +249,8 @@ pub(super) struct Live {
     pub solved_for: [f64; 3],
     pub awake_s: f64,
     pub rests: bool,
+    /// Of a steady field: the weather's wind over which it is shown. While it rests that of the moment may be a little another.
+    pub shown_over: Option<WindProfile>,
 }
 
 /// Length of the steps of a mode, s.
@@ -302,6 +311,7 @@ impl Live {
             solved_for: [f64::INFINITY; 3],
             awake_s: 0.0,
             rests: false,
+            shown_over: None,
         }
     }
 
@@ -488,9 +498,16 @@ impl Live {
         [self.time_s - LEAP_S, self.time_s + LEAP_S]
     }
 
+    /// The weather's wind over which a steady field is shown from now on. It is that of the step which changed the field, however far
+    /// the field is led before it is published.
+    pub fn wind_over(&self, world: &World) -> Option<WindProfile> {
+        (self.desc.mode == WindFieldMode::Steady).then(|| world.timeline.at(self.time_s).wind)
+    }
+
     /// Fills what queries and shaders read.
     pub fn publish(&self, world: &World, volume: &mut WindVolume) {
-        let inflow = Inflow::new(world, self.time_s, self.desc.mode);
+        let is_steady = self.desc.mode == WindFieldMode::Steady;
+        let inflow = Inflow::of_mean(self.shown_over.unwrap_or_else(|| world.timeline.at(self.time_s).wind));
         let scenery = Scenery::new(world, self, self.time_s);
         let cells = self.desc.cells;
         volume.origin = self.anchor.origin + self.anchor.to_enu.transpose() * self.corner_m();
@@ -498,7 +515,6 @@ impl Live {
         volume.nodes = cells.map(|n| n + 1);
         volume.holds_s = Some(self.holds_s());
         volume.values.clear();
-        let is_steady = self.desc.mode == WindFieldMode::Steady;
         // 0 at a side, 1 so many cells from it.
         let rim = |cells: f32| {
             let x = (cells / RIM_CELLS).clamp(0.0, 1.0);

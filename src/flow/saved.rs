@@ -10,6 +10,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
+    weather::WindProfile,
     world::World,
 };
 
@@ -54,6 +55,9 @@ pub(super) struct SavedField {
     rests: bool,
     last_dt_s: f64,
     last_change_m_s: f32,
+    /// Not in states of before: those are shown over the wind of the moment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    shown_over: Option<WindProfile>,
     desc: SavedDesc,
     numbers: String,
 }
@@ -111,6 +115,7 @@ impl SavedField {
             rests: live.rests,
             last_dt_s,
             last_change_m_s,
+            shown_over: live.shown_over,
             desc: SavedDesc::of(&live.desc),
             numbers: written(live.field.numbers()),
         }
@@ -134,6 +139,14 @@ impl SavedField {
         let is_rotation = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < 1e-6);
         let anchor_m = DVec3::from(self.anchor_m);
         let is_sound = numbers.iter().all(|v| v.is_finite() && v.abs() < 1e11) && (0.0..=1e3).contains(&self.last_dt_s);
+        let over = self.shown_over;
+        let is_wind = |w: WindProfile| {
+            let rest = [w.gust_m_s, w.turbulence_intensity, w.wander_deg, w.sea_roughness_length_m];
+            rest.iter().all(|v| (0.0..=1e3).contains(v))
+                && w.speed_m_s() <= 1e3
+                && (1e-9..=1e2).contains(&w.roughness_length_m)
+        };
+        let is_sound = is_sound && over.is_none_or(is_wind);
         if !(is_sound && is_rotation && anchor_m.is_finite() && self.last_change_m_s.is_finite()) {
             return Err(unfit("must have finite numbers and axes that are a rotation"));
         }
@@ -147,7 +160,7 @@ impl SavedField {
         let hash = |i: usize| u64::from_str_radix(&self.stood[i], 16).map_err(|_| unfit("must have two hashes"));
         live.stood = [hash(0)?, hash(1)?];
         (live.begun_s, live.solved_for) = (self.begun_s, self.solved_for);
-        (live.awake_s, live.rests) = (self.awake_s, self.rests);
+        (live.awake_s, live.rests, live.shown_over) = (self.awake_s, self.rests, over);
         Ok(live)
     }
 }

@@ -20,7 +20,12 @@ impl Context {
         let is_set = grid.is_some();
         self.held.ground.set_grid(&self.world, grid)?;
         self.world.set.terrain = self.held.ground.heights();
-        if is_set { self.held.ground.set_terrain(&mut self.world, None) } else { Ok(()) }
+        if is_set {
+            self.held.ground.set_terrain(&mut self.world, None)?;
+        }
+        self.held.snowpack.ground_replaced(&self.world);
+        self.settle();
+        Ok(())
     }
 
     /// The host's terrain.

@@ -19,7 +19,10 @@ impl Context {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn set_terrain(&mut self, desc: Option<TerrainDesc>) -> Result<()> {
-        self.held.ground.set_terrain(&mut self.world, desc)
+        self.held.ground.set_terrain(&mut self.world, desc)?;
+        self.held.snowpack.ground_replaced(&self.world);
+        self.settle();
+        Ok(())
     }
 
     /// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is, with as much

@@ -418,6 +418,10 @@ impl HeldEffect for HeldGround {
         Ok(())
     }
 
+    fn settle(&mut self, world: &World) {
+        self.follow_late(world);
+    }
+
     fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
         self.follow_late(world);
         let Some(mut state) = self.state else { return Ok(Status::Ok) };

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
-    surroundings::Meltwater,
+    surroundings::{Meltwater, TerrainHeights},
     terrain::{Terrain, TileKey},
     weather::snow_cover,
     world::{HeldEffect, Within, World, parse_error},
@@ -66,6 +66,8 @@ pub(crate) struct HeldSnow {
     site: Option<Site>,
     /// Tiles that were changed while steps remained, on the terrain as it was then.
     waiting: Vec<(TileKey, Arc<Terrain>)>,
+    /// What the host has set since the snow last settled, in order: one ground, or none and one.
+    grounds: Vec<HostGround>,
     settling: Settling,
     /// Steps that end up to here are coarse.
     coarse_until_s: f64,
@@ -75,6 +77,28 @@ pub(crate) struct HeldSnow {
     melts: Vec<(f64, f64, Meltwater)>,
     /// What was published is of another past.
     forgets: bool,
+}
+
+/// What the host has set that snow lies on: a grid, tiles, or neither.
+#[derive(Clone)]
+struct HostGround {
+    grid: Option<Arc<TerrainHeights>>,
+    tiles: Option<Arc<Terrain>>,
+}
+
+impl HostGround {
+    fn of(world: &World) -> Self {
+        Self { grid: world.set.terrain.clone(), tiles: world.set.tiles.clone() }
+    }
+
+    /// Whether snow on `other` stays where this comes in its place.
+    fn keeps_snow_of(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self { grid: Some(a), .. }, Self { grid: Some(b), .. }) => a.has_nodes_of(b),
+            (Self { grid: None, tiles: Some(a) }, Self { grid: None, tiles: Some(b) }) => a.id == b.id,
+            _ => false,
+        }
+    }
 }
 
 /// A saved snow that can be shown.
@@ -116,6 +140,7 @@ impl HeldSnow {
             state: None,
             site: None,
             waiting: Vec::new(),
+            grounds: Vec::new(),
             settling: Settling::new(),
             coarse_until_s: f64::NEG_INFINITY,
             revision: 1,
@@ -162,13 +187,23 @@ impl HeldSnow {
         if self.model == LyingSnowModel::Simulated && self.state.is_none() {
             self.state = Some(SnowState::first(world, world.time_s)?);
         }
-        self.settle_on(world);
+        self.settle_on(&HostGround::of(world));
         Ok(())
     }
 
+    /// Notes the ground that the host has set in place of another.
+    pub fn ground_replaced(&mut self, world: &World) {
+        let ground = HostGround::of(world);
+        match self.grounds.last_mut() {
+            Some(last) if ground.keeps_snow_of(last) => *last = ground,
+            Some(_) => self.grounds = vec![HostGround { grid: None, tiles: None }, ground],
+            None => self.grounds.push(ground),
+        }
+    }
+
     /// Takes the terrain as it is by now: the snow stays on cells that stay; on new ones it is as deep as on level ground.
-    fn settle_on(&mut self, world: &World) {
-        match (&world.set.terrain, &world.set.tiles) {
+    fn settle_on(&mut self, ground: &HostGround) {
+        match (&ground.grid, &ground.tiles) {
             (Some(grid), _) => {
                 let Some(state) = &mut self.state else { return };
                 if state.field.is_none() || !self.site.as_ref().is_some_and(|site| site.is_of(grid)) {
@@ -314,8 +349,9 @@ impl HeldSnow {
         std::mem::swap(&mut self.state, &mut other.0);
         self.site = None;
         self.waiting.clear();
+        self.grounds.clear();
         self.coarse_until_s = f64::NEG_INFINITY;
-        self.settle_on(world);
+        self.settle_on(&HostGround::of(world));
         self.changed();
         self.forgets = true;
         self.melts.clear();
@@ -337,8 +373,15 @@ impl HeldEffect for HeldSnow {
         Ok(())
     }
 
+    fn settle(&mut self, world: &World) {
+        // Each in turn, also where the first is set again in the end: its snow went with it.
+        for ground in std::mem::take(&mut self.grounds) {
+            self.settle_on(&ground);
+        }
+        self.settle_on(&HostGround::of(world));
+    }
+
     fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
-        self.settle_on(world);
         for steps in 0.. {
             let Some(end_s) = self.state.as_ref().map(|s| s.next_s(self.coarse_until_s)) else { break };
             if end_s > world.time_s {

@@ -17,7 +17,7 @@ use crate::{
         shelter::{met_at, sheltered},
     },
     terrain::{Terrain, TileKey},
-    weather::Conditions,
+    weather::{Conditions, WindProfile},
     wind::WindVolume,
     world::World,
 };
@@ -54,10 +54,19 @@ pub(super) struct Site {
     cell_m: f64,
     boxes: Vec<Shelter>,
     slant: DVec3,
-    /// Revision of the wind that varies in space in which the boxes were looked at; 0 in one that does not.
-    air: u64,
+    /// The wind that varies in space in which the boxes were looked at, if it did.
+    air: Option<ShadedIn>,
     /// Ground has changed since the boxes were looked at.
     stale: bool,
+}
+
+/// All that flakes go with in a wind that varies in space: shade that was found in another is not what a loaded state would find.
+#[derive(Clone, Copy, PartialEq)]
+struct ShadedIn {
+    revision: u64,
+    weathers: WindProfile,
+    /// Fall speed of the flakes, m/s.
+    fall: f64,
 }
 
 /// The four cells about a place, each by its patch, and their shares.
@@ -65,7 +74,7 @@ pub(super) type About = [Option<((usize, usize), f64)>; 4];
 
 impl Site {
     fn new(ground: Ground, (origin, to_enu): (DVec3, DMat3), cell_m: f64) -> Self {
-        Self { ground, origin, to_enu, cell_m, boxes: Vec::new(), slant: DVec3::ZERO, air: 0, stale: true }
+        Self { ground, origin, to_enu, cell_m, boxes: Vec::new(), slant: DVec3::ZERO, air: None, stale: true }
     }
 
     /// Of a grid. The snow that lies on one with nodes at the same places stays, be it `old`'s or loaded; on another it is as deep as on
@@ -78,7 +87,7 @@ impl Site {
     ) -> Self {
         let t = terrain;
         let keeps = match old.map(|old| &old.ground) {
-            Some(Ground::Grid(o)) => (o.origin, o.cell_m, o.nodes) == (t.origin, t.cell_m, t.nodes),
+            Some(Ground::Grid(o)) => o.has_nodes_of(t),
             Some(Ground::Tiles { .. }) => false,
             None => true,
         };
@@ -230,14 +239,14 @@ impl Site {
     pub fn shade(&mut self, field: &mut Field, c: &Conditions, shelters: &[Shelter], air: Option<&Air<'_>>) -> bool {
         let fall = aggregate_speed_m_s(FLAKE_MM, c.air.temperature_c);
         let slant = slant(DVec2::new(c.wind.east_m_s, c.wind.north_m_s), fall);
-        let revision = air.map_or(0, |air| air.volume.revision());
+        let shaded_in = air.map(|air| ShadedIn { revision: air.volume.revision(), weathers: c.wind, fall });
         let standing = || shelters.iter().filter(|s| s.stands());
         let same = self.boxes.iter().eq(standing()) && !self.stale;
-        if same && ((slant == self.slant && revision == self.air) || self.boxes.is_empty()) {
+        if same && ((slant == self.slant && shaded_in == self.air) || self.boxes.is_empty()) {
             return false;
         }
         let had_any = !self.boxes.is_empty();
-        (self.slant, self.air, self.stale) = (slant, revision, false);
+        (self.slant, self.air, self.stale) = (slant, shaded_in, false);
         self.boxes.clear();
         self.boxes.extend(standing());
         if self.boxes.is_empty() && !had_any && field.patches.iter().all(|p| p.sheltered.is_empty()) {

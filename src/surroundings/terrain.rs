@@ -30,6 +30,11 @@ impl TerrainHeights {
         Self { origin, to_enu, cell_m, nodes, heights_m, hash }
     }
 
+    /// Whether its nodes lie where those of `other` do.
+    pub fn has_nodes_of(&self, other: &Self) -> bool {
+        (self.origin, self.cell_m, self.nodes) == (other.origin, other.cell_m, other.nodes)
+    }
+
     /// The height at a place east and north of the origin, m; beyond the nodes as at the nearest place within.
     pub fn height_m(&self, place_m: DVec2) -> f64 {
         let at = place_m / self.cell_m;

@@ -171,7 +171,7 @@ fn followed(level: &Level<'_>, (entering, size): (DVec2, DVec2), mut place: DVec
         let middle = place - first / speed * (0.5 * step);
         let Some(wind) = level.at(middle) else { break };
         let way = wind / speed * step;
-        behind += (free * step - way) * (-(n as f64 + 0.5) * step / life_m).exp();
+        behind += (free * step - way) * libm::exp(-(n as f64 + 0.5) * step / life_m);
         place -= way;
     }
     behind

@@ -25,6 +25,10 @@ pub(crate) trait HeldEffect {
         Ok(Status::Ok)
     }
 
+    /// Takes what the host has set of the world into the state, so that it can be saved as it is: after a change, and after the steps that
+    /// the change had to wait for.
+    fn settle(&mut self, _world: &World) {}
+
     /// Puts what others read of its state where they read it. Called when the state may have changed.
     fn publish(&mut self, _world: &mut World) {}
 

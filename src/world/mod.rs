@@ -100,6 +100,8 @@ pub(crate) struct Settings {
     pub regions: Vec<Region>,
     /// Where over the ground layers of cloud stand.
     pub cloud_map: Option<Arc<CloudMap>>,
+    /// The host's wind that varies in space.
+    pub host_wind: Option<Arc<HostWind>>,
     pub given_sun: Option<GivenDirection>,
     pub given_moon: Option<GivenDirection>,
     /// Universal time at simulation time 0.
@@ -109,6 +111,12 @@ pub(crate) struct Settings {
     pub planet: Planet,
     /// Colours of light at the planet's wavelengths; fitted once, which takes some milliseconds.
     color: [[f64; 3]; 3],
+}
+
+/// A wind that varies in space as the host gave it, and in the form that is read.
+pub(crate) struct HostWind {
+    pub grid: Arc<WindGrid>,
+    pub volume: WindVolume,
 }
 
 /// What an effect does to the light of a scene.
@@ -151,9 +159,6 @@ pub(crate) struct World {
     pub night: NightSettings,
     pub maps: Option<Box<OccluderMaps>>,
     pub lights: Vec<HostLight>,
-    pub wind_grid: Option<Arc<WindGrid>>,
-    /// The same in the form that is read.
-    host_wind: Option<Box<WindVolume>>,
     /// The wind round terrain and boxes, where something has solved for it.
     pub solved_wind: Option<Box<WindVolume>>,
     wind_texture: WindTexture,
@@ -210,6 +215,7 @@ impl World {
                 tiles: None,
                 regions: Vec::new(),
                 cloud_map: None,
+                host_wind: None,
                 given_sun: None,
                 given_moon: None,
                 utc_at_zero,
@@ -220,8 +226,6 @@ impl World {
             night: NightSettings::default(),
             maps: None,
             lights: Vec::new(),
-            wind_grid: None,
-            host_wind: None,
             solved_wind: None,
             wind_texture: WindTexture::default(),
             detours: KeptDetours::default(),

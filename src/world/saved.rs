@@ -10,12 +10,15 @@ use super::{
 };
 use crate::{
     almanac::sun::{Utc, sun_position},
-    error::{Error, Result, Status, check_range},
+    error::{Error, Result, Status, beginning, check_range, shown},
     moment::Region,
     scene::WorldKind,
     weather::{Timeline, timeline::MAX_TIME_S},
     wind::{Drift, LayerDrift, LayerDrifts},
 };
+
+/// Most characters of what is wrong with a state.
+const MOST_FAULT: usize = 200;
 
 /// What is saved of a world.
 #[derive(Serialize, Deserialize)]
@@ -37,23 +40,27 @@ pub(crate) struct SavedWorld {
     areas: Vec<Region>,
 }
 
-/// A fault of a saved state.
+/// A fault of a saved state, which a state that was made up can make long.
 pub(crate) fn parse_error(what: impl std::fmt::Display) -> Error {
-    Error::new(Status::Parse, format!("saved state: {what}"))
+    let what = what.to_string();
+    let line = what.lines().collect::<Vec<_>>().join(" ");
+    Error::new(Status::Parse, format!("saved state: {}", beginning(&line, MOST_FAULT)))
 }
 
 /// Refuses a state of a context that was created otherwise, naming all that differs.
 fn check_created(saved: &toml::Table, here: &toml::Table) -> Result<()> {
     let names = here.keys().chain(saved.keys().filter(|name| !here.contains_key(*name)));
-    let shown = |v: Option<&toml::Value>| v.map_or("nothing".into(), ToString::to_string);
-    let other = names
-        .filter(|name| saved.get(*name) != here.get(*name))
-        .map(|name| format!("{name} ({} in the state, {} here)", shown(saved.get(name)), shown(here.get(name))));
+    let value = |v: Option<&toml::Value>| beginning(&v.map_or("nothing".into(), ToString::to_string), 40).into_owned();
+    let other = names.filter(|name| saved.get(*name) != here.get(*name)).map(|name| {
+        format!("{} ({} in the state, {} here)", shown(name), value(saved.get(name)), value(here.get(name)))
+    });
     let other: Vec<String> = other.collect();
     if other.is_empty() {
         return Ok(());
     }
-    Err(Error::invalid("state", format!("must be of a context that was created alike; other is {}", other.join(", "))))
+    let other = other.join(", ");
+    let other = beginning(&other, MOST_FAULT);
+    Err(Error::invalid("state", format!("must be of a context that was created alike; other is {other}")))
 }
 
 /// Where counting goes on: at the end of what `timeline` has forgotten.
@@ -113,9 +120,7 @@ impl World {
             set: _,
             maps: _,
             lights: _,
-            wind_grid: _,
-            // These follow from the grid, and from what solves for it.
-            host_wind: _,
+            // These follow from what solves for it, or what reads it.
             solved_wind: _,
             wind_texture: _,
             detours: _,
@@ -137,6 +142,9 @@ impl World {
         if frame.kind != WorldKind::Ecef {
             put("axes", format!("{:?}", frame.axes).into());
             put("grid_bearing_deg", (frame.grid_bearing_deg + 0.0).into());
+        } else if frame.geoid_height_m != 0.0 {
+            // States of before have none: their sea level was the ellipsoid.
+            put("geoid_height_m", frame.geoid_height_m.into());
         }
         put("seed", seed.to_string().into());
         table
@@ -160,6 +168,7 @@ impl World {
             tiles: _,
             regions,
             cloud_map,
+            host_wind,
             given_sun,
             given_moon,
             utc_at_zero,
@@ -169,7 +178,8 @@ impl World {
         } = &self.set;
         let angles = |g: &Option<GivenDirection>| g.map(|g| [g.azimuth_deg, g.elevation_deg]);
         let (drifted, carried) = (&self.drifted, self.drifted.displacement_m);
-        let mut settings = SavedSettings::of(self.exposure, shelters, &self.lights, self.wind_grid.as_deref());
+        let mut settings =
+            SavedSettings::of(self.exposure, shelters, &self.lights, host_wind.as_ref().map(|w| &*w.grid));
         (settings.tone_curve, settings.planet) = (Some(self.tone), Some(*planet));
         settings.set_cloud_map(cloud_map.as_deref());
         Ok(SavedWorld {
@@ -218,6 +228,7 @@ impl World {
             tiles: None,
             regions: saved.areas,
             cloud_map: beside.cloud_map.take(),
+            host_wind: beside.wind_grid.take().map(|grid| self.host_wind(grid)),
             given_sun,
             given_moon,
             utc_at_zero,
@@ -252,8 +263,6 @@ impl World {
             swap(&mut self.tone, tone);
         }
         swap(&mut self.lights, &mut other.beside.lights);
-        swap(&mut self.wind_grid, &mut other.beside.wind_grid);
-        self.show_wind_grid();
         self.surroundings_revision += 1;
     }
 }

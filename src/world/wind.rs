@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DVec2, DVec3};
 
-use super::World;
+use super::{HostWind, World};
 use crate::{
     error::Result,
     weather::Conditions,
@@ -35,20 +35,19 @@ pub(super) struct KeptDetours(Mutex<Option<(DetourInputs, Option<Arc<DetourMap>>
 impl World {
     /// The wind that varies in space at a time: the host's grid if there is one, else the solved field.
     pub fn wind_volume(&self, time_s: f64) -> Option<&WindVolume> {
-        let volume = self.host_wind.as_ref().or(self.solved_wind.as_ref());
-        volume.map(AsRef::as_ref).filter(|v| v.holds_at(time_s))
+        let host = self.set.host_wind.as_ref().map(|host| &host.volume);
+        host.or(self.solved_wind.as_deref()).filter(|v| v.holds_at(time_s))
     }
 
     /// Puts a host's grid, which is valid, in place of the one before.
     pub fn set_wind_grid(&mut self, grid: Option<Arc<WindGrid>>) {
-        self.wind_grid = grid;
-        self.show_wind_grid();
+        self.set.host_wind = grid.map(|grid| self.host_wind(grid));
     }
 
-    /// Makes what queries and shaders read of the host's grid.
-    pub(super) fn show_wind_grid(&mut self) {
-        let volume = |g: &Arc<WindGrid>| Box::new(WindVolume::of_grid(g, self.frame.frame_at(g.origin).world_to_enu));
-        self.host_wind = self.wind_grid.as_ref().map(volume);
+    /// What queries and shaders read of a host's grid.
+    pub(super) fn host_wind(&self, grid: Arc<WindGrid>) -> Arc<HostWind> {
+        let volume = WindVolume::of_grid(&grid, self.frame.frame_at(grid.origin).world_to_enu);
+        Arc::new(HostWind { grid, volume })
     }
 
     /// How far the air about a camera at `eye` is behind that which the wind's displacement brings, where patches of the weather's low
@@ -71,7 +70,7 @@ impl World {
             volume: volume.revision(),
             terrain: terrain.map(|t| t.hash).or(tiles.map(|t| t.revision)).unwrap_or_default(),
             weathers_m_s: [2.0, 20.0].map(weathers_m_s),
-            life_m: ((c.fog.drawn_patch_m().log2() / SIZE_STEP).round() * SIZE_STEP).exp2(),
+            life_m: libm::exp2((libm::log2(c.fog.drawn_patch_m()) / SIZE_STEP).round() * SIZE_STEP),
         };
         let mut kept = self.detours.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, map)) = kept.as_ref().filter(|(from, _)| *from == inputs) {

@@ -42,8 +42,8 @@ impl Judge {
         if let Some(word) = INTERNAL.iter().find(|w| what.contains(**w)) {
             return Some(format!("the message has {word:?} in it: {text:?}"));
         }
-        if what.len() > 1000 {
-            return Some(format!("the message has {} bytes: {text:?}", what.len()));
+        if text.len() >= 300 {
+            return Some(format!("the message has {} bytes: {text:?}", text.len()));
         }
         let mut words = what.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
         if !words.any(|w| PUBLIC.contains(w)) {
