@@ -8,7 +8,7 @@ use std::{
     },
 };
 
-use super::known;
+use super::{instance, known};
 use crate::error::{Error, Result, Status};
 
 /// What a device can do, as the host may ask before it creates anything.
@@ -191,14 +191,11 @@ impl Device {
     /// # Errors
     /// [`Status::NoAdapter`] if no driver serves the request.
     pub fn headless(options: &DeviceOptions) -> Result<Arc<Self>> {
-        // OpenGL is asked last and alone: merely opening it makes some drivers write to the host's terminal.
-        let gl = options.backends & wgpu::Backends::GL;
-        let first = options.backends - gl;
-        let mut answer =
-            Err(Error::range("backends", "at least one native interface", format!("{:?}", options.backends)));
-        for backends in [first, gl] {
-            if answer.is_err() && !backends.is_empty() {
-                answer = Self::from_instance(instance(backends), options, None);
+        let mut answer = Err(instance::none_wanted(options.backends));
+        for backends in instance::attempts(options.backends) {
+            answer = instance::open(backends, None).and_then(|opened| Self::from_instance(opened, options, None));
+            if answer.is_ok() {
+                break;
             }
         }
         answer
@@ -469,25 +466,6 @@ impl Device {
     pub(crate) fn turn(&self) -> MutexGuard<'_, ()> {
         self.submission.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-fn instance(backends: wgpu::Backends) -> wgpu::Instance {
-    let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
-    desc.backends = backends;
-    desc.flags = wgpu::InstanceFlags::empty();
-    desc.backend_options.noop.enable = backends.contains(wgpu::Backends::NOOP);
-    before_opening(backends);
-    wgpu::Instance::new(desc)
-}
-
-/// Called before an instance of wgpu opens these interfaces.
-pub(super) fn before_opening(backends: wgpu::Backends) {
-    #[cfg(windows)]
-    if backends.contains(wgpu::Backends::GL) {
-        super::win32::stay_loaded();
-    }
-    #[cfg(not(windows))]
-    let _ = backends;
 }
 
 /// The features and limits Welkin asks for: the adapter's own, so that a host's large targets fit.

@@ -19,6 +19,7 @@ pub mod surface;
 pub mod vulkan;
 
 mod device;
+mod instance;
 mod known;
 mod layer;
 mod shared;

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use raw_window_handle as rwh;
 
-use super::{Device, DeviceOptions, stand_in::StandIn};
+use super::{Device, DeviceOptions, instance, stand_in::StandIn};
 use crate::error::{Error, Result, Status};
 
 /// A native window. Pointers and numbers are the host's and outlive the device and surface made from them.
@@ -189,14 +189,18 @@ impl rwh::HasDisplayHandle for Display {
 /// threads, the host called `XInitThreads` first.
 pub unsafe fn device_for_window(window: &NativeWindow, options: &DeviceOptions) -> Result<Arc<Device>> {
     let (display, _) = window.raw()?;
-    let mut desc = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(Display(display)));
-    desc.backends = options.backends;
-    desc.flags = wgpu::InstanceFlags::empty();
-    super::device::before_opening(desc.backends);
-    let instance = wgpu::Instance::new(desc);
-    // SAFETY: the caller vouches for the window.
-    let surface = unsafe { create(&instance, window)? };
-    Device::from_instance(instance, options, Some(&surface))
+    let mut answer = Err(instance::none_wanted(options.backends));
+    for backends in instance::attempts(options.backends) {
+        answer = instance::open(backends, Some(Box::new(Display(display)))).and_then(|opened| {
+            // SAFETY: the caller vouches for the window.
+            let surface = unsafe { create(&opened, window)? };
+            Device::from_instance(opened, options, Some(&surface))
+        });
+        if answer.is_ok() {
+            break;
+        }
+    }
+    answer
 }
 
 /// # Safety
