@@ -87,7 +87,7 @@ pub struct wk_terrain_cells {
     /// Cells of the rectangle east and north. Default 0, 0: all of the tile.
     pub cells: [u32; 2],
     /// Heights above the terrain's origin, m, within 1e5. Copied by the call. NULL with a count of 0 leaves them as
-    /// they are; a new tile needs them.
+    /// they are; a new tile needs them. That of a hole may be anything, also NaN: what is no height is not read.
     pub heights_m: *const f32,
     /// Numbers in heights_m, at least as many as the rectangle reaches over.
     pub height_count: u32,
@@ -100,6 +100,13 @@ pub struct wk_terrain_cells {
     pub surface_class_count: u32,
     /// Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a gap.
     pub surface_class_stride: u32,
+    /// 1 where no_data_m counts, else 0, the default: every number in heights_m is a height.
+    pub has_no_data: u32,
+    /// Stands in heights_m for cells of which there are no data, and NaN then does too: -9999, -32768, or what your source has.
+    /// These cells become holes, whatever surface_classes says of them but a class of ground; a hole becomes ground again
+    /// by its class. Must be no height in use: of no cell to which surface_classes gives a class other than 0, and of no
+    /// cell with ground beside the rectangle in its tile. Default 0.
+    pub no_data_m: f32,
 }
 
 impl wk_terrain_cells {
@@ -116,6 +123,8 @@ impl wk_terrain_cells {
         surface_classes: null(),
         surface_class_count: 0,
         surface_class_stride: 0,
+        has_no_data: 0,
+        no_data_m: 0.0,
     };
 }
 
@@ -214,6 +223,7 @@ impl CellLists<'_> {
             size: c.cells,
             heights_m: Rows { values: self.heights_m, stride: c.height_stride },
             classes: Rows { values: &self.classes, stride: c.surface_class_stride },
+            no_data_m: (c.has_no_data != 0).then_some(c.no_data_m),
         }
     }
 }

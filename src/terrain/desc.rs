@@ -151,10 +151,14 @@ pub struct TerrainCells<'a> {
     pub first: [u32; 2],
     /// Cells of the rectangle east and north; (0, 0) stands for the whole tile.
     pub size: [u32; 2],
-    /// Heights above the terrain's origin, m, within 1e5. Empty in an update: they stay.
+    /// Heights above the terrain's origin, m, within 1e5. Empty in an update: they stay. That of a hole need be no height.
     pub heights_m: Rows<'a, f32>,
     /// What the cells are made of, `None` for a hole. Empty: in an update they stay, in a new tile nothing is said of any.
     pub classes: Rows<'a, Option<SurfaceClass>>,
+    /// Stands among the heights for cells of which there are no data, which become holes, as NaN then does too: -9999, -32768, or what the
+    /// host's source has. Finite; must be no height in use: neither of a cell for which `classes` has a class other than unspecified, nor of a cell with ground of
+    /// the same tile outside of the rectangle. Default none: every number is a height.
+    pub no_data_m: Option<f32>,
 }
 
 impl TerrainCells<'_> {
@@ -163,7 +167,13 @@ impl TerrainCells<'_> {
         if self.size == [0, 0] { [tile_cells; 2] } else { self.size }
     }
 
-    pub(crate) fn check(&self, tile_cells: u32) -> Result<()> {
+    /// Whether a height is the number that stands for none.
+    pub(crate) fn is_no_data(&self, height_m: f32) -> bool {
+        self.no_data_m.is_some_and(|none| height_m == none || height_m.is_nan())
+    }
+
+    /// Refuses what does not fit the tile. `is_hole` says of a cell of the tile whether it is one by now.
+    pub(crate) fn check(&self, tile_cells: u32, is_hole: impl Fn(usize) -> bool) -> Result<()> {
         self.key.validate("terrain_cells.tile")?;
         let size = self.size_in(tile_cells);
         for i in [0, 1] {
@@ -180,22 +190,47 @@ impl TerrainCells<'_> {
         if !self.classes.values.is_empty() {
             self.classes.check("surface_classes", size)?;
         }
-        self.check_heights(size)
+        match self.no_data_m.filter(|none| !none.is_finite()) {
+            Some(none) => {
+                Err(Error::range("terrain_cells.no_data_m", "finite; NaN among the heights is no data then too", none))
+            }
+            None => self.check_heights(tile_cells, is_hole),
+        }
     }
 
-    fn check_heights(&self, size: [u32; 2]) -> Result<()> {
+    fn check_heights(&self, tile_cells: u32, is_hole: impl Fn(usize) -> bool) -> Result<()> {
+        let size = self.size_in(tile_cells);
         if self.heights_m.values.is_empty() {
             return Ok(());
         }
         for row in 0..size[1] {
             let (first, heights) = self.heights_m.row(row, size[0]);
-            if let Some(i) = heights.iter().position(|h| h.is_nan() || h.abs() > MOST_M) {
-                let name = format!("terrain_cells.heights_m[{}]", first + i);
-                return Err(Error::range(&name, &format!("finite and within {MOST_M} m"), heights[i]));
+            let said = (!self.classes.values.is_empty()).then(|| self.classes.row(row, size[0]).1);
+            let first_cell = (self.first[1] + row) as usize * tile_cells as usize + self.first[0] as usize;
+            for (i, height) in heights.iter().enumerate() {
+                let name = |list: &str| format!("terrain_cells.{list}[{}]", first + i);
+                if self.is_no_data(*height) {
+                    // Where the host says what the ground is made of, there is some.
+                    if said.is_some_and(|said| said[i].is_some_and(|class| class != SurfaceClass::Unspecified)) {
+                        let accepted =
+                            format!("no height in use, such as {} with a class of ground", name("heights_m"));
+                        return Err(Error::range("terrain_cells.no_data_m", &accepted, height));
+                    }
+                    continue;
+                }
+                let is_hole = said.map_or_else(|| is_hole(first_cell + i), |said| said[i].is_none());
+                if !is_hole && !is_height(*height) {
+                    return Err(Error::range(&name("heights_m"), &format!("finite and within {MOST_M} m"), height));
+                }
             }
         }
         Ok(())
     }
+}
+
+/// Whether a number can be a height, m.
+pub(super) fn is_height(v: f32) -> bool {
+    v.abs() <= MOST_M
 }
 
 /// A rectangle of cells, counted from the terrain's origin: from `low` up to but without `high`.

@@ -78,6 +78,7 @@ fn a_rectangle_changes_its_cells_alone_and_hashes_follow() {
         size: [3, 2],
         heights_m: Rows { values: &values, stride: 5 },
         classes: Rows::of(&classes),
+        no_data_m: None,
     };
     let rect = terrain.update(&cells).unwrap().unwrap();
     assert_eq!(rect, CellRect { low: [-28, 30], high: [-25, 32] });
@@ -198,5 +199,72 @@ fn there_are_as_many_cells_as_are_said_and_no_more() {
             let e = set.unwrap_err().to_string();
             assert!(e.contains("one of at most 16 tiles of 1024 x 1024, 16777216 cells"), "{e}");
         }
+    }
+}
+
+#[test]
+fn heights_of_holes_are_not_read_and_no_data_make_holes() {
+    let mut terrain = Terrain::new(desc(), &WorldFrame::default()).unwrap();
+    let key = TileKey::new(0, 0);
+    let mut heights = vec![2.0_f32; 1024];
+    let mut classes = vec![Some(SurfaceClass::Unspecified); 1024];
+    // Whatever stands in a hole.
+    for (cell, height) in [(3, f32::NAN), (4, f32::INFINITY), (5, 1e30), (6, -9999.0), (7, 5.0)] {
+        (heights[cell], classes[cell]) = (height, None);
+    }
+    let all =
+        TerrainCells { key, heights_m: Rows::of(&heights), classes: Rows::of(&classes), ..TerrainCells::default() };
+    terrain.set_tile(&all).unwrap();
+    let tile = terrain.tile(terrain.slot(key).unwrap());
+    assert!(tile.heights_m.iter().all(|h| h.is_finite()) && (3..8).all(|cell| !tile.has_ground(cell)));
+    assert_eq!((tile.has_ground(2), tile.heights_m[3], tile.heights_m[7]), (true, 0.0, 5.0));
+    // Heights alone, where the holes are by now; beside them they must be heights.
+    terrain.update(&TerrainCells { classes: Rows::default(), ..all }).unwrap();
+    let mut opened = classes.clone();
+    opened[3] = Some(SurfaceClass::Unspecified);
+    let e = terrain.update(&TerrainCells { classes: Rows::of(&opened), ..all }).unwrap_err().to_string();
+    assert!(e.contains("terrain_cells.heights_m[3] must be finite and within 100000 m, got NaN"), "{e}");
+
+    for none in [-9999.0, -32768.0, 0.0, f32::MAX, f32::NAN] {
+        let key = TileKey::new(1, 0);
+        let mut heights = vec![2.0_f32; 1024];
+        (heights[0], heights[40]) = (none, none);
+        let of = TerrainCells { key, heights_m: Rows::of(&heights), no_data_m: Some(none), ..TerrainCells::default() };
+        let of = TerrainCells { no_data_m: Some(if none.is_nan() { -9999.0 } else { none }), ..of };
+        terrain.set_tile(&of).unwrap();
+        let tile = terrain.tile(terrain.slot(key).unwrap()).clone();
+        let holes: Vec<_> = (0..1024).filter(|cell| !tile.has_ground(*cell)).collect();
+        assert_eq!((holes, tile.heights_m[0]), (vec![0, 40], 0.0), "{none}");
+        assert!(tile.heights_m[1..40].iter().all(|h| *h == 2.0));
+        // Without the name every number is a height, or is refused as none.
+        let plain = terrain.clone().set_tile(&TerrainCells { no_data_m: None, ..of });
+        assert_eq!(plain.is_ok(), none.abs() < 1e5, "{none}");
+        terrain.remove(key).unwrap();
+    }
+}
+
+#[test]
+fn a_number_for_no_data_that_is_a_height_in_use_is_refused_by_name() {
+    let mut terrain = Terrain::new(desc(), &WorldFrame::default()).unwrap();
+    let key = TileKey::new(0, 0);
+    let heights = vec![2.0_f32; 1024];
+    let mut classes = vec![Some(SurfaceClass::Unspecified); 1024];
+    classes[9] = Some(SurfaceClass::Rock);
+    let all = TerrainCells { key, heights_m: Rows::of(&heights), ..TerrainCells::default() };
+    let said = TerrainCells { classes: Rows::of(&classes), no_data_m: Some(2.0), ..all };
+    let e = terrain.set_tile(&said).unwrap_err().to_string();
+    assert_eq!(
+        e,
+        "terrain_cells.no_data_m must be no height in use, such as terrain_cells.heights_m[9] with a class of ground, got 2"
+    );
+    terrain.set_tile(&all).unwrap();
+    let part =
+        TerrainCells { first: [4, 4], size: [2, 2], heights_m: Rows::of(&[2.0; 4]), no_data_m: Some(2.0), ..all };
+    let e = terrain.update(&part).unwrap_err().to_string();
+    assert_eq!(e, "terrain_cells.no_data_m must be no height in use, such as that of cell (0, 0) of this tile, got 2");
+    terrain.update(&TerrainCells { no_data_m: Some(3.0), ..part }).unwrap();
+    for bad in [f32::NAN, f32::INFINITY] {
+        let e = terrain.update(&TerrainCells { no_data_m: Some(bad), ..part }).unwrap_err().to_string();
+        assert!(e.starts_with("terrain_cells.no_data_m must be finite"), "{e}");
     }
 }

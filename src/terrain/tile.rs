@@ -1,6 +1,6 @@
 //! One tile: heights, classes, and a hash that a change of some cells keeps up to date.
 
-use super::{HOLE, SurfaceClass, TerrainCells, TileKey};
+use super::{HOLE, SurfaceClass, TerrainCells, TileKey, desc::is_height};
 
 /// The heights and classes of a tile's cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,11 +65,12 @@ impl Tile {
         SurfaceClass::ALL.get(number).copied().unwrap_or_default()
     }
 
-    /// Takes the values of a rectangle that was checked. Says whether any is new.
+    /// Takes the values of a rectangle that was checked; what is no height leaves a hole's as it was. Says whether any is new.
     pub fn take(&mut self, cells: &TerrainCells<'_>, tile_cells: u32) -> bool {
         let before = self.hash;
         let size = cells.size_in(tile_cells);
-        if !cells.classes.values.is_empty() && self.classes.is_empty() {
+        let lacks_data = cells.no_data_m.is_some() && cells.heights_m.values.iter().any(|h| cells.is_no_data(*h));
+        if (!cells.classes.values.is_empty() || lacks_data) && self.classes.is_empty() {
             self.classes = vec![0; self.heights_m.len()];
         }
         for row in 0..size[1] {
@@ -77,14 +78,19 @@ impl Tile {
             for cell in first..first + size[0] as usize {
                 self.hash = self.hash.wrapping_sub(self.cell_hash(cell));
             }
-            if !cells.heights_m.values.is_empty() {
-                let heights = cells.heights_m.row(row, size[0]).1;
-                self.heights_m[first..first + heights.len()].copy_from_slice(heights);
-            }
             if !cells.classes.values.is_empty() {
                 let classes = cells.classes.row(row, size[0]).1;
                 let number = |c: &Option<SurfaceClass>| c.map_or(HOLE, |c| c as u8);
                 self.classes[first..].iter_mut().zip(classes).for_each(|(to, c)| *to = number(c));
+            }
+            if !cells.heights_m.values.is_empty() {
+                for (cell, height) in (first..).zip(cells.heights_m.row(row, size[0]).1) {
+                    if cells.is_no_data(*height) {
+                        self.classes[cell] = HOLE;
+                    } else if is_height(*height) {
+                        self.heights_m[cell] = *height;
+                    }
+                }
             }
             for cell in first..first + size[0] as usize {
                 self.hash = self.hash.wrapping_add(self.cell_hash(cell));

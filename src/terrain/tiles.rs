@@ -145,7 +145,7 @@ impl Terrain {
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn set_tile(&mut self, cells: &TerrainCells<'_>) -> Result<Option<CellRect>> {
         let side = self.desc.tile_cells;
-        cells.check(side)?;
+        self.check(cells)?;
         if cells.size_in(side) != [side; 2] {
             let wanted = format!("the whole tile, {side} x {side}, or 0 x 0 for it");
             let got = format!("{} x {}", cells.size[0], cells.size[1]);
@@ -184,9 +184,36 @@ impl Terrain {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn update(&mut self, cells: &TerrainCells<'_>) -> Result<Option<CellRect>> {
-        cells.check(self.desc.tile_cells)?;
-        self.known(cells.key)?;
+        self.check(cells)?;
+        let slot = self.known(cells.key)?;
+        self.check_no_data(cells, self.tile(slot))?;
         Ok(self.take(cells))
+    }
+
+    fn check(&self, cells: &TerrainCells<'_>) -> Result<()> {
+        let tile = self.slot(cells.key).map(|slot| self.tile(slot));
+        cells.check(self.desc.tile_cells, |cell| tile.is_some_and(|tile| !tile.has_ground(cell)))
+    }
+
+    /// Refuses a number for no data that is the height of a cell beside the rectangle.
+    fn check_no_data(&self, cells: &TerrainCells<'_>, tile: &Tile) -> Result<()> {
+        if cells.no_data_m.is_none() {
+            return Ok(());
+        }
+        let (side, size) = (self.desc.tile_cells, cells.size_in(self.desc.tile_cells));
+        let is_beside = |cell: usize| {
+            let at = [cell as u32 % side, cell as u32 / side];
+            (0..2).any(|i| at[i] < cells.first[i] || at[i] - cells.first[i] >= size[i])
+        };
+        let uses = |cell: &usize| cells.is_no_data(tile.heights_m[*cell]) && tile.has_ground(*cell) && is_beside(*cell);
+        match (0..tile.heights_m.len()).find(uses) {
+            None => Ok(()),
+            Some(cell) => {
+                let place = format!("({}, {})", cell as u32 % side, cell as u32 / side);
+                let accepted = format!("no height in use, such as that of cell {place} of this tile");
+                Err(Error::range("terrain_cells.no_data_m", &accepted, tile.heights_m[cell]))
+            }
+        }
     }
 
     /// The number of a tile that there must be.

@@ -183,3 +183,48 @@ fn what_is_no_terrain_is_refused_by_the_names_of_the_header() {
         assert_eq!(wk_context_destroy(context), WK_OK);
     }
 }
+
+/// Cells without data, named or in holes.
+#[test]
+fn what_is_no_height_is_a_hole_where_the_host_says_so() {
+    let world = World::new();
+    let context = simulated(&world);
+    let terrain = wk_terrain { tile_cells: SIDE as u32, ..init("wk_terrain") };
+    let mut heights = [2.0f32; SIDE * SIDE];
+    (heights[0], heights[1], heights[40]) = (-9999.0, f32::NAN, -9999.0);
+    let mut classes = [0u8; SIDE * SIDE];
+    let place = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [8.0, 1.0, 0.0], [5.0, 5.0, 0.0]];
+    let mut points =
+        [wk_terrain_point { height_m: 9.0, revision: 9, tile: [9; 2], surface_class: 9, has_ground: 9 }; 4];
+    // SAFETY, for all: live pointers with the sizes given.
+    let mut has_ground = || unsafe {
+        let answer = wk_context_get_terrain_points(context, place.as_ptr(), 4, 24, points.as_mut_ptr(), POINT);
+        assert_eq!(answer, WK_OK, "{}", message());
+        points.map(|p| p.has_ground)
+    };
+    let set = |cells: &wk_terrain_cells| unsafe { wk_context_set_terrain_tile(context, cells) };
+    unsafe { assert_eq!(wk_context_set_terrain(context, &terrain), WK_OK, "{}", message()) };
+    let plain = tile([0, 0], &heights);
+    refused(set(&plain), "terrain_cells.heights_m[1] must be finite and within 100000 m, got NaN");
+    let named = wk_terrain_cells { has_no_data: 1, no_data_m: -9999.0, ..plain };
+    assert_eq!(set(&named), WK_OK, "{}", message());
+    assert_eq!(has_ground(), [0, 0, 0, 1]);
+    // A height in use: as the classes say, or beside the rectangle.
+    classes[77] = WK_SURFACE_CLASS_ROCK as u8;
+    let said = wk_terrain_cells {
+        no_data_m: 2.0,
+        surface_classes: classes.as_ptr(),
+        surface_class_count: classes.len() as u32,
+        ..named
+    };
+    refused(set(&said), "terrain_cells.no_data_m must be no height in use, such as terrain_cells.heights_m[77]");
+    let update = wk_terrain_cells { first_cell: [4, 4], cells: [1, 1], height_count: 1, no_data_m: 2.0, ..named };
+    let status = unsafe { wk_context_update_terrain(context, &update) };
+    refused(status, "terrain_cells.no_data_m must be no height in use, such as that of cell (2, 0)");
+    // Holes by their class, whatever stands among the heights.
+    (classes[0], classes[1], classes[40]) = (WK_TERRAIN_HOLE as u8, WK_TERRAIN_HOLE as u8, 0);
+    let holes = wk_terrain_cells { has_no_data: 0, no_data_m: 0.0, ..said };
+    assert_eq!(set(&holes), WK_OK, "{}", message());
+    assert_eq!(has_ground(), [0, 0, 1, 1]);
+    unsafe { assert_eq!(wk_context_destroy(context), WK_OK) };
+}

@@ -104,6 +104,7 @@ impl Bench {
                 size: [0, 1].map(|i| (part.high[i] - part.low[i]) as u32),
                 heights_m: Rows::of(&heights),
                 classes: Rows::of(&classes),
+                no_data_m: None,
             };
             if let Some(rect) = self.terrain.update(&cells).unwrap() {
                 self.follow(rect, false);
