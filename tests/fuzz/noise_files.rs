@@ -20,7 +20,8 @@ fn damaged_noise_files_are_read_or_refused_by_name() {
     let times = if std::env::var_os("WELKIN_ACCEPT").is_some() { 400_000 } else { 40_000 };
     let settings = NoiseSettings { frequency: [2; 3], ..Default::default() };
     let image = |size| NoiseImage::generate(size, &settings).expect("good settings");
-    let files: Vec<_> = [[16, 8, 1], [8, 8, 8]].map(image).iter().flat_map(|i| [i.to_dds(), i.to_ktx2()]).collect();
+    let files: Vec<_> =
+        [[16, 8, 1], [8, 8, 8]].map(image).iter().flat_map(|i| [i.to_dds(), i.to_dds_dx10(), i.to_ktx2()]).collect();
     // With the header of older programs: luminance of 8 bits.
     let mut older = files[2].clone();
     older.drain(128..148);

@@ -8,8 +8,8 @@ fn image(size: [u32; 3]) -> NoiseImage {
     NoiseImage::generate(size, &settings).unwrap()
 }
 
-fn files(of: &NoiseImage) -> [Vec<u8>; 2] {
-    [of.to_dds(), of.to_ktx2()]
+fn files(of: &NoiseImage) -> [Vec<u8>; 3] {
+    [of.to_dds(), of.to_dds_dx10(), of.to_ktx2()]
 }
 
 #[test]
@@ -32,12 +32,16 @@ fn other_programs_read_what_is_written() {
     for size in [[32, 8, 1], [16, 8, 8]] {
         let image = image(size);
         let is_volume = size[2] > 1;
-        let dds = ddsfile::Dds::read(&mut &image.to_dds()[..]).unwrap();
-        assert_eq!([dds.get_width(), dds.get_height(), dds.get_depth()], size);
-        assert_eq!(dds.get_num_mipmap_levels() as usize, image.levels().len());
-        assert_eq!(dds.get_dxgi_format(), Some(ddsfile::DxgiFormat::R8_UNorm));
-        assert_eq!(dds.header.caps2.contains(ddsfile::Caps2::VOLUME), is_volume);
-        assert_eq!(dds.data, image.levels().concat());
+        for (file, is_dx10) in [(image.to_dds(), false), (image.to_dds_dx10(), true)] {
+            let dds = ddsfile::Dds::read(&mut &file[..]).unwrap();
+            assert_eq!([dds.get_width(), dds.get_height(), dds.get_depth()], size);
+            assert_eq!(dds.get_num_mipmap_levels() as usize, image.levels().len());
+            let format = dds.get_dxgi_format();
+            assert_eq!(format, is_dx10.then_some(ddsfile::DxgiFormat::R8_UNorm));
+            assert_eq!(dds.get_d3d_format(), (!is_dx10).then_some(ddsfile::D3DFormat::L8));
+            assert_eq!(dds.header.caps2.contains(ddsfile::Caps2::VOLUME), is_volume);
+            assert_eq!(dds.data, image.levels().concat());
+        }
 
         let file = image.to_ktx2();
         let ktx = ktx2::Reader::new(&file[..]).unwrap();
@@ -64,7 +68,7 @@ fn changed(file: &[u8], words: &[(usize, u32)]) -> Vec<u8> {
 
 /// A DDS file with the shorter header of older programs.
 fn legacy(image: &NoiseImage, flags: u32, masks: [u32; 2]) -> Vec<u8> {
-    let file = changed(&image.to_dds(), &[(80, flags), (84, 0), (88, 8), (92, masks[0]), (104, masks[1])]);
+    let file = changed(&image.to_dds_dx10(), &[(80, flags), (84, 0), (88, 8), (92, masks[0]), (104, masks[1])]);
     [&file[..128], &file[148..]].concat()
 }
 
@@ -75,13 +79,15 @@ fn files_of_other_programs_are_read() {
     for image in [&plane, &volume] {
         reads(&legacy(image, 0x2, [0, 0xff]), image);
         reads(&legacy(image, 0x2_0000, [0xff, 0]), image);
-        reads(&changed(&image.to_dds(), &[(128, 65)]), image);
+        reads(&changed(&image.to_dds_dx10(), &[(128, 65)]), image);
+        // As NVIDIA's exporter writes it.
+        reads(&changed(&image.to_dds_dx10(), &[(132, 0)]), image);
         reads(&[&image.to_dds()[..], b"more"].concat(), image);
         reads(&changed(&image.to_ktx2(), &[(32, 1)]), image);
     }
     // One level alone, in words that say so and in those of older programs.
     for levels in [0, 1] {
-        let one = NoiseImage::from_bytes(&changed(&plane.to_dds(), &[(28, levels)])[..148 + 128]).unwrap();
+        let one = NoiseImage::from_bytes(&changed(&plane.to_dds(), &[(28, levels)])[..128 + 128]).unwrap();
         assert_eq!((one.levels(), one.size()), (&plane.levels()[..1], plane.size()));
         let one = NoiseImage::from_bytes(&changed(&plane.to_ktx2(), &[(40, levels)])).unwrap();
         assert_eq!(one.levels(), &plane.levels()[..1]);
@@ -104,7 +110,7 @@ fn every_cut_is_refused() {
 #[test]
 fn what_is_no_noise_is_refused_by_the_name_of_its_field() {
     let image = image([16, 8, 8]);
-    let (dds, ktx) = (image.to_dds(), image.to_ktx2());
+    let (dds, ktx) = (image.to_dds_dx10(), image.to_ktx2());
     let refused = |file: Vec<u8>, status: Status, field: &str| {
         let e: Error = NoiseImage::from_bytes(&file).unwrap_err();
         assert!(e.status == status && e.field() == Some(field), "{field}: {:?} {e}", e.status);

@@ -135,7 +135,7 @@ fn without_levels(size: [u32; 3]) -> Vec<u8> {
     let image = NoiseImage::from_texels(size, bytes.clone()).unwrap();
     let mut file = image.to_dds();
     file[28..32].copy_from_slice(&1_u32.to_le_bytes());
-    file.truncate(148 + bytes.len());
+    file.truncate(128 + bytes.len());
     file
 }
 

@@ -3,5 +3,6 @@
 mod cover;
 mod files;
 mod gpu;
+mod loaders;
 mod reference;
 mod tool;

@@ -1,5 +1,5 @@
 //! DirectDraw surfaces (Microsoft, *Programming Guide for DDS*): a header of 128 bytes, 20 more where its pixel format is "DX10", then
-//! the mip levels from the largest on.
+//! the mip levels from the largest on. Many programs read the shorter header alone, so that is the one that is written.
 
 use super::{NoiseImage, bytes_of_level, check_levels, check_size, copy, cut_short, foreign, word};
 use crate::error::{Error, Result, Status};
@@ -24,6 +24,7 @@ const AT_PIXEL_FORMAT: usize = 76;
 const AT_PIXEL_FLAGS: usize = 80;
 const AT_FOUR_CC: usize = 84;
 const AT_BIT_COUNT: usize = 88;
+const AT_RED_MASK: usize = 92;
 const AT_CAPS_2: usize = 112;
 const AT_DXGI_FORMAT: usize = 128;
 const AT_DIMENSION: usize = 132;
@@ -48,6 +49,7 @@ const LUMINANCE: u32 = 0x2_0000;
 // DXGI_FORMAT and D3D10_RESOURCE_DIMENSION.
 const R8_UNORM: u32 = 61;
 const A8_UNORM: u32 = 65;
+const NO_DIMENSION: u32 = 0;
 const DIMENSION_2D: u32 = 3;
 const DIMENSION_3D: u32 = 4;
 const MISC_CUBE_MAP: u32 = 0x4;
@@ -66,9 +68,10 @@ pub fn read(bytes: &[u8]) -> Result<NoiseImage> {
     if caps_2 & CUBE_MAP != 0 {
         return Err(foreign("dwCaps2", "that of a plane or a volume", "a cube map"));
     }
-    let (is_volume, data) = match is_volume_of_dx10(bytes)? {
-        Some(is_volume) => (is_volume, BEFORE_DATA + MORE),
-        None => (caps_2 & VOLUME != 0, BEFORE_DATA),
+    let says_volume = caps_2 & VOLUME != 0;
+    let (is_volume, data) = match longer_header(bytes)? {
+        Some(dimension) => (dimension.map_or(says_volume, |d| d == DIMENSION_3D), BEFORE_DATA + MORE),
+        None => (says_volume, BEFORE_DATA),
     };
     let depth = if is_volume { word(bytes, AT_DEPTH)? } else { 1 };
     let size =
@@ -88,8 +91,9 @@ pub fn read(bytes: &[u8]) -> Result<NoiseImage> {
     Ok(NoiseImage::of_levels(size, levels))
 }
 
-/// Whether the longer header calls the texture a volume; none where there is no longer header. Refuses texels other than one byte.
-fn is_volume_of_dx10(bytes: &[u8]) -> Result<Option<bool>> {
+/// The dimension that the longer header gives, of which NVIDIA's exporter writes none; nothing where there is no longer header. Refuses
+/// texels other than one byte.
+fn longer_header(bytes: &[u8]) -> Result<Option<Option<u32>>> {
     let flags = word(bytes, AT_PIXEL_FLAGS)?;
     if flags & FOUR_CC == 0 {
         let (is_known, bits) = (matches!(flags, ALPHA | LUMINANCE), word(bytes, AT_BIT_COUNT)?);
@@ -118,13 +122,27 @@ fn is_volume_of_dx10(bytes: &[u8]) -> Result<Option<bool>> {
         return Err(foreign("arraySize", "1", layers));
     }
     match word(bytes, AT_DIMENSION)? {
-        DIMENSION_2D => Ok(Some(false)),
-        DIMENSION_3D => Ok(Some(true)),
+        known @ (DIMENSION_2D | DIMENSION_3D) => Ok(Some(Some(known))),
+        NO_DIMENSION => {
+            log::warn!(
+                "DDS: resourceDimension is 0, as NVIDIA's exporter writes it; dwCaps2 says whether it is a volume"
+            );
+            Ok(Some(None))
+        }
         other => Err(foreign("resourceDimension", "TEXTURE2D (3) or TEXTURE3D (4)", other)),
     }
 }
 
-pub fn write(image: &NoiseImage) -> Vec<u8> {
+/// How a file says that its texels are one byte.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Texels {
+    /// By the header of old, as luminance of 8 bits (L8).
+    Luminance,
+    /// By the longer header, as R8_UNORM.
+    Red,
+}
+
+pub fn write(image: &NoiseImage, texels: Texels) -> Vec<u8> {
     let [width, height, depth] = image.size();
     let (is_volume, levels) = (depth > 1, image.levels().len() as u32);
     let mut header = [0_u8; BEFORE_DATA + MORE];
@@ -140,15 +158,25 @@ pub fn write(image: &NoiseImage) -> Vec<u8> {
     put(AT_DEPTH, if is_volume { depth } else { 0 });
     put(AT_LEVELS, levels);
     put(AT_PIXEL_FORMAT, PIXEL_FORMAT);
-    put(AT_PIXEL_FLAGS, FOUR_CC);
-    put(AT_FOUR_CC, u32::from_le_bytes(DX10));
     let complex = if has_levels || is_volume { CAPS_COMPLEX } else { 0 };
     put(108, CAPS_TEXTURE | complex | if has_levels { CAPS_LEVELS } else { 0 });
     put(AT_CAPS_2, if is_volume { VOLUME } else { 0 });
-    put(AT_DXGI_FORMAT, R8_UNORM);
-    put(AT_DIMENSION, if is_volume { DIMENSION_3D } else { DIMENSION_2D });
-    put(AT_ARRAY, 1);
-    let mut file = header.to_vec();
+    match texels {
+        Texels::Luminance => {
+            put(AT_PIXEL_FLAGS, LUMINANCE);
+            put(AT_BIT_COUNT, 8);
+            put(AT_RED_MASK, 0xff);
+        }
+        Texels::Red => {
+            put(AT_PIXEL_FLAGS, FOUR_CC);
+            put(AT_FOUR_CC, u32::from_le_bytes(DX10));
+            put(AT_DXGI_FORMAT, R8_UNORM);
+            put(AT_DIMENSION, if is_volume { DIMENSION_3D } else { DIMENSION_2D });
+            put(AT_ARRAY, 1);
+        }
+    }
+    let before = if texels == Texels::Red { BEFORE_DATA + MORE } else { BEFORE_DATA };
+    let mut file = header[..before].to_vec();
     image.levels().iter().for_each(|level| file.extend_from_slice(level));
     file
 }

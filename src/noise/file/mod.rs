@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::image::{NoiseImage, empty};
 use super::settings::{MOST_TEXELS, levels_of, size_of_level, texels};
-use crate::error::{Error, Result, Status};
+use crate::error::{Error, Result, Status, shown};
 
 /// Most bytes of a file: a texture of the most texels with its mip levels, and room for what else formats hold.
 const MOST_BYTES: u64 = 2 * MOST_TEXELS;
@@ -21,13 +21,15 @@ impl NoiseImage {
     /// [`Status::Io`] where the file cannot be read; those of [`NoiseImage::from_bytes`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let failed = |e: std::io::Error| Error::new(Status::Io, format!("{}: {e}", path.display()));
+        let name = path.display().to_string();
+        let name = shown(&name);
+        let failed = |e: std::io::Error| Error::new(Status::Io, format!("{name}: {e}"));
         let file = File::open(path).map_err(failed)?;
         let length = file.metadata().map_err(failed)?.len();
-        check_length(length).map_err(|e| e.found_in(path.display()))?;
+        check_length(length).map_err(|e| e.found_in(&name))?;
         let mut bytes = empty(length)?;
         file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
-        Self::from_bytes(&bytes).map_err(|e| e.found_in(path.display()))
+        Self::from_bytes(&bytes).map_err(|e| e.found_in(&name))
     }
 
     /// Reads a texture of one channel of 8 bits, a plane or a volume: DDS with the pixel format A8, L8, R8_UNORM or A8_UNORM, or KTX2
@@ -48,9 +50,15 @@ impl NoiseImage {
         }
     }
 
-    /// The image as a DDS file with the format R8_UNORM (its header is that called DX10) and its mip levels.
+    /// The image as a DDS file with its mip levels, as luminance of 8 bits (L8): the form of it that most programs read.
     pub fn to_dds(&self) -> Vec<u8> {
-        dds::write(self)
+        dds::write(self, dds::Texels::Luminance)
+    }
+
+    /// The image as a DDS file with its mip levels and the longer header, called DX10, with the format R8_UNORM: for programs that want
+    /// the format by its name. Fewer read it.
+    pub fn to_dds_dx10(&self) -> Vec<u8> {
+        dds::write(self, dds::Texels::Red)
     }
 
     /// The image as a KTX2 file with VK_FORMAT_R8_UNORM and its mip levels.
