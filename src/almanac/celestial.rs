@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 use super::time::{UTC_RANGE_S, Utc};
 use crate::{
     error::{Result, check_range},
-    scene::Place,
+    scene::{Place, turn_x, turn_y, turn_z},
 };
 
 /// Arc seconds in degrees.
@@ -19,8 +19,8 @@ const ARC_SECOND_DEG: f64 = 1.0 / 3600.0;
 pub(crate) fn nutation_obliquity(t: f64) -> (f64, f64) {
     let node = (125.044_52 - 1_934.136_261 * t).to_radians();
     let sun = (280.466_5 + 36_000.769_8 * t).to_radians();
-    let arc_seconds = -17.20 * node.sin() - 1.32 * (2.0 * sun).sin();
-    let obliquity = mean_obliquity_deg(t) + (9.20 * node.cos() + 0.57 * (2.0 * sun).cos()) * ARC_SECOND_DEG;
+    let arc_seconds = -17.20 * libm::sin(node) - 1.32 * libm::sin(2.0 * sun);
+    let obliquity = mean_obliquity_deg(t) + (9.20 * libm::cos(node) + 0.57 * libm::cos(2.0 * sun)) * ARC_SECOND_DEG;
     ((arc_seconds * ARC_SECOND_DEG).to_radians(), obliquity.to_radians())
 }
 
@@ -41,7 +41,7 @@ pub fn mean_sidereal_time(utc: Utc) -> f64 {
 /// Apparent sidereal time at Greenwich, rad: the mean one and the equation of the equinoxes. May lie a hair outside [0, 2 pi).
 pub fn apparent_sidereal_time(utc: Utc) -> f64 {
     let (nutation, obliquity) = nutation_obliquity(utc.julian_centuries_tt());
-    mean_sidereal_time(utc) + nutation * obliquity.cos()
+    mean_sidereal_time(utc) + nutation * libm::cos(obliquity)
 }
 
 /// From the equator and equinox of J2000.0 to those of date: precession (Lieske 1977, IAU 1976; Meeus eq. 21.3) at `t`
@@ -51,19 +51,19 @@ fn precession(t: f64) -> DMat3 {
     let zeta = angle(2306.2181, 0.301_88, 0.017_998);
     let z = angle(2306.2181, 1.094_68, 0.018_203);
     let theta = angle(2004.3109, -0.426_65, -0.041_833);
-    DMat3::from_rotation_z(z) * DMat3::from_rotation_y(-theta) * DMat3::from_rotation_z(zeta)
+    turn_z(z) * turn_y(-theta) * turn_z(zeta)
 }
 
 /// From the mean equator and equinox of date to the true ones: nutation.
 fn nutation(t: f64) -> DMat3 {
     let (longitude, obliquity) = nutation_obliquity(t);
     let mean = mean_obliquity_deg(t).to_radians();
-    DMat3::from_rotation_x(obliquity) * DMat3::from_rotation_z(longitude) * DMat3::from_rotation_x(-mean)
+    turn_x(obliquity) * turn_z(longitude) * turn_x(-mean)
 }
 
 /// From true equatorial axes of date to (east, north, up) at a place: the Earth's turning.
 pub(crate) fn equator_of_date_to_world(utc: Utc, place: &Place) -> DMat3 {
-    place.ecef_to_enu() * DMat3::from_rotation_z(-apparent_sidereal_time(utc))
+    place.ecef_to_enu() * turn_z(-apparent_sidereal_time(utc))
 }
 
 /// From catalogue directions (equator and equinox J2000.0; x to the equinox, z to the north pole) to (east, north, up) at
@@ -83,15 +83,15 @@ pub fn celestial_to_world(utc: Utc, place: &Place) -> Result<DMat3> {
 
 /// Unit vector of a right ascension and declination, degrees.
 pub fn equatorial_direction(right_ascension_deg: f64, declination_deg: f64) -> DVec3 {
-    let (sa, ca) = right_ascension_deg.to_radians().sin_cos();
-    let (sd, cd) = declination_deg.to_radians().sin_cos();
+    let (sa, ca) = libm::sincos(right_ascension_deg.to_radians());
+    let (sd, cd) = libm::sincos(declination_deg.to_radians());
     DVec3::new(ca * cd, sa * cd, sd)
 }
 
 /// Unit vector (east, north, up) of an azimuth (clockwise from north) and an elevation, degrees.
 pub fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
-    let (sa, ca) = azimuth_deg.to_radians().sin_cos();
-    let (se, ce) = elevation_deg.to_radians().sin_cos();
+    let (sa, ca) = libm::sincos(azimuth_deg.to_radians());
+    let (se, ce) = libm::sincos(elevation_deg.to_radians());
     DVec3::new(sa * ce, ca * ce, se)
 }
 
@@ -99,7 +99,7 @@ pub fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
 /// eye. Below -1 degree, where the formula ends and nothing is seen from the ground, it fades to 0 at -4 degrees.
 pub fn refraction_deg(elevation_deg: f64, pressure_hpa: f64, temperature_c: f64) -> f64 {
     let h = elevation_deg.max(-1.0);
-    let arc_minutes = 1.02 / (h + 10.3 / (h + 5.11)).to_radians().tan();
+    let arc_minutes = 1.02 / libm::tan((h + 10.3 / (h + 5.11)).to_radians());
     let fade = ((elevation_deg + 4.0) / 3.0).clamp(0.0, 1.0);
     let smooth = fade * fade * (3.0 - 2.0 * fade);
     (arc_minutes / 60.0 * pressure_hpa / 1010.0 * 283.0 / (273.0 + temperature_c) * smooth).max(0.0)

@@ -41,7 +41,7 @@ impl Geocentric {
         Ok(Self {
             sun_m: toward * series.earth_radius_vector().unwrap_or(1.0) * AU_M,
             moon_m: moon::geocentric_equatorial(t, nutation, obliquity),
-            equinoxes: nutation * obliquity.cos(),
+            equinoxes: nutation * libm::cos(obliquity),
         })
     }
 

@@ -5,11 +5,14 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::ephemeris::Geocentric;
 use super::sun::{Turned, Utc};
-use crate::{error::Result, scene::Place};
+use crate::{
+    error::Result,
+    scene::{Place, angle_between, turn_x},
+};
 
 /// Radius of the moon, m (IAU 2015 mean).
 const MOON_RADIUS_M: f64 = 1.7374e6;
@@ -135,17 +138,19 @@ fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
     let e = 1.0 - 0.002_516 * t - 0.000_007_4 * t * t;
     let argument = |c: &[f64]| c[0] * d + c[1] * m + c[2] * mp + c[3] * f;
     let weight = |c: &[f64]| e.powi(c[1].abs() as i32);
-    let mut longitude = 3958.0 * a1.sin() + 1962.0 * (l - f).sin() + 318.0 * a2.sin();
-    let mut latitude =
-        -2235.0 * l.sin() + 382.0 * a3.sin() + 175.0 * ((a1 - f).sin() + (a1 + f).sin()) + 127.0 * (l - mp).sin()
-            - 115.0 * (l + mp).sin();
+    let mut longitude = 3958.0 * libm::sin(a1) + 1962.0 * libm::sin(l - f) + 318.0 * libm::sin(a2);
+    let mut latitude = -2235.0 * libm::sin(l)
+        + 382.0 * libm::sin(a3)
+        + 175.0 * (libm::sin(a1 - f) + libm::sin(a1 + f))
+        + 127.0 * libm::sin(l - mp)
+        - 115.0 * libm::sin(l + mp);
     let mut distance = 0.0;
     for c in &LONGITUDE_DISTANCE {
-        longitude += c[4] * weight(c) * argument(c).sin();
-        distance += c[5] * weight(c) * argument(c).cos();
+        longitude += c[4] * weight(c) * libm::sin(argument(c));
+        distance += c[5] * weight(c) * libm::cos(argument(c));
     }
     for c in &LATITUDE {
-        latitude += c[4] * weight(c) * argument(c).sin();
+        latitude += c[4] * weight(c) * libm::sin(argument(c));
     }
     (
         (l + (longitude * 1e-6).to_radians()).rem_euclid(TAU),
@@ -158,9 +163,9 @@ fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
 /// nutation in longitude and true obliquity, rad.
 pub(super) fn geocentric_equatorial(t: f64, nutation: f64, obliquity: f64) -> DVec3 {
     let (longitude, latitude, distance) = geocentric_ecliptic(t);
-    let (sb, cb) = latitude.sin_cos();
-    let (sl, cl) = (longitude + nutation).sin_cos();
-    DMat3::from_rotation_x(obliquity) * (DVec3::new(cl * cb, sl * cb, sb) * distance)
+    let (sb, cb) = libm::sincos(latitude);
+    let (sl, cl) = libm::sincos(longitude + nutation);
+    turn_x(obliquity) * (DVec3::new(cl * cb, sl * cb, sb) * distance)
 }
 
 /// The moon over `place` at `utc`, to 0.01 degrees.
@@ -178,17 +183,17 @@ pub(crate) fn lit(turned: &Turned) -> MoonPosition {
     let direction = seen.normalize();
     let distance_m = seen.length();
     let to_sun = turned.sun_m - seen;
-    let phase_angle = to_sun.angle_between(-seen);
+    let phase_angle = angle_between(to_sun, -seen);
     let in_disc = to_sun - direction * to_sun.dot(direction);
-    let azimuth = direction.x.atan2(direction.y).to_degrees().rem_euclid(360.0);
+    let azimuth = libm::atan2(direction.x, direction.y).to_degrees().rem_euclid(360.0);
     MoonPosition {
         direction,
         azimuth_deg: azimuth,
-        elevation_deg: direction.z.asin().to_degrees(),
+        elevation_deg: libm::asin(direction.z).to_degrees(),
         distance_m,
-        angular_radius: (MOON_RADIUS_M / distance_m).asin(),
+        angular_radius: libm::asin(MOON_RADIUS_M / distance_m),
         phase_angle,
-        illuminated: 0.5 * (1.0 + phase_angle.cos()),
+        illuminated: 0.5 * (1.0 + libm::cos(phase_angle)),
         bright_limb: in_disc.normalize_or(direction.any_orthonormal_vector()),
         illuminance_lux: moon_illuminance_lux(phase_angle, distance_m),
     }
@@ -200,7 +205,7 @@ pub(crate) fn lit(turned: &Turned) -> MoonPosition {
 pub fn moon_illuminance_lux(phase_angle: f64, distance_m: f64) -> f64 {
     let a = phase_angle.abs().to_degrees();
     let magnitude = -12.73 + 0.026 * a + 4e-9 * a.powi(4);
-    10f64.powf(-0.4 * (magnitude + 14.18)) * (384.4e6 / distance_m).powi(2)
+    libm::exp10(-0.4 * (magnitude + 14.18)) * (384.4e6 / distance_m).powi(2)
 }
 
 #[cfg(test)]

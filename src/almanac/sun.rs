@@ -1,13 +1,17 @@
 //! Where the sun stands: the almanac, refraction, and the flattening of the disc near the horizon.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::ephemeris::{AU_M, Geocentric};
 pub use super::{
     Utc,
     celestial::{direction, refraction_deg},
 };
-use crate::{almanac::celestial::mean_sidereal_time, error::Result, scene::Place};
+use crate::{
+    almanac::celestial::mean_sidereal_time,
+    error::Result,
+    scene::{Place, turn_z},
+};
 
 /// The sun over a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +46,7 @@ pub(crate) struct Turned {
 impl Turned {
     pub fn new(from_centre: &Geocentric, utc: Utc, place: &Place) -> Self {
         let to_enu = place.ecef_to_enu();
-        let turn = DMat3::from_rotation_z(-(mean_sidereal_time(utc) + from_centre.equinoxes));
+        let turn = turn_z(-(mean_sidereal_time(utc) + from_centre.equinoxes));
         let seen = |body: DVec3| to_enu * (turn * body - place.to_ecef());
         let distance_au = from_centre.sun_m.length() / AU_M;
         Self { sun_m: seen(from_centre.sun_m), moon_m: seen(from_centre.moon_m), distance_au }
@@ -52,8 +56,8 @@ impl Turned {
         let direction = self.sun_m.normalize();
         SunPosition {
             direction,
-            azimuth_deg: direction.x.atan2(direction.y).to_degrees().rem_euclid(360.0),
-            elevation_deg: direction.z.atan2(direction.x.hypot(direction.y)).to_degrees(),
+            azimuth_deg: libm::atan2(direction.x, direction.y).to_degrees().rem_euclid(360.0),
+            elevation_deg: libm::atan2(direction.z, libm::hypot(direction.x, direction.y)).to_degrees(),
             distance_au: self.distance_au,
         }
     }

@@ -81,7 +81,7 @@ pub struct wk_rain_area {
     pub rim_m: f64,
     /// Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10.
     pub rate_mm_h: f64,
-    /// Altitude of the cloud base above the sea (not above the ground), m: above it falls neither the area's rain nor
+    /// Altitude of the cloud base above mean sea level (not above the ground), m: above it falls neither the area's rain nor
     /// the weather's. Range [-1000, 20 000], default 1500.
     pub top_m: f64,
     /// Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN.

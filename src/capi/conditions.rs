@@ -5,7 +5,8 @@
 //! is continuous in time while the weather changes, including the geometry of a layer that comes or goes.
 //!
 //! Here and in every other function a position must lie within 1e12 m of the world's origin and at an altitude in
-//! [-1e4, 1e9] m above the sea. Other positions are refused.
+//! [-1e4, 1e9] m above mean sea level (in WK_WORLD_ECEF: above the ellipsoid, less geoid_height_m of wk_context_desc).
+//! Other positions are refused.
 
 use std::{ffi::c_void, ptr::null};
 

@@ -7,6 +7,9 @@
 //! with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat and tangent worlds
 //! are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world). Directions in answers are
 //! unit vectors (east, north, up) at the place asked for; azimuths are degrees clockwise from true north.
+//!
+//! Altitudes count from mean sea level everywhere in this header. In an ECEF world that lies geoid_height_m of
+//! wk_context_desc above the ellipsoid; with the default of 0 heights above the ellipsoid are taken for altitudes.
 
 use std::{
     ffi::{c_char, c_void},
@@ -51,7 +54,7 @@ pub const WK_WORLD_FLAT: wk_world_kind = 0;
 /// East-north-up at the origin's place, the curved planet below.
 pub const WK_WORLD_TANGENT: wk_world_kind = 1;
 /// Earth-centred, Earth-fixed (WGS 84); axes and grid bearing have no effect, and the origin only affects the sunlight
-/// that dries a simulated ground (WK_GROUND_SIMULATED).
+/// that dries a simulated ground (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
 pub const WK_WORLD_ECEF: wk_world_kind = 2;
 
 /// Directions of the host's axes in flat and tangent worlds.
@@ -123,6 +126,11 @@ pub struct wk_context_desc {
     /// each). If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read during the call.
     /// Default NULL: no files.
     pub cache_dir: *const c_char,
+    /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation), m:
+    /// 47.8 at Frankfurt, -30 at New York. One number for the context; it varies by some metres over 100 km. For WK_WORLD_ECEF,
+    /// whose coordinates know the ellipsoid alone: altitudes, the tops of fog and the bases of clouds among them, count from
+    /// mean sea level. Without effect in other worlds. Range [-120, 120], default 0.
+    pub geoid_height_m: f64,
 }
 
 impl wk_context_desc {
@@ -143,6 +151,7 @@ impl wk_context_desc {
         exposure_value: 0.0,
         utc_at_zero_s: 1782036000.0,
         cache_dir: null(),
+        geoid_height_m: 0.0,
     };
 }
 
@@ -219,7 +228,8 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     let axes = if desc.axes == WK_AXES_Y_UP { Axes::YUp } else { Axes::ZUp };
     let origin =
         Place { latitude_deg: desc.latitude_deg, longitude_deg: desc.longitude_deg, altitude_m: desc.altitude_m };
-    let world = WorldFrame { kind, axes, origin, grid_bearing_deg: desc.grid_bearing_deg };
+    let world =
+        WorldFrame { kind, axes, origin, grid_bearing_deg: desc.grid_bearing_deg, geoid_height_m: desc.geoid_height_m };
     world.validate().map_err(|e| e.within("desc"))?;
     // SAFETY: the caller's promise.
     let planet = unsafe { planet("desc.planet_toml", desc.planet_toml)? };

@@ -235,8 +235,8 @@ pub unsafe extern "C" fn wk_context_save(
 }
 
 /// Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
-/// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for
-/// WK_WORLD_ECEF), seed and ground_model. A state of an earlier version that holds no planet and tone curve needs the
+/// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF instead of these
+/// two geoid_height_m), seed and ground_model. A state of an earlier version that holds no planet and tone curve needs the
 /// same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state, as they
 /// were when it was saved, before.
 /// Thread: exclusive.

@@ -172,7 +172,7 @@ impl wk_rain_on {
 /// Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
 /// the ground's roughness up to 100 m, and above grows and veers to the geostrophic wind (docs/clouds.md).
 /// Gusts have Kaimal's spectrum (1972, as in IEC 61400-1)
-/// and are the same all over the world. Heights count from the station's altitude, and reported wind holds 10 m above
+/// and are the same all over the world. Heights count from the station's altitude above mean sea level, and reported wind holds 10 m above
 /// it. A host with terrain asks at the station's altitude plus the height above its own ground. At and below the
 /// roughness length there is no wind.
 /// Thread: concurrent.

@@ -171,7 +171,8 @@ fn turns_once(corners: &[[f64; 2]]) -> bool {
     let next = corners.iter().cycle().skip(1);
     let sides = corners.iter().zip(next).map(|(a, b)| DVec2::from(*b) - DVec2::from(*a));
     let sides: Vec<DVec2> = sides.filter(|s| s.length_squared() > 0.0).collect();
-    let turned: f64 = sides.iter().zip(sides.iter().cycle().skip(1)).map(|(a, b)| a.angle_to(*b)).sum();
+    let turned: f64 =
+        sides.iter().zip(sides.iter().cycle().skip(1)).map(|(a, b)| libm::atan2(a.perp_dot(*b), a.dot(*b))).sum();
     turned.abs() < 1.5 * std::f64::consts::TAU
 }
 

@@ -171,7 +171,7 @@ impl Strike {
             if lm_m > 0.0 {
                 let altitude_m = self.altitude_m(0.5 * (ends[0] + ends[1]));
                 let depth_m = |c: CloudSpan| (altitude_m - c.base_m).min(c.top_m - altitude_m).max(0.0);
-                let open = self.clouds.map_or(1.0, |c| (-depth_m(c) / FADES_M).exp());
+                let open = self.clouds.map_or(1.0, |c| libm::exp(-depth_m(c) / FADES_M));
                 let flux_lm = lm_m * (ends[1] - ends[0]).length();
                 to(&Part { ends: [ends[0], ends[1]], altitude_m, flux_lm, open });
             }

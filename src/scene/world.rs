@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::turn::turn_z;
 use crate::error::{Error, Result, check_range};
 
 /// Semi-major axis of the WGS 84 ellipsoid, m (NIMA TR8350.2, 2000).
@@ -9,6 +10,9 @@ const WGS84_A: f64 = 6_378_137.0;
 /// First eccentricity squared of the WGS 84 ellipsoid (NIMA TR8350.2, 2000).
 const WGS84_E2: f64 = 6.694_379_990_141_4e-3;
 
+/// Farthest that mean sea level lies above or below the ellipsoid, m: from -107 m south of India to 86 m at New Guinea (EGM2008, Pavlis
+/// et al. 2012), and some more for other surfaces of reference.
+const GEOID_M: f64 = 120.0;
 /// Lowest and highest altitude of a place, m.
 const ALTITUDES_M: [f64; 2] = [-1e4, 1e9];
 /// By so much the altitude of a position may lie outside and count as at the end, m: at 1e9 m coordinates are rounded to a
@@ -24,7 +28,7 @@ pub struct Place {
     pub latitude_deg: f64,
     /// Longitude, degrees east, [-360, 360].
     pub longitude_deg: f64,
-    /// Height above the ellipsoid, taken as height above mean sea level, m, [-1e4, 1e9].
+    /// Height above mean sea level, m, [-1e4, 1e9].
     pub altitude_m: f64,
 }
 
@@ -39,27 +43,27 @@ impl Place {
         check_range("altitude_m", self.altitude_m, ALTITUDES_M[0], ALTITUDES_M[1], "m")
     }
 
-    /// Earth-centred coordinates on WGS 84, m.
+    /// Earth-centred coordinates on WGS 84, m, where mean sea level is the ellipsoid ([`WorldFrame::geoid_height_m`] is 0).
     pub fn to_ecef(&self) -> DVec3 {
-        let (sp, cp) = self.latitude_deg.to_radians().sin_cos();
-        let (sl, cl) = self.longitude_deg.to_radians().sin_cos();
+        let (sp, cp) = libm::sincos(self.latitude_deg.to_radians());
+        let (sl, cl) = libm::sincos(self.longitude_deg.to_radians());
         let n = WGS84_A / (1.0 - WGS84_E2 * sp * sp).sqrt();
         let r = (n + self.altitude_m) * cp;
         DVec3::new(r * cl, r * sl, (n * (1.0 - WGS84_E2) + self.altitude_m) * sp)
     }
 
-    /// The place of Earth-centred coordinates, by Bowring's iteration (Bowring 1976); within 1e-6 m of the inverse
+    /// The place of Earth-centred coordinates, its altitude above the ellipsoid, by Bowring's iteration (Bowring 1976); within 1e-6 m of the inverse
     /// from the centre's neighbourhood (1 km) to 1e9 m.
     pub fn from_ecef(p: DVec3) -> Self {
-        let rho = p.x.hypot(p.y);
-        let longitude = p.y.atan2(p.x);
-        let mut latitude = p.z.atan2(rho * (1.0 - WGS84_E2));
+        let rho = libm::hypot(p.x, p.y);
+        let longitude = libm::atan2(p.y, p.x);
+        let mut latitude = libm::atan2(p.z, rho * (1.0 - WGS84_E2));
         for _ in 0..8 {
-            let s = latitude.sin();
+            let s = libm::sin(latitude);
             let n = WGS84_A / (1.0 - WGS84_E2 * s * s).sqrt();
-            latitude = (p.z + WGS84_E2 * n * s).atan2(rho);
+            latitude = libm::atan2(p.z + WGS84_E2 * n * s, rho);
         }
-        let (s, c) = latitude.sin_cos();
+        let (s, c) = libm::sincos(latitude);
         let n = WGS84_A / (1.0 - WGS84_E2 * s * s).sqrt();
         let altitude = rho * c + p.z * s - WGS84_A * WGS84_A / n;
         Self { latitude_deg: latitude.to_degrees(), longitude_deg: longitude.to_degrees(), altitude_m: altitude }
@@ -67,8 +71,8 @@ impl Place {
 
     /// From Earth-centred axes to (east, north, up) at this place.
     pub(crate) fn ecef_to_enu(&self) -> DMat3 {
-        let (sp, cp) = self.latitude_deg.to_radians().sin_cos();
-        let (sl, cl) = self.longitude_deg.to_radians().sin_cos();
+        let (sp, cp) = libm::sincos(self.latitude_deg.to_radians());
+        let (sl, cl) = libm::sincos(self.longitude_deg.to_radians());
         let east = DVec3::new(-sl, cl, 0.0);
         let north = DVec3::new(-sp * cl, -sp * sl, cp);
         let up = DVec3::new(cp * cl, cp * sl, sp);
@@ -94,7 +98,8 @@ pub enum WorldKind {
     Flat,
     /// East-north-up at the origin's place with the curved planet below.
     Tangent,
-    /// Earth-centred, Earth-fixed (WGS 84); axes and origin do not matter.
+    /// Earth-centred, Earth-fixed (WGS 84); axes do not matter, and the origin only for the sunlight on simulated ground. Altitudes count from
+    /// mean sea level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
     Ecef,
 }
 
@@ -109,12 +114,16 @@ pub struct WorldFrame {
     pub origin: Place,
     /// Bearing of the world's north axis, degrees clockwise from true north, [-360, 360].
     pub grid_bearing_deg: f64,
+    /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place, m, [-120, 120]: 47.8 m at Frankfurt, -30 m at
+    /// New York. One number for all of the world; it varies by some metres over 100 km. For Earth-centred worlds, whose coordinates know the
+    /// ellipsoid alone. Default 0.
+    pub geoid_height_m: f64,
 }
 
 impl Default for WorldFrame {
     fn default() -> Self {
         let origin = Place { latitude_deg: 50.0, longitude_deg: 10.0, altitude_m: 0.0 };
-        Self { kind: WorldKind::Flat, axes: Axes::ZUp, origin, grid_bearing_deg: 0.0 }
+        Self { kind: WorldKind::Flat, axes: Axes::ZUp, origin, grid_bearing_deg: 0.0, geoid_height_m: 0.0 }
     }
 }
 
@@ -134,7 +143,8 @@ impl WorldFrame {
     /// [`crate::Status::InvalidArgument`].
     pub fn validate(&self) -> Result<()> {
         self.origin.validate()?;
-        check_range("grid_bearing_deg", self.grid_bearing_deg, -360.0, 360.0, "deg")
+        check_range("grid_bearing_deg", self.grid_bearing_deg, -360.0, 360.0, "deg")?;
+        check_range("geoid_height_m", self.geoid_height_m, -GEOID_M, GEOID_M, "m")
     }
 
     /// Up, north, altitude and place at a position of the host's world that the host names `name`.
@@ -174,7 +184,8 @@ impl WorldFrame {
                 LocalFrame { place, world_to_enu: place.ecef_to_enu() * origin_rows.transpose() * to_origin }
             }
             WorldKind::Ecef => {
-                let place = Place::from_ecef(position);
+                let mut place = Place::from_ecef(position);
+                place.altitude_m -= self.geoid_height_m;
                 LocalFrame { place, world_to_enu: place.ecef_to_enu() }
             }
         }
@@ -183,7 +194,7 @@ impl WorldFrame {
     /// Where a place on the planet lies in a tangent or Earth-centred host's world; the inverse of [`WorldFrame::frame_at`].
     pub(crate) fn position_of(&self, place: &Place) -> DVec3 {
         match self.kind {
-            WorldKind::Ecef => place.to_ecef(),
+            WorldKind::Ecef => Place { altitude_m: place.altitude_m + self.geoid_height_m, ..*place }.to_ecef(),
             _ => {
                 let from_origin = self.origin.ecef_to_enu() * (place.to_ecef() - self.origin.to_ecef());
                 self.axes_to_enu().transpose() * from_origin
@@ -198,7 +209,7 @@ impl WorldFrame {
             Axes::YUp => DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y),
         };
         // A grid whose north points east of true north turns its vectors clockwise.
-        DMat3::from_rotation_z(-self.grid_bearing_deg.to_radians()) * axes
+        turn_z(-self.grid_bearing_deg.to_radians()) * axes
     }
 }
 
@@ -231,6 +242,30 @@ mod tests {
         assert!((tilt + 50e3 / 6.37e6).abs() < 2e-4, "up at the origin leans back south of the far up: {tilt}");
         w.kind = WorldKind::Flat;
         assert_eq!(w.frame_at(far).place.altitude_m, 0.0);
+    }
+
+    #[test]
+    fn an_earth_centred_worlds_altitudes_count_from_the_geoid() {
+        let frankfurt = Place { latitude_deg: 50.03, longitude_deg: 8.55, altitude_m: 111.0 };
+        for geoid_height_m in [-107.0, 0.0, 47.8, 120.0] {
+            let world = WorldFrame { kind: WorldKind::Ecef, geoid_height_m, ..WorldFrame::default() };
+            let above = Place { altitude_m: 111.0 + geoid_height_m, ..frankfurt }.to_ecef();
+            let local = world.frame_at(above);
+            assert!((local.place.altitude_m - 111.0).abs() < 1e-6, "{local:?}");
+            assert_eq!(world.place_at("position", above).unwrap(), local);
+            assert!((world.position_of(&frankfurt) - above).length() < 1e-6);
+            // Where altitudes are the host's own the ellipsoid does not matter.
+            for kind in [WorldKind::Flat, WorldKind::Tangent] {
+                let world = WorldFrame { kind, origin: frankfurt, ..world };
+                let without = WorldFrame { geoid_height_m: 0.0, ..world };
+                let at = DVec3::new(3e3, -2e3, 40.0);
+                assert_eq!(world.frame_at(at), without.frame_at(at));
+            }
+        }
+        for bad in [f64::NAN, -120.001, 121.0, f64::INFINITY] {
+            let e = WorldFrame { geoid_height_m: bad, ..WorldFrame::default() }.validate().unwrap_err().to_string();
+            assert!(e.starts_with("geoid_height_m must be in [-120, 120] m, got "), "{e}");
+        }
     }
 
     #[test]

@@ -15,7 +15,7 @@ use crate::{
         Planet,
         spectral::{Conversion, sun_rec709},
     },
-    scene::Place,
+    scene::{Place, angle_between},
     weather::{CloudLight, Conditions, snow_cover},
 };
 
@@ -118,7 +118,7 @@ impl World {
         let utc = self.utc_at(time_s);
         let sky = self.ephemeris.at(utc).map_err(|_| out_of_almanac(time_s))?;
         let turned = Turned::new(&sky, utc, place);
-        let pressure = c.air.pressure_hpa * (-place.altitude_m.max(0.0) / c.air.rayleigh_scale_height_m).exp();
+        let pressure = c.air.pressure_hpa * libm::exp(-place.altitude_m.max(0.0) / c.air.rayleigh_scale_height_m);
         let see = |d: DVec3| refracted(d, pressure, c.air.temperature_c);
         let sun = self.sun_over(&turned.sun(), (c, albedo), place.altitude_m, see);
         let moon = self.moon_over(moon::lit(&turned), &sun.0, (c, albedo), place.altitude_m, see);
@@ -164,16 +164,16 @@ impl World {
         }
         if self.set.given_moon.is_some() || self.set.given_sun.is_some() {
             // The host moved one of them: the phase follows from where they stand now.
-            let elongation = at.direction.angle_between(sun.direction);
+            let elongation = angle_between(at.direction, sun.direction);
             at.phase_angle = std::f64::consts::PI - elongation;
-            at.illuminated = 0.5 * (1.0 + at.phase_angle.cos());
+            at.illuminated = 0.5 * (1.0 + libm::cos(at.phase_angle));
             let in_disc = sun.direction - at.direction * sun.direction.dot(at.direction);
             at.bright_limb = in_disc.normalize_or(at.direction.any_orthonormal_vector());
             at.illuminance_lux = moon::moon_illuminance_lux(at.phase_angle, at.distance_m);
         }
         let (apparent, flattening) = see(at.direction);
         let spectrum = MOON_TINT.map(|t| t * at.illuminance_lux / SUN_LUX);
-        let dark = sun.direction.z < MOON_MATTERS_BELOW_DEG.to_radians().sin();
+        let dark = sun.direction.z < libm::sin(MOON_MATTERS_BELOW_DEG.to_radians());
         let above = apparent.z > -0.02;
         let clouds = c.cloud_light_at(at.direction.z, albedo, altitude_m);
         let moon = Light {
@@ -194,10 +194,10 @@ impl World {
 
 /// The direction as seen and the flattening of a disc there.
 fn refracted(d: DVec3, pressure_hpa: f64, temperature_c: f64) -> (DVec3, f64) {
-    let elevation = d.z.clamp(-1.0, 1.0).asin();
+    let elevation = libm::asin(d.z.clamp(-1.0, 1.0));
     let lift = sun::refraction_deg(elevation.to_degrees(), pressure_hpa, temperature_c).to_radians();
-    let (s, c) = (elevation + lift).sin_cos();
+    let (s, c) = libm::sincos(elevation + lift);
     let horizontal = DVec3::new(d.x, d.y, 0.0).normalize_or(DVec3::Y);
-    let seen = if elevation.cos() < 1e-6 { d } else { horizontal * c + DVec3::Z * s };
+    let seen = if libm::cos(elevation) < 1e-6 { d } else { horizontal * c + DVec3::Z * s };
     (seen, sun::disc_flattening(elevation.to_degrees(), pressure_hpa, temperature_c))
 }

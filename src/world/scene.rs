@@ -52,7 +52,7 @@ impl ZenithDepths {
     /// Of the air above `altitude_m`.
     fn new(planet: &Planet, altitude_m: f64) -> Self {
         let h = altitude_m.max(0.0);
-        let column = |scale: f64| if scale > 0.0 { scale * (-h / scale).exp() } else { 0.0 };
+        let column = |scale: f64| if scale > 0.0 { scale * libm::exp(-h / scale) } else { 0.0 };
         let (gas, haze) = (column(planet.rayleigh.scale_height_m), column(planet.mie.scale_height_m));
         let tent = &planet.absorption;
         let above = smoothstep(-tent.half_width_m, tent.half_width_m.max(1.0), tent.center_altitude_m - h);
@@ -88,14 +88,14 @@ pub(crate) fn zenith_depth(planet: &Planet, altitude_m: f64) -> [f64; 3] {
 
 /// How far night has come under a sun, 0 by day to 1.
 pub(crate) fn night_share(sun: &Light) -> f64 {
-    let elevation = sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
+    let elevation = libm::asin(sun.direction.z.clamp(-1.0, 1.0)).to_degrees();
     1.0 - smoothstep(NIGHT_BEGINS_DEG.1, NIGHT_BEGINS_DEG.0, elevation)
 }
 
 /// Relative air mass at a true elevation (Kasten & Young 1989), continued below the horizon by its tangent's square.
 fn air_mass(elevation_deg: f64) -> f64 {
     let h = elevation_deg.max(-0.8);
-    1.0 / (h.to_radians().sin() + 0.505_72 * (h + 6.079_95).powf(-1.6364)).max(0.02)
+    1.0 / (libm::sin(h.to_radians()) + 0.505_72 * libm::pow(h + 6.079_95, -1.6364)).max(0.02)
 }
 
 /// Light of a source of `spectrum` above clear air over ground of an `albedo`: (direct on a surface facing it, sky on level ground).
@@ -113,25 +113,25 @@ fn clear_light(
     let mass = air_mass(elevation_deg);
     // From a height the horizon lies deeper and the sun sets later.
     let h = altitude_m.max(0.0);
-    let dip = ((h * (h + 2.0 * planet.bottom_radius_m)).sqrt() / planet.bottom_radius_m).atan().to_degrees();
+    let dip = libm::atan((h * (h + 2.0 * planet.bottom_radius_m)).sqrt() / planet.bottom_radius_m).to_degrees();
     let up = smoothstep(-0.9, -0.25, elevation_deg + dip);
-    let lux = map(spectrum, depths.ozone, |l, t| l * (-t * mass).exp());
-    let direct = map(lux, depths.grey(), |l, t| l * (-t * mass).exp() * up);
-    let mu = elevation_deg.to_radians().sin().max(0.08);
+    let lux = map(spectrum, depths.ozone, |l, t| l * libm::exp(-t * mass));
+    let direct = map(lux, depths.grey(), |l, t| l * libm::exp(-t * mass) * up);
+    let mu = libm::sin(elevation_deg.to_radians()).max(0.08);
     let day = [0, 1, 2].map(|i| {
         let depth = depths.gas[i] + depths.haze[i];
         let asymmetry = planet.mie.asymmetry_g * depths.haze[i] / depth.max(f64::MIN_POSITIVE);
-        let kept = lux[i] * mu * (-depths.soot[i] * (1.0 / mu).min(LONGEST_WAY)).exp();
+        let kept = lux[i] * mu * libm::exp(-depths.soot[i] * (1.0 / mu).min(LONGEST_WAY));
         let through = 1.0 - slab_reflectance(depth, asymmetry, mu);
         let back = albedo[i] * slab_diffuse_reflectance(depth, asymmetry);
-        kept * ((through - (-depth / mu).exp()).max(0.0) + through * back / (1.0 - back))
+        kept * ((through - libm::exp(-depth / mu)).max(0.0) + through * back / (1.0 - back))
     });
     let (first, last) = (TWILIGHT_LN_LUX[0], TWILIGHT_LN_LUX[5]);
     let h = elevation_deg.clamp(first.0, last.0);
     let i = TWILIGHT_LN_LUX.iter().rposition(|p| p.0 <= h).unwrap_or(0).min(4);
     let (a, b) = (TWILIGHT_LN_LUX[i], TWILIGHT_LN_LUX[i + 1]);
     let ln = a.1 + (b.1 - a.1) * (h - a.0) / (b.0 - a.0);
-    let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - TABLE_NIGHT_LUX).max(0.0) * spectrum[1]);
+    let dusk = TWILIGHT_COLOR.map(|c| c * (libm::exp(ln) - TABLE_NIGHT_LUX).max(0.0) * spectrum[1]);
     let t = smoothstep(-0.8, 5.0, elevation_deg);
     (color_of(color, direct).map(|v| v.max(0.0)), map(dusk, color_of(color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
@@ -140,7 +140,7 @@ fn clear_light(
 /// there), and the sky's light on level ground, with the night's floor.
 pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     let one = |light: &Light| {
-        let elevation = light.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
+        let elevation = libm::asin(light.direction.z.clamp(-1.0, 1.0)).to_degrees();
         // What is below them is their own.
         clear_light((&scene.planet, &scene.color), (altitude_m, [0.0; 3]), elevation, light.spectrum)
     };
@@ -153,7 +153,7 @@ pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [
 /// the sky round it is many times brighter than the mean, and it is what pictures then show; above the air it is the
 /// sunlit planet, whatever the sun's height over the place.
 fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -> f64 {
-    let elevation = sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
+    let elevation = libm::asin(sun.direction.z.clamp(-1.0, 1.0)).to_degrees();
     let low = (1.0 - smoothstep(0.0, 30.0, elevation)) * smoothstep(-12.0, -4.0, elevation);
     let dusk = 1.0 - smoothstep(-5.0, 1.0, elevation);
     let ground = GROUND_KEY * total / PI + (0.35 + low * (2.0 + 4.0 * dusk)) * sky / PI;
@@ -261,7 +261,7 @@ impl World {
     /// that is only drawn must not change a state.
     pub fn sunlight_w_m2(&self, time_s: f64) -> Result<f64> {
         let frame = &self.frame;
-        let origin = if frame.kind == WorldKind::Ecef { frame.origin.to_ecef() } else { DVec3::ZERO };
+        let origin = if frame.kind == WorldKind::Ecef { frame.position_of(&frame.origin) } else { DVec3::ZERO };
         // A state must not depend on how far another state has been shown.
         let conditions = self.timeline.at(time_s);
         let land = LandSeen::reported(&conditions);
@@ -279,7 +279,7 @@ impl World {
             }
             _ => {
                 let metres_per_deg = self.set.planet.bottom_radius_m.to_radians();
-                let east = (p.longitude_deg - o.longitude_deg) * o.latitude_deg.to_radians().cos();
+                let east = (p.longitude_deg - o.longitude_deg) * libm::cos(o.latitude_deg.to_radians());
                 [east * metres_per_deg, (p.latitude_deg - o.latitude_deg) * metres_per_deg]
             }
         }
@@ -298,7 +298,7 @@ impl World {
             return to_enu.transpose() * map_m.extend(altitude_m - o.altitude_m);
         }
         let metres_per_deg = self.set.planet.bottom_radius_m.to_radians();
-        let east_m = metres_per_deg * o.latitude_deg.to_radians().cos().max(1e-6);
+        let east_m = metres_per_deg * libm::cos(o.latitude_deg.to_radians()).max(1e-6);
         let place = Place {
             latitude_deg: (o.latitude_deg + map_m.y / metres_per_deg).clamp(-90.0, 90.0),
             longitude_deg: o.longitude_deg + map_m.x / east_m,
@@ -330,7 +330,7 @@ impl World {
     ) -> (GroundLight, bool) {
         let cloud_top_m = c.lit_top_m(place.altitude_m);
         let one = |(light, clouds): &UnderClouds| {
-            let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
+            let elevation = libm::asin(light.direction.z.clamp(-1.0, 1.0));
             let planet = (planet, &self.set.color);
             let at = |altitude_m| clear_light(planet, (altitude_m, albedo), elevation.to_degrees(), light.spectrum);
             let (direct, sky) = at(place.altitude_m);

@@ -165,7 +165,13 @@ fn skies() -> Result<Vec<Scene>> {
             all.push(Scene { world, eye, elevation, frame, sun: *sun, ..scene });
         }
     }
-    let y_up = WorldFrame { axes: Axes::YUp, kind: WorldKind::Tangent, grid_bearing_deg: 30.0, origin: place };
+    let y_up = WorldFrame {
+        axes: Axes::YUp,
+        kind: WorldKind::Tangent,
+        grid_bearing_deg: 30.0,
+        origin: place,
+        ..WorldFrame::default()
+    };
     all.push(Scene { frame: y_up, normals: Normals::World, ..rain_by_day("y-up")? });
     Ok(all)
 }
