@@ -1,0 +1,193 @@
+//! A saved state is what the context is: whatever the host has changed since the last step, the context that saves it, one that loads it
+//! over itself and one that loads it anew have one hash, save the same bytes, and go on alike.
+
+use std::{
+    sync::{Arc, OnceLock},
+    time::Duration,
+};
+
+use welkin::{
+    Status,
+    chance::Chance,
+    context::{Context, ContextDesc},
+    frame::Shared,
+    gpu::{Device, DeviceOptions},
+    ground::GroundModel,
+    snowpack::LyingSnowModel,
+};
+
+use crate::inputs::{INPUTS, Input, Tiles, roof, snowfall};
+
+/// A device that draws nothing, shared by all contexts of the tests.
+fn device() -> &'static (Arc<Device>, Arc<Shared>) {
+    static DEVICE: OnceLock<(Arc<Device>, Arc<Shared>)> = OnceLock::new();
+    DEVICE.get_or_init(|| {
+        let options = DeviceOptions { backends: wgpu::Backends::NOOP, ..DeviceOptions::default() };
+        let device = Device::headless(&options).unwrap();
+        let shared = Arc::new(Shared::new(&device).unwrap());
+        (device, shared)
+    })
+}
+
+pub fn context_of(desc: ContextDesc) -> Context {
+    let (device, shared) = device();
+    Context::new(device.clone(), shared.clone(), desc).unwrap()
+}
+
+/// With simulated ground and snow.
+pub fn context() -> Context {
+    context_of(ContextDesc {
+        lying_snow: LyingSnowModel::Simulated,
+        ground: GroundModel::Simulated,
+        seed: 7,
+        ..ContextDesc::default()
+    })
+}
+
+/// Three contexts that are told the same, and the host's tiles.
+struct Three {
+    /// Never loads anything.
+    kept: Context,
+    /// Loads its own states.
+    loaded: Context,
+    /// Replaced by a new one that loads the state.
+    anew: Context,
+    tiles: Tiles,
+    told: Vec<String>,
+}
+
+impl Three {
+    fn new(first: &[&str]) -> Self {
+        let [kept, loaded, anew] = [context(), context(), context()];
+        let mut three = Self { kept, loaded, anew, tiles: Tiles::default(), told: Vec::new() };
+        three.each(|c| {
+            c.set_weather(&snowfall(3), 0.0, 0.0).unwrap();
+            c.set_shelters(&[roof(1)]).unwrap();
+        });
+        first.iter().for_each(|name| three.tell(input(name), 4));
+        three.update(125.0);
+        three
+    }
+
+    fn each(&mut self, act: impl Fn(&mut Context)) {
+        [&mut self.kept, &mut self.loaded, &mut self.anew].into_iter().for_each(act);
+    }
+
+    fn tell(&mut self, (name, act): &Input, n: u32) {
+        self.told.push(format!("{name} {n}"));
+        let before = self.tiles.clone();
+        self.each(|_| {});
+        for context in [&mut self.kept, &mut self.loaded, &mut self.anew] {
+            self.tiles = before.clone();
+            act(context, &mut self.tiles, n);
+        }
+    }
+
+    fn update(&mut self, seconds: f64) {
+        self.told.push(format!("{seconds} s"));
+        self.each(|c| c.update(c.time_s() + seconds).unwrap());
+        self.compare();
+    }
+
+    /// Fails unless all three are one.
+    fn compare(&self) {
+        let of = |c: &Context| (String::from_utf8(c.save().unwrap()).unwrap(), c.state_hash().unwrap());
+        let (kept, hash) = of(&self.kept);
+        for (which, other) in [("itself", &self.loaded), ("another", &self.anew)] {
+            let (state, other_hash) = of(other);
+            let differs = kept.lines().zip(state.lines()).skip(1).find(|(a, b)| a != b);
+            let short = |line: &str| line.chars().take(300).collect::<String>();
+            let lines = differs.map(|(a, b)| format!("{}\n{}", short(a), short(b)));
+            let told = self.told.join(", ");
+            assert!(kept == state, "{which} differs after {told}:\n{}", lines.unwrap_or_default());
+            assert_eq!(hash, other_hash, "{which} has another hash after {told}");
+        }
+    }
+
+    /// Saves the first, and loads that over the second and into a new one.
+    fn load(&mut self) {
+        let state = self.kept.save().unwrap();
+        assert_eq!(state, self.loaded.save().unwrap());
+        self.loaded.load(&state).unwrap();
+        self.anew = context();
+        self.tiles.set_on(&mut self.anew);
+        self.anew.load(&state).unwrap();
+        self.told.push("load".into());
+        self.compare();
+    }
+}
+
+fn input(name: &str) -> &'static Input {
+    INPUTS.iter().find(|i| i.0 == name).unwrap()
+}
+
+/// On what the snow lies before.
+const GROUNDS: [&[&str]; 4] =
+    [&["grid", "a wind field"], &["terrain with tiles", "a wind field"], &["terrain with tiles"], &[]];
+
+#[test]
+fn whatever_is_set_between_steps_is_in_the_state_as_it_is() {
+    for ground in GROUNDS {
+        for input in INPUTS {
+            {
+                let n = if ground.len() == 2 { 4 } else { 7 };
+                let mut three = Three::new(ground);
+                three.tell(input, n);
+                three.load();
+                for seconds in [0.0, 0.4, 70.0] {
+                    three.update(seconds);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn any_sequence_of_changes_saves_and_steps_goes_on_alike() {
+    for seed in 1..=6 {
+        let mut chance = Chance::new(seed, 1);
+        let mut pick = |below: u32| (chance.even() * f64::from(below)) as u32;
+        let mut three = Three::new(GROUNDS[seed as usize % GROUNDS.len()]);
+        for _ in 0..40 {
+            for _ in 0..pick(3) {
+                three.tell(&INPUTS[pick(INPUTS.len() as u32) as usize], pick(1000));
+            }
+            if pick(2) == 0 {
+                three.load();
+            }
+            three.update([0.0, 0.3, 2.1, 13.0, 61.0, 200.0][pick(6) as usize]);
+        }
+    }
+}
+
+#[test]
+fn what_is_set_while_steps_remain_waits_for_them_and_is_in_the_state_after_them() {
+    for ground in GROUNDS {
+        for input in INPUTS {
+            // Refused while steps remain.
+            if ["ploughing", "pressing"].contains(&input.0) {
+                continue;
+            }
+            let mut three = Three::new(ground);
+            three.told.push(format!("{} while steps remain", input.0));
+            let end_s = three.kept.time_s() + 300.0;
+            let before = three.tiles.clone();
+            // All at once, and then the change.
+            three.kept.update(end_s).unwrap();
+            (input.1)(&mut three.kept, &mut three.tiles, 4);
+            // The change in the middle of the steps.
+            for context in [&mut three.loaded, &mut three.anew] {
+                let first = context.update_within(end_s, Duration::ZERO).unwrap();
+                three.tiles = before.clone();
+                (input.1)(context, &mut three.tiles, 4);
+                let mut led = first;
+                while led == Status::Pending {
+                    led = context.update_within(end_s, Duration::ZERO).unwrap();
+                }
+            }
+            three.compare();
+            three.load();
+            three.update(70.0);
+        }
+    }
+}
