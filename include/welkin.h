@@ -2196,6 +2196,9 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
  * with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat and tangent worlds
  * are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world). Directions in answers are
  * unit vectors (east, north, up) at the place asked for; azimuths are degrees clockwise from true north.
+ *
+ * Altitudes count from mean sea level everywhere in this header. In an ECEF world that lies geoid_height_m of
+ * wk_context_desc above the ellipsoid; with the default of 0 heights above the ellipsoid are taken for altitudes.
  * ====================================================================================================
  */
 
@@ -2211,7 +2214,7 @@ typedef uint32_t wk_world_kind;
 #define WK_WORLD_TANGENT 1
 /**
  * Earth-centred, Earth-fixed (WGS 84); axes and grid bearing have no effect, and the origin only affects the sunlight
- * that dries a simulated ground (WK_GROUND_SIMULATED).
+ * that dries a simulated ground (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
  */
 #define WK_WORLD_ECEF 2
 
@@ -2291,6 +2294,13 @@ typedef struct wk_context_desc {
      * Default NULL: no files.
      */
     const char *cache_dir;
+    /**
+     * Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation), m:
+     * 47.8 at Frankfurt, -30 at New York. One number for the context; it varies by some metres over 100 km. For WK_WORLD_ECEF,
+     * whose coordinates know the ellipsoid alone: altitudes, the tops of fog and the bases of clouds among them, count from
+     * mean sea level. Without effect in other worlds. Range [-120, 120], default 0.
+     */
+    double geoid_height_m;
 } wk_context_desc;
 
 /** Every field of `wk_context_desc` at its default. */
@@ -2310,7 +2320,8 @@ typedef struct wk_context_desc {
     /* tone_curve */ WK_TONE_EXPONENTIAL, \
     /* exposure_value */ 0.0, \
     /* utc_at_zero_s */ 1782036000.0, \
-    /* cache_dir */ NULL \
+    /* cache_dir */ NULL, \
+    /* geoid_height_m */ 0.0 \
 }
 
 /**
@@ -2617,8 +2628,8 @@ WK_API wk_status wk_context_save(const wk_context *context, void *buffer, size_t
 
 /**
  * Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
- * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for
- * WK_WORLD_ECEF), seed and ground_model. A state of an earlier version that holds no planet and tone curve needs the
+ * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF instead of these
+ * two geoid_height_m), seed and ground_model. A state of an earlier version that holds no planet and tone curve needs the
  * same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state, as they
  * were when it was saved, before.
  * Thread: exclusive.
@@ -2770,7 +2781,8 @@ WK_API wk_status wk_fog_law_init(wk_fog_law *out, uint32_t struct_size);
  * is continuous in time while the weather changes, including the geometry of a layer that comes or goes.
  *
  * Here and in every other function a position must lie within 1e12 m of the world's origin and at an altitude in
- * [-1e4, 1e9] m above the sea. Other positions are refused.
+ * [-1e4, 1e9] m above mean sea level (in WK_WORLD_ECEF: above the ellipsoid, less geoid_height_m of wk_context_desc).
+ * Other positions are refused.
  * ====================================================================================================
  */
 
@@ -3456,7 +3468,7 @@ typedef struct wk_rain_on {
  * Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
  * the ground's roughness up to 100 m, and above grows and veers to the geostrophic wind (docs/clouds.md).
  * Gusts have Kaimal's spectrum (1972, as in IEC 61400-1)
- * and are the same all over the world. Heights count from the station's altitude, and reported wind holds 10 m above
+ * and are the same all over the world. Heights count from the station's altitude above mean sea level, and reported wind holds 10 m above
  * it. A host with terrain asks at the station's altitude plus the height above its own ground. At and below the
  * roughness length there is no wind.
  * Thread: concurrent.
@@ -4939,7 +4951,7 @@ typedef struct wk_rain_area {
     /** Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10. */
     double rate_mm_h;
     /**
-     * Altitude of the cloud base above the sea (not above the ground), m: above it falls neither the area's rain nor
+     * Altitude of the cloud base above mean sea level (not above the ground), m: above it falls neither the area's rain nor
      * the weather's. Range [-1000, 20 000], default 1500.
      */
     double top_m;
@@ -6839,7 +6851,7 @@ typedef struct wk_terrain_cells {
     uint32_t cells[2];
     /**
      * Heights above the terrain's origin, m, within 1e5. Copied by the call. NULL with a count of 0 leaves them as
-     * they are; a new tile needs them.
+     * they are; a new tile needs them. That of a hole may be anything, also NaN: what is no height is not read.
      */
     const float *heights_m;
     /** Numbers in heights_m, at least as many as the rectangle reaches over. */
@@ -6859,6 +6871,15 @@ typedef struct wk_terrain_cells {
      * Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a gap.
      */
     uint32_t surface_class_stride;
+    /** 1 where no_data_m counts, else 0, the default: every number in heights_m is a height. */
+    uint32_t has_no_data;
+    /**
+     * Stands in heights_m for cells of which there are no data, and NaN then does too: -9999, -32768, or what your source has.
+     * These cells become holes, whatever surface_classes says of them but a class of ground; a hole becomes ground again
+     * by its class. Must be no height in use: of no cell to which surface_classes gives a class other than 0, and of no
+     * cell with ground beside the rectangle in its tile. Default 0.
+     */
+    float no_data_m;
 } wk_terrain_cells;
 
 /** Every field of `wk_terrain_cells` at its default. */
@@ -6874,7 +6895,9 @@ typedef struct wk_terrain_cells {
     /* height_stride */ 0, \
     /* surface_classes */ NULL, \
     /* surface_class_count */ 0, \
-    /* surface_class_stride */ 0 \
+    /* surface_class_stride */ 0, \
+    /* has_no_data */ 0, \
+    /* no_data_m */ 0.0f \
 }
 
 /** The terrain under a place; plain values of a list. */

@@ -76,7 +76,6 @@ impl Three {
     fn tell(&mut self, (name, act): &Input, n: u32) {
         self.told.push(format!("{name} {n}"));
         let before = self.tiles.clone();
-        self.each(|_| {});
         for context in [&mut self.kept, &mut self.loaded, &mut self.anew] {
             self.tiles = before.clone();
             act(context, &mut self.tiles, n);
@@ -129,14 +128,11 @@ const GROUNDS: [&[&str]; 4] =
 fn whatever_is_set_between_steps_is_in_the_state_as_it_is() {
     for ground in GROUNDS {
         for input in INPUTS {
-            {
-                let n = if ground.len() == 2 { 4 } else { 7 };
-                let mut three = Three::new(ground);
-                three.tell(input, n);
-                three.load();
-                for seconds in [0.0, 0.4, 70.0] {
-                    three.update(seconds);
-                }
+            let mut three = Three::new(ground);
+            three.tell(input, if ground.len() == 2 { 4 } else { 7 });
+            three.load();
+            for seconds in [0.0, 0.4, 70.0] {
+                three.update(seconds);
             }
         }
     }
@@ -150,7 +146,8 @@ fn any_sequence_of_changes_saves_and_steps_goes_on_alike() {
         let mut three = Three::new(GROUNDS[seed as usize % GROUNDS.len()]);
         for _ in 0..40 {
             for _ in 0..pick(3) {
-                three.tell(&INPUTS[pick(INPUTS.len() as u32) as usize], pick(1000));
+                // Fields of the mean wind: of every fourth number the inputs make one with gusts, which the tests above load.
+                three.tell(&INPUTS[pick(INPUTS.len() as u32) as usize], pick(250) * 4 + pick(3));
             }
             if pick(2) == 0 {
                 three.load();
