@@ -38,7 +38,10 @@ fn other_programs_read_what_is_written() {
             assert_eq!(dds.get_num_mipmap_levels() as usize, image.levels().len());
             let format = dds.get_dxgi_format();
             assert_eq!(format, is_dx10.then_some(ddsfile::DxgiFormat::R8_UNorm));
-            assert_eq!(dds.get_d3d_format(), (!is_dx10).then_some(ddsfile::D3DFormat::L8));
+            let pixel = &dds.header.spf;
+            let is_l8 = pixel.flags.contains(ddsfile::PixelFormatFlags::LUMINANCE)
+                && (pixel.rgb_bit_count, pixel.r_bit_mask) == (Some(8), Some(0xff));
+            assert_ne!(is_l8, is_dx10);
             assert_eq!(dds.header.caps2.contains(ddsfile::Caps2::VOLUME), is_volume);
             assert_eq!(dds.data, image.levels().concat());
         }
