@@ -23,11 +23,14 @@ use welkin::{
 const SIDE: u32 = 32;
 const CELL_M: f64 = 1.0;
 
+/// Heights and classes of a tile's cells.
+type Cells = (Vec<f32>, Vec<Option<SurfaceClass>>);
+
 /// Tiles that the host has set, which no state holds: another context needs them before it can load one.
 #[derive(Clone, Default)]
 pub struct Tiles {
     desc: Option<TerrainDesc>,
-    tiles: BTreeMap<[i32; 2], (Vec<f32>, Vec<Option<SurfaceClass>>)>,
+    tiles: BTreeMap<[i32; 2], Cells>,
 }
 
 impl Tiles {
@@ -116,12 +119,7 @@ pub fn grid(n: u32) -> GroundGrid {
 }
 
 fn terrain(n: u32) -> TerrainDesc {
-    TerrainDesc {
-        origin: DVec3::new(f64::from(n % 2), 0.0, 0.0),
-        cell_m: CELL_M,
-        tile_cells: SIDE,
-        ..TerrainDesc::default()
-    }
+    TerrainDesc { origin: DVec3::new(f64::from(n % 2), 0.0, 0.0), cell_m: CELL_M, tile_cells: SIDE }
 }
 
 pub fn roof(n: u32) -> Shelter {

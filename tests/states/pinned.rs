@@ -211,7 +211,10 @@ fn long_transitions(m: &mut Moments) {
     }
 }
 
-const RUNS: [(&str, fn(&mut Moments)); 10] = [
+/// A run by its name.
+type Run = (&'static str, fn(&mut Moments));
+
+const RUNS: [Run; 10] = [
     ("snow", snow),
     ("wet_ground", wet_ground),
     ("tiles", tiles),
