@@ -223,7 +223,8 @@ fn what_is_no_height_is_a_hole_where_the_host_says_so() {
     refused(status, "terrain_cells.no_data_m must be no height in use, such as that of cell (2, 0)");
     // Holes by their class, whatever stands among the heights.
     (classes[0], classes[1], classes[40]) = (WK_TERRAIN_HOLE as u8, WK_TERRAIN_HOLE as u8, 0);
-    let holes = wk_terrain_cells { has_no_data: 0, no_data_m: 0.0, ..said };
+    let surface_classes = classes.as_ptr();
+    let holes = wk_terrain_cells { has_no_data: 0, no_data_m: 0.0, surface_classes, ..said };
     assert_eq!(set(&holes), WK_OK, "{}", message());
     assert_eq!(has_ground(), [0, 0, 1, 1]);
     unsafe { assert_eq!(wk_context_destroy(context), WK_OK) };
