@@ -5728,7 +5728,9 @@ typedef struct wk_cloud_shadows {
      * horizon. The texture means nothing then.
      */
     double told;
-    /** Height over the plane, m, from which on shadows are not told apart: 100 m above the base of the lowest clouds. */
+    /**
+     * Height over the plane, m, from which on shadows are not told apart: 100 m above the base of the lowest clouds.
+     */
     double top_m;
 } wk_cloud_shadows;
 
