@@ -112,7 +112,7 @@ test: setup lint docs ## all checks, at most 25 minutes on two cores from a clea
 	cargo test --locked --doc
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/debug/$(SHARED))" $(RUN_TESTS)
 
-ci: test windows drivers ## what continuous integration runs: the three in this order
+ci: test windows drivers ## all checks, Windows under Wine and other drivers, in this order
 
 accept: setup lint docs ## the long sweeps in release, and the benchmarks, at most 90 minutes
 	$(MAKE) --no-print-directory lib PROFILE=release
