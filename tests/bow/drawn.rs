@@ -29,8 +29,8 @@ struct Scene {
 
 fn rain(rate_mm_h: f64) -> Weather {
     let precipitation = Precipitation { kind: PrecipitationKind::Rain, rate_mm_h, ..Weather::default().precipitation };
-    // The sun shines in between the clouds that it falls from.
-    let clouds = vec![CloudLayer::new(0.3, 1500.0)];
+    // A low sun shines in between the clouds that it falls from, whose sides shade more than their cover.
+    let clouds = vec![CloudLayer::new(0.1, 1500.0)];
     Weather { precipitation, clouds, visibility_m: 20_000.0, ..Weather::default() }
 }
 
