@@ -208,6 +208,28 @@ fn short_numerals(sentence: String) -> String {
     short
 }
 
+/// Most bytes of accepted names that an error lists.
+const MOST_LISTED: usize = 110;
+
+/// Accepted names as an error lists them: all, or the first ones and the last where they are many.
+pub(crate) fn listed(names: &[&str]) -> String {
+    let all = names.join(", ");
+    let [first @ .., last] = names else { return all };
+    if all.len() <= MOST_LISTED {
+        return all;
+    }
+    let more = |shown: usize| format!(", {} more to {last}", first.len() - shown);
+    let mut text = String::new();
+    for (shown, name) in first.iter().enumerate() {
+        if shown > 0 && text.len() + 2 + name.len() + more(shown + 1).len() > MOST_LISTED {
+            return text + &more(shown);
+        }
+        text += if shown > 0 { ", " } else { "" };
+        text += name;
+    }
+    format!("{text}, {last}")
+}
+
 /// A number as an error shows it.
 pub(crate) fn number(v: f64) -> String {
     short_numerals(v.to_string())
@@ -260,6 +282,18 @@ mod tests {
         let e = toml::from_str::<toml::Table>(&text).unwrap_err();
         let fault = toml_fault(&text, &e);
         assert!(fault.starts_with("TOML parse error at line 2, column 50") && fault.len() < 300, "{fault}");
+    }
+
+    #[test]
+    fn many_accepted_names_are_counted() {
+        assert_eq!(listed(&["air", "fog", "rain"]), "air, fog, rain");
+        let names: Vec<String> = (0..28).map(|i| format!("WK_NAME_{i}")).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let text = listed(&names);
+        assert!(text.len() <= MOST_LISTED && text.starts_with("WK_NAME_0, WK_NAME_1, "), "{text}");
+        assert!(text.ends_with(" more to WK_NAME_27"), "{text}");
+        let shown = text.matches("WK_NAME_").count();
+        assert!(text.contains(&format!(", {} more", 28 - shown)), "{text}");
     }
 
     #[test]

@@ -7,7 +7,7 @@
 use std::{ffi::c_void, fmt::Display};
 
 use super::status::*;
-use crate::error::{Error, Result, Status};
+use crate::error::{Error, Result, Status, listed};
 
 /// What a field holds.
 #[derive(Clone, Copy, Debug)]
@@ -119,7 +119,7 @@ impl EnumInfo {
         if known {
             return Ok(());
         }
-        let names = self.values.iter().map(|v| v.0).collect::<Vec<_>>().join(", ");
+        let names = listed(&self.values.iter().map(|v| v.0).collect::<Vec<_>>());
         let rule = if self.flags { "a union of" } else { "one of" };
         let got = if self.flags { format!("{value:#x}") } else { value.to_string() };
         Err(Error::range(&param.to_string(), &format!("{rule} {names}"), got))

@@ -6,7 +6,7 @@
 use toml::{Table, Value};
 
 use super::parts::Part;
-use crate::error::{Error, Result, Status, toml_fault};
+use crate::error::{Error, Result, Status, listed, toml_fault};
 
 /// 2 since rain has parts, 3 since parts have rungs.
 const VERSION: u32 = 3;
@@ -78,7 +78,7 @@ fn rung_of(drawn: &Table, part: &Part) -> Result<usize> {
     let found = drawn.get(part.name);
     let rung = found.and_then(Value::as_str).and_then(|name| part.rungs.iter().position(|r| *r == name));
     rung.ok_or_else(|| {
-        let rest = format!("must be one of {}, got {}", part.rungs.join(", "), shown(found));
+        let rest = format!("must be one of {}, got {}", listed(part.rungs), shown(found));
         fault(&format!(".drawn.{}", part.name), rest)
     })
 }
@@ -101,7 +101,7 @@ fn only(table: &Table, path: &str, known: &[&str]) -> Result<()> {
     let unknown = table.keys().find(|k| !known.contains(&k.as_str()));
     unknown.map_or(Ok(()), |k| {
         let k: String = k.chars().take(40).collect();
-        Err(fault(&format!("{path}.{k}"), format_args!("is unknown: the fields are {}", known.join(", "))))
+        Err(fault(&format!("{path}.{k}"), format_args!("is unknown: the fields are {}", listed(known))))
     })
 }
 

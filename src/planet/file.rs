@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::{FIELDS, Field, Mie, Planet, file_error};
-use crate::error::{Error, Result, Status, shown};
+use crate::error::{Error, Result, Status, listed, shown};
 
 /// The one section that a file may lack: the weather says the haze then.
 const HAZE: &str = "mie";
@@ -43,7 +43,7 @@ fn refuse_unknown(text: &str, table: &DeTable<'_>, section: &str) -> Result<()> 
             (false, _) => {
                 let place = if section.is_empty() { "at the top".to_owned() } else { format!("in [{section}]") };
                 let known: Vec<&str> = FIELDS.iter().filter(|f| f.section == section).map(|f| f.key).collect();
-                let message = format!("unknown key `{}` {place}; known: {}", shown(name), known.join(", "));
+                let message = format!("unknown key `{}` {place}; known: {}", shown(name), listed(&known));
                 return Err(file_error(text, key.span().start, Error::new(Status::Parse, message)));
             }
         }

@@ -2,7 +2,7 @@
 
 use super::kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
 use super::model::{Aerosol, CloudLayer, Fog, Lofted, Precipitation, Sea, Surface, Swell, Weather, Wind};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, listed};
 
 /// A preset: its name, one line for a menu, and how it is made.
 struct Preset {
@@ -59,7 +59,7 @@ impl Weather {
     /// The weather of a preset. Its name is lower case, as [`Weather::preset_names`] lists it.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a name that is not listed; the message lists them.
+    /// [`crate::Status::InvalidArgument`] for a name that [`Weather::preset_names`] does not have.
     pub fn preset(name: &str) -> Result<Self> {
         find(name).map(|p| (p.make)())
     }
@@ -69,7 +69,7 @@ fn find(name: &str) -> Result<&'static Preset> {
     PRESETS.iter().find(|p| p.name == name).ok_or_else(|| {
         let names: Vec<&str> = Weather::preset_names().collect();
         let got: String = name.chars().take(40).collect();
-        Error::range("name", &format!("one of {}", names.join(", ")), format!("{got:?}"))
+        Error::range("name", &format!("one of {}", listed(&names)), format!("{got:?}"))
     })
 }
 
@@ -275,9 +275,11 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_name_is_answered_with_the_list() {
-        let e = Weather::preset("Sunny").unwrap_err();
-        assert!(e.to_string().contains("thunderstorm") && e.to_string().contains("Sunny"), "{}", e);
+    fn an_unknown_name_is_answered_with_those_there_are() {
+        let e = Weather::preset("Sunny").unwrap_err().to_string();
+        let shown = Weather::preset_names().filter(|name| e.contains(&format!(" {name},"))).count();
+        let more = format!(", {} more to storm_at_sea, got \"Sunny\"", Weather::preset_names().len() - shown);
+        assert!(shown >= 5 && e.starts_with("name must be one of clear, ") && e.contains(&more), "{e}");
         assert!(Weather::preset("").is_err());
     }
 

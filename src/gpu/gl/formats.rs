@@ -102,7 +102,8 @@ pub(super) fn format(internal: u32, side: Side) -> Result<Format> {
         return Ok(*format);
     }
     let names: Vec<_> = table.iter().map(|(_, name, _)| *name).collect();
-    let rest = format!("must have one of the internal formats {}, got {}", names.join(", "), spell(internal));
+    let rest =
+        format!("must have one of the internal formats {}, got {}", crate::error::listed(&names), spell(internal));
     Err(Error::about(Status::Unsupported, side.parameter(), rest))
 }
 
