@@ -461,8 +461,8 @@ fn steady(name: &str, host: &mut dyn Host, frames: u64, bare: f64) {
         "{name}: {calls:.2} allocations a frame, the same wgpu calls alone {bare:.2}; {rebuilt} of {frames} frames rebuilt \
          tables; kept {kept} bytes"
     );
-    // The bare pass binds nothing; wgpu's lists for our pipeline and bind groups make some allocations more.
-    assert!(calls <= bare + 5.0, "{name}: recording allocates {calls} times a frame, wgpu alone {bare}");
+    // The bare pass binds nothing; wgpu's lists for our pipelines and bind groups make some allocations more, 7 on lavapipe.
+    assert!(calls <= bare + 8.0, "{name}: recording allocates {calls} times a frame, wgpu alone {bare}");
     assert!(kept < 64 * 1024, "{name}: {frames} frames kept {kept} bytes");
     assert!(rebuilt > 0 && rebuilt < frames / 2, "{name}: the sun moves: {rebuilt}");
     if cfg!(debug_assertions) {
