@@ -16,7 +16,7 @@ mod shared;
 #[cfg(target_os = "linux")]
 mod sky;
 
-/// What a step found out: the driver's answer is as it must be, or otherwise; or there is nothing to ask.
+/// Result of a step: the driver answers as it must, answers otherwise, or there is nothing to ask.
 #[derive(Debug, PartialEq)]
 pub enum Found {
     Right(String),
@@ -82,7 +82,7 @@ fn main() -> std::process::ExitCode {
     ExitCode::from(code)
 }
 
-/// What a step prints, and the program's status after it; nothing for what is no step.
+/// Runs the step of this name and returns what it prints with the program's status; `None` for an unknown name.
 #[cfg(target_os = "linux")]
 pub fn answer(name: &str) -> Option<(String, u8)> {
     let (_, _, step) = STEPS.iter().find(|(step, ..)| *step == name)?;

@@ -148,7 +148,7 @@ impl Gpu {
     }
 }
 
-/// What the first table's shader reads.
+/// Uniform blocks that the shader of the first table reads.
 struct Blocks {
     contents: [Vec<u8>; 4],
     buffers: [wgpu::Buffer; 4],

@@ -1,4 +1,4 @@
-//! What the fuzzers run: the targets of `tests/fuzz`, which the tests replay on the committed corpora.
+//! The targets of `tests/fuzz` as a library for the fuzzers; the tests replay them on the committed corpora.
 #![allow(dead_code)]
 
 #[path = "../../tests/fuzz/calls.rs"]
