@@ -14,7 +14,7 @@ use wgpu::naga::{
 use super::{
     accepted::LOOPS,
     all_shaders,
-    ranges::{Of, Shader, calls, same, statements, target},
+    ranges::{Shader, same, statements, target},
     text,
     value::{Range, Value},
 };
@@ -167,30 +167,17 @@ fn constant(name: &str) -> Option<Range> {
 /// Functions and the first line of each loop in them that nothing ends.
 fn endless(text: &str) -> (BTreeSet<(String, String)>, usize) {
     let mut shader = Shader::new(text, &constant);
-    let (mut faults, mut seen, mut loops) = (BTreeSet::new(), HashSet::new(), HashSet::new());
-    let mut open = shader.roots();
-    while let Some((of, arguments)) = open.pop() {
-        if !seen.insert((of, format!("{arguments:?}"))) {
-            continue;
-        }
-        let values = shader.evaluate(of, &arguments).values;
+    let (mut faults, mut loops) = (BTreeSet::new(), HashSet::new());
+    shader.each_call(|shader, of, name, values| {
         let function = shader.function(of);
-        open.extend(calls(function).iter().map(|call| {
-            let given = call.arguments.iter().map(|a| values[a.index()].clone());
-            (Of::Function(call.function), given.collect())
-        }));
-        let named = match of {
-            Of::Entry(at) => shader.module.entry_points[at].name.clone(),
-            Of::Function(_) => function.name.clone().unwrap_or_default(),
-        };
         each_loop(&function.body, &mut |body, continuing, at| {
             let line = text[at].lines().next().unwrap_or_default().trim().to_owned();
-            loops.insert((named.clone(), line.clone()));
-            if !ends(function, body, continuing, &values) {
-                faults.insert((named.clone(), line));
+            loops.insert((name.to_owned(), line.clone()));
+            if !ends(function, body, continuing, values) {
+                faults.insert((name.to_owned(), line));
             }
         });
-    }
+    });
     (faults, loops.len())
 }
 

@@ -8,7 +8,7 @@ use wgpu::naga::{BinaryOperator, Expression as E, Expression, Function, Handle, 
 use super::{
     accepted::{ACCEPTED, FIELDS},
     all_shaders,
-    ranges::{Of, Shader, calls, same},
+    ranges::{Shader, same},
     text,
     value::{Range, Value},
 };
@@ -79,34 +79,20 @@ fn unproven(text: &str) -> BTreeSet<(String, String)> {
     let mut shader = Shader::new(text, &fact);
     let guarded = guarded_functions();
     let mut faults = BTreeSet::new();
-    let mut seen = HashSet::new();
-    let mut open = shader.roots();
-    while let Some((of, arguments)) = open.pop() {
-        if !seen.insert((of, format!("{arguments:?}"))) {
-            continue;
+    shader.each_call(|shader, of, name, values| {
+        if guarded.contains(name) {
+            return;
         }
-        let values = shader.evaluate(of, &arguments).values;
         let function = shader.function(of);
-        open.extend(calls(function).iter().map(|call| {
-            let given = call.arguments.iter().map(|a| values[a.index()].clone());
-            (Of::Function(call.function), given.collect())
-        }));
-        let named = match of {
-            Of::Entry(at) => shader.module.entry_points[at].name.clone(),
-            Of::Function(_) => function.name.clone().unwrap_or_default(),
-        };
-        if guarded.contains(&named) {
-            continue;
-        }
         for (handle, expression) in function.expressions.iter() {
             let inner = shader.info(of)[handle].ty.inner_with(&shader.module.types);
             let is_float = inner.scalar_kind() == Some(ScalarKind::Float);
-            if !is_safe(function, expression, &values, is_float) {
+            if !is_safe(function, expression, values, is_float) {
                 let at = function.expressions.get_span(handle).to_range().expect("a place in the source");
-                faults.insert((named.clone(), whole_call(text, at).split_whitespace().collect::<Vec<_>>().join(" ")));
+                faults.insert((name.to_owned(), whole_call(text, at).split_whitespace().collect::<Vec<_>>().join(" ")));
             }
         }
-    }
+    });
     faults
 }
 

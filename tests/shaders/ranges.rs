@@ -3,7 +3,7 @@
 //! Each function is evaluated for the arguments of each of its calls. A variable may have any value that is stored in it anywhere: first it
 //! is taken not to be negative, which holds where all that is stored is then not negative either. Branches narrow nothing.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use wgpu::naga::{
     self, Block, Expression as E, Function, Handle, ImageQuery, LocalVariable, Module, ScalarKind, Statement, Type,
@@ -117,7 +117,7 @@ impl<'a> Shader<'a> {
     }
 
     /// All entry points, with arguments of any value; of the snippets for hosts' own shaders all functions.
-    pub fn roots(&self) -> Vec<(Of, Vec<Value>)> {
+    fn roots(&self) -> Vec<(Of, Vec<Value>)> {
         let entries = (0..self.module.entry_points.len()).map(Of::Entry);
         let functions = self.module.functions.iter();
         let is_snippet = |f: &Function| f.name.as_deref().is_some_and(|name| name.starts_with("welkin_"));
@@ -195,6 +195,27 @@ impl<'a> Shader<'a> {
                 Value::Each(Box::new(joined.unwrap_or(Value::Other)))
             }
             _ => Value::Other,
+        }
+    }
+
+    /// Visits each function once for each set of arguments that reaches it, with its name and its values.
+    pub fn each_call(&mut self, mut visit: impl FnMut(&Self, Of, &str, &[Value])) {
+        let (mut open, mut seen) = (self.roots(), HashSet::new());
+        while let Some((of, arguments)) = open.pop() {
+            if !seen.insert((of, format!("{arguments:?}"))) {
+                continue;
+            }
+            let values = self.evaluate(of, &arguments).values;
+            let function = self.function(of);
+            open.extend(calls(function).iter().map(|call| {
+                let given = call.arguments.iter().map(|a| values[a.index()].clone());
+                (Of::Function(call.function), given.collect())
+            }));
+            let name = match of {
+                Of::Entry(at) => self.module.entry_points[at].name.clone(),
+                Of::Function(_) => function.name.clone().unwrap_or_default(),
+            };
+            visit(self, of, &name, &values);
         }
     }
 
