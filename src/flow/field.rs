@@ -263,7 +263,7 @@ fn at_faces(lattice: &Lattice, wind: impl Fn(DVec3) -> DVec3) -> Result<Faces> {
     let mut faces = lattice.zeros();
     for c in lattice.axes() {
         let mut checked = Ok(());
-        lattice.each_with_ghosts(|i, at| {
+        lattice.each_with_ghosts(c, |i, at| {
             let v = wind(place_m(lattice, c, i));
             if checked.is_ok() {
                 checked = check_wind(v);

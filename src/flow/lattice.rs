@@ -95,13 +95,22 @@ impl Lattice {
         }
     }
 
+    /// Says whether no value and no ghost of a component has these indices: along an axis that it does not point along, a component
+    /// has one value less than its list has room for. There the list stays 0, so that equal fields have equal numbers.
+    fn is_spare(&self, component: usize, i: [i64; 3]) -> bool {
+        (0..3).any(|a| a != component && !self.is_flat(a) && i[a] >= (self.n[a] + GHOSTS) as i64)
+    }
+
     /// Calls `f` for every value of a component and every ghost, with their indices, which are negative before the first value.
-    pub(super) fn each_with_ghosts(&self, mut f: impl FnMut([i64; 3], usize)) {
+    pub(super) fn each_with_ghosts(&self, component: usize, mut f: impl FnMut([i64; 3], usize)) {
         let ghosts = self.ghosts.map(|g| g as i64);
+        let [x, y, _] = self.size;
         for at in 0..self.len() {
-            let [x, y, _] = self.size;
             let i = [at % x, at / x % y, at / (x * y)];
-            f([0, 1, 2].map(|a| i[a] as i64 - ghosts[a]), at);
+            let i = [0, 1, 2].map(|a| i[a] as i64 - ghosts[a]);
+            if !self.is_spare(component, i) {
+                f(i, at);
+            }
         }
     }
 
@@ -146,7 +155,7 @@ impl Lattice {
                 let whole = is_side(1, j_g) || is_side(2, k_g);
                 for i in 0..x {
                     let i_g = i as i64 - ghosts[0];
-                    if whole || is_side(0, i_g) {
+                    if (whole || is_side(0, i_g)) && !self.is_spare(component, [i_g, j_g, k_g]) {
                         f([i_g, j_g, k_g], row + i);
                     }
                 }
@@ -154,27 +163,15 @@ impl Lattice {
         }
     }
 
-    /// Moves values of a component by whole cells: what stood `cells` farther along each axis stands here then. What comes
-    /// in from outside is not a number.
-    pub(super) fn shift(&self, values: &mut [f32], cells: [i64; 3]) {
-        let [x, y, z] = self.size.map(|n| n as i64);
-        // In the order in which nothing is overwritten that is still to be read.
-        let order = |n: i64, by: i64| (0..n).map(move |i| if by >= 0 { i } else { n - 1 - i });
-        for k in order(z, cells[2]) {
-            for j in order(y, cells[1]) {
-                let row = ((k * y + j) * x) as usize;
-                let (from_j, from_k) = (j + cells[1], k + cells[2]);
-                let inside = (0..y).contains(&from_j) && (0..z).contains(&from_k);
-                let shift = cells[0].clamp(-x, x);
-                let (low, high) = if inside { ((-shift).max(0), (x - shift).min(x)) } else { (0, 0) };
-                if low < high {
-                    let from = ((from_k * y + from_j) * x + low + shift) as usize;
-                    values.copy_within(from..from + (high - low) as usize, row + low as usize);
-                }
-                values[row..row + low as usize].fill(f32::NAN);
-                values[row + high.max(low) as usize..row + x as usize].fill(f32::NAN);
-            }
-        }
+    /// Moves values of a component by whole cells: what stood `cells` farther along each axis stands here then. What comes in from
+    /// outside, ghosts too, is what `new` answers for its indices.
+    pub(super) fn shift(&self, component: usize, values: &mut [f32], cells: [i64; 3], new: impl Fn([i64; 3]) -> f32) {
+        let before = values.to_vec();
+        let has = |i: [i64; 3]| (0..3).all(|a| (0..self.count(component, a) as i64).contains(&i[a]));
+        self.each_with_ghosts(component, |i, at| {
+            let from: [i64; 3] = std::array::from_fn(|a| i[a].saturating_add(cells[a]));
+            values[at] = if has(from) { before[self.at(from.map(|i| i as usize))] } else { new(i) };
+        });
     }
 
     /// The place of a value in cells from the box's lowest corner.

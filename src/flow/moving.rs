@@ -89,13 +89,7 @@ impl FlowField {
         let middle = &mut scratch[0];
         for values in [velocity, middle] {
             for c in lattice.axes() {
-                lattice.shift(&mut values[c], cells);
-                let values = &mut values[c];
-                lattice.each_with_ghosts(|i, at| {
-                    if values[at].is_nan() {
-                        values[at] = wind(place_m(lattice, c, i))[c] as f32;
-                    }
-                });
+                lattice.shift(c, &mut values[c], cells, |i| wind(place_m(lattice, c, i))[c] as f32);
             }
         }
         self.potentials.iter_mut().for_each(|p| p.fill(0.0));

@@ -37,7 +37,7 @@ const LEAST_THROUGH: f64 = 1e-4;
 /// Roles of the sides in an outer wind that stands in `outer`.
 pub(super) fn roles(lattice: &Lattice, sides: &[[Side; 2]; 3], outer: &Faces) -> Roles {
     let mut roles = [[Role::Periodic; 2]; 3];
-    let fastest = fastest(lattice, outer);
+    let fastest = fastest_on_sides(lattice, outer);
     for axis in 0..3 {
         for end in 0..2 {
             roles[axis][end] = match sides[axis][end] {
@@ -57,6 +57,15 @@ pub(super) fn roles(lattice: &Lattice, sides: &[[Side; 2]; 3], outer: &Faces) ->
         }
     }
     roles
+}
+
+/// The largest component of any face on a side or beside one, m/s: what stands in `outer` farther in is the wind of the field's beginning.
+fn fastest_on_sides(lattice: &Lattice, outer: &Faces) -> f64 {
+    let mut most = 0.0_f32;
+    for c in lattice.axes() {
+        lattice.each_on_sides(c, |_, at| most = most.max(outer[c][at].abs()));
+    }
+    most.into()
 }
 
 /// The largest component of any face, m/s.

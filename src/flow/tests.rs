@@ -366,6 +366,41 @@ fn a_field_rests_or_says_that_it_does_not() {
     assert_eq!(behind.settle(1.0, 1e-6, 1), Ok(false));
 }
 
+/// Lists of the field have room that no value needs; it stays 0 whatever has stood in the lists that a step passes round.
+#[test]
+fn a_field_has_the_numbers_of_its_air_alone() {
+    let mut moved = town(Scheme::Reflection);
+    moved.step(0.4).expect("a step");
+    moved.shift([2, -1, 1], |p| dvec3(4.0 + 0.1 * p.z, 1.0, 0.0)).expect("a shift");
+    let mut led = town(Scheme::Reflection);
+    led.step(0.4).expect("a step");
+    for field in [&mut moved, &mut led] {
+        // A field that is read has the same numbers and an empty room.
+        let mut read = town(Scheme::Reflection);
+        let (numbers, last_dt, _) = read.numbers_mut();
+        numbers.zip(field.numbers()).for_each(|(to, from)| to.clone_from(from));
+        *last_dt = field.last_step().0;
+        for _ in 0..4 {
+            for f in [&mut *field, &mut read] {
+                f.set_wind(|p| dvec3(4.0 + 0.1 * p.z, 1.0, 0.0)).expect("a wind");
+                f.fill_ghosts();
+                f.step(0.4).expect("a step");
+            }
+            assert!(field.numbers().eq(read.numbers()));
+        }
+    }
+}
+
+/// Through which sides air comes in is told by the wind of now, whatever the wind at the field's beginning was.
+#[test]
+fn a_weak_wind_after_a_strong_one_opens_the_sides_that_it_passes() {
+    let settings = FlowSettings { cells: [8, 8, 8], cell_m: DVec3::splat(2.0), ..FlowSettings::default() };
+    let weak = |_| dvec3(1.0, 1e-3, 0.0);
+    let mut led = field(&settings, &FlowObstacles::default(), |_| dvec3(20.0, 0.0, 0.0));
+    led.set_wind(weak).expect("a wind");
+    assert_eq!(led.roles, field(&settings, &FlowObstacles::default(), weak).roles);
+}
+
 #[test]
 fn bad_input_is_refused_by_name_and_leaves_the_field() {
     let good = FlowSettings { cells: [8, 8, 4], ..Default::default() };
