@@ -1,5 +1,6 @@
 // The glow of clouds in the light of lamps and flashes, marched in fewer rays than the clouds are. It is assembled with lit_lamps.wgsl in place of
 // lit.wgsl.
+//!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"
 //!include "clouds/lamps.wgsl"
@@ -19,5 +20,5 @@ fn glow(in: FullscreenVarying) -> @location(0) vec4f {
     }
     let middle = cloud_middle(seen);
     let light = seen.light * air_between(ray.direction, middle).transmittance / cover;
-    return vec4f(min(light, vec3f(65504.0)), log2(middle));
+    return vec4f(capped(light, 65504.0), log2(middle));
 }

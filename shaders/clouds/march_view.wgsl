@@ -1,5 +1,6 @@
 // Clouds along the rays of some pixels of a picture. They are marched whether the host's things hide them or not: what stands before a cloud
 // and what stands in it is told apart by the composition, for every pixel and sample, and leaves no trail where it moves.
+//!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"
 //!include "clouds/picture.wgsl"
@@ -43,5 +44,5 @@ fn march(in: FullscreenVarying) -> MarchedPixel {
     }
     // As the half floats of the picture round it: the reach is divided by it again.
     let cover = 1.0 - round(seen.transmittance * 2048.0) / 2048.0;
-    return MarchedPixel(vec4f(min(seen.light, vec3f(65504.0)), seen.transmittance), vec4f(log2(seen.reach) * cover, 0.0, 0.0));
+    return MarchedPixel(vec4f(capped(seen.light, 65504.0), seen.transmittance), vec4f(log2(seen.reach) * cover, 0.0, 0.0));
 }

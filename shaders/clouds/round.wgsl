@@ -1,4 +1,5 @@
 // Clouds in all directions from the camera, for what shows more than the picture: mirrors, cube maps.
+//!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "between/hung.wgsl"
 //!include "clouds/march.wgsl"
@@ -13,5 +14,5 @@ fn round(in: FullscreenVarying) -> @location(0) vec4f {
     if seen.transmittance < 1.0 {
         seen = clouds_behind(air_between(direction, cloud_middle(seen)), seen);
     }
-    return vec4f(min(seen.light, vec3f(65504.0)), seen.transmittance);
+    return vec4f(capped(seen.light, 65504.0), seen.transmittance);
 }

@@ -1,5 +1,6 @@
 // What a frame knows: the camera's rays, the light that no lamp of the sky sends, and how the host's numbers are read.
 //!include "common/depth.wgsl"
+//!include "common/guarded.wgsl"
 
 const MAX_FLASHES: u32 = 8u;
 
@@ -91,7 +92,7 @@ struct FrameUniform {
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.
 fn color_of(spectrum: vec3f) -> vec3f {
     let c = frame.color[0].xyz * spectrum.x + frame.color[1].xyz * spectrum.y + frame.color[2].xyz * spectrum.z;
-    return max(c, vec3f(0.0));
+    return not_negative(c);
 }
 
 @group(0) @binding(0) var<uniform> frame: FrameUniform;

@@ -1,4 +1,5 @@
 // One pixel of the frame: sky behind, water on surfaces, air and fog between, tone on top. Host colour x T + L throughout.
+//!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "frame/color_space.wgsl"
 //!include "frame/on_surfaces.wgsl"
@@ -73,5 +74,5 @@ fn written(host: vec3f, veil: Veil, pixel: vec2u) -> vec3f {
     if DITHERS && frame.dither_step > 0.0 {
         shown = dither(shown, frame.dither_step, pixel, frame.seed);
     }
-    return shown;
+    return marked(shown, veil.light + veil.transmittance, frame.dither_step == 0.0);
 }

@@ -1,5 +1,6 @@
 // One face of the cube map of what stands around the camera, for reflections in the host's own things: the sky of the composition, its
 // clouds and fog and the planet's ground, without the discs of sun and moon and without stars.
+//!include "common/guarded.wgsl"
 //!include "frame/composite.wgsl"
 
 struct EnvironmentFace {
@@ -29,6 +30,6 @@ fn environment(in: FullscreenVarying) -> EnvironmentTexel {
     let direction = normalize(face.forward + at.x * face.right + at.y * face.down);
     let light = weather_over(ViewRay(vec3f(0.0), direction, 1.0), RANGE_SKY, RANGE_SKY, hung_toward(direction)).light;
     // Half floats end at 65504.
-    let texel = vec4f(min(light * face.scale, vec3f(65504.0)), 1.0);
+    let texel = vec4f(capped(light * face.scale, 65504.0), 1.0);
     return EnvironmentTexel(texel, texel);
 }

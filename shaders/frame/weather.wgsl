@@ -1,4 +1,5 @@
 // What weather adds to a pixel: sky behind, air and fog between.
+//!include "common/guarded.wgsl"
 //!include "between/sky.wgsl"
 //!include "between/veil.wgsl"
 //!include "sky/disc.wgsl"
@@ -29,7 +30,7 @@ fn disc_light(radiance: Radiance, hung: Hung) -> vec3f {
         return vec3f(0.0);
     }
     let through = select(1.0, pow(hung.clouds.a, CLOUD_STRAIGHT - 1.0), CLOUDS);
-    return max(color_of(radiance * (through * hung.disc)), vec3f(0.0));
+    return not_negative(color_of(radiance * (through * hung.disc)));
 }
 
 // What stands behind all that the host drew and behind clouds, above the level of the eye.

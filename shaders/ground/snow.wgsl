@@ -1,5 +1,6 @@
 // Lying snow on the surface that a pixel shows: where it covers the ground, and the light that it sends. How deep it lies is led on the
 // CPU (src/snowpack); snow_cover of src/weather/surface.rs is `snow_level`'s twin.
+//!include "common/guarded.wgsl"
 //!include "ground/spot.wgsl"
 
 // Colour of snow's albedo over that of its green: ice takes up a little red (Warren 1982).
@@ -88,5 +89,5 @@ fn snow_on(spot: Spot, normal_given: bool) -> SnowSeen {
     }
     let glints = snow_glints(spot.place, spot.side, spot.to_eye) * (1.0 - snow.y);
     let white = snow_light(snow, heaped, spot.up, spot.ground.albedo, host_lamps(spot.at, heaped), glints);
-    return SnowSeen(min(white, vec3f(ground.most)), lies);
+    return SnowSeen(capped(white, ground.most), lies);
 }

@@ -1,4 +1,5 @@
 // Water and clear ice on a surface, seen by the camera: the host's colour x through + light.
+//!include "common/guarded.wgsl"
 //!include "between/sky.wgsl"
 //!include "ground/spot.wgsl"
 
@@ -159,5 +160,5 @@ fn water_on(spot: Spot) -> Veil {
     let below = wet_share(spot.ground.albedo, ground.entering);
     let wet = mix(vec3f(1.0), below, water.soaked);
     let through = mix(wet, below * ((1.0 - deep.share) / (1.0 - WATER_OUTSIDE)), pool);
-    return Veil(min(sky * (thin_share + deep_share) + lamps, vec3f(ground.most)), through);
+    return Veil(capped(sky * (thin_share + deep_share) + lamps, ground.most), through);
 }

@@ -1,5 +1,6 @@
 // Parts of the channels of flashes as lines of light before a host's picture; where that has several samples a pixel, the first stands
 // for them. A line is a point of light drawn out: each part sends what it sends, however many pixels it covers.
+//!include "common/guarded.wgsl"
 //!include "common/host.wgsl"
 //!include "between/veil.wgsl"
 
@@ -136,5 +137,5 @@ fn channel_fragment(in: ChannelVarying) -> @location(0) vec4f {
     let hung = hung_in(vec2i(in.position.xy), in.middle.w);
     let through = veil_between(ray, in.middle.w, in.light.y, hung).transmittance;
     // Half of what a half float holds: two parts may fall on one pixel.
-    return vec4f(min(channel.color * through * (in.light.x * share), vec3f(3e4)), 0.0);
+    return vec4f(capped(channel.color * through * (in.light.x * share), 3e4), 0.0);
 }

@@ -1,5 +1,6 @@
 // Stones of ice, falling in the drops' lattice, and hopping where they land: (seed, id, time) alone say where each is.
 // How many there are is in src/rain/stones.rs. The entry points read the depth: stones_view.wgsl.
+//!include "common/guarded.wgsl"
 //!include "rain/splash.wgsl"
 
 const STONE_CLASSES: u32 = 16u;

@@ -1,4 +1,5 @@
 // The air of a planet and what it does to light at one altitude. Twin: src/sky/reference/medium.rs.
+//!include "common/guarded.wgsl"
 
 alias Length = f32;
 alias PerLength = vec3f;
@@ -75,7 +76,7 @@ fn mie_phase(nu: Cosine, g: f32) -> f32 {
 
 // sqrt and back: how radiances are kept in fp16, so that twilight (1e-8 of the sun) survives.
 fn sky_encode(x: vec3f) -> vec4f {
-    return vec4f(min(sqrt(max(x, vec3f(0.0))), vec3f(65504.0)), 1.0);
+    return vec4f(capped(sqrt(not_negative(x)), 65504.0), 1.0);
 }
 
 fn sky_decode(x: vec4f) -> vec3f {
@@ -84,7 +85,7 @@ fn sky_decode(x: vec4f) -> vec3f {
 
 // The same for what may be negative: three transfers that stand for a set of wavelengths.
 fn sky_encode_signed(x: vec3f) -> vec4f {
-    return vec4f(sign(x) * min(sqrt(abs(x)), vec3f(65504.0)), 1.0);
+    return vec4f(sign(x) * capped(sqrt(abs(x)), 65504.0), 1.0);
 }
 
 fn sky_decode_signed(x: vec4f) -> vec3f {

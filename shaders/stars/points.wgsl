@@ -1,4 +1,5 @@
 // Stars and planets as points of light: the f64 twin is in src/stars/reference.rs, same names.
+//!include "common/guarded.wgsl"
 //!include "common/depth.wgsl"
 //!include "common/host.wgsl"
 
@@ -128,5 +129,5 @@ fn is_open(position: vec2f) -> bool {
 fn star_fragment(in: StarVarying) -> @location(0) vec4f {
     let share = select(0.0, weight(in.position.xy - in.pixel), is_open(in.position.xy));
     // Half of what a half float holds: two of them may fall on one pixel.
-    return vec4f(min(in.light * share, vec3f(3e4)), 0.0);
+    return vec4f(capped(in.light * share, 3e4), 0.0);
 }

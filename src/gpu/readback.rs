@@ -89,7 +89,7 @@ fn copied(device: &Device, from: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::Ext
 /// and not linearised.
 ///
 /// # Errors
-/// As [`bytes`].
+/// As [`bytes`]. With debug assertions also [`Status::Internal`] for a picture in floats with a value that is not finite.
 pub fn rgba(device: &Device, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>> {
     use wgpu::TextureFormat as F;
     let raw = bytes(device, texture, 0)?;
@@ -105,5 +105,15 @@ pub fn rgba(device: &Device, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>> {
         F::Bgra8Unorm | F::Bgra8UnormSrgb => [u(b[2]), u(b[1]), u(b[0]), u(b[3])],
         _ => [u(b[0]), u(b[1]), u(b[2]), u(b[3])],
     };
-    Ok(raw.chunks_exact(size).map(texel).collect())
+    let texels: Vec<[f32; 4]> = raw.chunks_exact(size).map(texel).collect();
+    let is_faulty = |t: &[f32; 4]| !t.iter().all(|v| v.is_finite());
+    if cfg!(debug_assertions)
+        && matches!(texture.format(), F::Rgba16Float | F::Rgba32Float)
+        && let Some(at) = texels.iter().position(is_faulty)
+    {
+        let (x, y) = (at % texture.width() as usize, at / texture.width() as usize);
+        let message = format!("texel ({x}, {y}) of a picture is not finite: {:?}", texels[at]);
+        return Err(Error::new(Status::Internal, message));
+    }
+    Ok(texels)
 }

@@ -56,6 +56,15 @@ pub fn assemble(name: &str) -> Result<String> {
     assemble_from(name, &|n| source(n).map(str::to_owned))
 }
 
+/// As [`assemble`], with `common/guarded_checked.wgsl` in place of `common/guarded.wgsl`: what is not a number stays so.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_checked(name: &str) -> Result<String> {
+    let checked = |n: &str| if n == "common/guarded.wgsl" { "common/guarded_checked.wgsl" } else { n }.to_owned();
+    assemble_from(name, &|n| source(&checked(n)).map(str::to_owned))
+}
+
 /// As [`assemble`], from another set of files: `lookup` gives a file's text.
 ///
 /// # Errors

@@ -1,0 +1,28 @@
+// guarded.wgsl for builds with debug assertions: what is not a number or infinite stays so through all limits. Pictures in floats hold it,
+// and reading them back fails; others are magenta there.
+
+fn is_finite(v: vec3f) -> bool {
+    // Compilers may assume that no NaN comes; the bits cannot be argued with.
+    return all((bitcast<vec3u>(v) & vec3u(0x7f800000u)) != vec3u(0x7f800000u));
+}
+
+fn no_number(v: vec3f) -> vec3f {
+    return bitcast<vec3f>(bitcast<vec3u>(v) | vec3u(0x7fc00000u));
+}
+
+fn unit_or(v: vec3f, other: vec3f) -> vec3f {
+    return normalize(select(other, v, dot(v, v) > 0.0));
+}
+
+fn capped(v: vec3f, most: f32) -> vec3f {
+    return select(no_number(v), min(v, vec3f(most)), is_finite(v));
+}
+
+fn not_negative(v: vec3f) -> vec3f {
+    return select(no_number(v), max(v, vec3f(0.0)), is_finite(v));
+}
+
+fn marked(shown: vec3f, light: vec3f, is_float: bool) -> vec3f {
+    let mark = select(vec3f(1.0, 0.0, 1.0), no_number(light), is_float);
+    return select(mark, shown, is_finite(light));
+}
