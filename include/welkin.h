@@ -147,7 +147,7 @@
 
 /** Version of this header; `wk_version` gives the library's. */
 #define WK_VERSION_MAJOR 0
-#define WK_VERSION_MINOR 1
+#define WK_VERSION_MINOR 2
 #define WK_VERSION_PATCH 0
 
 /** Define WK_SHARED when linking the shared library on Windows. Elsewhere it is not needed. */
