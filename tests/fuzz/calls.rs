@@ -102,6 +102,8 @@ pub struct World {
     frame: u64,
     /// Whether the objects go with this world.
     owner: bool,
+    /// Whether the first device does not.
+    keeps_device: bool,
 }
 
 // SAFETY: handles are numbers; that calls from several threads are answered is what is tested.
@@ -127,9 +129,22 @@ fn size_of_element<T>(dice: &mut Dice) -> u32 {
 
 impl World {
     pub fn new() -> Self {
-        let (mut device, mut context, mut view, mut texture) = (null_mut(), null_mut(), null_mut(), null_mut());
-        let mut desc = Struct::plain("wk_device_desc");
+        let (mut device, mut desc) = (null_mut(), Struct::plain("wk_device_desc"));
         desc.set("backends", WK_BACKEND_NOOP);
+        // SAFETY: pointers to live locals.
+        assert_eq!(unsafe { wk_device_create(desc.ptr().cast(), &mut device) }, WK_OK);
+        Self::on(device)
+    }
+
+    /// New objects on the device of another world, which stays there.
+    pub fn beside(&self) -> Self {
+        let mut new = Self::on(self.devices[0]);
+        new.keeps_device = true;
+        new
+    }
+
+    fn on(device: *mut wk_device) -> Self {
+        let (mut context, mut view, mut texture) = (null_mut(), null_mut(), null_mut());
         let mut size = Struct::plain("wk_texture_desc");
         size.set("width", 16_u32);
         size.set("height", 8_u32);
@@ -142,7 +157,6 @@ impl World {
         grid.set_numbers("heights_m", vec![0.0_f32; 4]);
         // SAFETY: pointers to live locals.
         unsafe {
-            assert_eq!(wk_device_create(desc.ptr().cast(), &mut device), WK_OK);
             assert_eq!(wk_context_create(device, simulated.ptr().cast(), &mut context), WK_OK);
             assert_eq!(wk_context_set_ground_grid(context, grid.ptr().cast()), WK_OK);
             assert_eq!(wk_view_create(context, null(), &mut view), WK_OK);
@@ -158,6 +172,7 @@ impl World {
             time_s: 0.0,
             frame: 0,
             owner: true,
+            keeps_device: false,
         }
     }
 
@@ -183,6 +198,7 @@ impl World {
             time_s: self.time_s,
             frame: self.frame,
             owner: false,
+            keeps_device: false,
         }
     }
 
@@ -221,7 +237,7 @@ impl Drop for World {
             self.views.iter().for_each(|&v| _ = wk_view_destroy(v));
             self.contexts.iter().for_each(|&c| _ = wk_context_destroy(c));
             self.textures.iter().for_each(|&t| _ = wk_texture_destroy(t));
-            for &device in &self.devices {
+            for &device in self.devices.iter().skip(usize::from(self.keeps_device)) {
                 let status = wk_device_destroy(device);
                 let gone = status == WK_OK || status == WK_ERROR_BAD_HANDLE;
                 assert!(gone || std::thread::panicking(), "a device is left with status {status}: {}", message());
