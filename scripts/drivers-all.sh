@@ -13,21 +13,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . scripts/drivers/run.sh
 . scripts/drivers/every.sh
 
-readonly PACKAGES=(libgl1-mesa-dri libegl1 libgl1 libvulkan1 mesa-vulkan-drivers vulkan-validationlayers virgl-server
-    libglfw3 libpng16-16t64)
-
-stage="$(realpath "$1")"
-mkdir -p "$2"
-work="$(realpath "$2")"
-newer="$work/$SUITE-all"
-angle="$work/angle"
-readonly stage work newer angle
-
-build_scenes || { echo "drivers: 0 passed, 1 failed"; exit 1; }
-mapfile -t scenes < <(on_system "$work/scenes" list)
-no_newer="$(fetch_debian "$SUITE" "$newer" "${PACKAGES[@]}")"
-no_angle="$(fetch_angle "$ANGLE" "$angle")"
-write_layer_settings
+begin "$1" "$2" "$SUITE-all" "${PACKAGES[@]}" virgl-server libglfw3 libpng16-16t64
 trap stop_virgl EXIT
 
 # The reference first, then each driver with what it can draw: small scenes, gallery (OpenGL), lab (Vulkan).

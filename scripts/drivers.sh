@@ -16,20 +16,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . scripts/drivers/fetch.sh
 . scripts/drivers/run.sh
 
-readonly PACKAGES=(libgl1-mesa-dri libegl1 libgl1 libvulkan1 mesa-vulkan-drivers vulkan-validationlayers)
-
-stage="$(realpath "$1")"
-mkdir -p "$2"
-work="$(realpath "$2")"
-newer="$work/$SUITE"
-angle="$work/angle"
-readonly stage work newer angle
-
-build_scenes || { echo "drivers: 0 passed, 1 failed"; exit 1; }
-mapfile -t scenes < <(on_system "$work/scenes" list)
-no_newer="$(fetch_debian "$SUITE" "$newer" "${PACKAGES[@]}")"
-no_angle="$(fetch_angle "$ANGLE" "$angle")"
-write_layer_settings
+begin "$1" "$2" "$SUITE" "${PACKAGES[@]}"
 
 # Two at a time: software drivers keep a core busy each, and compile shaders on one.
 draw system-vulkan vulkan on_system &

@@ -1,6 +1,7 @@
 # How scripts/drivers.sh runs a program with a driver, and how it judges what came of it.
-# Uses its variables: stage, work, newer, angle, scenes.
 
+# What a driver's own needs, and the layers.
+readonly PACKAGES=(libgl1-mesa-dri libegl1 libgl1 libvulkan1 mesa-vulkan-drivers vulkan-validationlayers)
 readonly TABLE=tests/drivers/expected.tsv
 # Seconds for the scenes of one driver; 0: as long as it takes.
 LIMIT_S="${DRIVERS_LIMIT_S:-400}"
@@ -11,6 +12,22 @@ passed=0 failed=0 skipped=0 blessed=""
 
 # Shaders are compiled anew each time: a cache that other programs and versions of Mesa write meanwhile must not count.
 export MESA_SHADER_CACHE_DISABLE=true
+
+# begin STAGE DIR FOLDER PACKAGE.. : what is drawn, and the drivers it is drawn with; Debian's packages in DIR/FOLDER.
+begin() {
+    stage="$(realpath "$1")"
+    mkdir -p "$2"
+    work="$(realpath "$2")"
+    newer="$work/$3"
+    angle="$work/angle"
+    readonly stage work newer angle
+    shift 3
+    build_scenes || { echo "drivers: 0 passed, 1 failed"; exit 1; }
+    mapfile -t scenes < <(on_system "$work/scenes" list)
+    no_newer="$(fetch_debian "$SUITE" "$newer" "$@")"
+    no_angle="$(fetch_angle "$ANGLE" "$angle")"
+    write_layer_settings
+}
 
 # The scenes' program, and the Vulkan host, which listens to validation itself.
 build_scenes() {
