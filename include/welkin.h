@@ -1972,7 +1972,7 @@ typedef uint32_t wk_metar_flags;
 /** The report says only that visibility is at least so much (CAVOK, 9999, 10SM). */
 #define WK_METAR_VISIBILITY_IS_MINIMUM 8
 
-/** Which fields a report leaves out or marks as missing. */
+/** Fields that a report leaves out or marks as missing. */
 typedef uint32_t wk_metar_assumed_flags;
 
 /** wind_speed_m_s, with all of the wind: calm is assumed. */
@@ -2040,7 +2040,7 @@ typedef struct wk_metar {
     uint32_t minute;
     /** Flags of a report. */
     wk_metar_flags flags;
-    /** Which fields the report leaves out or marks as missing. */
+    /** Fields that the report leaves out or marks as missing. */
     wk_metar_assumed_flags assumed;
     /** Rule by which the amounts of clouds were read: WK_CLOUD_AMOUNT_SUMS or WK_CLOUD_AMOUNT_LAYERS. */
     wk_cloud_amount_rule cloud_amounts;
@@ -3481,8 +3481,8 @@ wk_status wk_context_get_wind_at(const wk_context *context,
                                  wk_wind *out_wind);
 
 /**
- * Gets what falls at a place of the host's world and a simulation time. Above the clouds nothing falls: above their
- * bases, averaged over what covers the sky.
+ * Gets what falls at a place of the host's world and a simulation time. What falls begins in the
+ * lower half of the clouds, at most 500 m above their bases, averaged over what covers the sky; above that nothing falls.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */

@@ -40,7 +40,7 @@ pub const WK_METAR_CORRECTED: wk_metar_flags = 4;
 /// The report says only that visibility is at least so much (CAVOK, 9999, 10SM).
 pub const WK_METAR_VISIBILITY_IS_MINIMUM: wk_metar_flags = 8;
 
-/// Which fields a report leaves out or marks as missing.
+/// Fields that a report leaves out or marks as missing.
 pub type wk_metar_assumed_flags = u32;
 /// wind_speed_m_s, with all of the wind: calm is assumed.
 pub const WK_METAR_ASSUMED_WIND: wk_metar_assumed_flags = 0x1;
@@ -126,7 +126,7 @@ pub struct wk_metar {
     pub minute: u32,
     /// Flags of a report.
     pub flags: wk_metar_flags,
-    /// Which fields the report leaves out or marks as missing.
+    /// Fields that the report leaves out or marks as missing.
     pub assumed: wk_metar_assumed_flags,
     /// Rule by which the amounts of clouds were read: WK_CLOUD_AMOUNT_SUMS or WK_CLOUD_AMOUNT_LAYERS.
     pub cloud_amounts: wk_cloud_amount_rule,

@@ -18,6 +18,8 @@ use super::conditions::{CloudSlab, Conditions};
 const HIDING: f64 = 0.25;
 /// Least part of the sky that counts for a mean over layers, beside what there is of them: [`over_layers`].
 const LEAST_COVER: f64 = 1e-6;
+/// Most height above its cloud's base at which what falls begins, m.
+const MOST_GROWTH_M: f64 = 500.0;
 
 /// Mean of `f` over layers by the part of the sky in which each is the first to be met, in the order of `layers` (cover, layer);
 /// `without` where there are none. Continuous where a layer comes or goes.
@@ -79,11 +81,13 @@ impl Conditions {
         over_layers(layers, altitude_m, |s| s.top_m() + station_m).max(altitude_m)
     }
 
-    /// Height above the sea at which what falls begins: the bases of the layers that one meets first from below, on the mean, at
-    /// least 100 m above the station; 2 km if no cloud is known.
+    /// Height above the sea at which what falls begins: within the layers that one meets first from below, on the mean, at least 100 m
+    /// above the station; 2 km if no cloud is known. What falls grows on its way down through the lower half of its cloud, so that it
+    /// falls on a hill inside of a low deck too; in high clouds, which have gaps, on no more than the lowest 500 m.
     pub(crate) fn falling_top_m(&self) -> f64 {
         let layers = self.cloud_slabs().map(|s| (s.cover, s));
-        self.air.station_altitude_m + over_layers(layers, 2000.0, |s| s.base_m.max(100.0))
+        let begins_m = |s: &CloudSlab| s.base_m.max(100.0) + (0.5 * (s.top_m() - s.base_m)).min(MOST_GROWTH_M);
+        self.air.station_altitude_m + over_layers(layers, 2000.0, begins_m)
     }
 
     /// Part of the sky over a place hidden by cloud that one cannot see through: a thin layer, or what is left of one above the

@@ -146,6 +146,30 @@ fn conditions_of_a_place_are_those_of_the_rain_there() {
     }
 }
 
+/// It rains within a low deck too: on the hill, the crane and the windscreen that are inside of its lower half.
+#[test]
+fn rain_falls_inside_of_a_low_deck_and_not_over_it() {
+    for (kind, base_m, begins_m) in [
+        (CloudKind::Stratus, 60.0, 250.0),
+        (CloudKind::Stratus, 300.0, 450.0),
+        (CloudKind::Nimbostratus, 600.0, 1100.0),
+    ] {
+        let precipitation = Precipitation::of(PrecipitationKind::Rain, 3.0);
+        let weather = Weather { precipitation, clouds: vec![CloudLayer::of(kind, 1.0, base_m)], ..Weather::default() };
+        let host = host(&weather, &[]);
+        let rate = |z: f64| {
+            let at = DVec3::new(0.0, 0.0, z);
+            let (rain, c) = (host.context.rain_at(at, 0.0).unwrap(), host.context.conditions_at(at, 0.0).unwrap());
+            assert!((c.precipitation.rain_mm_h - rain.rate_mm_h).abs() < 1e-3, "{z} m");
+            rain.rate_mm_h
+        };
+        for z in [1.7, base_m, begins_m - 10.0] {
+            assert!((rate(z) - 3.0).abs() < 0.01, "{kind:?} from {base_m} m: {} mm/h at {z} m", rate(z));
+        }
+        assert_eq!(rate(begins_m + 10.0), 0.0, "{kind:?} from {base_m} m");
+    }
+}
+
 /// The query's closed form against the sum of what `rain_at` answers along the way.
 #[test]
 fn what_lies_between_two_points_is_the_sum_of_the_rain_there() {
