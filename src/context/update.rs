@@ -128,9 +128,4 @@ impl Context {
             None => self.world.time_s,
         }
     }
-
-    /// Whether an update has left steps for another call.
-    pub(crate) fn has_steps_to_do(&self) -> bool {
-        self.behind.is_some()
-    }
 }
