@@ -89,7 +89,7 @@ impl Default for ContextDesc {
 pub(crate) const COUPLINGS: Couplings =
     Couplings { dim: fog::dim, cloud_over_areas: clouds::cloud_over_areas, night_lux: stars::night_lux };
 
-/// What a context holds of the effects for all its views.
+/// Simulation state of the effects of a context, shared by all its views.
 pub(crate) struct Held {
     pub sky: Arc<Mutex<FollowedSky>>,
     /// Before the others, which may ask for the wind.
@@ -103,7 +103,7 @@ pub(crate) struct Held {
     pub lightning: HeldLightning,
 }
 
-/// The same as it was loaded.
+/// State read from a saved one, not yet in use.
 pub(crate) struct LoadedHeld {
     flow: HeldFlow,
     snowpack: LoadedSnow,
@@ -134,7 +134,7 @@ impl Held {
         })
     }
 
-    /// Those that are led, saved and loaded.
+    /// All effects with simulation state, in the order in which they are led.
     pub fn each(&mut self) -> [&mut dyn HeldEffect; 7] {
         [
             &mut self.flow,
@@ -147,7 +147,7 @@ impl Held {
         ]
     }
 
-    /// The same to look at.
+    /// As [`Self::each`], by shared reference.
     pub fn all(&self) -> [&dyn HeldEffect; 7] {
         [&self.flow, &self.snowpack, &self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning]
     }
@@ -176,7 +176,7 @@ impl Held {
         })
     }
 
-    /// Shows what was loaded, and leaves what was before in its place.
+    /// Swaps a loaded state in; `other` holds the previous one then.
     pub fn take_up(&mut self, world: &mut World, other: &mut LoadedHeld) {
         std::mem::swap(&mut self.fog, &mut other.fog);
         world.set.undimmed = self.fog.law.is_some();
@@ -202,7 +202,7 @@ pub const PARTS: &[Part] = &[
     snow::candidates::SNOW,
 ];
 
-/// Two parts of the list that cost more beside each other, and how much under the lamps of a scene.
+/// Extra work where both air and fog are drawn under the lamps of a scene, and the places of the two in the list of parts.
 pub(crate) fn together(scene: &Scene) -> ([usize; 2], StepWork) {
     ([0, 1], sky::candidates::air_before_fog_work(scene.lamps()))
 }
@@ -293,7 +293,7 @@ impl Effects {
         ]
     }
 
-    /// The same to look at.
+    /// As [`Self::each`], by shared reference.
     pub fn all(&self) -> [&dyn DrawnEffect; COUNT] {
         [
             &self.sky,
@@ -311,7 +311,7 @@ impl Effects {
         ]
     }
 
-    /// Takes what there is of each in a moment, of a frame in which `stages` are asked for.
+    /// Lets each effect read what it needs for a frame with these `stages`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.

@@ -1,4 +1,4 @@
-// Where over the ground a layer's clouds are other than its cover says. Twin of src/clouds/placed.rs, where the model is described.
+// Local cloud cover that overrides a layer's own. Twin of src/clouds/placed.rs, where the model is described.
 //!include "clouds/block.wgsl"
 
 // Of layers that a host's map is laid on: threshold, dome, extinction, distance within which the threshold stays; one below the other.

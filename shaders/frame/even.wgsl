@@ -1,4 +1,4 @@
-// The grid of the weather: what it adds to every fourth pixel of a picture, for draws of pixels between which it is even
+// Sky, air and fog at every fourth pixel, for draws of pixels that are interpolated between them
 // (src/frame/even.rs).
 
 // Pixels between texels of the grid. The first texel lies as much before the picture's first pixel, the last ones beyond its last.

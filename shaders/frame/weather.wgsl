@@ -10,7 +10,7 @@ override MEDIUM: bool = true;
 // Where nothing is drawn, the pixels of a pipeline may lie above the level of the eye, and below it.
 override FAR_ABOVE: bool = true;
 override FAR_BELOW: bool = true;
-// Optical depth of clouds over what of it is left when what they scatter straight on counts as not scattered.
+// Ratio of the optical depth of clouds to the delta-scaled one, in which light scattered straight on counts as not scattered.
 const CLOUD_STRAIGHT: f32 = 1.8;
 // The discs of sun and moon: the host has their light otherwise where it asks for the sky alone.
 override DISCS: bool = true;

@@ -52,7 +52,7 @@ struct Landing {
 // A drop that lands.
 struct Arrival {
     landing: Landing,
-    // The share of what level ground gets from which on it lands.
+    // Acceptance threshold: the share of what level ground gets from which on the drop lands.
     chance: f32,
     diameter: f32,
     speed: f32,

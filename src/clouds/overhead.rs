@@ -1,4 +1,4 @@
-//! What there is of clouds at a camera or a place that is asked about: layers as volumes, how much of them is a deck, and the light on them.
+//! Cloud layers around a camera or a queried place: layers as volumes, how much of them is a deck, and the light on them.
 
 use std::{f64::consts::PI, sync::Arc};
 
@@ -87,7 +87,7 @@ pub(super) const PIXEL_BLUR: f64 = 1.4;
 pub(super) const BLUR_FROM: f64 = 0.15;
 
 impl Overhead {
-    /// Whether pixels of so many radians hold clouds that differ, of a layer that the camera stands above: as far as its horizon.
+    /// Says whether one pixel spans several clouds of a layer below the camera, as far as its horizon; `pixel` in radians.
     pub fn is_coarse(&self, scene: &Scene, radius_m: f64, pixel: f64) -> bool {
         let coarse = |layer: &Layer| {
             let over_m = (scene.place.altitude_m - layer.shape.base_m).max(0.0);

@@ -49,7 +49,7 @@ pub(super) struct Shaded<'a> {
     pub depth: Layer<'a>,
 }
 
-/// What of a frame is to be made, beside what an earlier call of it has made.
+/// Passes that this frame still needs, beside those that an earlier call of it has drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Wanted {
     /// An earlier call has begun the frame.
@@ -109,7 +109,7 @@ impl CloudPasses {
         })
     }
 
-    /// Brings what is made of the clouds' places up to what there is of them.
+    /// Rebuilds bindings when the cloud maps have changed.
     pub fn place(&mut self, device: &Device, overhead: &Overhead) -> Result<()> {
         let is_other = self.tables.place(device, overhead.maps.iter().flatten());
         if !is_other && self.is_placed == overhead.is_placed() {

@@ -1,4 +1,4 @@
-//! Where over the ground a layer's clouds are other than its cover says: a host's map of cover ([`CloudMap`]), and cells of cloud over rain
+//! Local cloud cover that overrides a layer's own: a host's map of cover ([`CloudMap`]), and cells of cloud over rain
 //! areas, so that no rain falls out of a clear sky. Twin of `shaders/clouds/placed.wgsl`.
 //!
 //! # Model
@@ -98,7 +98,7 @@ impl AreaCells {
         (CLEAR - FILLED) / rim_m
     }
 
-    /// A number that changes as they do.
+    /// Hash of the cells, to notice changes.
     fn told(&self) -> f64 {
         self.all().iter().map(|c| c.center_m.dot(DVec2::new(1.0, 0.7)) + c.semi_m.x + c.semi_m.y + c.rim_m).sum()
     }

@@ -17,7 +17,7 @@ use crate::{
 
 /// Texels along a side: 1.5 degrees each, as a mirror of still water shows broken clouds.
 pub(super) const SIDE: u32 = 96;
-/// Rows that a frame makes anew, once as many have grown old.
+/// Rows refreshed in a frame, once as many are old.
 const ROWS: u32 = 12;
 /// What makes all of them old: the camera's way, m, which turns a cloud 500 m up by a texel; the times in which a shadow grows old, as clouds
 /// go by as much of their way as of the camera's; a change of exposure.

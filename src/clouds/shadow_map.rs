@@ -31,8 +31,8 @@ const TEXELS: u32 = 512;
 const TEXEL_M: f64 = 40.0;
 /// Along a side of the coarse map that a new one begins as: as many texels as a frame's rows have.
 const COARSE: u32 = 64;
-/// Rows that a frame makes anew, once as many have grown old, and in every frame while some of the map is coarse: in sixteen frames none is, as
-/// none of the picture is old.
+/// Rows refreshed in a frame, once as many are old, and in every frame while some of the map is coarse: sixteen frames refresh
+/// all of them.
 const ROWS: u32 = 32;
 /// Height above the lowest base over which, in the clouds themselves, shadows go over to the mean, m: that of the shaders and snippets.
 const ENDS_M: f64 = 100.0;

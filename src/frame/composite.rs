@@ -33,7 +33,7 @@ pub(super) struct Variant {
     pub images: [bool; 4],
     /// What effects and frame have added.
     pub constants: Pipeline,
-    /// For which it is.
+    /// Kind of pixels that this variant draws.
     pub pixels: Pixels,
 }
 
@@ -54,7 +54,7 @@ impl Variant {
         };
         let clear = if self.constants.traits.veils_all { "" } else { ":clear" };
         let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
-        // What is looked up has no fog of its own.
+        // Pixels that are looked up hold the fog already.
         let (clear, even) = if self.pixels.are_even() { ("", ":even") } else { (clear, "") };
         (format!("{name}{clear}{dry}{even}"), entry)
     }
@@ -94,7 +94,7 @@ impl Variant {
 /// a software driver one may take more than 10 MB.
 const MOST_PIPELINES: usize = 32;
 
-/// Likewise those of the weather's grid and of the pixels that look it up: two or three for each weather.
+/// Most cached pipelines of the coarse grid and of the pixels that look it up: two or three for each weather.
 const MOST_EVEN: usize = 32;
 
 /// Likewise those that tell kinds of pixels apart.

@@ -1,4 +1,4 @@
-//! The grid of the weather: what it adds to a picture at every fourth pixel, for the pixels between which it is even.
+//! Sky, air and fog at every fourth pixel, interpolated where they vary smoothly.
 //!
 //! Sky, air and fog change slowly from pixel to pixel, but for edges. A small pass draws what they add to every fourth pixel of every
 //! fourth row, another one finds the cells in which straight lines between texels are within a thousandth of the curve through them and their

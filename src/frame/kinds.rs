@@ -19,7 +19,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(super) enum Pixels {
     /// All of them.
     All,
-    /// All but those between which the weather is even.
+    /// Pixels that are not interpolated from the coarse grid.
     Uneven,
     /// Those at the far depth, above the level of the eye: sky.
     Above,
@@ -27,7 +27,7 @@ pub(super) enum Pixels {
     Below,
     /// Those on which the host drew.
     Drawn,
-    /// Those of any of these between which the weather is even ([`super::even`]).
+    /// Pixels interpolated from the coarse grid ([`super::even`]).
     Even,
     /// Those of them on which the host drew, where they have a draw of their own ([`draws_apart`]).
     EvenDrawn,

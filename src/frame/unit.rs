@@ -1,5 +1,5 @@
-//! Whether a scene-linear host can mean the unit that it gives: a scene lit without units, its white at 1, is black in daylight
-//! at 1 cd/m^2 a unit, and nothing else would say why.
+//! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible: a scene lit without units, its white at 1, is black in
+//! daylight at 1 cd/m^2 a unit, and nothing else would say why.
 //!
 //! Formats that end at 1 tell by themselves. Of floats a few rows of the host's picture are read back without waiting, in a
 //! view's third frame and in every 1024th from there. What is found wrong is logged as a warning, once until it was right again.

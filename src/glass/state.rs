@@ -152,7 +152,7 @@ impl Glass {
     ) -> Result<u32> {
         let plane = Plane::of_pane(&self.screen.pane, &moment.camera.projection)?;
         let (cell_m, size) = plane.lattice();
-        // What a moving head makes of the same window in f64 must not cost the water on it.
+        // A moving head changes the pane's size by rounding: the water on it stays.
         let same = |old: [u32; 2]| (0..2).all(|i| old[i].abs_diff(size[i]) <= 1 + size[i] / 50);
         let fits = self.lattice.as_ref().is_some_and(|l| same(l.size));
         if self.lattice.is_some() && !fits {

@@ -123,7 +123,7 @@ impl UniformBlock {
         self.write_at(0, bytes);
     }
 
-    /// Likewise from a place in it on.
+    /// Writes as [`Self::write`] does, from byte `at`.
     pub fn write_at(&self, at: usize, bytes: &[u8]) {
         debug_assert!(at + bytes.len() <= self.bytes(), "{} bytes at {at} of {}", bytes.len(), self.bytes());
         self.pages.with(|pages| pages[self.page].write(self.at.start + at, bytes));

@@ -28,7 +28,7 @@ pub struct Caps {
     pub max_texture_size: u32,
 }
 
-/// How to make an own device.
+/// Options for a device that Welkin creates.
 #[derive(Clone, Debug)]
 pub struct DeviceOptions {
     /// Which native interfaces may serve; `noop` draws nothing and needs no GPU.

@@ -1,4 +1,4 @@
-//! Things that are made when they are first needed, of which no more are held than there is room for.
+//! Least-recently-used cache of things that are made when they are first needed.
 //!
 //! Pipelines come in as many variants as hosts have formats, and weathers parts. One that has not been used for longest goes when
 //! another one is made, so that memory levels off however long a session changes between them.

@@ -94,7 +94,7 @@ impl Part {
         self.altitudes_m = [self.altitudes_m[0].min(low), self.altitudes_m[1].max(high)];
     }
 
-    /// Between which shares an area lies here, and what it is if it is the same everywhere.
+    /// Bounds of an area's share here, and the share itself where it is the same everywhere.
     fn even(&self, shaft: &Shaft, to_enu: &DMat3) -> (f64, Option<(f64, f64)>) {
         let [low, high] = self.altitudes_m;
         let [least, most] = shaft.share_within(self.middle, to_enu, 0.5 * (low + high), self.reach_m);

@@ -15,7 +15,7 @@ use crate::{
     weather::{Conditions, Falling, cover_under_rain},
 };
 
-/// So far above the ground is what counts as its surface, m.
+/// Height above the ground up to which a place counts as its surface, m.
 const SURFACE_M: f64 = 0.02;
 
 /// How many thirds of the rain the boxes keep off each cell.

@@ -82,7 +82,7 @@ pub(crate) struct TerrainWater {
     inflow: Vec<f64>,
 }
 
-/// Level of the water in a hollow, mm, and what this held then; none for one whose level is another's.
+/// Cached level of the water in a hollow, mm, and its volume then; none where the pool has merged into another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Level {
     mm: f64,

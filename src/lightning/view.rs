@@ -26,7 +26,7 @@ use crate::{
     world::World,
 };
 
-/// Time whose light a frame has that follows no other, s.
+/// Exposure of a frame without a predecessor, s.
 const FRAME_S: f64 = 1.0 / 60.0;
 /// Longest time between two frames whose light the second one has: after a longer one the host has jumped, s.
 const LONGEST_FRAME_S: f64 = 0.5;

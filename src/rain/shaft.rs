@@ -179,7 +179,7 @@ impl Column {
         smoothstep(0.0, self.shaft.rim_m, self.shaft.outline.depth(self.turned(q)))
     }
 
-    /// Between which distances a ray's plan, `q + u t`, is at least `inset` inside.
+    /// Interval of `t` in which a ray's plan, `q + u t`, is at least `inset` inside the outline.
     fn chord(&self, q: DVec2, u: DVec2, inset: f64) -> Option<[f64; 2]> {
         match &self.shaft.outline {
             Outline::Ellipse(semi) => {

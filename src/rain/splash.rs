@@ -56,7 +56,7 @@ pub struct Landing {
     pub diameter_mm: f64,
     /// Of its drop, m/s.
     pub speed_m_s: f64,
-    /// The share of what level ground gets from which on it lands: below 1 on level ground.
+    /// Acceptance threshold: the share of what level ground gets from which on the drop lands; below 1 on level ground.
     pub chance: f64,
 }
 

@@ -55,7 +55,7 @@ pub(crate) struct RainView {
 /// Rains whose drops are kept counted: more than the weather's and all areas'.
 const COUNTED: usize = 32;
 
-/// Least share of a rain near a rim in what cones are made for.
+/// Least weight of a nearby rain area, so that cones exist before the camera enters it.
 const LEAST_OF_CONES: f64 = 1e-2;
 
 /// Steps in which rain sets in below its cloud, so that a climbing camera does not count drops anew in each frame.

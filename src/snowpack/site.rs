@@ -22,11 +22,11 @@ use crate::{
     world::World,
 };
 
-/// So far above the ground is what counts as its surface, m.
+/// Height above the ground at which shelter is tested, m.
 const SURFACE_M: f64 = 0.02;
 /// A box whose underside is higher above the ground than this lets the wind through, m.
 const GAP_M: f64 = 0.3;
-/// What lies higher above the snow than this, m, is on something that stands on it.
+/// Height above the snow from which on a queried place counts as being on an object, m.
 const ABOVE_M: f64 = 3.0;
 /// Height at which a wind that varies in space is asked, m.
 const ASKED_M: f64 = 2.0;
@@ -147,8 +147,8 @@ impl Site {
         self.is_up_to(terrain);
     }
 
-    /// Takes one tile as the terrain has it by now: one that has gone takes its snow with it, a new one has that of the country, one that
-    /// has changed keeps it wherever there is ground.
+    /// Synchronises one tile with the terrain: a removed one loses its snow, a new one starts with that of the country, a changed
+    /// one keeps its own wherever there is ground.
     pub fn follow(&mut self, terrain: &Terrain, key: TileKey, (field, country, revision): (&mut Field, Column, u64)) {
         let at = field.find([key.east, key.north]);
         let tile = terrain.slot(key).map(|slot| terrain.tile(slot));

@@ -81,7 +81,7 @@ pub(crate) enum Block {
     OnSurfaces = 1,
 }
 
-/// By what the frame chooses a pipeline's shader and its pixels.
+/// Properties of the weather that select the shader's variant and the kinds of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Traits {
     /// Something lies before every pixel, those too on which the host drew nothing.
@@ -99,11 +99,11 @@ pub(crate) struct Traits {
 /// The constants of a pipeline, and what follows of them for the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pipeline {
-    /// Those that every shader has which draws through what lies between.
+    /// Constants of every shader that applies air, cloud and fog.
     pub between: Constants,
-    /// Those of them by which pipelines for hosts' own shaders differ; all of them would make a pipeline of many weathers.
+    /// Subset that the veil for hosts' shaders needs; the full set would compile a pipeline for many weathers.
     pub of_veil: Constants,
-    /// Those of the composition alone.
+    /// Constants of the composition alone.
     pub composed: Constants,
     /// Set by the effects beside their constants.
     pub traits: Traits,
@@ -166,7 +166,7 @@ impl Composition {
         self.least.between.push((name, least));
     }
 
-    /// The same of one by which pipelines for hosts' own shaders differ too.
+    /// Adds as [`Self::between`] does, to the constants of the veil too.
     pub fn between_and_veil(&mut self, name: &'static str, whole: f64, least: f64) {
         self.between(name, whole, least);
         self.whole.of_veil.push((name, whole));

@@ -18,7 +18,7 @@ use crate::{
     surroundings::SurroundingsBlock,
 };
 
-/// What an effect is brought up to date for, before the first draw of a frame.
+/// Inputs of [`DrawnEffect::prepare`], before the first draw of a frame.
 pub(crate) struct Prepare<'a> {
     pub frame: &'a Frame<'a>,
     pub now: &'a Moment<'a>,
@@ -35,7 +35,7 @@ pub(crate) struct LensPicture<'a> {
     pub target: &'a wgpu::TextureView,
 }
 
-/// What a draw is of.
+/// Inputs that all effects share in one draw.
 pub(crate) struct Shot<'a> {
     pub device: &'a Arc<Device>,
     pub frame: &'a Frame<'a>,

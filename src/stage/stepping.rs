@@ -1,4 +1,4 @@
-//! What falls and is stepped: for a wind that varies in space, such as that round a building.
+//! Particles integrated through a wind that varies in space, such as that round a building.
 //!
 //! Drops and flakes are those of their lattice, as many in the same shells, but each has a place and a velocity of its own, in a buffer
 //! of the view. In an even wind each starts where the lattice has it and stays there until it leaves the cell round the camera.

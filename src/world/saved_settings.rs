@@ -23,7 +23,7 @@ pub(super) struct SavedSettings {
     /// Not in states from before it could be set: those are of a context with the same.
     #[serde(default)]
     pub tone_curve: Option<ToneCurve>,
-    /// Likewise.
+    /// Absent in states saved before planets could be set.
     #[serde(default)]
     pub planet: Option<Planet>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
