@@ -177,17 +177,17 @@ impl Held {
     }
 
     /// Swaps a loaded state in; `other` holds the previous one then.
-    pub fn take_up(&mut self, world: &mut World, other: &mut LoadedHeld) {
+    pub fn swap_in(&mut self, world: &mut World, other: &mut LoadedHeld) {
         std::mem::swap(&mut self.fog, &mut other.fog);
         world.set.undimmed = self.fog.law.is_some();
-        self.ground.take_up(&mut other.ground);
+        self.ground.swap_in(&mut other.ground);
         world.set.terrain = self.ground.heights();
-        self.snowpack.take_up(world, &mut other.snowpack);
+        self.snowpack.swap_in(world, &mut other.snowpack);
         std::mem::swap(&mut self.stars, &mut other.stars);
         std::mem::swap(&mut self.clouds, &mut other.clouds);
         std::mem::swap(&mut self.lightning, &mut other.lightning);
         world.night = self.stars.night();
-        self.flow.take_up(world, &mut other.flow);
+        self.flow.swap_in(world, &mut other.flow);
     }
 }
 

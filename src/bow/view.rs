@@ -8,9 +8,9 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::recent::Recent,
+    gpu::recent::LruCache,
     moment::Moment,
-    stage::{BOW_ENTRIES, Composition, DrawnEffect, Shot, Stages, yes},
+    stage::{BOW_ENTRIES, Composition, DrawnEffect, Shot, Stages, flag},
     weather::Falling,
 };
 
@@ -23,8 +23,8 @@ pub(crate) struct BowView {
     drops: [Option<[f64; CLASSES]>; 2],
     is_lit: bool,
     /// Of rates that fell in the last frames, and the tables of shares: both are sums that most frames have in common.
-    rains: Recent<(Falling, f64), [f64; CLASSES], RAINS>,
-    tables: Recent<[f64; CLASSES], [[f32; 4]; ENTRIES], 2>,
+    rains: LruCache<(Falling, f64), [f64; CLASSES], RAINS>,
+    tables: LruCache<[f64; CLASSES], [[f32; 4]; ENTRIES], 2>,
 }
 
 /// Rates that are remembered: of the low air and of some areas.
@@ -61,7 +61,7 @@ impl DrawnEffect for BowView {
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         // Not by where the picture looks: a pipeline of its own would be made when the camera turns to a bow, and that frame be late.
         let is_lit = self.has_drops() && self.is_lit;
-        to.between_and_veil("BOW", yes(self.has_drops()), yes(is_lit));
+        to.between_and_veil("BOW", flag(self.has_drops()), flag(is_lit));
         if is_lit && shows(shot) {
             for (to, shares) in to.block.bows.iter_mut().zip(&self.drops) {
                 let Some(shares) = shares else { continue };

@@ -15,7 +15,7 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::placed::Placed;
+use super::placed::LocalCover;
 
 /// Texels of the map along a side.
 pub const MAP_SIZE: usize = 256;
@@ -123,7 +123,7 @@ pub struct Field<'a> {
     /// What frays their edges.
     pub solid: &'a Solid,
     /// Where they are other than the layer's cover says.
-    pub(super) placed: Placed,
+    pub(super) placed: LocalCover,
 }
 
 /// [`Shape::anvil`] of a layer without.
@@ -184,7 +184,7 @@ impl Field<'_> {
     pub(super) fn here(&self, position_m: DVec3) -> (Self, [f64; 2]) {
         let mut shape = self.shape;
         let steady = self.placed.shape_at(self.upright(position_m), &mut shape);
-        (Self { shape, placed: Placed::default(), ..*self }, steady)
+        (Self { shape, placed: LocalCover::default(), ..*self }, steady)
     }
 
     /// A place of the layer as its pattern has it: what is above the base leans.

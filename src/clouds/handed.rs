@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::shadow_map::Lie;
+use super::shadow_map::ShadowProjection;
 use crate::moment::Moment;
 
 /// What a host's own materials look up; the texture is valid until the view is destroyed, all else after each frame.
@@ -33,11 +33,11 @@ pub const SHADOW_SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welki
 pub const SHADOW_SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_cloud_shadow.glsl");
 
 /// The texture that a host has asked for, and how it lay in the last frame.
-pub(super) struct Handed {
+pub(super) struct HostShadowTexture {
     pub shadows: CloudShadows,
 }
 
-impl Handed {
+impl HostShadowTexture {
     pub fn new(texture: wgpu::Texture) -> Self {
         let none = [DVec4::ZERO; 2];
         let shadows = CloudShadows {
@@ -53,7 +53,7 @@ impl Handed {
     }
 
     /// Takes over how the map lies in a frame; `None` where no clouds cast shadows that are told apart.
-    pub fn lay(&mut self, now: &Moment<'_>, lie: Option<&Lie>) {
+    pub fn lay(&mut self, now: &Moment<'_>, lie: Option<&ShadowProjection>) {
         let shadows = &mut self.shadows;
         shadows.mean_share = now.scene.brighter().direct_share;
         let Some(lie) = lie else {

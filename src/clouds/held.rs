@@ -10,7 +10,7 @@ use super::{
     layer_map::LayerMaps,
     light::Sources,
     march::CloudRays,
-    overhead::Overhead,
+    overhead::CloudLayers,
     shadow::sun_share,
     tables::SUN_MOVED,
     transport::Transport,
@@ -26,11 +26,11 @@ use crate::{
 pub(crate) struct HeldClouds {
     pub model: CloudModel,
     /// What clouds are cut out of: made when it is first asked for.
-    grown: Arc<OnceLock<Grown>>,
+    grown: Arc<OnceLock<CloudNoise>>,
 }
 
 /// What clouds are cut out of, and the light in them that was asked for last.
-pub(super) struct Grown {
+pub(super) struct CloudNoise {
     pub map: Map,
     pub solid: Solid,
     /// By medium.
@@ -44,13 +44,13 @@ struct Lit {
     sources: Arc<Sources>,
 }
 
-impl Grown {
+impl CloudNoise {
     fn new(seed: u64) -> Result<Self> {
         Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Default::default(), maps: Mutex::default() })
     }
 
     /// The clouds of one of all layers over a place.
-    pub fn field(&self, overhead: &Overhead, layer: usize) -> Field<'_> {
+    pub fn field(&self, overhead: &CloudLayers, layer: usize) -> Field<'_> {
         let placed = overhead.placed(layer);
         Field { shape: overhead.all()[layer].shape, map: &self.map, solid: &self.solid, placed }
     }
@@ -102,12 +102,12 @@ impl HeldClouds {
     /// What there is over a scene's place.
     fn overhead(
         &self,
-        grown: &Grown,
+        grown: &CloudNoise,
         (scene, eye): (&Scene, DVec3),
         (over, time_s): (&WeatherOver<'_>, f64),
-    ) -> Result<Option<Overhead>> {
+    ) -> Result<Option<CloudLayers>> {
         let drifts = over.layers_until(time_s)?;
-        let mut overhead = Overhead::new(self.model, scene, &drifts, Shape::of);
+        let mut overhead = CloudLayers::new(self.model, scene, &drifts, Shape::of);
         if let Some(overhead) = &mut overhead {
             let mut maps = grown.maps.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
             overhead.place((scene, eye), (over, time_s), &mut maps)?;
@@ -116,11 +116,11 @@ impl HeldClouds {
     }
 
     /// What clouds are cut out of.
-    fn grown(&self, seed: u64) -> Result<&Grown> {
+    fn grown(&self, seed: u64) -> Result<&CloudNoise> {
         if let Some(grown) = self.grown.get() {
             return Ok(grown);
         }
-        let grown = Grown::new(seed)?;
+        let grown = CloudNoise::new(seed)?;
         Ok(self.grown.get_or_init(|| grown))
     }
 

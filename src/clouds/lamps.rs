@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::overhead::Overhead;
+use super::overhead::CloudLayers;
 use crate::{
     moment::Moment,
     scene::{FlashLamp, HostLight, LightUniform},
@@ -55,7 +55,7 @@ fn even_share(lamp: &HostLight) -> f64 {
 }
 
 /// Luminance of the cloud that a lamp lights most, cd/m^2 at most; `height_m` over the sea. What is above the beam's steepest ray stays dark.
-fn most_on(overhead: &Overhead, lamp: &HostLight, up: f64, height_m: f64) -> f64 {
+fn most_on(overhead: &CloudLayers, lamp: &HostLight, up: f64, height_m: f64) -> f64 {
     let brightest = lamp.intensity_cd.into_iter().fold(0.0, f64::max);
     let steepest = |up: f64| {
         let angle = up.clamp(-1.0, 1.0).asin() + lamp.outer_deg.to_radians();
@@ -95,7 +95,7 @@ impl LampUniform {
 
 impl LampsUniform {
     /// Those of a moment, for a picture of these pixels; none where nothing of their glow would show.
-    pub fn of(overhead: &Overhead, now: &Moment<'_>, exposure: f64, picture: (u32, u32)) -> Option<Self> {
+    pub fn of(overhead: &CloudLayers, now: &Moment<'_>, exposure: f64, picture: (u32, u32)) -> Option<Self> {
         let (lights, flashes) = (now.lamps, now.flash_lamps());
         if lights.is_empty() && flashes.is_empty() {
             return None;

@@ -8,7 +8,7 @@ use std::{
 use glam::DVec2;
 use half::f16;
 
-use super::{placed::Cut, uniforms::LAYERS};
+use super::{placed::CoverThreshold, uniforms::LAYERS};
 use crate::weather::{CloudMap, CloudSlab};
 
 /// Steps of the map's numbers for which cuts are found.
@@ -29,7 +29,8 @@ impl LayerMap {
     pub(super) fn new(slab: &CloudSlab, map: &Arc<CloudMap>) -> Self {
         // Nodes lie close where thresholds change fast: near none and all.
         let node = |i: usize| (0.5 * PI * i as f64 / STEPS as f64).sin().powi(2);
-        let cuts: [Cut; STEPS + 1] = std::array::from_fn(|i| Cut::with_cover(slab, slab.cover * node(i)));
+        let cuts: [CoverThreshold; STEPS + 1] =
+            std::array::from_fn(|i| CoverThreshold::with_cover(slab, slab.cover * node(i)));
         let cut = |left: f32| {
             let at = f64::from(left).sqrt().asin() * 2.0 / PI * STEPS as f64;
             let i = (at as usize).min(STEPS - 1);
@@ -47,7 +48,7 @@ impl LayerMap {
     }
 
     /// At a place, and how far the threshold stays there, m.
-    pub(super) fn at(&self, place_m: DVec2) -> (Cut, f64) {
+    pub(super) fn at(&self, place_m: DVec2) -> (CoverThreshold, f64) {
         let map = &self.map;
         let [columns, rows] = map.cells.map(|n| n as usize);
         let last = DVec2::new((columns - 1) as f64, (rows - 1) as f64);
@@ -62,7 +63,7 @@ impl LayerMap {
             let (south, north) = (a + (b - a) * part.x, c + (d - c) * part.x);
             south + (north - south) * part.y
         });
-        (Cut { threshold, dome, extinction_per_m }, steady_m)
+        (CoverThreshold { threshold, dome, extinction_per_m }, steady_m)
     }
 
     fn is_of(&self, slab: &CloudSlab, map: &Arc<CloudMap>) -> bool {
@@ -131,7 +132,7 @@ mod tests {
         clouds::{
             cover::{field, is_ice, seen, threshold, typical},
             field::{Field, Map, Solid},
-            placed::Placed,
+            placed::LocalCover,
         },
         weather::CloudKind,
     };
@@ -143,7 +144,7 @@ mod tests {
     }
 
     fn under<'a>(slab: &CloudSlab, grown: &'a (Map, Solid), map: &Arc<CloudMap>) -> Field<'a> {
-        let placed = Placed::under(Arc::new(LayerMap::new(slab, map)));
+        let placed = LocalCover::under(Arc::new(LayerMap::new(slab, map)));
         Field { placed, ..field(slab, grown, threshold(slab)) }
     }
 

@@ -11,9 +11,9 @@ use super::{
     cells::CLEAR,
     field::{Field, Shape, about, dome},
     halo,
-    held::Grown,
+    held::CloudNoise,
     light::{Depths, Sources},
-    overhead::{ICE, Overhead, light_on},
+    overhead::{CloudLayers, ICE, light_on},
     tables::media,
     transport::Transport,
     uniforms::{LayerLight, WIDTH_CELLS},
@@ -80,7 +80,7 @@ enum LightWithin<'a> {
     Given(Arc<Sources>),
     /// Worked out when a ray first meets cloud of a medium: most rays meet none.
     Asked {
-        grown: &'a Grown,
+        grown: &'a CloudNoise,
         media: [Arc<Transport>; 2],
         to_sun: DVec3,
         made: [OnceLock<Arc<Sources>>; 2],
@@ -118,7 +118,7 @@ struct AtPlace<'a> {
 
 impl<'a> CloudRays<'a> {
     /// Those of a scene's place.
-    pub(super) fn new(overhead: &Overhead, grown: &'a Grown, scene: &Scene, radius_m: f64) -> Self {
+    pub(super) fn new(overhead: &CloudLayers, grown: &'a CloudNoise, scene: &Scene, radius_m: f64) -> Self {
         let to_sun = scene.brighter().direction;
         let media = media(overhead.liquid_um);
         let lit = |(i, layer): (usize, &super::overhead::Layer)| Lit {

@@ -38,7 +38,7 @@ pub(super) struct Layer {
 }
 
 /// What there is of clouds over a place.
-pub(super) struct Overhead {
+pub(super) struct CloudLayers {
     layers: [Layer; LAYERS],
     count: usize,
     /// Of them, those of which something is drawn as a volume: the first ones, since only the uppermost are decks.
@@ -86,7 +86,7 @@ pub(super) fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -
 pub(super) const PIXEL_BLUR: f64 = 1.4;
 pub(super) const BLUR_FROM: f64 = 0.15;
 
-impl Overhead {
+impl CloudLayers {
     /// Says whether one pixel spans several clouds of a layer below the camera, as far as its horizon; `pixel` in radians.
     pub fn is_coarse(&self, scene: &Scene, radius_m: f64, pixel: f64) -> bool {
         let coarse = |layer: &Layer| {
@@ -184,7 +184,7 @@ impl Overhead {
     }
 }
 
-impl Overhead {
+impl CloudLayers {
     /// Whether any of it may be seen along a direction.
     pub fn lies_toward(&self, scene: &Scene, direction: DVec3) -> bool {
         let at_m = scene.place.altitude_m;
@@ -197,7 +197,7 @@ impl Overhead {
     /// The mean light of its broken clouds as they look from the place, cd/m^2, their cover, and how far the base of the lowest of them
     /// lies over it, m.
     /// From below half of what is seen is lit from above and half through the cloud, from above all is lit.
-    pub fn on_the_mean(&self, scene: &Scene) -> ([f32; 4], f32) {
+    pub fn mean_radiance_and_cover(&self, scene: &Scene) -> ([f32; 4], f32) {
         let (mut light, mut clear, mut over) = ([0.0; 3], 1.0, f64::INFINITY);
         for layer in self.layers() {
             let (shape, cover) = (&layer.shape, layer.slab.cover);

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use super::{
     lamps::{LampsUniform, glow_size},
-    overhead::Overhead,
+    overhead::CloudLayers,
     picture::{BEHIND, Picture, marched},
     pipelines::{March, Part, Pipelines, Resolve, run, run_each},
-    round::{Around, Round},
-    shadow_map::{Lie, Past, ShadowMap},
+    round::{CloudPanorama, PanoramaInputs},
+    shadow_map::{HistoryUse, ShadowMap, ShadowProjection},
     tables::CloudTables,
     uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
 };
@@ -32,7 +32,7 @@ pub(super) struct CloudPasses {
     /// What the march is bound to; with which tables of the sky, and whether with the map of shadows.
     marched_of: Option<(wgpu::BindGroup, bool, wgpu::BindGroup)>,
     shadows: Option<ShadowMap>,
-    round: Option<Round>,
+    round: Option<CloudPanorama>,
     /// What shadows fall on, and of which of the host's depth images that is.
     shaded: Option<(Option<(wgpu::Texture, u32)>, wgpu::BindGroup)>,
     none: wgpu::TextureView,
@@ -45,7 +45,7 @@ pub(super) struct CloudPasses {
 
 /// What shadows are made of, and what they fall on.
 pub(super) struct Shaded<'a> {
-    pub lie: Lie,
+    pub lie: ShadowProjection,
     pub depth: Layer<'a>,
 }
 
@@ -77,11 +77,11 @@ pub(super) struct CloudFrame<'a> {
     /// Lamps and flashes that light them.
     pub lamps: Option<LampsUniform>,
     /// What the clouds of all directions are made of.
-    pub around: Around,
+    pub around: PanoramaInputs,
     /// Of the march ([`super::CloudSettings`]).
     pub fineness: f64,
     pub is_coarse: bool,
-    pub past: Past,
+    pub past: HistoryUse,
     /// The host's depth has several samples a pixel, and which kinds of depth there are.
     pub is_multisampled: bool,
     pub depth_kinds: f64,
@@ -110,7 +110,7 @@ impl CloudPasses {
     }
 
     /// Rebuilds bindings when the cloud maps have changed.
-    pub fn place(&mut self, device: &Device, overhead: &Overhead) -> Result<()> {
+    pub fn place(&mut self, device: &Device, overhead: &CloudLayers) -> Result<()> {
         let is_other = self.tables.place(device, overhead.maps.iter().flatten());
         if !is_other && self.is_placed == overhead.is_placed() {
             return Ok(());
@@ -152,7 +152,7 @@ impl CloudPasses {
     /// Bytes of GPU memory.
     pub fn bytes(&self) -> u64 {
         let shadows = self.shadows.as_ref().map_or(0, |_| ShadowMap::BYTES);
-        let round = self.round.as_ref().map_or(0, |_| Round::BYTES);
+        let round = self.round.as_ref().map_or(0, |_| CloudPanorama::BYTES);
         self.tables.bytes() + shadows + round + self.picture.as_ref().map_or(0, Picture::bytes)
     }
 
@@ -250,7 +250,7 @@ impl CloudPasses {
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         layout: &wgpu::BindGroupLayout,
-        (shaded, past): (Option<&Shaded<'_>>, Past),
+        (shaded, past): (Option<&Shaded<'_>>, HistoryUse),
     ) -> Result<(wgpu::BindGroup, u32)> {
         let passes = match (shaded, &mut self.shadows) {
             (Some(of), Some(shadows)) => shadows.draw(encoder, &of.lie, past),
@@ -288,7 +288,7 @@ impl CloudPasses {
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
-        (clouds, lie, past): (&CloudsUniform, &Lie, Past),
+        (clouds, lie, past): (&CloudsUniform, &ShadowProjection, HistoryUse),
         texture: &wgpu::Texture,
     ) -> Result<()> {
         self.block.write(bytemuck::bytes_of(clouds));
@@ -324,7 +324,7 @@ impl CloudPasses {
             let [march, sky] = &pipelines.march_layouts;
             let round = match &mut self.round {
                 Some(round) => round,
-                none => none.insert(Round::new(device, &[march, sky], self.is_placed)?),
+                none => none.insert(CloudPanorama::new(device, &[march, sky], self.is_placed)?),
             };
             if of.wanted.round {
                 passes += round.draw(encoder, &[&group, of.sky.1], of.around, (of.past, of_shadows > 0));

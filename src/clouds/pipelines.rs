@@ -11,9 +11,9 @@ use crate::{
         Device,
         bind::{self, Slot},
         pass::{self, FullscreenDesc},
-        recent::Recent,
+        recent::LruCache,
     },
-    stage::{FrameUniform, yes},
+    stage::{FrameUniform, flag},
 };
 
 /// What distinguishes one pipeline that marches rays from another.
@@ -25,7 +25,7 @@ pub(super) struct March {
     pub is_placed: bool,
     /// There are shafts of light.
     pub has_shafts: bool,
-    /// Some clouds are looked at coarsely ([`super::Overhead::is_coarse`]).
+    /// Some clouds are looked at coarsely ([`super::CloudLayers::is_coarse`]).
     pub is_coarse: bool,
 }
 
@@ -54,9 +54,9 @@ pub(super) struct Pipelines {
     pub picture_layout: wgpu::BindGroupLayout,
     pub shadow_layouts: [wgpu::BindGroupLayout; 2],
     /// The two last ones: a view that climbs and sinks again changes between them.
-    march: Recent<March, wgpu::RenderPipeline, 2>,
+    march: LruCache<March, wgpu::RenderPipeline, 2>,
     /// Of the light of lamps and flashes, once there is any.
-    glow: Recent<March, wgpu::RenderPipeline, 1>,
+    glow: LruCache<March, wgpu::RenderPipeline, 1>,
     pub follow: wgpu::RenderPipeline,
     /// Those of the march and of the sky, which the clouds of all directions are marched with too.
     pub march_layouts: [wgpu::BindGroupLayout; 2],
@@ -115,9 +115,9 @@ impl Pipelines {
         let march_layouts = [march_layout, sky.clone()];
         let follow = ("clouds/follow.wgsl", "follow");
         Ok(Self {
-            march: Recent::new(),
+            march: LruCache::new(),
             march_layouts,
-            glow: Recent::new(),
+            glow: LruCache::new(),
             follow: make(device, follow, &[&picture_layout], &[SEEN, SEEN, PAIR], &[])?,
             resolve: Vec::new(),
             picture_layout,
@@ -131,9 +131,9 @@ impl Pipelines {
             let march = ("clouds/march_view.wgsl", "march");
             let constants = [
                 ("CLOUD_FINENESS", of.fineness),
-                ("CLOUD_PLACED", yes(of.is_placed)),
-                ("CLOUD_COARSE", yes(of.is_coarse)),
-                ("SHAFTS", yes(of.has_shafts)),
+                ("CLOUD_PLACED", flag(of.is_placed)),
+                ("CLOUD_COARSE", flag(of.is_coarse)),
+                ("SHAFTS", flag(of.has_shafts)),
             ];
             Ok((of, make(device, march, &self.march_layouts.each_ref(), &[SEEN, PAIR], &constants)?))
         };
@@ -145,7 +145,7 @@ impl Pipelines {
         let of = March { has_shafts: false, is_coarse: false, ..of };
         let make = || {
             let glow = ("clouds/glow_view.wgsl:lamps", "glow");
-            let constants = [("CLOUD_FINENESS", of.fineness), ("CLOUD_PLACED", yes(of.is_placed))];
+            let constants = [("CLOUD_FINENESS", of.fineness), ("CLOUD_PLACED", flag(of.is_placed))];
             Ok((of, make(device, glow, &self.march_layouts.each_ref(), &[SEEN], &constants)?))
         };
         self.glow.get_or_make(|made| *made == of, make).cloned()
@@ -170,9 +170,9 @@ impl Pipelines {
         let make = |entry, shadows, masks: [wgpu::ColorWrites; 2], tested| {
             let targets = masks.map(|write_mask| wgpu::ColorTargetState { write_mask, ..SEEN.into() });
             let constants = [
-                ("HISTORY", yes(wanted.has_history)),
-                ("SHADOWS", yes(shadows)),
-                ("SHAFTS", yes(wanted.has_shafts)),
+                ("HISTORY", flag(wanted.has_history)),
+                ("SHADOWS", flag(shadows)),
+                ("SHAFTS", flag(wanted.has_shafts)),
                 ("DEPTH_KINDS", wanted.depth_kinds),
             ];
             let (targets, constants) = (&targets[..], &constants[..]);

@@ -17,7 +17,7 @@ use super::{
     cover::threshold,
     field::Shape,
     layer_map::{LayerMap, LayerMaps},
-    overhead::{Layer, Overhead},
+    overhead::{CloudLayers, Layer},
     uniforms::{AreaUniform, LAYERS, LayerUniform},
 };
 use crate::{
@@ -41,13 +41,13 @@ const MOST_ROUGH: f64 = 2.1;
 
 /// What one place of a layer is cut out by.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cut {
+pub(super) struct CoverThreshold {
     pub threshold: f64,
     pub dome: f64,
     pub extinction_per_m: f64,
 }
 
-impl Cut {
+impl CoverThreshold {
     fn of(shape: &Shape) -> Self {
         Self { threshold: shape.threshold, dome: shape.dome, extinction_per_m: shape.extinction_per_m }
     }
@@ -84,7 +84,7 @@ pub struct AreaCells {
     pub(super) count: usize,
     /// The layer that they are cells of.
     pub(super) layer: usize,
-    pub(super) filled: Cut,
+    pub(super) filled: CoverThreshold,
 }
 
 impl AreaCells {
@@ -99,19 +99,19 @@ impl AreaCells {
     }
 
     /// Hash of the cells, to notice changes.
-    fn told(&self) -> f64 {
+    fn fingerprint(&self) -> f64 {
         self.all().iter().map(|c| c.center_m.dot(DVec2::new(1.0, 0.7)) + c.semi_m.x + c.semi_m.y + c.rim_m).sum()
     }
 }
 
 /// Where a layer's clouds are other than its cover says.
 #[derive(Clone, Debug, Default)]
-pub struct Placed {
+pub struct LocalCover {
     map: Option<Arc<LayerMap>>,
     areas: Option<Arc<AreaCells>>,
 }
 
-impl Placed {
+impl LocalCover {
     /// By a map alone.
     #[cfg(test)]
     pub(super) fn under(map: Arc<LayerMap>) -> Self {
@@ -122,7 +122,7 @@ impl Placed {
     /// stays, m, and how much it changes a metre beyond.
     pub(super) fn shape_at(&self, place_m: DVec2, shape: &mut Shape) -> [f64; 2] {
         let (mut steady_m, mut slope_per_m) = (f64::INFINITY, 0.0);
-        let mut cut = Cut::of(shape);
+        let mut cut = CoverThreshold::of(shape);
         if let Some(map) = &self.map {
             (cut, steady_m) = map.at(place_m);
             slope_per_m = map.slope_per_m;
@@ -143,7 +143,7 @@ impl Placed {
     }
 }
 
-impl Overhead {
+impl CloudLayers {
     /// Puts clouds where a host's map says, and over rain areas. `eye` is the place in the host's world.
     ///
     /// # Errors
@@ -164,7 +164,7 @@ impl Overhead {
         let Some(clouds) = AreaClouds::new(over, &scene.conditions, at, time_s)? else { return Ok(()) };
         if let Some(layer) = self.bring(scene, &clouds) {
             let slab = &self.all()[layer].slab;
-            let filled = Cut::of(&Shape::still(slab, FILLED));
+            let filled = CoverThreshold::of(&Shape::still(slab, FILLED));
             let cells = clouds.cells.map(|cell| cell.with_edge(edge_m(slab)));
             self.areas = Some(AreaCells { cells, count: clouds.count, layer, filled });
         }
@@ -201,10 +201,10 @@ impl Overhead {
         self.insert(Layer { shape, slab, slot, share: 1.0 })
     }
 
-    /// Where the clouds of one of [`Overhead::all`] are other than its cover says.
-    pub(super) fn placed(&self, layer: usize) -> Placed {
+    /// Where the clouds of one of [`CloudLayers::all`] are other than its cover says.
+    pub(super) fn placed(&self, layer: usize) -> LocalCover {
         let areas = self.areas.as_ref().filter(|areas| areas.layer == layer);
-        Placed { map: self.maps[layer].clone(), areas: areas.map(|areas| Arc::new(*areas)) }
+        LocalCover { map: self.maps[layer].clone(), areas: areas.map(|areas| Arc::new(*areas)) }
     }
 
     /// Whether any are.
@@ -213,9 +213,9 @@ impl Overhead {
     }
 
     /// A number that changes as the cells over areas do, and one that is other for another map.
-    pub(super) fn placed_told(&self) -> (f64, usize) {
+    pub(super) fn fingerprint(&self) -> (f64, usize) {
         let map = self.maps.iter().flatten().next().map_or(0, |made| Arc::as_ptr(&made.map) as usize);
-        (self.areas.as_ref().map_or(0.0, AreaCells::told), map)
+        (self.areas.as_ref().map_or(0.0, AreaCells::fingerprint), map)
     }
 
     /// Puts what shaders know of it into the blocks of layers.
@@ -234,7 +234,7 @@ impl Overhead {
                 row += map.cells[1];
             }
             if let Some(areas) = self.areas.as_ref().filter(|areas| areas.layer == i) {
-                let Cut { threshold, dome, extinction_per_m } = areas.filled;
+                let CoverThreshold { threshold, dome, extinction_per_m } = areas.filled;
                 to.filled = [threshold, dome, extinction_per_m, areas.count as f64].map(|v| v as f32);
                 to.cells[3] += areas.slope_per_m() as f32;
             }

@@ -4,7 +4,7 @@
 use super::{
     picture::SEEN,
     rows::{self, Rows, Turn},
-    shadow_map::{Past, Standing},
+    shadow_map::{HistoryUse, ShadowInputs},
 };
 use crate::{
     error::Result,
@@ -12,7 +12,7 @@ use crate::{
         Device, flat_texture,
         pass::{self, FullscreenDesc},
     },
-    stage::yes,
+    stage::flag,
 };
 
 /// Texels along a side: 1.5 degrees each, as a mirror of still water shows broken clouds.
@@ -27,22 +27,22 @@ const LEAPS: (f64, f64) = (100.0, 0.05);
 
 /// What they are made of.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) struct Around {
-    pub standing: Standing,
+pub(super) struct PanoramaInputs {
+    pub standing: ShadowInputs,
     pub altitude_m: f64,
     pub exposure: f64,
 }
 
 /// The map and the pass that makes it.
-pub(super) struct Round {
+pub(super) struct CloudPanorama {
     pub texture: wgpu::Texture,
     view: wgpu::TextureView,
     pipeline: wgpu::RenderPipeline,
-    around: Option<Around>,
+    around: Option<PanoramaInputs>,
     rows: Rows,
 }
 
-impl Round {
+impl CloudPanorama {
     /// With the layouts of the march.
     pub fn new(device: &Device, layouts: &[&wgpu::BindGroupLayout], is_placed: bool) -> Result<Self> {
         let texture = flat_texture(
@@ -57,7 +57,7 @@ impl Round {
             entry: "round",
             layouts,
             targets: &[SEEN.into()],
-            constants: &[("CLOUD_PLACED", yes(is_placed)), ("CLOUD_COARSE", 1.0)],
+            constants: &[("CLOUD_PLACED", flag(is_placed)), ("CLOUD_COARSE", 1.0)],
             samples: 1,
         };
         Ok(Self {
@@ -77,13 +77,13 @@ impl Round {
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         groups: &[&wgpu::BindGroup],
-        here: Around,
-        (past, waits): (Past, bool),
+        here: PanoramaInputs,
+        (past, waits): (HistoryUse, bool),
     ) -> u32 {
         let before = self.around.replace(here);
         let turn = Turn {
             rests: before == Some(here),
-            holds: past == Past::Kept && before.is_some_and(|b| !here.leaps_from(&b)),
+            holds: past == HistoryUse::Kept && before.is_some_and(|b| !here.leaps_from(&b)),
             aged: before.map_or(1.0, |b| here.aged_since(&b)),
             waits,
             is_coarse: false,
@@ -102,7 +102,7 @@ impl Round {
     }
 }
 
-impl Around {
+impl PanoramaInputs {
     fn leaps_from(&self, before: &Self) -> bool {
         let (way_m, exposed) = LEAPS;
         self.standing.leaps_from(&before.standing)

@@ -5,7 +5,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    overhead::Overhead,
+    overhead::CloudLayers,
     rows::{self, Rows, Turn},
     shadow::LOWEST,
     tables::CloudTables,
@@ -21,7 +21,7 @@ use crate::{
         pass::{self, FullscreenDesc},
     },
     moment::{Moment, Scene},
-    stage::{Frame, FrameFlags, yes},
+    stage::{Frame, FrameFlags, flag},
     weather::smoothstep,
 };
 
@@ -37,7 +37,7 @@ const ROWS: u32 = 32;
 /// Height above the lowest base over which, in the clouds themselves, shadows go over to the mean, m: that of the shaders and snippets.
 const ENDS_M: f64 = 100.0;
 /// Sines of the light's elevation between which shadows begin to be told apart.
-const TOLD: [f64; 2] = [LOWEST, 0.07];
+const FADE_SINES: [f64; 2] = [LOWEST, 0.07];
 /// Time between two frames, s, the light's turn, and the change of a layer's threshold after which nothing of the map is kept.
 const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
 
@@ -50,7 +50,7 @@ const AGES: (f64, f64, f64, f64) = (4.0, 0.0025, 0.004, 600.0);
 
 /// What a frame may take over from those before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Past {
+pub(super) enum HistoryUse {
     Kept,
     /// Nothing; those after it may take over from it.
     Cut,
@@ -58,7 +58,7 @@ pub(super) enum Past {
     None,
 }
 
-impl Past {
+impl HistoryUse {
     pub fn of(frame: &Frame<'_>) -> Self {
         match frame.flags {
             flags if flags.has(FrameFlags::NO_HISTORY) => Self::None,
@@ -70,7 +70,7 @@ impl Past {
 
 /// What the map is made of.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) struct Standing {
+pub(super) struct ShadowInputs {
     pub time_s: f64,
     pub to_light: DVec3,
     pub threshold_sum: f64,
@@ -83,8 +83,8 @@ pub(super) struct Standing {
 
 /// How the map lies about a camera.
 #[derive(Clone, Copy)]
-pub(super) struct Lie {
-    pub standing: Standing,
+pub(super) struct ShadowProjection {
+    pub standing: ShadowInputs,
     /// Unit, never level.
     pub to_light: DVec3,
     plane_m: f64,
@@ -108,7 +108,7 @@ pub(super) struct ShadowMap {
     /// The clouds, which both maps are made of.
     clouds: wgpu::BindGroup,
     coarse: Coarse,
-    standing: Option<Standing>,
+    standing: Option<ShadowInputs>,
     rows: Rows,
     /// Rows that are still those of the coarse map.
     coarse_rows: u32,
@@ -134,9 +134,9 @@ fn haze(scene: &Scene) -> [f64; 2] {
     [sum, sum / parts.iter().map(|(extinction, height_m)| extinction / height_m).sum::<f64>().max(1e-12)]
 }
 
-impl Lie {
+impl ShadowProjection {
     /// Of a moment's clouds.
-    pub fn new(now: &Moment<'_>, overhead: &Overhead) -> Self {
+    pub fn new(now: &Moment<'_>, overhead: &CloudLayers) -> Self {
         let shapes = overhead.layers().iter().map(|layer| &layer.shape);
         let scene = &now.scene;
         let plane_m = scene.conditions.air.station_altitude_m;
@@ -146,13 +146,13 @@ impl Lie {
         let camera = (DVec2::from_array(scene.map_m) - drift_m) / period_m;
         let lowest_m = shapes.clone().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
         Self {
-            standing: Standing {
+            standing: ShadowInputs {
                 time_s: now.time_s,
                 to_light: light.direction,
                 threshold_sum: shapes.map(|s| s.threshold + s.base_m / 1000.0).sum(),
                 camera_m: DVec2::from_array(scene.map_m),
                 drift_m,
-                placed: overhead.placed_told(),
+                placed: overhead.fingerprint(),
             },
             to_light: light.direction.with_z(light.direction.z.max(LOWEST)),
             plane_m,
@@ -160,7 +160,7 @@ impl Lie {
             eye_m: scene.place.altitude_m - plane_m,
             period_m,
             mean: light.direct_share,
-            told: smoothstep(TOLD[0], TOLD[1], light.direction.z),
+            told: smoothstep(FADE_SINES[0], FADE_SINES[1], light.direction.z),
             top_m: (lowest_m - plane_m).max(0.0) + ENDS_M,
             haze: haze(scene),
         }
@@ -209,7 +209,7 @@ fn shadow_pipeline(
     layout: &wgpu::BindGroupLayout,
     (side, is_placed): (u32, bool),
 ) -> Result<wgpu::RenderPipeline> {
-    let constants = [("SHADOW_TEXELS", f64::from(side)), ("CLOUD_PLACED", yes(is_placed))];
+    let constants = [("SHADOW_TEXELS", f64::from(side)), ("CLOUD_PLACED", flag(is_placed))];
     pipeline(device, ("clouds/shadow.wgsl", "shadow"), layout, &constants)
 }
 
@@ -294,17 +294,17 @@ impl ShadowMap {
 
     /// Makes some rows anew where enough have grown old, and before them the whole map coarsely where nothing of it holds any more or the picture
     /// is cut; where a frame is a pure function of view and time, all rows. Answers the passes that it took.
-    pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, lie: &Lie, past: Past) -> u32 {
+    pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, lie: &ShadowProjection, past: HistoryUse) -> u32 {
         let here = lie.standing;
         self.block.write(bytemuck::bytes_of(&lie.uniform()));
         let before = self.standing.replace(here);
-        let begins = past == Past::Cut || past == Past::Kept && before.is_none_or(|b| here.leaps_from(&b));
+        let begins = past == HistoryUse::Cut || past == HistoryUse::Kept && before.is_none_or(|b| here.leaps_from(&b));
         if begins {
             self.coarse_rows = TEXELS;
         }
         let turn = Turn {
-            rests: past != Past::Cut && before == Some(here),
-            holds: past != Past::None,
+            rests: past != HistoryUse::Cut && before == Some(here),
+            holds: past != HistoryUse::None,
             aged: before.map_or(1.0, |b| here.aged_since(&b)),
             waits: false,
             is_coarse: self.coarse_rows > 0,
@@ -322,7 +322,7 @@ impl ShadowMap {
     }
 }
 
-impl Standing {
+impl ShadowInputs {
     /// Whether nothing of a map of what stood before holds.
     pub fn leaps_from(&self, before: &Self) -> bool {
         let (time_s, turn, threshold) = LEAPS;

@@ -6,22 +6,22 @@ use super::{
     CloudModel, CloudSettings,
     candidates::{CLOUDS, clouds_work},
     field::Shape,
-    handed::{CloudShadows, Handed},
+    handed::{CloudShadows, HostShadowTexture},
     lamps::LampsUniform,
     layer_map::LayerMaps,
-    overhead::{Overhead, light_on},
+    overhead::{CloudLayers, light_on},
     passes::{CloudFrame, CloudPasses, Shaded, Wanted},
     picture::BEGUN_SIDE,
-    round::Around,
+    round::PanoramaInputs,
     shadow::LOWEST,
-    shadow_map::{Lie, Past, ShadowMap},
+    shadow_map::{HistoryUse, ShadowMap, ShadowProjection},
     uniforms::{CloudsUniform, LAYERS, LayerUniform, MediumUniform, PictureUniform},
 };
 use crate::{
     error::Result,
-    gpu::{Device, recent::Recent},
+    gpu::{Device, recent::LruCache},
     moment::{Moment, Scene},
-    stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Sampling, Shot, Stages, Texture, yes},
+    stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Sampling, Shot, Stages, Texture, flag},
     weather::CloudSlab,
     wind::LayerDrifts,
 };
@@ -55,9 +55,9 @@ struct Made {
 #[derive(Default)]
 pub(crate) struct CloudsView {
     pub settings: CloudSettings,
-    overhead: Option<Overhead>,
+    overhead: Option<CloudLayers>,
     /// Of the layers, which most frames have in common with the last one.
-    shapes: Recent<CloudSlab, Shape, LAYERS>,
+    shapes: LruCache<CloudSlab, Shape, LAYERS>,
     /// Of layers that a host's map is laid on.
     maps: LayerMaps,
     passes: Option<Box<CloudPasses>>,
@@ -70,7 +70,7 @@ pub(crate) struct CloudsView {
     /// The picture before this call holds the last frame's clouds.
     kept: bool,
     /// The map of shadows, once a host's own materials read it.
-    handed: Option<Handed>,
+    handed: Option<HostShadowTexture>,
     /// The layer of stars that shine between them.
     behind: Option<wgpu::Texture>,
 }
@@ -83,7 +83,7 @@ impl CloudsView {
     pub fn gather(&mut self, now: &Moment<'_>, model: CloudModel) -> Result<()> {
         let is_clear = now.scene.conditions.cloud_slabs().next().is_none() && now.weather.regions.is_empty();
         let still = |slab: &CloudSlab| self.shapes.get_or_put(slab, || Shape::of(slab));
-        let new = || Ok(Overhead::new(model, &now.scene, &now.weather.layers_until(now.time_s)?, still));
+        let new = || Ok(CloudLayers::new(model, &now.scene, &now.weather.layers_until(now.time_s)?, still));
         let mut overhead = if is_clear { None } else { new()? };
         if let Some(overhead) = &mut overhead {
             overhead.place((&now.scene, now.eye), (&now.weather, now.time_s), &mut self.maps)?;
@@ -97,12 +97,13 @@ impl CloudsView {
 
     /// Whether some clouds leave places in the light and others not, and the host drew what shadows may fall on.
     fn casts_shadows(&self, shot: &Shot<'_>, stages: Stages) -> bool {
-        let told = shot.now.scene.brighter().direction.z > LOWEST;
+        let light_is_up = shot.now.scene.brighter().direction.z > LOWEST;
         // A host that reads the map lays the shadows itself.
-        told && self.handed.is_none()
+        light_is_up
+            && self.handed.is_none()
             && stages.has(Stages::SURFACE)
             && shot.frame.depth.is_some()
-            && self.overhead.as_ref().is_some_and(Overhead::is_broken)
+            && self.overhead.as_ref().is_some_and(CloudLayers::is_broken)
     }
 
     /// Share of a picture's rays that lead towards the clouds.
@@ -153,7 +154,7 @@ fn shadow_strength(scene: &Scene) -> [f32; 4] {
     [one(0), one(1), one(2), light.direct_share as f32]
 }
 
-impl Overhead {
+impl CloudLayers {
     fn uniform(&self, now: &Moment<'_>, exposure: f64, passes: &CloudPasses) -> CloudsUniform {
         let scene = &now.scene;
         let light = scene.brighter();
@@ -182,11 +183,13 @@ impl CloudsView {
     /// The map of shadows for a host's own materials: from the first call on each frame's first call brings it up to date.
     pub fn shadows(&mut self, device: &Device) -> CloudShadows {
         let made = self.passes.as_ref().and_then(|passes| passes.shadow_texture().cloned());
-        let handed = self.handed.get_or_insert_with(|| Handed::new(made.unwrap_or_else(|| ShadowMap::texture(device))));
+        let handed = self
+            .handed
+            .get_or_insert_with(|| HostShadowTexture::new(made.unwrap_or_else(|| ShadowMap::texture(device))));
         handed.shadows.clone()
     }
 
-    fn lay(&mut self, now: &Moment<'_>, lie: Option<&Lie>) {
+    fn lay(&mut self, now: &Moment<'_>, lie: Option<&ShadowProjection>) {
         if let Some(handed) = &mut self.handed {
             handed.lay(now, lie);
         }
@@ -244,12 +247,12 @@ impl DrawnEffect for CloudsView {
         let cosine = at.now.scene.brighter().direction.z;
         passes.tables.update(to.device, to.encoder, cosine, overhead.liquid_um);
         passes.place(to.device, overhead)?;
-        let told = cosine > LOWEST && overhead.is_broken();
-        let lie = told.then(|| Lie::new(at.now, overhead));
+        let has_shadows = cosine > LOWEST && overhead.is_broken();
+        let lie = has_shadows.then(|| ShadowProjection::new(at.now, overhead));
         if let (Some(lie), Some(handed)) = (&lie, &self.handed) {
             // Shadows do not ask for the exposure.
             let clouds = overhead.uniform(at.now, 1.0, passes);
-            let of = (&clouds, lie, Past::of(at.frame));
+            let of = (&clouds, lie, HistoryUse::of(at.frame));
             passes.draw_shadows(to.device, to.encoder, of, &handed.shadows.texture)?;
         }
         self.lay(at.now, lie.as_ref());
@@ -263,31 +266,31 @@ impl DrawnEffect for CloudsView {
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         to.block.clouds_drawn = shot.share(&CLOUDS, 0);
         if let Some(overhead) = self.overhead.as_ref().filter(|_| shot.is_gauged) {
-            (to.block.mean_cloud, to.block.clouds_over) = overhead.on_the_mean(&shot.now.scene);
+            (to.block.mean_cloud, to.block.clouds_over) = overhead.mean_radiance_and_cover(&shot.now.scene);
         }
         let is_drawn = to.block.clouds_drawn > 0.0;
         if !is_drawn {
             self.before = None;
         }
         let is_there = self.is_there(shot.frame, to.stages) && self.passes.is_some() && is_drawn;
-        to.between_and_veil("CLOUDS", yes(is_there), yes(is_there));
-        to.between("DECK_CLOSED", 0.0, yes(to.block.deck_cover >= 1.0));
-        let deck = yes(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
+        to.between_and_veil("CLOUDS", flag(is_there), flag(is_there));
+        to.between("DECK_CLOSED", 0.0, flag(to.block.deck_cover >= 1.0));
+        let deck = flag(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
         to.between("DECK_BEHIND", deck, deck);
         let shadows = is_there && self.casts_shadows(shot, to.asked);
-        to.constant("CLOUD_SHADOWS", yes(shadows), yes(shadows));
+        to.constant("CLOUD_SHADOWS", flag(shadows), flag(shadows));
         let texture = shot.color.texture;
         let size = (texture.width(), texture.height());
         let overhead = self.overhead.as_ref().filter(|_| is_there);
         self.lamps = overhead.and_then(|o| LampsUniform::of(o, shot.now, shot.exposure, size));
-        let glow = yes(self.lamps.is_some());
+        let glow = flag(self.lamps.is_some());
         to.between_and_veil("CLOUD_GLOW", glow, glow);
         let shafts = shadows && self.settings.shafts;
-        to.constant("CLOUD_SHAFTS", yes(shafts), yes(shafts));
+        to.constant("CLOUD_SHAFTS", flag(shafts), flag(shafts));
         if shafts {
-            to.is_fine();
+            to.mark_fine();
         } else if is_there {
-            to.is_overlaid();
+            to.mark_overlaid();
         }
         if shadows {
             to.block.cloud_shadow = shadow_strength(&shot.now.scene);
@@ -310,7 +313,7 @@ impl DrawnEffect for CloudsView {
         let Some(mut wanted) = self.wanted.take() else { return Ok(()) };
         let casts_shadows = self.casts_shadows(shot, with.composition.asked);
         let earlier = self.made_of(shot.frame);
-        wanted.shows_round = with.composition.looks_round;
+        wanted.shows_round = with.composition.needs_panorama;
         wanted.round = wanted.shows_round && !earlier.is_some_and(|m| m.is_round);
         let (picture, here) = match earlier.filter(|_| !wanted.march) {
             Some(made) => (made.picture, None),
@@ -324,10 +327,13 @@ impl DrawnEffect for CloudsView {
         else {
             return Ok(());
         };
-        let lie = Lie::new(shot.now, overhead);
+        let lie = ShadowProjection::new(shot.now, overhead);
         let pixel = shot.rays.pixel_angle(shot.color.texture.height());
-        let around =
-            Around { standing: lie.standing, altitude_m: shot.now.scene.place.altitude_m, exposure: shot.exposure };
+        let around = PanoramaInputs {
+            standing: lie.standing,
+            altitude_m: shot.now.scene.place.altitude_m,
+            exposure: shot.exposure,
+        };
         let shaded = shot.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { lie, depth });
         let sampling = Sampling::of(shot.color.texture, shot.frame.depth);
         let of = CloudFrame {
@@ -343,7 +349,7 @@ impl DrawnEffect for CloudsView {
             around,
             fineness: self.settings.fineness,
             is_coarse: overhead.is_coarse(&shot.now.scene, shot.now.planet_radius_m, pixel),
-            past: Past::of(shot.frame),
+            past: HistoryUse::of(shot.frame),
             is_multisampled: sampling.multisampled()[1],
             depth_kinds: f64::from(shot.rays.depth_kinds()),
         };
@@ -353,7 +359,7 @@ impl DrawnEffect for CloudsView {
             frame_id: shot.frame.frame_id,
             is_marched: wanted.march || earlier.is_some_and(|m| m.is_marched),
             is_shaded: casts_shadows || earlier.is_some_and(|m| m.is_shaded),
-            is_round: with.composition.looks_round || earlier.is_some_and(|m| m.is_round),
+            is_round: with.composition.needs_panorama || earlier.is_some_and(|m| m.is_round),
             picture,
         });
         Ok(())

@@ -95,10 +95,10 @@ impl Context {
     pub fn load(&mut self, bytes: &[u8]) -> Result<()> {
         let mut loaded = self.read_state(unsealed(bytes)?)?;
         let behind = self.behind.take();
-        self.take_up(&mut loaded);
+        self.swap_in(&mut loaded);
         let shown = self.refresh();
         if shown.is_err() {
-            self.take_up(&mut loaded);
+            self.swap_in(&mut loaded);
             self.behind = behind;
         }
         shown
@@ -113,9 +113,9 @@ impl Context {
     }
 
     /// Shows a state, and leaves the one before in its place.
-    fn take_up(&mut self, other: &mut Loaded) {
-        self.world.take_up(&mut other.world);
-        self.held.take_up(&mut self.world, &mut other.held);
+    fn swap_in(&mut self, other: &mut Loaded) {
+        self.world.swap_in(&mut other.world);
+        self.held.swap_in(&mut self.world, &mut other.held);
     }
 
     /// A number that is equal on two channels whose contexts show the same world from now on: a hash of what

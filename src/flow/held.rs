@@ -189,7 +189,7 @@ impl HeldFlow {
     }
 
     /// Shows a loaded one, and leaves the one before in its place.
-    pub fn take_up(&mut self, world: &mut World, other: &mut Self) {
+    pub fn swap_in(&mut self, world: &mut World, other: &mut Self) {
         std::mem::swap(self, other);
         (self.is_shown, other.is_shown) = (false, false);
         self.publish(world);

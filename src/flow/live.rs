@@ -6,7 +6,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::{
     FlowBox, FlowField, FlowObstacles, FlowSettings, Scheme, WindFieldDesc, WindFieldMode, WindFieldReport, WindWalls,
-    moving::Standing, turbulence::Whirls,
+    moving::SolidBodies, turbulence::Whirls,
 };
 use crate::{
     error::Result,
@@ -243,7 +243,7 @@ pub(super) struct Live {
     pub parts: (u32, f64),
     /// What stood in the field at its last step, as [`Scenery::hash`] has it.
     pub stood: [u64; 2],
-    standing: Option<Standing>,
+    standing: Option<SolidBodies>,
     /// Of a steady field: the wind that it was solved for, east, north and roughness length; how long it has not rested, s; and whether
     /// it does.
     pub solved_for: [f64; 3],

@@ -12,7 +12,7 @@ use super::{
 use crate::error::{Result, check_range};
 
 /// What stood in a field when its obstacles were looked up last, to look up what has changed alone.
-pub(super) struct Standing {
+pub(super) struct SolidBodies {
     shares: Shares,
     /// Columns in which something moves.
     moving: Option<Columns>,
@@ -105,18 +105,18 @@ impl FlowField {
         &mut self,
         obstacles: &FlowObstacles,
         moving: &[super::FlowBox],
-        standing: Option<Standing>,
-    ) -> Result<Standing> {
+        standing: Option<SolidBodies>,
+    ) -> Result<SolidBodies> {
         let now = columns_of(&self.lattice, moving);
         let standing = match standing {
-            None => Standing { shares: obstacles.shares(&self.lattice)?, moving: now },
+            None => SolidBodies { shares: obstacles.shares(&self.lattice)?, moving: now },
             Some(mut before) => {
                 let both = [before.moving, now].into_iter().flatten();
                 let columns = both.reduce(|a, b| [0, 1].map(|i| [a[i][0].min(b[i][0]), a[i][1].max(b[i][1])]));
                 if let Some(columns) = columns {
                     obstacles.find(&self.lattice, columns, &mut before.shares)?;
                 }
-                Standing { moving: now, ..before }
+                SolidBodies { moving: now, ..before }
             }
         };
         self.take_shares(standing.shares.clone());

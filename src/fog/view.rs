@@ -8,7 +8,7 @@ use crate::{
         blocks::{Blocks, UniformBlock},
     },
     moment::Moment,
-    stage::{Block, Composition, DrawnEffect, PutPart, Shot, Stages, yes},
+    stage::{Block, Composition, DrawnEffect, PutPart, Shot, Stages, flag},
 };
 
 /// The fog of a view.
@@ -61,7 +61,7 @@ impl DrawnEffect for FogView {
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         let share = shot.share(&candidates::FOG, 0);
         let least = self.variant.filter(|_| share > 0.0);
-        to.between_and_veil("FOG", yes(self.variant.is_some()), yes(least.is_some()));
+        to.between_and_veil("FOG", flag(self.variant.is_some()), flag(least.is_some()));
         (to.whole.traits.veils_all, to.least.traits.veils_all) = (self.variant.is_some(), least.is_some());
         let whole = self.variant.unwrap_or(FogVariant::ALL).constants();
         for ((name, whole), (_, least)) in whole.into_iter().zip(least.unwrap_or(FogVariant::ALL).constants()) {

@@ -15,10 +15,10 @@ use crate::{
         bind::{self, Slot},
         blocks::BlockView,
         pass::{self, FullscreenDesc},
-        recent::Recent,
+        recent::LruCache,
     },
     moment::Moment,
-    stage::{Composition, Constant, Constants, Frame, FrameUniform, Pipeline, Sampling, Stages, yes},
+    stage::{Composition, Constant, Constants, Frame, FrameUniform, Pipeline, Sampling, Stages, flag},
     surroundings::layout as around_layout,
 };
 
@@ -77,13 +77,13 @@ impl Variant {
             ("TONE", Stages::TONE),
             ("PARTICLES", Stages::PARTICLES),
         ] {
-            all.push((name, yes(self.stages.has(stage))));
+            all.push((name, flag(self.stages.has(stage))));
         }
         for (name, given) in ["HAS_DEPTH", "HAS_MASK", "HAS_CLASSES", "HAS_NORMALS"].into_iter().zip(self.images) {
-            all.push((name, yes(given)));
+            all.push((name, flag(given)));
         }
-        all.push(("FAR_ABOVE", yes(self.pixels != Pixels::Below)));
-        all.push(("FAR_BELOW", yes(self.pixels != Pixels::Above)));
+        all.push(("FAR_ABOVE", flag(self.pixels != Pixels::Below)));
+        all.push(("FAR_BELOW", flag(self.pixels != Pixels::Above)));
         all.extend(self.constants.between.all());
         all.extend(self.constants.composed.all());
         all
@@ -137,9 +137,9 @@ pub(super) struct Composite {
     layouts: [wgpu::BindGroupLayout; 3],
     layout_tables: wgpu::BindGroupLayout,
     layout_around: wgpu::BindGroupLayout,
-    pipelines: Recent<Variant, wgpu::RenderPipeline, MOST_PIPELINES>,
-    evens: Recent<Variant, wgpu::RenderPipeline, MOST_EVEN>,
-    kinds: Recent<KindsPipeline, wgpu::RenderPipeline, MOST_KINDS>,
+    pipelines: LruCache<Variant, wgpu::RenderPipeline, MOST_PIPELINES>,
+    evens: LruCache<Variant, wgpu::RenderPipeline, MOST_EVEN>,
+    kinds: LruCache<KindsPipeline, wgpu::RenderPipeline, MOST_KINDS>,
     none: wgpu::TextureView,
     /// The same as a texture of layers.
     no_layers: wgpu::TextureView,
@@ -177,9 +177,9 @@ impl Composite {
             layouts: Sampling::ALL.map(|sampling| layout(&device.device, sampling)),
             layout_tables: tables_layout(device),
             layout_around: around_layout(&device.device),
-            pipelines: Recent::new(),
-            evens: Recent::new(),
-            kinds: Recent::new(),
+            pipelines: LruCache::new(),
+            evens: LruCache::new(),
+            kinds: LruCache::new(),
             no_layers: bind::no_layers(&device.device),
             none,
             reads_samples: multi,
@@ -293,8 +293,8 @@ impl Composite {
             let constants = [
                 ("DEPTH_KINDS", of.between.value("DEPTH_KINDS")),
                 ("ENCODED", of.composed.value("ENCODED")),
-                ("HAS_DEPTH", yes(variant.images[0])),
-                ("HAS_MASK", yes(variant.images[1])),
+                ("HAS_DEPTH", flag(variant.images[0])),
+                ("HAS_MASK", flag(variant.images[1])),
             ];
             let targets = [variant.target(wgpu::ColorWrites::ALL)];
             let desc = FullscreenDesc {
@@ -344,9 +344,9 @@ impl Composite {
         let between = &variant.constants.between;
         let constants = [
             ("DEPTH_KINDS", between.value("DEPTH_KINDS")),
-            ("HAS_DEPTH", yes(variant.images[0])),
-            ("APART", yes(kinds::draws_apart(variant))),
-            ("SPLITS", yes(device.caps().software)),
+            ("HAS_DEPTH", flag(variant.images[0])),
+            ("APART", flag(kinds::draws_apart(variant))),
+            ("SPLITS", flag(device.caps().software)),
         ];
         let kinds = KindsPipeline { format: variant.format, sampling: variant.sampling, constants, with_even };
         self.kinds.get_or_make(

@@ -4,7 +4,7 @@ use super::{View, draw::Call};
 use crate::{
     error::Result,
     gpu::{Layer, pass},
-    stage::{ColorSpace, Composition, CostItem, Diagnostic, Drawing, Recording, Stages, is_float, uniform, yes},
+    stage::{ColorSpace, Composition, CostItem, Diagnostic, Drawing, Recording, Stages, flag, is_float, uniform},
 };
 
 impl View {
@@ -36,8 +36,11 @@ impl View {
         }
         let plain = !is_float(color.format()) && !color.format().is_srgb();
         let encoded = plain && frame.color_space != ColorSpace::DisplayLinear;
-        let own =
-            [("DIAGNOSTIC", f64::from(frame.diagnostic as u32)), ("ABSENT", yes(!is_there)), ("ENCODED", yes(encoded))];
+        let own = [
+            ("DIAGNOSTIC", f64::from(frame.diagnostic as u32)),
+            ("ABSENT", flag(!is_there)),
+            ("ENCODED", flag(encoded)),
+        ];
         own.into_iter().for_each(|(name, value)| composition.constant(name, value, value));
         let variant = self.variant(&shot, &mut composition)?;
         self.hold_copy(color)?;

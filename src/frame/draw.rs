@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{
     View,
     composite::Variant,
-    draws::{Drawn, Draws, Unmade},
+    draws::{DrawKey, Draws, PipelineNotReady},
     froxels::Froxels,
     kinds::Pixels,
     planned::{present, situation},
@@ -17,7 +17,7 @@ use crate::{
     moment::Moment,
     plan::parts::{MOST_PARTS, MOST_RUNGS},
     scene::ViewRays,
-    stage::{ColorSpace, Composition, CostItem, Drawing, Frame, Recording, Sampling, Shot, Stages, uniform, yes},
+    stage::{ColorSpace, Composition, CostItem, Drawing, Frame, Recording, Sampling, Shot, Stages, flag, uniform},
 };
 
 /// What the draws of one call have in common.
@@ -69,7 +69,7 @@ impl View {
         for effect in self.effects.each() {
             effect.compose(&shot, &mut composition)?;
         }
-        composition.looks_round |= self.environment.is_some();
+        composition.needs_panorama |= self.environment.is_some();
         let variant = self.variant(&shot, &mut composition)?;
         self.hold_copy(color)?;
         self.bind(&shot, &composition)?;
@@ -127,7 +127,7 @@ impl View {
         let target = [
             ("COLOR_SPACES", f64::from(1u32 << block.color_space)),
             ("ENCODES", f64::from(block.encode)),
-            ("DITHERS", yes(block.dither_step > 0.0)),
+            ("DITHERS", flag(block.dither_step > 0.0)),
         ];
         let curve = f64::from(1u32 << block.tone);
         target.into_iter().for_each(|(name, value)| composition.constant(name, value, value));
@@ -139,7 +139,7 @@ impl View {
             around = if stages.has(Stages::SURFACE) { host.present() } else { around };
         }
         for (name, is_there) in [("SHELTER", around.shelter), ("MAPS", around.maps), ("LAMPS", around.lamps)] {
-            composition.constant(name, yes(is_there), yes(is_there));
+            composition.constant(name, flag(is_there), flag(is_there));
         }
         Ok(Variant {
             stages,
@@ -170,15 +170,15 @@ impl View {
         // A pure picture does not depend on how many frames were drawn before it.
         let how = (splits, splits || shot.frame.is_pure());
         let make = || {
-            let drawn = Drawn { of: Variant { constants: *constants, ..*whole }, has_grid };
+            let drawn = DrawKey { of: Variant { constants: *constants, ..*whole }, has_grid };
             let draws = Draws::new(&self.device, &mut *self.composite.lock()?, &drawn, how)?;
             Ok((drawn, draws))
         };
         let held = (self.kinds.as_ref(), self.even.as_ref());
         to.passes += match self.draws.get_or_make(|drawn| drawn.is(whole, constants, has_grid), make) {
             Ok(draws) => draws.record(to.encoder, held, &groups, target),
-            Err(Unmade::Coming(draws)) => draws.record(to.encoder, held, &groups, target),
-            Err(Unmade::Failed(error)) => return Err(error),
+            Err(PipelineNotReady::Coming(draws)) => draws.record(to.encoder, held, &groups, target),
+            Err(PipelineNotReady::Failed(error)) => return Err(error),
         };
         if !composition.stages.has(Stages::MEDIUM) {
             return Ok(());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{
     composite::{Composite, Variant},
-    even::{self, EvenGrid},
+    even::{self, CoarseWeather},
     kinds::{self, KindAttachment, Pixels},
 };
 use crate::{
@@ -18,12 +18,12 @@ use crate::{
 pub(super) const MOST_DRAWS: usize = 4;
 
 /// What draws are made for.
-pub(super) struct Drawn {
+pub(super) struct DrawKey {
     pub of: Variant,
     pub has_grid: bool,
 }
 
-impl Drawn {
+impl DrawKey {
     /// Whether it is a variant with these constants.
     pub fn is(&self, variant: &Variant, constants: &Pipeline, has_grid: bool) -> bool {
         self.has_grid == has_grid && self.of.is_with(variant, constants)
@@ -47,13 +47,13 @@ enum Kinds {
 }
 
 /// Why there are no draws of a variant yet.
-pub(super) enum Unmade {
+pub(super) enum PipelineNotReady {
     /// Not all of their pipelines are compiled: until they are, one draw stands for them.
     Coming(Draws),
     Failed(Error),
 }
 
-impl From<Error> for Unmade {
+impl From<Error> for PipelineNotReady {
     fn from(of: Error) -> Self {
         Self::Failed(of)
     }
@@ -61,16 +61,16 @@ impl From<Error> for Unmade {
 
 impl Draws {
     /// The draws of a variant. Unless `at_once`, each call compiles one large pipeline; until all are there, the answer is one
-    /// draw of all pixels ([`Unmade`]). `splits` is that of [`kinds::draws`].
+    /// draw of all pixels ([`PipelineNotReady`]). `splits` is that of [`kinds::draws`].
     ///
     /// # Errors
     /// That one draw; a missing shader file.
     pub fn new(
         device: &Arc<Device>,
         composite: &mut Composite,
-        drawn: &Drawn,
+        drawn: &DrawKey,
         (splits, at_once): (bool, bool),
-    ) -> std::result::Result<Self, Unmade> {
+    ) -> std::result::Result<Self, PipelineNotReady> {
         let of = &drawn.of;
         let draws = kinds::draws(of, drawn.has_grid && even::may_be(of), splits);
         let looks_up = draws.iter().flatten().any(|variant| variant.pixels.are_even());
@@ -82,11 +82,11 @@ impl Draws {
                 composite.pipeline(device, next)?;
                 if more {
                     let one = Kinds::One(composite.pipeline(device, all)?.clone());
-                    return Err(Unmade::Coming(Self { even: None, pixels: one }));
+                    return Err(PipelineNotReady::Coming(Self { even: None, pixels: one }));
                 }
             }
         }
-        Self::whole(device, composite, of, (draws, looks_up)).map_err(Unmade::Failed)
+        Self::whole(device, composite, of, (draws, looks_up)).map_err(PipelineNotReady::Failed)
     }
 
     /// All of them now.
@@ -113,7 +113,7 @@ impl Draws {
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        (attachment, grid): (Option<&KindAttachment>, Option<&EvenGrid>),
+        (attachment, grid): (Option<&KindAttachment>, Option<&CoarseWeather>),
         groups: &[&wgpu::BindGroup; 3],
         target: &wgpu::TextureView,
     ) -> u32 {

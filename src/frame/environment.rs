@@ -12,7 +12,7 @@ use crate::{
         Device,
         bind::{self, Slot},
         pass::{self, FullscreenDesc},
-        recent::Recent,
+        recent::LruCache,
     },
     moment::Scene,
     stage::{ColorSpace, Composition, Constants, CostItem, Recording, Sampling, Shot, Stages},
@@ -88,7 +88,7 @@ fn apart(blocks: impl Iterator<Item = FaceUniform>) -> Vec<u8> {
 
 /// Light and weather at a camera, to see when they leap.
 #[derive(Clone, Copy, PartialEq)]
-struct Standing {
+struct EnvironmentInputs {
     /// Of what doubles and halves, the logarithms; altitude, share of a closed layer.
     sizes: [f64; 6],
     to_lamp: DVec3,
@@ -101,7 +101,7 @@ const LEAP_RAD: f64 = 0.02;
 /// Adaptation luminances over that of the scale between which half floats serve well.
 const SCALES: std::ops::Range<f64> = 0.1..10.0;
 
-impl Standing {
+impl EnvironmentInputs {
     fn of(scene: &Scene) -> Self {
         let light = &scene.ground;
         let doubling = [light.total_lux, light.sky_lux[1], scene.deck_cd_m2[1], scene.conditions.visibility_m()];
@@ -141,10 +141,10 @@ pub(super) struct EnvironmentMap {
     layout: wgpu::BindGroupLayout,
     blocks: wgpu::Buffer,
     group: wgpu::BindGroup,
-    pipelines: Recent<PipelineKind, wgpu::RenderPipeline, MOST_PIPELINES>,
+    pipelines: LruCache<PipelineKind, wgpu::RenderPipeline, MOST_PIPELINES>,
     filter: Filter,
     /// What stood there when the last face was drawn; none: all are to be drawn.
-    drawn: Option<Standing>,
+    drawn: Option<EnvironmentInputs>,
     next: u32,
     frame_id: Option<u64>,
     cd_m2_per_unit: f64,
@@ -300,7 +300,7 @@ impl EnvironmentMap {
             layout,
             blocks,
             group,
-            pipelines: Recent::new(),
+            pipelines: LruCache::new(),
             drawn: None,
             next: 0,
             frame_id: None,
@@ -323,7 +323,7 @@ impl EnvironmentMap {
     /// The faces to draw for a frame, and the scale of what is drawn.
     fn faces_due(&mut self, shot: &Shot<'_>) -> std::ops::Range<u32> {
         let (frame, scene) = (shot.frame, &shot.now.scene);
-        let (now, white) = (Standing::of(scene), scene.ground.adaptation_cd_m2.clamp(1e-6, 1e9));
+        let (now, white) = (EnvironmentInputs::of(scene), scene.ground.adaptation_cd_m2.clamp(1e-6, 1e9));
         let follows = self.drawn.as_ref().is_some_and(|before| !now.leaps_from(before));
         let faces = if follows && !frame.is_pure() && SCALES.contains(&(white / self.cd_m2_per_unit)) {
             self.next..self.next + 1

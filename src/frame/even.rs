@@ -74,7 +74,7 @@ impl EvenLayouts {
 }
 
 /// The grid of a view.
-pub(super) struct EvenGrid {
+pub(super) struct CoarseWeather {
     picture: [u32; 2],
     size: [u32; 2],
     weather: [wgpu::TextureView; 2],
@@ -83,7 +83,7 @@ pub(super) struct EvenGrid {
     pub group: wgpu::BindGroup,
 }
 
-impl EvenGrid {
+impl CoarseWeather {
     /// For a picture, if that is large enough.
     pub fn new(device: &Device, layouts: &EvenLayouts, picture: &wgpu::Texture) -> Option<Self> {
         let (device, picture) = (&device.device, [picture.width(), picture.height()]);

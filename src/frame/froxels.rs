@@ -8,7 +8,7 @@ use crate::{
     gpu::{
         Device, flat_texture,
         pass::{self, FullscreenDesc},
-        recent::Recent,
+        recent::LruCache,
     },
     stage::{Constants, Recording, Sampling, Stages},
 };
@@ -45,7 +45,7 @@ pub(super) struct Froxels {
     pub light: wgpu::Texture,
     pub through: wgpu::Texture,
     views: [wgpu::TextureView; 2],
-    pipelines: Recent<FroxelKind, wgpu::RenderPipeline, MOST_PIPELINES>,
+    pipelines: LruCache<FroxelKind, wgpu::RenderPipeline, MOST_PIPELINES>,
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -65,7 +65,7 @@ impl Froxels {
         };
         let (light, through) = (texture("froxel light"), texture("froxel transmittance"));
         let views = [light.create_view(&Default::default()), through.create_view(&Default::default())];
-        Self { light, through, views, pipelines: Recent::new() }
+        Self { light, through, views, pipelines: LruCache::new() }
     }
 
     pub fn bytes(&self) -> u64 {

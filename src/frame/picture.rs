@@ -1,6 +1,6 @@
 //! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
 
-use super::{View, environment::EnvironmentMap, even::EvenGrid, froxels::Froxels, kinds::KindAttachment};
+use super::{View, environment::EnvironmentMap, even::CoarseWeather, froxels::Froxels, kinds::KindAttachment};
 use crate::{
     error::Result,
     gpu::{KeptLayer, Layer, is_kept},
@@ -30,7 +30,7 @@ impl View {
         });
         let effects: u64 = self.effects.all().iter().map(|effect| effect.bytes()).sum();
         let kinds =
-            self.kinds.as_ref().map_or(0, KindAttachment::bytes) + self.even.as_ref().map_or(0, EvenGrid::bytes);
+            self.kinds.as_ref().map_or(0, KindAttachment::bytes) + self.even.as_ref().map_or(0, CoarseWeather::bytes);
         let environment = self.environment.as_deref().map_or(0, EnvironmentMap::bytes);
         copy + kinds + environment + self.blocks.bytes() + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
     }
@@ -62,7 +62,7 @@ impl View {
         }
         if apart && self.kinds.is_none() {
             self.kinds = Some(KindAttachment::new(&self.device.device, color.size()));
-            self.even = EvenGrid::new(&self.device, &self.composite.lock()?.even, color);
+            self.even = CoarseWeather::new(&self.device, &self.composite.lock()?.even, color);
         }
         Ok(())
     }

@@ -46,15 +46,15 @@ struct WatchedPicture {
 
 /// The watch over one view's unit.
 #[derive(Default)]
-pub(super) struct UnitWatch {
+pub(super) struct LuminanceUnitCheck {
     frames: u64,
-    told: bool,
+    has_warned: bool,
     buffer: Option<wgpu::Buffer>,
     state: Arc<AtomicU32>,
     looked: Option<WatchedPicture>,
 }
 
-impl UnitWatch {
+impl LuminanceUnitCheck {
     /// Goes on with a readback under way, and looks at the picture of this frame if its turn has come; `white_cd_m2` is the
     /// luminance of white on level ground, `with_background` says that BACKGROUND may be in the picture already.
     pub fn watch(
@@ -149,7 +149,7 @@ impl UnitWatch {
     /// Warns if a picture whose brightest pixels have `found` cd/m^2 cannot be lit by a light in which white has `white`.
     fn judge(&mut self, found: f64, white: f64, unit: f64) {
         let wrong = found * DARKER < white || (white > DAY_CD_M2 && found > white * BRIGHTER);
-        if wrong && !self.told {
+        if wrong && !self.has_warned {
             log::warn!(
                 "the host's picture reaches {found:.3} cd/m2 where the weather's light makes white {white:.0} cd/m2: with color_space \
                  SCENE_LINEAR and cd_m2_per_unit {unit} its objects will show {}. A host whose white is 1 sets DISPLAY_SRGB or \
@@ -158,7 +158,7 @@ impl UnitWatch {
                 if found < white { "black" } else { "white" }
             );
         }
-        self.told = wrong;
+        self.has_warned = wrong;
     }
 }
 

@@ -15,7 +15,7 @@ use crate::{
         bind::Slot,
         flat_texture, is_kept,
         pass::{self, FullscreenDesc},
-        recent::Recent,
+        recent::LruCache,
     },
 };
 
@@ -50,7 +50,7 @@ pub(crate) struct GlassKit {
     shrink_layout: wgpu::BindGroupLayout,
     shrink: [wgpu::RenderPipeline; 3],
     lens_layout: wgpu::BindGroupLayout,
-    lenses: Recent<LensVariant, wgpu::RenderPipeline, MOST_LENSES>,
+    lenses: LruCache<LensVariant, wgpu::RenderPipeline, MOST_LENSES>,
     sampler: wgpu::Sampler,
     no_mask: wgpu::TextureView,
     no_cells: wgpu::TextureView,
@@ -162,7 +162,7 @@ impl GlassKit {
             settle: settle_pipelines(device, &step_layout, &[])?,
             mapped: None,
             shrink: [shrink(SMALLER, 0.0)?, shrink(SMALLER, 1.0)?, shrink(SMALLEST, 0.0)?],
-            lenses: Recent::new(),
+            lenses: LruCache::new(),
             sampler: device.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("glass"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -183,13 +183,13 @@ impl GlassKit {
         self.lenses.get_or_make(
             |made| *made == variant,
             || {
-                let yes = |b: bool| f64::from(u8::from(b));
+                let flag = |b: bool| f64::from(u8::from(b));
                 let desc = FullscreenDesc {
                     shader: "glass/lens.wgsl",
                     entry: "look_through",
                     layouts: &[layout],
                     targets: &[variant.format.into()],
-                    constants: &[("ENCODED", yes(variant.encoded)), ("HAS_MASK", yes(variant.has_mask))],
+                    constants: &[("ENCODED", flag(variant.encoded)), ("HAS_MASK", flag(variant.has_mask))],
                     samples: 1,
                 };
                 Ok((variant, pass::fullscreen(device, &desc)?))

@@ -17,7 +17,7 @@ use crate::{
     stage::{
         ColorSpace, Composition, CostItem, DrawnEffect, Frame, LensPicture, Prepare, Recording, Shot, Stages, is_float,
     },
-    surroundings::HostSurroundings,
+    surroundings::{HostSurroundings, ShelterReach},
 };
 
 /// The windscreen of a view, if it has one.
@@ -92,7 +92,7 @@ fn reached<'a>(now: &'a Moment<'_>, frame: &Frame<'_>, plane: &Plane, screen: &W
     let pane = PaneAt::new(&frame.camera, plane, screen);
     let drops = pane.drops(now, &sizes);
     let mapped = now.has_maps().then(|| {
-        let told = HostSurroundings { shelters: &[], lights: &[], ..now.host_surroundings((1.0, 0.0), 1.0)? };
+        let told = HostSurroundings { shelters: &[], lights: &[], ..now.host_surroundings(ShelterReach::NONE, 1.0)? };
         Ok(Mapped { told, pane: pane.uniform(&drops, (now.eye, now.scene.world_to_enu)) })
     });
     Ok((pane.reach(now.shelters, &drops), mapped.transpose()?))

@@ -4,7 +4,7 @@
 //! another one is made, so that memory levels off however long a session changes between them.
 
 /// Values by their keys, at most `MOST` of them.
-pub(crate) struct Recent<K, V, const MOST: usize> {
+pub(crate) struct LruCache<K, V, const MOST: usize> {
     all: Vec<Held<K, V>>,
     uses: u64,
 }
@@ -15,13 +15,13 @@ struct Held<K, V> {
     used: u64,
 }
 
-impl<K, V, const MOST: usize> Default for Recent<K, V, MOST> {
+impl<K, V, const MOST: usize> Default for LruCache<K, V, MOST> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<K, V, const MOST: usize> Recent<K, V, MOST> {
+impl<K, V, const MOST: usize> LruCache<K, V, MOST> {
     pub const fn new() -> Self {
         Self { all: Vec::new(), uses: 0 }
     }
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn no_more_are_held_than_there_is_room_for_and_what_is_in_use_stays() {
-        let mut held = Recent::<u32, Arc<u32>, 8>::new();
+        let mut held = LruCache::<u32, Arc<u32>, 8>::new();
         let mut made = Vec::new();
         let mut ask = |key: u32| {
             let make = || {

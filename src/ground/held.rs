@@ -384,7 +384,7 @@ impl HeldGround {
     }
 
     /// Shows a loaded ground, and leaves the one before in its place.
-    pub fn take_up(&mut self, other: &mut LoadedGround) {
+    pub fn swap_in(&mut self, other: &mut LoadedGround) {
         let same = match (self.grid(), other.host.as_ref().map(|held| &held.terrain.grid)) {
             (Some(old), Some(new)) => old.has_heights_of(new),
             (old, new) => old.is_none() && new.is_none(),

@@ -16,7 +16,7 @@ use crate::{
     },
     moment::Moment,
     scene::WorldKind,
-    stage::{Block, Composition, DrawnEffect, Frame, FrameFlags, Shot, Stages, Texture, is_float, rounding, yes},
+    stage::{Block, Composition, DrawnEffect, Frame, FrameFlags, Shot, Stages, Texture, flag, is_float, rounding},
     surroundings::SnowHere,
     weather::SurfaceCover,
     world::World,
@@ -115,10 +115,10 @@ impl DrawnEffect for GroundView {
         for (name, is_there) in
             [("TERRAIN", self.has_terrain), ("SNOW", self.has_snow), ("WATER", self.has_water), ("RINGS", has_rings)]
         {
-            let value = yes(drawn.is_some() && is_there);
+            let value = flag(drawn.is_some() && is_there);
             to.constant(name, value, value);
         }
-        to.looks_round |= drawn.is_some();
+        to.needs_panorama |= drawn.is_some();
         if let Some(block) = drawn {
             self.uniform.write(bytemuck::bytes_of(block));
         }

@@ -11,9 +11,9 @@ use crate::{
         blocks::{BlockView, Blocks, UniformBlock},
         is_kept,
         pass::{self, QuadsDesc},
-        recent::Recent,
+        recent::LruCache,
     },
-    stage::{Block, Constant, Drawing, FrameUniform, Recording, Texture, yes},
+    stage::{Block, Constant, Drawing, FrameUniform, Recording, Texture, flag},
 };
 
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -32,7 +32,7 @@ pub(super) struct ChannelPass {
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
     no_layers: wgpu::TextureView,
-    pipelines: Recent<(DepthKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
+    pipelines: LruCache<(DepthKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
     bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, BlockView, wgpu::BindGroup)>,
 }
 
@@ -63,7 +63,7 @@ impl ChannelPass {
             layouts: [false, true].map(|multi| layout(&device.device, multi)),
             no_layers: bind::no_layers(&device.device),
             none,
-            pipelines: Recent::new(),
+            pipelines: LruCache::new(),
             bound: None,
         }
     }
@@ -153,7 +153,7 @@ impl ChannelPass {
             let name = if multi { "lightning/channel.wgsl:multi" } else { "lightning/channel.wgsl" };
             let module = device.shader(name)?;
             let mut all = constants.to_vec();
-            all.push(("HAS_DEPTH", yes(has_depth)));
+            all.push(("HAS_DEPTH", flag(has_depth)));
             let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
             let instances = wgpu::VertexBufferLayout {
                 array_stride: size_of::<PartInstance>() as u64,

@@ -21,7 +21,7 @@ use crate::{
     gpu::Device,
     moment::{FlashLight, Moment},
     scene::{FlashLamp, MAX_FLASH_LAMPS},
-    stage::{Composition, Drawing, DrawnEffect, FlashUniform, Frame, Recording, Shot, Stages, Texture, yes},
+    stage::{Composition, Drawing, DrawnEffect, FlashUniform, Frame, Recording, Shot, Stages, Texture, flag},
     weather::Conditions,
     world::World,
 };
@@ -282,9 +282,9 @@ impl DrawnEffect for LightningView {
     }
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
-        to.constant("FLASH", yes(self.storms), yes(self.lit.is_some()));
+        to.constant("FLASH", flag(self.storms), flag(self.lit.is_some()));
         let Some(lit) = &self.lit else { return Ok(()) };
-        to.is_fine();
+        to.mark_fine();
         lit.write(shot, to);
         if !lit.has_line || !to.asked.has(Stages::PARTICLES) {
             return Ok(());

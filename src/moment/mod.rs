@@ -19,7 +19,7 @@ use crate::{
     light::{Exposure, ToneCurve},
     planet::Planet,
     scene::{FlashLamp, HostLight, MAX_FLASH_LAMPS, Place},
-    surroundings::{HostSurroundings, OccluderMaps, Shelter, WindMap, WindTexture, WindView},
+    surroundings::{HostSurroundings, OccluderMaps, Shelter, ShelterReach, WindMap, WindTexture, WindView},
     weather::Conditions,
     wind::{Carrying, Detour, WindVolume},
 };
@@ -117,7 +117,7 @@ impl<'a> Moment<'a> {
     ///
     /// # Errors
     /// As [`Moment::carrying`].
-    pub fn host_surroundings(&self, near: (f64, f64), exposure: f64) -> Result<HostSurroundings<'_>> {
+    pub fn host_surroundings(&self, near: ShelterReach, exposure: f64) -> Result<HostSurroundings<'_>> {
         Ok(HostSurroundings {
             shelters: self.shelters,
             maps: self.maps,
@@ -127,8 +127,7 @@ impl<'a> Moment<'a> {
             to_enu: self.scene.world_to_enu,
             time_s: self.time_s,
             wind_m_s: self.carrying()?.velocity_m_s(),
-            slowest_m_s: near.0,
-            reach_m: near.1,
+            near,
             exposure,
         })
     }

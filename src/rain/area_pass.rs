@@ -14,10 +14,10 @@ use crate::{
         blocks::UniformBlock,
         is_kept,
         pass::{self, QuadsDesc},
-        recent::Recent,
+        recent::LruCache,
     },
     moment::Scene,
-    stage::{Block, Constant, Drawing, FrameUniform, Recording, Texture, yes},
+    stage::{Block, Constant, Drawing, FrameUniform, Recording, Texture, flag},
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -77,7 +77,7 @@ pub(super) struct AreaPass {
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
     no_layers: wgpu::TextureView,
-    pipelines: Recent<(ShaftKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
+    pipelines: LruCache<(ShaftKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
     bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, wgpu::BindGroup)>,
     counts: bool,
 }
@@ -171,7 +171,7 @@ impl AreaPass {
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             no_layers: bind::no_layers(&device.device),
             none,
-            pipelines: Recent::new(),
+            pipelines: LruCache::new(),
             bound: None,
         }
     }
@@ -274,9 +274,9 @@ impl AreaPass {
                 device.shader(if kind.multi { "rain/shaft_view.wgsl:multi" } else { "rain/shaft_view.wgsl" })?;
             let mut all = constants.to_vec();
             all.extend([
-                ("HAS_DEPTH", yes(kind.has_depth)),
-                ("OVERLAPS", yes(kind.overlaps)),
-                ("POLYGONS", yes(kind.polygons)),
+                ("HAS_DEPTH", flag(kind.has_depth)),
+                ("OVERLAPS", flag(kind.overlaps)),
+                ("POLYGONS", flag(kind.polygons)),
             ]);
             let pipeline = pass::quads(
                 device,

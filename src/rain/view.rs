@@ -24,6 +24,7 @@ use crate::{
         Texture, rounding,
         stepping::{self, Stepped},
     },
+    surroundings::ShelterReach,
     weather::{Conditions, Falling},
     wind::Remembered,
 };
@@ -238,11 +239,11 @@ impl RainView {
     }
 
     /// Fall speed of the slowest of what is drawn, m/s, and how far from the camera any of it is, m.
-    fn slowest_and_reach(&mut self, device: &Device, scene: &Scene) -> (f64, f64) {
+    fn shelter_reach(&mut self, device: &Device, scene: &Scene) -> ShelterReach {
         let stones = self.ice.stones(scene, &self.settings, self.settings.most_on(device)).map_or(0.0, |s| s.reach_m());
-        let reach = BANDS_M.into_iter().fold(REACH_M.max(splash::REACH_M).max(stones), f64::max);
+        let reach_m = BANDS_M.into_iter().fold(REACH_M.max(splash::REACH_M).max(stones), f64::max);
         // The smallest stones are a tenth slower than the smallest drops.
-        (0.9 * self.classes(device, scene, &{ self.own }).flux[0].1, reach)
+        ShelterReach { slowest_m_s: 0.9 * self.classes(device, scene, &{ self.own }).flux[0].1, reach_m }
     }
 
     fn classes(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> Classes {
@@ -459,7 +460,7 @@ impl DrawnEffect for RainView {
             to.stages = to.stages.without(Stages::PARTICLES);
         }
         if to.stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
-            to.near = self.slowest_and_reach(shot.device, &shot.now.scene);
+            to.near = self.shelter_reach(shot.device, &shot.now.scene);
         }
         Ok(())
     }

@@ -13,18 +13,18 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
-    gpu::recent::Recent,
+    gpu::recent::LruCache,
 };
 
 /// Airs whose skies are kept. Each takes about 1 MB.
 const MOST: usize = 4;
 
 /// The reference solved for the airs that were asked for last. Any thread.
-pub(crate) struct SolvedSkies(Mutex<Recent<Planet, Arc<SolvedSky>, MOST>>);
+pub(crate) struct SolvedSkies(Mutex<LruCache<Planet, Arc<SolvedSky>, MOST>>);
 
 impl Default for SolvedSkies {
     fn default() -> Self {
-        Self(Mutex::new(Recent::new()))
+        Self(Mutex::new(LruCache::new()))
     }
 }
 

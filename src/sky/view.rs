@@ -9,7 +9,7 @@ use crate::{
     error::{Error, Result, Status},
     moment::{Light, Scene},
     plan::Price,
-    stage::{Composition, CostItem, DrawnEffect, Prepare, PutPart, Recording, Shot, Stages, Traits, yes},
+    stage::{Composition, CostItem, DrawnEffect, Prepare, PutPart, Recording, Shot, Stages, Traits, flag},
 };
 
 /// The sky of a view.
@@ -85,13 +85,13 @@ impl DrawnEffect for SkyView {
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         let [air, sky] = [&candidates::AIR, &candidates::SKY].map(|part| shot.share(part, 0));
         let is_marched = self.settings().model == SkyModel::BruteForce;
-        to.between_and_veil("SKY_MARCH", yes(is_marched), yes(is_marched));
-        to.between("AIR", 1.0, yes(air > 0.0));
+        to.between_and_veil("SKY_MARCH", flag(is_marched), flag(is_marched));
+        to.between("AIR", 1.0, flag(air > 0.0));
         for (pipeline, veils_drawn) in [(&mut to.whole, true), (&mut to.least, air > 0.0)] {
             pipeline.traits = Traits { veils_drawn, is_marched, ..pipeline.traits };
         }
         to.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
-        to.constant("CLEAR_SKY", 1.0, yes(sky > 0.0));
+        to.constant("CLEAR_SKY", 1.0, flag(sky > 0.0));
         to.constant("SKY_DISCS", 2.0, f64::from(self.volume.disc_count()));
         to.constant("SUN_THEN_MOON", 1.0, 1.0);
         (to.block.drawn[0], to.block.drawn[2]) = (air, sky);

@@ -19,6 +19,7 @@ use crate::{
         StreakCamera, Texture,
         stepping::{self, StepPass, Stepped},
     },
+    surroundings::ShelterReach,
     weather::Falling,
     wind::Remembered,
 };
@@ -168,7 +169,7 @@ impl DrawnEffect for SnowView {
             to.stages = to.stages.with(Stages::PARTICLES);
         }
         if to.stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
-            to.near = (to.near.0.min(flakes.slowest_m_s()), to.near.1.max(flakes.reach_m()));
+            to.near = to.near.with(ShelterReach { slowest_m_s: flakes.slowest_m_s(), reach_m: flakes.reach_m() });
         }
         Ok(())
     }

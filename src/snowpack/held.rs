@@ -345,7 +345,7 @@ impl HeldSnow {
     }
 
     /// Shows a loaded snow, and leaves the one before in its place.
-    pub fn take_up(&mut self, world: &mut World, other: &mut LoadedSnow) {
+    pub fn swap_in(&mut self, world: &mut World, other: &mut LoadedSnow) {
         std::mem::swap(&mut self.state, &mut other.0);
         self.site = None;
         self.waiting.clear();

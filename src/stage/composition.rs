@@ -1,13 +1,13 @@
 //! What the effects add to the one full-screen draw of a call.
 
 use super::{FrameUniform, Stages};
-use crate::gpu::blocks::BlockView;
+use crate::{gpu::blocks::BlockView, surroundings::ShelterReach};
 
 /// Name and value of an `override` constant.
 pub(crate) type Constant = (&'static str, f64);
 
 /// As the value of an `override` constant.
-pub(crate) fn yes(b: bool) -> f64 {
+pub(crate) fn flag(b: bool) -> f64 {
     f64::from(u8::from(b))
 }
 
@@ -138,9 +138,9 @@ pub(crate) struct Composition {
     /// Look-up tables of what lies behind and between (group 1), and their layout.
     pub tables: Option<(wgpu::BindGroupLayout, wgpu::BindGroup)>,
     /// Something shows what stands about the camera outside of the picture too: mirrors, a cube map.
-    pub looks_round: bool,
-    /// Fall speed of the slowest of what is drawn near the camera, m/s, and how far off any of it is, m: for which shelters matter.
-    pub near: (f64, f64),
+    pub needs_panorama: bool,
+    /// Drops and flakes that are drawn near the camera.
+    pub near: ShelterReach,
 }
 
 impl Composition {
@@ -155,8 +155,8 @@ impl Composition {
             blocks: [const { None }; 2],
             textures: [const { None }; 4],
             tables: None,
-            looks_round: false,
-            near: (1.0, 0.0),
+            needs_panorama: false,
+            near: ShelterReach::NONE,
         }
     }
 
@@ -180,12 +180,12 @@ impl Composition {
     }
 
     /// Says that something is in the picture that changes from pixel to pixel.
-    pub fn is_fine(&mut self) {
+    pub fn mark_fine(&mut self) {
         (self.whole.traits.is_fine, self.least.traits.is_fine) = (true, true);
     }
 
     /// Says that each pixel has clouds to lay over what it looks up.
-    pub fn is_overlaid(&mut self) {
+    pub fn mark_overlaid(&mut self) {
         (self.whole.traits.is_overlaid, self.least.traits.is_overlaid) = (true, true);
     }
 

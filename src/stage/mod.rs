@@ -16,7 +16,7 @@ mod streak;
 mod target;
 mod uniform;
 
-pub(crate) use composition::{Block, Composition, Constant, Constants, Pipeline, Texture, Traits, yes};
+pub(crate) use composition::{Block, Composition, Constant, Constants, Pipeline, Texture, Traits, flag};
 pub use diagnostic::Diagnostic;
 pub(crate) use effect::{Drawing, DrawnEffect, LensPicture, Prepare, PutPart, Shot};
 pub use opaque::DepthAccess;

@@ -16,7 +16,7 @@ use crate::{
     gpu::{Device, Layer, bind},
     light::luminance,
     moment::{Moment, Scene},
-    stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Shot, Stages, Texture, yes},
+    stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Shot, Stages, Texture, flag},
     weather::smoothstep,
     world::{night_share, zenith_depth},
 };
@@ -191,9 +191,9 @@ impl DrawnEffect for StarsView {
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         let (is_there, share) = (self.is_there(to.stages), shot.share(&STARS, 0));
-        to.constant("STARS", yes(is_there), yes(is_there && share > 0.0));
+        to.constant("STARS", flag(is_there), flag(is_there && share > 0.0));
         if let Some(tonight) = self.tonight.as_ref().filter(|_| is_there) {
-            to.is_fine();
+            to.mark_fine();
             to.block.behind = [(1.0 / tonight.seen(shot, 0.0).scale) as f32, share];
             to.block.behind_drawn = share * to.block.drawn[2];
             let layer = self.layer(shot.device, shot.color.texture).clone();

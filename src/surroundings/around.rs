@@ -57,6 +57,25 @@ pub(crate) struct HasSurroundings {
     pub lamps: bool,
 }
 
+/// Drops and flakes about a camera, for which shelters may matter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ShelterReach {
+    /// Fall speed of the slowest, m/s.
+    pub slowest_m_s: f64,
+    /// Largest distance at which any is drawn, m.
+    pub reach_m: f64,
+}
+
+impl ShelterReach {
+    /// Nothing that falls.
+    pub const NONE: Self = Self { slowest_m_s: 1.0, reach_m: 0.0 };
+
+    /// Of both.
+    pub fn with(self, other: Self) -> Self {
+        Self { slowest_m_s: self.slowest_m_s.min(other.slowest_m_s), reach_m: self.reach_m.max(other.reach_m) }
+    }
+}
+
 /// The host's shelters, occluder maps and lamps, and the camera near which they matter: at `eye`, its axes turned by `to_enu`.
 pub(crate) struct HostSurroundings<'a> {
     pub shelters: &'a [Shelter],
@@ -69,9 +88,7 @@ pub(crate) struct HostSurroundings<'a> {
     pub time_s: f64,
     /// Of the air, in the camera's axes.
     pub wind_m_s: DVec3,
-    /// Fall speed of the slowest drops, and how far from the camera any are drawn.
-    pub slowest_m_s: f64,
-    pub reach_m: f64,
+    pub near: ShelterReach,
     /// Exposure that lies on the drops.
     pub exposure: f64,
 }
@@ -130,7 +147,8 @@ impl SurroundingsBlock {
     fn stage(&mut self, host: &HostSurroundings<'_>) -> usize {
         let staged = &mut self.staged;
         let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
-        let matters = |s: &Shelter| s.matters(host.eye, host.to_enu, host.wind_m_s, host.slowest_m_s, host.reach_m);
+        let matters =
+            |s: &Shelter| s.matters(host.eye, host.to_enu, host.wind_m_s, host.near.slowest_m_s, host.near.reach_m);
         let boxes = &host.shelters[..host.shelters.len().min(MAX_SHELTERS)];
         let (mut i, mut cuts) = (0, 0);
         let mut near = 0u32;

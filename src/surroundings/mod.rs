@@ -12,7 +12,7 @@ mod wind;
 pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
 pub use shelter::{MAX_PLANES, MAX_SHELTERS, Planes, Shelter};
 
-pub(crate) use around::{HostSurroundings, SurroundingsBlock, layout};
+pub(crate) use around::{HostSurroundings, ShelterReach, SurroundingsBlock, layout};
 pub(crate) use occluder_maps::OccluderMaps;
 pub(crate) use shelter::met_at;
 pub(crate) use snow::{LyingSnow, Meltwater, SnowHere};

@@ -248,7 +248,7 @@ impl World {
     }
 
     /// Shows a loaded world, and leaves the one before in its place.
-    pub fn take_up(&mut self, other: &mut LoadedWorld) {
+    pub fn swap_in(&mut self, other: &mut LoadedWorld) {
         use std::mem::swap;
         swap(&mut self.time_s, &mut other.time_s);
         swap(&mut self.timeline, &mut other.timeline);

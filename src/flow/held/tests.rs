@@ -163,7 +163,7 @@ fn a_loaded_field_goes_on_to_the_bit() {
         other.world.time_s = 4.25;
         let mut loaded = HeldFlow::read(&other.world, &mut table).expect("a field");
         assert!(table.is_empty());
-        other.flow.take_up(&mut other.world, &mut loaded);
+        other.flow.swap_in(&mut other.world, &mut loaded);
         assert_eq!(other.wind(dvec3(3.0, 1.0, 4.0)), bench.wind(dvec3(3.0, 1.0, 4.0)));
         assert_eq!(other.saved(), bench.saved());
         for t in [4.4, 6.0, 11.0] {
