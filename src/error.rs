@@ -251,11 +251,20 @@ pub(crate) fn beginning(text: &str, most: usize) -> Cow<'_, str> {
 /// What is wrong with a text that should be TOML: line, column and fault, without the line itself, which may be a whole state.
 pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
     let Some(before) = e.span().and_then(|span| text.get(..span.start)) else {
-        return format!("TOML parse error: {}", shown(e.message()));
+        return format!("TOML parse error: {}", toml_message(e));
     };
     let line = before.matches('\n').count() + 1;
     let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-    format!("TOML parse error at line {line}, column {column}: {}", shown(e.message()))
+    format!("TOML parse error at line {line}, column {column}: {}", toml_message(e))
+}
+
+/// Fault that the parser names, with the range where it names none.
+pub fn toml_message(e: &toml::de::Error) -> Cow<'_, str> {
+    shown(match e.message() {
+        "integer number overflowed" => "an integer must lie in [-2^63, 2^63 - 1]",
+        "floating-point number overflowed" => "a number must be at most 1.79e308 in amount",
+        other => other,
+    })
 }
 
 /// Checks that a parameter is finite and lies in `[lo, hi]`, or says so by name.
@@ -273,6 +282,15 @@ pub fn check_range(name: &str, value: f64, lo: f64, hi: f64, unit: &str) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_beyond_toml_get_their_range() {
+        for (number, range) in [("9".repeat(30), "[-2^63, 2^63 - 1]"), ("1e999".to_owned(), "1.79e308")] {
+            let text = format!("a = {number}");
+            let fault = toml_fault(&text, &toml::from_str::<toml::Table>(&text).unwrap_err());
+            assert!(fault.contains(range) && !fault.contains("overflow"), "{fault}");
+        }
+    }
 
     #[test]
     fn texts_of_hosts_are_repeated_in_part() {

@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::{FIELDS, Field, Mie, Planet, file_error};
-use crate::error::{Error, Result, Status, listed, shown};
+use crate::error::{Error, Result, Status, listed, shown, toml_message};
 
 /// The one section that a file may lack: the weather says the haze then.
 const HAZE: &str = "mie";
@@ -13,7 +13,7 @@ const HAZE: &str = "mie";
 pub(super) fn parse(text: &str) -> Result<Planet> {
     let root = DeTable::parse(text).map_err(|e| {
         let at = e.span().map_or(0, |s| s.start);
-        file_error(text, at, Error::new(Status::Parse, format!("not TOML: {}", shown(e.message()))))
+        file_error(text, at, Error::new(Status::Parse, format!("not TOML: {}", toml_message(&e))))
     })?;
     refuse_unknown(text, root.get_ref(), "")?;
     let mut planet = Planet::earth();
