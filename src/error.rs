@@ -260,7 +260,10 @@ pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
 
 /// Fault that the parser names, with the range where it names none.
 pub fn toml_message(e: &toml::de::Error) -> Cow<'_, str> {
-    shown(match e.message() {
+    let message = e.message();
+    let is_wide = ["` as i128", "` as u128"].iter().any(|wide| message.contains(wide));
+    shown(match message {
+        _ if is_wide => "an integer must lie in [-2^63, 2^63 - 1]",
         "integer number overflowed" => "an integer must lie in [-2^63, 2^63 - 1]",
         "floating-point number overflowed" => "a number must be at most 1.79e308 in amount",
         other => other,
@@ -285,11 +288,14 @@ mod tests {
 
     #[test]
     fn numbers_beyond_toml_get_their_range() {
-        for (number, range) in [("9".repeat(30), "[-2^63, 2^63 - 1]"), ("1e999".to_owned(), "1.79e308")] {
-            let text = format!("a = {number}");
+        for digits in [20, 30, 60] {
+            let text = format!("a = {}", "9".repeat(digits));
             let fault = toml_fault(&text, &toml::from_str::<toml::Table>(&text).unwrap_err());
-            assert!(fault.contains(range) && !fault.contains("overflow"), "{fault}");
+            assert!(fault.ends_with("an integer must lie in [-2^63, 2^63 - 1]"), "{fault}");
         }
+        let text = "a = 1e999";
+        let fault = toml_fault(text, &toml::from_str::<toml::Table>(text).unwrap_err());
+        assert!(fault.ends_with("a number must be at most 1.79e308 in amount"), "{fault}");
     }
 
     #[test]
