@@ -260,13 +260,13 @@ pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
 
 /// Fault that the parser names, with the range where it names none.
 pub fn toml_message(e: &toml::de::Error) -> Cow<'_, str> {
-    let message = e.message();
-    let is_wide = ["` as i128", "` as u128"].iter().any(|wide| message.contains(wide));
-    shown(match message {
-        _ if is_wide => "an integer must lie in [-2^63, 2^63 - 1]",
-        "integer number overflowed" => "an integer must lie in [-2^63, 2^63 - 1]",
-        "floating-point number overflowed" => "a number must be at most 1.79e308 in amount",
-        other => other,
+    let says = |words: &str| e.message().contains(words);
+    shown(if ["` as i128", "` as u128", "integer number overflowed"].into_iter().any(says) {
+        "an integer must lie in [-2^63, 2^63 - 1]"
+    } else if says("floating-point number overflowed") {
+        "a number must be at most 1.79e308 in amount"
+    } else {
+        e.message()
     })
 }
 

@@ -1,6 +1,6 @@
-// Arithmetic that has an answer for every operand, and the limits that light is brought into on its way to a picture. A value that is not
-// a number reaches a picture as black or, through `min`, as the brightest value there is: where debug assertions are on, guarded_checked.wgsl
-// stands here and lets it be seen.
+// Arithmetic that has an answer for every operand, and the limits that light is brought into on its way to a picture. A
+// value that is not a number reaches a picture as black or, through `min`, as the brightest value there is: where debug
+// assertions are on, guarded_checked.wgsl stands here and lets it be seen.
 
 // Unit vector along `v`, or `other` where `v` is zero and points nowhere.
 fn unit_or(v: vec3f, other: vec3f) -> vec3f {

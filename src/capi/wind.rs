@@ -201,8 +201,8 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
     })
 }
 
-/// Gets what falls at a place of the host's world and a simulation time. What falls begins in the
-/// lower half of the clouds, at most 500 m above their bases, averaged over what covers the sky; above that nothing falls.
+/// Gets what falls at a place of the host's world and a simulation time. What falls begins in the lower half of the clouds,
+/// at most 500 m above their bases, averaged over what covers the sky; above that nothing falls.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]

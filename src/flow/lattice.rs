@@ -95,8 +95,9 @@ impl Lattice {
         }
     }
 
-    /// Says whether no value and no ghost of a component has these indices: along an axis that it does not point along, a component
-    /// has one value less than its list has room for. There the list stays 0, so that equal fields have equal numbers.
+    /// Says whether no value and no ghost of a component has these indices. Along an axis that it does not point along, a
+    /// component has one value less than its list has room for; there the list stays 0, so that equal fields have equal
+    /// numbers.
     fn is_spare(&self, component: usize, i: [i64; 3]) -> bool {
         (0..3).any(|a| a != component && !self.is_flat(a) && i[a] >= (self.n[a] + GHOSTS) as i64)
     }
@@ -163,8 +164,8 @@ impl Lattice {
         }
     }
 
-    /// Moves values of a component by whole cells: what stood `cells` farther along each axis stands here then. What comes in from
-    /// outside, ghosts too, is what `new` answers for its indices.
+    /// Moves values of a component by whole cells: what stood `cells` farther along each axis stands here then. What comes
+    /// in from outside, ghosts too, is what `new` answers for its indices.
     pub(super) fn shift(&self, component: usize, values: &mut [f32], cells: [i64; 3], new: impl Fn([i64; 3]) -> f32) {
         let before = values.to_vec();
         let has = |i: [i64; 3]| (0..3).all(|a| (0..self.count(component, a) as i64).contains(&i[a]));

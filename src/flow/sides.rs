@@ -59,7 +59,8 @@ pub(super) fn roles(lattice: &Lattice, sides: &[[Side; 2]; 3], outer: &Faces) ->
     roles
 }
 
-/// The largest component of any face on a side or beside one, m/s: what stands in `outer` farther in is the wind of the field's beginning.
+/// The largest component of any face on a side or beside one, m/s: farther in `outer` holds the wind of the field's
+/// beginning.
 fn fastest_on_sides(lattice: &Lattice, outer: &Faces) -> f64 {
     let mut most = 0.0_f32;
     for c in lattice.axes() {

@@ -17,6 +17,7 @@ use crate::{
         pass::{self, FullscreenDesc},
         recent::LruCache,
     },
+    stage::flag,
 };
 
 const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
@@ -183,7 +184,6 @@ impl GlassKit {
         self.lenses.get_or_make(
             |made| *made == variant,
             || {
-                let flag = |b: bool| f64::from(u8::from(b));
                 let desc = FullscreenDesc {
                     shader: "glass/lens.wgsl",
                     entry: "look_through",

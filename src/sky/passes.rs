@@ -342,7 +342,7 @@ fn pipeline(
         PassKind::IsotropicScatter => "isotropic_scatter",
         PassKind::Once => "once",
     };
-    let directional = f64::from(u8::from(settings.model.is_directional()));
+    let directional = crate::stage::flag(settings.model.is_directional());
     let desc = FullscreenDesc {
         shader: "sky/build.wgsl",
         entry,

@@ -106,7 +106,7 @@ impl SkyTables {
 
     /// Values of `override` constants for every pipeline whose shader includes `sky/lookup.wgsl`.
     pub fn pipeline_constants(&self) -> [(&'static str, f64); 1] {
-        [("SKY_MARCH", f64::from(u8::from(self.settings().model == SkyModel::BruteForce)))]
+        [("SKY_MARCH", crate::stage::flag(self.settings().model == SkyModel::BruteForce))]
     }
 
     /// Follows `planet`, with at most `fraction` of the work of a whole build in this call (about: a strip of 1/1024 is not

@@ -438,7 +438,7 @@ fn pipeline(
         entry,
         layouts,
         targets: &[target.clone(), target],
-        constants: &[("DIRECTIONAL", f64::from(u8::from(s.model.is_directional()))), ("LAYERS", f64::from(s.layers()))],
+        constants: &[("DIRECTIONAL", crate::stage::flag(s.model.is_directional())), ("LAYERS", f64::from(s.layers()))],
         samples: 1,
     };
     fullscreen(device, &desc)

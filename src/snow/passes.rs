@@ -12,7 +12,7 @@ use crate::{
     },
     scene::ViewRays,
     stage::{
-        DepthRead, LAYER_FORMAT, Recording,
+        DepthRead, LAYER_FORMAT, Recording, flag,
         listing::Listing,
         stepping::{STATE_BYTES, StepPass, Stepped},
     },
@@ -196,7 +196,7 @@ fn pipeline(
         device,
         &QuadsDesc {
             label: "snow",
-            vertex: (&module, vertex, &[("MAPS", f64::from(u8::from(maps)))]),
+            vertex: (&module, vertex, &[("MAPS", flag(maps))]),
             fragment: (&module, "flake_fragment", &depth.constants()),
             layouts,
             buffers,
@@ -244,7 +244,7 @@ impl ListedFlakes {
         }
         let layouts = [Some(&self.layout), Some(made), Some(around)];
         self.makes.prepare(drawn.maps, |maps| {
-            compute("snow/cull_spots.wgsl", "make_spots", &layouts, &[("MAPS", f64::from(u8::from(*maps)))])
+            compute("snow/cull_spots.wgsl", "make_spots", &layouts, &[("MAPS", flag(*maps))])
         })?;
         let (Some([mark, order]), Some(make)) = (&self.mark, self.makes.get(&drawn.maps)) else { return Ok(()) };
         let mut pass = to.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

@@ -70,7 +70,7 @@ impl ShelterReach {
     /// Nothing that falls.
     pub const NONE: Self = Self { slowest_m_s: 1.0, reach_m: 0.0 };
 
-    /// Of both.
+    /// Reach within which shelters matter to this or to the other.
     pub fn with(self, other: Self) -> Self {
         Self { slowest_m_s: self.slowest_m_s.min(other.slowest_m_s), reach_m: self.reach_m.max(other.reach_m) }
     }

@@ -81,9 +81,9 @@ impl Conditions {
         over_layers(layers, altitude_m, |s| s.top_m() + station_m).max(altitude_m)
     }
 
-    /// Height above the sea at which what falls begins: within the layers that one meets first from below, on the mean, at least 100 m
-    /// above the station; 2 km if no cloud is known. What falls grows on its way down through the lower half of its cloud, so that it
-    /// falls on a hill inside of a low deck too; in high clouds, which have gaps, on no more than the lowest 500 m.
+    /// Height above the sea at which what falls begins: within the layers that one meets first from below, on the mean, at
+    /// least 100 m above the station; 2 km if no cloud is known. What falls grows on its way down through the lower half of
+    /// its cloud, so that it falls on a hill inside of a low deck too, and through the lowest 500 m of a thicker cloud.
     pub(crate) fn falling_top_m(&self) -> f64 {
         let layers = self.cloud_slabs().map(|s| (s.cover, s));
         let begins_m = |s: &CloudSlab| s.base_m.max(100.0) + (0.5 * (s.top_m() - s.base_m)).min(MOST_GROWTH_M);
