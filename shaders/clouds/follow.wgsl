@@ -10,8 +10,26 @@
 struct FollowedSquare {
     @location(0) least: vec4f,
     @location(1) most: vec4f,
-    // To where it was, in pixels; LOST where that was not in the picture.
+    // To where it was, in pixels; LOST where that was not in the picture. z: share of the marched picture in its place.
     @location(2) back: vec4f,
+}
+
+// Spread about a plane through neighbouring squares over their range at which a picture is smooth, and at which it has shapes.
+const SMOOTH: f32 = 0.03;
+const SHAPED: f32 = 0.1;
+
+// Share of luminance (x) and transmittance (y) that have no shapes finer than these squares: a picture between them is that of the whole.
+fn smoothness(center: vec2f, near: array<vec2f, 4>, rounding: vec2f) -> f32 {
+    let mean = 0.2 * (center + near[0] + near[1] + near[2] + near[3]);
+    let range = max(max(near[0], near[1]), max(near[2], near[3])) - min(min(near[0], near[1]), min(near[2], near[3]));
+    let diagonals = 0.25 * (near[0] - near[1] - near[2] + near[3]);
+    let left = max(abs(center - mean), abs(1.25 * mean - 0.25 * center - mean) + abs(diagonals));
+    let each = 1.0 - smoothstep(vec2f(SMOOTH), vec2f(SHAPED), left / (range + rounding));
+    return min(each.x, each.y);
+}
+
+fn light_and_open(seen: vec4f) -> vec2f {
+    return vec2f(dot(seen.rgb, vec3f(1.0 / 3.0)), seen.a);
 }
 
 @fragment
@@ -37,14 +55,20 @@ fn follow(in: FullscreenVarying) -> FollowedSquare {
         out.most = vec4f(65504.0);
         return out;
     }
-    var least = own;
-    var most = own;
     let size = vec2i(textureDimensions(marched)) - 1;
+    // At an edge of the picture about the square next to it.
+    let about = clamp(vec2i(square), min(vec2i(1), size), max(size - 1, vec2i(0)));
+    let center = textureLoad(marched, about, 0);
+    var least = min(own, center);
+    var most = max(own, center);
+    var near: array<vec2f, 4>;
     for (var k = 0u; k < 4u; k++) {
         let to = vec2i(select(-1, 1, (k & 1u) == 1u), select(-1, 1, (k & 2u) == 2u));
-        let near = textureLoad(marched, clamp(vec2i(square) + to, vec2i(0), size), 0);
-        least = min(least, near);
-        most = max(most, near);
+        let seen = textureLoad(marched, clamp(about + to, vec2i(0), size), 0);
+        least = min(least, seen);
+        most = max(most, seen);
+        near[k] = light_and_open(seen);
     }
-    return FollowedSquare(least, most, vec4f(back, 0.0, 0.0));
+    let rounding = vec2f(2e-3 * light_and_open(most).x + 1e-6, 0.02);
+    return FollowedSquare(least, most, vec4f(back, smoothness(light_and_open(center), near, rounding), 0.0));
 }

@@ -76,7 +76,8 @@ fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     let shrunk = open.y * (shares.y / max(shares.x, 1e-6) - 1.0);
     let stacked = open.y + select(shrunk, grown, shares.y > shares.x);
     let all = open.x + open.y;
-    let cloudy = mix(shares.y * all, stacked, exp(-cells / CLOUD_CELL));
+    // No more than all: rounded up it would leave gaps that take light away.
+    let cloudy = clamp(mix(shares.y * all, stacked, exp(-cells / CLOUD_CELL)), 0.0, all);
     return vec2f(all - cloudy, cloudy);
 }
 

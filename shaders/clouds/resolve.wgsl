@@ -62,7 +62,8 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
         return ResolvedPixel(now, reach);
     }
     let square = min(pixel >> vec2u(side_power(picture)), textureDimensions(marched) - 1u);
-    let to = textureLoad(back, vec2i(square), 0).rg;
+    let followed = textureLoad(back, vec2i(square), 0);
+    let to = followed.xy;
     let was = in.position.xy + to;
     let size = vec2f(picture.size);
     let lost = any(was < vec2f(0.0)) || any(was > size);
@@ -72,8 +73,11 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     let texel = textureLoad(last, vec2i(pixel), 0, 0);
     let kept = select(filtered, texel, all(to == vec2f(0.0))) * vec4f(vec3f(picture.exposed), 1.0);
     let held = clamp(kept, textureLoad(least, vec2i(square), 0), textureLoad(most, vec2i(square), 0));
+    // How bright a cloud is depends on the direction too, which a picture seen anew does not follow: where it has no shapes, the marched
+    // picture holds all that there is to see.
+    let likely = mix(held, now, followed.z);
     let is_marched = all(marched_pixel(picture, square) == pixel);
-    return ResolvedPixel(select(held, now, lost || is_marched), reach);
+    return ResolvedPixel(select(likely, now, lost || is_marched), reach);
 }
 
 @fragment

@@ -59,7 +59,7 @@ pub(super) struct Picture {
     pub of: ((u32, u32), u32),
     /// What this frame's pixels see of clouds, and how far these reach.
     pub marched: [wgpu::TextureView; 2],
-    /// Of each square the least and the most that is seen about it, and where it was in the last frame.
+    /// Of each square the least and the most that is seen about it, and where it was in the last frame with how smooth it is.
     pub followed: [wgpu::TextureView; 3],
     pub whole: [Whole; 2],
     /// Which of its pixels the host drew on, where shadows have a draw of their own.
@@ -92,7 +92,7 @@ impl Picture {
         Self {
             of: (size, side),
             marched: marched(device, size, side),
-            followed: [one(SEEN), one(SEEN), one(PAIR)],
+            followed: [one(SEEN), one(SEEN), one(SEEN)],
             whole: [Whole::new(device, size), Whole::new(device, size)],
             kinds,
             newest: 0,
@@ -114,6 +114,6 @@ impl Picture {
         let begun = self.begun.as_ref().map_or(0, |_| u64::from(BEGUN_SIDE));
         let first = u64::from(width) * u64::from(height) * 12 / begun.max(1).pow(2) * begun.min(1);
         let kinds = self.kinds.as_ref().map_or(0, |_| 2);
-        (2 * 8 * u64::from(LAYERS) + kinds) * u64::from(whole.0) * u64::from(whole.1) + (3 * 8 + 2 * 4) * low + first
+        (2 * 8 * u64::from(LAYERS) + kinds) * u64::from(whole.0) * u64::from(whole.1) + (4 * 8 + 4) * low + first
     }
 }

@@ -118,7 +118,7 @@ impl Pipelines {
             march: LruCache::new(),
             march_layouts,
             glow: LruCache::new(),
-            follow: make(device, follow, &[&picture_layout], &[SEEN, SEEN, PAIR], &[])?,
+            follow: make(device, follow, &[&picture_layout], &[SEEN; 3], &[])?,
             resolve: Vec::new(),
             picture_layout,
             shadow_layouts,

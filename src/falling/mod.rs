@@ -30,17 +30,23 @@ pub fn random3(key: [u32; 3]) -> [u32; 3] {
     [x, y, z]
 }
 
-/// Depth over which what falls sets in below its cloud, m: half of it above the cloud's base, half below.
+/// Depth over which what falls sets in, m: half of it above the height where it begins, half below; as a medium, about the cloud's base.
 pub(crate) const ONSET_M: f64 = 100.0;
 
-/// Extinction of what falls outside of all rain areas, by species: the same everywhere below the cloud that it falls from.
+/// Part of what falls that has begun to fall at an altitude: all below the height where it begins in its cloud, none above.
+pub(crate) fn begun(c: &Conditions, altitude_m: f64) -> f64 {
+    ((c.falling_top_m() + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0)
+}
+
+/// Extinction of what falls outside of all rain areas, by species: the same everywhere below the cloud that it falls from. Inside of
+/// the cloud the cloud's own water hides it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingLayer {
     /// Of rain and drizzle, at 550 nm, 1/m.
     pub liquid_per_m: f64,
     /// Of snow, ice pellets and hail, at 550 nm, 1/m.
     pub solid_per_m: f64,
-    /// Altitude above which nothing falls, m.
+    /// Altitude above which nothing that falls is seen, m.
     pub top_m: f64,
     /// Depth below it over which the extinction rises evenly from nothing to all, m.
     pub soft_m: f64,
@@ -55,7 +61,7 @@ impl FallingLayer {
         Self {
             liquid_per_m: c.precipitation.liquid_extinction_per_m,
             solid_per_m: c.precipitation.solid_extinction_per_m,
-            top_m: c.falling_top_m() + 0.5 * ONSET_M,
+            top_m: c.falling_base_m() + 0.5 * ONSET_M,
             soft_m: ONSET_M,
         }
     }

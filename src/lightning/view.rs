@@ -238,7 +238,7 @@ fn scattering_per_m(c: &Conditions, altitude_m: f64) -> f64 {
     let haze = c.aerosol.extinction_per_m * thin(c.aerosol.scale_height_m);
     let thinned = ((c.fog.top_m - height.max(0.0)) / c.fog.softness_m.max(1.0)).clamp(0.0, 1.0);
     let fog = if height.max(0.0) >= c.fog.base_m { c.fog.extinction_per_m * c.fog.coverage * thinned } else { 0.0 };
-    let falls = ((c.falling_top_m() + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0);
+    let falls = ((c.falling_base_m() + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0);
     air + haze + fog + c.precipitation.extinction_per_m() * falls
 }
 

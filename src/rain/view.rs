@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    falling::{FallingLayer, curtain},
+    falling::{begun, curtain},
     gpu::{Device, blocks::Blocks},
     moment::{Moment, Scene},
     stage::{
@@ -64,9 +64,7 @@ const ONSET_STEPS: f64 = 32.0;
 
 /// What falls in a weather without rain areas, as much of it as has left its cloud at an altitude.
 fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
-    let layer = FallingLayer::new(c);
-    let begun = ((layer.top_m - altitude_m) / layer.soft_m).clamp(0.0, 1.0);
-    let share = (begun * ONSET_STEPS).ceil() / ONSET_STEPS;
+    let share = (begun(c, altitude_m) * ONSET_STEPS).ceil() / ONSET_STEPS;
     let f = c.precipitation;
     Falling {
         rain_mm_h: f.rain_mm_h * share,

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    falling::{FallingLayer, drops, flakes::FlakeSizes},
+    falling::{begun, drops, flakes::FlakeSizes},
     gpu::Device,
     moment::{LightAround, Moment},
     stage::{
@@ -86,8 +86,7 @@ impl SnowView {
         let scene = &now.scene;
         let c = &scene.conditions;
         let falling = c.precipitation;
-        let layer = FallingLayer::new(c);
-        let begun = ((layer.top_m - scene.place.altitude_m) / layer.soft_m).clamp(0.0, 1.0);
+        let begun = begun(c, scene.place.altitude_m);
         self.is_there = falling.snow_mm_h > 0.0 && begun > 0.0 && self.settings.model != SnowModel::Veil;
         if !self.is_there {
             return;

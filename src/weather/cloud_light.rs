@@ -85,9 +85,19 @@ impl Conditions {
     /// least 100 m above the station; 2 km if no cloud is known. What falls grows on its way down through the lower half of
     /// its cloud, so that it falls on a hill inside of a low deck too, and through the lowest 500 m of a thicker cloud.
     pub(crate) fn falling_top_m(&self) -> f64 {
-        let layers = self.cloud_slabs().map(|s| (s.cover, s));
         let begins_m = |s: &CloudSlab| s.base_m.max(100.0) + (0.5 * (s.top_m() - s.base_m)).min(MOST_GROWTH_M);
-        self.air.station_altitude_m + over_layers(layers, 2000.0, begins_m)
+        self.over_first_clouds(begins_m)
+    }
+
+    /// Height above the sea at which what falls leaves its cloud: as [`Conditions::falling_top_m`], at the clouds' bases.
+    pub(crate) fn falling_base_m(&self) -> f64 {
+        self.over_first_clouds(|s| s.base_m.max(100.0))
+    }
+
+    /// Mean height above the sea of the layers that one meets first from below; `height_m` is above the station.
+    fn over_first_clouds(&self, height_m: impl Fn(&CloudSlab) -> f64) -> f64 {
+        let layers = self.cloud_slabs().map(|s| (s.cover, s));
+        self.air.station_altitude_m + over_layers(layers, 2000.0, height_m)
     }
 
     /// Part of the sky over a place hidden by cloud that one cannot see through: a thin layer, or what is left of one above the

@@ -76,8 +76,18 @@ fn a_climb_through_layers_shows_no_jump() {
             step(1)
         );
         // History errs by as much where light changes with height: it does so within a layer, from its base to its top.
-        assert!(worst < 0.1 && all < 0.035, "{worst} {all}");
+        assert!(worst < 0.1 && all < 0.03, "{worst} {all}");
         assert!(step(0) < step(1) + 0.05, "{} {}", step(0), step(1));
+    }
+}
+
+/// A ray through cloud alone ends with nothing left, not with less than nothing: the disc of the sun behind it takes a root of that.
+#[test]
+fn what_passes_whole_clouds_is_never_less_than_nothing() {
+    let mut sky = Sky::new(BROKEN, CloudModel::Volume);
+    for height_m in (520..560).step_by(2) {
+        // Reading fails where a texel is not a number.
+        sky.look(FORWARD, f64::from(height_m), None, FrameFlags::NO_HISTORY);
     }
 }
 
