@@ -1,8 +1,8 @@
 //! The list of effects: what a context holds of each, what a view holds of each, in the order in which they are run.
 //!
 //! Beside the front room and the C boundary this is the one place above their rooms that names them. A new effect adds a field to
-//! [`Effects`] with its line in [`Effects::each`] and [`Effects::all`], what it gathers in [`Effects::gather`], and its parts in
-//! [`PARTS`]; one with a state adds a field to [`Held`] likewise.
+//! [`Effects`] with its line in [`Effects::each`] and [`Effects::all`], and its parts in [`PARTS`]; one with a state adds a field to
+//! [`Held`] likewise.
 
 #[cfg(test)]
 pub(crate) mod plane;
@@ -26,7 +26,7 @@ use crate::{
     ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
     light::{Exposure, ToneCurve},
     lightning::{HeldLightning, LightningView},
-    moment::{Moment, Scene},
+    moment::Scene,
     plan::{
         self, StepWork,
         parts::{MOST_RUNGS, Part},
@@ -37,7 +37,9 @@ use crate::{
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
     snow::{self, FlakeContrast, SnowSettings, SnowView},
     snowpack::{HeldSnow, LoadedSnow, LyingSnowModel},
-    stage::{Diagnostic, DrawnEffect, FallingTexture, Frame, Shot, Stages},
+    stage::{
+        Composition, DrawContext, DrawnEffect, FallingTexture, FrameContext, MergedFrame, Outputs, Recording, ordered,
+    },
     stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
 };
@@ -202,9 +204,9 @@ pub const PARTS: &[Part] = &[
     snow::candidates::SNOW,
 ];
 
-/// Extra work where both air and fog are drawn under the lamps of a scene, and the places of the two in the list of parts.
-pub(crate) fn together(scene: &Scene) -> ([usize; 2], StepWork) {
-    ([0, 1], sky::candidates::air_before_fog_work(scene.lamps()))
+/// Two parts, and extra work where both are drawn under the lamps of a scene.
+pub(crate) fn together(scene: &Scene) -> ([&'static Part; 2], StepWork) {
+    ([&sky::candidates::AIR, &fog::candidates::FOG], sky::candidates::air_before_fog_work(scene.lamps()))
 }
 
 /// Sizes of the blocks by [`Block`](crate::stage::Block).
@@ -247,6 +249,9 @@ pub(crate) struct Effects {
     pub bow: BowView,
     #[cfg(test)]
     pub plane: plane::PlaneView,
+    /// Places in [`Effects::each`], in the order in which they gather, and in that in which they compose and draw.
+    gathers: [usize; COUNT],
+    composes: [usize; COUNT],
 }
 
 /// How many a view has.
@@ -259,7 +264,7 @@ impl Effects {
     /// A GPU fault.
     pub fn new(device: &Arc<Device>, (shared, blocks): (&Arc<Shared>, &Blocks), held: &Held) -> Result<Self> {
         let falling = FallingTexture::default();
-        Ok(Self {
+        let mut effects = Self {
             sky: SkyView::new(&held.sky)?,
             fog: FogView::new(device, blocks),
             ground: GroundView::new(device, blocks),
@@ -272,10 +277,15 @@ impl Effects {
             bow: BowView::default(),
             #[cfg(test)]
             plane: plane::PlaneView::default(),
-        })
+            gathers: [0; COUNT],
+            composes: [0; COUNT],
+        };
+        effects.gathers = ordered(effects.all().map(|effect| effect.gathers()))?;
+        effects.composes = ordered(effects.all().map(|effect| effect.composes()))?;
+        Ok(effects)
     }
 
-    /// All of them, in their order: what hangs in the sky is drawn before what falls, which shows it behind columns of rain.
+    /// All of them. What they give each other decides in which order they are run.
     pub fn each(&mut self) -> [&mut dyn DrawnEffect; COUNT] {
         [
             &mut self.sky,
@@ -311,38 +321,53 @@ impl Effects {
         ]
     }
 
-    /// Lets each effect read what it needs for a frame with these `stages`.
+    /// Lets each effect find what there is of it at a camera, in the order of what they give each other.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
-    pub fn gather(
-        &mut self,
-        (device, held): (&Arc<Device>, &Held),
-        (world, now): (&World, &Moment<'_>),
-        frame: &Frame<'_>,
-        stages: Stages,
-    ) -> Result<()> {
-        // What it lights asks for its light.
-        self.lightning.gather(now, world, &held.lightning, frame);
-        self.fog.gather(now, held.fog.law.as_ref())?;
-        let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
-        let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;
-        self.ground.take_terrain(device, (&held.ground, world), now, wet && stages.has(Stages::SURFACE));
-        self.rain.set_counting(device, frame.diagnostic == Diagnostic::Overdraw);
-        self.rain.gather(now)?;
-        self.snow.set_counting(frame.diagnostic == Diagnostic::Overdraw);
-        self.snow.gather(now, device);
-        self.clouds.gather(now, held.clouds.model)?;
-        self.bow.gather(now);
-        #[cfg(test)]
-        self.plane.gather(now);
-        let utc = world.utc_at(now.time_s);
-        self.stars.gather((now, frame), utc, &held.stars.settings, fog_depth)
+    pub fn gather(&mut self, at: &FrameContext<'_>) -> Result<()> {
+        let (order, mut given) = (self.gathers, Outputs::default());
+        let mut effects = self.each();
+        for place in order {
+            let effect = &mut effects[place];
+            let exchange = effect.gathers();
+            let mut own = given.only(exchange.needs);
+            effect.gather(at, &mut own)?;
+            given.take(&own, exchange.gives);
+        }
+        Ok(())
+    }
+
+    /// What all effects add to a draw, merged in the order of what they give each other.
+    ///
+    /// # Errors
+    /// A GPU fault.
+    pub fn compose(&mut self, at: &DrawContext<'_>, composition: &mut Composition) -> Result<()> {
+        let (order, mut given) = (self.composes, Outputs::default());
+        let mut effects = self.each();
+        for place in order {
+            let effect = &mut effects[place];
+            let exchange = effect.composes();
+            let added = effect.compose(at, &given.only(exchange.needs))?;
+            given.take_layers(&added, exchange.gives);
+            composition.merge(added);
+        }
+        Ok(())
+    }
+
+    /// Draws the passes of all effects, in the order in which they are composed.
+    ///
+    /// # Errors
+    /// A GPU fault.
+    pub fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+        let order = self.composes;
+        let mut effects = self.each();
+        order.into_iter().try_for_each(|place| effects[place].draw(at, merged, to))
     }
 
     /// What streaks and flakes are worth in a picture, if the plan decides about them.
-    pub fn unseen(&mut self, shot: &Shot<'_>) -> Option<Unseen> {
-        let unseen = Unseen { rain: self.rain.streaks(shot), snow: self.snow.contrast(shot) };
+    pub fn unseen(&mut self, at: &DrawContext<'_>) -> Option<Unseen> {
+        let unseen = Unseen { rain: self.rain.streaks(at), snow: self.snow.contrast(at) };
         (unseen.rain.is_some() || unseen.snow.is_some()).then_some(unseen)
     }
 

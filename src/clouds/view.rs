@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3};
 
 use super::{
-    CloudModel, CloudSettings,
+    CloudSettings, HeldClouds,
     candidates::{CLOUDS, clouds_work},
     field::Shape,
     handed::{CloudShadows, HostShadowTexture},
@@ -21,7 +21,10 @@ use crate::{
     error::Result,
     gpu::{Device, recent::LruCache},
     moment::{Moment, Scene},
-    stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Sampling, Shot, Stages, Texture, flag},
+    stage::{
+        Contribution, DrawContext, DrawnEffect, Exchange, Frame, FrameBlock, FrameContext, MergedFrame, Output,
+        Outputs, PutPart, Recording, Sampling, Stages, Texture, Traits, flag,
+    },
     weather::CloudSlab,
     wind::LayerDrifts,
 };
@@ -76,44 +79,25 @@ pub(crate) struct CloudsView {
 }
 
 impl CloudsView {
-    /// Takes the clouds of a moment.
-    ///
-    /// # Errors
-    /// For a time that the weather does not know.
-    pub fn gather(&mut self, now: &Moment<'_>, model: CloudModel) -> Result<()> {
-        let is_clear = now.scene.conditions.cloud_slabs().next().is_none() && now.weather.regions.is_empty();
-        let still = |slab: &CloudSlab| self.shapes.get_or_put(slab, || Shape::of(slab));
-        let new = || Ok(CloudLayers::new(model, &now.scene, &now.weather.layers_until(now.time_s)?, still));
-        let mut overhead = if is_clear { None } else { new()? };
-        if let Some(overhead) = &mut overhead {
-            overhead.place((&now.scene, now.eye), (&now.weather, now.time_s), &mut self.maps)?;
-        }
-        self.overhead = overhead.filter(|o| !o.layers().is_empty());
-        if self.overhead.is_none() {
-            self.before = None;
-        }
-        Ok(())
-    }
-
     /// Whether some clouds leave places in the light and others not, and the host drew what shadows may fall on.
-    fn casts_shadows(&self, shot: &Shot<'_>, stages: Stages) -> bool {
-        let light_is_up = shot.now.scene.brighter().direction.z > LOWEST;
+    fn casts_shadows(&self, at: &DrawContext<'_>, stages: Stages) -> bool {
+        let light_is_up = at.now.scene.brighter().direction.z > LOWEST;
         // A host that reads the map lays the shadows itself.
         light_is_up
             && self.handed.is_none()
             && stages.has(Stages::SURFACE)
-            && shot.frame.depth.is_some()
+            && at.frame.depth.is_some()
             && self.overhead.as_ref().is_some_and(CloudLayers::is_broken)
     }
 
     /// Share of a picture's rays that lead towards the clouds.
-    fn share_of_rays(&self, shot: &Shot<'_>) -> f64 {
+    fn share_of_rays(&self, at: &DrawContext<'_>) -> f64 {
         const SIDE: u32 = 8;
         let Some(overhead) = &self.overhead else { return 0.0 };
-        let at = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE) * 2.0 - 1.0;
+        let ndc = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE) * 2.0 - 1.0;
         let count = (0..SIDE * SIDE).filter(|i| {
-            let ray = shot.rays.view_ray(DVec2::new(at(i % SIDE), at(i / SIDE)));
-            overhead.lies_toward(&shot.now.scene, shot.now.scene.world_to_enu * ray.direction)
+            let ray = at.target.rays.view_ray(DVec2::new(ndc(i % SIDE), ndc(i / SIDE)));
+            overhead.lies_toward(&at.now.scene, at.now.scene.world_to_enu * ray.direction)
         });
         count.count() as f64 / f64::from(SIDE * SIDE)
     }
@@ -130,10 +114,10 @@ impl CloudsView {
     }
 
     /// What of a frame is still to be made for a draw of these stages.
-    fn wanted(&self, shot: &Shot<'_>, of: &Composition) -> Wanted {
-        let made = self.made_of(shot.frame);
-        let march = SHOWN.0 & of.stages.0 != 0 && !made.is_some_and(|m| m.is_marched);
-        let shade = self.casts_shadows(shot, of.asked) && !made.is_some_and(|m| m.is_shaded);
+    fn wanted(&self, at: &DrawContext<'_>) -> Wanted {
+        let made = self.made_of(at.frame);
+        let march = SHOWN.0 & at.stages.0 != 0 && !made.is_some_and(|m| m.is_marched);
+        let shade = self.casts_shadows(at, at.stages) && !made.is_some_and(|m| m.is_shaded);
         Wanted {
             is_begun: made.is_some_and(|m| m.is_marched || m.is_shaded),
             march,
@@ -201,12 +185,12 @@ impl CloudsView {
     }
 
     /// How a picture's clouds follow from the last frame's.
-    fn picture(&self, shot: &Shot<'_>) -> (PictureUniform, Before) {
-        let (frame, now) = (shot.frame, shot.now);
+    fn picture(&self, at: &DrawContext<'_>) -> (PictureUniform, Before) {
+        let (frame, now) = (at.frame, at.now);
         let drifts = self.overhead.as_ref().map_or(LayerDrifts::ZERO, |o| o.drifts);
-        let here = Before { clip: shot.clip(), eye: now.eye, drifts, exposure: shot.exposure };
+        let here = Before { clip: at.clip(), eye: now.eye, drifts, exposure: at.target.exposure };
         let last = self.before.filter(|_| self.kept && !frame.is_pure());
-        let size = shot.color.texture.size();
+        let size = at.picture().size();
         let side = self.side(frame);
         // Without a past a picture begins finer.
         let side = if last.is_none() { side.min(BEGUN_SIDE) } else { side };
@@ -227,6 +211,26 @@ impl CloudsView {
 }
 
 impl DrawnEffect for CloudsView {
+    fn composes(&self) -> Exchange {
+        Exchange { needs: &[Output::Stars], gives: &[Output::Sky] }
+    }
+
+    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        let (now, model) = (at.now, at.held.of::<HeldClouds>()?.model);
+        let is_clear = now.scene.conditions.cloud_slabs().next().is_none() && now.weather.regions.is_empty();
+        let still = |slab: &CloudSlab| self.shapes.get_or_put(slab, || Shape::of(slab));
+        let new = || Ok(CloudLayers::new(model, &now.scene, &now.weather.layers_until(now.time_s)?, still));
+        let mut overhead = if is_clear { None } else { new()? };
+        if let Some(overhead) = &mut overhead {
+            overhead.place((&now.scene, now.eye), (&now.weather, now.time_s), &mut self.maps)?;
+        }
+        self.overhead = overhead.filter(|o| !o.layers().is_empty());
+        if self.overhead.is_none() {
+            self.before = None;
+        }
+        Ok(())
+    }
+
     fn stages(&self) -> Stages {
         match &self.overhead {
             Some(overhead) if overhead.is_broken() => SHOWN.with(Stages::SURFACE),
@@ -235,7 +239,7 @@ impl DrawnEffect for CloudsView {
         }
     }
 
-    fn prepare(&mut self, at: &crate::stage::Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn prepare(&mut self, at: &FrameContext<'_>, to: &mut Recording<'_>) -> Result<()> {
         let Some(overhead) = &self.overhead else {
             self.lay(at.now, None);
             return Ok(());
@@ -259,88 +263,80 @@ impl DrawnEffect for CloudsView {
         Ok(())
     }
 
-    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        put(&CLOUDS, self.is_there(shot.frame, stages), &[clouds_work(shot.pixels(), self.share_of_rays(shot))]);
+    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        put(&CLOUDS, self.is_there(at.frame, stages), &[clouds_work(at.pixels(), self.share_of_rays(at))]);
     }
 
-    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
-        to.block.clouds_drawn = shot.share(&CLOUDS, 0);
-        if let Some(overhead) = self.overhead.as_ref().filter(|_| shot.is_gauged) {
-            (to.block.mean_cloud, to.block.clouds_over) = overhead.mean_radiance_and_cover(&shot.now.scene);
-        }
-        let is_drawn = to.block.clouds_drawn > 0.0;
-        if !is_drawn {
+    fn compose(&mut self, at: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
+        let mut to = Contribution::none();
+        let (drawn, scene) = (at.share(&CLOUDS, 0), &at.now.scene);
+        let mean = self.overhead.as_ref().filter(|_| at.plan.is_gauged).map(|o| o.mean_radiance_and_cover(scene));
+        if drawn <= 0.0 {
             self.before = None;
         }
-        let is_there = self.is_there(shot.frame, to.stages) && self.passes.is_some() && is_drawn;
+        let is_there = self.is_there(at.frame, at.stages) && self.passes.is_some() && drawn > 0.0;
         to.between_and_veil("CLOUDS", flag(is_there), flag(is_there));
-        to.between("DECK_CLOSED", 0.0, flag(to.block.deck_cover >= 1.0));
+        to.between("DECK_CLOSED", 0.0, flag(scene.deck_cover as f32 >= 1.0));
         let deck = flag(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
         to.between("DECK_BEHIND", deck, deck);
-        let shadows = is_there && self.casts_shadows(shot, to.asked);
+        let shadows = is_there && self.casts_shadows(at, at.stages);
         to.constant("CLOUD_SHADOWS", flag(shadows), flag(shadows));
-        let texture = shot.color.texture;
-        let size = (texture.width(), texture.height());
+        let size = (at.picture().width(), at.picture().height());
         let overhead = self.overhead.as_ref().filter(|_| is_there);
-        self.lamps = overhead.and_then(|o| LampsUniform::of(o, shot.now, shot.exposure, size));
+        self.lamps = overhead.and_then(|o| LampsUniform::of(o, at.now, at.target.exposure, size));
         let glow = flag(self.lamps.is_some());
         to.between_and_veil("CLOUD_GLOW", glow, glow);
         let shafts = shadows && self.settings.shafts;
         to.constant("CLOUD_SHAFTS", flag(shafts), flag(shafts));
-        if shafts {
-            to.mark_fine();
-        } else if is_there {
-            to.mark_overlaid();
-        }
-        if shadows {
-            to.block.cloud_shadow = shadow_strength(&shot.now.scene);
-        }
-        let (wanted, side) = (self.wanted(shot, to), self.side(shot.frame));
+        let traits = Traits { is_fine: shafts, is_overlaid: is_there && !shafts, ..Traits::default() };
+        to.set_traits(traits, traits);
+        let shadow = shadows.then(|| shadow_strength(scene));
+        to.set_frame_block(FrameBlock::Clouds { drawn, mean, shadow });
+        let (wanted, side) = (self.wanted(at), self.side(at.frame));
         self.wanted = is_there.then_some(wanted);
         if let Some(passes) = self.passes.as_mut().filter(|_| is_there) {
-            let holds = passes.hold(shot.device, size, side);
+            let holds = passes.hold(at.device, size, side);
             if !wanted.is_begun {
                 self.kept = holds && self.before.is_some();
             }
-            let stars = to.textures[Texture::Behind as usize].take();
-            self.behind = stars.filter(|_| to.block.behind[1] > 0.0).map(|view| view.texture().clone());
+            self.behind = given.stars.as_ref().map(|view| view.texture().clone());
             to.set_texture(Texture::Behind, passes.layers(&wanted));
         }
-        Ok(())
+        Ok(to)
     }
 
-    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
         let Some(mut wanted) = self.wanted.take() else { return Ok(()) };
-        let casts_shadows = self.casts_shadows(shot, with.composition.asked);
-        let earlier = self.made_of(shot.frame);
-        wanted.shows_round = with.composition.needs_panorama;
+        let casts_shadows = self.casts_shadows(at, at.stages);
+        let earlier = self.made_of(at.frame);
+        wanted.shows_round = merged.composition.needs_panorama();
         wanted.round = wanted.shows_round && !earlier.is_some_and(|m| m.is_round);
         let (picture, here) = match earlier.filter(|_| !wanted.march) {
             Some(made) => (made.picture, None),
             None => {
-                let (picture, here) = self.picture(shot);
+                let (picture, here) = self.picture(at);
                 (picture, wanted.march.then_some(here))
             }
         };
         let (Some(overhead), Some(passes), Some((layout, group))) =
-            (&self.overhead, &mut self.passes, &with.composition.tables)
+            (&self.overhead, &mut self.passes, &merged.composition.tables())
         else {
             return Ok(());
         };
-        let lie = ShadowProjection::new(shot.now, overhead);
-        let pixel = shot.rays.pixel_angle(shot.color.texture.height());
+        let lie = ShadowProjection::new(at.now, overhead);
+        let pixel = at.target.rays.pixel_angle(at.picture().height());
         let around = PanoramaInputs {
             standing: lie.standing,
-            altitude_m: shot.now.scene.place.altitude_m,
-            exposure: shot.exposure,
+            altitude_m: at.now.scene.place.altitude_m,
+            exposure: at.target.exposure,
         };
-        let shaded = shot.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { lie, depth });
-        let sampling = Sampling::of(shot.color.texture, shot.frame.depth);
+        let shaded = at.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { lie, depth });
+        let sampling = Sampling::of(at.picture(), at.frame.depth);
         let of = CloudFrame {
             wanted,
-            clouds: overhead.uniform(shot.now, shot.exposure, passes),
+            clouds: overhead.uniform(at.now, at.target.exposure, passes),
             picture,
-            frame: with.block,
+            frame: merged.block,
             sky: (layout, group),
             behind: self.behind.as_ref(),
             shaded,
@@ -348,18 +344,18 @@ impl DrawnEffect for CloudsView {
             lamps: self.lamps,
             around,
             fineness: self.settings.fineness,
-            is_coarse: overhead.is_coarse(&shot.now.scene, shot.now.planet_radius_m, pixel),
-            past: HistoryUse::of(shot.frame),
+            is_coarse: overhead.is_coarse(&at.now.scene, at.now.planet_radius_m, pixel),
+            past: HistoryUse::of(at.frame),
             is_multisampled: sampling.multisampled()[1],
-            depth_kinds: f64::from(shot.rays.depth_kinds()),
+            depth_kinds: f64::from(at.target.rays.depth_kinds()),
         };
         to.passes += passes.draw(to.device, to.encoder, &of)?;
         self.before = here.or(self.before);
         self.made = Some(Made {
-            frame_id: shot.frame.frame_id,
+            frame_id: at.frame.frame_id,
             is_marched: wanted.march || earlier.is_some_and(|m| m.is_marched),
             is_shaded: casts_shadows || earlier.is_some_and(|m| m.is_shaded),
-            is_round: with.composition.needs_panorama || earlier.is_some_and(|m| m.is_round),
+            is_round: merged.composition.needs_panorama() || earlier.is_some_and(|m| m.is_round),
             picture,
         });
         Ok(())

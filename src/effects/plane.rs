@@ -12,7 +12,7 @@ use crate::{
         shader,
     },
     moment::Moment,
-    stage::{Composition, DrawnEffect, OpaqueDraw, OpaqueTarget, Shot, Stages},
+    stage::{DrawContext, DrawnEffect, FrameContext, OpaqueDraw, OpaqueTarget, Outputs, Stages},
 };
 
 /// How far it reaches from below the camera, m.
@@ -91,10 +91,6 @@ struct Made {
 }
 
 impl PlaneView {
-    pub fn gather(&mut self, now: &Moment<'_>) {
-        self.eye = now.eye;
-    }
-
     fn uniform(&self, height_m: f64, clip: DMat4) -> PlaneUniform {
         let among = |v: f64| v.rem_euclid(2.0 * SQUARE_M) as f32;
         PlaneUniform {
@@ -154,6 +150,11 @@ impl Made {
 }
 
 impl DrawnEffect for PlaneView {
+    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        self.eye = at.now.eye;
+        Ok(())
+    }
+
     fn stages(&self) -> Stages {
         Stages(0)
     }
@@ -162,22 +163,23 @@ impl DrawnEffect for PlaneView {
         self.height_m.is_some()
     }
 
-    fn draw_opaque(&mut self, shot: &Shot<'_>, with: &OpaqueDraw<'_>, pass: &mut wgpu::RenderPass<'_>) -> Result<()> {
+    fn draw_opaque(
+        &mut self,
+        at: &DrawContext<'_>,
+        with: &OpaqueDraw<'_>,
+        pass: &mut wgpu::RenderPass<'_>,
+    ) -> Result<()> {
         let Some(height_m) = self.height_m else { return Ok(()) };
         let block = self.uniform(height_m, with.clip);
         let made = match self.made.take() {
             Some(made) if made.target == with.target => made,
-            _ => Made::new(shot.device, with)?,
+            _ => Made::new(at.device, with)?,
         };
-        shot.device.queue.write_buffer(&made.buffer, 0, bytemuck::bytes_of(&block));
+        at.device.queue.write_buffer(&made.buffer, 0, bytemuck::bytes_of(&block));
         pass.set_pipeline(&made.pipeline);
         pass.set_bind_group(1, &made.group, &[]);
         pass.draw(0..4, 0..1);
         self.made = Some(made);
-        Ok(())
-    }
-
-    fn compose(&mut self, _shot: &Shot<'_>, _to: &mut Composition) -> Result<()> {
         Ok(())
     }
 }

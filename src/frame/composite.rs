@@ -18,7 +18,7 @@ use crate::{
         recent::LruCache,
     },
     moment::Moment,
-    stage::{Composition, Constant, Constants, Frame, FrameUniform, Pipeline, Sampling, Stages, flag},
+    stage::{Block, Composition, Constant, Constants, Frame, FrameUniform, Pipeline, Sampling, Stages, flag},
     surroundings::layout as around_layout,
 };
 
@@ -209,8 +209,11 @@ impl Composite {
         host: &Frame<'_>,
         composition: &Composition,
     ) -> Option<wgpu::BindGroup> {
-        let [Some(between), Some(on_surfaces)] = &composition.blocks else { return None };
-        let [before, cells, terrain, behind] = composition.textures.each_ref().map(Option::as_ref);
+        let [Some(between), Some(on_surfaces)] = [Block::Between, Block::OnSurfaces].map(|b| composition.own_block(b))
+        else {
+            return None;
+        };
+        let [before, cells, terrain, behind] = composition.textures().each_ref().map(Option::as_ref);
         let sampling = Sampling::of(copy, host.depth);
         let color_view = copy.create_view(&Default::default());
         let depth_view = host.depth_layer().map(Layer::view);

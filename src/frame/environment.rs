@@ -15,7 +15,7 @@ use crate::{
         recent::LruCache,
     },
     moment::Scene,
-    stage::{ColorSpace, Composition, Constants, CostItem, Recording, Sampling, Shot, Stages},
+    stage::{ColorSpace, Composition, Constants, CostItem, DrawContext, Recording, Sampling, Stages},
 };
 
 /// Texels of a face's edge, and levels down to one texel.
@@ -321,8 +321,8 @@ impl EnvironmentMap {
     }
 
     /// The faces to draw for a frame, and the scale of what is drawn.
-    fn faces_due(&mut self, shot: &Shot<'_>) -> std::ops::Range<u32> {
-        let (frame, scene) = (shot.frame, &shot.now.scene);
+    fn faces_due(&mut self, at: &DrawContext<'_>) -> std::ops::Range<u32> {
+        let (frame, scene) = (at.frame, &at.now.scene);
         let (now, white) = (EnvironmentInputs::of(scene), scene.ground.adaptation_cd_m2.clamp(1e-6, 1e9));
         let follows = self.drawn.as_ref().is_some_and(|before| !now.leaps_from(before));
         let faces = if follows && !frame.is_pure() && SCALES.contains(&(white / self.cd_m2_per_unit)) {
@@ -335,11 +335,11 @@ impl EnvironmentMap {
         (self.drawn, self.frame_id) = (Some(now), Some(frame.frame_id));
         self.light_scale = match frame.color_space {
             ColorSpace::SceneLinear => self.cd_m2_per_unit / frame.cd_m2_per_unit,
-            ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => self.cd_m2_per_unit * shot.exposure,
+            ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => self.cd_m2_per_unit * at.target.exposure,
         };
         let block = |face| FaceUniform::new(face, &scene.world_to_enu, 1.0 / self.cd_m2_per_unit);
         for face in 0..FACES as usize {
-            shot.device.queue.write_buffer(&self.blocks, (face * STEP) as u64, bytemuck::bytes_of(&block(face)));
+            at.device.queue.write_buffer(&self.blocks, (face * STEP) as u64, bytemuck::bytes_of(&block(face)));
         }
         faces
     }
@@ -414,24 +414,24 @@ impl View {
     /// Draws what is due of the cube map, if the host has asked for it.
     pub(super) fn fill_environment(
         &mut self,
-        shot: &Shot<'_>,
+        at: &DrawContext<'_>,
         composition: &Composition,
         to: &mut Recording<'_>,
     ) -> Result<()> {
         let (Some(map), Some((_, group)), Some((_, tables))) =
-            (&mut self.environment, &self.bound, &composition.tables)
+            (&mut self.environment, &self.bound, &composition.tables())
         else {
             return Ok(());
         };
-        let is_seen = composition.stages.has(Stages::BACKGROUND.with(Stages::MEDIUM));
-        if !is_seen || map.frame_id == Some(shot.frame.frame_id) {
+        let is_seen = composition.stages().has(Stages::BACKGROUND.with(Stages::MEDIUM));
+        if !is_seen || map.frame_id == Some(at.frame.frame_id) {
             return Ok(());
         }
-        let faces = map.faces_due(shot);
-        let sampling = Sampling::of(shot.color.texture, shot.frame.depth);
+        let faces = map.faces_due(at);
+        let sampling = Sampling::of(at.picture(), at.frame.depth);
         let composite = self.composite.lock()?;
         let groups = [group, tables, self.surroundings.bind_group()];
-        map.draw(to, faces, (sampling, composition.whole.between), &composite.layouts(sampling), &groups)?;
+        map.draw(to, faces, (sampling, composition.whole().between), &composite.layouts(sampling), &groups)?;
         to.ends(CostItem::Veil, true)
     }
 }

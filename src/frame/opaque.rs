@@ -1,8 +1,9 @@
 //! The opaque step: what effects draw into the host's colour and depth, in one pass before the composition. There is no pass where no
 //! effect has anything opaque.
 
-use super::{View, draw::Call};
+use super::View;
 use crate::{
+    effects::PARTS,
     error::{Error, Result},
     gpu::{
         Device, KeptLayer, KeptView, Layer,
@@ -11,7 +12,8 @@ use crate::{
         is_kept,
     },
     stage::{
-        CostItem, DepthAccess, Frame, FrameUniform, OpaqueDraw, OpaqueTarget, Recording, Stages, check_written, uniform,
+        CostItem, DepthAccess, DrawContext, DrawTarget, Frame, FrameContext, FrameUniform, OpaqueDraw, OpaqueTarget,
+        PlannedShares, Recording, Stages, check_written, uniform,
     },
 };
 
@@ -104,15 +106,20 @@ impl View {
     }
 
     /// Draws what effects have that is opaque, or counts them where the host's depth may only be read.
-    pub(super) fn draw_opaque(&mut self, call: &Call<'_>, to: &mut Recording<'_>) -> Result<()> {
-        let (frame, color) = (call.frame, call.color);
+    pub(super) fn draw_opaque<'a>(
+        &mut self,
+        of: &FrameContext<'a>,
+        target: DrawTarget<'a>,
+        to: &mut Recording<'_>,
+    ) -> Result<()> {
+        let (frame, color) = (of.frame, target.color);
         let (DepthAccess::ReadWrite, Some(read)) = (frame.depth_access, frame.depth) else {
             self.report.opaque_left_out = self.effects.all().iter().filter(|e| e.has_opaque()).count() as u32;
             return Ok(());
         };
         let attached = self.device.attached_depth(read);
         let depth = Layer { texture: &attached.texture, index: frame.layers.depth };
-        let block = uniform(frame, call.now, call.rays, color.texture, call.exposure, false);
+        let block = uniform(frame, of.now, target.rays, color.texture, target.exposure, false);
         self.uniform.write(bytemuck::bytes_of(&block));
         let step = self.opaque.get_or_insert_with(|| OpaqueStep::new(&self.device.device));
         let layout = step.layout.clone();
@@ -134,11 +141,12 @@ impl View {
             ..Default::default()
         });
         pass.set_bind_group(0, &bound.group, &[]);
-        let shot = call.shot();
+        let plan = PlannedShares::whole(PARTS);
+        let at = DrawContext { device: of.device, frame, now: of.now, target, stages: Stages::SURFACE, plan };
         let target = OpaqueTarget::of(frame, color.texture, depth.texture);
-        let with = OpaqueDraw { target, layout: &layout, clip: OpaqueDraw::clip_of(&shot) };
+        let with = OpaqueDraw { target, layout: &layout, clip: OpaqueDraw::clip_of(&at) };
         for effect in self.effects.each().into_iter().filter(|effect| effect.has_opaque()) {
-            effect.draw_opaque(&shot, &with, &mut pass)?;
+            effect.draw_opaque(&at, &with, &mut pass)?;
         }
         drop(pass);
         to.passes += 1;

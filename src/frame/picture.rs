@@ -4,7 +4,7 @@ use super::{View, environment::EnvironmentMap, even::CoarseWeather, froxels::Fro
 use crate::{
     error::Result,
     gpu::{KeptLayer, Layer, is_kept},
-    stage::{Composition, Recording, Shot, can_copy, color_copy, is_copy_of},
+    stage::{Composition, DrawContext, Recording, can_copy, color_copy, is_copy_of},
 };
 
 /// The textures of one bind group beside the copy of the picture: it is made anew only when the host hands over others.
@@ -81,8 +81,8 @@ impl View {
     }
 
     /// Makes the bind group anew if the host's textures are others than last time.
-    pub(super) fn bind(&mut self, shot: &Shot<'_>, composition: &Composition) -> Result<()> {
-        let (frame, own) = (shot.frame, &composition.textures);
+    pub(super) fn bind(&mut self, at: &DrawContext<'_>, composition: &Composition) -> Result<()> {
+        let (frame, own) = (at.frame, composition.textures());
         let of_host = |b: &Bound| {
             is_kept(frame.depth_layer(), b.depth.as_ref())
                 && is_kept(frame.mask_layer(), b.mask.as_ref())

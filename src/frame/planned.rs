@@ -7,16 +7,21 @@ use crate::{
     effects::{Effects, PARTS, together},
     error::{Error, Result, Status},
     moment::Scene,
-    plan::{self, Budget, Plan, Presence, Reason, Situation},
-    stage::{Frame, Shot, Stages},
+    plan::{self, Budget, Plan, Presence, Reason, Situation, parts::Part},
+    stage::{DrawContext, Frame, Stages},
 };
 
 /// Which parts a picture of these stages has, and what each costs in it.
-pub(super) fn present(effects: &mut Effects, shot: &Shot<'_>, stages: Stages) -> Presence {
-    let mut present = Presence { pixels: shot.pixels(), together: together(&shot.now.scene), ..Presence::default() };
+pub(super) fn present(effects: &mut Effects, at: &DrawContext<'_>, stages: Stages) -> Presence {
+    let place = |part: &Part| PARTS.iter().position(|p| p.name == part.name);
+    let (pair, work) = together(&at.now.scene);
+    let mut present = Presence { pixels: at.pixels(), ..Presence::default() };
+    if let [Some(a), Some(b)] = pair.map(place) {
+        present.together = ([a, b], work);
+    }
     for effect in effects.each() {
-        effect.parts(shot, stages, &mut |part, is_there, steps| {
-            if let Some(place) = PARTS.iter().position(|p| p.name == part.name) {
+        effect.parts(at, stages, &mut |part, is_there, steps| {
+            if let Some(place) = place(part) {
                 let now = &mut present.parts[place];
                 now.is_there = is_there;
                 now.steps[..steps.len()].copy_from_slice(steps);

@@ -8,7 +8,6 @@ use std::{
 use super::{
     check::rays,
     composite::SharedComposite,
-    draw::Call,
     draws::{DrawKey, Draws, MOST_DRAWS},
     environment::EnvironmentMap,
     even::CoarseWeather,
@@ -29,11 +28,11 @@ use crate::{
     },
     plan::Planner,
     stage::{
-        CostItem, Diagnostic, Frame, FrameFlags, FrameUniform, LensPicture, Prepare, Recording, Report, Stages,
-        can_be_apart, can_copy,
+        CostItem, Diagnostic, DrawTarget, Frame, FrameContext, FrameFlags, FrameUniform, LensPicture, Recording,
+        Report, Stages, can_be_apart, can_copy,
     },
     surroundings::SurroundingsBlock,
-    world::KeptScene,
+    world::{HeldEffects, KeptScene},
 };
 
 /// One camera or projector channel. Exclusive: one thread at a time.
@@ -280,9 +279,18 @@ impl View {
     ) -> Result<()> {
         let now = context.moment("frame.camera.position", frame.camera.position, &mut self.scene)?;
         let rays = stages.draw().then(|| rays(frame, &now.scene)).transpose()?;
-        self.effects.gather((&self.device, &context.held), (&context.world, &now), frame, stages)?;
         // What is not there is not drawn.
         let asked = stages;
+        let of = FrameContext {
+            device: &self.device.clone(),
+            frame,
+            now: &now,
+            world: &context.world,
+            held: HeldEffects(&context.held.all()),
+            asked,
+            table_share: if frame.is_pure() { 1.0 } else { self.planner.share_of_tables() },
+        };
+        self.effects.gather(&of)?;
         let there = self.effects.all().iter().fold(Stages::PREPARE.with(Stages::TONE), |s, e| s.with(e.stages()));
         let stages = Stages(stages.0 & there.0);
         let opaque = self.has_opaque(asked);
@@ -296,21 +304,18 @@ impl View {
             self.hold_images(frame, stages)?;
         }
         if self.recorded == Stages(0) {
-            let share = if frame.is_pure() { 1.0 } else { self.planner.share_of_tables() };
-            let at = Prepare { frame, now: &now, share };
-            self.effects.each().into_iter().try_for_each(|effect| effect.prepare(&at, to))?;
+            self.effects.each().into_iter().try_for_each(|effect| effect.prepare(&of, to))?;
         }
         if let (Some(rays), Some(color)) = (rays, frame.color_layer()) {
             let exposure = frame.exposure.unwrap_or(now.exposure).factor(now.scene.ground.adaptation_cd_m2);
-            let veiled = self.recorded.with(asked).has(Stages::MEDIUM);
-            let device = &self.device.clone();
-            let call = Call { device, frame, now: &now, rays: &rays, color, exposure, veiled };
+            let is_veiled = self.recorded.with(asked).has(Stages::MEDIUM);
+            let target = DrawTarget { color, rays: &rays, exposure, is_veiled };
             if opaque {
-                self.draw_opaque(&call, to)?;
+                self.draw_opaque(&of, target, to)?;
             }
             match diagnoses {
-                true => self.draw_diagnostic(&call, [asked, there], to)?,
-                false => self.draw_all(&call, stages, to)?,
+                true => self.draw_diagnostic(&of, target, [asked, there], to)?,
+                false => self.draw_all(&of, target, stages, to)?,
             }
         }
         to.upload();
@@ -324,8 +329,14 @@ impl View {
     }
 
     /// Draws the stages of a call in as few draws as give the picture.
-    fn draw_all(&mut self, call: &Call<'_>, stages: Stages, to: &mut Recording<'_>) -> Result<()> {
-        let frame = call.frame;
+    fn draw_all<'a>(
+        &mut self,
+        of: &FrameContext<'a>,
+        target: DrawTarget<'a>,
+        stages: Stages,
+        to: &mut Recording<'_>,
+    ) -> Result<()> {
+        let frame = of.frame;
         // A lens lies before the tone curve, where the target can hold the picture between them.
         let mut lens = stages.has(Stages::LENS) && self.effects.all().iter().any(|effect| effect.has_lens());
         let two = |[a, b]: [Stages; 2]| [a, b, Stages(0), Stages(0), Stages(0)];
@@ -336,22 +347,22 @@ impl View {
         };
         for part in draws.into_iter().filter(|s| s.0 != 0) {
             if lens && part == Stages::TONE {
-                self.draw_lens(call, false, to)?;
+                self.draw_lens(frame, target.color, false, to)?;
                 lens = false;
             }
-            self.draw(call, part, to)?;
+            self.draw(of, target, part, to)?;
         }
-        if lens { self.draw_lens(call, stages.has(Stages::TONE), to) } else { Ok(()) }
+        if lens { self.draw_lens(frame, target.color, stages.has(Stages::TONE), to) } else { Ok(()) }
     }
 
     /// Draws what lies over the picture that the target holds; `toned` says that TONE has been over it in this call.
-    fn draw_lens(&mut self, call: &Call<'_>, toned: bool, to: &mut Recording<'_>) -> Result<()> {
-        self.take_picture(call.color, to)?;
+    fn draw_lens(&mut self, frame: &Frame<'_>, color: Layer<'_>, toned: bool, to: &mut Recording<'_>) -> Result<()> {
+        self.take_picture(color, to)?;
         let Some(copy) = &self.copy else { return Ok(()) };
-        let target = self.target.of(call.color, Layer::view);
+        let target = self.target.of(color, Layer::view);
         self.effects
             .each()
             .into_iter()
-            .try_for_each(|effect| effect.draw_lens(call.frame, LensPicture { copy, target }, toned, to))
+            .try_for_each(|effect| effect.draw_lens(frame, LensPicture { copy, target }, toned, to))
     }
 }

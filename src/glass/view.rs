@@ -15,7 +15,7 @@ use crate::{
     gpu::{Device, Shared},
     moment::Moment,
     stage::{
-        ColorSpace, Composition, CostItem, DrawnEffect, Frame, LensPicture, Prepare, Recording, Shot, Stages, is_float,
+        ColorSpace, CostItem, DrawnEffect, Frame, FrameContext, LensPicture, Outputs, Recording, Stages, is_float,
     },
     surroundings::{HostSurroundings, ShelterReach},
 };
@@ -99,6 +99,10 @@ fn reached<'a>(now: &'a Moment<'_>, frame: &Frame<'_>, plane: &Plane, screen: &W
 }
 
 impl DrawnEffect for GlassView {
+    fn gather(&mut self, _at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        Ok(())
+    }
+
     fn stages(&self) -> Stages {
         if self.glass.is_some() { Stages::LENS } else { Stages(0) }
     }
@@ -113,7 +117,7 @@ impl DrawnEffect for GlassView {
     }
 
     /// Brings the water on the glass to the frame's time.
-    fn prepare(&mut self, at: &Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn prepare(&mut self, at: &FrameContext<'_>, to: &mut Recording<'_>) -> Result<()> {
         if self.glass.is_none() {
             return Ok(());
         }
@@ -133,10 +137,6 @@ impl DrawnEffect for GlassView {
         let passes = glass.advance(to.device, &mut *locked(&kit)?, to.encoder, &moment)?;
         to.passes += passes;
         to.ends(CostItem::Windscreen, passes > 0)
-    }
-
-    fn compose(&mut self, _: &Shot<'_>, _: &mut Composition) -> Result<()> {
-        Ok(())
     }
 
     fn has_lens(&self) -> bool {

@@ -1,7 +1,5 @@
 //! What a view draws of the water on the ground: nothing while it is dry.
 
-use std::sync::Arc;
-
 use glam::DMat3;
 
 use super::{
@@ -16,10 +14,12 @@ use crate::{
     },
     moment::Moment,
     scene::WorldKind,
-    stage::{Block, Composition, DrawnEffect, Frame, FrameFlags, Shot, Stages, Texture, flag, is_float, rounding},
+    stage::{
+        Block, Contribution, DrawContext, DrawnEffect, Exchange, Frame, FrameContext, FrameFlags, Output, Outputs,
+        Stages, Texture, flag, is_float, rounding,
+    },
     surroundings::SnowHere,
     weather::SurfaceCover,
-    world::World,
 };
 
 /// Largest number of a half float, with room for what follows.
@@ -64,53 +64,42 @@ impl GroundView {
         let (has_terrain, has_snow, has_water) = (false, false, false);
         Self { uniform, block: None, has_terrain, has_snow, has_water, views: [None, None], window, drops }
     }
-
-    /// Takes what there is of a moment for a frame; `fog_depth` is the fog's optical depth straight up. Says whether there is anything
-    /// to draw.
-    ///
-    /// # Errors
-    /// For a time that the weather does not know.
-    pub fn gather(
-        &mut self,
-        now: &Moment<'_>,
-        frame: &Frame<'_>,
-        held: &GroundSeen<'_>,
-        fog_depth: f64,
-    ) -> Result<bool> {
-        let glaze = glaze(now);
-        self.has_water = held.has_wet_terrain || held.cover.wetness > 0.0 || held.cover.puddles > 0.0 || glaze > 0.0;
-        self.has_terrain = held.terrain.is_some();
-        self.has_snow = held.snow.depth_m > 0.0 || held.has_snowy_terrain;
-        self.block = None;
-        if let (true, Some(color), Some(_)) = (self.has_water || self.has_snow, frame.color, frame.depth) {
-            self.block = Some(wet_scene(now, (frame, color), held, glaze, fog_depth)?.uniform(&mut self.drops));
-        }
-        Ok(self.block.is_some())
-    }
-
-    /// Takes the textures of the host's terrain, up to date if any of it is `wanted`: of its tiles about the camera, or of its grid.
-    pub fn take_terrain(
-        &mut self,
-        device: &Arc<Device>,
-        (held, world): (&HeldGround, &World),
-        now: &Moment<'_>,
-        wanted: bool,
-    ) {
-        self.views = match held.shown_tiles(world, now.here.surface.ice) {
-            Some(shown) if wanted => self.window.views(device, now.eye, &shown),
-            Some(_) => [None, None],
-            None => held.views(device, wanted, world.snow.as_deref()),
-        };
-    }
 }
 
 impl DrawnEffect for GroundView {
+    fn gathers(&self) -> Exchange {
+        Exchange { needs: &[Output::FogDepth], ..Exchange::NONE }
+    }
+
+    fn gather(&mut self, at: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
+        let (now, frame, held) = (at.now, at.frame, at.held.of::<HeldGround>()?);
+        let seen = held.seen(at.world, now);
+        let glaze = glaze(now);
+        self.has_water = seen.has_wet_terrain || seen.cover.wetness > 0.0 || seen.cover.puddles > 0.0 || glaze > 0.0;
+        self.has_terrain = seen.terrain.is_some();
+        self.has_snow = seen.snow.depth_m > 0.0 || seen.has_snowy_terrain;
+        self.block = None;
+        if let (true, Some(color), Some(_)) = (self.has_water || self.has_snow, frame.color, frame.depth) {
+            let scene = wet_scene(now, (frame, color), &seen, glaze, given.fog_depth)?;
+            self.block = Some(scene.uniform(&mut self.drops));
+        }
+        // The textures of the host's terrain, of its tiles about the camera or of its grid: up to date where any of it is drawn.
+        let is_drawn = self.block.is_some() && at.asked.has(Stages::SURFACE);
+        self.views = match held.shown_tiles(at.world, now.here.surface.ice) {
+            Some(shown) if is_drawn => self.window.views(at.device, now.eye, &shown),
+            Some(_) => [None, None],
+            None => held.views(at.device, is_drawn, at.world.snow.as_deref()),
+        };
+        Ok(())
+    }
+
     fn stages(&self) -> Stages {
         if self.block.is_some() { Stages::SURFACE } else { Stages(0) }
     }
 
-    fn compose(&mut self, _: &Shot<'_>, to: &mut Composition) -> Result<()> {
-        let drawn = self.block.as_ref().filter(|_| to.stages.has(Stages::SURFACE));
+    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+        let mut to = Contribution::none();
+        let drawn = self.block.as_ref().filter(|_| at.stages.has(Stages::SURFACE));
         let has_rings = self.has_water && drawn.is_some_and(GroundUniform::has_rings);
         for (name, is_there) in
             [("TERRAIN", self.has_terrain), ("SNOW", self.has_snow), ("WATER", self.has_water), ("RINGS", has_rings)]
@@ -118,15 +107,15 @@ impl DrawnEffect for GroundView {
             let value = flag(drawn.is_some() && is_there);
             to.constant(name, value, value);
         }
-        to.needs_panorama |= drawn.is_some();
         if let Some(block) = drawn {
+            to.require_panorama();
             self.uniform.write(bytemuck::bytes_of(block));
         }
         to.set_block(Block::OnSurfaces, &self.uniform);
         let [water, surface] = &self.views;
         to.set_texture(Texture::OnGround, water.clone());
         to.set_texture(Texture::Terrain, surface.clone());
-        Ok(())
+        Ok(to)
     }
 }
 

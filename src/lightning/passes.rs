@@ -13,7 +13,7 @@ use crate::{
         pass::{self, QuadsDesc},
         recent::LruCache,
     },
-    stage::{Block, Constant, Drawing, FrameUniform, Recording, Texture, flag},
+    stage::{Block, Constant, FrameUniform, MergedFrame, Recording, Texture, flag},
 };
 
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -81,17 +81,17 @@ impl ChannelPass {
         &mut self,
         to: &mut Recording<'_>,
         (block, parts): (&ChannelUniform, &[PartInstance]),
-        with: &Drawing<'_>,
+        merged: &MergedFrame<'_>,
         depth: Option<Layer<'_>>,
         (target, over): (&wgpu::TextureView, bool),
     ) -> Result<()> {
-        let Some((tables_layout, tables)) = &with.composition.tables else { return Ok(()) };
+        let Some((tables_layout, tables)) = merged.composition.tables() else { return Ok(()) };
         let device = to.device;
         self.block.write(bytemuck::bytes_of(block));
         device.queue.write_buffer(&self.parts, 0, bytemuck::cast_slice(parts));
         let kind = (depth.is_some_and(Layer::is_multisampled), depth.is_some());
-        self.bind(device, with, depth, kind.0);
-        let pipeline = self.pipeline(device, tables_layout, kind, with.composition.least.between.all())?;
+        self.bind(device, merged, depth, kind.0);
+        let pipeline = self.pipeline(device, tables_layout, kind, merged.composition.least().between.all())?;
         let Some((.., group)) = &self.bound else { return Ok(()) };
         let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
         let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -115,9 +115,9 @@ impl ChannelPass {
         Ok(())
     }
 
-    fn bind(&mut self, device: &Device, with: &Drawing<'_>, depth: Option<Layer<'_>>, multi: bool) {
-        let Some(between) = &with.composition.blocks[Block::Between as usize] else { return };
-        let hung = with.composition.texture(Texture::Behind);
+    fn bind(&mut self, device: &Device, merged: &MergedFrame<'_>, depth: Option<Layer<'_>>, multi: bool) {
+        let Some(between) = merged.composition.own_block(Block::Between) else { return };
+        let hung = merged.composition.texture(Texture::Behind);
         if self
             .bound
             .as_ref()
@@ -130,7 +130,7 @@ impl ChannelPass {
             label: Some("flashes"),
             layout: &self.layouts[usize::from(multi)],
             entries: &[
-                with.block.entry(0),
+                merged.block.entry(0),
                 bind::view(1, view.as_ref().unwrap_or(&self.none)),
                 between.entry(4),
                 self.block.entry(7),

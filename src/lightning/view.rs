@@ -21,9 +21,11 @@ use crate::{
     gpu::Device,
     moment::{FlashLight, Moment},
     scene::{FlashLamp, MAX_FLASH_LAMPS},
-    stage::{Composition, Drawing, DrawnEffect, FlashUniform, Frame, Recording, Shot, Stages, Texture, flag},
+    stage::{
+        Contribution, DrawContext, DrawnEffect, Exchange, FlashBlock, FlashUniform, FrameBlock, FrameContext,
+        MergedFrame, Output, Outputs, Recording, Stages, Texture, Traits, flag,
+    },
     weather::Conditions,
-    world::World,
 };
 
 /// Exposure of a frame without a predecessor, s.
@@ -92,23 +94,6 @@ fn frame_time(before: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: boo
 }
 
 impl LightningView {
-    /// Finds the flashes that shine in a frame, and says so to what they light ([`Moment::flash_lamps`]): before the other effects look.
-    pub fn gather(&mut self, now: &Moment<'_>, world: &World, held: &HeldLightning, frame: &Frame<'_>) {
-        let time = frame_time(self.frame, frame.frame_id, now.time_s, frame.is_pure());
-        self.frame = Some(time);
-        (self.lit, self.target) = (None, None);
-        let storms = Storms { world, held };
-        let (from_s, until_s) = Storms::begin_within(time.span.from_s, time.span.until_s);
-        self.storms = !storms.is_quiet(from_s, until_s);
-        if !self.storms {
-            self.shining.clear();
-            return;
-        }
-        let course = if held.settings.limits_flicker { Course::Smooth } else { Course::Natural };
-        self.find(&storms, now, &time.span, course);
-        self.light(now, time.span, course);
-    }
-
     /// Keeps those that shine in a span.
     fn find(&mut self, storms: &Storms<'_>, now: &Moment<'_>, span: &Span, course: Course) {
         let near = DVec2::from_array(now.scene.map_m);
@@ -199,14 +184,14 @@ impl LightningView {
     }
 
     /// The parts of all open channels, camera-relative.
-    fn gather_parts(&mut self, shot: &Shot<'_>) {
+    fn gather_parts(&mut self, at: &DrawContext<'_>) {
         self.parts.clear();
         let Some(lit) = &self.lit else { return };
-        let to_enu = shot.now.scene.world_to_enu;
+        let to_enu = at.now.scene.world_to_enu;
         let relative = |p: DVec3| (to_enu * (p - lit.eye)).as_vec3().to_array();
         for shining in &self.shining {
             shining.strike.each_part(&lit.span, lit.course, |part| {
-                let intensity = part.flux_lm * part.open / (4.0 * PI) * shot.exposure;
+                let intensity = part.flux_lm * part.open / (4.0 * PI) * at.target.exposure;
                 if part.open > 1e-3 && self.parts.len() < MOST_PARTS {
                     let [from, to] = part.ends.map(relative);
                     self.parts.push(PartInstance { from, intensity: intensity as f32, to, pad: 0.0 });
@@ -243,22 +228,23 @@ fn scattering_per_m(c: &Conditions, altitude_m: f64) -> f64 {
 }
 
 impl Lit {
-    /// Writes what the composition's glow reads.
-    fn write(&self, shot: &Shot<'_>, to: &mut Composition) {
-        let c = &shot.now.scene.conditions;
+    /// What the composition's glow reads.
+    fn block(&self, c: &Conditions) -> FlashBlock {
         let clouds = CloudSpan::of(c);
-        let block = &mut to.block;
         // From below the base is seen, from above the tops; inside, whichever is nearer.
         let from_below = clouds.is_none_or(|s| self.eye_m < 0.5 * (s.base_m + s.top_m));
         let face_m = clouds.map_or(0.0, |s| if from_below { s.base_m } else { s.top_m });
-        block.flash_color = COLOR.map(|v| v as f32);
-        block.flash_count = self.count as u32;
-        block.flash_plane = (face_m - self.eye_m) as f32;
         let cover = c.cloud_slabs().fold(1.0, |clear, s| clear * (1.0 - s.cover));
-        block.flash_cover = if clouds.is_some() { (1.0 - cover) as f32 } else { 0.0 };
-        block.flash_haze = (TAKES * (c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m)) as f32;
-        block.flash_scattering = scattering_per_m(c, self.eye_m) as f32;
-        for (uniform, (source, position)) in block.flashes.iter_mut().zip(&self.sources[..self.count]) {
+        let mut block = FlashBlock {
+            color: COLOR.map(|v| v as f32),
+            count: self.count as u32,
+            plane: (face_m - self.eye_m) as f32,
+            cover: if clouds.is_some() { (1.0 - cover) as f32 } else { 0.0 },
+            haze: (TAKES * (c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m)) as f32,
+            scattering: scattering_per_m(c, self.eye_m) as f32,
+            sources: Default::default(),
+        };
+        for (uniform, (source, position)) in block.sources.iter_mut().zip(&self.sources[..self.count]) {
             let height = (position.z - (face_m - self.eye_m)).abs().max(30.0);
             *uniform = FlashUniform {
                 position: position.as_vec3().to_array(),
@@ -269,10 +255,38 @@ impl Lit {
                 pad: 0.0,
             };
         }
+        block
     }
 }
 
 impl DrawnEffect for LightningView {
+    fn gathers(&self) -> Exchange {
+        Exchange { gives: &[Output::Flashes], ..Exchange::NONE }
+    }
+
+    fn composes(&self) -> Exchange {
+        Exchange { needs: &[Output::Rain, Output::Snow], ..Exchange::NONE }
+    }
+
+    /// Finds the flashes that shine in a frame, and says so to what they light ([`Moment::flash_lamps`]).
+    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        let (now, held) = (at.now, at.held.of::<HeldLightning>()?);
+        let time = frame_time(self.frame, at.frame.frame_id, now.time_s, at.frame.is_pure());
+        self.frame = Some(time);
+        (self.lit, self.target) = (None, None);
+        let storms = Storms { world: at.world, held };
+        let (from_s, until_s) = Storms::begin_within(time.span.from_s, time.span.until_s);
+        self.storms = !storms.is_quiet(from_s, until_s);
+        if !self.storms {
+            self.shining.clear();
+            return Ok(());
+        }
+        let course = if held.settings.limits_flicker { Course::Smooth } else { Course::Natural };
+        self.find(&storms, now, &time.span, course);
+        self.light(now, time.span, course);
+        Ok(())
+    }
+
     fn stages(&self) -> Stages {
         match &self.lit {
             Some(lit) if lit.has_line => Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::PARTICLES),
@@ -281,32 +295,32 @@ impl DrawnEffect for LightningView {
         }
     }
 
-    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+    fn compose(&mut self, at: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
+        let mut to = Contribution::none();
         to.constant("FLASH", flag(self.storms), flag(self.lit.is_some()));
-        let Some(lit) = &self.lit else { return Ok(()) };
-        to.mark_fine();
-        lit.write(shot, to);
-        if !lit.has_line || !to.asked.has(Stages::PARTICLES) {
-            return Ok(());
+        let Some(lit) = &self.lit else { return Ok(to) };
+        let traits = Traits { is_fine: true, ..Traits::default() };
+        to.set_traits(traits, traits);
+        to.set_frame_block(FrameBlock::Flashes(lit.block(&at.now.scene.conditions)));
+        if !lit.has_line || !at.stages.has(Stages::PARTICLES) {
+            return Ok(to);
         }
         // What falls has a layer already, into which the lines are drawn after it.
-        let there = to.textures[Texture::Before as usize].clone().filter(|_| to.stages.has(Stages::PARTICLES));
-        let over = there.is_some();
-        let view = there.unwrap_or_else(|| self.layer(shot.device, shot.color.texture));
-        to.stages = to.stages.with(Stages::PARTICLES);
+        let over = given.before.is_some();
+        let view = given.before.clone().unwrap_or_else(|| self.layer(at.device, at.picture()));
         to.set_texture(Texture::Before, Some(view.clone()));
         self.target = Some((view, over));
-        Ok(())
+        Ok(to)
     }
 
     /// Draws the open channels into the layer before the picture.
-    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
         let Some((target, over)) = self.target.take() else { return Ok(()) };
-        self.gather_parts(shot);
-        let size = shot.color.texture.size();
-        let block = ChannelUniform::new(&shot.clip(), [size.width, size.height]);
+        self.gather_parts(at);
+        let size = at.picture().size();
+        let block = ChannelUniform::new(&at.clip(), [size.width, size.height]);
         let passes = self.passes.get_or_insert_with(|| Box::new(ChannelPass::new(to.device, to.blocks)));
-        passes.draw(to, (&block, &self.parts), with, shot.frame.depth_layer(), (&target, over))?;
+        passes.draw(to, (&block, &self.parts), merged, at.frame.depth_layer(), (&target, over))?;
         to.passes += 1;
         Ok(())
     }

@@ -17,7 +17,7 @@ use crate::{
         recent::LruCache,
     },
     moment::Scene,
-    stage::{Block, Constant, Drawing, FrameUniform, Recording, Texture, flag},
+    stage::{Block, Constant, FrameUniform, MergedFrame, Recording, Texture, flag},
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -181,13 +181,13 @@ impl AreaPass {
         &mut self,
         device: &Device,
         columns: &Columns<'_>,
-        with: &Drawing<'_>,
+        merged: &MergedFrame<'_>,
         depth: Option<Layer<'_>>,
     ) -> Option<(wgpu::BindGroupLayout, wgpu::BindGroup)> {
         let (blocks, _) = columns.blocks();
         self.blocks.write(bytemuck::bytes_of(&blocks));
         let multi = depth.is_some_and(Layer::is_multisampled);
-        self.bind(device, with, depth, multi);
+        self.bind(device, merged, depth, multi);
         self.bound.as_ref().map(|(.., group)| (self.layouts[usize::from(multi)].clone(), group.clone()))
     }
 
@@ -199,12 +199,12 @@ impl AreaPass {
         &mut self,
         to: &mut Recording<'_>,
         columns: &Columns<'_>,
-        with: &Drawing<'_>,
+        merged: &MergedFrame<'_>,
         depth: Option<Layer<'_>>,
         target: &wgpu::TextureView,
     ) -> Result<()> {
-        let (device, composition) = (to.device, with.composition);
-        let Some((tables_layout, tables)) = &composition.tables else { return Ok(()) };
+        let (device, composition) = (to.device, merged.composition);
+        let Some((tables_layout, tables)) = composition.tables() else { return Ok(()) };
         let (blocks, count) = columns.blocks();
         self.blocks.write(bytemuck::bytes_of(&blocks));
         let kind = ShaftKind {
@@ -213,8 +213,8 @@ impl AreaPass {
             overlaps: columns.field.columns.iter().any(|c| c.later != 0),
             polygons: blocks.columns.list.iter().any(|c| c.corners > 0),
         };
-        self.bind(device, with, depth, kind.multi);
-        let pipeline = self.pipeline(device, tables_layout, kind, composition.least.between.all())?;
+        self.bind(device, merged, depth, kind.multi);
+        let pipeline = self.pipeline(device, tables_layout, kind, composition.least().between.all())?;
         let Some((.., group)) = &self.bound else { return Ok(()) };
         let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("rain areas"),
@@ -238,9 +238,9 @@ impl AreaPass {
         Ok(())
     }
 
-    fn bind(&mut self, device: &Device, with: &Drawing<'_>, depth: Option<Layer<'_>>, multi: bool) {
-        let Some(between) = &with.composition.blocks[Block::Between as usize] else { return };
-        let hung = with.composition.texture(Texture::Behind);
+    fn bind(&mut self, device: &Device, merged: &MergedFrame<'_>, depth: Option<Layer<'_>>, multi: bool) {
+        let Some(between) = merged.composition.own_block(Block::Between) else { return };
+        let hung = merged.composition.texture(Texture::Behind);
         if self.bound.as_ref().is_some_and(|(d, h, _)| is_kept(depth, d.as_ref()) && h.as_ref() == hung) {
             return;
         }
@@ -249,7 +249,7 @@ impl AreaPass {
             label: Some("rain areas"),
             layout: &self.layouts[usize::from(multi)],
             entries: &[
-                with.block.entry(0),
+                merged.block.entry(0),
                 bind::view(1, view.as_ref().unwrap_or(&self.none)),
                 between.entry(4),
                 bind::view(11, hung.unwrap_or(&self.no_layers)),

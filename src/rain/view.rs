@@ -20,8 +20,8 @@ use crate::{
     gpu::{Device, blocks::Blocks},
     moment::{Moment, Scene},
     stage::{
-        Composition, Drawing, DrawnEffect, FallingTexture, PutPart, RainReport, Recording, Report, Shot, Stages,
-        Texture, rounding,
+        Contribution, Diagnostic, DrawContext, DrawnEffect, Exchange, FallingTexture, FrameBlock, FrameContext,
+        MergedFrame, Output, Outputs, PutPart, RainReport, Recording, Report, Stages, Texture, rounding,
         stepping::{self, Stepped},
     },
     surroundings::ShelterReach,
@@ -113,24 +113,6 @@ impl RainView {
             is_stepped: false,
             drawn: (u64::MAX, RainReport::default()),
         }
-    }
-
-    /// Finds what falls around the camera, and which columns of rain are visible farther away.
-    ///
-    /// # Errors
-    /// For a time that the weather does not know.
-    pub fn gather(&mut self, now: &Moment<'_>) -> Result<()> {
-        let scene = &now.scene;
-        self.own = begun_at(&scene.conditions, scene.place.altitude_m);
-        let at = (now.eye, &scene.world_to_enu, scene.place.altitude_m);
-        self.field.columns.clear();
-        if !now.weather.regions.is_empty() {
-            let shafts = now.weather.shafts_at(now.time_s, &scene.conditions)?;
-            self.field.set(shafts, at, &now.falling, now.time_s);
-        }
-        self.local = Some(Local::new(&self.own, &self.field, at, REACH_M.max(self.reach(now))));
-        self.ice.gather(now);
-        Ok(())
     }
 
     /// Says whether the layer counts how often its pixels are drawn, in place of their light; its passes are made anew where that changes.
@@ -279,16 +261,17 @@ impl RainView {
     }
 
     /// Draws the columns of rain areas into the layer; whether there are any.
-    fn draw_areas(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<bool> {
+    fn draw_areas(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<bool> {
         if self.field.columns.is_empty() {
             return Ok(false);
         }
-        self.set_near(to.device, shot.now);
-        let columns = Columns { field: &self.field, scene: &shot.now.scene, clip: shot.clip(), veiled: shot.veiled };
+        self.set_near(to.device, at.now);
+        let columns =
+            Columns { field: &self.field, scene: &at.now.scene, clip: at.clip(), veiled: at.target.is_veiled };
         let counts = self.layer.counts();
-        let target = self.layer.texture().view(to.device, shot.color.texture.size());
+        let target = self.layer.texture().view(to.device, at.picture().size());
         let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(to.device, to.blocks, counts)));
-        pass.draw(to, &columns, with, shot.frame.depth_layer(), &target)?;
+        pass.draw(to, &columns, merged, at.frame.depth_layer(), &target)?;
         Ok(true)
     }
 
@@ -336,39 +319,39 @@ impl RainView {
         mixture.map_or(base, |m| m.with(left.max(LEAST_OF_CONES), &base))
     }
 
-    fn camera<'a>(&self, shot: &Shot<'a>) -> StreakCamera<'a> {
-        StreakCamera::new(shot, self.settings.shutter_s, self.settings.contrast_gain)
+    fn camera<'a>(&self, at: &DrawContext<'a>) -> StreakCamera<'a> {
+        StreakCamera::new(at, self.settings.shutter_s, self.settings.contrast_gain)
     }
 
     /// What streaks are worth in a picture, if the plan decides about them.
-    pub fn streaks(&mut self, shot: &Shot<'_>) -> Option<Streaks> {
+    pub fn streaks(&mut self, at: &DrawContext<'_>) -> Option<Streaks> {
         if !self.is_planned() {
             return None;
         }
-        let (device, now) = (shot.device, shot.now);
+        let (device, now) = (at.device, at.now);
         let (classes, _) = self.falling_here(device, &now.scene);
         let wind = now.carrying().ok()?.velocity_m_s();
-        let light = (DropLight::of(&now.scene).exposed(shot.exposure), shot.tone());
-        Some(Streaks::new((&classes, wind), &self.camera(shot), light, now.has_lamps()))
+        let light = (DropLight::of(&now.scene).exposed(at.target.exposure), at.tone());
+        Some(Streaks::new((&classes, wind), &self.camera(at), light, now.has_lamps()))
     }
 
     /// Draws the drops round the camera into the layer, in which something lies already if `over`; answers what of them.
     fn draw_near(
         &mut self,
-        shot: &Shot<'_>,
-        with: &Drawing<'_>,
+        at: &DrawContext<'_>,
+        merged: &MergedFrame<'_>,
         over: bool,
         to: &mut Recording<'_>,
     ) -> Result<RainReport> {
         if !self.kept().is_near() {
             return Ok(RainReport::default());
         }
-        let (device, now, frame, scene) = (to.device, shot.now, shot.frame, &shot.now.scene);
+        let (device, now, frame, scene) = (to.device, at.now, at.frame, &at.now.scene);
         let (classes, mut local) = self.falling_here(device, scene);
-        let camera = self.camera(shot);
+        let camera = self.camera(at);
         let (wind, air) = (now.carrying()?, air(now)?);
         let mut block =
-            RainUniform::new(now.seed, &classes, &DropLight::of(scene).exposed(shot.exposure), &camera, &air);
+            RainUniform::new(now.seed, &classes, &DropLight::of(scene).exposed(at.target.exposure), &camera, &air);
         let [share, shown] = self.shares.map(f64::from);
         let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
@@ -398,8 +381,8 @@ impl RainView {
             rain: &block,
             cones: cones.as_ref(),
             stepped: stepped.as_ref(),
-            rays: shot.rays,
-            surroundings: with.surroundings,
+            rays: at.target.rays,
+            surroundings: merged.surroundings,
             maps: now.has_maps(),
             lamps: now.has_lamps(),
             splash: &splashes.uniform(
@@ -414,7 +397,7 @@ impl RainView {
             stones: stones
                 .map(|s| StoneDraw::new(&s, s.uniform(camera.position_m, height_m, air.displacement_m, air.time_s))),
         };
-        let done = self.layer.draw(to, &drawn, shot.color.texture, frame.depth_layer());
+        let done = self.layer.draw(to, &drawn, at.picture(), frame.depth_layer());
         self.births = births;
         done?;
         let drops = block.shells > 0;
@@ -429,6 +412,26 @@ impl RainView {
 }
 
 impl DrawnEffect for RainView {
+    /// Columns of rain areas are drawn before what stands in the sky, which they show.
+    fn composes(&self) -> Exchange {
+        Exchange { needs: &[Output::Sky], gives: &[Output::Rain] }
+    }
+
+    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        self.set_counting(at.device, at.frame.diagnostic == Diagnostic::Overdraw);
+        let (now, scene) = (at.now, &at.now.scene);
+        self.own = begun_at(&scene.conditions, scene.place.altitude_m);
+        let at = (now.eye, &scene.world_to_enu, scene.place.altitude_m);
+        self.field.columns.clear();
+        if !now.weather.regions.is_empty() {
+            let shafts = now.weather.shafts_at(now.time_s, &scene.conditions)?;
+            self.field.set(shafts, at, &now.falling, now.time_s);
+        }
+        self.local = Some(Local::new(&self.own, &self.field, at, REACH_M.max(self.reach(now))));
+        self.ice.gather(now);
+        Ok(())
+    }
+
     fn stages(&self) -> Stages {
         if self.presence().is_any() { Stages::PARTICLES } else { Stages(0) }
     }
@@ -439,37 +442,35 @@ impl DrawnEffect for RainView {
         }
     }
 
-    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
+    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
         let is_there = stages.has(Stages::PARTICLES) && self.is_planned();
-        let drops = if is_there { self.drops(shot.device, &shot.now.scene) } else { 0 };
-        put(&candidates::RAIN, is_there, &candidates::rain_work(shot.pixels(), drops));
+        let drops = if is_there { self.drops(at.device, &at.now.scene) } else { 0 };
+        put(&candidates::RAIN, is_there, &candidates::rain_work(at.pixels(), drops));
     }
 
-    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
-        self.set_shares([1, 0].map(|step| shot.share(&candidates::RAIN, step)));
-        to.block.drawn[3] = 1.0;
-        if self.presence().is_any() {
-            (to.block.drops, to.block.drawn[3]) = self.hidden(shot.device, shot.now);
-        }
-        if self.kept().is_any() {
-            let layer = self.layer.texture().view(shot.device, shot.color.texture.size());
+    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+        let mut to = Contribution::none();
+        self.set_shares([1, 0].map(|step| at.share(&candidates::RAIN, step)));
+        let (hidden, share) = if self.presence().is_any() { self.hidden(at.device, at.now) } else { ([0.0; 2], 1.0) };
+        to.set_frame_block(FrameBlock::Rain { hidden, share });
+        let is_kept = self.kept().is_any();
+        if is_kept {
+            let layer = self.layer.texture().view(at.device, at.picture().size());
             to.set_texture(Texture::Before, Some(layer));
-        } else {
-            to.stages = to.stages.without(Stages::PARTICLES);
         }
-        if to.stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
-            to.near = self.shelter_reach(shot.device, &shot.now.scene);
+        if at.stages.has(Stages::SURFACE) || is_kept && at.stages.has(Stages::PARTICLES) {
+            to.set_near(self.shelter_reach(at.device, &at.now.scene));
         }
-        Ok(())
+        Ok(to)
     }
 
     /// Draws the layer before the picture: columns of rain areas, and what falls near the camera.
-    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
-        if !with.composition.stages.has(Stages::PARTICLES) {
+    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+        if !merged.composition.stages().has(Stages::PARTICLES) {
             return Ok(());
         }
-        let over = self.draw_areas(shot, with, to)?;
-        self.drawn = (shot.frame.frame_id, self.draw_near(shot, with, over, to)?);
+        let over = self.draw_areas(at, merged, to)?;
+        self.drawn = (at.frame.frame_id, self.draw_near(at, merged, over, to)?);
         to.passes += u32::from(self.kept().is_any()) + u32::from(over);
         Ok(())
     }
@@ -477,17 +478,17 @@ impl DrawnEffect for RainView {
     /// The columns of rain areas in the veil of the host's own shaders.
     fn veil(
         &mut self,
-        shot: &Shot<'_>,
-        with: &Drawing<'_>,
+        at: &DrawContext<'_>,
+        merged: &MergedFrame<'_>,
     ) -> Option<(&'static str, wgpu::BindGroupLayout, wgpu::BindGroup)> {
         if self.field.columns.is_empty() {
             return None;
         }
-        self.set_near(shot.device, shot.now);
-        let columns = Columns { field: &self.field, scene: &shot.now.scene, clip: shot.clip(), veiled: true };
+        self.set_near(at.device, at.now);
+        let columns = Columns { field: &self.field, scene: &at.now.scene, clip: at.clip(), veiled: true };
         let pass =
-            self.areas.get_or_insert_with(|| Box::new(AreaPass::new(shot.device, &self.blocks, self.layer.counts())));
-        let (layout, group) = pass.bound(shot.device, &columns, with, shot.frame.depth_layer())?;
+            self.areas.get_or_insert_with(|| Box::new(AreaPass::new(at.device, &self.blocks, self.layer.counts())));
+        let (layout, group) = pass.bound(at.device, &columns, merged, at.frame.depth_layer())?;
         Some(("frame/froxels_areas.wgsl", layout, group))
     }
 

@@ -9,7 +9,10 @@ use crate::{
     error::{Error, Result, Status},
     moment::{Light, Scene},
     plan::Price,
-    stage::{Composition, CostItem, DrawnEffect, Prepare, PutPart, Recording, Shot, Stages, Traits, flag},
+    stage::{
+        Contribution, CostItem, DrawContext, DrawnEffect, FrameBlock, FrameContext, Outputs, PutPart, Recording,
+        Stages, Traits, flag,
+    },
 };
 
 /// The sky of a view.
@@ -60,14 +63,19 @@ impl DrawnEffect for SkyView {
         Stages::BACKGROUND.with(Stages::MEDIUM)
     }
 
+    fn gather(&mut self, _at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        Ok(())
+    }
+
     /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
-    fn prepare(&mut self, at: &Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn prepare(&mut self, at: &FrameContext<'_>, to: &mut Recording<'_>) -> Result<()> {
         let mut tables = self.tables.lock().map_err(|_| poisoned())?;
         if !self.volume.is_of(&tables) {
             self.volume = SkyVolume::new(&tables)?;
             self.rebuild_work = rebuild_work(self.volume.settings());
         }
-        let work = tables.build_toward(to.device, to.encoder, &at.now.scene.planet, at.frame.frame_id, at.share)?;
+        let work =
+            tables.build_toward(to.device, to.encoder, &at.now.scene.planet, at.frame.frame_id, at.table_share)?;
         to.ends(CostItem::SkyTables, work)?;
         let drawn = self.volume.prepare(to.encoder, &tables, &Observer::of(&at.now.scene, at.frame.is_pure()))?;
         to.ends(CostItem::SkyView, drawn)?;
@@ -75,28 +83,28 @@ impl DrawnEffect for SkyView {
         Ok(())
     }
 
-    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        let lamps = shot.now.scene.lamps();
-        let between = shot.frame.depth.is_some() && stages.has(Stages::MEDIUM);
+    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        let lamps = at.now.scene.lamps();
+        let between = at.frame.depth.is_some() && stages.has(Stages::MEDIUM);
         put(&candidates::AIR, between, &[candidates::air_work(lamps)]);
         put(&candidates::SKY, stages.has(Stages::BACKGROUND), &[candidates::sky_work(lamps)]);
     }
 
-    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
-        let [air, sky] = [&candidates::AIR, &candidates::SKY].map(|part| shot.share(part, 0));
+    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+        let mut to = Contribution::none();
+        let [air, sky] = [&candidates::AIR, &candidates::SKY].map(|part| at.share(part, 0));
         let is_marched = self.settings().model == SkyModel::BruteForce;
         to.between_and_veil("SKY_MARCH", flag(is_marched), flag(is_marched));
         to.between("AIR", 1.0, flag(air > 0.0));
-        for (pipeline, veils_drawn) in [(&mut to.whole, true), (&mut to.least, air > 0.0)] {
-            pipeline.traits = Traits { veils_drawn, is_marched, ..pipeline.traits };
-        }
+        let traits = |veils_drawn| Traits { veils_drawn, is_marched, ..Traits::default() };
+        to.set_traits(traits(true), traits(air > 0.0));
         to.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
         to.constant("CLEAR_SKY", 1.0, flag(sky > 0.0));
         to.constant("SKY_DISCS", 2.0, f64::from(self.volume.disc_count()));
         to.constant("SUN_THEN_MOON", 1.0, 1.0);
-        (to.block.drawn[0], to.block.drawn[2]) = (air, sky);
-        to.tables = Some((self.volume.layout().clone(), self.volume.bind_group().clone()));
-        Ok(())
+        to.set_frame_block(FrameBlock::Sky { air, sky });
+        to.set_tables(self.volume.layout(), self.volume.bind_group());
+        Ok(to)
     }
 }
 

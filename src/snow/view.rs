@@ -13,10 +13,10 @@ use crate::{
     error::Result,
     falling::{begun, drops, flakes::FlakeSizes},
     gpu::Device,
-    moment::{LightAround, Moment},
+    moment::LightAround,
     stage::{
-        Composition, Drawing, DrawnEffect, FallingTexture, PutPart, Recording, Report, Shot, SnowReport, Stages,
-        StreakCamera, Texture,
+        Contribution, Diagnostic, DrawContext, DrawnEffect, Exchange, FallingTexture, FrameBlock, FrameContext,
+        MergedFrame, Output, Outputs, PutPart, Recording, Report, SnowReport, Stages, StreakCamera, Texture,
         stepping::{self, StepPass, Stepped},
     },
     surroundings::ShelterReach,
@@ -76,39 +76,6 @@ impl SnowView {
         }
     }
 
-    /// Says whether the layer counts how often its pixels are drawn, in place of their light.
-    pub fn set_counting(&mut self, counts: bool) {
-        self.counts = counts;
-    }
-
-    /// Finds the flakes around the camera.
-    pub fn gather(&mut self, now: &Moment<'_>, device: &Device) {
-        let scene = &now.scene;
-        let c = &scene.conditions;
-        let falling = c.precipitation;
-        let begun = begun(c, scene.place.altitude_m);
-        self.is_there = falling.snow_mm_h > 0.0 && begun > 0.0 && self.settings.model != SnowModel::Veil;
-        if !self.is_there {
-            return;
-        }
-        let counted = Counted {
-            falling,
-            temperature_c: c.air.temperature_c,
-            factor: drops::factor_in(&c.air, c.air.station_altitude_m),
-            begun: (begun * ONSET_STEPS).ceil() / ONSET_STEPS,
-            most: self.settings.most_on(device),
-        };
-        if self.counted.as_ref().is_none_or(|kept| kept.0 != counted) {
-            let sizes = FlakeSizes::new(&falling, counted.temperature_c, counted.factor);
-            let flakes = Flakes::new(&sizes, counted.begun, counted.most);
-            match &mut self.counted {
-                Some(kept) => **kept = (counted, flakes),
-                None => self.counted = Some(Box::new((counted, flakes))),
-            }
-        }
-        self.is_there = self.flakes().is_some_and(|f| f.drawn > 0);
-    }
-
     fn flakes(&self) -> Option<&Flakes> {
         self.counted.as_ref().map(|kept| &kept.1)
     }
@@ -124,16 +91,49 @@ impl SnowView {
     }
 
     /// What flakes are worth in a picture, if the plan decides about them.
-    pub fn contrast(&self, shot: &Shot<'_>) -> Option<FlakeContrast> {
+    pub fn contrast(&self, at: &DrawContext<'_>) -> Option<FlakeContrast> {
         let flakes = self.flakes().filter(|_| self.is_planned())?;
-        let wind = shot.now.carrying().ok()?.velocity_m_s();
-        let light = (LightAround::of(&shot.now.scene).exposed(shot.exposure), shot.tone());
-        let camera = StreakCamera::new(shot, self.settings.shutter_s, 1.0);
-        Some(FlakeContrast::new((flakes, wind), &camera, light, shot.now.has_lamps()))
+        let wind = at.now.carrying().ok()?.velocity_m_s();
+        let light = (LightAround::of(&at.now.scene).exposed(at.target.exposure), at.tone());
+        let camera = StreakCamera::new(at, self.settings.shutter_s, 1.0);
+        Some(FlakeContrast::new((flakes, wind), &camera, light, at.now.has_lamps()))
     }
 }
 
 impl DrawnEffect for SnowView {
+    fn composes(&self) -> Exchange {
+        Exchange { needs: &[Output::Rain], gives: &[Output::Snow] }
+    }
+
+    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        self.counts = at.frame.diagnostic == Diagnostic::Overdraw;
+        let scene = &at.now.scene;
+        let c = &scene.conditions;
+        let falling = c.precipitation;
+        let begun = begun(c, scene.place.altitude_m);
+        self.is_there = falling.snow_mm_h > 0.0 && begun > 0.0 && self.settings.model != SnowModel::Veil;
+        if !self.is_there {
+            return Ok(());
+        }
+        let counted = Counted {
+            falling,
+            temperature_c: c.air.temperature_c,
+            factor: drops::factor_in(&c.air, c.air.station_altitude_m),
+            begun: (begun * ONSET_STEPS).ceil() / ONSET_STEPS,
+            most: self.settings.most_on(at.device),
+        };
+        if self.counted.as_ref().is_none_or(|kept| kept.0 != counted) {
+            let sizes = FlakeSizes::new(&falling, counted.temperature_c, counted.factor);
+            let flakes = Flakes::new(&sizes, counted.begun, counted.most);
+            match &mut self.counted {
+                Some(kept) => **kept = (counted, flakes),
+                None => self.counted = Some(Box::new((counted, flakes))),
+            }
+        }
+        self.is_there = self.flakes().is_some_and(|f| f.drawn > 0);
+        Ok(())
+    }
+
     fn stages(&self) -> Stages {
         if self.is_there { Stages::PARTICLES } else { Stages(0) }
     }
@@ -144,41 +144,36 @@ impl DrawnEffect for SnowView {
         }
     }
 
-    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
+    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
         let is_there = stages.has(Stages::PARTICLES) && self.is_planned();
         let flakes = if is_there { self.flakes().map_or(0, |f| f.drawn) } else { 0 };
-        put(&candidates::SNOW, is_there, &candidates::snow_work(shot.pixels(), flakes));
+        put(&candidates::SNOW, is_there, &candidates::snow_work(at.pixels(), flakes));
     }
 
     /// Leaves to the flakes what they hide, beside what else falls and is drawn.
-    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
-        self.share = if self.is_planned() { shot.share(&candidates::SNOW, 0) } else { 1.0 };
-        self.over = to.texture(Texture::Before).is_some();
-        let Some(flakes) = self.flakes().copied().filter(|_| self.is_there) else { return Ok(()) };
-        let own = [flakes.hidden_per_m, flakes.hidden_m()].map(|v| v as f32);
-        let block = &mut to.block;
-        // One share for all that falls: of each by the optical depth that it hides.
-        let (others, mine) = (block.drops[0] * block.drops[1], own[0] * own[1]);
-        if mine > 0.0 {
-            block.drawn[3] = (block.drawn[3] * others + self.share * mine) / (others + mine);
+    fn compose(&mut self, at: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
+        let mut to = Contribution::none();
+        self.share = if self.is_planned() { at.share(&candidates::SNOW, 0) } else { 1.0 };
+        self.over = given.before.is_some();
+        let Some(flakes) = self.flakes().copied().filter(|_| self.is_there) else { return Ok(to) };
+        let hidden = [flakes.hidden_per_m, flakes.hidden_m()].map(|v| v as f32);
+        to.set_frame_block(FrameBlock::Snow { hidden, share: self.share });
+        let is_drawn = self.is_kept() && at.stages.has(Stages::PARTICLES);
+        if is_drawn {
+            to.set_texture(Texture::Before, Some(self.layer.view(at.device, at.picture().size())));
         }
-        block.flakes = own;
-        if self.is_kept() && to.asked.has(Stages::PARTICLES) {
-            to.set_texture(Texture::Before, Some(self.layer.view(shot.device, shot.color.texture.size())));
-            to.stages = to.stages.with(Stages::PARTICLES);
+        if at.stages.has(Stages::SURFACE) || (is_drawn || self.over) && at.stages.has(Stages::PARTICLES) {
+            to.set_near(ShelterReach { slowest_m_s: flakes.slowest_m_s(), reach_m: flakes.reach_m() });
         }
-        if to.stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
-            to.near = to.near.with(ShelterReach { slowest_m_s: flakes.slowest_m_s(), reach_m: flakes.reach_m() });
-        }
-        Ok(())
+        Ok(to)
     }
 
-    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
-        if !with.composition.stages.has(Stages::PARTICLES) || !self.is_kept() {
+    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+        if !merged.composition.stages().has(Stages::PARTICLES) || !self.is_kept() {
             return Ok(());
         }
         let Some(flakes) = self.flakes().copied() else { return Ok(()) };
-        let (now, c) = (shot.now, &shot.now.scene.conditions);
+        let (now, c) = (at.now, &at.now.scene.conditions);
         let wind = now.carrying()?;
         let air = MovingAir {
             displacement_m: wind.displacement_m(),
@@ -186,15 +181,15 @@ impl DrawnEffect for SnowView {
             time_s: now.time_s,
             extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
         };
-        let light = LightAround::of(&now.scene).exposed(shot.exposure);
-        let camera = StreakCamera::new(shot, self.settings.shutter_s, 1.0);
+        let light = LightAround::of(&now.scene).exposed(at.target.exposure);
+        let camera = StreakCamera::new(at, self.settings.shutter_s, 1.0);
         let block = FlakesUniform { share: self.share, ..FlakesUniform::new(now.seed, &flakes, &light, &camera, &air) };
-        let target = self.layer.view(to.device, shot.color.texture.size());
+        let target = self.layer.view(to.device, at.picture().size());
         if self.pass.as_ref().is_some_and(|pass| pass.counts() != self.counts) {
             self.pass = None;
         }
         let pass = self.pass.get_or_insert_with(|| Box::new(SnowPass::new(to.device, to.blocks, self.counts)));
-        let is_pure = shot.frame.is_pure();
+        let is_pure = at.frame.is_pure();
         self.is_stepped = u64::from(flakes.drawn) <= StepPass::most(to.device)
             && stepping::is_due(now, to.device, flakes.reach_m(), self.is_stepped, is_pure);
         let carried = |from| wind.since(from, &self.last_wind);
@@ -205,15 +200,15 @@ impl DrawnEffect for SnowView {
         let drawn = FlakeDraw {
             block: &block,
             stepped: stepped.as_ref(),
-            rays: shot.rays,
-            surroundings: with.surroundings,
+            rays: at.target.rays,
+            surroundings: merged.surroundings,
             maps: now.has_maps(),
             target: &target,
             over: self.over,
-            depth: shot.frame.depth_layer(),
+            depth: at.frame.depth_layer(),
         };
         pass.draw(to, &drawn)?;
-        self.drawn = (shot.frame.frame_id, SnowReport { flakes: flakes.drawn, flakes_to_m: flakes.reach_m() });
+        self.drawn = (at.frame.frame_id, SnowReport { flakes: flakes.drawn, flakes_to_m: flakes.reach_m() });
         to.passes += 1;
         Ok(())
     }

@@ -1,7 +1,10 @@
-//! What the effects add to the one full-screen draw of a call.
+//! The one full-screen draw of a call: what each effect contributes to it, and what the frame merges of that.
 
-use super::{FrameUniform, Stages};
-use crate::{gpu::blocks::BlockView, surroundings::ShelterReach};
+use super::{FrameBlock, FrameUniform, Stages};
+use crate::{
+    gpu::blocks::BlockView,
+    surroundings::{ShelterReach, SurroundingsBlock},
+};
 
 /// Name and value of an `override` constant.
 pub(crate) type Constant = (&'static str, f64);
@@ -82,7 +85,7 @@ pub(crate) enum Block {
 }
 
 /// Properties of the weather that select the shader's variant and the kinds of pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Traits {
     /// Something lies before every pixel, those too on which the host drew nothing.
     pub veils_all: bool,
@@ -96,6 +99,19 @@ pub(crate) struct Traits {
     pub is_overlaid: bool,
 }
 
+impl Traits {
+    /// Those that either has.
+    fn or(self, other: Self) -> Self {
+        Self {
+            veils_all: self.veils_all | other.veils_all,
+            veils_drawn: self.veils_drawn | other.veils_drawn,
+            is_marched: self.is_marched | other.is_marched,
+            is_fine: self.is_fine | other.is_fine,
+            is_overlaid: self.is_overlaid | other.is_overlaid,
+        }
+    }
+}
+
 /// The constants of a pipeline, and what follows of them for the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pipeline {
@@ -105,7 +121,7 @@ pub(crate) struct Pipeline {
     pub of_veil: Constants,
     /// Constants of the composition alone.
     pub composed: Constants,
-    /// Set by the effects beside their constants.
+    /// What the effects say beside their constants.
     pub traits: Traits,
 }
 
@@ -119,28 +135,141 @@ impl Pipeline {
     };
 }
 
-/// What the effects add to the composition.
+/// The shaders that a constant is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Scope {
+    /// Every shader that applies air, cloud and fog.
+    Between,
+    /// The same, and the veil for hosts' shaders.
+    BetweenAndVeil,
+    /// The composition alone.
+    Composition,
+}
+
+/// A constant: its value where every part is drawn, and where only what shows now is.
+#[derive(Clone, Copy)]
+struct ScopedConstant {
+    scope: Scope,
+    name: &'static str,
+    whole: f64,
+    least: f64,
+}
+
+/// Most constants of one effect.
+const MOST_OF_ONE: usize = 24;
+
+/// What one effect adds to a draw. It returns it; the frame merges those of all effects ([`Composition::merge`]).
+pub(crate) struct Contribution<'a> {
+    constants: [ScopedConstant; MOST_OF_ONE],
+    count: usize,
+    /// Where every part is drawn, and where only what shows now is.
+    traits: [Traits; 2],
+    /// Its fields of the frame's block.
+    block: Option<FrameBlock<'a>>,
+    own_block: Option<(Block, BlockView)>,
+    textures: [Option<wgpu::TextureView>; 4],
+    tables: Option<(wgpu::BindGroupLayout, wgpu::BindGroup)>,
+    needs_panorama: bool,
+    near: Option<ShelterReach>,
+}
+
+impl<'a> Contribution<'a> {
+    /// Nothing.
+    pub fn none() -> Self {
+        let none = ScopedConstant { scope: Scope::Composition, name: "", whole: 0.0, least: 0.0 };
+        Self {
+            constants: [none; MOST_OF_ONE],
+            count: 0,
+            traits: [Traits::default(); 2],
+            block: None,
+            own_block: None,
+            textures: [const { None }; 4],
+            tables: None,
+            needs_panorama: false,
+            near: None,
+        }
+    }
+
+    fn push(&mut self, scope: Scope, name: &'static str, whole: f64, least: f64) {
+        debug_assert!(self.count < MOST_OF_ONE, "room for {name}");
+        if let Some(place) = self.constants.get_mut(self.count) {
+            *place = ScopedConstant { scope, name, whole, least };
+            self.count += 1;
+        }
+    }
+
+    /// Adds a constant of what lies between: its value where every part is drawn, and where only what shows now is.
+    pub fn between(&mut self, name: &'static str, whole: f64, least: f64) {
+        self.push(Scope::Between, name, whole, least);
+    }
+
+    /// Adds as [`Self::between`] does, to the constants of the veil too.
+    pub fn between_and_veil(&mut self, name: &'static str, whole: f64, least: f64) {
+        self.push(Scope::BetweenAndVeil, name, whole, least);
+    }
+
+    /// Adds as [`Self::between`] does a constant of the composition alone.
+    pub fn constant(&mut self, name: &'static str, whole: f64, least: f64) {
+        self.push(Scope::Composition, name, whole, least);
+    }
+
+    /// Says what is in the picture where every part is drawn, and where only what shows now is.
+    pub fn set_traits(&mut self, whole: Traits, least: Traits) {
+        self.traits = [whole, least];
+    }
+
+    /// Gives its fields of the frame's block.
+    pub fn set_frame_block(&mut self, block: FrameBlock<'a>) {
+        self.block = Some(block);
+    }
+
+    /// Gives a block of its own.
+    pub fn set_block(&mut self, place: Block, block: &BlockView) {
+        self.own_block = Some((place, block.clone()));
+    }
+
+    /// Gives a texture. At [`Texture::Behind`] and [`Texture::Before`] it takes the place of what it names as its input.
+    pub fn set_texture(&mut self, place: Texture, view: Option<wgpu::TextureView>) {
+        self.textures[place as usize] = view;
+    }
+
+    /// Whether any of the stars shows.
+    pub fn shows_stars(&self) -> bool {
+        matches!(self.block, Some(FrameBlock::Stars { behind }) if behind[1] > 0.0)
+    }
+
+    /// The texture that it gives at a place.
+    pub fn texture(&self, place: Texture) -> Option<&wgpu::TextureView> {
+        self.textures[place as usize].as_ref()
+    }
+
+    /// Gives the look-up tables of what lies behind and between.
+    pub fn set_tables(&mut self, layout: &wgpu::BindGroupLayout, group: &wgpu::BindGroup) {
+        self.tables = Some((layout.clone(), group.clone()));
+    }
+
+    /// Says that something shows what stands about the camera outside of the picture too: mirrors, a cube map.
+    pub fn require_panorama(&mut self) {
+        self.needs_panorama = true;
+    }
+
+    /// Says which drops or flakes are drawn near the camera.
+    pub fn set_near(&mut self, near: ShelterReach) {
+        self.near = Some(near);
+    }
+}
+
+/// A draw with what all effects have added to it.
 pub(crate) struct Composition {
-    /// Stages that are drawn; an effect takes out its own where there turns out to be nothing.
-    pub stages: Stages,
-    /// Stages of the call: where another effect finds nothing to draw, one may put a stage back that was asked for.
-    pub asked: Stages,
-    /// The frame's block.
-    pub block: FrameUniform,
-    /// Constants of a pipeline that can draw every part.
-    pub whole: Pipeline,
-    /// Those without the parts of which nothing is drawn now: cheaper than a branch on a software driver, which takes both ways.
-    pub least: Pipeline,
-    /// Buffers by [`Block`].
-    pub blocks: [Option<BlockView>; 2],
-    /// Textures by [`Texture`].
-    pub textures: [Option<wgpu::TextureView>; 4],
-    /// Look-up tables of what lies behind and between (group 1), and their layout.
-    pub tables: Option<(wgpu::BindGroupLayout, wgpu::BindGroup)>,
-    /// Something shows what stands about the camera outside of the picture too: mirrors, a cube map.
-    pub needs_panorama: bool,
-    /// Drops and flakes that are drawn near the camera.
-    pub near: ShelterReach,
+    stages: Stages,
+    block: FrameUniform,
+    whole: Pipeline,
+    least: Pipeline,
+    blocks: [Option<BlockView>; 2],
+    textures: [Option<wgpu::TextureView>; 4],
+    tables: Option<(wgpu::BindGroupLayout, wgpu::BindGroup)>,
+    needs_panorama: bool,
+    near: Option<ShelterReach>,
 }
 
 impl Composition {
@@ -148,7 +277,6 @@ impl Composition {
     pub fn new(stages: Stages, block: FrameUniform) -> Self {
         Self {
             stages,
-            asked: stages,
             block,
             whole: Pipeline::NONE,
             least: Pipeline::NONE,
@@ -156,42 +284,99 @@ impl Composition {
             textures: [const { None }; 4],
             tables: None,
             needs_panorama: false,
-            near: ShelterReach::NONE,
+            near: None,
         }
     }
 
-    /// Adds a constant of what lies between: its value where every part is drawn, and where only what shows now is.
-    pub fn between(&mut self, name: &'static str, whole: f64, least: f64) {
-        self.whole.between.push((name, whole));
-        self.least.between.push((name, least));
+    /// Takes what one effect adds.
+    pub fn merge(&mut self, of: Contribution<'_>) {
+        for c in &of.constants[..of.count] {
+            for (pipeline, value) in [(&mut self.whole, c.whole), (&mut self.least, c.least)] {
+                let constant = (c.name, value);
+                match c.scope {
+                    Scope::Between => pipeline.between.push(constant),
+                    Scope::BetweenAndVeil => {
+                        pipeline.between.push(constant);
+                        pipeline.of_veil.push(constant);
+                    }
+                    Scope::Composition => pipeline.composed.push(constant),
+                }
+            }
+        }
+        let [whole, least] = of.traits;
+        self.whole.traits = self.whole.traits.or(whole);
+        self.least.traits = self.least.traits.or(least);
+        if let Some(block) = &of.block {
+            self.block.merge(block);
+        }
+        if let Some((place, block)) = of.own_block {
+            self.blocks[place as usize] = Some(block);
+        }
+        for (to, texture) in self.textures.iter_mut().zip(of.textures) {
+            *to = texture.or(to.take());
+        }
+        self.tables = of.tables.or(self.tables.take());
+        self.needs_panorama |= of.needs_panorama;
+        self.near = match (self.near, of.near) {
+            (Some(all), Some(near)) => Some(all.with(near)),
+            (all, near) => all.or(near),
+        };
     }
 
-    /// Adds as [`Self::between`] does, to the constants of the veil too.
-    pub fn between_and_veil(&mut self, name: &'static str, whole: f64, least: f64) {
-        self.between(name, whole, least);
-        self.whole.of_veil.push((name, whole));
-        self.least.of_veil.push((name, least));
+    /// Ends the merging: there is no stage of what falls where no effect has a layer before the picture.
+    pub fn finish(&mut self, has_cube_map: bool) {
+        if self.texture(Texture::Before).is_none() {
+            self.stages = self.stages.without(Stages::PARTICLES);
+        }
+        self.needs_panorama |= has_cube_map;
+        self.block.finish();
     }
 
-    /// Adds a constant of the composition alone, likewise.
-    pub fn constant(&mut self, name: &'static str, whole: f64, least: f64) {
+    /// Adds a constant of the frame's own to what lies between.
+    pub fn set_between(&mut self, name: &'static str, value: f64) {
+        self.whole.between.push((name, value));
+        self.least.between.push((name, value));
+    }
+
+    /// Adds a constant of the frame's own to the composition: its value where every part is drawn, and where only what shows now is.
+    pub fn set_constant(&mut self, name: &'static str, whole: f64, least: f64) {
         self.whole.composed.push((name, whole));
         self.least.composed.push((name, least));
     }
 
-    /// Says that something is in the picture that changes from pixel to pixel.
-    pub fn mark_fine(&mut self) {
-        (self.whole.traits.is_fine, self.least.traits.is_fine) = (true, true);
+    /// Takes out a stage that has nothing to draw.
+    pub fn leave_out(&mut self, stage: Stages) {
+        self.stages = self.stages.without(stage);
     }
 
-    /// Says that each pixel has clouds to lay over what it looks up.
-    pub fn mark_overlaid(&mut self) {
-        (self.whole.traits.is_overlaid, self.least.traits.is_overlaid) = (true, true);
+    /// Says how many draws of the same kind the planner counts.
+    pub fn set_compositions(&mut self, count: u32) {
+        self.block.compositions = count;
     }
 
-    /// Gives a block.
-    pub fn set_block(&mut self, place: Block, block: &BlockView) {
-        self.blocks[place as usize] = Some(block.clone());
+    /// Stages that are drawn.
+    pub fn stages(&self) -> Stages {
+        self.stages
+    }
+
+    /// The frame's block.
+    pub fn block(&self) -> &FrameUniform {
+        &self.block
+    }
+
+    /// Constants of a pipeline that can draw every part.
+    pub fn whole(&self) -> &Pipeline {
+        &self.whole
+    }
+
+    /// Those without the parts of which nothing is drawn now: cheaper than a branch on a software driver, which takes both ways.
+    pub fn least(&self) -> &Pipeline {
+        &self.least
+    }
+
+    /// The block at a place, if an effect has given one.
+    pub fn own_block(&self, place: Block) -> Option<&BlockView> {
+        self.blocks[place as usize].as_ref()
     }
 
     /// The texture at a place, if an effect has given one.
@@ -199,8 +384,31 @@ impl Composition {
         self.textures[place as usize].as_ref()
     }
 
-    /// Gives a texture.
-    pub fn set_texture(&mut self, place: Texture, view: Option<wgpu::TextureView>) {
-        self.textures[place as usize] = view;
+    /// Textures by [`Texture`].
+    pub fn textures(&self) -> &[Option<wgpu::TextureView>; 4] {
+        &self.textures
     }
+
+    /// Look-up tables of what lies behind and between (group 1), and their layout.
+    pub fn tables(&self) -> Option<(&wgpu::BindGroupLayout, &wgpu::BindGroup)> {
+        self.tables.as_ref().map(|(layout, group)| (layout, group))
+    }
+
+    /// Whether something shows what stands about the camera outside of the picture too.
+    pub fn needs_panorama(&self) -> bool {
+        self.needs_panorama
+    }
+
+    /// Drops and flakes that are drawn near the camera.
+    pub fn near(&self) -> ShelterReach {
+        self.near.unwrap_or(ShelterReach::NONE)
+    }
+}
+
+/// A finished composition with the frame's blocks on the GPU: what the effects' own passes draw with.
+#[derive(Clone, Copy)]
+pub(crate) struct MergedFrame<'a> {
+    pub composition: &'a Composition,
+    pub block: &'a BlockView,
+    pub surroundings: &'a SurroundingsBlock,
 }

@@ -6,21 +6,27 @@
 //! textures ([`Composition`]); what cannot be a function of one pixel (falling drops, the windscreen) is drawn in passes of its own.
 
 mod composition;
+mod context;
 mod diagnostic;
 mod effect;
 pub(crate) mod listing;
 mod opaque;
+mod outputs;
 mod recording;
 pub(crate) mod stepping;
 mod streak;
 mod target;
 mod uniform;
 
-pub(crate) use composition::{Block, Composition, Constant, Constants, Pipeline, Texture, Traits, flag};
+pub(crate) use composition::{
+    Block, Composition, Constant, Constants, Contribution, MergedFrame, Pipeline, Texture, Traits, flag,
+};
+pub(crate) use context::{DrawContext, DrawTarget, FrameContext, PlannedShares};
 pub use diagnostic::Diagnostic;
-pub(crate) use effect::{Drawing, DrawnEffect, LensPicture, Prepare, PutPart, Shot};
+pub(crate) use effect::{DrawnEffect, LensPicture, PutPart};
 pub use opaque::DepthAccess;
 pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
+pub(crate) use outputs::{Exchange, Output, Outputs, ordered};
 pub(crate) use recording::Recording;
 pub use recording::{CostItem, Costs, RainReport, Report, SnowReport};
 pub(crate) use streak::{DepthRead, FallingTexture, LAYER_FORMAT, StreakCamera, StreakContrast, Tone};
@@ -29,7 +35,9 @@ pub(crate) use target::{
     Sampling, can_be_apart, can_copy, check_classes, check_color, check_depth, check_mask, check_normals,
     check_written, color_copy, is_copy_of, rounding,
 };
-pub(crate) use uniform::{BOW_ENTRIES, FlashUniform, FrameUniform, is_float, uniform};
+pub(crate) use uniform::{
+    BOW_ENTRIES, BowTable, FlashBlock, FlashUniform, FrameBlock, FrameUniform, is_float, uniform,
+};
 
 use glam::DVec3;
 

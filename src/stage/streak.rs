@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DMat4, DVec2, DVec3};
 
-use super::Shot;
+use super::DrawContext;
 use crate::{
     gpu::{Device, Layer},
     light::luminance,
@@ -32,15 +32,15 @@ pub(crate) struct StreakCamera<'a> {
 
 impl<'a> StreakCamera<'a> {
     /// That of a shot whose shutter is open for `exposure_s`.
-    pub fn new(shot: &Shot<'a>, exposure_s: f64, gain: f64) -> Self {
-        let scene = &shot.now.scene;
+    pub fn new(at: &DrawContext<'a>, exposure_s: f64, gain: f64) -> Self {
+        let scene = &at.now.scene;
         Self {
-            clip: shot.clip(),
-            rays: shot.rays,
-            height: shot.color.texture.height(),
-            y_sign: if shot.frame.origin_bottom_left { -1.0 } else { 1.0 },
+            clip: at.clip(),
+            rays: at.target.rays,
+            height: at.picture().height(),
+            y_sign: if at.frame.origin_bottom_left { -1.0 } else { 1.0 },
             position_m: DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m),
-            velocity_m_s: scene.world_to_enu * shot.frame.camera_velocity_m_s,
+            velocity_m_s: scene.world_to_enu * at.frame.camera_velocity_m_s,
             exposure_s,
             gain,
         }

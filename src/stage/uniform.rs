@@ -72,7 +72,83 @@ pub(crate) struct FrameUniform {
     pub even_scale: f32,
     pub pad: f32,
     /// What bows add to the phase function of drops in the low air, and in columns under rain areas, 1/sr a channel, over the angle.
-    pub bows: [[[f32; 4]; BOW_ENTRIES]; 2],
+    pub bows: [BowTable; 2],
+}
+
+/// Light of flashes in a frame's block.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FlashBlock {
+    pub color: [f32; 3],
+    pub count: u32,
+    pub plane: f32,
+    pub cover: f32,
+    pub haze: f32,
+    pub scattering: f32,
+    pub sources: [FlashUniform; MAX_FLASH_LAMPS],
+}
+
+/// What one effect writes into a frame's block: the fields of [`FrameUniform`] that are its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum FrameBlock<'a> {
+    /// Shares that are drawn of the air before things and of the clear sky.
+    Sky { air: f32, sky: f32 },
+    /// Share of fog that is drawn.
+    Fog { share: f32 },
+    /// [`FrameUniform::behind`].
+    Stars { behind: [f32; 2] },
+    /// Share that is drawn as a volume; mean light with cover, and height, where the plan gauges; shadows where they are cast.
+    Clouds { drawn: f32, mean: Option<([f32; 4], f32)>, shadow: Option<[f32; 4]> },
+    /// What drops hide, 1/m and to which distance, m, and the share of that which is drawn.
+    Rain { hidden: [f32; 2], share: f32 },
+    /// As of drops, of flakes.
+    Snow { hidden: [f32; 2], share: f32 },
+    /// Flashes that shine.
+    Flashes(FlashBlock),
+    /// [`FrameUniform::bows`].
+    Bows(&'a [BowTable; 2]),
+}
+
+/// What a bow adds to the phase function over the angle.
+pub(crate) type BowTable = [[f32; 4]; BOW_ENTRIES];
+
+impl FrameUniform {
+    /// Takes the fields of one effect.
+    pub fn merge(&mut self, of: &FrameBlock<'_>) {
+        match *of {
+            FrameBlock::Sky { air, sky } => (self.drawn[0], self.drawn[2]) = (air, sky),
+            FrameBlock::Fog { share } => self.drawn[1] = share,
+            FrameBlock::Stars { behind } => self.behind = behind,
+            FrameBlock::Clouds { drawn, mean, shadow } => {
+                self.clouds_drawn = drawn;
+                (self.mean_cloud, self.clouds_over) = mean.unwrap_or_default();
+                self.cloud_shadow = shadow.unwrap_or_default();
+            }
+            FrameBlock::Rain { hidden, share } => (self.drops, self.drawn[3]) = (hidden, share),
+            FrameBlock::Snow { hidden, share } => {
+                // One share for all that falls: of each by the optical depth that it hides.
+                let (others, own) = (self.drops[0] * self.drops[1], hidden[0] * hidden[1]);
+                if own > 0.0 {
+                    self.drawn[3] = (self.drawn[3] * others + share * own) / (others + own);
+                }
+                self.flakes = hidden;
+            }
+            FrameBlock::Flashes(flashes) => {
+                self.flash_color = flashes.color;
+                self.flash_count = flashes.count;
+                self.flash_plane = flashes.plane;
+                self.flash_cover = flashes.cover;
+                self.flash_haze = flashes.haze;
+                self.flash_scattering = flashes.scattering;
+                self.flashes = flashes.sources;
+            }
+            FrameBlock::Bows(bows) => self.bows = *bows,
+        }
+    }
+
+    /// Fields that follow from those of several effects.
+    pub fn finish(&mut self) {
+        self.behind_drawn = self.behind[1] * self.drawn[2];
+    }
 }
 
 /// Entries of a table of bows.

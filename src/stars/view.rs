@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{
-    Heavens, NightSky, StarPass, StarSettings, StarView,
+    Heavens, HeldStars, NightSky, StarPass, StarSettings, StarView,
     candidates::{STARS, stars_work},
     glow_pass::{Dusk, GlowPass},
     light::illuminance_lux,
@@ -15,8 +15,11 @@ use crate::{
     error::Result,
     gpu::{Device, Layer, bind},
     light::luminance,
-    moment::{Moment, Scene},
-    stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Shot, Stages, Texture, flag},
+    moment::Scene,
+    stage::{
+        Contribution, DrawContext, DrawnEffect, Exchange, FrameBlock, FrameContext, MergedFrame, Output, Outputs,
+        PutPart, Recording, Stages, Texture, Traits, flag,
+    },
     weather::smoothstep,
     world::{night_share, zenith_depth},
 };
@@ -57,32 +60,6 @@ pub(crate) struct StarsView {
 }
 
 impl StarsView {
-    /// Finds what of the night sky shows at a moment of which the universal time is given, through fog of an optical depth straight up.
-    ///
-    /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a time out of the almanac's range.
-    pub fn gather(
-        &mut self,
-        (now, frame): (&Moment<'_>, &Frame<'_>),
-        utc: Utc,
-        settings: &StarSettings,
-        fog_depth: f64,
-    ) -> Result<()> {
-        self.tonight = None;
-        let scene = &now.scene;
-        let open = (1.0 - scene.deck_cover) * (-fog_depth).exp();
-        let elevation = scene.sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
-        if elevation >= POINTS_BEGIN_DEG.0 || open < LEAST_THROUGH || frame.camera.is_orthographic() {
-            return Ok(());
-        }
-        let tonight = Tonight::new(scene, utc, settings, elevation)?;
-        if tonight.dusk.share > 0.0 || tonight.brightest_lux(settings) > tonight.threshold_lux {
-            self.settings = settings.clone();
-            self.tonight = Some(tonight);
-        }
-        Ok(())
-    }
-
     fn is_there(&self, stages: Stages) -> bool {
         self.tonight.is_some() && stages.has(Stages::BACKGROUND)
     }
@@ -145,14 +122,14 @@ impl Tonight {
     }
 
     /// As the picture shows it, on a display of so large steps (0: as many as there are).
-    fn seen<'a>(&'a self, shot: &'a Shot<'_>, step: f64) -> StarView<'a> {
-        let texture = shot.color.texture;
+    fn seen<'a>(&'a self, at: &'a DrawContext<'_>, step: f64) -> StarView<'a> {
+        let texture = at.picture();
         let mut view = StarView {
             heavens: &self.heavens,
-            clip: shot.clip(),
-            rays: shot.rays,
+            clip: at.clip(),
+            rays: at.target.rays,
             size: [texture.width(), texture.height()],
-            y_sign: if shot.frame.origin_bottom_left { -1.0 } else { 1.0 },
+            y_sign: if at.frame.origin_bottom_left { -1.0 } else { 1.0 },
             zenith_depth: self.zenith_depth,
             transmittance: self.through,
             air_density: self.air_density,
@@ -162,7 +139,7 @@ impl Tonight {
         };
         let pixel_sr = view.pixel_sr();
         view.scale = scale(pixel_sr);
-        let display = display_threshold_lux(SHARE_OF_STEP, step, shot.exposure, pixel_sr);
+        let display = display_threshold_lux(SHARE_OF_STEP, step, at.target.exposure, pixel_sr);
         view.faintest_lux = view.faintest_lux.max(display).min(1e6);
         view
     }
@@ -175,6 +152,31 @@ fn scale(pixel_sr: f64) -> f64 {
 }
 
 impl DrawnEffect for StarsView {
+    fn gathers(&self) -> Exchange {
+        Exchange { needs: &[Output::FogDepth], ..Exchange::NONE }
+    }
+
+    fn composes(&self) -> Exchange {
+        Exchange { gives: &[Output::Stars], ..Exchange::NONE }
+    }
+
+    fn gather(&mut self, at: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
+        self.tonight = None;
+        let scene = &at.now.scene;
+        let open = (1.0 - scene.deck_cover) * (-given.fog_depth).exp();
+        let elevation = scene.sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
+        if elevation >= POINTS_BEGIN_DEG.0 || open < LEAST_THROUGH || at.frame.camera.is_orthographic() {
+            return Ok(());
+        }
+        let (settings, utc) = (&at.held.of::<HeldStars>()?.settings, at.world.utc_at(at.now.time_s));
+        let tonight = Tonight::new(scene, utc, settings, elevation)?;
+        if tonight.dusk.share > 0.0 || tonight.brightest_lux(settings) > tonight.threshold_lux {
+            self.settings = settings.clone();
+            self.tonight = Some(tonight);
+        }
+        Ok(())
+    }
+
     fn stages(&self) -> Stages {
         if self.tonight.is_some() { Stages::BACKGROUND } else { Stages(0) }
     }
@@ -185,28 +187,30 @@ impl DrawnEffect for StarsView {
         }
     }
 
-    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        put(&STARS, self.is_there(stages), &[stars_work(shot.pixels())]);
+    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        put(&STARS, self.is_there(stages), &[stars_work(at.pixels())]);
     }
 
-    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
-        let (is_there, share) = (self.is_there(to.stages), shot.share(&STARS, 0));
+    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+        let mut to = Contribution::none();
+        let (is_there, share) = (self.is_there(at.stages), at.share(&STARS, 0));
         to.constant("STARS", flag(is_there), flag(is_there && share > 0.0));
         if let Some(tonight) = self.tonight.as_ref().filter(|_| is_there) {
-            to.mark_fine();
-            to.block.behind = [(1.0 / tonight.seen(shot, 0.0).scale) as f32, share];
-            to.block.behind_drawn = share * to.block.drawn[2];
-            let layer = self.layer(shot.device, shot.color.texture).clone();
+            let traits = Traits { is_fine: true, ..Traits::default() };
+            to.set_traits(traits, traits);
+            let behind = [(1.0 / tonight.seen(at, 0.0).scale) as f32, share];
+            to.set_frame_block(FrameBlock::Stars { behind });
+            let layer = self.layer(at.device, at.picture()).clone();
             to.set_texture(Texture::Behind, Some(layer));
         }
-        Ok(())
+        Ok(to)
     }
 
     /// Draws the layer behind the sky's own light: the glow, and the points before it. It rests while camera, heavens and air stay as they
     /// are.
-    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
-        let block = &with.composition.block;
-        if !self.is_there(with.composition.stages) || block.behind[1] == 0.0 {
+    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+        let block = merged.composition.block();
+        if !self.is_there(merged.composition.stages()) || block.behind[1] == 0.0 {
             return Ok(());
         }
         let (Some(tonight), Some((_, target, _))) = (&self.tonight, &self.layer) else { return Ok(()) };
@@ -216,7 +220,7 @@ impl DrawnEffect for StarsView {
         };
         let (points, glow) = &mut **passes;
         // The dark end of the sRGB curve is straight, 12.92 times as steep as light.
-        let view = tonight.seen(shot, f64::from(block.dither_step) / 12.92);
+        let view = tonight.seen(at, f64::from(block.dither_step) / 12.92);
         points.prepare(to.device, &self.settings, &view, FORMAT, None)?;
         let has_changed = glow.prepare(to.device, &tonight.sky, &view, &tonight.dusk) || points.has_changed();
         if self.is_layer_drawn && !has_changed {

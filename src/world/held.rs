@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::World;
-use crate::error::{Result, Status};
+use crate::error::{Error, Result, Status};
 
 /// When an update began, and how long it may go on.
 #[derive(Clone, Copy)]
@@ -13,7 +13,7 @@ pub(crate) struct Within {
 }
 
 /// What a context holds of an effect for all its views. `src/effects.rs` lists them; a context leads, saves and loads the list.
-pub(crate) trait HeldEffect {
+pub(crate) trait HeldEffect: std::any::Any {
     /// Makes ready to be led from the present to `time_s`.
     fn begin(&mut self, _world: &World, _time_s: f64) -> Result<()> {
         Ok(())
@@ -54,5 +54,20 @@ pub(crate) trait HeldEffect {
     /// may stand for large parts of it.
     fn save_in(&self, _world: &World, _for_hash: bool, state: &mut toml::Table) -> Result<()> {
         self.save(state)
+    }
+}
+
+/// What a context holds of its effects, each found by its type.
+#[derive(Clone, Copy)]
+pub(crate) struct HeldEffects<'a>(pub &'a [&'a dyn HeldEffect]);
+
+impl<'a> HeldEffects<'a> {
+    /// What it holds of one effect.
+    ///
+    /// # Errors
+    /// [`crate::Status::Internal`] where it holds none of this type.
+    pub fn of<T: HeldEffect>(&self) -> Result<&'a T> {
+        let found = self.0.iter().find_map(|held| (*held as &dyn std::any::Any).downcast_ref());
+        found.ok_or_else(|| Error::new(Status::Internal, format!("no state of {}", std::any::type_name::<T>())))
     }
 }

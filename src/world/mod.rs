@@ -28,7 +28,7 @@ use glam::{DMat3, DVec3};
 
 use air::planet_under;
 pub(crate) use binary::{binary_text, text_binary};
-pub(crate) use held::{HeldEffect, Within};
+pub(crate) use held::{HeldEffect, HeldEffects, Within};
 pub(crate) use kept::KeptScene;
 pub(crate) use lights::color_of;
 pub(crate) use saved::{LoadedWorld, SavedWorld, parse_error};

@@ -1,0 +1,126 @@
+//! What effects read of a frame: one context from its gathering to its first pass, one for each of its draws. Both are read-only.
+
+use std::sync::Arc;
+
+use glam::DMat4;
+
+use super::{ColorSpace, Frame, FrameFlags, Stages, Tone};
+use crate::{
+    gpu::{Device, Layer},
+    light::ToneCurve,
+    moment::Moment,
+    plan::parts::{MOST_PARTS, MOST_RUNGS, Part},
+    scene::ViewRays,
+    world::{HeldEffects, World},
+};
+
+/// A frame before anything of it is drawn.
+pub(crate) struct FrameContext<'a> {
+    pub device: &'a Arc<Device>,
+    /// Camera, flags and images of the host.
+    pub frame: &'a Frame<'a>,
+    pub now: &'a Moment<'a>,
+    pub world: &'a World,
+    /// Simulation state of the effects.
+    pub held: HeldEffects<'a>,
+    /// Stages of the call.
+    pub asked: Stages,
+    /// Work for tables in this frame, as a share of building all of them.
+    pub table_share: f32,
+}
+
+/// The host's picture that a call draws into.
+#[derive(Clone, Copy)]
+pub(crate) struct DrawTarget<'a> {
+    pub color: Layer<'a>,
+    pub rays: &'a ViewRays,
+    /// Display units per cd/m^2.
+    pub exposure: f64,
+    /// Fog and air lie before the picture in this call, or have been drawn in an earlier one of the frame.
+    pub is_veiled: bool,
+}
+
+/// What the plan has chosen for a draw.
+#[derive(Clone, Copy)]
+pub(crate) struct PlannedShares {
+    parts: &'static [Part],
+    shares: [[f32; MOST_RUNGS - 1]; MOST_PARTS],
+    /// The plan gauges what parts are worth.
+    pub is_gauged: bool,
+}
+
+impl PlannedShares {
+    /// Everything is drawn.
+    pub fn whole(parts: &'static [Part]) -> Self {
+        Self { parts, shares: [[1.0; MOST_RUNGS - 1]; MOST_PARTS], is_gauged: false }
+    }
+
+    /// `share` answers for a part's place in the list and its step.
+    pub fn new(parts: &'static [Part], is_gauged: bool, share: impl Fn(usize, usize) -> f32) -> Self {
+        let mut planned = Self { is_gauged, ..Self::whole(parts) };
+        for (part, shares) in planned.shares.iter_mut().enumerate().take(parts.len()) {
+            for (step, to) in shares.iter_mut().enumerate().take(parts[part].rungs.len() - 1) {
+                *to = share(part, step);
+            }
+        }
+        planned
+    }
+
+    /// Share of a part's step that is drawn.
+    pub fn share(&self, part: &Part, step: usize) -> f32 {
+        let place = self.parts.iter().position(|p| p.name == part.name);
+        place.map_or(1.0, |i| self.shares[i][step])
+    }
+}
+
+/// One draw of a frame into the host's picture.
+#[derive(Clone, Copy)]
+pub(crate) struct DrawContext<'a> {
+    pub device: &'a Arc<Device>,
+    /// Camera, flags and images of the host.
+    pub frame: &'a Frame<'a>,
+    pub now: &'a Moment<'a>,
+    pub target: DrawTarget<'a>,
+    /// Stages of the draw.
+    pub stages: Stages,
+    pub plan: PlannedShares,
+}
+
+impl DrawContext<'_> {
+    /// Share of a part's step that is drawn.
+    pub fn share(&self, part: &Part, step: usize) -> f32 {
+        self.plan.share(part, step)
+    }
+
+    /// The host's picture.
+    pub fn picture(&self) -> &wgpu::Texture {
+        self.target.color.texture
+    }
+
+    /// Pixels of the picture.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.picture().width()) * u64::from(self.picture().height())
+    }
+
+    /// What is made of exposed light in its picture.
+    pub fn tone(&self) -> Tone {
+        match (self.frame.color_space, self.now.tone) {
+            (ColorSpace::SceneLinear, _) | (_, ToneCurve::Linear) => |x| x,
+            (_, ToneCurve::Exponential) => |x| ToneCurve::Exponential.apply(x),
+            (_, ToneCurve::Filmic) => |x| ToneCurve::Filmic.apply(x),
+        }
+    }
+
+    /// From camera-relative east-north-up to clip space.
+    pub fn clip(&self) -> DMat4 {
+        let camera = &self.frame.camera;
+        camera.projection * DMat4::from_mat3(camera.rotation() * self.now.scene.world_to_enu.transpose())
+    }
+}
+
+impl Frame<'_> {
+    /// Whether nothing of earlier frames may show.
+    pub(crate) fn is_pure(&self) -> bool {
+        self.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0))
+    }
+}
