@@ -19,13 +19,13 @@ pub(super) fn rays(frame: &Frame<'_>, scene: &Scene) -> Result<ViewRays> {
 
 impl View {
     fn check_order(&self, frame_id: u64, stages: Stages) -> Result<()> {
-        if frame_id != self.report.frame_id || self.recorded == Stages(0) {
+        if frame_id != self.history.report.frame_id || self.history.recorded == Stages(0) {
             return Ok(());
         }
-        let last = 31 - self.recorded.0.leading_zeros();
+        let last = 31 - self.history.recorded.0.leading_zeros();
         let first = stages.0.trailing_zeros();
         if first <= last {
-            let (now, before) = (stages.0, self.recorded.0);
+            let (now, before) = (stages.0, self.history.recorded.0);
             let rest = format!(
                 "{now:#x} of frame_id {frame_id} come after {before:#x}: each stage once, in rising order of its bit"
             );
@@ -58,7 +58,7 @@ impl View {
         if !can_copy(color) {
             self.reading(color)?;
         }
-        if color.sample_count() > 1 && !self.composite.lock()?.reads_samples() {
+        if color.sample_count() > 1 && !self.cache.composite.lock()?.reads_samples() {
             let what = "above 1: this device cannot shade per sample; resolve first";
             return Err(Error::unsupported(what).within("color.samples"));
         }

@@ -24,7 +24,7 @@ impl View {
         if !asked.has(stage) {
             return Ok(());
         }
-        self.report.exposure = target.exposure;
+        self.history.report.exposure = target.exposure;
         // Planned as the picture itself would be.
         let mut at = self.planned(of, target, Stages(asked.0 & there.0).without(Stages::PREPARE.with(Stages::LENS)));
         let behind = if frame.diagnostic == Diagnostic::PlanError { asked.0 & Stages::BACKGROUND.0 } else { 0 };
@@ -48,15 +48,15 @@ impl View {
         own.into_iter().for_each(|(name, value)| composition.set_constant(name, value, value));
         let variant = self.variant(&at, &mut composition)?;
         self.draw_effects(&at, &composition, to)?;
-        let (Some((_, group)), Some((_, tables))) = (&self.bound, &composition.tables()) else { return Ok(()) };
-        let target = self.target.of(target.color, Layer::view);
-        let mut composite = self.composite.lock()?;
+        let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
+        let target = self.cache.target.of(target.color, Layer::view);
+        let mut composite = self.cache.composite.lock()?;
         if frame.diagnostic == Diagnostic::Wind {
             let (pipeline, wind) = composite.wind(&self.device, variant, of.now)?;
             pass::draw(to.encoder, "wind", &pipeline, &[group, &wind], target);
         } else {
             let pipeline = composite.pipeline(&self.device, variant)?;
-            let groups = [group, tables, self.surroundings.bind_group()];
+            let groups = [group, tables, self.cache.surroundings.bind_group()];
             pass::draw(to.encoder, "diagnostic", pipeline, &groups, target);
         }
         to.passes += 1;

@@ -34,23 +34,28 @@ impl View {
         if drawn == Stages(0) {
             return Ok(());
         }
-        self.report.exposure = target.exposure;
+        self.history.report.exposure = target.exposure;
         let at = self.planned(of, target, drawn);
         let block = uniform(frame, of.now, target.rays, at.picture(), target.exposure, tone);
         let mut composition = Composition::new(drawn, block);
         self.effects.compose(&at, &mut composition)?;
-        composition.finish(self.environment.is_some());
+        composition.finish(self.cache.environment.is_some());
         let variant = self.variant(&at, &mut composition)?;
         composition.set_compositions(self.planner.compositions(self.effects.weighs_unseen()));
         self.draw_effects(&at, &composition, to)?;
         if composition.stages().has(Stages::MEDIUM) {
             let white = of.now.scene.ground.total_lux / std::f64::consts::PI;
-            self.unit.watch(&self.device, to.encoder, frame, (white, self.recorded.has(Stages::BACKGROUND)));
+            self.history.unit.watch(
+                &self.device,
+                to.encoder,
+                frame,
+                (white, self.history.recorded.has(Stages::BACKGROUND)),
+            );
         }
         self.compose(&at, &composition, &variant, to)?;
         to.ends(CostItem::of(composition.stages()), true)?;
         self.fill_environment(&at, &composition, to)?;
-        self.light_scale = match frame.color_space {
+        self.history.light_scale = match frame.color_space {
             ColorSpace::SceneLinear => (1.0 / (target.exposure * frame.cd_m2_per_unit)) as f32,
             ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
         };
@@ -69,8 +74,8 @@ impl View {
     ) -> Result<()> {
         self.hold_copy(at.picture())?;
         self.bind(at, composition)?;
-        self.uniform.write(bytemuck::bytes_of(composition.block()));
-        let merged = MergedFrame { composition, block: &self.uniform, surroundings: &self.surroundings };
+        self.cache.uniform.write(bytemuck::bytes_of(composition.block()));
+        let merged = MergedFrame { composition, block: &self.cache.uniform, surroundings: &self.cache.surroundings };
         self.effects.draw(at, &merged, to)?;
         self.take_picture(at.target.color, to)
     }
@@ -84,13 +89,13 @@ impl View {
     ) -> DrawContext<'a> {
         let (frame, now) = (of.frame, of.now);
         let mut at = DrawContext { device: of.device, frame, now, target, stages, plan: PlannedShares::whole(PARTS) };
-        if self.planned_for != Some(frame.frame_id) {
-            self.planned_for = Some(frame.frame_id);
+        if self.history.planned_for != Some(frame.frame_id) {
+            self.history.planned_for = Some(frame.frame_id);
             self.planner.rebuild = self.effects.rebuild_work();
             let present = present(&mut self.effects, &at, stages);
             let here = situation(frame, &now.scene);
             self.planner.begin(&self.device, &here, &present, frame.is_pure());
-            self.report.prediction = self.planner.prediction();
+            self.history.report.prediction = self.planner.prediction();
         }
         let is_gauged = self.planner.budget().gauges();
         at.plan = PlannedShares::new(PARTS, is_gauged, |part, step| self.planner.drawn_share(part, step));
@@ -115,7 +120,7 @@ impl View {
         let mut around = Default::default();
         if stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
             let host = at.now.host_surroundings(composition.near(), at.target.exposure)?;
-            self.surroundings.update(&self.device, &host);
+            self.cache.surroundings.update(&self.device, &host);
             around = if stages.has(Stages::SURFACE) { host.present() } else { around };
         }
         for (name, is_there) in [("SHELTER", around.shelter), ("MAPS", around.maps), ("LAMPS", around.lamps)] {
@@ -140,22 +145,22 @@ impl View {
         whole: &Variant,
         to: &mut Recording<'_>,
     ) -> Result<()> {
-        let (Some((_, group)), Some((_, tables))) = (&self.bound, &composition.tables()) else { return Ok(()) };
-        let target = self.target.of(at.target.color, Layer::view);
-        let groups = [group, tables, self.surroundings.bind_group()];
+        let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
+        let target = self.cache.target.of(at.target.color, Layer::view);
+        let groups = [group, tables, self.cache.surroundings.bind_group()];
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let splits = self.device.caps().software;
         let constants = if splits { composition.least() } else { composition.whole() };
-        let has_grid = self.even.is_some();
+        let has_grid = self.cache.even.is_some();
         // A pure picture does not depend on how many frames were drawn before it.
         let how = (splits, splits || at.frame.is_pure());
         let make = || {
             let drawn = DrawKey { of: Variant { constants: *constants, ..*whole }, has_grid };
-            let draws = Draws::new(&self.device, &mut *self.composite.lock()?, &drawn, how)?;
+            let draws = Draws::new(&self.device, &mut *self.cache.composite.lock()?, &drawn, how)?;
             Ok((drawn, draws))
         };
-        let held = (self.kinds.as_ref(), self.even.as_ref());
-        to.passes += match self.draws.get_or_make(|drawn| drawn.is(whole, constants, has_grid), make) {
+        let held = (self.cache.kinds.as_ref(), self.cache.even.as_ref());
+        to.passes += match self.cache.draws.get_or_make(|drawn| drawn.is(whole, constants, has_grid), make) {
             Ok(draws) => draws.record(to.encoder, held, &groups, target),
             Err(PipelineNotReady::Coming(draws)) => draws.record(to.encoder, held, &groups, target),
             Err(PipelineNotReady::Failed(error)) => return Err(error),
@@ -167,7 +172,7 @@ impl View {
         let effects = &mut self.effects;
         if let Some(gauge) = self.planner.due(&here, || effects.unseen(at)) {
             let [_, (shader, _)] = whole.sampling.shaders();
-            let composite = self.composite.lock()?;
+            let composite = self.cache.composite.lock()?;
             let layouts = composite.layouts(whole.sampling);
             gauge.record(&self.device, to.encoder, (shader, whole.constants().all()), &layouts, &groups)?;
             to.passes += 1;
@@ -178,13 +183,13 @@ impl View {
     /// Fills the textures of the veil for the host's own shaders, if it has asked for them.
     fn fill_veil(&mut self, at: &DrawContext<'_>, composition: &Composition, to: &mut Recording<'_>) -> Result<()> {
         let (Some(froxels), Some((_, group)), Some((_, tables))) =
-            (&mut self.froxels, &self.bound, &composition.tables())
+            (&mut self.cache.froxels, &self.cache.bound, &composition.tables())
         else {
             return Ok(());
         };
-        let merged = MergedFrame { composition, block: &self.uniform, surroundings: &self.surroundings };
+        let merged = MergedFrame { composition, block: &self.cache.uniform, surroundings: &self.cache.surroundings };
         let own = self.effects.each().into_iter().find_map(|effect| effect.veil(at, &merged));
-        let (composite, of_veil) = (self.composite.lock()?, composition.whole().of_veil);
+        let (composite, of_veil) = (self.cache.composite.lock()?, composition.whole().of_veil);
         match &own {
             Some((shader, layout, own)) => {
                 // That of an effect has no colour in it.
@@ -195,7 +200,7 @@ impl View {
             }
             None => {
                 let sampling = Sampling::of(at.picture(), at.frame.depth);
-                let groups = [group, tables, self.surroundings.bind_group()];
+                let groups = [group, tables, self.cache.surroundings.bind_group()];
                 froxels.draw(to, (Froxels::SHADER, sampling, of_veil), &composite.layouts(sampling), &groups)?;
             }
         }

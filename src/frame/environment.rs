@@ -399,12 +399,12 @@ impl View {
     pub fn environment(&mut self) -> Result<Environment> {
         let device = self.device.clone();
         let _entered = device.enter()?;
-        let map = match &self.environment {
+        let map = match &self.cache.environment {
             Some(map) => map,
             None => {
                 let map = EnvironmentMap::new(&device)?;
                 device.check_made()?;
-                self.environment.insert(Box::new(map))
+                self.cache.environment.insert(Box::new(map))
             }
         };
         let (cd_m2_per_unit, light_scale) = (map.cd_m2_per_unit, map.light_scale);
@@ -419,7 +419,7 @@ impl View {
         to: &mut Recording<'_>,
     ) -> Result<()> {
         let (Some(map), Some((_, group)), Some((_, tables))) =
-            (&mut self.environment, &self.bound, &composition.tables())
+            (&mut self.cache.environment, &self.cache.bound, &composition.tables())
         else {
             return Ok(());
         };
@@ -429,8 +429,8 @@ impl View {
         }
         let faces = map.faces_due(at);
         let sampling = Sampling::of(at.picture(), at.frame.depth);
-        let composite = self.composite.lock()?;
-        let groups = [group, tables, self.surroundings.bind_group()];
+        let composite = self.cache.composite.lock()?;
+        let groups = [group, tables, self.cache.surroundings.bind_group()];
         map.draw(to, faces, (sampling, composition.whole().between), &composite.layouts(sampling), &groups)?;
         to.ends(CostItem::Veil, true)
     }

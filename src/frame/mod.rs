@@ -4,6 +4,7 @@
 //! A host hands over a [`Frame`] (camera, colour, depth) and a set of [`Stages`]; a [`View`] records them. No effect is named here:
 //! `src/effects.rs` lists them.
 
+mod cache;
 mod check;
 mod composite;
 mod diagnose;
@@ -12,6 +13,7 @@ mod draws;
 mod environment;
 mod even;
 mod froxels;
+mod history;
 mod kinds;
 mod light;
 mod opaque;

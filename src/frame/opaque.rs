@@ -114,16 +114,16 @@ impl View {
     ) -> Result<()> {
         let (frame, color) = (of.frame, target.color);
         let (DepthAccess::ReadWrite, Some(read)) = (frame.depth_access, frame.depth) else {
-            self.report.opaque_left_out = self.effects.all().iter().filter(|e| e.has_opaque()).count() as u32;
+            self.history.report.opaque_left_out = self.effects.all().iter().filter(|e| e.has_opaque()).count() as u32;
             return Ok(());
         };
         let attached = self.device.attached_depth(read);
         let depth = Layer { texture: &attached.texture, index: frame.layers.depth };
         let block = uniform(frame, of.now, target.rays, color.texture, target.exposure, false);
-        self.uniform.write(bytemuck::bytes_of(&block));
-        let step = self.opaque.get_or_insert_with(|| OpaqueStep::new(&self.device.device));
+        self.cache.uniform.write(bytemuck::bytes_of(&block));
+        let step = self.cache.opaque.get_or_insert_with(|| OpaqueStep::new(&self.device.device));
         let layout = step.layout.clone();
-        let (bound, color_view) = step.bind(&self.device, &self.uniform, [color, depth], frame.mask_layer());
+        let (bound, color_view) = step.bind(&self.device, &self.cache.uniform, [color, depth], frame.mask_layer());
         let keep = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
         let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("opaque"),

@@ -24,29 +24,33 @@ type Own = [Option<wgpu::TextureView>; 4];
 impl View {
     /// Bytes of GPU memory the view holds for itself.
     pub(super) fn bytes(&self) -> u64 {
-        let copy = self.copy.as_ref().map_or(0, |c| {
+        let copy = self.cache.copy.as_ref().map_or(0, |c| {
             let texel = u64::from(c.format().block_copy_size(None).unwrap_or(4));
             texel * u64::from(c.width()) * u64::from(c.height()) * u64::from(c.sample_count())
         });
         let effects: u64 = self.effects.all().iter().map(|effect| effect.bytes()).sum();
-        let kinds =
-            self.kinds.as_ref().map_or(0, KindAttachment::bytes) + self.even.as_ref().map_or(0, CoarseWeather::bytes);
-        let environment = self.environment.as_deref().map_or(0, EnvironmentMap::bytes);
-        copy + kinds + environment + self.blocks.bytes() + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
+        let kinds = self.cache.kinds.as_ref().map_or(0, KindAttachment::bytes)
+            + self.cache.even.as_ref().map_or(0, CoarseWeather::bytes);
+        let environment = self.cache.environment.as_deref().map_or(0, EnvironmentMap::bytes);
+        copy + kinds
+            + environment
+            + self.cache.blocks.bytes()
+            + self.cache.froxels.as_ref().map_or(0, Froxels::bytes)
+            + effects
     }
 
     /// Makes the colour copy anew if it does not serve the host's colour; whether it did.
     pub(super) fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<bool> {
         let reading = if can_copy(color) { None } else { Some(self.reading(color)?) };
-        let fits = self.copy.as_ref().is_some_and(|c| match &reading {
+        let fits = self.cache.copy.as_ref().is_some_and(|c| match &reading {
             Some(reading) => c == reading,
             None => is_copy_of(c, color),
         });
         if !fits {
             // The old one is bound there.
-            self.bound = None;
-            self.copy = Some(reading.unwrap_or_else(|| color_copy(&self.device.device, color)));
-            self.report.bytes = self.bytes();
+            self.cache.bound = None;
+            self.cache.copy = Some(reading.unwrap_or_else(|| color_copy(&self.device.device, color)));
+            self.history.report.bytes = self.bytes();
         }
         Ok(!fits)
     }
@@ -54,15 +58,15 @@ impl View {
     /// Makes the attachment for kinds of pixels and the weather's grid anew if they do not serve.
     pub(super) fn hold_kinds(&mut self, color: &wgpu::Texture) -> Result<()> {
         let apart = color.sample_count() == 1;
-        if self.kinds.as_ref().is_some_and(|kinds| !apart || !kinds.fits(color)) {
-            self.kinds = None;
+        if self.cache.kinds.as_ref().is_some_and(|kinds| !apart || !kinds.fits(color)) {
+            self.cache.kinds = None;
         }
-        if self.even.as_ref().is_some_and(|even| !apart || !even.fits(color)) {
-            self.even = None;
+        if self.cache.even.as_ref().is_some_and(|even| !apart || !even.fits(color)) {
+            self.cache.even = None;
         }
-        if apart && self.kinds.is_none() {
-            self.kinds = Some(KindAttachment::new(&self.device.device, color.size()));
-            self.even = CoarseWeather::new(&self.device, &self.composite.lock()?.even, color);
+        if apart && self.cache.kinds.is_none() {
+            self.cache.kinds = Some(KindAttachment::new(&self.device.device, color.size()));
+            self.cache.even = CoarseWeather::new(&self.device, &self.cache.composite.lock()?.even, color);
         }
         Ok(())
     }
@@ -74,7 +78,7 @@ impl View {
             to.flush();
             return self.device.refresh(color.texture);
         }
-        if let Some(copy) = &self.copy {
+        if let Some(copy) = &self.cache.copy {
             color.copy(to.encoder, copy);
         }
         Ok(())
@@ -90,7 +94,7 @@ impl View {
                 && is_kept(frame.normals_layer(), b.normals.as_ref())
         };
         let mut before = None;
-        if let Some((bound, group)) = self.bound.as_mut().filter(|(b, _)| of_host(b)) {
+        if let Some((bound, group)) = self.cache.bound.as_mut().filter(|(b, _)| of_host(b)) {
             if bound.own == *own {
                 return Ok(());
             }
@@ -103,9 +107,9 @@ impl View {
                 _ => before = bound.before.take(),
             }
         }
-        self.bound = None;
-        let Some(copy) = &self.copy else { return Ok(()) };
-        let made = self.composite.lock()?.bind(&self.device, &self.uniform, copy, frame, composition);
+        self.cache.bound = None;
+        let Some(copy) = &self.cache.copy else { return Ok(()) };
+        let made = self.cache.composite.lock()?.bind(&self.device, &self.cache.uniform, copy, frame, composition);
         let Some(group) = made else { return Ok(()) };
         let kept = |layer: Option<Layer<'_>>| layer.map(Layer::kept);
         let bound = Bound {
@@ -116,7 +120,7 @@ impl View {
             own: own.clone(),
             before,
         };
-        self.bound = Some((bound, group));
+        self.cache.bound = Some((bound, group));
         Ok(())
     }
 }

@@ -57,7 +57,7 @@ impl View {
     /// [`Status::InvalidArgument`] outside of (0, 1e5] ms; nothing changes then.
     pub fn report_time(&mut self, milliseconds: f64) -> Result<()> {
         self.planner.report_time(milliseconds)?;
-        self.report.reported_ms = Some(milliseconds);
+        self.history.report.reported_ms = Some(milliseconds);
         Ok(())
     }
 

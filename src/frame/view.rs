@@ -1,69 +1,34 @@
 //! A view: one camera or projector channel, with what it keeps between frames.
 
-use std::{
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use std::{sync::Arc, time::Instant};
 
 use super::{
+    cache::DrawCache,
     check::rays,
-    composite::SharedComposite,
-    draws::{DrawKey, Draws, MOST_DRAWS},
-    environment::EnvironmentMap,
-    even::CoarseWeather,
     froxels::{FrameTextures, Froxels},
-    kinds::KindAttachment,
+    history::FrameHistory,
     opaque::OpaqueStep,
-    picture::Bound,
-    unit::LuminanceUnitCheck,
 };
 use crate::{
     context::Context,
     effects::{Effects, PARTS, Unseen},
     error::{Error, Result},
-    gpu::{
-        Device, KeptView, Layer,
-        blocks::{Blocks, UniformBlock},
-        recent::LruCache,
-    },
+    gpu::{Device, KeptView, Layer},
     plan::Planner,
     stage::{
-        CostItem, Diagnostic, DrawTarget, Frame, FrameContext, FrameFlags, FrameUniform, LensPicture, Recording,
-        Report, Stages, can_be_apart, can_copy,
+        CostItem, Diagnostic, DrawTarget, Frame, FrameContext, FrameFlags, LensPicture, Recording, Report, Stages,
+        can_be_apart, can_copy,
     },
-    surroundings::SurroundingsBlock,
-    world::{HeldEffects, KeptScene},
+    world::HeldEffects,
 };
 
 /// One camera or projector channel. Exclusive: one thread at a time.
 pub struct View {
     pub(crate) device: Arc<Device>,
-    pub(super) composite: Arc<SharedComposite>,
-    pub(super) blocks: Blocks,
-    pub(super) uniform: UniformBlock,
-    pub(super) copy: Option<wgpu::Texture>,
-    pub(super) bound: Option<(Bound, wgpu::BindGroup)>,
-    /// The host's picture, as it is drawn into.
-    pub(super) target: KeptView,
     pub(crate) effects: Effects,
-    pub(super) froxels: Option<Froxels>,
-    pub(super) environment: Option<Box<EnvironmentMap>>,
-    pub(super) kinds: Option<KindAttachment>,
-    pub(super) even: Option<CoarseWeather>,
-    /// Of the last calls.
-    pub(super) draws: LruCache<DrawKey, Draws, MOST_DRAWS>,
-    pub(super) opaque: Option<OpaqueStep>,
-    pub(super) surroundings: SurroundingsBlock,
     pub(super) planner: Planner<Unseen>,
-    pub(super) planned_for: Option<u64>,
-    pub(super) light_scale: f32,
-    pub(super) unit: LuminanceUnitCheck,
-    pub(super) recorded: Stages,
-    pub(super) report: Report,
-    /// The scene of the last call, for the next calls of the frame.
-    pub(crate) scene: Option<Box<KeptScene>>,
-    /// What the last measured call took, its wait for earlier work included.
-    pub(super) last_call: Option<Duration>,
+    pub(super) cache: DrawCache,
+    pub(super) history: FrameHistory,
 }
 
 impl View {
@@ -74,44 +39,17 @@ impl View {
     pub fn new(context: &Context) -> Result<Self> {
         let device = context.device().clone();
         let _entered = device.enter()?;
-        let blocks = Blocks::new();
-        let uniform = blocks.block(&device, size_of::<FrameUniform>());
-        let composite = context.shared().get(|| SharedComposite::new(&device))?;
-        let effects = Effects::new(&device, (context.shared(), &blocks), &context.held)?;
+        let cache = DrawCache::new(context, &device)?;
+        let effects = Effects::new(&device, (context.shared(), &cache.blocks), &context.held)?;
         let planner = Planner::new(PARTS, effects.rebuild_work());
-        let surroundings = SurroundingsBlock::new(&device.device);
         device.check_made()?;
         drop(_entered);
-        Ok(Self {
-            device,
-            composite,
-            blocks,
-            uniform,
-            copy: None,
-            bound: None,
-            target: KeptView::default(),
-            effects,
-            froxels: None,
-            environment: None,
-            kinds: None,
-            even: None,
-            draws: LruCache::new(),
-            opaque: None,
-            surroundings,
-            planner,
-            planned_for: None,
-            light_scale: 0.0,
-            unit: LuminanceUnitCheck::default(),
-            recorded: Stages(0),
-            report: Report { frame_id: u64::MAX, ..Default::default() },
-            scene: None,
-            last_call: None,
-        })
+        Ok(Self { device, effects, planner, cache, history: FrameHistory::default() })
     }
 
     /// What the last frame took and showed.
     pub fn report(&self) -> &Report {
-        &self.report
+        &self.history.report
     }
 
     /// Textures of air and fog for the host's own transparent shaders, filled by [`Stages::MEDIUM`] of every frame from
@@ -122,16 +60,16 @@ impl View {
     pub fn frame_textures(&mut self) -> Result<FrameTextures> {
         let device = self.device.clone();
         let _entered = device.enter()?;
-        let froxels = match &self.froxels {
+        let froxels = match &self.cache.froxels {
             Some(froxels) => froxels,
             None => {
                 let froxels = Froxels::new(&device);
                 device.check_made()?;
-                self.froxels.insert(froxels)
+                self.cache.froxels.insert(froxels)
             }
         };
         let (light, through) = (froxels.light.clone(), froxels.through.clone());
-        Ok(FrameTextures { light, through, light_scale: self.light_scale })
+        Ok(FrameTextures { light, through, light_scale: self.history.light_scale })
     }
 
     /// Records the stages of a frame and submits them: when it returns, the work is on the device's queue.
@@ -152,22 +90,19 @@ impl View {
 
     /// The stages that were recorded of a frame so far, for [`View::take_back`].
     pub(crate) fn recorded_of(&self, frame_id: u64) -> Stages {
-        if frame_id == self.report.frame_id { self.recorded } else { Stages(0) }
+        if frame_id == self.history.report.frame_id { self.history.recorded } else { Stages(0) }
     }
 
     /// After a call that failed once it was recorded: the frame has the stages that it had before, so that the host may record
     /// it again, and nothing is kept that there may have been no memory for.
     pub(crate) fn take_back(&mut self, recorded: Stages) {
-        self.recorded = recorded;
+        self.history.recorded = recorded;
         self.forget_images();
     }
 
     /// Lets go what the view holds of the picture's size.
     fn forget_images(&mut self) {
-        (self.bound, self.copy, self.opaque) = (None, None, None);
-        self.target = KeptView::default();
-        (self.kinds, self.even) = (None, None);
-        self.environment.iter_mut().for_each(|map| map.forget());
+        self.cache.forget_images();
         self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
     }
 
@@ -175,21 +110,27 @@ impl View {
     /// nobody holds its images.
     fn let_go_of_window(&mut self, frame: &Frame<'_>) {
         if frame.color.is_some_and(|color| self.device.is_of_window(color)) {
-            self.target = KeptView::default();
-            self.opaque.iter_mut().for_each(OpaqueStep::forget_color);
+            self.cache.target = KeptView::default();
+            self.cache.opaque.iter_mut().for_each(OpaqueStep::forget_color);
         }
+    }
+
+    /// How many scenes were worked out for its calls.
+    #[cfg(test)]
+    pub(crate) fn scene_count(&self) -> u64 {
+        self.history.scene.as_ref().map_or(0, |kept| kept.count)
     }
 
     /// Draws the weather at every pixel from now on.
     #[cfg(test)]
     pub(crate) fn forget_grid(&mut self) {
-        self.even = None;
+        self.cache.even = None;
     }
 
     /// The pipelines that the views of its device compose with: for which pixels, shader and entry point, constants.
     #[cfg(test)]
     pub(crate) fn composes_with(&self) -> Vec<(String, (String, &'static str), crate::stage::Constants)> {
-        let held = self.composite.lock().expect("no call has panicked").held();
+        let held = self.cache.composite.lock().expect("no call has panicked").held();
         held.into_iter().map(|(pixels, program, constants)| (format!("{pixels:?}"), program, constants)).collect()
     }
 
@@ -212,16 +153,16 @@ impl View {
     ) -> Result<()> {
         let mut encoder =
             device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
-        let blocks = self.blocks.clone();
+        let blocks = self.cache.blocks.clone();
         let mut to = Recording::new(device, &mut encoder, &blocks);
         if frame.flags.has(FrameFlags::MEASURE) {
-            let so_far = if frame.frame_id == self.report.frame_id { self.report.costs } else { None };
+            let so_far = if frame.frame_id == self.history.report.frame_id { self.history.report.costs } else { None };
             to.measure(so_far.unwrap_or_default())?;
         }
         self.record_stages(context, frame, stages, &mut to)?;
         if let Some((costs, inside)) = to.costs() {
-            self.report.costs = Some(costs);
-            self.last_call = Some(inside);
+            self.history.report.costs = Some(costs);
+            self.history.last_call = Some(inside);
         }
         device.submit(encoder);
         device.check_made()
@@ -230,7 +171,7 @@ impl View {
     /// Counts what a measured call that began at `start` took beyond its recording: the host's context and images came
     /// and went.
     pub(crate) fn add_hand_over(&mut self, start: Instant) {
-        if let (Some(costs), Some(inside)) = (&mut self.report.costs, self.last_call) {
+        if let (Some(costs), Some(inside)) = (&mut self.history.report.costs, self.history.last_call) {
             let ms = (start.elapsed().saturating_sub(inside)).as_secs_f64() * 1e3;
             costs.add(CostItem::HandOver, ms);
             costs.whole_ms += ms;
@@ -265,7 +206,7 @@ impl View {
         self.check_images(frame, stages)?;
         self.check_depth_is_one(frame)?;
         let device = self.device.clone();
-        let (recorded, blocks) = (self.recorded_of(frame.frame_id), self.blocks.clone());
+        let (recorded, blocks) = (self.recorded_of(frame.frame_id), self.cache.blocks.clone());
         self.record_stages(context, frame, stages, &mut Recording::new(&device, encoder, &blocks))
             .inspect_err(|_| self.take_back(recorded))
     }
@@ -277,7 +218,7 @@ impl View {
         stages: Stages,
         to: &mut Recording<'_>,
     ) -> Result<()> {
-        let now = context.moment("frame.camera.position", frame.camera.position, &mut self.scene)?;
+        let now = context.moment("frame.camera.position", frame.camera.position, &mut self.history.scene)?;
         let rays = stages.draw().then(|| rays(frame, &now.scene)).transpose()?;
         // What is not there is not drawn.
         let asked = stages;
@@ -296,19 +237,20 @@ impl View {
         let opaque = self.has_opaque(asked);
         let diagnoses = frame.diagnostic != Diagnostic::None;
         let rays = rays.filter(|_| stages.draw() || opaque || diagnoses);
-        if frame.frame_id != self.report.frame_id {
-            self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
-            self.recorded = Stages(0);
+        if frame.frame_id != self.history.report.frame_id {
+            self.history.report =
+                Report { frame_id: frame.frame_id, bytes: self.history.report.bytes, ..Default::default() };
+            self.history.recorded = Stages(0);
         }
         if rays.is_some() {
             self.hold_images(frame, stages)?;
         }
-        if self.recorded == Stages(0) {
+        if self.history.recorded == Stages(0) {
             self.effects.each().into_iter().try_for_each(|effect| effect.prepare(&of, to))?;
         }
         if let (Some(rays), Some(color)) = (rays, frame.color_layer()) {
             let exposure = frame.exposure.unwrap_or(now.exposure).factor(now.scene.ground.adaptation_cd_m2);
-            let is_veiled = self.recorded.with(asked).has(Stages::MEDIUM);
+            let is_veiled = self.history.recorded.with(asked).has(Stages::MEDIUM);
             let target = DrawTarget { color, rays: &rays, exposure, is_veiled };
             if opaque {
                 self.draw_opaque(&of, target, to)?;
@@ -320,11 +262,11 @@ impl View {
         }
         to.upload();
         self.let_go_of_window(frame);
-        self.recorded = self.recorded.with(asked);
-        self.report.passes += to.passes;
-        self.report.tables_rebuilt += to.tables_rebuilt;
-        self.effects.all().iter().for_each(|effect| effect.report(&mut self.report));
-        self.report.bytes = self.bytes();
+        self.history.recorded = self.history.recorded.with(asked);
+        self.history.report.passes += to.passes;
+        self.history.report.tables_rebuilt += to.tables_rebuilt;
+        self.effects.all().iter().for_each(|effect| effect.report(&mut self.history.report));
+        self.history.report.bytes = self.bytes();
         Ok(())
     }
 
@@ -358,8 +300,8 @@ impl View {
     /// Draws what lies over the picture that the target holds; `toned` says that TONE has been over it in this call.
     fn draw_lens(&mut self, frame: &Frame<'_>, color: Layer<'_>, toned: bool, to: &mut Recording<'_>) -> Result<()> {
         self.take_picture(color, to)?;
-        let Some(copy) = &self.copy else { return Ok(()) };
-        let target = self.target.of(color, Layer::view);
+        let Some(copy) = &self.cache.copy else { return Ok(()) };
+        let target = self.cache.target.of(color, Layer::view);
         self.effects
             .each()
             .into_iter()

@@ -48,7 +48,7 @@ impl Host {
 
     /// How many scenes were worked out so far.
     fn scenes(&self) -> u64 {
-        self.view.scene.as_ref().map_or(0, |kept| kept.count)
+        self.view.scene_count()
     }
 
     fn call(&mut self, stages: Stages) -> crate::Result<()> {

@@ -1,0 +1,80 @@
+//! What a view keeps on the GPU between frames: pipelines, bind groups, blocks, and all that has the picture's size.
+
+use std::sync::Arc;
+
+use super::{
+    composite::SharedComposite,
+    draws::{DrawKey, Draws, MOST_DRAWS},
+    environment::EnvironmentMap,
+    even::CoarseWeather,
+    froxels::Froxels,
+    kinds::KindAttachment,
+    opaque::OpaqueStep,
+    picture::Bound,
+};
+use crate::{
+    context::Context,
+    error::Result,
+    gpu::{
+        Device, KeptView,
+        blocks::{Blocks, UniformBlock},
+        recent::LruCache,
+    },
+    stage::FrameUniform,
+    surroundings::SurroundingsBlock,
+};
+
+/// A view's resources on the GPU. Each is made when a frame first needs it.
+pub(super) struct DrawCache {
+    /// Pipelines, shared by the views of a device.
+    pub composite: Arc<SharedComposite>,
+    pub blocks: Blocks,
+    /// The frame's block.
+    pub uniform: UniformBlock,
+    pub surroundings: SurroundingsBlock,
+    /// The host's picture as shaders read it, and as it is drawn into.
+    pub copy: Option<wgpu::Texture>,
+    pub target: KeptView,
+    pub bound: Option<(Bound, wgpu::BindGroup)>,
+    /// Draws of the last calls.
+    pub draws: LruCache<DrawKey, Draws, MOST_DRAWS>,
+    pub kinds: Option<KindAttachment>,
+    pub even: Option<CoarseWeather>,
+    pub opaque: Option<OpaqueStep>,
+    /// For the host's own shaders, once it has asked for them.
+    pub froxels: Option<Froxels>,
+    pub environment: Option<Box<EnvironmentMap>>,
+}
+
+impl DrawCache {
+    /// With nothing of a picture's size.
+    ///
+    /// # Errors
+    /// A GPU fault.
+    pub fn new(context: &Context, device: &Device) -> Result<Self> {
+        let blocks = Blocks::new();
+        Ok(Self {
+            composite: context.shared().get(|| SharedComposite::new(device))?,
+            uniform: blocks.block(device, size_of::<FrameUniform>()),
+            blocks,
+            surroundings: SurroundingsBlock::new(&device.device),
+            copy: None,
+            target: KeptView::default(),
+            bound: None,
+            draws: LruCache::new(),
+            kinds: None,
+            even: None,
+            opaque: None,
+            froxels: None,
+            environment: None,
+        })
+    }
+
+    /// Lets go what has the picture's size.
+    pub fn forget_images(&mut self) {
+        (self.bound, self.copy, self.opaque) = (None, None, None);
+        self.target = KeptView::default();
+        (self.kinds, self.even) = (None, None);
+        self.environment.iter_mut().for_each(|map| map.forget());
+    }
+}
