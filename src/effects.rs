@@ -27,6 +27,7 @@ use crate::{
     light::{Exposure, ToneCurve},
     lightning::{HeldLightning, LightningView},
     moment::Scene,
+    particles::FallingTexture,
     plan::{
         self, StepWork,
         parts::{MOST_RUNGS, Part},
@@ -37,9 +38,7 @@ use crate::{
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
     snow::{self, FlakeContrast, SnowSettings, SnowView},
     snowpack::{HeldSnow, LoadedSnow, LyingSnowModel},
-    stage::{
-        Composition, DrawContext, DrawnEffect, FallingTexture, FrameContext, MergedFrame, Outputs, Recording, ordered,
-    },
+    stage::{Composition, DrawContext, DrawnEffect, FrameContext, MergedFrame, Outputs, Recording, ordered},
     stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
 };

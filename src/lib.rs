@@ -88,6 +88,7 @@ pub mod light;
 pub mod lightning;
 mod moment;
 pub mod noise;
+mod particles;
 pub mod plan;
 pub mod planet;
 pub mod rain;

@@ -1,4 +1,4 @@
-// One frame of what falls and is stepped; the model is explained in src/stage/stepping.rs.
+// One frame of what falls and is stepped; the model is explained in src/particles/stepping.rs.
 //!include "common/hash.wgsl"
 //!include "falling/state.wgsl"
 //!include "surroundings/wind.wgsl"

@@ -1,9 +1,9 @@
 //! The ways to draw rain that are charted against each other, with what they cost.
 
 use super::{RainModel, RainSettings};
+use crate::particles::stepping::STATE_BYTES;
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
-use crate::stage::stepping::STATE_BYTES;
 
 /// Streaks and splashes of rain, at three rungs: single drops near the camera, cones in their place, or neither, so that all rain is
 /// extinction in the fog's layer. Importance: that of particles in the machinery trainer's thesis.

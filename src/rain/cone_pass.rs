@@ -12,7 +12,8 @@ use crate::{
         blocks::{BlockView, Blocks, UniformBlock},
         pass::{FullscreenDesc, Made, fullscreen},
     },
-    stage::{DepthRead, Recording},
+    particles::DepthRead,
+    stage::Recording,
     surroundings::SurroundingsBlock,
 };
 

@@ -11,10 +11,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{DropLight, StreakCamera, uniforms::Classes};
-use crate::{
-    plan::parts::MOST_RUNGS,
-    stage::{StreakContrast, Tone},
-};
+use crate::{particles::StreakContrast, plan::parts::MOST_RUNGS, stage::Tone};
 
 /// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
 const LEAST_PIXELS: f64 = 1.2;

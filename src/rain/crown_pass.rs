@@ -1,4 +1,4 @@
-//! Splashes where there are compute shaders: a list of the slots whose splash the picture may show ([`crate::stage::listing`]), for
+//! Splashes where there are compute shaders: a list of the slots whose splash the picture may show ([`crate::particles::listing`]), for
 //! each of which the place of its crown is sought in the picture's depth once. Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
 
 use super::cull_pass::listed_pipeline;
@@ -8,7 +8,7 @@ use crate::{
         Device,
         pass::{self, ComputeDesc, Made},
     },
-    stage::{DepthRead, listing::Listing},
+    particles::{DepthRead, listing::Listing},
 };
 
 /// Bytes of a `Crown` of `shaders/rain/splash.wgsl`.

@@ -1,4 +1,4 @@
-//! Drops by a list of those that the picture shows ([`crate::stage::listing`]): its shaders are `shaders/rain/cull.wgsl` and
+//! Drops by a list of those that the picture shows ([`crate::particles::listing`]): its shaders are `shaders/rain/cull.wgsl` and
 //! `cull_streaks.wgsl`.
 
 use super::{
@@ -15,7 +15,7 @@ use crate::{
         blocks::BlockView,
         pass::{self, ComputeDesc, Made, QuadsDesc},
     },
-    stage::{
+    particles::{
         DepthRead,
         listing::Listing,
         stepping::{STATE_BYTES, source_layout},

@@ -1,4 +1,4 @@
-//! Drops that are stepped through a wind that varies in space: their lattice as `stage::stepping` wants it, which has the model.
+//! Drops that are stepped through a wind that varies in space: their lattice as `particles::stepping` wants it, which has the model.
 //! `cull_pass` draws them.
 
 use glam::DVec3;
@@ -11,7 +11,7 @@ use super::{
 pub use crate::falling::drag::step;
 use crate::{
     gpu::{Device, blocks::Blocks},
-    stage::stepping::{StepPass, Stepped},
+    particles::stepping::{StepPass, Stepped},
     surroundings::{WindMap, WindView},
 };
 

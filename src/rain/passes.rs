@@ -22,15 +22,16 @@ use crate::{
         is_kept,
         pass::{self, Made, QuadsDesc},
     },
-    scene::ViewRays,
-    stage::{
-        DepthRead, FallingTexture, Recording,
+    particles::{
+        DepthRead, FallingTexture,
         stepping::{StepPass, Stepped},
     },
+    scene::ViewRays,
+    stage::Recording,
     surroundings::{self, SurroundingsBlock},
 };
 
-pub(super) use crate::stage::LAYER_FORMAT as FORMAT;
+pub(super) use crate::particles::LAYER_FORMAT as FORMAT;
 
 /// Drops as one more veil before the picture: premultiplied, one sample a pixel.
 pub(crate) struct RainLayer {

@@ -3,7 +3,7 @@
 use crate::{
     error::{Error, Result, check_range},
     gpu::Device,
-    stage::stepping::StepPass,
+    particles::stepping::StepPass,
 };
 
 /// With what a view draws rain; what falls is the same.
@@ -20,7 +20,7 @@ pub enum RainModel {
     /// Drops alone, to 4 m, each where (seed, number, time) puts it, without a state ([`super::lattice`]); cones beyond where
     /// lamps light the rain.
     Drops,
-    /// Drops that are stepped through a wind that varies in space (`stage::stepping`), to 4 m. Needs compute shaders.
+    /// Drops that are stepped through a wind that varies in space (`particles::stepping`), to 4 m. Needs compute shaders.
     Integrated,
 }
 

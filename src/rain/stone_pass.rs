@@ -9,7 +9,7 @@ use crate::{
         blocks::{Blocks, UniformBlock},
         pass::{self, Made, QuadsDesc},
     },
-    stage::DepthRead,
+    particles::DepthRead,
 };
 
 /// What a frame draws of stones.

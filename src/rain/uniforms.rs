@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-pub(crate) use crate::stage::StreakCamera;
+pub(crate) use crate::particles::StreakCamera;
 
 use super::{
     lattice::{CLASSES, FADE, Moment, SHELLS, SIDE_M, SPEED_UNIT, short_seed, side_m},

@@ -19,10 +19,13 @@ use crate::{
     falling::{begun, curtain},
     gpu::{Device, blocks::Blocks},
     moment::{Moment, Scene},
-    stage::{
-        Contribution, Diagnostic, DrawContext, DrawnEffect, Exchange, FallingTexture, FrameBlock, FrameContext,
-        MergedFrame, Output, Outputs, PutPart, RainReport, Recording, Report, Stages, Texture, rounding,
+    particles::{
+        FallingTexture,
         stepping::{self, Stepped},
+    },
+    stage::{
+        Contribution, Diagnostic, DrawContext, DrawnEffect, Exchange, FrameBlock, FrameContext, MergedFrame, Output,
+        Outputs, PutPart, RainReport, Recording, Report, Stages, Texture, rounding,
     },
     surroundings::ShelterReach,
     weather::{Conditions, Falling},

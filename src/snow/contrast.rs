@@ -14,8 +14,9 @@ use super::{
 use crate::{
     falling::flakes::seen_area_m2,
     moment::LightAround,
+    particles::{StreakCamera, StreakContrast},
     plan::parts::MOST_RUNGS,
-    stage::{StreakCamera, StreakContrast, Tone},
+    stage::Tone,
 };
 
 /// A flake is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/common/streak.wgsl`.

@@ -10,12 +10,13 @@ use crate::{
         is_kept,
         pass::{self, ComputeDesc, Made, QuadsDesc},
     },
-    scene::ViewRays,
-    stage::{
-        DepthRead, LAYER_FORMAT, Recording, flag,
+    particles::{
+        DepthRead, LAYER_FORMAT,
         listing::Listing,
         stepping::{STATE_BYTES, StepPass, Stepped},
     },
+    scene::ViewRays,
+    stage::{Recording, flag},
     surroundings::{self, SurroundingsBlock},
 };
 
@@ -206,7 +207,7 @@ fn pipeline(
     )
 }
 
-/// The flakes that a picture shows ([`crate::stage::listing`]): shaders are `shaders/snow/cull.wgsl` and `cull_spots.wgsl`.
+/// The flakes that a picture shows ([`crate::particles::listing`]): shaders are `shaders/snow/cull.wgsl` and `cull_spots.wgsl`.
 struct ListedFlakes {
     layout: wgpu::BindGroupLayout,
     /// The flakes' block.

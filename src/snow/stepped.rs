@@ -1,4 +1,4 @@
-//! Flakes that are stepped through a wind that varies in space: their lattice as [`crate::stage::stepping`] wants it, which has the model.
+//! Flakes that are stepped through a wind that varies in space: their lattice as [`crate::particles::stepping`] wants it, which has the model.
 //! Their helix is none of the step; it is drawn about the place where a flake is.
 
 use glam::DVec3;
@@ -10,7 +10,7 @@ use super::{
 use crate::{
     falling::lattice::short_seed,
     gpu::{Device, blocks::Blocks},
-    stage::{
+    particles::{
         StreakCamera,
         stepping::{StepPass, Stepped},
     },

@@ -6,8 +6,8 @@ use super::lattice::{CLASSES, FADE, Flakes, Moment, SHELLS, side_m};
 use crate::{
     falling::lattice::{fraction, short_seed},
     moment::LightAround,
+    particles::StreakCamera,
     scene::DepthUniform,
-    stage::StreakCamera,
 };
 
 /// `FlakesUniform` of `shaders/snow/flakes.wgsl`, which explains the fields.

@@ -14,10 +14,13 @@ use crate::{
     falling::{begun, drops, flakes::FlakeSizes},
     gpu::Device,
     moment::LightAround,
-    stage::{
-        Contribution, Diagnostic, DrawContext, DrawnEffect, Exchange, FallingTexture, FrameBlock, FrameContext,
-        MergedFrame, Output, Outputs, PutPart, Recording, Report, SnowReport, Stages, StreakCamera, Texture,
+    particles::{
+        FallingTexture, StreakCamera,
         stepping::{self, StepPass, Stepped},
+    },
+    stage::{
+        Contribution, Diagnostic, DrawContext, DrawnEffect, Exchange, FrameBlock, FrameContext, MergedFrame, Output,
+        Outputs, PutPart, Recording, Report, SnowReport, Stages, Texture,
     },
     surroundings::ShelterReach,
     weather::Falling,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
-use super::{ColorSpace, Frame, FrameFlags, Stages, Tone};
+use super::{ColorSpace, Frame, FrameFlags, Stages};
 use crate::{
     gpu::{Device, Layer},
     light::ToneCurve,
@@ -72,6 +72,9 @@ impl PlannedShares {
         place.map_or(1.0, |i| self.shares[i][step])
     }
 }
+
+/// What has been made of exposed light in a picture.
+pub(crate) type Tone = fn(f64) -> f64;
 
 /// One draw of a frame into the host's picture.
 #[derive(Clone, Copy)]

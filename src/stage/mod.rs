@@ -9,19 +9,16 @@ mod composition;
 mod context;
 mod diagnostic;
 mod effect;
-pub(crate) mod listing;
 mod opaque;
 mod outputs;
 mod recording;
-pub(crate) mod stepping;
-mod streak;
 mod target;
 mod uniform;
 
 pub(crate) use composition::{
     Block, Composition, Constant, Constants, Contribution, MergedFrame, Pipeline, Texture, Traits, flag,
 };
-pub(crate) use context::{DrawContext, DrawTarget, FrameContext, PlannedShares};
+pub(crate) use context::{DrawContext, DrawTarget, FrameContext, PlannedShares, Tone};
 pub use diagnostic::Diagnostic;
 pub(crate) use effect::{DrawnEffect, LensPicture, PutPart};
 pub use opaque::DepthAccess;
@@ -29,7 +26,6 @@ pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
 pub(crate) use outputs::{Exchange, Output, Outputs, ordered};
 pub(crate) use recording::Recording;
 pub use recording::{CostItem, Costs, RainReport, Report, SnowReport};
-pub(crate) use streak::{DepthRead, FallingTexture, LAYER_FORMAT, StreakCamera, StreakContrast, Tone};
 pub use target::{ColorSpace, Stages};
 pub(crate) use target::{
     Sampling, can_be_apart, can_copy, check_classes, check_color, check_depth, check_mask, check_normals,

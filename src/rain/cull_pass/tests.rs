@@ -10,13 +10,13 @@ use crate::{
         DeviceOptions,
         blocks::{Blocks, UniformBlock},
     },
+    particles::listing,
     rain::{
         DropLight,
         lattice::{self, Drop, SPEED_UNIT},
         uniforms::{Classes, MovingAir, StreakCamera},
     },
     scene::{Camera, DepthMapping, ViewRays},
-    stage::listing,
     surroundings,
     weather::{Precipitation, PrecipitationKind, Weather, derive},
 };

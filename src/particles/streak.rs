@@ -4,11 +4,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DMat4, DVec2, DVec3};
 
-use super::DrawContext;
 use crate::{
     gpu::{Device, Layer},
     light::luminance,
     scene::ViewRays,
+    stage::{DrawContext, Tone},
 };
 
 /// Light of what falls times the picture's exposure, and the share of what lies behind that it hides.
@@ -126,9 +126,6 @@ impl FallingTexture {
 
 /// Angles between line of sight and streaks at which the variance is tabulated.
 const ANGLES: usize = 9;
-
-/// What has been made of exposed light in a picture.
-pub(crate) type Tone = fn(f64) -> f64;
 
 /// How much streaks stand out of a picture, for the planner.
 #[derive(Clone, Copy, Debug)]
