@@ -1,9 +1,9 @@
 //! The ways to draw each effect that are charted against each other, of all rooms.
 //!
-//! A [`Candidate`] is a model at a setting, with its [`Work`], a deterministic model of its cost in samples, texels and bytes. The lab
-//! (`examples/lab`) draws every candidate, and older systems' beside them, measures its cost and its
-//! [`Difference`](crate::plan::Difference) from the f64 reference, and charts them. Only those are worth a choice that no other beats in
-//! both.
+//! A [`Candidate`] is a model at a setting, with its [`Work`], a deterministic model of its cost in samples, texels and
+//! bytes. The lab (`examples/lab`) draws every candidate, and older systems' beside them, measures its cost and its
+//! [`Difference`](crate::plan::Difference) from the f64 reference, and charts them. Only those are worth a choice that
+//! no other beats in both.
 //!
 //! ```
 //! use welkin::candidates::{Effect, Method, candidate, candidates};
@@ -26,7 +26,7 @@ use crate::{
     stars::candidates::StarMethod,
 };
 
-/// What can be drawn. Grows with the rooms.
+/// Effects that can be drawn. The list grows with the rooms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Effect {
     /// Clear air with haze: the sky behind and the air in front of things.
@@ -70,7 +70,7 @@ impl Effect {
     }
 }
 
-/// What a candidate draws with: enough to build it.
+/// Method that a candidate draws with: enough to build it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// Settings for [`crate::sky::SkyTables::new`].
@@ -90,13 +90,13 @@ pub enum Method {
 /// One way to draw an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// What it draws.
+    /// Effect that it draws.
     pub effect: Effect,
     /// Unique within the effect, lower case with hyphens.
     pub name: &'static str,
     /// With what it is built.
     pub method: Method,
-    /// What it costs.
+    /// Work that it costs.
     pub work: Work,
 }
 

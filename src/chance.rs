@@ -5,7 +5,7 @@
 pub struct Chance(u64);
 
 impl Chance {
-    /// Of a seed and what it is for.
+    /// Creates the stream of a seed for one use, `what`.
     pub fn new(seed: u64, what: u64) -> Self {
         let mut one = Self(seed);
         let first = one.bits();

@@ -1,8 +1,8 @@
 //! The list of effects: what a context holds of each, what a view holds of each, in the order in which they are run.
 //!
-//! Beside the front room and the C boundary this is the one place above their rooms that names them. A new effect adds a field to
-//! [`Effects`] with its line in [`Effects::each`] and [`Effects::all`], and its parts in [`PARTS`]; one with a state adds a field to
-//! [`Held`] likewise.
+//! Beside the front room and the C boundary this is the one place above their rooms that names them. A new effect adds
+//! a field to [`Effects`] with its line in [`Effects::each`] and [`Effects::all`], and its parts in [`PARTS`]; one with
+//! a state adds a field to [`Held`] likewise.
 
 #[cfg(test)]
 pub(crate) mod plane;
@@ -64,8 +64,8 @@ pub struct ContextDesc {
     pub ground: GroundModel,
     /// Where the lying snow comes from. Default the weather of the moment.
     pub lying_snow: LyingSnowModel,
-    /// A directory for the sky's finished tables, made if it is not there: the next start with the same planet, settings
-    /// and weather reads them. What goes wrong with its files is logged, never an error. Default none.
+    /// A directory for the sky's finished tables, made if it is not there: the next start with the same planet,
+    /// settings and weather reads them. What goes wrong with its files is logged, never an error. Default none.
     pub cache_dir: Option<PathBuf>,
 }
 
@@ -86,7 +86,7 @@ impl Default for ContextDesc {
     }
 }
 
-/// What the effects do to every world.
+/// Couplings of the effects to every world.
 pub(crate) const COUPLINGS: Couplings =
     Couplings { dim: fog::dim, cloud_over_areas: clouds::cloud_over_areas, night_lux: stars::night_lux };
 
@@ -116,7 +116,7 @@ pub(crate) struct LoadedHeld {
 }
 
 impl Held {
-    /// Of a new context.
+    /// Creates the state of a new context.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field of `desc`, or a GPU fault.
@@ -216,7 +216,7 @@ pub(crate) fn tables_layout(device: &Device) -> wgpu::BindGroupLayout {
     SkyVolume::view_layout(device)
 }
 
-/// What the planner compares by closed forms, since its gauge cannot see it.
+/// Changes that the planner compares by closed forms, since its gauge cannot see them.
 #[derive(Clone, Copy)]
 pub(crate) struct Unseen {
     rain: Option<Streaks>,
@@ -257,7 +257,7 @@ pub(crate) struct Effects {
 const COUNT: usize = if cfg!(test) { 11 } else { 10 };
 
 impl Effects {
-    /// Those of a view.
+    /// Creates the effects of a view.
     ///
     /// # Errors
     /// A GPU fault.
@@ -337,7 +337,7 @@ impl Effects {
         Ok(())
     }
 
-    /// What all effects add to a draw, merged in the order of what they give each other.
+    /// Merges what all effects add to a draw, in the order of what they give each other.
     ///
     /// # Errors
     /// A GPU fault.
@@ -364,7 +364,7 @@ impl Effects {
         order.into_iter().try_for_each(|place| effects[place].draw(at, merged, to))
     }
 
-    /// What streaks and flakes are worth in a picture, if the plan decides about them.
+    /// Returns what streaks and flakes are worth in a picture, if the plan decides about them.
     pub fn unseen(&mut self, at: &DrawContext<'_>) -> Option<Unseen> {
         let unseen = Unseen { rain: self.rain.streaks(at), snow: self.snow.contrast(at) };
         (unseen.rain.is_some() || unseen.snow.is_some()).then_some(unseen)
@@ -380,7 +380,7 @@ impl Effects {
         self.sky.rebuild_work()
     }
 
-    /// What a plan is saved with.
+    /// Returns the settings that a plan is saved with.
     pub fn saved_with(&self) -> plan::Settings<'_> {
         let settings = self.sky.next_settings();
         plan::Settings {

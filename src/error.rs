@@ -1,5 +1,5 @@
-//! What can go wrong, said in one way everywhere: a stable status code, the field that it is about as a value, and a
-//! sentence that begins with the field and says what is accepted.
+//! Errors in one form everywhere: a stable status code, the field that it is about as a value, and a sentence that
+//! begins with the field and says what is accepted.
 
 use std::{borrow::Cow, fmt};
 
@@ -54,7 +54,7 @@ pub struct Error {
     place: String,
     /// Path of the field; empty where the fault is no single field's.
     field: String,
-    /// What follows the field, its own blank or colon included; the whole sentence where there is no field.
+    /// Text that follows the field, its own blank or colon included; the whole sentence where there is no field.
     rest: String,
 }
 
@@ -62,8 +62,8 @@ pub struct Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
-    /// An error that is no single field's, with its whole sentence. Not for [`Status::InvalidArgument`], which is always some
-    /// field's: [`Error::invalid`].
+    /// An error that is no single field's, with its whole sentence. Not for [`Status::InvalidArgument`], which is
+    /// always some field's: [`Error::invalid`].
     pub fn new(status: Status, sentence: impl Into<String>) -> Self {
         debug_assert!(status != Status::InvalidArgument, "an invalid argument has a name");
         Self { status, place: String::new(), field: String::new(), rest: sentence.into() }
@@ -79,7 +79,8 @@ impl Error {
         Self::about(Status::InvalidArgument, field, rest)
     }
 
-    /// A field outside its range: `visibility_m must be in [1, 1e6] m, got -3`. Of what was given the beginning is shown if it is long.
+    /// A field outside its range: `visibility_m must be in [1, 1e6] m, got -3`. Of what was given the beginning is
+    /// shown if it is long.
     pub fn range(field: &str, accepted: &str, got: impl fmt::Display) -> Self {
         let got = short_numerals(got.to_string());
         Self::invalid(field, format_args!("must be {accepted}, got {}", shown(&got)))
@@ -90,14 +91,14 @@ impl Error {
         Self::new(Status::Unsupported, what)
     }
 
-    /// Path of the parameter or field that the error is about, such as `camera.view`, `shelters[2].half_size_m` or `time_s`;
-    /// `None` where it is about none. There is one for every [`Status::InvalidArgument`].
+    /// Path of the parameter or field that the error is about, such as `camera.view`, `shelters[2].half_size_m` or
+    /// `time_s`; `None` where it is about none. There is one for every [`Status::InvalidArgument`].
     pub fn field(&self) -> Option<&str> {
         (!self.field.is_empty()).then_some(self.field.as_str())
     }
 
-    /// The same error of a field inside `outer`: `wishes[0].rung` within `budget` is `budget.wishes[0].rung`. An error
-    /// about no field becomes one about `outer`.
+    /// Returns the error with its field inside `outer`: `wishes[0].rung` within `budget` is `budget.wishes[0].rung`. An
+    /// error about no field becomes one about `outer`.
     #[must_use]
     pub fn within(mut self, outer: &str) -> Self {
         if self.field.is_empty() {
@@ -108,7 +109,8 @@ impl Error {
         self
     }
 
-    /// The same error where the field's path begins with the segments `to` in place of `from`; as it is if it does not begin so.
+    /// Returns the error with the segments `to` in place of `from` at the beginning of the field's path; as it is if it
+    /// does not begin so.
     #[must_use]
     pub fn renamed(mut self, from: &str, to: &str) -> Self {
         if let Some(rest) = self.field.strip_prefix(from)
@@ -119,7 +121,7 @@ impl Error {
         self
     }
 
-    /// The same error where the field is called as `name` says.
+    /// Returns the error with its field called as `name` says.
     #[must_use]
     pub(crate) fn map_field(mut self, name: impl FnOnce(&str) -> String) -> Self {
         if !self.field.is_empty() {
@@ -128,8 +130,8 @@ impl Error {
         self
     }
 
-    /// The same error about the text or bytes that were given as `parameter`, in which it was found: what the text says stays
-    /// in the sentence and is no field.
+    /// Returns the error as one about the text or bytes that were given as `parameter`, in which it was found: what the
+    /// text says stays in the sentence and is no field.
     #[must_use]
     pub fn in_text(self, parameter: &str) -> Self {
         let inner = self
@@ -140,14 +142,14 @@ impl Error {
         Self { status: self.status, place: String::new(), field: parameter.into(), rest }
     }
 
-    /// The same error, found at `place`: its sentence begins `place: `.
+    /// Returns the error as found at `place`: its sentence begins `place: `.
     #[must_use]
     pub fn found_in(mut self, place: impl fmt::Display) -> Self {
         self.place = format!("{place}: {}", self.place);
         self
     }
 
-    /// The same error under another status.
+    /// Returns the error under another status.
     #[must_use]
     pub fn with_status(self, status: Status) -> Self {
         Self { status, ..self }
@@ -191,7 +193,8 @@ const MOST_JOINED: usize = 1500;
 /// Most characters of a numeral; the shortest form of a number of usual size has no more.
 const MOST_NUMERAL: usize = 24;
 
-/// A sentence in which long numerals have an exponent: written out, the smallest number has 326 characters and the largest 309.
+/// A sentence in which long numerals have an exponent: written out, the smallest number has 326 characters and the
+/// largest 309.
 fn short_numerals(sentence: String) -> String {
     let is_numeral = |c: char| c.is_ascii_digit() || c == '.';
     if !sentence.split(|c| !is_numeral(c)).any(|run| run.len() > MOST_NUMERAL) {
@@ -248,7 +251,8 @@ pub(crate) fn beginning(text: &str, most: usize) -> Cow<'_, str> {
     }
 }
 
-/// What is wrong with a text that should be TOML: line, column and fault, without the line itself, which may be a whole state.
+/// Describes what is wrong with a text that should be TOML: line, column and fault, without the line itself, which may
+/// be a whole state.
 pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
     let Some(before) = e.span().and_then(|span| text.get(..span.start)) else {
         return format!("TOML parse error: {}", toml_message(e));

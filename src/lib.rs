@@ -1,7 +1,7 @@
 //! Welkin: weather for simulators, drawn into the host's own picture.
 //!
-//! A Rust host says what the weather is and records it into its own [`wgpu`] textures, between its opaque world and its instruments. The
-//! sky of a weather report, whole:
+//! A Rust host says what the weather is and records it into its own [`wgpu`] textures, between its opaque world and its
+//! instruments. The sky of a weather report, whole:
 //!
 //! ```
 //! use std::sync::Arc;
@@ -58,9 +58,10 @@
 //! | [`plan`] | what a view leaves out to keep a tolerance or a time |
 //! | [`error::Error`] | a status, and a sentence that names the parameter and what is accepted |
 //!
-//! Each effect has a room with its model, settings and cost: [`sky`], [`stars`], [`clouds`], [`fog`], [`rain`], [`snow`], [`snowpack`],
-//! [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`]. The manual is `docs/README.md`. C and C++ hosts use the same nouns
-//! and verbs through `include/welkin.h`, which [`capi`] implements as a thin shell.
+//! Each effect has a room with its model, settings and cost: [`sky`], [`stars`], [`clouds`], [`fog`], [`rain`],
+//! [`snow`], [`snowpack`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`]. The manual is
+//! `docs/README.md`. C and C++ hosts use the same nouns and verbs through `include/welkin.h`, which [`capi`] implements
+//! as a thin shell.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 
 // Tests of single rooms take helpers of `tests/support`, which name the crate as its users do.

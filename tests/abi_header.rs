@@ -47,7 +47,8 @@ fn committed_header_is_what_the_sources_give() {
     compare("include/welkin.h", abi::HEADER);
 }
 
-/// Each section of the header is found from the table of contents by its name, and they are listed in the header's order.
+/// Each section of the header is found from the table of contents by its name, and they are listed in the header's
+/// order.
 #[test]
 fn contents_name_every_section_in_order() {
     let (opening, sections) = abi::HEADER.split_once("#ifndef WELKIN_H").expect("a header");

@@ -1,6 +1,6 @@
-//! Every program and script keeps the conventions of a command line: help and version on standard output with status 0, what is
-//! wrong by its name on standard error with status 2, no dump of Rust's insides, and no half of a file under its name.
-//! `WELKIN_LIB` names a ready library; without it the tests build one.
+//! Every program and script keeps the conventions of a command line: help and version on standard output with status 0,
+//! what is wrong by its name on standard error with status 2, no dump of Rust's insides, and no half of a file under
+//! its name. `WELKIN_LIB` names a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
 #[path = "../examples/shared/mod.rs"]
@@ -74,7 +74,8 @@ fn example_in_c(folder: &Path, name: &str, libraries: &[&str]) -> PathBuf {
     c_program(folder, name, &sources, libraries)
 }
 
-/// Holds a program to the conventions; `wrong` are further command lines that it must refuse, each with what it must name.
+/// Holds a program to the conventions; `wrong` are further command lines that it must refuse, each with what it must
+/// name.
 fn assert_conventions(program: &Path, wrong: &[(&[&str], &str)]) {
     let name = program.file_name().expect("a name").to_string_lossy().into_owned();
     let ask = |arguments: &[&str]| {

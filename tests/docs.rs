@@ -1,5 +1,5 @@
-//! The documents that a user reads: the README's programs are the files that the tests run, its figures are the lab's, every article is
-//! in the manual's contents, says where to go next, and names files that exist.
+//! The documents that a user reads: the README's programs are the files that the tests run, its figures are the lab's,
+//! every article is in the manual's contents, says where to go next, and names files that exist.
 
 use std::collections::BTreeSet;
 use std::fs;

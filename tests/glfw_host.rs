@@ -144,7 +144,8 @@ fn fog_hides_what_is_beyond_its_visibility_and_not_the_excavator() {
     assert!(far[1] > 100.0, "fog at noon is bright, got {far:?}");
 }
 
-/// The gallery's pictures have the size that was asked for, smooth edges, and in them what only they have: lamps, a bridge.
+/// The gallery's pictures have the size that was asked for, smooth edges, and in them what only they have: lamps, a
+/// bridge.
 #[test]
 fn the_gallery_has_smooth_edges_lamps_and_a_bridge() {
     let host = Host::build("gallery");

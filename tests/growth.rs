@@ -1,5 +1,5 @@
-//! How the cost of frames grows with the size of the picture and the number of views, in processor time on a software driver: alone in its
-//! binary.
+//! How the cost of frames grows with the size of the picture and the number of views, in processor time on a software
+//! driver: alone in its binary.
 
 #[path = "support/coarse_sky.rs"]
 mod coarse_sky;

@@ -427,7 +427,8 @@ fn a_map_is_written_and_reported() {
     assert!(table.row("drag/0").is_some() && table.row("over-relaxation/1").is_some());
 }
 
-/// Of rain, whose drops are elsewhere in each, the textures are compared: the picture has both, and says what blocks say.
+/// Of rain, whose drops are elsewhere in each, the textures are compared: the picture has both, and says what blocks
+/// say.
 #[test]
 fn two_ways_to_draw_rain_are_compared_block_by_block() {
     let dir = Scratch::new("compare");

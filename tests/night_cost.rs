@@ -1,4 +1,5 @@
-//! What the night sky costs beside an even one, in processor time of the whole process on a software driver: alone in its binary.
+//! What the night sky costs beside an even one, in processor time of the whole process on a software driver: alone in
+//! its binary.
 
 #[path = "support/coarse_sky.rs"]
 mod coarse_sky;
@@ -43,8 +44,8 @@ fn a_picture_of_nothing_but_a_starry_sky_costs_a_sixth_more() {
     let toward = direction(165.0, 15.0);
     let camera = Camera::look_to(DVec3::new(0.0, 0.0, 10.0), toward, DVec3::Z, 1.0, 16.0 / 9.0, 0.1);
     let mut frame_id = 0;
-    // Of a frame with stars over the one after it without, so that what slows the machine falls on both; the median of views made anew, since
-    // some have textures that lie badly in its caches.
+    // Of a frame with stars over the one after it without, so that what slows the machine falls on both; the median of
+    // views made anew, since some have textures that lie badly in its caches.
     let mut ratio = |turn_rad: f64| {
         let trial = |_| {
             let (mut views, mut camera) = ([view(0), view(1)], camera);
@@ -71,7 +72,7 @@ fn a_picture_of_nothing_but_a_starry_sky_costs_a_sixth_more() {
     // While the camera stands still, and while it turns.
     let [still, turning] = [ratio(0.0), ratio(1e-3)];
     assert!(still <= 1.10, "{still}");
-    // The bound was 1.13. The stars cost what they did then, but frames without them have become up to a sixth cheaper: 1 + 0.13 x 6/5. Processors
-    // differ, and runs: an Intel Xeon took 1.128 to 1.170 in eight.
+    // The bound was 1.13. The stars cost what they did then, but frames without them have become up to a sixth cheaper:
+    // 1 + 0.13 x 6/5. Processors differ, and runs: an Intel Xeon took 1.128 to 1.170 in eight.
     assert!(turning < 1.18, "{turning}");
 }

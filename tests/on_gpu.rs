@@ -1,6 +1,6 @@
-//! `scripts/on-gpu` as it runs on a machine with a GPU: without a network, a display and a compiler, from a folder of programs. Here the
-//! driver is a software driver, which answers every step right; what the script decides where one does not is asked with programs
-//! that only say so.
+//! `scripts/on-gpu` as it runs on a machine with a GPU: without a network, a display and a compiler, from a folder of
+//! programs. Here the driver is a software driver, which answers every step right; what the script decides where one
+//! does not is asked with programs that only say so.
 #![cfg(target_os = "linux")]
 #![allow(dead_code)] // the program's own main
 

@@ -74,7 +74,8 @@ impl Host {
         Self { program: built(), server: Server::start(), folder }
     }
 
-    /// What the host says with these arguments, of which only METAR reports have spaces; Welkin and OSG have nothing to complain of.
+    /// What the host says with these arguments, of which only METAR reports have spaces; Welkin and OSG have nothing to
+    /// complain of.
     fn run(&self, arguments: &str, metar: Option<&str>) -> String {
         let mut host = Command::new(&self.program);
         host.env("DISPLAY", &self.server.display).arg("--data").arg(root().join("examples/data"));
@@ -108,7 +109,8 @@ fn green(picture: &image::RgbImage, [x0, y0, x1, y1]: [u32; 4]) -> (f64, f64) {
     (sum / n, (squares / n - (sum / n).powi(2)).max(0.0).sqrt())
 }
 
-/// Off, on, off in every kind of target: each run compares its pictures and more than a thousand values of OpenGL's state.
+/// Off, on, off in every kind of target: each run compares its pictures and more than a thousand values of OpenGL's
+/// state.
 #[test]
 fn weather_comes_and_goes_without_a_trace() {
     let host = Host::new("check");
@@ -141,8 +143,8 @@ fn a_display_without_the_visual_is_named() {
     assert!(output.status.code() == Some(1) && said.contains("no window with OpenGL"), "{}: {said}", output.status);
 }
 
-/// A multisampled texture of which Welkin draws every sample, and a window of four samples: the picture of one sample with smoother
-/// edges, and OpenGL as it was.
+/// A multisampled texture of which Welkin draws every sample, and a window of four samples: the picture of one sample
+/// with smoother edges, and OpenGL as it was.
 #[test]
 fn samples_of_textures_and_windows_make_edges_smooth() {
     let host = Host::new("samples");

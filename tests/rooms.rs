@@ -1,5 +1,5 @@
-//! Rooms and arrows: which room of `src/` and which folder of `shaders/` uses which, held against the table of ARCHITECTURE.md. And how
-//! long functions are.
+//! Rooms and arrows: which room of `src/` and which folder of `shaders/` uses which, held against the table of
+//! ARCHITECTURE.md. And how long functions are.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -263,7 +263,8 @@ fn widest_tuples(text: &str) -> Vec<(String, usize)> {
         if name.is_empty() {
             continue;
         }
-        // Of each open bracket: whether it is a tuple's, and its parts so far, the one after a comma only once it begins.
+        // Of each open bracket: whether it is a tuple's, and its parts so far, the one after a comma only once it
+        // begins.
         let mut open: Vec<(char, bool, usize, bool)> = Vec::new();
         let (mut widest, mut before, mut word) = (0, 'a', name.clone());
         let mut is_past_parameters = false;
@@ -334,8 +335,8 @@ fn words_of(identifier: &str) -> Vec<String> {
     words
 }
 
-/// The words of a file of Rust that name an effect or what only one has, in identifiers and in texts: messages, labels, names of shaders'
-/// constants. Its comments are left out.
+/// The words of a file of Rust that name an effect or what only one has, in identifiers and in texts: messages, labels,
+/// names of shaders' constants. Its comments are left out.
 fn effects_named_in(text: &str, constants: &BTreeSet<String>) -> BTreeSet<String> {
     const NAMES: [&str; 6] = ["star", "stars", "sea", "ground", "windscreen", "mist"];
     // What they begin with: fogged, clouds, snowy, raining.
@@ -365,7 +366,8 @@ fn effects_named_in(text: &str, constants: &BTreeSet<String>) -> BTreeSet<String
     words.filter(names).chain(in_texts).map(str::to_string).collect()
 }
 
-/// The `override` constants that the effects' own shaders have and those of what lies between, and the frame's do not: `FOG`, `AIR`.
+/// The `override` constants that the effects' own shaders have and those of what lies between, and the frame's do not:
+/// `FOG`, `AIR`.
 fn constants_of_effects() -> BTreeSet<String> {
     let named = |line: &str| Some(line.strip_prefix("override ")?.split(':').next()?.trim().to_string());
     let of = |is_meant: fn(&str) -> bool| -> BTreeSet<String> {

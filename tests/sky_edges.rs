@@ -103,8 +103,8 @@ fn horizon_twilight_mirror_and_height_are_smooth() {
         let sum: Vec<f32> = sky.iter().zip(&ground).map(|(a, b)| a.radiance[1] + b.radiance[1]).collect();
         let whole = sum.iter().fold(0.0f32, |m, v| m.max(*v));
         for (i, pair) in sum.windows(2).enumerate() {
-            // At the edge the whole air's light gives way to that of ground 5 km off from 1.7 m (a dark line, as it is in
-            // nature), of ground in haze from aloft.
+            // At the edge the whole air's light gives way to that of ground 5 km off from 1.7 m (a dark line, as it is
+            // in nature), of ground in haze from aloft.
             let edge = (49..=51).contains(&i);
             let limit = match (edge, altitude < 10.0) {
                 (true, true) => 0.85,

@@ -55,7 +55,8 @@ const PLACES: [(f64, &[f64]); 4] = [
     (200_000.0, &[102.8, 103.6, 105.0, 120.0, 175.0]),
 ];
 
-/// Relative errors of radiance, each with its place, sorted, and the largest of transmittance, over sky and aerial rays.
+/// Relative errors of radiance, each with its place, sorted, and the largest of transmittance, over sky and aerial
+/// rays.
 fn errors(planet: &Planet, settings: &SkySettings) -> (Vec<(f64, String)>, f64) {
     let options = Options { disc_strips: 3, ..Default::default() };
     let truth = Reference::solve(planet, &options).unwrap();

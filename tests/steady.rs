@@ -1,7 +1,8 @@
 //! Steady state: after the first frames, recording allocates nothing of its own and keeps nothing.
 //!
-//! wgpu allocates in every encoder and pass. So allocations are counted against the same wgpu calls made by hand, and, where
-//! there are line tables, some frames' allocations are asked who made them: the innermost caller that is wgpu's or Welkin's.
+//! wgpu allocates in every encoder and pass. So allocations are counted against the same wgpu calls made by hand, and,
+//! where there are line tables, some frames' allocations are asked who made them: the innermost caller that is wgpu's
+//! or Welkin's.
 
 #[path = "support/textures.rs"]
 mod textures;
@@ -77,7 +78,8 @@ static ALLOCATOR: Counting = Counting;
 
 /// Welkin's line that allocated, unless it was wgpu: the innermost caller that is either's.
 fn own_allocation(trace: &str) -> Option<&str> {
-    // "  12: <wgpu_core::Type as Trait>::function" and below it, where there is a line table, "  at ./src/frame/view.rs:159".
+    // " 12: <wgpu_core::Type as Trait>::function" and below it, where there is a line table, " at
+    // ./src/frame/view.rs:159".
     let ours = |line: &str| {
         let file = line.strip_prefix("at ").map(|f| f.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap_or(f));
         file.is_some_and(|f| f.trim_start_matches('.').starts_with("/src/"))
@@ -237,8 +239,8 @@ impl RustHost {
         host
     }
 
-    /// The same wgpu calls without Welkin: uploads, a copy, a pass that finds drops, one that draws them, and those of the
-    /// composition.
+    /// The same wgpu calls without Welkin: uploads, a copy, a pass that finds drops, one that draws them, and those of
+    /// the composition.
     fn bare(&self) {
         let device = &self.device.device;
         for _ in 0..6 {
@@ -406,8 +408,8 @@ fn count(frames: std::ops::Range<u64>, mut frame: impl FnMut(u64) -> bool) -> Co
     Count { calls: calls as f64 / (number - rebuilt) as f64, kept: LIVE.load(Relaxed) - live, rebuilt }
 }
 
-/// Behind a windscreen with a wiper: the same host, which must allocate nothing of Welkin's either. How many passes a frame
-/// takes goes with the time it stands for, so wgpu's own are not compared.
+/// Behind a windscreen with a wiper: the same host, which must allocate nothing of Welkin's either. How many passes a
+/// frame takes goes with the time it stands for, so wgpu's own are not compared.
 struct Behind(RustHost);
 
 impl Host for Behind {
@@ -461,7 +463,8 @@ fn steady(name: &str, host: &mut dyn Host, frames: u64, bare: f64) {
         "{name}: {calls:.2} allocations a frame, the same wgpu calls alone {bare:.2}; {rebuilt} of {frames} frames rebuilt \
          tables; kept {kept} bytes"
     );
-    // The bare pass binds nothing; wgpu's lists for our pipelines and bind groups make some allocations more, 7 on lavapipe.
+    // The bare pass binds nothing; wgpu's lists for our pipelines and bind groups make some allocations more, 7 on
+    // lavapipe.
     assert!(calls <= bare + 8.0, "{name}: recording allocates {calls} times a frame, wgpu alone {bare}");
     assert!(kept < 64 * 1024, "{name}: {frames} frames kept {kept} bytes");
     assert!(rebuilt > 0 && rebuilt < frames / 2, "{name}: the sun moves: {rebuilt}");

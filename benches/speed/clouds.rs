@@ -1,4 +1,5 @@
-//! What clouds cost a frame on a software driver, in copies (see [`crate::copies`]) and of a clear sky's frame: the eye looks 15 degrees up.
+//! What clouds cost a frame on a software driver, in copies (see [`crate::copies`]) and of a clear sky's frame: the eye
+//! looks 15 degrees up.
 
 use std::sync::Arc;
 
@@ -61,8 +62,8 @@ const SAME: f64 = 0.01;
 /// Finenesses that are tried; the last is the most that there is.
 const TRIED: [f64; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
 
-/// The brute force: of the finenesses tried the least whose picture of broken cumulus, marched in every pixel, stays the same with twice as many
-/// steps; the greatest where no picture does.
+/// The brute force: of the finenesses tried the least whose picture of broken cumulus, marched in every pixel, stays
+/// the same with twice as many steps; the greatest where no picture does.
 fn brute_force() -> Fallible<f64> {
     let device = Device::headless(&DeviceOptions::default())?;
     let context = under(&device, &Arc::new(Shared::new(&device)?), &cumulus(), CloudModel::Volume)?;
@@ -100,8 +101,8 @@ fn brute_force() -> Fallible<f64> {
     Ok(enough)
 }
 
-/// Frames before a change of weather, in which the sky's tables have come to their final quality, and after it, each a twentieth of a second;
-/// the change takes [`COMES_S`].
+/// Frames before a change of weather, in which the sky's tables have come to their final quality, and after it, each a
+/// twentieth of a second; the change takes [`COMES_S`].
 const FRAMES: [u64; 2] = [160, 120];
 const COMES_S: f64 = 3.0;
 

@@ -1,5 +1,5 @@
-//! What a frame takes on a software driver, in copies: a copy is a full-screen pass of the same size that loads one texel a pixel. Pictures
-//! are of 640x360; `SIZE="1280x720"` measures others.
+//! What a frame takes on a software driver, in copies: a copy is a full-screen pass of the same size that loads one
+//! texel a pixel. Pictures are of 640x360; `SIZE="1280x720"` measures others.
 //!
 //! Counted is the processor time of all of the process's threads, so that what else the machine does falls on neither.
 
@@ -125,7 +125,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// All that is drawn before tone, with depth, by a camera at rest 2 m above the ground that looks north and `pitch_rad` up.
+    /// All that is drawn before tone, with depth, by a camera at rest 2 m above the ground that looks north and
+    /// `pitch_rad` up.
     pub fn new(name: &'static str, context: &Arc<Context>, pitch_rad: f64) -> Fallible<Self> {
         let (eye, ahead) = (DVec3::new(0.0, 0.0, 2.0), DVec3::new(0.0, pitch_rad.cos(), pitch_rad.sin()));
         Ok(Self {
@@ -155,8 +156,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Measures one frame between two copies, after one that is not counted: a software driver drops the code of shaders that it has not run
-    /// for long where there are many, and makes it again.
+    /// Measures one frame between two copies, after one that is not counted: a software driver drops the code of
+    /// shaders that it has not run for long where there are many, and makes it again.
     fn measure(
         &mut self,
         device: &Device,

@@ -1,4 +1,5 @@
-//! What the cube map of what stands around the camera adds to a frame: one face, and all six, interleaved with frames without it.
+//! What the cube map of what stands around the camera adds to a frame: one face, and all six, interleaved with frames
+//! without it.
 
 use std::{sync::Arc, time::Instant};
 

@@ -1,5 +1,6 @@
-//! The first picture of a new process with empty caches, and the frames while weather changes: how long a host waits, when
-//! the picture has its final quality, and how much the slowest frame takes beside the median of those that follow it.
+//! The first picture of a new process with empty caches, and the frames while weather changes: how long a host waits,
+//! when the picture has its final quality, and how much the slowest frame takes beside the median of those that follow
+//! it.
 //!
 //! Each scene runs in a process of its own, whose drivers have neither a cache of their own nor one on disk.
 

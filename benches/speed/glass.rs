@@ -1,5 +1,5 @@
-//! The windscreen: a frame with water on the glass against the same frame without, and a step of the water, interleaved in
-//! one run.
+//! The windscreen: a frame with water on the glass against the same frame without, and a step of the water, interleaved
+//! in one run.
 
 use std::{sync::Arc, time::Instant};
 

@@ -1,5 +1,6 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, sky, wind).
+//! (clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, sky,
+//! wind).
 
 mod clouds;
 mod copies;

@@ -1,5 +1,5 @@
-//! What the parts that a plan may leave out cost a picture, and what the gauge costs: the constants of
-//! the rooms' `candidates`, in units of a pixel with none of them. And how far times predicted from them are from measured ones.
+//! What the parts that a plan may leave out cost a picture, and what the gauge costs: the constants of the rooms'
+//! `candidates`, in units of a pixel with none of them. And how far times predicted from them are from measured ones.
 
 use std::{sync::Arc, time::Instant};
 
@@ -84,8 +84,8 @@ impl Bench {
         Ok(median(&mut ratios[1..]))
     }
 
-    /// Time of a frame with parts at these rungs in times of the one with none before it: the median of many, so that whatever else
-    /// the machine does falls on both.
+    /// Time of a frame with parts at these rungs in times of the one with none before it: the median of many, so that
+    /// whatever else the machine does falls on both.
     fn ratio(&mut self, rungs: Rungs) -> Fallible<f64> {
         // The first of each compiles.
         let mut ratios = Vec::new();
@@ -112,8 +112,8 @@ fn median(of: &mut [f64]) -> f64 {
     of[of.len() / 2]
 }
 
-/// Scenes and sets of parts one after the other: the time predicted before the first frame of each, by what earlier ones
-/// took, against the median that it then takes. A fixed picture drawn before each frame is the clock.
+/// Scenes and sets of parts one after the other: the time predicted before the first frame of each, by what earlier
+/// ones took, against the median that it then takes. A fixed picture drawn before each frame is the clock.
 fn predictions(bench: &mut Bench) -> Fallible<()> {
     let (mut within, mut all, mut worst) = (0, 0, 0.0f64);
     let mut clock = View::new(&bench.context)?;

@@ -1,5 +1,5 @@
-//! Rain: cost against the number of drops, what boxes and maps that keep it off and lamps add, and that dry weather costs
-//! nothing.
+//! Rain: cost against the number of drops, what boxes and maps that keep it off and lamps add, and that dry weather
+//! costs nothing.
 
 use std::{sync::Arc, time::Instant};
 

@@ -1,5 +1,5 @@
-//! The ways to draw that are charted: the library's candidates, and what older systems did, which the lab builds itself to show what
-//! was gained.
+//! The ways to draw that are charted: the library's candidates, and what older systems did, which the lab builds itself
+//! to show what was gained.
 
 pub use welkin::candidates::Effect;
 use welkin::candidates::Method as LibraryMethod;

@@ -51,8 +51,8 @@ impl Lab {
     }
 }
 
-/// A hash of the shaders that a chart's numbers come from (FNV-1a over the sources of their folders, in order of path), so that
-/// a chart that is older than they are can be told.
+/// A hash of the shaders that a chart's numbers come from (FNV-1a over the sources of their folders, in order of path),
+/// so that a chart that is older than they are can be told.
 pub fn shaders(what: &str) -> String {
     let folders: &[&str] = match what {
         "sky" | "quadrature" => &["common", "sky"],

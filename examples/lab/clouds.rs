@@ -1,4 +1,5 @@
-//! Thresholds of the clouds' map, found by looking at skies of other seeds than the tests', and the clouds' light against photons.
+//! Thresholds of the clouds' map, found by looking at skies of other seeds than the tests', and the clouds' light
+//! against photons.
 
 use welkin::{
     Result,

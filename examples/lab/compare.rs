@@ -118,8 +118,8 @@ fn by_pixels(names: [&str; 2], [a, b, truth]: &[Picture; 3]) -> Result<[Panel; 4
     ])
 }
 
-/// Rain and snow, of which no two ways put drops in the same places: compared block by block over some moments, as its chart is. The
-/// last moment is shown.
+/// Rain and snow, of which no two ways put drops in the same places: compared block by block over some moments, as its
+/// chart is. The last moment is shown.
 fn by_blocks(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Panel; 4]> {
     let snows = pair[0].effect == Effect::Snow;
     let scene = if snows { scenes::snow()[scene] } else { scenes::rain()[scene] };

@@ -13,8 +13,8 @@ pub fn pareto(points: &[[f64; 2]]) -> Vec<usize> {
     front
 }
 
-/// Exponent p of the best fit of y ~ x^p (least squares of logarithms), and the largest factor by which a point misses it.
-/// `None` for fewer than two different x, or numbers that are not above 0.
+/// Exponent p of the best fit of y ~ x^p (least squares of logarithms), and the largest factor by which a point misses
+/// it. `None` for fewer than two different x, or numbers that are not above 0.
 pub fn growth(points: &[[f64; 2]]) -> Option<(f64, f64)> {
     if points.len() < 2 || points.iter().flatten().any(|v| !(*v > 0.0 && v.is_finite())) {
         return None;

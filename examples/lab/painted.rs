@@ -1,10 +1,11 @@
-//! Clouds as older systems paint them, to be measured against: noise on a plane, a shell or a dome, cut off and made opaque by an
-//! exponential law, under several ways to shade it.
+//! Clouds as older systems paint them, to be measured against: noise on a plane, a shell or a dome, cut off and made
+//! opaque by an exponential law, under several ways to shade it.
 //!
-//! Forms, laws and shadings are those of Tarantilis (2004): planes with soft edges (III.B.3), a dome cut out of solid noise (III.B.4);
-//! and of a trainer of machinery: light traced towards the sun, a normal from the noise, the average with a second texture, a slow fade
-//! from noise to noise, a sky from a picture. Between them stands what they lack: a shell about the planet in place of a plane, solid noise
-//! on it, a slab's light. All paint over Welkin's own clear sky, in its light.
+//! Forms, laws and shadings are those of Tarantilis (2004): planes with soft edges (III.B.3), a dome cut out of solid
+//! noise (III.B.4); and of a trainer of machinery: light traced towards the sun, a normal from the noise, the average
+//! with a second texture, a slow fade from noise to noise, a sky from a picture. Between them stands what they lack: a
+//! shell about the planet in place of a plane, solid noise on it, a slab's light. All paint over Welkin's own clear
+//! sky, in its light.
 //!
 //! No two ways put clouds in the same places, so pictures are compared as rain's are: blocks over some moments.
 

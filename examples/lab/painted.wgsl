@@ -1,4 +1,5 @@
-// Clouds painted on a plane, a shell or a dome: noise, a cutoff, and an opacity that grows exponentially with what is over it.
+// Clouds painted on a plane, a shell or a dome: noise, a cutoff, and an opacity that grows exponentially with what is
+// over it.
 struct Painted {
     // The camera's right, up and ahead (east, north, up); of the first two how far the picture reaches at distance 1.
     right: vec4f,
@@ -10,7 +11,8 @@ struct Painted {
     sun: vec4f,
     // On level ground from the sky, lux; radius of the planet at the eye, m.
     sky: vec4f,
-    // Cutoff, optical depth of noise over it by 1 as it is drawn, the same as the layer has it, share of the second texture.
+    // Cutoff, optical depth of noise over it by 1 as it is drawn, the same as the layer has it, share of the second
+    // texture.
     cloud: vec4f,
     // Where the textures are at this moment.
     offset: vec4f,
@@ -109,7 +111,8 @@ fn thickness(noise: f32) -> f32 {
     return max(noise - u.cloud.x, 0.0);
 }
 
-// Luminous exitance over pi per channel of an even slab of this optical depth: what it lets through, or reflects to an eye above it.
+// Luminous exitance over pi per channel of an even slab of this optical depth: what it lets through, or reflects to an
+// eye above it.
 fn of_slab(depth: f32) -> vec3f {
     let mu = max(u.to_sun.z, 0.05);
     let turned = TURNING * depth;

@@ -1,4 +1,5 @@
-//! `lab chart painted-clouds`: cost of painted clouds, and error of their brightness and contrast, beside those of the library's clouds.
+//! `lab chart painted-clouds`: cost of painted clouds, and error of their brightness and contrast, beside those of the
+//! library's clouds.
 
 use std::{path::Path, sync::Arc};
 

@@ -1,7 +1,9 @@
-//! Welkin beside others in one run, and before and after its frames were taken apart: a recorded table, its plot and its part of the page.
+//! Welkin beside others in one run, and before and after its frames were taken apart: a recorded table, its plot and
+//! its part of the page.
 //!
-//! Others' systems are no part of this repository, and older versions draw no longer: `peers.csv` keeps what was measured once. What Welkin
-//! takes now is the benchmarks' to say (`cargo bench --bench speed -- copies falling clouds`).
+//! Others' systems are no part of this repository, and older versions draw no longer: `peers.csv` keeps what was
+//! measured once. What Welkin takes now is the benchmarks' to say
+//! (`cargo bench --bench speed -- copies falling clouds`).
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -1,6 +1,6 @@
-//! `lab chart quadrature`: the rules for the sky's two integrals against each other, in f32 on the GPU, by the library's own
-//! shader functions. Transmittance to space over 64 altitudes and 256 angles; light scattered once from four altitudes
-//! under four suns.
+//! `lab chart quadrature`: the rules for the sky's two integrals against each other, in f32 on the GPU, by the
+//! library's own shader functions. Transmittance to space over 64 altitudes and 256 angles; light scattered once from
+//! four altitudes under four suns.
 
 use std::{path::Path, sync::Arc};
 

@@ -1,7 +1,8 @@
-//! Draws and times every way to draw rain, and computes the truth: each drop of the air before the camera by itself, in f64.
+//! Draws and times every way to draw rain, and computes the truth: each drop of the air before the camera by itself, in
+//! f64.
 //!
-//! No two ways put drops in the same places, so pictures are compared as textures: in blocks of 20 x 20 pixels, over some
-//! moments, the mean luminance and its standard deviation from pixel to pixel and from patch to patch of 4 x 4.
+//! No two ways put drops in the same places, so pictures are compared as textures: in blocks of 20 x 20 pixels, over
+//! some moments, the mean luminance and its standard deviation from pixel to pixel and from patch to patch of 4 x 4.
 
 use std::{f64::consts::PI, sync::Arc, time::Instant};
 
@@ -474,8 +475,8 @@ impl Blocks {
         Self { size, sums: vec![[0.0; 3]; (size.0 / BLOCK * (size.1 / BLOCK)) as usize], pictures: 0, last: Vec::new() }
     }
 
-    /// What does not change from picture to picture (the wall's edge, the sky's gradient) has a part in the deviations of
-    /// both sides alike.
+    /// What does not change from picture to picture (the wall's edge, the sky's gradient) has a part in the deviations
+    /// of both sides alike.
     pub fn add(&mut self, picture: &[f64]) {
         let columns = self.size.0 / BLOCK;
         let at = |x: u32, y: u32| picture[(y * self.size.0 + x) as usize];
@@ -505,8 +506,8 @@ impl Blocks {
         (0..self.size.0 * self.size.1).map(|k| one(block(k))).collect()
     }
 
-    /// How far each of these blocks is from the truth's: the worst of the three numbers' differences over the block's mean
-    /// and a hundredth of white.
+    /// How far each of these blocks is from the truth's: the worst of the three numbers' differences over the block's
+    /// mean and a hundredth of white.
     pub fn errors(&self, truth: &Self, white: f64) -> Vec<f64> {
         let value = |b: &Self, i: usize, j: usize| b.sums[i][j] / b.pictures as f64;
         let one = |i: usize| {

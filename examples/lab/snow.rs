@@ -1,6 +1,8 @@
-//! Draws and times every way to draw snow, and computes the truth: each flake of the air before the camera by itself, in f64.
+//! Draws and times every way to draw snow, and computes the truth: each flake of the air before the camera by itself,
+//! in f64.
 //!
-//! As in rain ([`crate::rain`]), no two ways put flakes in the same places, so pictures are compared as textures, block by block.
+//! As in rain ([`crate::rain`]), no two ways put flakes in the same places, so pictures are compared as textures, block
+//! by block.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -45,7 +47,8 @@ impl Air {
         })
     }
 
-    /// Light and cover at every pixel: flakes as discs as thin as their ice, moved along their way while the shutter is open.
+    /// Light and cover at every pixel: flakes as discs as thin as their ice, moved along their way while the shutter is
+    /// open.
     fn all(&self, size: (u32, u32), exposure_s: f64, seed: u64) -> Vec<[f64; 2]> {
         let mut chance = Chance(seed);
         let mut sums = vec![[0.0f64; 2]; (size.0 * size.1) as usize];
@@ -108,7 +111,8 @@ pub fn drawn_by(host: &mut Host, settings: SnowSettings) -> Result<Blocks> {
 /// The luminances of what lies behind all flakes: what they would hide is left out.
 fn behind(host: &mut Host) -> Result<Vec<f64>> {
     const FEW: u32 = 20_000;
-    // In a tent that keeps the flakes off, what they would hide is left out all the same. The wall beyond it gets as wet as without.
+    // In a tent that keeps the flakes off, what they would hide is left out all the same. The wall beyond it gets as
+    // wet as without.
     let tent = Shelter {
         center_m: EYE,
         axes: DMat3::IDENTITY,

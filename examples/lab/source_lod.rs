@@ -1,10 +1,10 @@
-//! Level of detail of an older system, to be measured against: drops that get fewer and larger with distance, and copies of
-//! a few about each.
+//! Level of detail of an older system, to be measured against: drops that get fewer and larger with distance, and
+//! copies of a few about each.
 //!
 //! Number falls linearly with distance (per metre of distance, to 0 at the container's end), size grows with its
 //! square; copies stand about their seed at places by chance. Neither law knows how much the drops that are left out
-//! hide. The growth is left free by its description: here it is such that all drops together hide what the rain does, the
-//! best that the law can do.
+//! hide. The growth is left free by its description: here it is such that all drops together hide what the rain does,
+//! the best that the law can do.
 
 use glam::DVec3;
 

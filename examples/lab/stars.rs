@@ -1,8 +1,8 @@
-//! Draws and times every way to draw the night sky, and computes the truth: every star and planet of the catalogue, however faint, and the
-//! glow at every pixel, in f64.
+//! Draws and times every way to draw the night sky, and computes the truth: every star and planet of the catalogue,
+//! however faint, and the glow at every pixel, in f64.
 //!
-//! A star is a few pixels of which most pictures have few, so pictures are compared as light: by the mean luminance of blocks of 20 x 20
-//! pixels, and by the light of all that stands on the even night.
+//! A star is a few pixels of which most pictures have few, so pictures are compared as light: by the mean luminance of
+//! blocks of 20 x 20 pixels, and by the light of all that stands on the even night.
 
 use std::{sync::Arc, time::Instant};
 
@@ -178,7 +178,8 @@ impl Host {
         }
     }
 
-    /// The truth, cd/m^2: the even night's picture with the f64 night in the even one's place; and the even night's picture.
+    /// The truth, cd/m^2: the even night's picture with the f64 night in the even one's place; and the even night's
+    /// picture.
     ///
     /// # Errors
     /// GPU faults.

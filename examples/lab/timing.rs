@@ -117,8 +117,8 @@ impl Ratio {
 /// Work of more than this is not repeated as often, ms.
 const LONG_MS: f64 = 6000.0;
 
-/// Runs `work` in turn with the baseline: `rounds` times (5 at least, fewer if they are long), after one run that is not
-/// counted. `work` answers its ms.
+/// Runs `work` in turn with the baseline: `rounds` times (5 at least, fewer if they are long), after one run that is
+/// not counted. `work` answers its ms.
 pub fn interleaved(baseline: &Baseline, rounds: usize, mut work: impl FnMut(usize) -> Result<f64>) -> Result<Ratio> {
     let first = work(0)?;
     let rounds = rounds.min(((LONG_MS / first.max(1e-3)) as usize).max(5));

@@ -1,4 +1,5 @@
-//! What flakes in a solved wind cost, beside the snow simulator of the sources: by their number and by the cells of the wind.
+//! What flakes in a solved wind cost, beside the snow simulator of the sources: by their number and by the cells of the
+//! wind.
 
 use std::{fmt::Write as _, time::Instant};
 

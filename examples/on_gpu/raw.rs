@@ -1,4 +1,5 @@
-//! One texel by loops in GLSL by hand, without wgpu: whether the driver's compiler ends a loop depends on its form, perhaps.
+//! One texel by loops in GLSL by hand, without wgpu: whether the driver's compiler ends a loop depends on its form,
+//! perhaps.
 
 use glow::HasContext;
 

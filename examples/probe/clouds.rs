@@ -8,8 +8,8 @@ use welkin::{Error, Result, Status, gpu::Device, weather::CloudKind};
 
 use crate::csv::Table;
 
-/// Needs the columns `tau,g,mu0,albedo` in this order, and answers with `R,T`: the shares of the incident flux that a slab reflects and
-/// lets through, direct and diffuse together.
+/// Needs the columns `tau,g,mu0,albedo` in this order, and answers with `R,T`: the shares of the incident flux that a
+/// slab reflects and lets through, direct and diffuse together.
 ///
 /// # Errors
 /// [`Status::Parse`] with line and column; GPU faults.

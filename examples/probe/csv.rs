@@ -1,5 +1,5 @@
-//! Questions as CSV with a header, among other columns and in any order; each line comes back with its answer behind it. Blank lines are
-//! left out.
+//! Questions as CSV with a header, among other columns and in any order; each line comes back with its answer behind
+//! it. Blank lines are left out.
 
 use std::fmt::Display;
 

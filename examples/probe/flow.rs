@@ -46,12 +46,12 @@ pub fn taylor_green(n: u32, cfl: f64, scheme: Scheme) -> Result<String> {
     Ok(format!("kinetic_energy_kept\n{}\n", probe::taylor_green(n, cfl, scheme)?))
 }
 
-/// Needs columns `x,y,z` (m, in the scene's axes east, north, up) and `t` (s after the wind began to flow round the obstacles), and
-/// answers with the wind there: `u,v,w`, m/s. In a steady scene all times are alike.
+/// Needs columns `x,y,z` (m, in the scene's axes east, north, up) and `t` (s after the wind began to flow round the
+/// obstacles), and answers with the wind there: `u,v,w`, m/s. In a steady scene all times are alike.
 ///
 /// # Errors
-/// [`Status::Parse`] with line and column for text that is no scene or no questions; [`Status::InvalidArgument`] for a scene outside
-/// its ranges; [`Status::Unsupported`] where a steady field does not rest.
+/// [`Status::Parse`] with line and column for text that is no scene or no questions; [`Status::InvalidArgument`] for a
+/// scene outside its ranges; [`Status::Unsupported`] where a steady field does not rest.
 pub fn wind(scene: &str, text: &str) -> Result<String> {
     let scene = Scene::parse(scene)?;
     let mut field = scene.field()?;

@@ -14,8 +14,8 @@ use crate::csv::{Column, Table};
 /// Rates of what falls.
 const RATES: [f64; 2] = [0.0, 500.0];
 
-/// Needs a column `diameter_mm` (\[0, 20\]), may have `altitude_m` (\[-1000, 11 000\], else 0), and answers with the terminal speed of
-/// a drop, `speed_m_s`.
+/// Needs a column `diameter_mm` (\[0, 20\]), may have `altitude_m` (\[-1000, 11 000\], else 0), and answers with the
+/// terminal speed of a drop, `speed_m_s`.
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input.
@@ -46,8 +46,8 @@ pub fn rates(text: &str) -> Result<String> {
     Ok(table.answered(added, answers))
 }
 
-/// Needs a column `hail_mm_h`, may have `pellets_mm_h` (\[0, 500\] each), and answers with what such ice is at sea level:
-/// `number_per_m3,ice_g_m3,rate_closed_mm_h,extinction_per_km,mean_diameter_mm`.
+/// Needs a column `hail_mm_h`, may have `pellets_mm_h` (\[0, 500\] each), and answers with what such ice is at sea
+/// level: `number_per_m3,ice_g_m3,rate_closed_mm_h,extinction_per_km,mean_diameter_mm`.
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input.

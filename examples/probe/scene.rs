@@ -79,8 +79,8 @@ struct SceneBox {
 }
 
 impl SceneWind {
-    /// How the mean wind is mixed by its whirls, 10 m above the ground: kappa u* z (Prandtl 1925), u* = kappa U / ln(z / z0). What is
-    /// solved for with it is a mean, and rests.
+    /// How the mean wind is mixed by its whirls, 10 m above the ground: kappa u* z (Prandtl 1925), u* = kappa U / ln(z
+    /// / z0). What is solved for with it is a mean, and rests.
     fn eddy_viscosity_m2_s(&self) -> f64 {
         let friction_velocity_m_s = 0.4 * self.speed_m_s / libm::log(10.0 / self.roughness_m);
         0.4 * friction_velocity_m_s * 10.0

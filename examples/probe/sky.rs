@@ -24,8 +24,8 @@ fn needed(question: Question) -> &'static [Column] {
     }
 }
 
-/// Needs columns `altitude_m,sun_zenith_deg`, for the sky also `view_zenith_deg,azimuth_deg` (of the view, relative to the sun's), for
-/// aerial also `distance_m`. Answers `L1,L2,L3,T1,T2,T3`: see [`Question`].
+/// Needs columns `altitude_m,sun_zenith_deg`, for the sky also `view_zenith_deg,azimuth_deg` (of the view, relative to
+/// the sun's), for aerial also `distance_m`. Answers `L1,L2,L3,T1,T2,T3`: see [`Question`].
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input, before anything is asked; GPU faults.

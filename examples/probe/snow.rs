@@ -4,8 +4,8 @@ use welkin::{Result, snow::flakes::FlakeKind};
 
 use crate::csv::{Column, Table};
 
-/// Needs columns `diameter_mm` (\[0, 100\]) and `kind` (a name of [`FlakeKind::NAMES`]) and answers with the terminal speed at sea level,
-/// `speed_m_s`.
+/// Needs columns `diameter_mm` (\[0, 100\]) and `kind` (a name of [`FlakeKind::NAMES`]) and answers with the terminal
+/// speed at sea level, `speed_m_s`.
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input.

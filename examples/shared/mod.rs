@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use welkin::{Error, Result, Status};
 
-/// Text for standard output if `--help`, `-h` or `--version` is among the arguments; the program then ends with status 0.
+/// Text for standard output if `--help`, `-h` or `--version` is among the arguments; the program then ends with status
+/// 0.
 pub fn answered(name: &str, usage: &str, mut arguments: impl Iterator<Item = String>) -> Option<String> {
     arguments.find_map(|word| match word.as_str() {
         "--help" | "-h" => Some(format!("{usage}\n")),
@@ -32,7 +33,8 @@ pub fn at_work<T>(name: &str, what: &str, work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// Writes a file under another name beside it, then gives it its own: a program that is ended meanwhile leaves what was there.
+/// Writes a file under another name beside it, then gives it its own: a program that is ended meanwhile leaves what was
+/// there.
 ///
 /// # Errors
 /// [`Status::Io`] with the file's name.

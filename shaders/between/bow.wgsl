@@ -11,8 +11,8 @@ const BOW_STEP: f32 = 0.0069813170;
 const BOW_LOW_AIR: u32 = 0u;
 const BOW_COLUMNS: u32 = 1u;
 
-// What bows add to the phase function, 1/sr, in a direction from the eye. The angle from the point opposite to the light has digits
-// left there only by way of the chord.
+// What bows add to the phase function, 1/sr, in a direction from the eye. The angle from the point opposite to the
+// light has digits left there only by way of the chord.
 fn bow_phase(table: u32, direction: vec3f, to_light: vec3f) -> vec3f {
     let place = 2.0 * asin(min(0.5 * length(direction + to_light), 1.0)) / BOW_STEP;
     if !BOW || place >= f32(BOW_ENTRIES - 1u) {

@@ -16,8 +16,9 @@ fn flash_way(d: vec3f) -> f32 {
     return frame.flash_plane / select(d.z, 1e-6, abs(d.z) < 1e-6);
 }
 
-// Luminance of clouds where a ray meets their face. A source h from the face sends k h / R^3 to a place at distance R: of light that
-// wanders through a cloud, k is F s / (2 pi^2); of light that falls on it, I times its reflectance over pi.
+// Luminance of clouds where a ray meets their face. A source h from the face sends k h / R^3 to a place at distance R:
+// of light that wanders through a cloud, k is F s / (2 pi^2); of light that falls on it, I times its reflectance over
+// pi.
 fn flash_on_clouds(d: vec3f, way: f32) -> vec3f {
     if way <= 0.0 || way > FLASH_FARTHEST {
         return vec3f(0.0);
@@ -41,8 +42,9 @@ fn flash_phase(cosine: f32) -> f32 {
     return 0.07957747 * (1.0 - g * g) / (d * sqrt(d));
 }
 
-// Light that the air before `range` scatters once towards the eye. With s along the ray from where it passes nearest to a source, at
-// distance h, and s = h tan u, the square of the distance falls out of the integral (Kulla and Fajardo 2012, "equiangular").
+// Light that the air before `range` scatters once towards the eye. With s along the ray from where it passes nearest to
+// a source, at distance h, and s = h tan u, the square of the distance falls out of the integral (Kulla and Fajardo
+// 2012, "equiangular").
 fn flash_in_air(ray: ViewRay, range: f32) -> vec3f {
     let taken = FLASH_TAKES * frame.flash_scattering;
     var sum = 0.0;

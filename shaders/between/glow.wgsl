@@ -1,5 +1,5 @@
-// The glow of clouds in the light of lamps and flashes, below the picture of the second layer of the sky (between/hung.wgsl): a small picture of
-// its own, since it does not stay from frame to frame as the clouds do.
+// The glow of clouds in the light of lamps and flashes, below the picture of the second layer of the sky
+// (between/hung.wgsl): a small picture of its own, since it does not stay from frame to frame as the clouds do.
 
 // Rows of it, at most.
 const GLOW_ROWS: f32 = 96.0;

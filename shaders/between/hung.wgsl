@@ -1,14 +1,15 @@
-// What hangs in the sky: clouds, and stars behind the sky's own light; in a pixel of the picture, or in any direction from the camera.
+// What hangs in the sky: clouds, and stars behind the sky's own light; in a pixel of the picture, or in any direction
+// from the camera.
 //!include "between/hung_bare.wgsl"
 //!include "between/flash.wgsl"
 //!include "between/glow.wgsl"
 //!include "common/octahedron.wgsl"
 
-// Layers of the sky. The last is what stands behind the sky's own light, in the night floor's place: stars and the glow between them.
-// With clouds there are two before it (clouds/): their light with the exposure on it, and what they let through; log2 of the distances
-// between which they stand, m, the share of direct light that they let through to what the host drew, and the difference of that in the air
-// before it from the mean. Below the first one's picture lie the clouds of all directions (clouds/round.wgsl), below the second one's their
-// glow (between/glow.wgsl).
+// Layers of the sky. The last is what stands behind the sky's own light, in the night floor's place: stars and the glow
+// between them. With clouds there are two before it (clouds/): their light with the exposure on it, and what they let
+// through; log2 of the distances between which they stand, m, the share of direct light that they let through to what
+// the host drew, and the difference of that in the air before it from the mean. Below the first one's picture lie the
+// clouds of all directions (clouds/round.wgsl), below the second one's their glow (between/glow.wgsl).
 @group(0) @binding(11) var sky_layers: texture_2d_array<f32>;
 
 override CLOUDS: bool = false;
@@ -39,7 +40,8 @@ fn hung_with(clouds: vec4f) -> Hung {
     return hung;
 }
 
-// The glow of clouds in a pixel whose clouds stand at this distance, log2 of m: of the texels about it those count whose clouds do too.
+// The glow of clouds in a pixel whose clouds stand at this distance, log2 of m: of the texels about it those count
+// whose clouds do too.
 fn glow_in(pixel: vec2i, reach: f32) -> vec3f {
     let size = glow_size(frame.picture);
     let at = (vec2f(pixel) + 0.5) / frame.picture * size - 0.5;

@@ -2,12 +2,13 @@
 //!include "common/frame.wgsl"
 //!include "sky/lookup.wgsl"
 
-// Radiance that a unit of air scatters of the sky's light, over the irradiance of that light on level ground, 1/sr: the light comes evenly from
-// half of all directions (1 / 2 pi), and 0.15 of it again from the ground.
+// Radiance that a unit of air scatters of the sky's light, over the irradiance of that light on level ground, 1/sr: the
+// light comes evenly from half of all directions (1 / 2 pi), and 0.15 of it again from the ground.
 const SHAFT_DIFFUSE: f32 = 0.18;
 
-// Radiance of the air in a direction over its mean, a channel, where the share of direct light is so much more than on the mean. Of direct light
-// the air scatters what its phase function says, of the sky's light as much in every direction.
+// Radiance of the air in a direction over its mean, a channel, where the share of direct light is so much more than on
+// the mean. Of direct light the air scatters what its phase function says, of the sky's light as much in every
+// direction.
 fn shaft_light(direction: vec3f, differs: f32) -> vec3f {
     let air = sky_view.air;
     let toward = select(sky_view.lamps[0].toward, sky_view.lamps[1].toward, sky_view.lamps[0].toward.z < 0.0);

@@ -1,4 +1,5 @@
-// What a ray finds of a cloud at a place, and how much cloud lies about it. In its place about_box.wgsl stands for a box of even cloud.
+// What a ray finds of a cloud at a place, and how much cloud lies about it. In its place about_box.wgsl stands for a
+// box of even cloud.
 //!include "clouds/field.wgsl"
 //!include "clouds/light.wgsl"
 
@@ -6,8 +7,8 @@
 const SUN_STEPS: u32 = 5u;
 const SUN_FRAYED: u32 = 3u;
 const SUN_WAY = array<f32, 5>(0.05, 0.15, 0.3, 0.8, 2.0);
-// Slope of the map, a distance from cloud to cloud, and of the solid noise, a side of it, by which rays skip: steeper places are too small to
-// be missed.
+// Slope of the map, a distance from cloud to cloud, and of the solid noise, a side of it, by which rays skip: steeper
+// places are too small to be missed.
 const MAP_SKIP: f32 = 6.0;
 const SOLID_SKIP: f32 = 12.0;
 
@@ -30,7 +31,8 @@ struct CloudHere {
     slope: f32,
     // How far there is no cloud whatever the map holds, m.
     clear: f32,
-    // Share of the place that is cloud: 1 unless the place is looked at coarsely. Excess and extinction are those of the cloudy share.
+    // Share of the place that is cloud: 1 unless the place is looked at coarsely. Excess and extinction are those of
+    // the cloudy share.
     share: f32,
 }
 
@@ -40,7 +42,8 @@ const CLOUD_RARE: f32 = 2.5;
 // Level distance over which a ray meets other clouds, cells.
 const CLOUD_CELL: f32 = 0.3;
 
-// Share of a normal spread about `mean` that lies above 0, and the mean of that share; both by the logistic law closest to the normal one.
+// Share of a normal spread about `mean` that lies above 0, and the mean of that share; both by the logistic law closest
+// to the normal one.
 fn cloud_share(mean: f32, spread: f32) -> vec2f {
     let a = 1.702 * mean / spread;
     let share = 1.0 / (1.0 + exp(-a));
@@ -81,8 +84,8 @@ fn cloud_inside(here: CloudHere) -> f32 {
     return here.inside;
 }
 
-// Distance along a ray from a place outside of clouds within which there is none, m: strength changes no faster than map, noise and dome
-// do, and noise adds no more than it can.
+// Distance along a ray from a place outside of clouds within which there is none, m: strength changes no faster than
+// map, noise and dome do, and noise adds no more than it can.
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     let leaning = 2.0 * layer.lean.w * layer.size.y * abs(direction.z);
     let level = length(direction.xy) + leaning;
@@ -104,7 +107,8 @@ fn cloud_skip_by(layer: CloudLayer, here: CloudHere, steep: f32) -> f32 {
     return max(by_map, by_noise);
 }
 
-// Farthest that a ray is followed through a layer, m, and length over which clouds fade before it: cut off, a cloud would show a flat face.
+// Farthest that a ray is followed through a layer, m, and length over which clouds fade before it: cut off, a cloud
+// would show a flat face.
 const CLOUD_FARTHEST: f32 = 60.0e3;
 const CLOUD_FADES: f32 = 15.0e3;
 
@@ -127,7 +131,8 @@ fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     return CloudPlace(level, (altitude - layer.size.x) * layer.size.y);
 }
 
-// Metres of full extinction in a column of this excess over a stretch of a ray that rises `rise` (of the thickness) a metre.
+// Metres of full extinction in a column of this excess over a stretch of a ray that rises `rise` (of the thickness) a
+// metre.
 fn cloud_stretch(layer: CloudLayer, excess: f32, height: f32, rise: f32, length: f32) -> f32 {
     let to = height + rise * length;
     let low = clamp(min(height, to), 0.0, 1.0);
@@ -139,8 +144,8 @@ fn cloud_stretch(layer: CloudLayer, excess: f32, height: f32, rise: f32, length:
     return length * filled / (top - bottom);
 }
 
-// Metres of full extinction along a direction, up to a distance. What frays a cloud is looked up on the nearer part of the way; beyond it
-// columns of even strength stand for the cloud.
+// Metres of full extinction along a direction, up to a distance. What frays a cloud is looked up on the nearer part of
+// the way; beyond it columns of even strength stand for the cloud.
 fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32 {
     let rise = select(min(toward.z, -1e-3), max(toward.z, 1e-3), toward.z >= 0.0) * layer.size.y;
     let way = min(select(at.height, 1.0 - at.height, rise > 0.0) / abs(rise), most);
@@ -167,8 +172,8 @@ fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32
     return depth;
 }
 
-// Scaled depths of the cloud about a place, which counts as it is there (cloud_local): above, below, level to the nearer side and to the
-// other.
+// Scaled depths of the cloud about a place, which counts as it is there (cloud_local): above, below, level to the
+// nearer side and to the other.
 fn cloud_box(here: CloudLayer, at: CloudPlace, excess: f32) -> vec4f {
     let about = cloud_about(here, excess, at.height) * (here.size.w * here.medium.y);
     let edge = max(about.z, 0.02);
@@ -183,7 +188,8 @@ fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     return CloudDepths(about.x, about.y, to_sun, near, about.w, about.z, about.w);
 }
 
-// Share of sunlight that other clouds let through to a place that is looked at coarsely. Elsewhere the way to the sun meets them itself.
+// Share of sunlight that other clouds let through to a place that is looked at coarsely. Elsewhere the way to the sun
+// meets them itself.
 fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
     if !CLOUD_COARSE {
         return 1.0;

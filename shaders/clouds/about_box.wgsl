@@ -1,5 +1,5 @@
-// In place of about.wgsl: a box of even cloud, for the probe. Its sides, in metres, are (width along x, width along y, thickness of the
-// layer); the ray starts at `box_origin` in it, from its corner at the base.
+// In place of about.wgsl: a box of even cloud, for the probe. Its sides, in metres, are (width along x, width along y,
+// thickness of the layer); the ray starts at `box_origin` in it, from its corner at the base.
 //!include "clouds/box.wgsl"
 //!include "clouds/light.wgsl"
 

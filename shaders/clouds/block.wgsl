@@ -17,18 +17,22 @@ struct CloudLayer {
     above: vec4f,
     // Radiance of ground and lower clouds below it; scaled width of a cloud from side to side.
     below: vec4f,
-    // Index of the medium that it is made of; scaled extinction over extinction; how much of the layer is drawn as a volume; 1/side of the
-    // solid noise, 1/m.
+    // Index of the medium that it is made of; scaled extinction over extinction; how much of the layer is drawn as a
+    // volume; 1/side of the solid noise, 1/m.
     medium: vec4f,
-    // To a pattern that is not drawn out along the wind: xx, xy and yy; how domes of heaps grow with their place's excess.
+    // To a pattern that is not drawn out along the wind: xx, xy and yy; how domes of heaps grow with their place's
+    // excess.
     stretch: vec4f,
-    // How far the top lies downwind of the base (east, north), m; least excess with an anvil over it; length of the first two.
+    // How far the top lies downwind of the base (east, north), m; least excess with an anvil over it; length of the
+    // first two.
     lean: vec4f,
-    // Of a host's map of it (placed.wgsl): where the camera stands, in cells from the middle of the first, 1/cell, 1/m, row of its first texels.
+    // Of a host's map of it (placed.wgsl): where the camera stands, in cells from the middle of the first, 1/cell, 1/m,
+    // row of its first texels.
     mapped: vec4f,
     // Cells of the map east and north, 0 without; held domes times dome squared; most change of threshold a metre.
     cells: vec4f,
-    // Where it is filled over rain areas: threshold, dome, extinction, 1/m; how many areas there are, 0 for other layers.
+    // Where it is filled over rain areas: threshold, dome, extinction, 1/m; how many areas there are, 0 for other
+    // layers.
     filled: vec4f,
 }
 
@@ -43,7 +47,8 @@ struct CloudArea {
 struct CloudMedium {
     // Phase function: asymmetry of the Henyey-Greenstein lobe and of Draine's, Draine's alpha, weight of Draine's.
     lobes: vec4f,
-    // Share of scattering counted as straight on; 1/sr above which the phase function is cut off; 1 - asymmetry of the rest; albedo of the rest.
+    // Share of scattering counted as straight on; 1/sr above which the phase function is cut off; 1 - asymmetry of the
+    // rest; albedo of the rest.
     rest: vec4f,
 }
 

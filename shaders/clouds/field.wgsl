@@ -32,8 +32,8 @@ const ANVIL_FACES: vec2f = vec2f(0.2, 0.05);
 // How much smoother an anvil is than its towers.
 const ANVIL_SMOOTHER: f32 = 0.65;
 
-// How coarsely a place is looked at: from far off a pixel holds many clouds. Mip levels of the map and of the solid noise, and the standard
-// deviation of the excess within the pixel; all 0 close by.
+// How coarsely a place is looked at: from far off a pixel holds many clouds. Mip levels of the map and of the solid
+// noise, and the standard deviation of the excess within the pixel; all 0 close by.
 struct CloudBlur {
     map: f32,
     solid: f32,
@@ -42,12 +42,14 @@ struct CloudBlur {
 
 var<private> cloud_blur: CloudBlur;
 
-// Texels across a cell of the map, and across the solid noise; by how many mip levels the second sheet, whose cells are larger, is finer.
+// Texels across a cell of the map, and across the solid noise; by how many mip levels the second sheet, whose cells are
+// larger, is finer.
 const MAP_TEXELS: f32 = 16.0;
 const SOLID_TEXELS: f32 = 64.0;
 const SECOND_LEVEL: f32 = 0.694;
-// A mean over a width w takes the share 1 - exp(-(w / x)^y) of the variance: (x, y) of the even and of the cellular sheets, w in cells, and
-// of the solid noise, w in its sides; the standard deviation of that noise. Held by a test (src/clouds/map.rs).
+// A mean over a width w takes the share 1 - exp(-(w / x)^y) of the variance: (x, y) of the even and of the cellular
+// sheets, w in cells, and of the solid noise, w in its sides; the standard deviation of that noise. Held by a test
+// (src/clouds/map.rs).
 const EVEN_BLUR: vec2f = vec2f(2.12, 1.25);
 const CELLULAR_BLUR: vec2f = vec2f(0.84, 1.9);
 const SOLID_BLUR: vec2f = vec2f(0.14, 1.7);
@@ -144,7 +146,8 @@ fn cloud_filled(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     return min(height, ends.x) + max(ramp.x - ramp.y, 0.0) + anvil;
 }
 
-// Metres of full extinction above and below a place of this excess over the threshold, and level to the edge of its cloud.
+// Metres of full extinction above and below a place of this excess over the threshold, and level to the edge of its
+// cloud.
 fn cloud_about(layer: CloudLayer, excess: f32, height: f32) -> vec3f {
     let below = cloud_filled(layer, excess, height);
     let above = cloud_filled(layer, excess, 1.0) - below;

@@ -14,11 +14,13 @@ struct FollowedSquare {
     @location(2) back: vec4f,
 }
 
-// Spread about a plane through neighbouring squares over their range at which a picture is smooth, and at which it has shapes.
+// Spread about a plane through neighbouring squares over their range at which a picture is smooth, and at which it has
+// shapes.
 const SMOOTH: f32 = 0.03;
 const SHAPED: f32 = 0.1;
 
-// Share of luminance (x) and transmittance (y) that have no shapes finer than these squares: a picture between them is that of the whole.
+// Share of luminance (x) and transmittance (y) that have no shapes finer than these squares: a picture between them is
+// that of the whole.
 fn smoothness(center: vec2f, near: array<vec2f, 4>, rounding: vec2f) -> f32 {
     let mean = 0.2 * (center + near[0] + near[1] + near[2] + near[3]);
     let range = max(max(near[0], near[1]), max(near[2], near[3])) - min(min(near[0], near[1]), min(near[2], near[3]));

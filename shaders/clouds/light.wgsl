@@ -1,7 +1,8 @@
 // What a place in a cloud scatters towards an eye. Twin of src/clouds/light.rs, where the model is described.
 //!include "clouds/block.wgsl"
 
-// Tables side by side: under the beam on the top, under that on the side, under the sky; a medium below the other; leaks one behind the other.
+// Tables side by side: under the beam on the top, under that on the side, under the sky; a medium below the other;
+// leaks one behind the other.
 @group(0) @binding(4) var cloud_tables: texture_3d<f32>;
 @group(0) @binding(6) var cloud_table_sampler: sampler;
 
@@ -42,7 +43,8 @@ struct CloudScattered {
     ground: f32,
 }
 
-// Here and in field.wgsl: products with inverses of constants. Software drivers do not turn a division by a constant into one.
+// Here and in field.wgsl: products with inverses of constants. Software drivers do not turn a division by a constant
+// into one.
 fn cloud_depth_place(depth: f32) -> f32 {
     let thin = depth * (1.0 / CLOUD_THINNEST);
     return clamp(select(1.0 + 2.0 * log2(max(thin, 1.0)), thin, thin < 1.0), 0.0, CLOUD_DEPTHS - 1.0);
@@ -100,8 +102,8 @@ fn cloud_phase(medium: CloudMedium, versine: f32) -> f32 {
     return mix(lobe.x, draine, medium.lobes.w) / (4.0 * CLOUD_PI);
 }
 
-// What is scattered for the first time after so much cloud (scaled), with what is still to come to the eye, 1/sr: of what counts as straight
-// on, the part that is scattered at the angle.
+// What is scattered for the first time after so much cloud (scaled), with what is still to come to the eye, 1/sr: of
+// what counts as straight on, the part that is scattered at the angle.
 fn cloud_first_phase(medium: CloudMedium, versine: f32, gone: f32) -> f32 {
     let phase = cloud_phase(medium, versine);
     let forward = medium.rest.x * gone / (1.0 - medium.rest.x);
@@ -109,7 +111,8 @@ fn cloud_first_phase(medium: CloudMedium, versine: f32, gone: f32) -> f32 {
     return (min(phase, medium.rest.y) + max(phase - medium.rest.y, 0.0) * share_forward) / (1.0 - medium.rest.x);
 }
 
-// Terms of a table with what goes from side to side along two further axes: (cosine and slope, direction along the axis) each.
+// Terms of a table with what goes from side to side along two further axes: (cosine and slope, direction along the
+// axis) each.
 fn cloud_through(terms: vec4f, axis: f32, one: vec3f, other: vec3f, spread: f32) -> f32 {
     let leaves = one.y * other.x * one.z + other.y * one.x * other.z;
     return cloud_legendre(terms, axis) * one.x * other.x - spread * terms.x * leaves;

@@ -1,4 +1,5 @@
-// What a place in a cloud sends to the eye of the light of sun or moon, sky and ground. In its place lit_lamps.wgsl has that of lamps and flashes.
+// What a place in a cloud sends to the eye of the light of sun or moon, sky and ground. In its place lit_lamps.wgsl has
+// that of lamps and flashes.
 //!include "clouds/about.wgsl"
 
 // cd/m^2 over exposure, for each unit of scaled depth. `halo`: what ice adds to the phase function, 1/sr.

@@ -1,5 +1,5 @@
-// In place of lit.wgsl: what a place in a cloud sends to the eye of the light of the host's lamps and of flashes. Twin of
-// src/clouds/lamp_light.rs, where the model is described.
+// In place of lit.wgsl: what a place in a cloud sends to the eye of the light of the host's lamps and of flashes. Twin
+// of src/clouds/lamp_light.rs, where the model is described.
 //!include "clouds/about.wgsl"
 //!include "clouds/lamps.wgsl"
 
@@ -37,14 +37,15 @@ fn cloud_mirrored(shine: CloudShine, direction: vec3f, place: f32, grows: f32, s
     return vec2f(d, toward - 2.0 * d * source * grows / square) * image;
 }
 
-// Of a lamp in the cloud, what has been scattered more than once; for a lamp of 1 cd a unit of scaled depth squared. `within`: what lies above
-// and below the lamp of the cloud's layer.
+// Of a lamp in the cloud, what has been scattered more than once; for a lamp of 1 cd a unit of scaled depth squared.
+// `within`: what lies above and below the lamp of the cloud's layer.
 fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: CloudShine, direction: vec3f) -> f32 {
     let turning = medium.rest.z;
     let dark = DARK_AT / turning;
     let d = shine.distance;
     let level = length(shine.toward.xy) * d;
-    // Of the sides no more is known than that one looks at the nearer one, and that the lamp lies beyond it in the same cloud.
+    // Of the sides no more is known than that one looks at the nearer one, and that the lamp lies beyond it in the same
+    // cloud.
     let out = length(direction.xy);
     let half = 0.5 * max(about.z + about.w, d);
     let place = array<f32, 6>(about.x, about.y, about.z, max(about.w, level + half), half, half);
@@ -84,7 +85,8 @@ fn cloud_shone_on(medium_index: f32, medium: CloudMedium, about: vec4f, shine: C
     return (often + clamp(kept, -often, often)) / (d * d);
 }
 
-// Where a stretch of a ray is in a lamp's beam, m; empty where the second is not beyond the first. `to`: from the ray's start to the lamp.
+// Where a stretch of a ray is in a lamp's beam, m; empty where the second is not beyond the first. `to`: from the ray's
+// start to the lamp.
 fn cloud_in_beam(lamp: CloudLamp, to: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
     if lamp.light.end <= 0.0 {
         return vec2f(first, last);
@@ -109,8 +111,9 @@ fn cloud_in_beam(lamp: CloudLamp, to: vec3f, direction: vec3f, first: f32, last:
     return select(vec2f(first), vec2f(max(first, min(ends.x, ends.y)), min(last, max(ends.x, ends.y))), in_front);
 }
 
-// What droplets along a stretch scatter once of a lamp in the cloud, and the mean of its beam over the stretch. `dense`: scaled depth on
-// the way to the lamp a metre. Places lie evenly as seen from the lamp (Kulla and Fajardo 2012, "equiangular").
+// What droplets along a stretch scatter once of a lamp in the cloud, and the mean of its beam over the stretch.
+// `dense`: scaled depth on the way to the lamp a metre. Places lie evenly as seen from the lamp (Kulla and Fajardo
+// 2012, "equiangular").
 fn cloud_once(medium: CloudMedium, lamp: CloudLamp, to: vec3f, stretch: CloudStretch, dense: f32) -> vec2f {
     let within = cloud_in_beam(lamp, to, stretch.direction, stretch.begun, stretch.begun + stretch.length);
     if within.y <= within.x {

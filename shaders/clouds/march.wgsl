@@ -4,8 +4,8 @@
 //!include "clouds/halo.wgsl"
 //!include "clouds/lit.wgsl"
 
-// How many steps a ray takes, over those of these: most steps through one layer; depth of a step in cloud, scaled, at most; distance from
-// which on steps grow with it.
+// How many steps a ray takes, over those of these: most steps through one layer; depth of a step in cloud, scaled, at
+// most; distance from which on steps grow with it.
 override CLOUD_FINENESS: f32 = 1.0;
 override CLOUD_STEPS: u32 = 96u;
 override CLOUD_STEP_DEPTH: f32 = 0.4;
@@ -25,7 +25,8 @@ struct CloudSeen {
     reach: vec2f,
 }
 
-// Distances at which a ray crosses a sphere `height` above the planet's ground, in order; both the same where it does not.
+// Distances at which a ray crosses a sphere `height` above the planet's ground, in order; both the same where it does
+// not.
 fn cloud_crossings(direction: vec3f, height: f32) -> vec2f {
     let r = clouds.radius + cloud_eye();
     let rise = height - cloud_eye();
@@ -49,8 +50,8 @@ struct CloudMarch {
     distance: vec2f,
 }
 
-// Where the mean of what is seen of a step of this scaled depth lies, as a share of the step: extinction is even in it, or rises evenly from
-// the face where it begins (within 4 % of the integral).
+// Where the mean of what is seen of a step of this scaled depth lies, as a share of the step: extinction is even in it,
+// or rises evenly from the face where it begins (within 4 % of the integral).
 fn cloud_seen_at(depth: f32, at_face: bool) -> f32 {
     let left = exp(-depth);
     return select(1.0 / depth - left / (1.0 - left), 0.667 / sqrt(sqrt(1.0 + 0.32 * depth * depth)), at_face);
@@ -62,15 +63,17 @@ const PIXEL_BLUR: f32 = 1.4;
 // Angle of a pixel, rad.
 var<private> cloud_pixel: f32 = 0.0;
 
-// Width of a pixel on a layer, m: the geometric mean of that across and that along, less what the ray passes through of the layer itself.
+// Width of a pixel on a layer, m: the geometric mean of that across and that along, less what the ray passes through of
+// the layer itself.
 fn cloud_pixel_width(layer: CloudLayer, t: f32, rise: f32) -> f32 {
     let across = PIXEL_BLUR * cloud_pixel * t / CLOUD_FINENESS;
     let along = max(across, (across - 1.0 / layer.size.y) / max(rise, 0.05));
     return sqrt(across * along);
 }
 
-// Share of a ray that is still open, in gaps (x) and in cloud (y), so many cells on from a place of one share of cloud (shares.x) to a place
-// of another (shares.y). Going up or down cloud stands over cloud; going level a ray meets clouds anew.
+// Share of a ray that is still open, in gaps (x) and in cloud (y), so many cells on from a place of one share of cloud
+// (shares.x) to a place of another (shares.y). Going up or down cloud stands over cloud; going level a ray meets clouds
+// anew.
 fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     let grown = open.x * (shares.y - shares.x) / max(1.0 - shares.x, 1e-6);
     let shrunk = open.y * (shares.y / max(shares.x, 1e-6) - 1.0);
@@ -112,8 +115,8 @@ fn cloud_step_depth(layer: CloudLayer, step: CloudStep) -> f32 {
     return step.here.extinction * layer.medium.y * step.length;
 }
 
-// The step after `next` was looked up, once cloud was found there or before. `clear`: the last place without cloud since the last with some, and
-// how much is wanting there, or 0.
+// The step after `next` was looked up, once cloud was found there or before. `clear`: the last place without cloud
+// since the last with some, and how much is wanting there, or 0.
 fn cloud_looked(before: CloudStep, layer: CloudLayer, place: CloudPlace, here: CloudHere, clear: vec2f, jitter: f32) -> CloudStep {
     var step = before;
     if before.looks_for == CLOUD_WITHIN {
@@ -121,7 +124,8 @@ fn cloud_looked(before: CloudStep, layer: CloudLayer, place: CloudPlace, here: C
         step.here.excess = here.excess;
         step.looks_for = CLOUD_FOUND;
     } else {
-        // A ray that comes into a cloud begins its steps at the face, wherever they lie: else faces show where steps begin.
+        // A ray that comes into a cloud begins its steps at the face, wherever they lie: else faces show where steps
+        // begin.
         let face = clear.x + (before.at - clear.x) * clear.y / max(clear.y + cloud_inside(here), 1e-6);
         let at_face = before.looks_for == CLOUD_AT_FACE;
         if here.extinction > 0.0 {
@@ -155,11 +159,13 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     var tried = 0u;
     // The last place without cloud since the last with some, and how much is wanting there, or 0.
     var clear = vec2f(first, 0.0);
-    // What of the ray has not ended yet, before gaps and before cloud, where it is looked at coarsely; share of cloud at the last place.
+    // What of the ray has not ended yet, before gaps and before cloud, where it is looked at coarsely; share of cloud
+    // at the last place.
     var open = vec2f(out.transmittance, 0.0);
     var cloudy_share = 0.0;
     while out.transmittance > CLOUD_LEAST {
-        // To the next step with cloud in it. All rays of a wave look a place up at once, each for what it needs, and light for such steps alone.
+        // To the next step with cloud in it. All rays of a wave look a place up at once, each for what it needs, and
+        // light for such steps alone.
         var step: CloudStep;
         while step.looks_for != CLOUD_FOUND && (step.looks_for != CLOUD_SEEKS || (tried < most && gone < last)) {
             if step.looks_for == CLOUD_SEEKS {

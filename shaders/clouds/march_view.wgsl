@@ -1,5 +1,6 @@
-// Clouds along the rays of some pixels of a picture. They are marched whether the host's things hide them or not: what stands before a cloud
-// and what stands in it is told apart by the composition, for every pixel and sample, and leaves no trail where it moves.
+// Clouds along the rays of some pixels of a picture. They are marched whether the host's things hide them or not: what
+// stands before a cloud and what stands in it is told apart by the composition, for every pixel and sample, and leaves
+// no trail where it moves.
 //!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"

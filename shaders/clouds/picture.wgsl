@@ -8,9 +8,11 @@ struct CloudsPicture {
     size: vec2u,
     side: u32,
     place: u32,
-    // From a place relative to the camera (east, north, up), m, to clip space as the last frame had it, before clouds and camera moved.
+    // From a place relative to the camera (east, north, up), m, to clip space as the last frame had it, before clouds
+    // and camera moved.
     before: mat4x4f,
-    // How far a cloud has come relative to the camera since the last frame, m; exposure now over that of the last frame, 0 without history.
+    // How far a cloud has come relative to the camera since the last frame, m; exposure now over that of the last
+    // frame, 0 without history.
     moved: vec3f,
     exposed: f32,
 }

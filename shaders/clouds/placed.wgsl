@@ -1,7 +1,8 @@
 // Local cloud cover that overrides a layer's own. Twin of src/clouds/placed.rs, where the model is described.
 //!include "clouds/block.wgsl"
 
-// Of layers that a host's map is laid on: threshold, dome, extinction, distance within which the threshold stays; one below the other.
+// Of layers that a host's map is laid on: threshold, dome, extinction, distance within which the threshold stays; one
+// below the other.
 @group(0) @binding(8) var cloud_maps: texture_2d<f32>;
 @group(0) @binding(5) var cloud_sampler: sampler;
 

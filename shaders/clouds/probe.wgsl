@@ -1,5 +1,6 @@
-// Light that leaves a box of even cloud through its sides, by the march of the picture (with about_box.wgsl in about.wgsl's place). Six
-// tiles side by side, one a face (x low, x high, y low, y high, base, top), of one ray a pixel; directions are spread as the cosine.
+// Light that leaves a box of even cloud through its sides, by the march of the picture (with about_box.wgsl in
+// about.wgsl's place). Six tiles side by side, one a face (x low, x high, y low, y high, base, top), of one ray a
+// pixel; directions are spread as the cosine.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"
 //!include "clouds/box.wgsl"

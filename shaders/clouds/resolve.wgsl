@@ -1,4 +1,5 @@
-// The clouds of a whole picture, from the pixels that were marched in this frame and from the last frame's picture, seen anew.
+// The clouds of a whole picture, from the pixels that were marched in this frame and from the last frame's picture,
+// seen anew.
 //!include "common/host.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "common/frame.wgsl"
@@ -30,7 +31,8 @@ const NOWHERE: f32 = 24.0;
 
 struct ResolvedPixel {
     @location(0) seen: vec4f,
-    // log2 of the reach, m, the share of direct light at what the host drew, and by how much that in the air before it differs from the mean.
+    // log2 of the reach, m, the share of direct light at what the host drew, and by how much that in the air before it
+    // differs from the mean.
     @location(1) reach: vec4f,
 }
 
@@ -68,13 +70,14 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     let size = vec2f(picture.size);
     let lost = any(was < vec2f(0.0)) || any(was > size);
     let within = clamp(was, vec2f(0.5), size - 0.5) / vec2f(textureDimensions(last));
-    // At rest the texel itself: a filter's least error, rounded down from frame to frame, would darken the clouds until they are marched again.
+    // At rest the texel itself: a filter's least error, rounded down from frame to frame, would darken the clouds until
+    // they are marched again.
     let filtered = textureSampleLevel(last, linear, within, 0, 0.0);
     let texel = textureLoad(last, vec2i(pixel), 0, 0);
     let kept = select(filtered, texel, all(to == vec2f(0.0))) * vec4f(vec3f(picture.exposed), 1.0);
     let held = clamp(kept, textureLoad(least, vec2i(square), 0), textureLoad(most, vec2i(square), 0));
-    // How bright a cloud is depends on the direction too, which a picture seen anew does not follow: where it has no shapes, the marched
-    // picture holds all that there is to see.
+    // How bright a cloud is depends on the direction too, which a picture seen anew does not follow: where it has no
+    // shapes, the marched picture holds all that there is to see.
     let likely = mix(held, now, followed.z);
     let is_marched = all(marched_pixel(picture, square) == pixel);
     return ResolvedPixel(select(likely, now, lost || is_marched), reach);
@@ -101,8 +104,8 @@ fn resolve_kind(in: FullscreenVarying) -> ResolvedKind {
     return ResolvedKind(pixel.seen, pixel.reach, select(0.0, KIND_DRAWN, depth < RANGE_SKY));
 }
 
-// The two components of the reach that the first draw leaves out. Nothing else is written, but both outputs are named: virgl sends the
-// output of a shader that has none at location 0 to the first image.
+// The two components of the reach that the first draw leaves out. Nothing else is written, but both outputs are named:
+// virgl sends the output of a shader that has none at location 0 to the first image.
 @fragment
 fn resolve_shadow(in: FullscreenVarying) -> ResolvedPixel {
     let shadow = shadow_on(vec2u(in.position.xy), frame_ndc(in.uv));

@@ -11,7 +11,8 @@ struct CloudShadows {
     period: f32,
     // Height of the camera above the plane, m.
     eye: f32,
-    // Share of the direct light on the mean over places; how far shadows are told apart; height above the plane from which on they are not.
+    // Share of the direct light on the mean over places; how far shadows are told apart; height above the plane from
+    // which on they are not.
     mean: f32,
     told: f32,
     top: f32,

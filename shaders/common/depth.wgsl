@@ -89,8 +89,8 @@ fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return clamp(w, 0.0, RANGE_SKY);
 }
 
-// Depth of a thing as view_depth counts it, by its clip w and its distance from the eye, `nearer` metres before its place; and metres
-// along its ray per unit of that depth.
+// Depth of a thing as view_depth counts it, by its clip w and its distance from the eye, `nearer` metres before its
+// place; and metres along its ray per unit of that depth.
 fn depth_of(u: DepthUniform, clip_w: f32, distance: f32, nearer: f32) -> vec2f {
     let slant = distance / max(clip_w, 0.05 * distance);
     let parallel = (DEPTH_KINDS & 2u) != 0u && u.kind == 1u;
@@ -108,8 +108,8 @@ fn depth_ln_1p(x: f32) -> f32 {
     return select(log(1.0 + x), series, x < 0.125);
 }
 
-// What stands at clip w in a buffer whose depth is logarithmic: the inverse of view_depth, for the fragment shaders of opaque things.
-// The other kinds come from the projection. The f64 twin is ViewRays::depth_at.
+// What stands at clip w in a buffer whose depth is logarithmic: the inverse of view_depth, for the fragment shaders of
+// opaque things. The other kinds come from the projection. The f64 twin is ViewRays::depth_at.
 fn written_depth(u: DepthUniform, w: f32) -> f32 {
     let e = depth_ln_1p(max(w, 0.0) / u.inverse_c) / u.log_far;
     return clamp((e - u.turn_offset) / u.turn_scale, 0.0, 1.0);

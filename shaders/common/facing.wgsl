@@ -24,15 +24,16 @@ fn beside(u: DepthUniform, depth: f32, ndc: vec2f) -> Beside {
     return Beside(select(view_depth(u, depth, ndc), RANGE_SKY, any(abs(ndc) > vec2f(1.0))), ndc);
 }
 
-// The edge from the pixel at `at` to whichever neighbour on this axis lies nearer in depth: over a silhouette none is taken.
+// The edge from the pixel at `at` to whichever neighbour on this axis lies nearer in depth: over a silhouette none is
+// taken.
 fn surface_edge(u: DepthUniform, here: Beside, at: vec3f, before: Beside, after: Beside) -> vec3f {
     let first = abs(before.depth - here.depth) < abs(after.depth - here.depth);
     let nearer = Beside(select(after.depth, before.depth, first), select(after.ndc, before.ndc, first));
     return (view_point(u, nearer.depth, nearer.ndc) - at) * select(1.0, -1.0, first);
 }
 
-// `around`: depths to the left, right, above and below; `pixel`: steps of ndc to the right and below; `grain`: by how much the
-// host's depth may be off, as a step and as a part of it.
+// `around`: depths to the left, right, above and below; `pixel`: steps of ndc to the right and below; `grain`: by how
+// much the host's depth may be off, as a step and as a part of it.
 fn facing_of(u: DepthUniform, depth: f32, around: vec4f, ndc: vec2f, pixel: vec2f, grain: vec2f) -> Facing {
     let here = beside(u, depth, ndc);
     let at = view_point(u, here.depth, here.ndc);

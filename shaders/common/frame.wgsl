@@ -65,18 +65,20 @@ struct FrameUniform {
     // Colour of the light of flashes of lightning, of luminance 1, and how many places it comes from.
     flash_color: vec3f,
     flash_count: u32,
-    // Height of the clouds' face over the camera, m, their cover, what the haze before them takes, 1/m, and what scatters in the
-    // air, 1/m.
+    // Height of the clouds' face over the camera, m, their cover, what the haze before them takes, 1/m, and what
+    // scatters in the air, 1/m.
     flash_plane: f32,
     flash_cover: f32,
     flash_haze: f32,
     flash_scattering: f32,
     flashes: array<FlashSource, MAX_FLASHES>,
-    // Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that share.
+    // Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that
+    // share.
     cloud_shadow: vec4f,
     // Pixels of the picture.
     picture: vec2f,
-    // How much of the clouds is drawn as a volume, not as a deck (src/plan), and how far their base lies over the camera, m.
+    // How much of the clouds is drawn as a volume, not as a deck (src/plan), and how far their base lies over the
+    // camera, m.
     clouds_drawn: f32,
     clouds_over: f32,
     // The mean light of clouds that may be drawn as a volume, cd/m^2, and their cover; 0 without any.
@@ -89,7 +91,8 @@ struct FrameUniform {
     bows: array<vec4f, 320>,
 }
 
-// Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.
+// Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are
+// cut.
 fn color_of(spectrum: vec3f) -> vec3f {
     let c = frame.color[0].xyz * spectrum.x + frame.color[1].xyz * spectrum.y + frame.color[2].xyz * spectrum.z;
     return not_negative(c);

@@ -8,8 +8,8 @@ struct FullscreenVarying {
     @location(0) uv: vec2f,
 }
 
-// As the vertex shader writes it: several programs draw where depth is equal, so theirs must be the same to the bit. A struct of its own,
-// since naga would write `invariant` before a fragment shader's input too, which OpenGL ES refuses.
+// As the vertex shader writes it: several programs draw where depth is equal, so theirs must be the same to the bit. A
+// struct of its own, since naga would write `invariant` before a fragment shader's input too, which OpenGL ES refuses.
 struct FullscreenVertex {
     @invariant @builtin(position) position: vec4f,
     @location(0) uv: vec2f,

@@ -1,5 +1,5 @@
-// guarded.wgsl for builds with debug assertions: a value that is infinite or not a number passes all limits. A picture in
-// floats holds it, and reading it back fails; other pictures are magenta there.
+// guarded.wgsl for builds with debug assertions: a value that is infinite or not a number passes all limits. A picture
+// in floats holds it, and reading it back fails; other pictures are magenta there.
 
 fn is_finite(v: vec3f) -> bool {
     // Compilers may assume that no NaN comes; the bits cannot be argued with.

@@ -1,8 +1,8 @@
 //!include "common/fullscreen.wgsl"
 // Known answers, which an OpenGL driver must draw before anything else is asked of it. Twin: src/gpu/known.rs.
 //
-// The blocks have the sizes and kinds of those that the sky's first tables read: where a driver delivers other bytes, the loops
-// that run to them would never end.
+// The blocks have the sizes and kinds of those that the sky's first tables read: where a driver delivers other bytes,
+// the loops that run to them would never end.
 
 // 144 bytes, as `SkyAir`.
 struct KnownRow {
@@ -75,7 +75,8 @@ fn blocks(in: FullscreenVarying) -> @location(0) vec4u {
 // Most turns of a loop here, whatever a block says.
 const MOST_TURNS: u32 = 24u;
 
-// One texel by two loops as in `norm` of sky/build.wgsl, whose bounds come from a block. Whole numbers, so the sum is exact.
+// One texel by two loops as in `norm` of sky/build.wgsl, whose bounds come from a block. Whole numbers, so the sum is
+// exact.
 @fragment
 fn turns(in: FullscreenVarying) -> @location(0) vec4u {
     var sum = 0.0;

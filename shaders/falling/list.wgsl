@@ -1,5 +1,6 @@
-// The list of things that a picture shows, of all that fall round the camera: which they are stands in a bit each, in the order of
-// their numbers, so the list's order is that order and depends on no thread's haste. src/particles/listing.rs describes the passes.
+// The list of things that a picture shows, of all that fall round the camera: which they are stands in a bit each, in
+// the order of their numbers, so the list's order is that order and depends on no thread's haste.
+// src/particles/listing.rs describes the passes.
 
 // Words of bits of a block.
 const WORDS: u32 = 4u;

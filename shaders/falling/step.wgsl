@@ -15,12 +15,14 @@ struct StepUniform {
     // What the camera has moved, m.
     moved: vec3f,
     steps: u32,
-    // Of each shell: things that fall in it, how many of them have a state, where their states begin, and the side of its cell, m.
+    // Of each shell: things that fall in it, how many of them have a state, where their states begin, and the side of
+    // its cell, m.
     counts: vec4u,
     known: vec4u,
     begins: vec4u,
     sides: vec4f,
-    // Place of the camera in the cell of each shell, now (with where the shell's states begin) and before, in 2^-32 of its side.
+    // Place of the camera in the cell of each shell, now (with where the shell's states begin) and before, in 2^-32 of
+    // its side.
     eye: array<vec4u, STEPPED_SHELLS>,
     before: array<vec4u, STEPPED_SHELLS>,
     // What the places of those that come in are drawn by.
@@ -53,7 +55,8 @@ fn wrapped(cells: vec3f) -> vec3u {
     return bitcast<vec3u>(vec3i(part * 4294967296.0));
 }
 
-// One that begins: `away` from the camera where the lattice has it, in 2^-32 of the side; it falls at `terminal` m/s at rest.
+// One that begins: `away` from the camera where the lattice has it, in 2^-32 of the side; it falls at `terminal` m/s at
+// rest.
 fn begun(s: u32, away: vec3u, terminal: f32) -> State {
     let p = vec3f(bitcast<vec3i>(away)) * (stepping.sides[s] / 4294967296.0);
     return State(away + stepping.eye[s].xyz, s, air_at(p) - vec3f(0.0, 0.0, terminal), 0.0);
@@ -79,8 +82,9 @@ fn stepped(from_state: State, s: u32, index: u32, terminal: f32) -> State {
         velocity -= difference * gone;
     }
     state.place += wrapped(way / side);
-    // Who leaves through one axis comes in again there, as far in as it got, and gets the other places by chance: any where
-    // it may have left too, but among those that stay along an axis that comes before. So evenly spread drops stay so.
+    // Who leaves through one axis comes in again there, as far in as it got, and gets the other places by chance: any
+    // where it may have left too, but among those that stay along an axis that comes before. So evenly spread drops
+    // stay so.
     let course = (way - stepping.moved) / side;
     let left = floor((away + way) / side + 0.5) != vec3f(0.0);
     if any(left) {

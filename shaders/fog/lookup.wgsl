@@ -1,11 +1,13 @@
 // What fog does to a pixel, in closed form: no loop, no texture. The f64 twin and the derivations are in
 // src/fog/reference.rs (ray and light), src/fog/light.rs (the layer's light, solved on the CPU) and src/fog/phase.rs.
 //
-// Axes: east, north, up at the camera. In the composition, with `behind` the pixel after the sky's aerial perspective over its full distance:
+// Axes: east, north, up at the camera. In the composition, with `behind` the pixel after the sky's aerial perspective
+// over its full distance:
 //     let fog = fog_along(u, ray.origin, ray.direction, range, plane);
 //     out = air_radiance + air_transmittance * fog.radiance + fog.transmittance * (fog.shade * behind - air_radiance)
 // where air_* are the sky's aerial perspective at fog.distance (0 and 1 if the fog is near or has no air before it) and
-// `behind` is that of the whole distance. So air lies in front of a far fog bank and behind the fog round the camera, without a seam between.
+// `behind` is that of the whole distance. So air lies in front of a far fog bank and behind the fog round the camera,
+// without a seam between.
 //!include "common/depth.wgsl"
 //!include "fog/patterns.wgsl"
 
@@ -74,8 +76,8 @@ struct RayCourse {
     bend: f32,
 }
 
-// Of sunlight that has travelled the optical path `slant`, the share of what counts as not scattered that has not been; as
-// share_unscattered of src/fog/phase.rs.
+// Of sunlight that has travelled the optical path `slant`, the share of what counts as not scattered that has not been;
+// as share_unscattered of src/fog/phase.rs.
 fn share_unscattered(forward: f32, slant: f32) -> f32 {
     let fs = min(forward * slant, 1e4);
     return select((1.0 - exp(-fs)) / max(fs, 1e-9), 1.0 - 0.5 * fs, fs < 1e-3);
@@ -229,8 +231,8 @@ fn ray_course(u: FogUniform, h0: f32, mu: f32, t: f32) -> RayCourse {
     return RayCourse(end_altitude, end_mu, level, passes, falls, low, low_mu, before, after, high, bend);
 }
 
-// Distances from the eye at which a ray enters and leaves a slab. `reach`: distances of the slab's lower and upper end from the ray's
-// lowest place.
+// Distances from the eye at which a ray enters and leaves a slab. `reach`: distances of the slab's lower and upper end
+// from the ray's lowest place.
 fn slab_ends(c: RayCourse, t: f32, reach: vec2f) -> vec2f {
     let near = min(reach.x, c.before);
     let far = min(reach.y, c.before);
@@ -487,8 +489,8 @@ fn fog_along(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: 
     return fog_beside_drops(u, origin, direction, range, plane, 0.0);
 }
 
-// As fog_along, where `hidden` of the optical depth of what falls is drawn as drops, flakes and stones: that much of it is left
-// out, and never more than all of it.
+// As fog_along, where `hidden` of the optical depth of what falls is drawn as drops, flakes and stones: that much of it
+// is left out, and never more than all of it.
 fn fog_beside_drops(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: f32, hidden: f32) -> Fog {
     var fog = Fog(vec3f(0.0), 0.0, vec3f(1.0), 1.0, vec3f(0.0));
     // A pipeline for one fog alone asks nothing.

@@ -1,5 +1,5 @@
-// Patches of fog and curtains of rain, of the bound `low_air`: an index into a copy of it would copy all of it. The f64 twin and the
-// derivation are in src/fog/patterns.rs.
+// Patches of fog and curtains of rain, of the bound `low_air`: an index into a copy of it would copy all of it. The f64
+// twin and the derivation are in src/fog/patterns.rs.
 //!include "fog/binding.wgsl"
 
 // Half of a path on which a wave of the pattern fades to a half, in its length / 2 pi.
@@ -79,8 +79,8 @@ fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     return sum * 2.0 * h / (last - first);
 }
 
-// Both sums are loops whose ends no compiler knows: written out, their sines take a software driver longer to compile than all the
-// rest of a pixel.
+// Both sums are loops whose ends no compiler knows: written out, their sines take a software driver longer to compile
+// than all the rest of a pixel.
 fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let m = 0.5 * (first + last);
     let h = 0.5 * (last - first);

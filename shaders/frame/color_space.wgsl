@@ -5,7 +5,8 @@
 const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
 
-// Colour spaces that a pipeline can draw, one bit each. A software driver computes every branch, so its pipelines have only one.
+// Colour spaces that a pipeline can draw, one bit each. A software driver computes every branch, so its pipelines have
+// only one.
 override COLOR_SPACES: u32 = 7u;
 // Whether it may encode by the sRGB curve, and whether it may dither.
 override ENCODES: bool = true;

@@ -1,4 +1,5 @@
-// One pixel of the frame: sky behind, water on surfaces, air and fog between, tone on top. Host colour x T + L throughout.
+// One pixel of the frame: sky behind, water on surfaces, air and fog between, tone on top. Host colour x T + L
+// throughout.
 //!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "frame/color_space.wgsl"
@@ -13,7 +14,8 @@ override PARTICLES: bool = false;
 // Clouds cast shadows on what the host drew.
 override CLOUD_SHADOWS: bool = false;
 
-// What the shadow of clouds leaves of the light on what the host drew, of that on the mean over places, in which the host lit it.
+// What the shadow of clouds leaves of the light on what the host drew, of that on the mean over places, in which the
+// host lit it.
 fn under_clouds(hung: Hung, range: f32) -> vec3f {
     if !CLOUD_SHADOWS || range >= RANGE_SKY {
         return vec3f(1.0);

@@ -1,4 +1,5 @@
-// The frame's composition over a host's picture with several samples a pixel, each with its own depth: variant `:multi`.
+// The frame's composition over a host's picture with several samples a pixel, each with its own depth: variant
+// `:multi`.
 //!include "frame/composite_view.wgsl"
 
 @fragment

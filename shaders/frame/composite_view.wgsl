@@ -1,4 +1,5 @@
-// The frame's composition over a host's picture; where its depth alone has several samples a pixel, the first stands for them.
+// The frame's composition over a host's picture; where its depth alone has several samples a pixel, the first stands
+// for them.
 //!include "frame/host_picture.wgsl"
 //!include "frame/composite.wgsl"
 

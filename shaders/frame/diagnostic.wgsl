@@ -1,5 +1,5 @@
-// One number of each pixel in false colours, in place of the picture: for developers (docs/diagnostics.md). Where the picture has
-// several samples a pixel, the first stands for them.
+// One number of each pixel in false colours, in place of the picture: for developers (docs/diagnostics.md). Where the
+// picture has several samples a pixel, the first stands for them.
 //!include "frame/host_picture.wgsl"
 //!include "frame/composite.wgsl"
 //!include "frame/exposed.wgsl"

@@ -1,5 +1,5 @@
-// One face of the cube map of what stands around the camera, for reflections in the host's own things: the sky of the composition, its
-// clouds and fog and the planet's ground, without the discs of sun and moon and without stars.
+// One face of the cube map of what stands around the camera, for reflections in the host's own things: the sky of the
+// composition, its clouds and fog and the planet's ground, without the discs of sun and moon and without stars.
 //!include "common/guarded.wgsl"
 //!include "frame/composite.wgsl"
 

@@ -1,12 +1,13 @@
-// Rougher levels of the cube map: what a rough mirror shows when it is looked at along its normal
-// (Karis 2013, Real Shading in Unreal Engine 4, eq. 7 and "PrefilterEnvMap"), with samples that each stand for a part of the
-// sphere as large as theirs (Krivanek and Colbert 2008, Real-time Shading with Filtered Importance Sampling, eq. 13).
+// Rougher levels of the cube map: what a rough mirror shows when it is looked at along its normal (Karis 2013, Real
+// Shading in Unreal Engine 4, eq. 7 and "PrefilterEnvMap"), with samples that each stand for a part of the sphere as
+// large as theirs (Krivanek and Colbert 2008, Real-time Shading with Filtered Importance Sampling, eq. 13).
 //!include "common/fullscreen.wgsl"
 
 struct FilterFace {
     // As EnvironmentFace, in the cube's own axes.
     forward: vec3f,
-    // Square of the roughness: alpha of the distribution of Trowbridge and Reitz (GGX). 0: the mean of four texels of a level.
+    // Square of the roughness: alpha of the distribution of Trowbridge and Reitz (GGX). 0: the mean of four texels of a
+    // level.
     alpha: f32,
     right: vec3f,
     // How many directions stand for the lobe.

@@ -1,5 +1,6 @@
-// Finds where the weather is even between four texels of its grid: there the curves through it and its neighbours are within a
-// thousandth of straight lines. Output: log2 of the least and the greatest range of the four, m; for others the least is the greater.
+// Finds where the weather is even between four texels of its grid: there the curves through it and its neighbours are
+// within a thousandth of straight lines. Output: log2 of the least and the greatest range of the four, m; for others
+// the least is the greater.
 //!include "common/fullscreen.wgsl"
 //!include "frame/even.wgsl"
 
@@ -30,7 +31,8 @@ fn row(at: vec2i, along: vec2i) -> Row {
     let b = texel(at);
     let c = texel(at + along);
     let d = texel(at + 2 * along);
-    // A line through the middle two is off by an eighth of the second difference; over a step there are two that cancel each other.
+    // A line through the middle two is off by an eighth of the second difference; over a step there are two that cancel
+    // each other.
     let bent = max(abs(a[0].rgb - 2.0 * b[0].rgb + c[0].rgb), abs(b[0].rgb - 2.0 * c[0].rgb + d[0].rgb)) / 8.0;
     let dimmed = max(abs(a[1].rgb - 2.0 * b[1].rgb + c[1].rgb), abs(b[1].rgb - 2.0 * c[1].rgb + d[1].rgb)) / 8.0;
     // What stands between the two at another range than the line's has the weather of any range between theirs.

@@ -1,5 +1,5 @@
-// Where a texel of the veil's textures lies, and what it holds: light and transmittance over (picture, distance), tiled in two
-// textures. The host samples them with the published snippets (shaders/snippets); the mapping is theirs too.
+// Where a texel of the veil's textures lies, and what it holds: light and transmittance over (picture, distance), tiled
+// in two textures. The host samples them with the published snippets (shaders/snippets); the mapping is theirs too.
 //!include "common/fullscreen.wgsl"
 //!include "common/tone.wgsl"
 //!include "between/veil.wgsl"

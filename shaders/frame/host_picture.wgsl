@@ -13,7 +13,8 @@ struct Seen {
     pixel: vec2i,
     sample: i32,
     ndc: vec2f,
-    // As the host wrote it, along the ray, and from the camera's plane; the latter two are RANGE_SKY where it drew nothing.
+    // As the host wrote it, along the ray, and from the camera's plane; the latter two are RANGE_SKY where it drew
+    // nothing.
     depth: f32,
     range: f32,
     plane: f32,

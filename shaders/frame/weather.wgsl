@@ -10,21 +10,22 @@ override MEDIUM: bool = true;
 // Where nothing is drawn, the pixels of a pipeline may lie above the level of the eye, and below it.
 override FAR_ABOVE: bool = true;
 override FAR_BELOW: bool = true;
-// Ratio of the optical depth of clouds to the delta-scaled one, in which light scattered straight on counts as not scattered.
+// Ratio of the optical depth of clouds to the delta-scaled one, in which light scattered straight on counts as not
+// scattered.
 const CLOUD_STRAIGHT: f32 = 1.8;
 // The discs of sun and moon: the host has their light otherwise where it asks for the sky alone.
 override DISCS: bool = true;
 
-// The planet's own ground as far as it lies under a deck, whose light on it is that of an overcast sky: 7 pi / 9 of its zenith's
-// luminance (Moon and Spencer 1942). The air before it is lit by the deck too (air_on).
+// The planet's own ground as far as it lies under a deck, whose light on it is that of an overcast sky: 7 pi / 9 of its
+// zenith's luminance (Moon and Spencer 1942). The air before it is lit by the deck too (air_on).
 fn ground_under_deck(path: SkyPath) -> vec3f {
     let transmittance = exp(-path.depth);
     let ground = sky_view.air.ground_albedo * (7.0 / 9.0) * f32(path.ray.grounded);
     return frame.deck * mix(vec3f(overcast_gradation(0.0)), ground, transmittance);
 }
 
-// The discs of sun and moon behind clouds, which let through less of their light straight than all that they scatter straight on. A disc
-// takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
+// The discs of sun and moon behind clouds, which let through less of their light straight than all that they scatter
+// straight on. A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
 fn disc_light(radiance: Radiance, hung: Hung) -> vec3f {
     if !DISCS {
         return vec3f(0.0);
@@ -42,7 +43,8 @@ fn behind_above(d: vec3f, hung: Hung) -> vec3f {
     return open_sky(d, color_of(sky_radiance_above(d)) * air_lit + disc, hung);
 }
 
-// The same below the level of the eye: the planet's own ground with the air before it; from high up also sky, down to the horizon.
+// The same below the level of the eye: the planet's own ground with the air before it; from high up also sky, down to
+// the horizon.
 fn behind_below(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
     if deck_hides_all() {
         return ground_under_deck(path) + night_light(hung);
@@ -62,7 +64,8 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32, hung: Hung) -> Veil {
     let sky = range >= RANGE_SKY;
     let above = FAR_ABOVE && (!FAR_BELOW || ray.direction.z >= 0.0);
     var veil = Veil(vec3f(0.0), vec3f(1.0));
-    // One path for ground and air: a driver that compiles both ways, and takes both, does its part once. The sky needs none.
+    // One path for ground and air: a driver that compiles both ways, and takes both, does its part once. The sky needs
+    // none.
     var path: SkyPath;
     if !(sky && above) {
         path = sky_path(ray.direction, range);

@@ -1,5 +1,5 @@
-// In place of weather_seen.wgsl for pixels between which the weather is even: it is looked up in its grid, and the pixel's clouds, which the
-// grid does not have, are laid over it.
+// In place of weather_seen.wgsl for pixels between which the weather is even: it is looked up in its grid, and the
+// pixel's clouds, which the grid does not have, are laid over it.
 //!include "between/air.wgsl"
 //!include "between/hung.wgsl"
 //!include "frame/even.wgsl"

@@ -1,4 +1,5 @@
-// The wind over what the host drew, for developers (docs/diagnostics.md): its speed in false colours, and arrows along it.
+// The wind over what the host drew, for developers (docs/diagnostics.md): its speed in false colours, and arrows along
+// it.
 //!include "frame/false_colors.wgsl"
 //!include "surroundings/wind.wgsl"
 

@@ -1,26 +1,29 @@
-// Beads on glass, one a cell at most, in integers: the same bits on every driver. The twin is src/glass/reference.rs, the
-// numbers of a step come from src/glass/step.rs.
+// Beads on glass, one a cell at most, in integers: the same bits on every driver. The twin is src/glass/reference.rs,
+// the numbers of a step come from src/glass/step.rs.
 //!include "common/fullscreen.wgsl"
 
 struct Step {
     // Key of (seed, step), key of the seed, columns, rows.
     key: vec4u,
-    // A cell gets at least 1, 2, 3 drops where its 32 random bits are below these; chance in 65536 that a fine bead dries.
+    // A cell gets at least 1, 2, 3 drops where its 32 random bits are below these; chance in 65536 that a fine bead
+    // dries.
     arrive: vec4u,
     // Declared state: water a step in 1/256 unit, drops a step in 1/65536, the step, the largest bead that rests.
     declared: vec4u,
     // The largest volume of a cell; 1 where not all of the rain gets everywhere.
     limits: vec4u,
-    // Each arm: (pivot x, y, inner, outer radius), (direction before x, y, half way x, y), (now x, y, half width, is there).
+    // Each arm: (pivot x, y, inner, outer radius), (direction before x, y, half way x, y), (now x, y, half width, is
+    // there).
     arms: array<vec4i, 6>,
     // Volumes of drops, from common to rare.
     drops: array<vec4u, 64>,
     // Beads by volume: (radius + 1024 x loss to the air, motion x, y, 256 x drive over retention).
     beads: array<vec4i, 96>,
-    // Snow. A flake lands on a cell whose 32 random bits are below the first number. Then, in units of water: a flake, what melts in a step
-    // (in 1/4096), and the most that a cell holds.
+    // Snow. A flake lands on a cell whose 32 random bits are below the first number. Then, in units of water: a flake,
+    // what melts in a step (in 1/4096), and the most that a cell holds.
     snow: vec4u,
-    // Shares of the rain that get to the nodes of a net over the pane, in 1/128, four a word, rows from the lower edge up.
+    // Shares of the rain that get to the nodes of a net over the pane, in 1/128, four a word, rows from the lower edge
+    // up.
     reach: array<vec4u, 8>,
 }
 
@@ -133,8 +136,8 @@ fn node(at: vec2u) -> u32 {
     return share;
 }
 
-// Share of the rain that gets to a cell, in 1/65536: between its nodes. A loop that is not begun is what a software driver leaves
-// out.
+// Share of the rain that gets to a cell, in 1/65536: between its nodes. A loop that is not begun is what a software
+// driver leaves out.
 fn reached(cell: vec2i) -> u32 {
     var share = 65536u;
     for (var i = select(0u, 1u, step.limits.y == 0u && !MAPPED); i < 1u; i++) {

@@ -1,5 +1,5 @@
-// First half of a step: where each bead goes. A larger bead that touches it takes it in; else it runs if gravity and air
-// overcome what holds it, and leaves small beads behind.
+// First half of a step: where each bead goes. A larger bead that touches it takes it in; else it runs if gravity and
+// air overcome what holds it, and leaves small beads behind.
 //!include "glass/cells.wgsl"
 
 // Whether `larger`, `offset` (1/256 cell) away, takes this bead in: it touches, and it does not run away from it.

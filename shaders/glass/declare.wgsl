@@ -1,5 +1,5 @@
-// The declared state of a moment: a pure function of (seed, step, rain). Each cell collects water for some half a minute,
-// from a moment of its own on, and never so much that it runs.
+// The declared state of a moment: a pure function of (seed, step, rain). Each cell collects water for some half a
+// minute, from a moment of its own on, and never so much that it runs.
 //!include "glass/cells.wgsl"
 
 @fragment

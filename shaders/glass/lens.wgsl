@@ -1,7 +1,7 @@
-// What the glass does to the finished picture: each bead is a lens that shows the scene behind it upside down and small,
-// with a dark rim where light is thrown back; a film of water shakes the picture, mist on the inside blurs and whitens it. Through snow
-// comes light, but no picture.
-// Axes: right and up along the glass, outwards from it; metres, the eye behind the glass.
+// What the glass does to the finished picture: each bead is a lens that shows the scene behind it upside down and
+// small, with a dark rim where light is thrown back; a film of water shakes the picture, mist on the inside blurs and
+// whitens it. Through snow comes light, but no picture. Axes: right and up along the glass, outwards from it; metres,
+// the eye behind the glass.
 //!include "common/fullscreen.wgsl"
 //!include "common/tone.wgsl"
 
@@ -162,8 +162,8 @@ fn texel(at: vec2i) -> vec3f {
     return select(c, srgb_decode(c), ENCODED);
 }
 
-// The scene over some 2^detail >= 32 pixels. Beyond the smallest copy's texels, four of them: a lamp must not flash in one
-// drop's pixel and miss the next.
+// The scene over some 2^detail >= 32 pixels. Beyond the smallest copy's texels, four of them: a lamp must not flash in
+// one drop's pixel and miss the next.
 fn wide_scene(place: vec2f, detail: f32) -> vec3f {
     let apart = 0.25 * exp2(detail) / vec2f(textureDimensions(picture));
     if detail <= 5.0 {
@@ -270,7 +270,8 @@ fn from_pivot(c: vec2f) -> vec2f {
     return best;
 }
 
-// Streaks of a film: fine ridges along the blade's way, or along the flow. `arm` is the way from the wiper's pivot, or 0.
+// Streaks of a film: fine ridges along the blade's way, or along the flow. `arm` is the way from the wiper's pivot, or
+// 0.
 fn streaks(c: vec2f, arm: vec2f) -> f32 {
     let across = dot(c, vec2f(lens.flow.y, -lens.flow.x));
     let at = 2.7 * select(across, length(arm), any(arm != vec2f(0.0)));
@@ -311,7 +312,8 @@ fn snow_over(c: vec2f) -> f32 {
     return lens.snow_depth * sum / max(weights, 1e-3) * (0.5 + grain);
 }
 
-// Light through snow: what comes from all over the picture, less what goes back (two streams, asymmetry 0.89 as of ice spheres).
+// Light through snow: what comes from all over the picture, less what goes back (two streams, asymmetry 0.89 as of ice
+// spheres).
 fn through_snow(depth: f32) -> vec3f {
     let around = 0.25 * (scene(vec2f(0.25, 0.3), 5.0) + scene(vec2f(0.75, 0.3), 5.0) + 2.0 * scene(vec2f(0.5, 0.5), 5.0));
     return around / (1.0 + 0.75 * 0.11 * depth);

@@ -1,4 +1,5 @@
-// Snow on glass, in units of its water a cell: flakes land, blades take it away, heat melts it. The twin is src/glass/reference.rs.
+// Snow on glass, in units of its water a cell: flakes land, blades take it away, heat melts it. The twin is
+// src/glass/reference.rs.
 //!include "glass/cells.wgsl"
 
 // A step's snow of a cell, from that before.

@@ -17,8 +17,8 @@ fn mix_looks(a: SurfaceLook, b: SurfaceLook, share: f32) -> SurfaceLook {
     );
 }
 
-// Whether plants grow there, from the colour: excess green, (2 g - r - b) / (r + g + b) (Woebbecke et al. 1995), which is 0
-// for grey and below 0 for soil.
+// Whether plants grow there, from the colour: excess green, (2 g - r - b) / (r + g + b) (Woebbecke et al. 1995), which
+// is 0 for grey and below 0 for soil.
 fn plants(albedo: vec3f) -> f32 {
     let excess = (2.0 * albedo.g - albedo.r - albedo.b) / max(albedo.r + albedo.g + albedo.b, 1e-6);
     return smoothstep(0.08, 0.3, excess);

@@ -50,8 +50,9 @@ fn four_waves(east: vec4f, north: vec4f, amplitude: vec4f, phases: vec4f, at: ve
     return vec2f(dot(keep, sines(phases + east * at.x + north * at.y)), 0.5 * dot(keep, keep));
 }
 
-// Depth of the hollows below the mean ground in units of its root mean square, and how much of its variance is too small for the
-// pixel. Not found where nothing depends on it. Without a loop, whose masks cost a software driver more than some of the waves.
+// Depth of the hollows below the mean ground in units of its root mean square, and how much of its variance is too
+// small for the pixel. Not found where nothing depends on it. Without a loop, whose masks cost a software driver more
+// than some of the waves.
 fn hollow_depth(at: vec2f, across: vec2f, along: vec2f, wanted: bool) -> vec2f {
     if !wanted {
         return vec2f(0.0, 1.0);
@@ -75,8 +76,9 @@ const FARTHEST_LEVEL: f32 = 6.0;
 // A level deeper than any hollow: nothing lies in them.
 const NO_LEVEL: f32 = 1000.0;
 
-// Level above which the share `covered` of the hollows lies: the inverse of `normal_share`, y + 0.044715 y^3 = the logarithm of the
-// odds over 1.5957691, by the hyperbolic sine of a third of an angle, as cubics with one root are solved.
+// Level above which the share `covered` of the hollows lies: the inverse of `normal_share`, y + 0.044715 y^3 = the
+// logarithm of the odds over 1.5957691, by the hyperbolic sine of a third of an angle, as cubics with one root are
+// solved.
 fn level_of(covered: f32) -> f32 {
     let share = clamp(covered, 1e-6, 1.0 - 1e-6);
     let odds = log(share / (1.0 - share)) / 1.5957691;

@@ -1,4 +1,5 @@
-// Which way the ground that a pixel shows faces: as the host's image of normals says, else as its terrain lies, else by its depth.
+// Which way the ground that a pixel shows faces: as the host's image of normals says, else as its terrain lies, else by
+// its depth.
 //!include "common/facing.wgsl"
 //!include "common/guarded.wgsl"
 //!include "ground/terrain.wgsl"
@@ -30,7 +31,8 @@ fn given_normal(g: GroundUniform, texel: vec3f) -> vec4f {
     return vec4f(local / max(size, 1e-6), select(0.0, 1.0, known));
 }
 
-// The normal in the host's words, else its terrain's where the surface lies on it and depth does not say that it is a wall.
+// The normal in the host's words, else its terrain's where the surface lies on it and depth does not say that it is a
+// wall.
 fn known_facing(surface: HostSurface, here: TerrainPoint) -> Facing {
     if surface.normal.w > 0.0 {
         return Facing(surface.normal.xyz, 1.0, 0.0);
@@ -44,8 +46,8 @@ fn known_facing(surface: HostSurface, here: TerrainPoint) -> Facing {
     return f;
 }
 
-// Ground that is marked as paved is taken for level, give or take LEVEL_SLOPE, so far as `f` does not tell better: the mean of two
-// guesses by the inverse squares of their errors, if they agree. `level`: how sure that is.
+// Ground that is marked as paved is taken for level, give or take LEVEL_SLOPE, so far as `f` does not tell better: the
+// mean of two guesses by the inverse squares of their errors, if they agree. `level`: how sure that is.
 fn settled_facing(f: Facing, up: vec3f, level: f32) -> Facing {
     let slack = LEVEL_SLOPE + f.error;
     let agrees = 1.0 - smoothstep(slack, 2.0 * slack, length(f.normal - up));
@@ -54,8 +56,8 @@ fn settled_facing(f: Facing, up: vec3f, level: f32) -> Facing {
     return Facing(normalize(mix(f.normal, up, share)), mix(f.sure, 1.0, share), f.error * (1.0 - share));
 }
 
-// What is left of a mirror of this slope where its normal may be off by `error`: all up to half of what its roughness hides, nothing
-// from twice as much on.
+// What is left of a mirror of this slope where its normal may be off by `error`: all up to half of what its roughness
+// hides, nothing from twice as much on.
 fn mirror_left(error: f32, slope: f32) -> f32 {
     return 1.0 - smoothstep(0.5 * slope, 2.0 * slope, error);
 }

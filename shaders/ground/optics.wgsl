@@ -1,4 +1,5 @@
-// Light at a film of water: what it mirrors and how it darkens what lies below. The f64 twin is src/ground/reference.rs.
+// Light at a film of water: what it mirrors and how it darkens what lies below. The f64 twin is
+// src/ground/reference.rs.
 
 // Refractive index of water over that of air, visible light at 20 C (Hale & Querry 1973, rounded).
 const WATER_INDEX: f32 = 1.333;
@@ -18,31 +19,31 @@ fn fresnel_water(cosine: f32) -> f32 {
 }
 
 // What a film leaves of the light that a rough ground of this albedo sends up: light that enters is thrown back at the
-// surface from below and falls on the ground again (Angstrom 1925; Lekner & Dorf 1988, eq. 1 to 3). `entering` is the share
-// of the light from above that gets into the water.
+// surface from below and falls on the ground again (Angstrom 1925; Lekner & Dorf 1988, eq. 1 to 3). `entering` is the
+// share of the light from above that gets into the water.
 fn wet_share(albedo: vec3f, entering: f32) -> vec3f {
     return entering * (1.0 - WATER_INSIDE) / (1.0 - WATER_INSIDE * clamp(albedo, vec3f(0.0), vec3f(1.0)));
 }
 
 // Mean slope towards the eye of the facets that it sees on a rough surface whose slopes are spread normally by `slope`
-// (root mean square along one axis), at the tangent of its zenith angle: slope^2 tan for steep looks, the mean of a half
-// normal distribution for grazing ones.
+// (root mean square along one axis), at the tangent of its zenith angle: slope^2 tan for steep looks, the mean of a
+// half normal distribution for grazing ones.
 fn seen_slope(slope: f32, tangent: f32) -> f32 {
     let t = slope * tangent * 0.797884561;
     return slope * slope * tangent / sqrt(1.0 + t * t);
 }
 
-// Share of a unit of a rough surface that a direction of this zenith cosine sees of it: the cosine, and at grazing looks
-// the tilted facets' 0.4 slope.
+// Share of a unit of a rough surface that a direction of this zenith cosine sees of it: the cosine, and at grazing
+// looks the tilted facets' 0.4 slope.
 fn seen_area(slope: f32, cosine: f32) -> f32 {
     let c = max(cosine, 0.0);
     return sqrt(c * c + 0.16 * slope * slope * (1.0 - c * c));
 }
 
-// Luminance that a lamp of illuminance 1 makes on rough water, per Fresnel share (Cox & Munk 1954, eq. 5, with the shadows of
-// facets on each other): `up` is the surface's normal, `facet` the one that mirrors the lamp's middle into the eye. The
-// lamp's disc, `disc2` = (radius / 4)^2, counts as slopes that mirror its middle: seen flat along the look it takes a facet
-// turned by half its radius, across it one turned by more.
+// Luminance that a lamp of illuminance 1 makes on rough water, per Fresnel share (Cox & Munk 1954, eq. 5, with the
+// shadows of facets on each other): `up` is the surface's normal, `facet` the one that mirrors the lamp's middle into
+// the eye. The lamp's disc, `disc2` = (radius / 4)^2, counts as slopes that mirror its middle: seen flat along the look
+// it takes a facet turned by half its radius, across it one turned by more.
 fn glitter(slope: f32, disc2: f32, up: vec3f, facet: vec3f, to_eye: vec3f, to_lamp: vec3f) -> f32 {
     let c = dot(up, facet);
     let lit = dot(up, to_lamp);

@@ -1,5 +1,5 @@
-// Lying snow on the surface that a pixel shows: where it covers the ground, and the light that it sends. How deep it lies is led on the
-// CPU (src/snowpack); snow_cover of src/weather/surface.rs is `snow_level`'s twin.
+// Lying snow on the surface that a pixel shows: where it covers the ground, and the light that it sends. How deep it
+// lies is led on the CPU (src/snowpack); snow_cover of src/weather/surface.rs is `snow_level`'s twin.
 //!include "common/guarded.wgsl"
 //!include "ground/spot.wgsl"
 
@@ -11,13 +11,15 @@ const WET_SNOW: f32 = 0.15;
 const SNOW_WRAP: f32 = 0.12;
 // Width of the edges of patches in units of the hollows' depth.
 const SNOW_EDGE: f32 = 0.35;
-// Albedo of the host's ground below which it is taken to lie in the lamp's shadow, for certain and not at all: nothing outdoors is so dark.
+// Albedo of the host's ground below which it is taken to lie in the lamp's shadow, for certain and not at all: nothing
+// outdoors is so dark.
 const SHADOWED: vec2f = vec2f(0.015, 0.05);
 // Halvings of a cell of the rings' grid to the finest cells of glints, and the share of the cells that glint.
 const FINEST_GLINT: f32 = 6.0;
 const GLINT_SHARE: f32 = 0.02;
 
-// Level in the hollows up to which snow of this depth covers level ground. The first patches lie in the deepest ones, where puddles do.
+// Level in the hollows up to which snow of this depth covers level ground. The first patches lie in the deepest ones,
+// where puddles do.
 fn snow_level(depth: f32) -> f32 {
     return select(level_of(tanh(min(depth / 0.025, 10.0))), NO_LEVEL, depth <= 0.0);
 }
@@ -41,8 +43,8 @@ fn glints_of(at: vec2f, level: f32, half_way: vec2f) -> f32 {
     return select(0.0, 1.0, turned < GLINT_SHARE) * smoothstep(0.45, 0.1, from_middle) * chance.y;
 }
 
-// Glints of single grains, over the light of the whole: cells are as large as pixels are, so that they neither crawl nor flicker, and
-// fade where a pixel holds many.
+// Glints of single grains, over the light of the whole: cells are as large as pixels are, so that they neither crawl
+// nor flicker, and fade where a pixel holds many.
 fn snow_glints(at: vec2f, side: f32, to_eye: vec3f) -> f32 {
     let wanted = clamp(log2(RING_CELL / max(2.0 * side, 1e-4)), 0.0, FINEST_GLINT);
     let low = floor(wanted);
@@ -51,8 +53,8 @@ fn snow_glints(at: vec2f, side: f32, to_eye: vec3f) -> f32 {
     return both * (1.0 - smoothstep(0.005, 0.06, side));
 }
 
-// Light of snow towards the eye, cd/m^2. `seen`: the albedo that the host's colour would have in full light; `lamps`: illuminance by the
-// host's lamps.
+// Light of snow towards the eye, cd/m^2. `seen`: the albedo that the host's colour would have in full light; `lamps`:
+// illuminance by the host's lamps.
 fn snow_light(snow: vec3f, normal: vec3f, up: vec3f, seen: vec3f, lamps: vec3f, glints: f32) -> vec3f {
     let cosine = dot(normal, ground.to_lamp);
     let lit = smoothstep(SHADOWED.x, SHADOWED.y, dot(seen, vec3f(0.2126, 0.7152, 0.0722)));

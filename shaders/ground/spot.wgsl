@@ -38,8 +38,8 @@ fn kept_off(p: vec3f, fall: f32, wanted: bool) -> f32 {
     return select(0.0, 1.0, mapped_ground(p, ground.wind - vec3f(0.0, 0.0, fall), wanted));
 }
 
-// Of each twelfth of the water whether maps keep it off `p`. They are asked for the slowest and the fastest drops and two between,
-// and where two neighbours of these differ, by halves for the size from which on it is otherwise.
+// Of each twelfth of the water whether maps keep it off `p`. They are asked for the slowest and the fastest drops and
+// two between, and where two neighbours of these differ, by halves for the size from which on it is otherwise.
 fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
     let falls = ground.falls;
     let ends = vec4f(
@@ -71,9 +71,9 @@ fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
     );
 }
 
-// Share of the rain's water that gets to `p` past what keeps it off; `boxes`: past boxes too. Time in a box times fall speed goes
-// evenly with that speed, where a roof's underside and its edge bound it: asked for four drops, it says which of all twelfths
-// of the water come by.
+// Share of the rain's water that gets to `p` past what keeps it off; `boxes`: past boxes too. Time in a box times fall
+// speed goes evenly with that speed, where a roof's underside and its edge bound it: asked for four drops, it says
+// which of all twelfths of the water come by.
 fn rained_on(p: vec3f, boxes: bool) -> f32 {
     let falls = ground.falls;
     let asked = vec4f(falls[0].x, 0.5 * (falls[0].w + falls[1].x), 0.5 * (falls[1].w + falls[2].x), falls[2].w);
@@ -108,8 +108,8 @@ fn wetted(host: vec3f, albedo_known: bool, at: vec3f, up: vec3f, surface: HostSu
     let lamps = host_lamps(at, known.normal);
     let look = surface_look(surface, here, dry_albedo(host, up, up, lamps));
     let facing = settled_facing(known, up, look.level);
-    // The host lights natural ground by normals that go smoothly over its triangles: those of depth would show each of them.
-    // There gentle slopes count as level, an error of a tenth of the darkening at most.
+    // The host lights natural ground by normals that go smoothly over its triangles: those of depth would show each of
+    // them. There gentle slopes count as level, an error of a tenth of the darkening at most.
     let rough = smoothstep(0.0, 0.3, look.slope) * smoothstep(0.5, 0.8, dot(facing.normal, up));
     let by_depth = surface.normal.w == 0.0;
     let flat = select(0.0, max(rough, 1.0 - facing.sure) * (1.0 - here.share), by_depth);

@@ -5,8 +5,8 @@
 // Whether there is water or clear ice on any surface.
 override WATER: bool = true;
 
-// `host` is the host's colour as luminance, or as display-linear colour where `albedo_known` says that it is all that is
-// known of the albedo.
+// `host` is the host's colour as luminance, or as display-linear colour where `albedo_known` says that it is all that
+// is known of the albedo.
 fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: HostSurface) -> Veil {
     let spot = spot_at(host, albedo_known, ray, range, surface);
     var veil = Veil(vec3f(0.0), vec3f(1.0));

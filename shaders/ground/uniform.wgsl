@@ -74,22 +74,23 @@ struct GroundUniform {
     fog_depth: f32,
     // Fall speeds of the drops in the middle of each twelfth of the water, m/s, slow ones first.
     falls: array<vec4f, 3>,
-    // On the host's terrain: from camera-relative east, north and up to cells east and north of its first node and to metres
-    // above its origin.
+    // On the host's terrain: from camera-relative east, north and up to cells east and north of its first node and to
+    // metres above its origin.
     terrain_x: vec4f,
     terrain_y: vec4f,
     terrain_z: vec4f,
-    // Its last node, cells from its border within which it gives way to the world's ground, and how far off it, m, a surface
-    // may lie that is still its own.
+    // Its last node, cells from its border within which it gives way to the world's ground, and how far off it, m, a
+    // surface may lie that is still its own.
     terrain_last: vec2f,
     terrain_rim: f32,
     terrain_near: f32,
-    // Rows that turn normals of the host's image to east, north, up; w: what its numbers are multiplied by, and added to that.
+    // Rows that turn normals of the host's image to east, north, up; w: what its numbers are multiplied by, and added
+    // to that.
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
-    // Snow on level, open ground. x: level in the hollows up to which it covers them. y: wetness. z: albedo. w: depth, m; -1 where no cell of
-    // the terrain has snow of its own.
+    // Snow on level, open ground. x: level in the hollows up to which it covers them. y: wetness. z: albedo. w: depth,
+    // m; -1 where no cell of the terrain has snow of its own.
     snow: vec4f,
     // Of each class; the first one is the context's default.
     looks: array<SurfaceLook, SURFACE_CLASSES>,

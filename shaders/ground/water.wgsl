@@ -6,8 +6,8 @@
 // Whether drops make rings in standing water.
 override RINGS: bool = true;
 
-// What a mirror on the ground sees in direction `d`: the sky through the fog that lies on it; the ground round about if it
-// faces down.
+// What a mirror on the ground sees in direction `d`: the sky through the fog that lies on it; the ground round about if
+// it faces down.
 fn mirrored_light(d: vec3f) -> vec3f {
     let up = normalize(vec3f(d.xy, max(d.z, 1e-3)));
     let through = exp(-ground.fog_depth / max(up.z, 0.02));
@@ -89,7 +89,8 @@ struct Water {
     soaked: f32,
 }
 
-// Standing water: `up` but for the rings of drops, which a pixel that is too long to show them sees as a rougher surface.
+// Standing water: `up` but for the rings of drops, which a pixel that is too long to show them sees as a rougher
+// surface.
 fn pool_at(spot: Spot, pooled: f32) -> Film {
     var normal = spot.up;
     var slope2 = ground.water_slope * ground.water_slope;
@@ -124,7 +125,8 @@ fn water_at(spot: Spot) -> Water {
         film_slope = mix(film_slope, mix(THIN_FILM_SLOPE, CLOSED_FILM_SLOPE, here.water.film), here.share);
     }
     pool *= spot.gets;
-    // In the hollows the film is deeper and smoother; ice lies evenly over all of it, nearly as clear as water and as bright.
+    // In the hollows the film is deeper and smoother; ice lies evenly over all of it, nearly as clear as water and as
+    // bright.
     let ice = ground.glaze * spot.gets;
     let own = mix(film_slope * (1.2 - 0.4 * normal_share(hollow.x)), GLAZE_SLOPE, ice);
     let film = Film(facing.normal, sqrt(own * own + look.slope * look.slope));

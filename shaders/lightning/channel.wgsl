@@ -1,5 +1,6 @@
-// Parts of the channels of flashes as lines of light before a host's picture; where that has several samples a pixel, the first stands
-// for them. A line is a point of light drawn out: each part sends what it sends, however many pixels it covers.
+// Parts of the channels of flashes as lines of light before a host's picture; where that has several samples a pixel,
+// the first stands for them. A line is a point of light drawn out: each part sends what it sends, however many pixels
+// it covers.
 //!include "common/guarded.wgsl"
 //!include "common/host.wgsl"
 //!include "between/veil.wgsl"
@@ -37,7 +38,8 @@ struct ChannelVarying {
     @location(1) @interpolate(flat) along: vec3f,
     // Unit direction to its middle, and distance of that, m.
     @location(2) @interpolate(flat) middle: vec4f,
-    // Luminance of a pixel in which a pixel's length of it lies, with the exposure on it, and distance from the camera's plane, m.
+    // Luminance of a pixel in which a pixel's length of it lies, with the exposure on it, and distance from the
+    // camera's plane, m.
     @location(3) @interpolate(flat) light: vec2f,
 }
 
@@ -46,7 +48,8 @@ fn pixel_of(clip: vec4f) -> vec2f {
     return (0.5 + 0.5 * ndc * vec2f(1.0, -1.0)) * channel.size;
 }
 
-// A corner of the pixels that a part lights: its ends, camera-relative, and its luminous intensity with the exposure on it.
+// A corner of the pixels that a part lights: its ends, camera-relative, and its luminous intensity with the exposure on
+// it.
 @vertex
 fn channel_vertex(
     @builtin(vertex_index) corner: u32,

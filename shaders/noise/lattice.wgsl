@@ -19,8 +19,9 @@ fn fade3(t: vec3f) -> vec3f {
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
 
-// The plane's vectors: their greater and their lesser coordinate. They point 22.5 degrees off the axes and the diagonals, along
-// which noise would show streaks. They are 1.25 long, with which noise deviates as much from its mean as it does in space.
+// The plane's vectors: their greater and their lesser coordinate. They point 22.5 degrees off the axes and the
+// diagonals, along which noise would show streaks. They are 1.25 long, with which noise deviates as much from its mean
+// as it does in space.
 const RAMP: vec2f = vec2f(1.1548494, 0.4783543);
 
 // Product of `from_corner` with one of eight vectors.
@@ -112,8 +113,8 @@ fn nearer3(nearest: f32, bits: u32, to_cell: vec3f) -> f32 {
     return min(nearest, dot(to_point, to_point));
 }
 
-// The same of the three cells of a column of the plane, of which the middle one begins `to_cell` away. Here and below no loops: a
-// software driver takes twice as long for them.
+// The same of the three cells of a column of the plane, of which the middle one begins `to_cell` away. Here and below
+// no loops: a software driver takes twice as long for them.
 fn nearer_in_line(nearest: f32, column: u32, y: vec3u, to_cell: vec2f) -> f32 {
     let step = vec2f(0.0, STEPS);
     let before = nearer2(nearest, scramble(column + y.x), to_cell - step);
@@ -135,8 +136,8 @@ fn nearer_in_column(nearest: f32, column: u32, y: vec3u, z: vec3u, to_cell: vec3
     return nearer_in_row(middle, scramble(column + y.z), z, to_cell + step);
 }
 
-// 1 minus the distance to the nearest point, one point a cell, at least 0 (Worley 1996, F1). Points two cells away are farther than
-// 1, so that the cells about this one are enough.
+// 1 minus the distance to the nearest point, one point a cell, at least 0 (Worley 1996, F1). Points two cells away are
+// farther than 1, so that the cells about this one are enough.
 fn cellular2(cell: vec2u, at: vec2f, period: vec2u, key: u32) -> f32 {
     let x = about(cell.x, period.x);
     let y = about(cell.y, period.y);

@@ -1,5 +1,5 @@
-// A mip level from the one above it: the mean of 2 x 2 or 2 x 2 x 2 texels in whole bytes, a half rounded up, as the CPU's
-// (src/noise/image.rs) to the bit.
+// A mip level from the one above it: the mean of 2 x 2 or 2 x 2 x 2 texels in whole bytes, a half rounded up, as the
+// CPU's (src/noise/image.rs) to the bit.
 //!include "common/fullscreen.wgsl"
 
 struct Shrink {

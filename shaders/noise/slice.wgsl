@@ -31,7 +31,8 @@ struct Place {
     at: vec3f,
 }
 
-// Where a texel's middle lies on a lattice with `period` cells to the texture: (2 i + 1) period / (2 size), in whole numbers.
+// Where a texel's middle lies on a lattice with `period` cells to the texture: (2 i + 1) period / (2 size), in whole
+// numbers.
 fn place_of(texel: vec2f, period: vec3u) -> Place {
     let halves = slice.size_log2 + 1u;
     let parts = (2u * vec3u(vec2u(texel), slice.z) + 1u) * period;
@@ -89,7 +90,8 @@ fn cellular_sum_volume(texel: vec2f) -> f32 {
     return clamp(sum, 0.0, 1.0);
 }
 
-// Gradient noise mapped from [0, 1] to [cellular noise, 1] (Schneider 2015, The Real-time Volumetric Cloudscapes of Horizon Zero Dawn).
+// Gradient noise mapped from [0, 1] to [cellular noise, 1] (Schneider 2015, The Real-time Volumetric Cloudscapes of
+// Horizon Zero Dawn).
 fn gradient_over_cellular(gradient: f32, cellular: f32) -> f32 {
     return cellular + gradient * (1.0 - cellular);
 }

@@ -1,8 +1,8 @@
 // What each part of the weather is worth in this very picture: at a coarse grid of its pixels, the composition with
-// everything and without one part after the other. Output, by halves: relative change of luminance without air, without fog,
-// without clear sky, and with a veil in place of drops but nothing else for them; 1 where the host drew something, -1 where it
-// drew nothing, 0 under the mask; exposed luminance; optical depth of what drops hide; the change without clouds as a volume, of
-// which the gauge knows how many there are and not where.
+// everything and without one part after the other. Output, by halves: relative change of luminance without air, without
+// fog, without clear sky, and with a veil in place of drops but nothing else for them; 1 where the host drew something,
+// -1 where it drew nothing, 0 under the mask; exposed luminance; optical depth of what drops hide; the change without
+// clouds as a volume, of which the gauge knows how many there are and not where.
 //!include "frame/composite.wgsl"
 //!include "frame/exposed.wgsl"
 
@@ -21,12 +21,14 @@ fn halves(a: f32, b: f32) -> u32 {
     return ((bitcast<u32>(a) + 0x8000u) >> 16u) | ((bitcast<u32>(b) + 0x8000u) & 0xffff0000u);
 }
 
-// Compositions beside those of frame.compositions: a deck in the place of clouds, nothing but their mean light, and a gap between them.
+// Compositions beside those of frame.compositions: a deck in the place of clouds, nothing but their mean light, and a
+// gap between them.
 const WITH_DECK: u32 = 5u;
 const IN_CLOUD: u32 = 6u;
 const IN_GAP: u32 = 7u;
 
-// What hangs in the sky in a composition: of clouds a deck at most, so that what others are worth does not hang on what is drawn now.
+// What hangs in the sky in a composition: of clouds a deck at most, so that what others are worth does not hang on what
+// is drawn now.
 fn hung_for(k: u32, ray: ViewRay, seen: Hung) -> Hung {
     var hung = hung_bare();
     hung.behind = seen.behind;
@@ -62,7 +64,8 @@ fn gauged(p: Looked) -> vec4u {
     // The measure of error of the whole of Welkin: relative luminance over a hundredth of white.
     let less = vec4f(shown[1], shown[2], shown[3], select(shown[0], shown[4], frame.compositions > 4u));
     let change = clamp((less - shown[0]) / (shown[0] + 0.01) * (1.0 - p.mask), vec4f(-6e4), vec4f(6e4));
-    // Clouds are not looked at themselves, as they may not be drawn now: as many pixels as they cover are in cloud, evenly spread.
+    // Clouds are not looked at themselves, as they may not be drawn now: as many pixels as they cover are in cloud,
+    // evenly spread.
     let cell = floor((0.5 + 0.5 * p.ndc) * vec2f(64.0, 36.0));
     let in_cloud = fract(dot(cell, vec2f(0.7548777, 0.5698403))) < slant_cover(ray.direction);
     let with_volume = select(shown[IN_GAP], shown[IN_CLOUD], in_cloud);

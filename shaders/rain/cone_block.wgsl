@@ -6,7 +6,8 @@ const STRETCHES: u32 = 4u;
 struct ConeUniform {
     // Where the drops go as seen from the camera, and two directions across.
     axis: vec3f,
-    // Fall speed with which shelters are asked, m/s: the harmonic mean, since wind drives drops as far as they take time to fall.
+    // Fall speed with which shelters are asked, m/s: the harmonic mean, since wind drives drops as far as they take
+    // time to fall.
     fall: f32,
     east: vec3f,
     // Nearest cone that shows anything.
@@ -16,16 +17,17 @@ struct ConeUniform {
     growing: u32,
     // Per cone: near end, far end and middle of its band, m; optical depth of its drops.
     bands: array<vec4f, CONES>,
-    // Per cone, at right angles to the axis. x: tiles in a turn about the axis. y: tiles in a radian of Mercator's latitude. z: drops per
-    // steradian. w: upper bound of y; above it streaks would be shorter than a pixel.
+    // Per cone, at right angles to the axis. x: tiles in a turn about the axis. y: tiles in a radian of Mercator's
+    // latitude. z: drops per steradian. w: upper bound of y; above it streaks would be shorter than a pixel.
     shapes: array<vec4f, CONES>,
-    // Per cone: share of the light of its middle that what lies between lets through; level of detail at right angles to the
-    // axis; how often its tiles can be halved.
+    // Per cone: share of the light of its middle that what lies between lets through; level of detail at right angles
+    // to the axis; how often its tiles can be halved.
     looks: array<vec4f, CONES>,
-    // Ends of the stretches along a ray of which it is asked what keeps rain off: a band each, the outermost in two halves, m.
+    // Ends of the stretches along a ray of which it is asked what keeps rain off: a band each, the outermost in two
+    // halves, m.
     stretches: array<vec4f, STRETCHES>,
-    // Per cone a set of streaks, and the one that grows in the place of one of them: how far it has come, in latitude; share of the
-    // drops; offset.
+    // Per cone a set of streaks, and the one that grows in the place of one of them: how far it has come, in latitude;
+    // share of the drops; offset.
     sets: array<vec4f, 4>,
 }
 

@@ -16,8 +16,8 @@ const CONE_SIDE: f32 = 256.0;
 @group(1) @binding(3) var open_parts: texture_2d_array<f32>;
 @group(1) @binding(4) var open_sampler: sampler;
 
-// Whether anything near keeps rain off, whether the innermost cone shows anything, and whether a set of streaks grows in another's
-// place.
+// Whether anything near keeps rain off, whether the innermost cone shows anything, and whether a set of streaks grows
+// in another's place.
 override SHELTERED: bool = false;
 override INNERMOST: bool = true;
 override GROWING: bool = true;
@@ -132,8 +132,8 @@ fn before_others(d: vec3f, day: vec3f, j: u32, hidden: f32, seen: vec4f) -> vec4
     return seen + vec4f(day + lamp_light(d * middle, d), 1.0) * (cover * (1.0 - seen.a));
 }
 
-// All cones before what is at `range`: premultiplied light, and what they hide. Without a loop: software drivers take twice as long
-// for one.
+// All cones before what is at `range`: premultiplied light, and what they hide. Without a loop: software drivers take
+// twice as long for one.
 fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
     let at = on_cone(d);
     let day = day_light(d);
@@ -147,7 +147,8 @@ fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
         hidden += select(vec3f(0.0), vec3f(more), vec3u(0u, 1u, 2u) == vec3u(cones.growing));
     }
     if !LAMPS {
-        // One light for all: what each hides of the next is of second order, and what is before them does not count there.
+        // One light for all: what each hides of the next is of second order, and what is before them does not count
+        // there.
         let clear = vec3f(cones.looks[0].x, cones.looks[1].x, cones.looks[2].x);
         return vec4f(day, 1.0) * (1.0 - exp(-dot(clear, hidden)));
     }

@@ -1,4 +1,5 @@
-// Which drops of the lattice can be in the picture: a few in a hundred, but each must be asked. Then their number, for the draw.
+// Which drops of the lattice can be in the picture: a few in a hundred, but each must be asked. Then their number, for
+// the draw.
 //!include "rain/cull_list.wgsl"
 //!include "falling/order.wgsl"
 

@@ -1,12 +1,12 @@
-// The streaks of the drops that rain/cull.wgsl has found: once a drop what it costs to know whether it got there, and in what
-// light.
+// The streaks of the drops that rain/cull.wgsl has found: once a drop what it costs to know whether it got there, and
+// in what light.
 //!include "rain/cull_list.wgsl"
 
 @compute @workgroup_size(64)
 fn make_streaks(@builtin(global_invocation_id) id: vec3u) {
     let all = rain.shells * shell_blocks();
-    // `states` is named although only stepped drops have any: where a declared block is not used, zink of Mesa 26.2 answers the length of
-    // another block than the one that is asked for.
+    // `states` is named although only stepped drops have any: where a declared block is not used, zink of Mesa 26.2
+    // answers the length of another block than the one that is asked for.
     if id.x >= listed(all, arrayLength(&streaks)) || arrayLength(&states) == 0u {
         return;
     }

@@ -46,11 +46,11 @@ struct RainUniform {
     // Of the camera, m/s.
     camera: vec3f,
     pad2: f32,
-    // Per shell: place of the camera in the cell of the air, in 2^-32 of its side, and how far a drop of one speed unit has
-    // fallen, likewise.
+    // Per shell: place of the camera in the cell of the air, in 2^-32 of its side, and how far a drop of one speed unit
+    // has fallen, likewise.
     cell: array<vec4u, SHELLS>,
-    // Per shell: side of the cell, m; distance from which it begins to take over from the smaller one, from which it hands on
-    // itself, and at which it has taken over.
+    // Per shell: side of the cell, m; distance from which it begins to take over from the smaller one, from which it
+    // hands on itself, and at which it has taken over.
     shell: array<vec4f, SHELLS>,
     // Per class: diameter, m; fall speed, speed units; drops of the classes up to this one.
     classes: array<vec4f, CLASSES>,
@@ -124,8 +124,8 @@ fn drop_at(in_shell: ClassInShell, index: u32, away_units: vec3u) -> Drop {
     return Drop(p, in_shell.diameter, f32(in_shell.speed) * SPEED_UNIT, share, here.y * f32(1u << in_shell.s));
 }
 
-// Radiance of a drop seen along `d` without lamps: it shows, small and upside down, most of the half space behind it, and what the
-// sun sends through it.
+// Radiance of a drop seen along `d` without lamps: it shows, small and upside down, most of the half space behind it,
+// and what the sun sends through it.
 fn day_light(d: vec3f) -> vec3f {
     return mix(rain.below, rain.above, sky_share(d.z)) + rain.sun * (drop_phase(dot(d, rain.to_sun)) * 0.07957747);
 }
@@ -151,8 +151,8 @@ struct RainVarying {
     @location(0) light: vec4f,
     // As depth_of has it.
     @location(1) depth: vec2f,
-    // Across the streak, -1 to 1, and along it from its middle, in radii of the drop as it is drawn; how far the drop's middle goes
-    // to either side of that.
+    // Across the streak, -1 to 1, and along it from its middle, in radii of the drop as it is drawn; how far the drop's
+    // middle goes to either side of that.
     @location(2) at: vec3f,
 }
 
@@ -189,7 +189,8 @@ struct Streak {
     light: vec4f,
 }
 
-// What hides a share of a pixel's exposure, with the contrast's gain on it: as much as `gain` of it one before the other would.
+// What hides a share of a pixel's exposure, with the contrast's gain on it: as much as `gain` of it one before the
+// other would.
 fn gained(cover: f32) -> f32 {
     let most = min(cover, 1.0);
     return select(1.0 - pow(1.0 - most, rain.gain), most, rain.gain == 1.0);

@@ -1,5 +1,5 @@
-// How many drops of each class fall at a place near the rims of rain areas: a mixture of the counts of the weather and of each
-// area near (src/rain/local.rs).
+// How many drops of each class fall at a place near the rims of rain areas: a mixture of the counts of the weather and
+// of each area near (src/rain/local.rs).
 //!include "rain/area.wgsl"
 
 // Numbers for the weather and 16 areas, in fours.

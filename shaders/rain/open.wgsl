@@ -1,5 +1,6 @@
-// What keeps rain off, asked for the cones on a coarse grid over the picture: what comes to a place along a ray hangs on the ray and
-// the distance alone, not on what the host drew there, so the cones look between the grid's rays (rain/cones.wgsl) and to any depth.
+// What keeps rain off, asked for the cones on a coarse grid over the picture: what comes to a place along a ray hangs
+// on the ray and the distance alone, not on what the host drew there, so the cones look between the grid's rays
+// (rain/cones.wgsl) and to any depth.
 //!include "common/fullscreen.wgsl"
 //!include "rain/drops.wgsl"
 //!include "rain/cone_block.wgsl"
@@ -21,7 +22,8 @@ fn open_quarters(j: u32, d: vec3f, between: f32) -> vec4f {
         // The first at its near end: what it is asked for lies behind that.
         let at = select((f32(i) + 0.5) * 0.25, 0.0, i == 0u);
         let range = mix(stretch.x, stretch.y, at);
-        // Boxes are as much wider as rays lie apart: what pixels take from the rays round them is never more than comes to their own.
+        // Boxes are as much wider as rays lie apart: what pixels take from the rays round them is never more than comes
+        // to their own.
         let shut = sheltered_nearby(d * range, velocity, range * between, true);
         open = select(open, vec4f(0.0), vec4u(select(4u, i, shut)) == vec4u(0u, 1u, 2u, 3u));
     }

@@ -1,14 +1,14 @@
-// What drops scatter of a beam.
+// Light that drops scatter of a beam.
 //!include "common/phase.wgsl"
 
-// What a drop scatters of light that comes from where `c` = 1 is straight behind it: rays through the sphere, and the
-// backward share that makes rainbows (geometric optics of water, asymmetry .88 of what is not diffracted).
+// Phase function of a drop, 4 pi on the whole, for light from an angle of cosine `c`, 1 straight behind it: as `phase`
+// of src/rain/light.rs.
 fn drop_phase(c: f32) -> f32 {
     return 0.93 * henyey(0.9, c) + 0.07 * henyey(-0.35, c);
 }
 
-// The share of what surrounds a drop above the horizon in what it shows along a ray that rises by a sine `z`. As `sky_share` of
-// src/rain/light.rs, which says what it stands for.
+// The share of what surrounds a drop above the horizon in what it shows along a ray that rises by a sine `z`. As
+// `sky_share` of src/rain/light.rs, which says what it stands for.
 fn sky_share(z: f32) -> f32 {
     let level = 1.0 - min(abs(z), 1.0);
     return 0.5 + sign(z) * (0.4415 * (1.0 - level * level * sqrt(level)));

@@ -1,5 +1,5 @@
-// Columns of rain seen from afar: one quad over each, blended as a veil before the picture. The f64 twin of what a ray meets is
-// in src/rain/shaft.rs; the entry points read the depth: shaft_single.wgsl and shaft_multi.wgsl.
+// Columns of rain seen from afar: one quad over each, blended as a veil before the picture. The f64 twin of what a ray
+// meets is in src/rain/shaft.rs; the entry points read the depth: shaft_single.wgsl and shaft_multi.wgsl.
 //!include "between/veil.wgsl"
 //!include "between/bow.wgsl"
 //!include "rain/area.wgsl"
@@ -11,7 +11,8 @@ const PATTERN_AMOUNT: f32 = 0.2;
 const PATTERN_FIRST: f32 = 30.0;
 const PATTERN_FULL: f32 = 300.0;
 const BELOW: f32 = 1000.0;
-// Way into a dense column from which most of its light comes, m, and how much of that light goes with the curtains there.
+// Way into a dense column from which most of its light comes, m, and how much of that light goes with the curtains
+// there.
 const FRONT: f32 = 500.0;
 const FRONT_SHARE: f32 = 0.3;
 
@@ -185,8 +186,8 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     return Met(depth, begin, end, front);
 }
 
-// Light that rain of a column sends along `d` from a place, cd/m^2: drops show most of the half space behind them, of which
-// their own cloud hides what is overhead, and pass on what sun or moon sends in below it.
+// Light that rain of a column sends along `d` from a place, cd/m^2: drops show most of the half space behind them, of
+// which their own cloud hides what is overhead, and pass on what sun or moon sends in below it.
 fn column_light(i: u32, p: vec3f, d: vec3f) -> vec3f {
     let top = columns.list[i].top;
     let radius = columns.list[i].radius;

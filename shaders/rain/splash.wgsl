@@ -1,6 +1,6 @@
-// Splashes on what the host's picture shows: slots of a world-fixed grid in which drops land one after the other, as many
-// as the flux brings. Which slot splashes when follows from (seed, cell, slot, time).
-// The entry points read the depth: drops_view.wgsl.
+// Splashes on what the host's picture shows: slots of a world-fixed grid in which drops land one after the other, as
+// many as the flux brings. Which slot splashes when follows from (seed, cell, slot, time). The entry points read the
+// depth: drops_view.wgsl.
 //!include "common/facing.wgsl"
 //!include "common/guarded.wgsl"
 //!include "rain/drops.wgsl"
@@ -136,16 +136,16 @@ fn search_from(landing: Landing, z: f32) -> Search {
     return Search(begin, low, select(-1e9, high, landing.fade > 0.0), vec2f(begin + eye, 1e9), vec2f(0.0));
 }
 
-// How far a point lies beyond what the picture shows on its ray, in parts of the latter's range. On a vertical before a plane
-// that is linear in the point's height, whatever the slope.
+// How far a point lies beyond what the picture shows on its ray, in parts of the latter's range. On a vertical before a
+// plane that is linear in the point's height, whatever the slope.
 fn gap_of(p: vec3f, ndc: vec2f, surface: vec3f) -> f32 {
     let ray = view_ray(rain.depth, ndc);
     return dot(p - ray.origin, ray.direction) / max(dot(surface - ray.origin, ray.direction), 1e-3) - 1.0;
 }
 
-// After a look: by secants as long as the surface lies to one side of all looks, and by halves where they lead out of the
-// picture; then between the two that enclose it, by false position as Dowell and Jarratt 1971 (Illinois), who halve the gap of an
-// end that stays. Before a wall, whose gap is the same wherever one looks, by halves.
+// After a look: by secants as long as the surface lies to one side of all looks, and by halves where they lead out of
+// the picture; then between the two that enclose it, by false position as Dowell and Jarratt 1971 (Illinois), who halve
+// the gap of an end that stays. Before a wall, whose gap is the same wherever one looks, by halves.
 fn closer(search: Search, gap: f32) -> Search {
     let under = gap > 0.0;
     let low = select(search.low, search.z, under);
@@ -192,8 +192,8 @@ fn ndc_of(uv: vec2f) -> vec2f {
     return vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * rain.y_sign);
 }
 
-// The normal of the surface that a pixel shows, and the height of its plane above the place of a landing. `around`: depths to
-// the left, right, above and below.
+// The normal of the surface that a pixel shows, and the height of its plane above the place of a landing. `around`:
+// depths to the left, right, above and below.
 fn plane_of(landing: Landing, uv: vec2f, size: vec2f, depth: f32, around: vec4f) -> vec4f {
     let ndc = ndc_of(uv);
     let facing = facing_of(rain.depth, depth, around, ndc, vec2f(2.0, -2.0 * rain.y_sign) / size, splash.depth_grain);
@@ -225,13 +225,14 @@ struct Crown {
     slot: u32,
 }
 
-// How many drops land on a surface of a `normal` for each that lands on level ground of the same extent seen from above.
+// How many drops land on a surface of a `normal` for each that lands on level ground of the same extent seen from
+// above.
 fn landing_share(normal: vec3f, velocity: vec3f) -> f32 {
     return max(-dot(velocity, normal), 0.0) / max(-velocity.z * normal.z, 1e-6);
 }
 
-// The crown that stands on a surface of a `normal` at a height: it rises, opens and falls (sizes in drop diameters after Yarin
-// 2006, Drop Impact Dynamics).
+// The crown that stands on a surface of a `normal` at a height: it rises, opens and falls (sizes in drop diameters
+// after Yarin 2006, Drop Impact Dynamics).
 fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
     let landing = arrival.landing;
     let at = vec3f(landing.xy, z);
@@ -287,8 +288,8 @@ fn crown_corner(crown: Crown, corner: u32) -> CrownVarying {
 // Droplets of a crown.
 const DROPLETS: u32 = 3u;
 
-// The crown's sheet, which opens upwards and is seen thicker at its sides, and droplets off its rim on parabolas, over the mean
-// of the quad.
+// The crown's sheet, which opens upwards and is seen thicker at its sides, and droplets off its rim on parabolas, over
+// the mean of the quad.
 fn crown_profile(at: vec2f, age: f32, chance: vec2f) -> f32 {
     let y = at.y / 0.6;
     let x = at.x / (0.5 + 0.4 * min(y, 1.0));
@@ -305,7 +306,8 @@ fn crown_profile(at: vec2f, age: f32, chance: vec2f) -> f32 {
     return 1.85 * (sheet + 2.0 * drops);
 }
 
-// `shown`: depth of the host's picture; `pixel`: how much of the quad's height a pixel is. What is no larger than some pixels has no shape, only its mean.
+// `shown`: depth of the host's picture; `pixel`: how much of the quad's height a pixel is. What is no larger than some
+// pixels has no shape, only its mean.
 fn crown_color(in: CrownVarying, shown: f32, pixel: f32) -> vec4f {
     let soft = share_before(shown, in.depth_age.xy);
     let shape = min(crown_profile(in.at, in.depth_age.z, in.chance), 3.0);

@@ -15,7 +15,8 @@ struct StoneUniform {
     first: vec4u,
     // Per class and shell: stones of the classes up to this one.
     upto: array<vec4u, STONE_CLASSES>,
-    // Per class: diameter, m; fall speed, speed units; share of the landings of the classes up to this one; 1 for clear ice.
+    // Per class: diameter, m; fall speed, speed units; share of the landings of the classes up to this one; 1 for clear
+    // ice.
     classes: array<vec4f, STONE_CLASSES>,
     // Per class and shell: stones that each of them stands for.
     weight: array<vec4f, STONE_CLASSES>,
@@ -136,15 +137,15 @@ fn hopping_stone(touch: Touch, z: f32) -> Stone {
     return Stone(p, flight.xyz, kind.x, kind.w, fade, 1.0);
 }
 
-// Mean over the disc of a matt sphere lit from where the cosine to the eye is `c`, over what a matt plane facing the light sends
-// (Russell 1916).
+// Mean over the disc of a matt sphere lit from where the cosine to the eye is `c`, over what a matt plane facing the
+// light sends (Russell 1916).
 fn sphere_phase(c: f32) -> f32 {
     let angle = acos(clamp(c, -1.0, 1.0));
     return (sin(angle) + (3.14159265 - angle) * c) * 0.21220659;
 }
 
-// Radiance of a stone at `p` seen along `d`: milky ice is matt and lit by what lies before it, clear ice shows what lies
-// behind.
+// Radiance of a stone at `p` seen along `d`: milky ice is matt and lit by what lies before it, clear ice shows what
+// lies behind.
 fn stone_light(p: vec3f, d: vec3f, clear: f32) -> vec3f {
     var beams = rain.sun * sphere_phase(-dot(d, rain.to_sun));
     for (var i = 0u; i < light_count(); i++) {

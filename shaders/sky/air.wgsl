@@ -26,7 +26,8 @@ struct SkyAir {
     ground_albedo: vec3f,
     // Edge of the planet's disc seen from the top of the air: the cosine of its zenith angle, negated.
     top_dip: f32,
-    // One triple of a set of wavelengths: what light at each of them adds to the three kept, and which of the triples it is.
+    // One triple of a set of wavelengths: what light at each of them adds to the three kept, and which of the triples
+    // it is.
     part_a: vec3f,
     layer: f32,
     part_b: vec3f,

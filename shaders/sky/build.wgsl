@@ -121,11 +121,11 @@ struct Sums {
     @location(1) sum: vec4f,
 }
 
-// What a geometric series adds to its last term. In thick haze two small neighbouring orders can have any ratio, which a
-// series near 1 would turn into colours out of nothing. The bound is measured against the f64 reference: with 0.8 haze of
-// 7 km visibility erred by 17 % (95th percentile) and of 3 km by 41, with 0.55 by 6.0 and 11.5; with 0.5 white ground
-// under haze begins to lose light (3.1 to 4.6 %). Dust of many optical depths does pass most of an order on to the next:
-// held to 0.55 a dust storm's noon was black.
+// What a geometric series adds to its last term. In thick haze two small neighbouring orders can have any ratio, which
+// a series near 1 would turn into colours out of nothing. The bound is measured against the f64 reference: with 0.8
+// haze of 7 km visibility erred by 17 % (95th percentile) and of 3 km by 41, with 0.55 by 6.0 and 11.5; with 0.5 white
+// ground under haze begins to lose light (3.1 to 4.6 %). Dust of many optical depths does pass most of an order on to
+// the next: held to 0.55 a dust storm's noon was black.
 fn tail(before: vec3f, term: vec3f) -> vec3f {
     let depth = air.mie_extinction.y * air.mie_scale_height_m;
     let limit = mix(0.55, 0.8, clamp(0.5 * (depth - 1.0), 0.0, 1.0));

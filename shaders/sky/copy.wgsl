@@ -14,8 +14,8 @@ override SUNS: u32 = 64u;
 override ALTITUDES: u32 = 22u;
 const LIGHT_TILES: u32 = 7u;
 
-// The table of light, tile by tile, from one of another size: between its texels as look-ups would read it. Of one of the
-// same size it is every texel itself.
+// The table of light, tile by tile, from one of another size: between its texels as look-ups would read it. Of one of
+// the same size it is every texel itself.
 @fragment
 fn light(in: FullscreenVarying) -> @location(0) vec4f {
     let px = vec2u(in.position.xy);

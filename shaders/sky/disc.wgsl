@@ -19,8 +19,8 @@ fn unrefracted(dir: vec3f) -> vec3f {
     return vec3f(dir.xy * (sqrt(max(1.0 - z * z, 0.0)) / level), z);
 }
 
-// Lamps whose discs a pipeline draws: those of `SKY_LAMPS`, and behind them those that do not light the air. A lamp that is not there has
-// no radiance.
+// Lamps whose discs a pipeline draws: those of `SKY_LAMPS`, and behind them those that do not light the air. A lamp
+// that is not there has no radiance.
 override SKY_DISCS: u32 = 2u;
 // The first lamp is a sun and the second one a moon: the law of neither is computed for the other.
 override SUN_THEN_MOON: bool = false;

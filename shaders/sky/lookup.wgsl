@@ -2,9 +2,9 @@
 //!include "sky/march.wgsl"
 // What other shaders ask of the sky. Bind group 1 is `SkyVolume::bind_group()`.
 //
-// `dir` is a unit vector from the observer in its local level frame: z up, x and y any level axes, the same in which the
-// host gave the lamps' directions (`Lamp::toward`). Radiances are per the lamps' irradiance as given: W m^-2 sr^-1 nm^-1
-// with `Planet::solar_irradiance`. Distances are metres from the observer.
+// `dir` is a unit vector from the observer in its local level frame: z up, x and y any level axes, the same in which
+// the host gave the lamps' directions (`Lamp::toward`). Radiances are per the lamps' irradiance as given: W m^-2 sr^-1
+// nm^-1 with `Planet::solar_irradiance`. Distances are metres from the observer.
 
 struct SkyLamp {
     // Unit, towards the lamp, geometric (not refracted).
@@ -13,7 +13,8 @@ struct SkyLamp {
     irradiance: vec3f,
     // 0: a sun; 1: a moon, lit from `lit_from`.
     kind: u32,
-    // Exponents of limb darkening (Hestroffer and Magnan 1998: I = mu^a), per wavelength; or the factor of a moon's law.
+    // Exponents of limb darkening (Hestroffer and Magnan 1998: I = mu^a), per wavelength; or the factor of a moon's
+    // law.
     limb: vec3f,
     // Of its angular radius.
     inverse_radius: f32,
@@ -36,7 +37,8 @@ struct SkyView {
     air: SkyAir,
     dims: SkyDims,
     edges: SkyEdges,
-    // Texture coordinates of the sky above the horizon: of the centre of its first texel, and from there to that of its last one.
+    // Texture coordinates of the sky above the horizon: of the centre of its first texel, and from there to that of its
+    // last one.
     sky_above: vec4f,
     altitude: Length,
     lamp_count: u32,
@@ -56,7 +58,8 @@ struct SkyView {
 
 // Set by `SkyTables::pipeline_constants` where the model marches every pixel.
 override SKY_MARCH: bool = false;
-// Lamps that a pipeline draws, all that there are if 2: what stands in a loop costs a software driver a turn more than are taken.
+// Lamps that a pipeline draws, all that there are if 2: what stands in a loop costs a software driver a turn more than
+// are taken.
 override SKY_LAMPS: u32 = 2u;
 
 fn sky_lamps() -> u32 {
@@ -107,7 +110,8 @@ fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     return lamp.irradiance * (once + light.more);
 }
 
-// A direction's ray, and the optical depth of what of it is looked through: several look-ups along one direction share it.
+// A direction's ray, and the optical depth of what of it is looked through: several look-ups along one direction share
+// it.
 struct SkyPath {
     ray: SkyRay,
     // Metres from the observer.
@@ -273,7 +277,8 @@ fn lamp_irradiance(index: u32, altitude: Length) -> vec3f {
     return lamp.irradiance * sun_transmittance(sky_view.air, h, lamp.toward.z);
 }
 
-// Radiance of the planet's own ground (a Lambert surface lit by lamps and sky), seen through the air; 0 above the horizon.
+// Radiance of the planet's own ground (a Lambert surface lit by lamps and sky), seen through the air; 0 above the
+// horizon.
 fn ground_radiance(dir: vec3f) -> Radiance {
     return ground_radiance_on(whole_path(dir), dir);
 }

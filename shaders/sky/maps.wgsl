@@ -22,15 +22,16 @@ struct SkyDims {
     air_above: u32,
     air_below: u32,
     air_slices: u32,
-    // Both lie in one texture. The sky's first texel in it, and the texture's size: the sky is turned by a quarter, rows along x
-    // and azimuths along y, so that it is as high as the volume.
+    // Both lie in one texture. The sky's first texel in it, and the texture's size: the sky is turned by a quarter,
+    // rows along x and azimuths along y, so that it is as high as the volume.
     sky_x: u32,
     sky_y: u32,
     tables_width: u32,
     tables_height: u32,
 }
 
-// Most directions and panels that the settings allow (src/sky/settings.rs): loops over them end whatever the block holds.
+// Most directions and panels that the settings allow (src/sky/settings.rs): loops over them end whatever the block
+// holds.
 const MOST_RULE_ZENITHS: u32 = 16u;
 const MOST_RULE_AZIMUTHS: u32 = 24u;
 const MOST_BUILD_PANELS: u32 = 16u;
@@ -84,9 +85,9 @@ fn planet_texel(air: SkyAir, dims: SkyDims, altitude: Length, mu_s: Cosine) -> v
     return 0.5 + at * vec2f(f32(dims.suns - 1u), f32(dims.altitudes - 1u));
 }
 
-// Directions of a source: azimuth and elevation as shares of half and of a quarter of a turn, y = (1 + a) x/(a + x), so that
-// nodes are dense towards the light's azimuth and at the horizon, where the glow round a low sun is. Coordinates in
-// [0, 1]: x azimuth, y from nadir to zenith.
+// Directions of a source: azimuth and elevation as shares of half and of a quarter of a turn, y = (1 + a) x/(a + x), so
+// that nodes are dense towards the light's azimuth and at the horizon, where the glow round a low sun is. Coordinates
+// in [0, 1]: x azimuth, y from nadir to zenith.
 const SOURCE_SPREAD: vec2f = vec2f(3.0, 1.0);
 
 fn source_coordinate(mu: Cosine, cos_azimuth: f32) -> vec2f {
@@ -114,8 +115,8 @@ fn rule_direction(air: SkyAir, altitude: Length, index: u32, half_size: u32, nod
     return vec2f(horizon + (1.0 - horizon) * y * y, (1.0 - horizon) * 2.0 * y * node.y);
 }
 
-// The table of light scattered once holds 64 view angles as 8 x 8 tiles: 32 above the horizon and 32 below it, each dense
-// at it. A view angle is kept as in view.wgsl, by q = sin(angle/2).
+// The table of light scattered once holds 64 view angles as 8 x 8 tiles: 32 above the horizon and 32 below it, each
+// dense at it. A view angle is kept as in view.wgsl, by q = sin(angle/2).
 const ONCE_ROWS: u32 = 32u;
 
 fn once_mu(air: SkyAir, altitude: Length, row: u32) -> Cosine {

@@ -12,8 +12,8 @@ struct SkyLight {
     transfer: vec3f,
 }
 
-// Where the sources of one triple lie in their texture, in shares of it: xy the corner, zw the size. The triples of a set lie
-// one below the other.
+// Where the sources of one triple lie in their texture, in shares of it: xy the corner, zw the size. The triples of a
+// set lie one below the other.
 fn sources_of(air: SkyAir) -> vec4f {
     return vec4f(0.0, air.layer / air.layers, 1.0, 1.0 / air.layers);
 }

@@ -67,10 +67,10 @@ fn erfcx(z: vec2f) -> vec2f {
     return t * p;
 }
 
-// Columns of gas and haze from the point at radius r straight out along the ray, in metres at the density of that point,
-// `rise` over the perigee p. With v^2 = r - p, ds = 2 (p + v^2)/sqrt(2p + v^2) dv is expanded to first order round the
-// point, which leaves integrals of e^(-v^2/H) and v^2 e^(-v^2/H): relative error 5e-7 for the Earth and 5e-3 where H is
-// a sixth of the radius, at any angle. (Chapman 1931 is the function; the expansion is our own.)
+// Columns of gas and haze from the point at radius r straight out along the ray, in metres at the density of that
+// point, `rise` over the perigee p. With v^2 = r - p, ds = 2 (p + v^2)/sqrt(2p + v^2) dv is expanded to first order
+// round the point, which leaves integrals of e^(-v^2/H) and v^2 e^(-v^2/H): relative error 5e-7 for the Earth and 5e-3
+// where H is a sixth of the radius, at any angle. (Chapman 1931 is the function; the expansion is our own.)
 fn chapman(air: SkyAir, rise: Length, r: Length, p: Length) -> vec2f {
     let scale_height = vec2f(air.rayleigh_scale_height_m, air.mie_scale_height_m);
     let z = sqrt(max(rise, 0.0) / scale_height);

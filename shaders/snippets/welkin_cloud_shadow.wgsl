@@ -1,9 +1,9 @@
-// For a host's own materials: the share of the direct light of sun or moon that clouds let through to a place, from the map of shadows that
-// Welkin hands over.
+// For a host's own materials: the share of the direct light of sun or moon that clouds let through to a place, from the
+// map of shadows that Welkin hands over.
 //   let share = welkin_cloud_shadow(shadow_map, repeating, uv, camera_uv, height, even);
 //   direct_light *= share / even.x; // where direct_light is that on the mean over places, as Welkin's queries have it
-// `uv` and `height`: the place in the host's world times the rows of uv_from_world and height_from_world. `even`: mean_share, told and top_m.
-// `repeating`: filters linearly and repeats.
+// `uv` and `height`: the place in the host's world times the rows of uv_from_world and height_from_world. `even`:
+// mean_share, told and top_m. `repeating`: filters linearly and repeats.
 
 fn welkin_cloud_shadow(
     map: texture_2d<f32>, repeating: sampler, uv: vec2f, camera_uv: vec2f, height: f32, even: vec3f,

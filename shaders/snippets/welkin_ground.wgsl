@@ -1,5 +1,5 @@
-// For a host's own materials: how the water on its ground looks, from the texture that Welkin hands over, by the laws Welkin draws
-// it with.
+// For a host's own materials: how the water on its ground looks, from the texture that Welkin hands over, by the laws
+// Welkin draws it with.
 //   let water = welkin_ground(ground_texture, uv);
 //   albedo = welkin_wet_albedo(albedo, water);
 //   let film = welkin_film(water); // blend a mirror of index 1.333 (f0 = 0.02) and roughness film.y over film.x of the surface
@@ -17,8 +17,8 @@ struct WelkinGround {
     standing: f32,
 }
 
-// Of one node: how soaked, share under a film, level of standing water over the ground in mm, share under ice. Soaked pores make
-// a wetness of 0.3, the film the rest: 0.15 mm cover 1 - 1/e of asphalt's grains.
+// Of one node: how soaked, share under a film, level of standing water over the ground in mm, share under ice. Soaked
+// pores make a wetness of 0.3, the film the rest: 0.15 mm cover 1 - 1/e of asphalt's grains.
 fn welkin_ground_node(texel: vec4f) -> vec4f {
     let wetness = select(0.3 * texel.y + 0.7 * (1.0 - exp(texel.x / -0.15)), 1.0, texel.z > 0.0);
     return vec4f(smoothstep(0.0, 0.3, wetness), smoothstep(0.3, 1.0, wetness), texel.zw);
@@ -43,15 +43,15 @@ fn welkin_ground(ground: texture_2d<f32>, uv: vec2f) -> WelkinGround {
     return welkin_ground_at(ground, uv * vec2f(textureDimensions(ground)) - 0.5);
 }
 
-// Light that enters water is thrown back at its surface from below and falls on the ground again (Angstrom 1925; Lekner & Dorf
-// 1988, eq. 1 to 3; Fresnel's law over the half space sends back 0.0664 from above and 0.4746 from below).
+// Light that enters water is thrown back at its surface from below and falls on the ground again (Angstrom 1925; Lekner
+// & Dorf 1988, eq. 1 to 3; Fresnel's law over the half space sends back 0.0664 from above and 0.4746 from below).
 fn welkin_wet_albedo(albedo: vec3f, water: WelkinGround) -> vec3f {
     let below = (1.0 - 0.0664) * (1.0 - 0.4746) / (1.0 - 0.4746 * clamp(albedo, vec3f(0.0), vec3f(1.0)));
     return albedo * mix(vec3f(1.0), below, water.soaked);
 }
 
-// Share of the surface under water and its roughness, alpha of Beckmann or GGX: sqrt(2) times the slope's root mean square along
-// one axis (Walter et al. 2007), 0.3 of a thin film, 0.15 of a closed one, 0 of calm standing water.
+// Share of the surface under water and its roughness, alpha of Beckmann or GGX: sqrt(2) times the slope's root mean
+// square along one axis (Walter et al. 2007), 0.3 of a thin film, 0.15 of a closed one, 0 of calm standing water.
 fn welkin_film(water: WelkinGround) -> vec2f {
     let slope = mix(mix(0.3, 0.15, water.film), 0.0, water.pool);
     return vec2f(mix(water.film, 1.0, water.pool), 1.4142136 * slope);
@@ -73,7 +73,8 @@ fn welkin_snow_node(texel: vec4f) -> vec4f {
     return vec4f(texel.x, vec3f(1.0, texel.zw) * step(1e-7, texel.x));
 }
 
-// The snow on the same grid: of wk_ground_texture.snow_texture. 2.5 cm cover 0.76 of level ground; wet snow is darker by 0.15.
+// The snow on the same grid: of wk_ground_texture.snow_texture. 2.5 cm cover 0.76 of level ground; wet snow is darker
+// by 0.15.
 fn welkin_snow(ground: texture_2d<f32>, uv: vec2f) -> WelkinSnow {
     let place = uv * vec2f(textureDimensions(ground)) - 0.5;
     let last = vec2f(textureDimensions(ground)) - 1.0;

@@ -1,4 +1,5 @@
-// Which flakes of the lattice can be in the picture, and their number, for the draw: by their places among all, so near shells first.
+// Which flakes of the lattice can be in the picture, and their number, for the draw: by their places among all, so near
+// shells first.
 //!include "snow/flakes.wgsl"
 //!include "falling/order.wgsl"
 

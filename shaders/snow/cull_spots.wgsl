@@ -1,5 +1,5 @@
-// What draws the flakes that snow/cull.wgsl has found, the farthest first: once a flake what it costs to know whether it got there, and
-// in what light.
+// What draws the flakes that snow/cull.wgsl has found, the farthest first: once a flake what it costs to know whether
+// it got there, and in what light.
 //!include "snow/flakes.wgsl"
 //!include "falling/list.wgsl"
 

@@ -1,5 +1,6 @@
-// Flakes without a state: where each is follows from (seed, id, time) alone, and one quad draws it.
-// The f64 twin and the derivation are in src/snow/lattice.rs and src/snow/reference.rs. The entry points read the depth: flakes_view.wgsl.
+// Flakes without a state: where each is follows from (seed, id, time) alone, and one quad draws it. The f64 twin and
+// the derivation are in src/snow/lattice.rs and src/snow/reference.rs. The entry points read the depth:
+// flakes_view.wgsl.
 //!include "common/depth.wgsl"
 //!include "common/guarded.wgsl"
 //!include "common/hash.wgsl"
@@ -45,13 +46,13 @@ struct FlakesUniform {
     // How far a flake of one turn unit has turned, in 2^-32 of a turn.
     turn: u32,
     pad: vec2u,
-    // Per shell: place of the camera in the cell of the air, in 2^-32 of its side, and how far a flake of one speed unit has
-    // fallen, likewise.
+    // Per shell: place of the camera in the cell of the air, in 2^-32 of its side, and how far a flake of one speed
+    // unit has fallen, likewise.
     cell: array<vec4u, SHELLS>,
     // Per shell: place of the camera in the world's cell, in 2^-32 of its side. Read of flakes that are stepped.
     eye: array<vec4u, SHELLS>,
-    // Per shell: side of the cell, m; distance from which it begins to take over from the smaller one, from which it hands on
-    // itself, and at which it has taken over.
+    // Per shell: side of the cell, m; distance from which it begins to take over from the smaller one, from which it
+    // hands on itself, and at which it has taken over.
     shell: array<vec4f, SHELLS>,
     // Per class: diameter, m; fall speed, speed units; radius of the helix, m; turns, turn units.
     classes: array<vec4f, CLASSES>,
@@ -172,14 +173,14 @@ fn flake_at(own: Own, away: vec3u, mean: vec3f) -> Flake {
     return Flake(p + around * row.z, row.x, mean + aside, inner * outer, mean, flakes.weight[own.size_class][s], angle, shape);
 }
 
-// What a flake scatters of a beam, 4 pi on the whole: all that its ice stops and does not bend by diffraction. The asymmetry of aggregates,
-// 0.77 with diffraction, which is half of it and goes straight on, leaves 0.54.
+// What a flake scatters of a beam, 4 pi on the whole: all that its ice stops and does not bend by diffraction. The
+// asymmetry of aggregates, 0.77 with diffraction, which is half of it and goes straight on, leaves 0.54.
 fn flake_phase(c: f32) -> f32 {
     return henyey(0.54, c);
 }
 
-// Share of what surrounds a flake above the horizon in what it sends along a ray that rises by a sine `z`: flake_phase over a half space, by
-// its first three Legendre terms, 1/2 + 3/4 g z - 7/16 g^3 P3(z).
+// Share of what surrounds a flake above the horizon in what it sends along a ray that rises by a sine `z`: flake_phase
+// over a half space, by its first three Legendre terms, 1/2 + 3/4 g z - 7/16 g^3 P3(z).
 fn flake_sky_share(z: f32) -> f32 {
     return 0.5 + z * (0.50835 - 0.17222 * z * z);
 }
@@ -198,7 +199,8 @@ fn flake_light(p: vec3f, d: vec3f) -> vec3f {
 struct FlakeVarying {
     @builtin(position) position: vec4f,
     @location(0) light: vec3f,
-    // Share of the flake's disc that hides what lies behind, where the streak hides most of it; and where its shape is drawn.
+    // Share of the flake's disc that hides what lies behind, where the streak hides most of it; and where its shape is
+    // drawn.
     @location(1) cover: vec2f,
     // As depth_of has it, and the share of its light that what lies between lets through.
     @location(2) depth_clear: vec3f,

@@ -1,6 +1,6 @@
-// The shape of a flake: a clump of crystals, of which no two are alike. A disc whose edge and inside are eaten by noise, as older systems
-// draw it (1 - exp(-5 W), W = noise - radius^2); src/snow/shape.rs has the same in f64, and holds its mean over the disc to the
-// share of it that is ice.
+// The shape of a flake: a clump of crystals, of which no two are alike. A disc whose edge and inside are eaten by
+// noise, as older systems draw it (1 - exp(-5 W), W = noise - radius^2); src/snow/shape.rs has the same in f64, and
+// holds its mean over the disc to the share of it that is ice.
 //!include "common/hash.wgsl"
 
 // Octaves of the noise; each is twice as fine and half as strong as the last.

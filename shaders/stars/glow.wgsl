@@ -1,5 +1,5 @@
-// The glow between the stars, on a ball of directions: airglow, zodiacal light, the Milky Way, and what the air does to them. The f64
-// twin is NightSky in src/stars/glow.rs.
+// The glow between the stars, on a ball of directions: airglow, zodiacal light, the Milky Way, and what the air does to
+// them. The f64 twin is NightSky in src/stars/glow.rs.
 
 struct GlowUniform {
     // Camera-relative east-north-up to clip.
@@ -28,7 +28,8 @@ struct GlowUniform {
 
 @group(0) @binding(0) var<uniform> glow: GlowUniform;
 
-// What fragments read of the block is handed on by corners: software drivers take longer to read a block than to interpolate.
+// What fragments read of the block is handed on by corners: software drivers take longer to read a block than to
+// interpolate.
 struct GlowVarying {
     @builtin(position) position: vec4f,
     // Zodiacal light and starlight less lit air, the target's units; the sine of the elevation.
@@ -57,8 +58,8 @@ fn van_rhijn(sine_of_elevation: f32, layer_ratio2: f32) -> f32 {
     return inverseSqrt(1.0 - layer_ratio2 * (1.0 - sine_of_elevation * sine_of_elevation));
 }
 
-// Relative air mass (Young 1994, Applied Optics 33, 1108, eq. 5): without the powers of the points' law, from which it differs where
-// nearly nothing of the light above the air is left.
+// Relative air mass (Young 1994, Applied Optics 33, 1108, eq. 5): without the powers of the points' law, from which it
+// differs where nearly nothing of the light above the air is left.
 fn air_mass(sine: f32) -> f32 {
     return ((1.002432 * sine + 0.148386) * sine + 0.0096467) / (((sine + 0.149864) * sine + 0.0102963) * sine + 0.000303978);
 }

@@ -11,8 +11,8 @@ struct Lights {
 
 @group(2) @binding(3) var<uniform> lights: Lights;
 
-// How many there are. Counts of blocks are cut to the bits that the most of them needs, so that each loop ends whatever its block holds; not
-// by `min`, since a driver that knows the end of a loop may write it out.
+// How many there are. Counts of blocks are cut to the bits that the most of them needs, so that each loop ends whatever
+// its block holds; not by `min`, since a driver that knows the end of a loop may write it out.
 fn light_count() -> u32 {
     return lights.count & 127u;
 }

@@ -1,4 +1,5 @@
-// A map of the host's, made ready for shaders/surroundings/occluders.wgsl: of each texel the range of distances that its surface spans.
+// A map of the host's, made ready for shaders/surroundings/occluders.wgsl: of each texel the range of distances that
+// its surface spans.
 //!include "common/fullscreen.wgsl"
 //!include "common/depth.wgsl"
 

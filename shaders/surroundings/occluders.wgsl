@@ -1,8 +1,9 @@
-// Surfaces that a host has taken pictures of, from any direction: whether a path crosses one of them. Each texel holds the
-// range of distances that the surface in it spans, each cell of 8 and of 64 texels the range of all in it
-// (surroundings/occluder_map.wgsl). A path is led from cell to cell and only looks into those whose range it meets: what lies
-// before or behind all of a cell's surfaces crosses none of them. What a surface hides from the picture is not known, so a
-// path may pass behind an edge; the drops' own direction, along which nothing is hidden that matters, is the best to take it from.
+// Surfaces that a host has taken pictures of, from any direction: whether a path crosses one of them. Each texel holds
+// the range of distances that the surface in it spans, each cell of 8 and of 64 texels the range of all in it
+// (surroundings/occluder_map.wgsl). A path is led from cell to cell and only looks into those whose range it meets:
+// what lies before or behind all of a cell's surfaces crosses none of them. What a surface hides from the picture is
+// not known, so a path may pass behind an edge; the drops' own direction, along which nothing is hidden that matters,
+// is the best to take it from.
 
 // Whether there are any.
 override MAPS: bool = false;
@@ -12,8 +13,8 @@ const MAX_MAPS: u32 = 4u;
 const MAP_STEPS: u32 = 192u;
 
 struct Occluder {
-    // Rows from camera-relative east-north-up to w times the place in the table of ranges, to w, and to the distance from
-    // the map's camera, m.
+    // Rows from camera-relative east-north-up to w times the place in the table of ranges, to w, and to the distance
+    // from the map's camera, m.
     x: vec4f,
     y: vec4f,
     w: vec4f,

@@ -27,8 +27,8 @@ struct Shelters {
 
 @group(2) @binding(0) var<uniform> shelters: Shelters;
 
-// For how long what came to `p` with `velocity` was in box `i`, or in what planes leave of it, s; below 0: it has not been, and how
-// far it was from it.
+// For how long what came to `p` with `velocity` was in box `i`, or in what planes leave of it, s; below 0: it has not
+// been, and how far it was from it.
 fn time_within(i: u32, p: vec3f, velocity: vec3f) -> f32 {
     return time_nearby(i, p, velocity, 0.0);
 }
@@ -56,8 +56,8 @@ fn time_nearby(i: u32, p: vec3f, velocity: vec3f, margin: f32) -> f32 {
     return far - near;
 }
 
-// Whether what came to `p`, near the camera, with `velocity` met anything. Not looked for where it is not `wanted`: by loops that
-// are not begun, which is what a software driver leaves out.
+// Whether what came to `p`, near the camera, with `velocity` met anything. Not looked for where it is not `wanted`: by
+// loops that are not begun, which is what a software driver leaves out.
 fn sheltered(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     return sheltered_nearby(p, velocity, 0.0, wanted);
 }

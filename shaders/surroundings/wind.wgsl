@@ -1,5 +1,6 @@
-// The wind that varies in space, as src/surroundings/wind.rs uploads it: a node a texel, velocity times share, and the share of the
-// weather's wind that it replaces. Look the texture up at `wind_place` with its sampler (linear, clamped), and give `wind_at` what is there.
+// The wind that varies in space, as src/surroundings/wind.rs uploads it: a node a texel, velocity times share, and the
+// share of the weather's wind that it replaces. Look the texture up at `wind_place` with its sampler (linear, clamped),
+// and give `wind_at` what is there.
 
 struct WindMap {
     // From camera-relative metres to the texture.

@@ -1,7 +1,7 @@
 //! How the sky of the stars stands over a place: sidereal time, precession, nutation.
 //!
-//! Angles come from the platform's sine and cosine: directions agree between machines to 1e-14, not bit for bit. Nothing that is
-//! simulated depends on them.
+//! Angles come from the platform's sine and cosine: directions agree between machines to 1e-14, not bit for bit.
+//! Nothing that is simulated depends on them.
 
 use glam::{DMat3, DVec3};
 
@@ -14,8 +14,8 @@ use crate::{
 /// Arc seconds in degrees.
 const ARC_SECOND_DEG: f64 = 1.0 / 3600.0;
 
-/// Nutation in longitude and true obliquity of the ecliptic, rad, at `t` centuries of TT since J2000 (Meeus, Astronomical
-/// Algorithms, chapter 22, the two leading terms: 0.5").
+/// Nutation in longitude and true obliquity of the ecliptic, rad, at `t` centuries of TT since J2000 (Meeus,
+/// Astronomical Algorithms, chapter 22, the two leading terms: 0.5").
 pub(crate) fn nutation_obliquity(t: f64) -> (f64, f64) {
     let node = (125.044_52 - 1_934.136_261 * t).to_radians();
     let sun = (280.466_5 + 36_000.769_8 * t).to_radians();
@@ -38,7 +38,8 @@ pub fn mean_sidereal_time(utc: Utc) -> f64 {
     (280.460_618_37 + turns + t * t * (0.000_387_933 - t / 38_710_000.0)).rem_euclid(360.0).to_radians()
 }
 
-/// Apparent sidereal time at Greenwich, rad: the mean one and the equation of the equinoxes. May lie a hair outside [0, 2 pi).
+/// Apparent sidereal time at Greenwich, rad: the mean one and the equation of the equinoxes. May lie a hair outside
+/// [0, 2 pi).
 pub fn apparent_sidereal_time(utc: Utc) -> f64 {
     let (nutation, obliquity) = nutation_obliquity(utc.julian_centuries_tt());
     mean_sidereal_time(utc) + nutation * libm::cos(obliquity)
@@ -66,8 +67,8 @@ pub(crate) fn equator_of_date_to_world(utc: Utc, place: &Place) -> DMat3 {
     place.ecef_to_enu() * turn_z(-apparent_sidereal_time(utc))
 }
 
-/// From catalogue directions (equator and equinox J2000.0; x to the equinox, z to the north pole) to (east, north, up) at
-/// `place`: precession, nutation and the Earth's turning. A rotation; apply it to a star's unit vector
+/// From catalogue directions (equator and equinox J2000.0; x to the equinox, z to the north pole) to (east, north, up)
+/// at `place`: precession, nutation and the Earth's turning. A rotation; apply it to a star's unit vector
 /// ([`equatorial_direction`]).
 ///
 /// Good to 1": aberration (20") and refraction are not in it. UT1 is taken as UTC (at most 0.9 s: 14").
@@ -133,7 +134,8 @@ mod tests {
 
     #[test]
     fn nutation_of_meeus_example_22a() {
-        // 1987-04-10 0h TD: -3.788" in longitude, true obliquity 23 26' 36.850"; the two leading terms are good to 0.5".
+        // 1987-04-10 0h TD: -3.788" in longitude, true obliquity 23 26' 36.850"; the two leading terms are good to
+        // 0.5".
         let (longitude, obliquity) = nutation_obliquity(-0.127_296_372_348);
         assert!((longitude.to_degrees() * 3600.0 + 3.788).abs() < 0.5);
         assert!((obliquity.to_degrees() - (23.0 + 26.0 / 60.0 + 36.850 / 3600.0)).abs() * 3600.0 < 0.1);
@@ -141,8 +143,8 @@ mod tests {
 
     #[test]
     fn venus_over_washington_in_meeus_example_13b() {
-        // Apparent place of date 23h 09m 16.641s, -6 43' 11.61": azimuth 68.0337 from the south, height 15.1249. His latitude is
-        // geographic and his site at sea level, as ours.
+        // Apparent place of date 23h 09m 16.641s, -6 43' 11.61": azimuth 68.0337 from the south, height 15.1249. His
+        // latitude is geographic and his site at sea level, as ours.
         let place = Place { latitude_deg: 38.921_389, longitude_deg: -77.065_556, altitude_m: 0.0 };
         let utc = Utc::from_calendar(1987, 4, 10, 19, 21, 0.0).unwrap();
         let venus = equatorial_direction(347.319_337_5, -6.719_891_7);

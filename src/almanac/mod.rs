@@ -1,4 +1,5 @@
-//! The almanac: universal time, where sun and moon stand over a place, how far, how bright, and how the sphere of the stars is turned.
+//! The almanac: universal time, where sun and moon stand over a place, how far, how bright, and how the sphere of the
+//! stars is turned.
 
 pub mod celestial;
 pub(crate) mod ephemeris;

@@ -101,7 +101,8 @@ mod tests {
 
     #[test]
     fn the_suns_catalogue_place_stands_where_the_almanac_has_it() {
-        // 2020-06-20 21:43:40 UT, the solstice: true longitude of date 90, so the equator of date has the sun at (90, obliquity).
+        // 2020-06-20 21:43:40 UT, the solstice: true longitude of date 90, so the equator of date has the sun at
+        // (90, obliquity).
         let utc = Utc::from_calendar(2020, 6, 20, 21, 43, 40.0).unwrap();
         let place = Place { latitude_deg: 20.0, longitude_deg: -150.0, altitude_m: 0.0 };
         let (_, obliquity) = nutation_obliquity(utc.julian_centuries_tt());

@@ -11,8 +11,8 @@ const JD_UNIX_EPOCH: f64 = 2_440_587.5;
 const FIRST_YEAR: f64 = -2000.0;
 const LAST_YEAR: f64 = 6000.0;
 
-/// Seconds since 1970 of the years -2000 to 6000, as the sun's series has them; the last 16 hours are left to the difference
-/// between terrestrial and universal time, which is 57,245 s then.
+/// Seconds since 1970 of the years -2000 to 6000, as the sun's series has them; the last 16 hours are left to the
+/// difference between terrestrial and universal time, which is 57,245 s then.
 pub(crate) const UTC_RANGE_S: [f64; 2] = [-125_281_123_200.0, 127_206_057_600.0];
 
 /// Years between which the difference of terrestrial and universal time is fitted to observations and simulations.
@@ -34,8 +34,8 @@ fn days_of(year: i32, month: u32) -> u32 {
     }
 }
 
-/// Days from 1970-01-01 to a date of the proleptic Gregorian calendar: years are counted from March, so that the day that comes
-/// every four years is a year's last (Richards 2013, Explanatory Supplement, section 15.11).
+/// Days from 1970-01-01 to a date of the proleptic Gregorian calendar: years are counted from March, so that the day
+/// that comes every four years is a year's last (Richards 2013, Explanatory Supplement, section 15.11).
 fn days_since_1970(year: i32, month: u32, day: u32) -> i64 {
     let (month, day) = (i64::from(month), i64::from(day));
     let year = i64::from(year) - i64::from(month <= 2);
@@ -49,8 +49,9 @@ fn days_since_1970(year: i32, month: u32, day: u32) -> i64 {
 pub struct Utc(pub f64);
 
 impl Utc {
-    /// From a calendar date (proleptic Gregorian) and a time of day: a year in \[-2000, 6000\], and a second in \[0, 61) of minute 59
-    /// of hour 23, else in \[0, 60). A leap second, 23:59:60, is the first of the next day, as Unix time has it.
+    /// From a calendar date (proleptic Gregorian) and a time of day: a year in \[-2000, 6000\], and a second in
+    /// \[0, 61) of minute 59 of hour 23, else in \[0, 60). A leap second, 23:59:60, is the first of the next day, as
+    /// Unix time has it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -83,9 +84,10 @@ impl Utc {
     }
 
     /// TT - UT1, s, without a step anywhere in the range: 69.1 s in 2026. The years -500 to 3000 are those of the crate
-    /// `solar-positioning`: the polynomials of Espenak and Meeus (2006, with Espenak's of 2014) until 2015, then a quartic through the
-    /// observations of IERS until the middle of 2026 and a quadratic through simulations (Agnew 2026). Before and after them it goes on
-    /// by the parabola of Morrison and Stephenson (2004), moved to where the fit ends: tidal friction, 32 s per century squared.
+    /// `solar-positioning`: the polynomials of Espenak and Meeus (2006, with Espenak's of 2014) until 2015, then a
+    /// quartic through the observations of IERS until the middle of 2026 and a quadratic through simulations (Agnew
+    /// 2026). Before and after them it goes on by the parabola of Morrison and Stephenson (2004), moved to where the
+    /// fit ends: tidal friction, 32 s per century squared.
     pub fn delta_t_s(self) -> f64 {
         let year = 2000.0 + (self.julian_date() - 2_451_544.5) / 365.2425;
         let fitted = year.clamp(FITTED_YEARS[0], FITTED_YEARS[1]);
@@ -128,7 +130,8 @@ mod tests {
             assert!(step.abs() < 1e-3, "{step} s at {border}");
         }
         for (year, expected, within) in
-            // Espenak and Meeus (2006): the table of the years -500 and 1000, IERS in 2026; and the parabola where it is alone.
+            // Espenak and Meeus (2006): the table of the years -500 and 1000, IERS in 2026; and the parabola where it
+            // is alone.
             [
                 (-500.0, 17_190.0, 430.0),
                 (1000.0, 1570.0, 55.0),

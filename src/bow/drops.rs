@@ -1,4 +1,4 @@
-//! Which drops of a weather make bows.
+//! Drops of a weather that make bows.
 
 use glam::DVec3;
 
@@ -12,15 +12,15 @@ use crate::{
 /// Direct light over all light on level ground below which no bow shows.
 const LEAST_DIRECT: f64 = 1e-3;
 
-/// What classes of drops take of the light in rain, 1/m, where drops fall faster by a factor.
+/// Returns the extinction of rain by each class of drops, 1/m, where drops fall faster by a factor.
 pub(super) fn in_rain(falling: &Falling, factor: f64) -> [f64; CLASSES] {
     let sizes = DropSizes::new(falling, factor);
     let rain = |i: usize| sizes.extinction_between_per_m(RAIN_EDGES_MM[i - 1], RAIN_EDGES_MM[i]);
     std::array::from_fn(|i| if i == 0 { 0.0 } else { rain(i) })
 }
 
-/// Asymmetry of droplets, and how far from it, below and above, there are none: dust and sand have less, lifted snow more
-/// (`weather::particles`).
+/// Asymmetry of droplets, and how far from it, below and above, there are none: dust and sand have less, lifted snow
+/// more (`weather::particles`).
 const DROPLETS: f64 = 0.85;
 const DUST_BELOW: f64 = 0.05;
 const SNOW_ABOVE: f64 = 0.03;
@@ -37,8 +37,8 @@ pub(crate) fn in_low_air(c: &Conditions) -> Option<Table> {
     low_air(c, in_rain).map(|shares| mixed(&shares))
 }
 
-/// What each class of drops takes of the light in a weather's low air, fog and what falls together, over all that is taken. `rain`:
-/// [`in_rain`], or what remembers it.
+/// Returns the share of each class of drops in the extinction of a weather's low air, fog and precipitation together.
+/// `rain`: [`in_rain`], or a cache of it.
 pub(super) fn low_air(c: &Conditions, rain: impl FnOnce(&Falling, f64) -> [f64; CLASSES]) -> Option<[f64; CLASSES]> {
     let mut classes = [0.0; CLASSES];
     let falling = FallingLayer::new(c);
@@ -53,7 +53,7 @@ pub(super) fn low_air(c: &Conditions, rain: impl FnOnce(&Falling, f64) -> [f64; 
     (classes.iter().sum::<f64>() > 0.0).then(|| classes.map(|v| v / all))
 }
 
-/// The same of the rain areas' drops on the mean; `None` without any.
+/// Returns the share of each class in the mean extinction of the rain areas' drops; `None` without any.
 pub(super) fn areas(now: &Moment<'_>, mut rain: impl FnMut(&Falling, f64) -> [f64; CLASSES]) -> Option<[f64; CLASSES]> {
     let mut classes = [0.0; CLASSES];
     let factor = factor_in(&now.here.air, now.here.air.station_altitude_m);
@@ -75,7 +75,8 @@ pub(crate) fn is_lit(scene: &Scene) -> bool {
     of(scene.brighter(), &scene.above_fog)
 }
 
-/// Whether some direction within `half_angle` of the middle of a picture may be within `reach` of the point opposite to the light, rad.
+/// Whether some direction within `half_angle` of the middle of a picture may be within `reach` of the point opposite to
+/// the light, rad.
 pub(super) fn is_within(middle: DVec3, half_angle: f64, to_light: DVec3, reach: f64) -> bool {
     middle.dot(-to_light).clamp(-1.0, 1.0).acos() < half_angle + reach
 }

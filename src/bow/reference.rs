@@ -19,11 +19,11 @@ pub struct Rays {
     pub index: f64,
 }
 
-/// What the two rays of one direction carry.
+/// Amplitudes and path difference of the two rays of one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pair {
-    /// Amplitudes of the ray nearer to the drop's edge and of the other in both polarisations, such that their squares are light over that
-    /// on a square of the drop's radius, 1/sr.
+    /// Amplitudes of the ray nearer to the drop's edge and of the other in both polarisations, such that their squares
+    /// are light over that on a square of the drop's radius, 1/sr.
     pub amplitudes: [[f64; 2]; 2],
     /// By how much the optical path of the first is longer, in radii.
     pub ahead: f64,
@@ -59,13 +59,14 @@ impl Rays {
         (self.slope(self.least() + h) - self.slope(self.least() - h)) / (4.0 * h)
     }
 
-    /// Optical path over that through the middle of a drop of index 1, in radii; its derivative along the family of rays is b dD.
+    /// Optical path over that through the middle of a drop of index 1, in radii; its derivative along the family of
+    /// rays is b dD.
     fn path(&self, b: f64) -> f64 {
         let [ci, cr] = self.cosines(b);
         2.0 * (f64::from(self.inside) + 1.0) * self.index * cr - 2.0 * ci
     }
 
-    /// What is left of both polarisations' amplitude (Fresnel), with its sign.
+    /// Returns the share of the amplitude that is left in both polarisations (Fresnel), with its sign.
     fn passed(&self, b: f64) -> [f64; 2] {
         let [ci, cr] = self.cosines(b);
         let n = self.index;
@@ -85,8 +86,8 @@ impl Rays {
         if self.inside == 1 { -first - angle } else { angle - first }
     }
 
-    /// Both rays that leave at an angle from the point opposite to the light, rad; `None` on the dark side of the bow and within half a
-    /// degree of it.
+    /// Both rays that leave at an angle from the point opposite to the light, rad; `None` on the dark side of the bow
+    /// and within half a degree of it.
     pub fn pair(&self, angle: f64) -> Option<Pair> {
         let beyond = self.beyond(angle);
         if beyond < NEAR_RAD {
@@ -116,11 +117,11 @@ impl Rays {
         Some(Pair { amplitudes: [high.0, low.0], ahead: high.1 - low.1 })
     }
 
-    /// Light that a drop of `size` (circumference over wavelength) sends to an angle from the point opposite to the light, of what falls on
-    /// a square of its radius, 1/sr. `pair` is [`Rays::pair`] of that angle.
+    /// Light that a drop of `size` (circumference over wavelength) sends to an angle from the point opposite to the
+    /// light, of what falls on a square of its radius, 1/sr. `pair` is [`Rays::pair`] of that angle.
     ///
-    /// On the bright side the uniform approximation of two rays that merge (Berry 1966, equation 28; Khare and Nussenzveig 1974); about the bow
-    /// and on its dark side Airy's (1838).
+    /// On the bright side the uniform approximation of two rays that merge (Berry 1966, equation 28; Khare and
+    /// Nussenzveig 1974); about the bow and on its dark side Airy's (1838).
     pub fn intensity(&self, size: f64, angle: f64, pair: Option<&Pair>) -> f64 {
         let Some(pair) = pair else {
             let (b, bend) = (self.least(), self.bend());
@@ -141,8 +142,8 @@ impl Rays {
 /// So near to the bow Airy's own form holds, rad.
 const NEAR_RAD: f64 = 0.0087;
 
-/// Airy's function and its derivative: its series about 0 (Abramowitz and Stegun 1964, 10.4.2), and beyond 5 what it tends to (10.4.59
-/// to 10.4.62, two terms).
+/// Airy's function and its derivative: its series about 0 (Abramowitz and Stegun 1964, 10.4.2), and beyond 5 what it
+/// tends to (10.4.59 to 10.4.62, two terms).
 pub fn airy(x: f64) -> [f64; 2] {
     if x.abs() < 5.0 {
         let (c1, c2) = (0.355_028_053_887_817_2, 0.258_819_403_792_806_8);

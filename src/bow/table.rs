@@ -1,4 +1,5 @@
-//! Tables of the bows over the angle from the point opposite to the light, as shaders read them (`shaders/between/bow.wgsl`).
+//! Tables of the bows over the angle from the point opposite to the light, as shaders read them
+//! (`shaders/between/bow.wgsl`).
 
 use std::{
     f64::consts::PI,
@@ -13,7 +14,8 @@ use super::reference::{Pair, Rays, WAVELENGTHS_NM, colour_shares, water_index};
 pub const ENTRIES: usize = 160;
 /// Angle between two of them, rad: 0.4 degrees.
 pub const STEP_RAD: f64 = 0.4 * PI / 180.0;
-/// What bows add to the phase function of drops, 1/sr a channel, over the angle from the point opposite to the light.
+/// Addition by bows to the phase function of drops, 1/sr a channel, over the angle from the point opposite to the
+/// light.
 pub type Table = [[f64; 3]; ENTRIES];
 
 /// Angles within two steps, before the light's disc smooths them.
@@ -36,8 +38,8 @@ pub(super) const CLASSES: usize = 6;
 /// Diameters between which the classes of rain lie, mm.
 pub(super) const RAIN_EDGES_MM: [f64; CLASSES] = [0.1, 0.2, 0.4, 0.8, 1.6, 6.0];
 
-/// Fog of droplets of 15 micrometres on the mean by extinction, spread as a gamma distribution whose effective variance is 0.1; rain
-/// evenly over the logarithm of its class.
+/// Fog of droplets of 15 micrometres on the mean by extinction, spread as a gamma distribution whose effective variance
+/// is 0.1; rain evenly over the logarithm of its class.
 fn class(i: usize) -> Class {
     if i == 0 {
         let radii_um = [4.0, 5.8, 7.5, 9.4, 12.0];
@@ -69,8 +71,8 @@ static RAYS: LazyLock<Vec<RayTable>> = LazyLock::new(|| {
     WAVELENGTHS_NM.iter().map(|nm| RayTable { wavelength_nm: *nm, bows: [of(*nm, 1), of(*nm, 2)] }).collect()
 });
 
-/// Phase function of the bows of drops of a radius, micrometres, at one wavelength, 1/sr, without the light's disc. Of all that drops take
-/// from light: half of it is bent round them.
+/// Phase function of the bows of drops of a radius, micrometres, at one wavelength, 1/sr, without the light's disc. Of
+/// all that drops take from light: half of it is bent round them.
 fn bows_of(rays: &RayTable, radius_um: f64, j: usize) -> f64 {
     let size = 2.0 * PI * radius_um * 1e3 / rays.wavelength_nm;
     let of = |(rays, pairs): &(Rays, Vec<Option<Pair>>)| rays.intensity(size, fine_angle(j), pairs[j].as_ref());
@@ -134,7 +136,7 @@ pub(super) fn mixed(shares: &[f64; CLASSES]) -> Table {
     sum
 }
 
-/// What a table has in a direction, with the light in another: unit vectors. 1/sr a channel.
+/// Returns a table's value in `direction`, with the light at `to_light` (unit vectors), 1/sr a channel.
 pub fn phase_in(table: &Table, direction: DVec3, to_light: DVec3) -> DVec3 {
     let angle = 2.0 * (0.5 * (direction + to_light).length()).min(1.0).asin();
     let place = angle / STEP_RAD;

@@ -17,12 +17,13 @@ use crate::{
 
 const _: () = assert!(ENTRIES == BOW_ENTRIES);
 
-/// What a view has of bows.
+/// Bows of a view.
 pub(crate) struct BowView {
-    /// What classes of drops take of the light in the low air and in rain areas, where there are any.
+    /// Shares of each class of drops in the extinction of the low air and of rain areas, where there are any.
     drops: [Option<[f64; CLASSES]>; 2],
     is_lit: bool,
-    /// Of rates that fell in the last frames, and the tables of shares: both are sums that most frames have in common.
+    /// Extinction by class at the rates of the last frames, and (`tables`) the tables of shares: both are sums that
+    /// most frames have in common.
     rains: LruCache<(Falling, f64), [f64; CLASSES], RAINS>,
     tables: LruCache<[f64; CLASSES], BowTable, 2>,
     /// The tables of the last draw.
@@ -75,7 +76,8 @@ impl DrawnEffect for BowView {
 
     fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
-        // Not by where the picture looks: a pipeline of its own would be made when the camera turns to a bow, and that frame be late.
+        // Not by where the picture looks: a pipeline of its own would be made when the camera turns to a bow, and that
+        // frame be late.
         let is_lit = self.has_drops() && self.is_lit;
         to.between_and_veil("BOW", flag(self.has_drops()), flag(is_lit));
         if is_lit && shows(at) {

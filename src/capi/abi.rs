@@ -1,4 +1,4 @@
-//! What the tests of the binary interface compare with C's view and with the committed lists. Not part of the API.
+//! Data that the tests of the binary interface compare with C's view and with the committed lists. Not part of the API.
 
 use super::{
     boundary,
@@ -49,7 +49,8 @@ pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
     found
 }
 
-/// Status of the calling thread's last failed call, of which wk_last_error_message and wk_last_error_field tell; 0 before the first.
+/// Status of the calling thread's last failed call, of which wk_last_error_message and wk_last_error_field tell; 0
+/// before the first.
 pub fn last_status() -> i32 {
     boundary::last_status()
 }
@@ -84,7 +85,8 @@ pub fn constants() -> Vec<(&'static str, &'static str, usize, bool)> {
     found
 }
 
-/// Every whole number of every struct but sizes, types and pointers: struct, field, offset, bytes of one, element count.
+/// Every whole number of every struct but sizes, types and pointers: struct, field, offset, bytes of one, element
+/// count.
 pub fn integers() -> Vec<(&'static str, &'static str, usize, usize, usize)> {
     let mut found = Vec::new();
     for s in STRUCTS {

@@ -4,9 +4,8 @@
 //! weather's rain and drizzle give way to the area's, smoothly over the rim inside its border. Where areas overlap, a
 //! later one in the list lies over the earlier ones. A camera inside sees drops of the rate at each drop's own place.
 //! From outside the rain is a shaft with falling curtains, which leans as the drops fall behind their cloud. All
-//! queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas. Where clouds are
-//! a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud over it.
-//! wk_context_save keeps them.
+//! queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas. Where
+//! clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud over it. wk_context_save keeps them.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -76,13 +75,13 @@ pub struct wk_rain_area {
     pub rain: wk_area_rain,
     /// Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0.
     pub heading_deg: f64,
-    /// Width inside of the border over which the rain fades, m. Range [1, 1e6], at most an ellipse's smaller half extent, or the radius
-    /// of the largest circle in a polygon. Default 500.
+    /// Width inside of the border over which the rain fades, m. Range [1, 1e6], at most an ellipse's smaller half
+    /// extent, or the radius of the largest circle in a polygon. Default 500.
     pub rim_m: f64,
     /// Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10.
     pub rate_mm_h: f64,
-    /// Altitude of the cloud base above mean sea level (not above the ground), m: above it falls neither the area's rain nor
-    /// the weather's. Range [-1000, 20 000], default 1500.
+    /// Altitude of the cloud base above mean sea level (not above the ground), m: above it falls neither the area's
+    /// rain nor the weather's. Range [-1000, 20 000], default 1500.
     pub top_m: f64,
     /// Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN.
     pub velocity_m_s: [f64; 2],
@@ -91,7 +90,7 @@ pub struct wk_rain_area {
     pub at_s: f64,
     /// Default WK_AREA_MOTION_WITH_WIND.
     pub motion: wk_area_motion,
-    /// What falls in place of the rain. Default WK_AREA_SNOW_NONE, the only one in this version.
+    /// Snow that falls in place of the rain. Default WK_AREA_SNOW_NONE, the only one in this version.
     pub snow: wk_area_snow,
 }
 

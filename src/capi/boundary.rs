@@ -1,5 +1,5 @@
-//! What surrounds every call: no panic crosses, every failure leaves a status, a sentence and a field of its thread, and a
-//! device in which something panicked answers no further calls.
+//! Guards around every call: no panic crosses, every failure leaves a status, a sentence and a field of its thread, and
+//! a device in which something panicked answers no further calls.
 
 use std::{
     any::Any,
@@ -77,7 +77,7 @@ pub(super) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Resu
     remember(function, &error)
 }
 
-/// What a thread keeps of its last failed call.
+/// State that a thread keeps of its last failed call.
 #[derive(Default)]
 struct Last {
     status: wk_status,
@@ -100,7 +100,7 @@ pub(super) fn last_error_field() -> *const c_char {
     LAST.with_borrow(|last| last.field.as_ptr())
 }
 
-/// What the tests let happen inside a call.
+/// Faults that the tests inject into a call.
 #[derive(Clone, Copy)]
 pub(super) enum Injected {
     Nothing,

@@ -1,7 +1,8 @@
 //! Clouds
 //!
 //! Layers of cloud come with the weather: wk_cloud_layer, a report, a preset. wk_context_set_cloud_model says how views
-//! draw them. Conditions, what falls and light on the mean are the same either way. docs/clouds.md has costs and errors.
+//! draw them. Conditions, what falls and light on the mean are the same either way. docs/clouds.md has costs and
+//! errors.
 //!
 //! Volumes cast shadows: the stage SURFACE darkens and brightens what the host drew from its depth, in the ratio of the
 //! light at each pixel's place to the light on the mean, in which the host lit it (wk_context_get_light). A host that
@@ -36,10 +37,8 @@ pub const WK_CLOUD_MODEL_DECK: wk_cloud_model = 0;
 /// drawn as a deck. A sixteenth of the pixels is computed in a frame: count wk_frame.frame_id up by one.
 pub const WK_CLOUD_MODEL_VOLUME: wk_cloud_model = 1;
 
-/// Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS). Part of the
-/// saved state.
-/// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
+/// Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS).
+/// Part of the saved state. Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_cloud_model(
     context: *mut wk_context,
@@ -80,12 +79,12 @@ pub unsafe extern "C" fn wk_context_get_sun_share(
     })
 }
 
-/// What a view draws of clouds beside themselves.
+/// Effects of clouds that a view draws beside the clouds.
 pub type wk_clouds_flags = u32;
-/// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows. Drawn
-/// with WK_STAGE_SURFACE where the host gives depth and does not read the map of shadows itself
-/// (wk_view_get_cloud_shadows), up to 10 km away; 24 look-ups a pixel. Without it the air is as bright as on the mean over
-/// places.
+/// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows.
+/// Drawn with WK_STAGE_SURFACE where the host gives depth and does not read the map of shadows itself
+/// (wk_view_get_cloud_shadows), up to 10 km away; 24 look-ups a pixel. Without it the air is as bright as on the mean
+/// over places.
 pub const WK_CLOUDS_SHAFTS: wk_clouds_flags = 1;
 
 /// How finely a view draws clouds that are a volume.
@@ -100,8 +99,8 @@ pub struct wk_clouds {
     pub next: *const c_void,
     /// How many steps a ray takes: twice the value, twice as many. Range [0.125, 32], default 2.
     pub fineness: f64,
-    /// One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier frames:
-    /// 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
+    /// One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier
+    /// frames: 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
     pub square_side: u32,
     /// WK_CLOUDS_* flags. Default 0.
     pub flags: wk_clouds_flags,

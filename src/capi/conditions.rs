@@ -106,13 +106,13 @@ pub struct wk_conditions {
     pub wind_turbulence_intensity: f64,
     /// Half the range over which the direction wanders, degrees: 0 steady, 180 all round.
     pub wind_wander_deg: f64,
-    /// Of the land, m.
+    /// Roughness length of the land, m.
     pub roughness_length_m: f64,
-    /// Of the sea, m.
+    /// Roughness length of the sea, m.
     pub sea_roughness_length_m: f64,
-    /// Of the wind sea, m.
+    /// Significant wave height of the wind sea, m.
     pub significant_wave_height_m: f64,
-    /// Of the swell, m; 0 without swell.
+    /// Height of the swell, m; 0 without swell.
     pub swell_height_m: f64,
     /// Its peak period, s.
     pub swell_period_s: f64,
@@ -122,7 +122,7 @@ pub struct wk_conditions {
     pub swell_north: f64,
     /// Water, degrees Celsius.
     pub sea_temperature_c: f64,
-    /// Of the ground: 0 dry, 0.3 damp, 1 under a closed film.
+    /// Wetness of the ground: 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
     /// Fraction of the ground under standing water.
     pub puddles: f64,
@@ -132,11 +132,11 @@ pub struct wk_conditions {
     pub snow_depth_m: f64,
     /// Ozone column, Dobson units.
     pub ozone_du: f64,
-    /// Of snow_mm_h, what falls as flakes, mm/h of melted water; 0 where none falls.
+    /// Part of snow_mm_h that falls as flakes, mm/h of melted water; 0 where none falls.
     pub snow_flakes_mm_h: f64,
-    /// Of snow_mm_h, what falls as snow grains, likewise.
+    /// Part of snow_mm_h that falls as snow grains, mm/h of melted water; 0 where none falls.
     pub snow_grains_mm_h: f64,
-    /// Of snow_mm_h, what falls as ice crystals, likewise.
+    /// Part of snow_mm_h that falls as ice crystals, mm/h of melted water; 0 where none falls.
     pub ice_crystals_mm_h: f64,
 }
 

@@ -126,10 +126,10 @@ pub struct wk_context_desc {
     /// each). If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read during the call.
     /// Default NULL: no files.
     pub cache_dir: *const c_char,
-    /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation), m:
-    /// 47.8 at Frankfurt, -30 at New York. One number for the context; it varies by some metres over 100 km. For WK_WORLD_ECEF,
-    /// whose coordinates know the ellipsoid alone: altitudes, the tops of fog and the bases of clouds among them, count from
-    /// mean sea level. Without effect in other worlds. Range [-120, 120], default 0.
+    /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation),
+    /// m: 47.8 at Frankfurt, -30 at New York. One number for the context; it varies by some metres over 100 km. For
+    /// WK_WORLD_ECEF, whose coordinates know the ellipsoid alone: altitudes, the tops of fog and the bases of clouds
+    /// among them, count from mean sea level. Without effect in other worlds. Range [-120, 120], default 0.
     pub geoid_height_m: f64,
 }
 
@@ -323,10 +323,8 @@ pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: 
 /// draft of the sky, within 3 of 255 of the whole one, and 120 frames refine it without a visible step.
 /// WK_FRAME_NO_HISTORY in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else
 /// it is called about sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no
-/// file.
-/// Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's own again
-/// while `progress` runs.
-/// Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
+/// file. Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's
+/// own again while `progress` runs. Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_build_sky(
     context: *mut wk_context,

@@ -5,10 +5,10 @@
 //! host's wgpu device. All later calls are the same for all four.
 //!
 //! Make one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
-//! (driver reset, unplugged) every call that needs it answers WK_ERROR_DEVICE_LOST: those that create, build, draw, read
-//! or write what lies on it, and wk_context_get_ambient. A context's weather, time, settings, other queries and state need
-//! no GPU and go on: save the state with wk_context_save, destroy the views, contexts and the device, create them again,
-//! and load the state.
+//! (driver reset, unplugged) every call that needs it answers WK_ERROR_DEVICE_LOST: those that create, build, draw,
+//! read or write what lies on it, and wk_context_get_ambient. A context's weather, time, settings, other queries and
+//! state need no GPU and go on: save the state with wk_context_save, destroy the views, contexts and the device, create
+//! them again, and load the state.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -155,10 +155,9 @@ pub(super) fn issue(gpu: Arc<Device>, host: Host) -> Result<*mut wk_device> {
 }
 
 /// Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle,
-/// which you destroy with `wk_device_destroy`; else it stays untouched.
-/// Thread: any.
-/// Errors: WK_ERROR_NO_ADAPTER if no driver fits the request, or an OpenGL driver draws a few known texels wrong or does
-/// not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT by name.
+/// which you destroy with `wk_device_destroy`; else it stays untouched. Thread: any. Errors: WK_ERROR_NO_ADAPTER if no
+/// driver fits the request, or an OpenGL driver draws a few known texels wrong or does not finish them within 6 s;
+/// WK_ERROR_INVALID_ARGUMENT by name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create(desc: *const wk_device_desc, out_device: *mut *mut wk_device) -> wk_status {
     guard("wk_device_create", |_| {
@@ -174,7 +173,7 @@ pub unsafe extern "C" fn wk_device_create(desc: *const wk_device_desc, out_devic
     })
 }
 
-/// What the flags say, as the Rust side takes it.
+/// Converts the flags to the options of the Rust side.
 pub(super) fn options(desc: &wk_device_desc) -> DeviceOptions {
     let pairs = [
         (WK_BACKEND_NOOP, wgpu::Backends::NOOP),

@@ -1,5 +1,5 @@
-//! What the boundary keeps beside a device: whether a panic happened in it, and objects whose release must wait until
-//! the host's context is current again.
+//! State that the boundary keeps beside a device: whether a panic happened in it, and objects whose release must wait
+//! until the host's context is current again.
 
 use std::{
     any::Any,
@@ -21,7 +21,7 @@ pub(super) struct DeviceCell {
     host: RwLock<Host>,
     poisoned: AtomicBool,
     retired: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
-    /// What all contexts of the device share; made with the first of them.
+    /// Pipelines and tables that all contexts of the device share; made with the first of them.
     shared: Mutex<Option<Arc<Shared>>>,
 }
 
@@ -95,8 +95,8 @@ impl DeviceCell {
         std::mem::replace(&mut *self.host.write().unwrap_or_else(PoisonError::into_inner), Host::Own)
     }
 
-    /// Drops GPU objects. Where the host's context can no longer be entered they are given up: its objects went with it,
-    /// and a driver need not survive a call without a context.
+    /// Drops GPU objects. Where the host's context can no longer be entered they are given up: its objects went with
+    /// it, and a driver need not survive a call without a context.
     fn release<T>(&self, objects: T) {
         match self.gpu.enter_to_release() {
             Ok(entered) => {

@@ -1,13 +1,14 @@
 //! A cube map of what stands around the camera
 //!
-//! For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its clouds, fog and
-//! rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the host lights by those
-//! itself), stars and the host's objects; the night's glow is even. Its axes are those of the host's world: a shader looks
-//! it up by the reflected direction as it is. Level m of the 7 is what a mirror of roughness m/6 shows (the distribution of Trowbridge
-//! and Reitz, alpha = roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness)
-//! is the specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and
-//! set their filters by a sampler object. Welkin draws one face a frame, in turn; all six in the first frame, in frames with
-//! WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather leap. Views whose hosts do not ask have none of it.
+//! For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its
+//! clouds, fog and rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the
+//! host lights by those itself), stars and the host's objects; the night's glow is even. Its axes are those of the
+//! host's world: a shader looks it up by the reflected direction as it is. Level m of the 7 is what a mirror of
+//! roughness m/6 shows (the distribution of Trowbridge and Reitz, alpha = roughness^2; Karis 2013, Real Shading in
+//! Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the specular light before the surface's
+//! reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their filters by a sampler object. Welkin
+//! draws one face a frame, in turn; all six in the first frame, in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and
+//! where light or weather leap. Views whose hosts do not ask have none of it.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -60,11 +61,10 @@ impl wk_environment {
 }
 
 /// Gets the native texture of the cube map. From the first call on, the first call of each frame with
-/// WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws what is due of it. It belongs to the view and stays the same until that is
-/// destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such wk_view_record call. Call this
-/// after each frame for its scales.
-/// Thread: exclusive on the view.
-/// Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+/// WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws what is due of it. It belongs to the view and stays the same until that
+/// is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such wk_view_record call. Call
+/// this after each frame for its scales. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own device,
+/// which has no shaders of the host's.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_environment(
     view: *mut wk_view,

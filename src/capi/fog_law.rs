@@ -40,7 +40,7 @@ pub const WK_FOG_DISTANCE_RANGE: wk_fog_distance = 0;
 /// From the camera's plane, as in the oldest systems.
 pub const WK_FOG_DISTANCE_PLANE: wk_fog_distance = 1;
 
-/// Which optional fields of a wk_fog_law are set.
+/// Flags of the optional fields of a wk_fog_law that are set.
 pub type wk_fog_law_has_flags = u32;
 /// color
 pub const WK_FOG_LAW_HAS_COLOR: wk_fog_law_has_flags = 1;
@@ -59,7 +59,7 @@ pub struct wk_fog_law {
     pub curve: wk_fog_curve,
     /// Default WK_FOG_DISTANCE_RANGE.
     pub distance: wk_fog_distance,
-    /// Which optional fields are set. Default 0.
+    /// Flags of the optional fields that are set. Default 0.
     pub has: wk_fog_law_has_flags,
     /// Must be 0.
     pub reserved0: u32,
@@ -120,7 +120,8 @@ unsafe fn law(p: *const wk_fog_law) -> Result<Law> {
     Ok(if c.curve == WK_FOG_CURVE_CLEAR { Law::Clear } else { Law::Compatibility(law) })
 }
 
-/// Figures of the curves that `law` does not name: nothing of them is drawn, but a host that sets one out of its range is mistaken.
+/// Figures of the curves that `law` does not name: nothing of them is drawn, but a host that sets one out of its range
+/// is mistaken.
 fn check_unused(law: &wk_fog_law) -> Result<()> {
     check_range("fog.start_m", law.start_m, 0.0, 1e9, "m")?;
     check_range("fog.end_m", law.end_m, 0.0, 1e9, "m")?;

@@ -55,20 +55,20 @@ pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
 /// Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
 pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
 
-/// What Welkin may do with the target's depth. Nothing that this version draws is opaque, so both give the same picture; sea
-/// and terrain will be.
+/// Access of Welkin to the target's depth. Nothing that this version draws is opaque, so both give the same picture;
+/// sea and terrain will be.
 pub type wk_depth_access = u32;
 /// Read it: not a bit of it changes, and Welkin draws nothing opaque of its own.
 pub const WK_DEPTH_ACCESS_READ: wk_depth_access = 0;
-/// Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays. Needs
-/// depth that can be attached: a depth format, as many samples as the colour, and in Vulkan DEPTH_STENCIL_ATTACHMENT among
-/// its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an own device, whose depth is
-/// WK_FORMAT_R32_FLOAT.
+/// Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays.
+/// Needs depth that can be attached: a depth format, as many samples as the colour, and in Vulkan
+/// DEPTH_STENCIL_ATTACHMENT among its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an
+/// own device, whose depth is WK_FORMAT_R32_FLOAT.
 pub const WK_DEPTH_ACCESS_READ_WRITE: wk_depth_access = 1;
 
-/// A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over blue,
-/// green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw nothing. Masked
-/// pixels stay yours. Where nothing of what it shows is in the frame, all is black.
+/// A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over
+/// blue, green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw
+/// nothing. Masked pixels stay yours. Where nothing of what it shows is in the frame, all is black.
 pub type wk_diagnostic = u32;
 /// The picture itself.
 pub const WK_DIAGNOSTIC_NONE: wk_diagnostic = 0;
@@ -79,13 +79,14 @@ pub const WK_DIAGNOSTIC_DISTANCE: wk_diagnostic = 1;
 pub const WK_DIAGNOSTIC_OPTICAL_DEPTH: wk_diagnostic = 2;
 /// Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE.
 pub const WK_DIAGNOSTIC_WETNESS: wk_diagnostic = 3;
-/// What the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white, by decades:
-/// black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
+/// Error by what the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white,
+/// by decades: black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
 pub const WK_DIAGNOSTIC_PLAN_ERROR: wk_diagnostic = 4;
 /// How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
 pub const WK_DIAGNOSTIC_OVERDRAW: wk_diagnostic = 5;
-/// The wind that carries what falls, 2 m over what you drew: black a calm, 4 m/s a step, white 20 m/s and more. Each square
-/// of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The sky is black. Stage MEDIUM.
+/// The wind that carries what falls, 2 m over what you drew: black a calm, 4 m/s a step, white 20 m/s and more. Each
+/// square of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The sky is black. Stage
+/// MEDIUM.
 pub const WK_DIAGNOSTIC_WIND: wk_diagnostic = 6;
 
 /// Flags of a frame.
@@ -99,8 +100,8 @@ pub const WK_FRAME_CUT: wk_frame_flags = 1;
 pub const WK_FRAME_NO_HISTORY: wk_frame_flags = 2;
 /// Depth is reversed: 1 is near, 0 is far.
 pub const WK_FRAME_DEPTH_REVERSED: wk_frame_flags = 4;
-/// The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with a
-/// viewport of positive height. Without it the first row lies at clip y = +1.
+/// The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with
+/// a viewport of positive height. Without it the first row lies at clip y = +1.
 pub const WK_FRAME_FIRST_ROW_AT_MINUS_Y: wk_frame_flags = 8;
 /// Measure what each effect costs: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for each,
 /// so the frame is slower and its picture may differ by rounding. Use it now and then, not in every frame.
@@ -304,7 +305,7 @@ pub(super) struct Images<'a> {
     pub(super) color: Option<&'a wgpu::Texture>,
     pub(super) depth: Option<&'a wgpu::Texture>,
     pub(super) mask: Option<&'a wgpu::Texture>,
-    /// Which layer of its texture each is.
+    /// Layers of the images within their textures.
     pub(super) layers: ImageLayers,
     pub(super) surface_classes: Option<&'a wgpu::Texture>,
     pub(super) normals: Option<&'a wgpu::Texture>,

@@ -51,8 +51,8 @@ pub const WK_LYING_SNOW_REPORTED: wk_lying_snow_model = 0;
 /// (wk_context_accumulate); of one of more than 30 days the last 30 count.
 pub const WK_LYING_SNOW_SIMULATED: wk_lying_snow_model = 1;
 
-/// What the ground is made of. An image of the target (the byte of red) counts first, then the wk_ground_grid or the
-/// tiles of the wk_terrain, then the context's default.
+/// Material of the ground. An image of the target (the byte of red) counts first, then the wk_ground_grid or the tiles
+/// of the wk_terrain, then the context's default.
 pub type wk_surface_class = u32;
 /// In an image or a grid: the next source decides. As the context's default: natural ground, which is vegetation where
 /// the host's colour is green and soil elsewhere.
@@ -138,7 +138,7 @@ pub struct wk_ground {
     pub in_puddle: u32,
     /// 0.
     pub reserved0: u32,
-    /// What the ground is made of there, by the host's terrain, else by the context's default.
+    /// Material of the ground there, by the host's terrain, else by the context's default.
     pub surface_class: wk_surface_class,
     /// 0.
     pub reserved1: u32,

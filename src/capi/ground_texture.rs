@@ -1,8 +1,9 @@
 //! Water on the host's terrain as a texture
 //!
 //! For the host's own materials: the water of the terrain's cells as one native texture, of a grid
-//! (wk_context_set_ground_grid) uploaded once for the host and for the stage SURFACE, of tiles (wk_context_set_terrain) those
-//! about a place. One texel for each cell, the first one south-west, rows to the north, in every graphics interface. Published functions, GLSL and WGSL, compute how it looks.
+//! (wk_context_set_ground_grid) uploaded once for the host and for the stage SURFACE, of tiles (wk_context_set_terrain)
+//! those about a place. One texel for each cell, the first one south-west, rows to the north, in every graphics
+//! interface. Published functions, GLSL and WGSL, compute how it looks.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -56,8 +57,8 @@ pub struct wk_ground_texture {
     /// 0) is the south-western corner of the first texel. Single precision is enough once the fourth column includes
     /// the camera's position.
     pub uv_from_world: [[f64; 4]; 2],
-    /// The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of wk_lying_snow.
-    /// 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.
+    /// The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of
+    /// wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.
     pub snow_texture: u64,
 }
 
@@ -81,9 +82,8 @@ impl wk_ground_texture {
 /// SURFACE, uploads them in order with the host's work on the device's queue or context. The texture belongs to the
 /// context and stays the same until another grid, or none, is set or loaded: wait for the GPU's work that samples it
 /// before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It
-/// has no mipmaps; choose filter and wrap yourself.
-/// Thread: exclusive.
-/// Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+/// has no mipmaps; choose filter and wrap yourself. Thread: exclusive. Errors: WK_ERROR_WRONG_ORDER without a terrain;
+/// WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ground_texture(
     context: *mut wk_context,
@@ -102,14 +102,13 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
     })
 }
 
-/// Gets the native textures of the tiles about a place, up to date, as wk_context_get_ground_texture does those of a grid:
-/// a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at a time.
+/// Gets the native textures of the tiles about a place, up to date, as wk_context_get_ground_texture does those of a
+/// grid: a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at a time.
 /// `uv_from_world` is where it is now; where no tile has ground there is neither water nor snow. Call it after each
-/// wk_context_update, and for several cameras before you draw each. It costs nothing if nothing has changed; all of it is
-/// uploaded where the window has moved. Both textures stay the same as long as the context lives.
-/// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for a place that is none; WK_ERROR_WRONG_ORDER where no tile reaches into the window;
-/// WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+/// wk_context_update, and for several cameras before you draw each. It costs nothing if nothing has changed; all of it
+/// is uploaded where the window has moved. Both textures stay the same as long as the context lives. Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a place that is none; WK_ERROR_WRONG_ORDER where no tile reaches into the
+/// window; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_texture(
     context: *mut wk_context,
@@ -131,7 +130,7 @@ pub unsafe extern "C" fn wk_context_get_terrain_texture(
     })
 }
 
-/// What a host gets of textures.
+/// Converts a ground texture to its C struct.
 fn native(object: &ContextObject, ground: &GroundTexture) -> Result<wk_ground_texture> {
     let snow = ground.snow.as_ref().map(|texture| host::native_texture(&object.cell, texture)).transpose()?;
     Ok(wk_ground_texture {

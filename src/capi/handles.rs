@@ -9,7 +9,7 @@ use std::{
 use super::device_cell::DeviceCell;
 use crate::error::{Error, Result, Status};
 
-/// What a C handle type stands for.
+/// Object that a C handle type stands for.
 pub(super) trait Object: Any + Send + Sync {
     /// The opaque type in the header.
     type C;

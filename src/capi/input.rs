@@ -84,7 +84,8 @@ pub(super) unsafe fn slice_mut<'a, T: Copy>(param: &str, p: *mut T, count: Named
     Ok(unsafe { std::slice::from_raw_parts_mut(p, count) })
 }
 
-/// Writes a state's bytes into the caller's room: `*out_size` gets their number, and where `capacity` is 0 nothing more.
+/// Writes a state's bytes into the caller's room: `*out_size` gets their number, and where `capacity` is 0 nothing
+/// more.
 ///
 /// # Safety
 /// `buffer` is NULL or has `capacity` bytes, `out_size` is NULL or a place, both the caller's alone.

@@ -9,7 +9,7 @@ use std::{ffi::c_void, fmt::Display};
 use super::status::*;
 use crate::error::{Error, Result, Status, listed};
 
-/// What a field holds.
+/// Type of a field.
 #[derive(Clone, Copy, Debug)]
 #[allow(dead_code, reason = "the kinds that this version's structs do not use yet")]
 pub(crate) enum FieldKind {
@@ -33,7 +33,7 @@ pub(crate) struct Field {
     pub offset: usize,
     pub kind: FieldKind,
     pub count: usize,
-    /// What its documentation says it accepts, such as `[0, 1]`; empty if it says no range.
+    /// Range that its documentation states, such as `[0, 1]`; empty if it states none.
     pub range: &'static str,
 }
 
@@ -400,7 +400,7 @@ pub(crate) unsafe fn write_version<T: Layout>(value: &T, at: *mut u8, bytes: usi
     }
 }
 
-/// What every `wk_x_init` does.
+/// Writes the default of a struct, as every `wk_x_init` does.
 ///
 /// # Safety
 /// `out` is NULL or points to `struct_size` writable bytes.

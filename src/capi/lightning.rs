@@ -1,10 +1,10 @@
 //! Lightning
 //!
-//! A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20 km, or
-//! as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the storm
-//! cells: all channels see the same ones, and any time can be shown again. Views draw channels, the glow of clouds and
-//! air, and light rain and wet ground by them. The host asks for events to play thunder, and for light to light its own
-//! scene:
+//! A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20
+//! km, or as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the
+//! storm cells: all channels see the same ones, and any time can be shown again. Views draw channels, the glow of
+//! clouds and air, and light rain and wet ground by them. The host asks for events to play thunder, and for light to
+//! light its own scene:
 //!
 //! ```c
 //! wk_flash flashes[16];
@@ -36,7 +36,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_lightning.rs"));
 
-/// What a wk_lightning sets.
+/// Flags of the settings in a wk_lightning.
 pub type wk_lightning_flags = u32;
 /// flashes_per_minute: the host's rate in place of the weather's.
 pub const WK_LIGHTNING_RATE: wk_lightning_flags = 1;
@@ -70,7 +70,8 @@ pub struct wk_lightning {
     pub flags: wk_lightning_flags,
     /// Default WK_FLICKER_AS_IN_NATURE.
     pub flicker: wk_flicker,
-    /// With WK_LIGHTNING_RATE: flashes a minute of each square of 20 km, whatever the weather. Range [0, 60], default 0.
+    /// With WK_LIGHTNING_RATE: flashes a minute of each square of 20 km, whatever the weather. Range [0, 60], default
+    /// 0.
     pub flashes_per_minute: f64,
     /// Storm cells in `cells`, at most 16, in place of the weather's. Default 0.
     pub cell_count: u32,
@@ -79,8 +80,8 @@ pub struct wk_lightning {
     /// Five numbers a cell: its middle in the host's world, m (the height does not matter); the distance from it within
     /// which two of three flashes start, m, in [0, 1e5]; flashes a minute in [0, 60]. Copied. Default NULL.
     pub cells: *const f64,
-    /// Three numbers each: the tip in the host's world, m. Masts draw ground flashes; so do the tops of shelters. Copied.
-    /// Default NULL.
+    /// Three numbers each: the tip in the host's world, m. Masts draw ground flashes; so do the tops of shelters.
+    /// Copied. Default NULL.
     pub masts: *const f64,
 }
 
@@ -149,14 +150,14 @@ pub struct wk_flash {
     pub strokes: u32,
     /// Largest peak current of its strokes, kA.
     pub peak_ka: f64,
-    /// What it struck, or the middle of its way in the cloud, in the host's world, m.
+    /// Position of what it struck, or of the middle of its way in the cloud, in the host's world, m.
     pub position_m: [f64; 3],
     /// Distance of the nearest point of its channel, m.
     pub distance_m: f64,
     /// Direction to position_m.
     pub direction: [f64; 3],
-    /// Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, 331.3 m/s and 0.606 m/s
-    /// for each degree Celsius.
+    /// Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, 331.3 m/s and 0.606
+    /// m/s for each degree Celsius.
     pub thunder_delay_s: f64,
 }
 
@@ -263,10 +264,9 @@ pub unsafe extern "C" fn wk_context_set_lightning(
     })
 }
 
-/// Triggers a flash, whatever the weather. Part of the saved state until 120 s after it; at most 64 at a time. Unchanged
-/// after an error.
-/// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time before the present.
+/// Triggers a flash, whatever the weather. Part of the saved state until 120 s after it; at most 64 at a time.
+/// Unchanged after an error. Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range;
+/// WK_ERROR_WRONG_ORDER for a time before the present.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_trigger_flash(
     context: *mut wk_context,
@@ -290,12 +290,11 @@ pub unsafe extern "C" fn wk_context_trigger_flash(
     })
 }
 
-/// Gets the flashes that begin from `from_s` on until `until_s`, 3600 s at most, within `most_distance_m` of a place of the
-/// host's world (on the map; at most 50000 m), in order of time: past or to come. `*out_count` gets their number even if
-/// `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `flash_size` is
-/// sizeof(wk_flash) of your header. Where the timeline has forgotten the weather of then, the first that it knows counts.
-/// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+/// Gets the flashes that begin from `from_s` on until `until_s`, 3600 s at most, within `most_distance_m` of a place of
+/// the host's world (on the map; at most 50000 m), in order of time: past or to come. `*out_count` gets their number
+/// even if `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds).
+/// `flash_size` is sizeof(wk_flash) of your header. Where the timeline has forgotten the weather of then, the first
+/// that it knows counts. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_flashes(
     context: *const wk_context,
@@ -329,10 +328,9 @@ pub unsafe extern "C" fn wk_context_get_flashes(
     })
 }
 
-/// Gets the light of flashes at a place of the host's world, on the mean of `exposure_s`, [0, 1], before `time_s`; with 0
-/// that of the very moment. A host lights its own scene by it, with the time from its last frame as exposure.
-/// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+/// Gets the light of flashes at a place of the host's world, on the mean of `exposure_s`, [0, 1], before `time_s`; with
+/// 0 that of the very moment. A host lights its own scene by it, with the time from its last frame as exposure. Thread:
+/// concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_flash_light(
     context: *const wk_context,

@@ -127,7 +127,7 @@ pub struct wk_opengl_image {
     pub kind: wk_opengl_image_kind,
     /// Its OpenGL name. Default 0.
     pub name: u32,
-    /// Of a texture: GL_TEXTURE_2D (0x0DE1, the default) or GL_TEXTURE_2D_MULTISAMPLE (0x9100).
+    /// Target of a texture: GL_TEXTURE_2D (0x0DE1, the default) or GL_TEXTURE_2D_MULTISAMPLE (0x9100).
     pub target: u32,
     /// Must be 0.
     pub reserved0: u32,

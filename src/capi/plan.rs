@@ -1,4 +1,4 @@
-//! What a picture needs, and no more
+//! Plan and budget of a view
 //!
 //! With a tolerance, a view gauges its own pictures. In every eighth frame it composes a grid of 64 x 36 of its pixels
 //! with everything and without each part of the weather, and reads the differences back some frames later without
@@ -7,9 +7,9 @@
 //! perceived least for the time that they save. They come back when there is time again. After a jump of camera, sun or
 //! weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
 //!
-//! A part has a number (WK_PART_), a name and rungs. Rung 0 is all of it; the last is nothing of it, or the cheapest that
-//! stands for it. Later versions have more parts, at the end: wk_plan.part_count says how many, wk_view_get_part_plan what
-//! they are called.
+//! A part has a number (WK_PART_), a name and rungs. Rung 0 is all of it; the last is nothing of it, or the cheapest
+//! that stands for it. Later versions have more parts, at the end: wk_plan.part_count says how many,
+//! wk_view_get_part_plan what they are called.
 //!
 //! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
 //! percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
@@ -47,25 +47,26 @@ pub const WK_PART_AIR: wk_part = 0;
 pub const WK_PART_FOG: wk_part = 1;
 /// The clear sky above the horizon, behind clouds. Rungs: all, none.
 pub const WK_PART_SKY: wk_part = 2;
-/// Streaks and splashes of rain, where the view has no rain model of the host's choice. Rungs: drops (each near the camera by itself),
-/// cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it is drawn).
+/// Streaks and splashes of rain, where the view has no rain model of the host's choice. Rungs: drops (each near the
+/// camera by itself), cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it
+/// is drawn).
 pub const WK_PART_RAIN: wk_part = 3;
 /// Stars, planets and the glow of the night between them. Rungs: all, none (an even sky of the same light).
 pub const WK_PART_STARS: wk_part = 4;
 /// Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK).
 pub const WK_PART_CLOUDS: wk_part = 5;
-/// Flakes of falling snow, where the view has no snow model of the host's choice. Rungs: flakes, none (all snow is a veil, and without
-/// WK_PART_FOG too nothing of it is drawn).
+/// Flakes of falling snow, where the view has no snow model of the host's choice. Rungs: flakes, none (all snow is a
+/// veil, and without WK_PART_FOG too nothing of it is drawn).
 pub const WK_PART_SNOW: wk_part = 6;
 
-/// Which optional fields of a wk_part_wish are set.
+/// Flags of the optional fields of a wk_part_wish that are set.
 pub type wk_part_wish_has_flags = u32;
 /// importance
 pub const WK_PART_WISH_HAS_IMPORTANCE: wk_part_wish_has_flags = 1;
 /// rung
 pub const WK_PART_WISH_HAS_RUNG: wk_part_wish_has_flags = 2;
 
-/// Which optional fields of a wk_budget are set.
+/// Flags of the optional fields of a wk_budget that are set.
 pub type wk_budget_has_flags = u32;
 /// tolerance
 pub const WK_BUDGET_HAS_TOLERANCE: wk_budget_has_flags = 1;
@@ -95,11 +96,11 @@ pub type wk_gave_way = u32;
 pub const WK_GAVE_WAY_NOTHING: wk_gave_way = 0;
 /// The tolerance: the time allows no better picture.
 pub const WK_GAVE_WAY_TOLERANCE: wk_gave_way = 1;
-/// Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes longer than
-/// the budget.
+/// Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes longer
+/// than the budget.
 pub const WK_GAVE_WAY_TIME: wk_gave_way = 2;
 
-/// What a host wants of one part.
+/// Wish of a host for one part.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_part_wish {
@@ -109,17 +110,18 @@ pub struct wk_part_wish {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Which optional fields are set.
+    /// Flags of the optional fields that are set.
     pub has: wk_part_wish_has_flags,
-    /// Of which part.
+    /// Part that the wish is about.
     pub part: wk_part,
-    /// Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the same.
-    /// Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says what of a tolerance and a time is not kept.
+    /// Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the
+    /// same. Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says what of a tolerance and a
+    /// time is not kept.
     pub rung: u32,
     /// 0.
     pub reserved: u32,
-    /// Optional: how much the part matters to those who look, which says what is left out first under a budget of time. Range [0, 1],
-    /// default wk_part_plan.importance.
+    /// Optional: how much the part matters to those who look, which says what is left out first under a budget of time.
+    /// Range [0, 1], default wk_part_plan.importance.
     pub importance: f64,
 }
 
@@ -146,7 +148,7 @@ pub struct wk_budget {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Which optional fields are set. Default 0: everything is drawn.
+    /// Flags of the optional fields that are set. Default 0: everything is drawn.
     pub has: wk_budget_has_flags,
     /// Length of `wishes`. Default 0: parts that are not in it are planned, and matter as by default.
     pub wish_count: u32,
@@ -154,7 +156,7 @@ pub struct wk_budget {
     pub wish_stride: u32,
     /// 0.
     pub reserved: u32,
-    /// What is wanted of single parts, each of them once.
+    /// Wishes for single parts, each of them once.
     pub wishes: *const wk_part_wish,
     /// Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen.
     pub tolerance: f64,
@@ -190,7 +192,7 @@ pub struct wk_plan {
     pub next: *const c_void,
     /// How many parts there are: their numbers are below it.
     pub part_count: u32,
-    /// What of the budget could not be kept.
+    /// Limit of the budget that could not be kept.
     pub gave_way: wk_gave_way,
     /// Error of everything left out together: 95th percentile over the gauged pixels.
     pub error: f64,
@@ -252,9 +254,10 @@ pub struct wk_part_plan {
     pub share: f64,
     /// Error of the picture with this part alone at its last rung, as last gauged.
     pub error: f64,
-    /// The same at the worst gauged pixel.
+    /// Error of the worst gauged pixel with this part alone at its last rung, as last gauged.
     pub worst: f64,
-    /// What all of it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
+    /// Work that all of it adds to this picture with everything, or would add, in units of a pixel with none of the
+    /// parts.
     pub work: f64,
 }
 
@@ -373,9 +376,8 @@ pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_
     })
 }
 
-/// Says of one part how much of it the view's last frame drew, and why; and what the part is called, before any frame too.
-/// Thread: exclusive on the view.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
+/// Says of one part how much of it the view's last frame drew, and why; and what the part is called, before any frame
+/// too. Thread: exclusive on the view. Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_part_plan(
     view: *mut wk_view,
@@ -414,12 +416,10 @@ pub unsafe extern "C" fn wk_view_save_plan(
     })
 }
 
-/// Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part; the rest of the view's budget stays, and
-/// wk_view_set_budget ends it.
-/// Thread: exclusive on the view.
-/// Errors: WK_ERROR_PARSE for bytes that are no such plan or of another version, naming line and column or the field;
-/// WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. After an error the
-/// view's plan stays as it was.
+/// Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part; the rest of the view's
+/// budget stays, and wk_view_set_budget ends it. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes that
+/// are no such plan or of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT naming the
+/// setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_void, size: usize) -> wk_status {
     guard("wk_view_load_plan", |call| {
@@ -446,7 +446,7 @@ fn in_list(parts: &[usize], e: Error) -> Error {
     place.map_or(e.clone(), |i| e.renamed(&of(parts[i]), &of(i)))
 }
 
-/// What is wanted of the parts, by number, and the part of each element of the host's list.
+/// Returns the wishes for the parts, by number, and the part of each element of the host's list.
 fn wishes(c: &wk_budget) -> Result<(Vec<Wish>, Vec<usize>)> {
     let mut wishes = vec![Wish::default(); if c.wish_count > 0 { PARTS.len() } else { 0 }];
     let mut parts = Vec::new();

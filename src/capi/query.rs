@@ -2,10 +2,9 @@
 //!
 //! These answer at any place of the host's world, for the present or (functions that end in _at) for any past or future
 //! simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or moon that
-//! the host has placed stands there at all times. Only wk_context_get_ambient and wk_context_get_ambient_at read the sky's
-//! tables. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and
-//! cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric
-//! value.
+//! the host has placed stands there at all times. Only wk_context_get_ambient and wk_context_get_ambient_at read the
+//! sky's tables. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and cd/m^2,
+//! three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric value.
 //!
 //! Lists are (pointer, count, size of an element in your header). Welkin checks everything before it writes anything.
 
@@ -102,8 +101,8 @@ impl wk_celestial {
     }
 }
 
-/// Light that arrives at a place, after air, clouds and fog; plain values of a list. Light scattered forward once by fog
-/// counts as the sun's or the moon's.
+/// Light that arrives at a place, after air, clouds and fog; plain values of a list. Light scattered forward once by
+/// fog counts as the sun's or the moon's.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_light {
@@ -133,11 +132,11 @@ pub struct wk_segment {
     pub to_m: [f64; 3],
 }
 
-/// What lies between two points; plain values of a list.
+/// Transmittance and visibility between two points; plain values of a list.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_between {
-    /// Share of light that gets through, per channel (680, 550, 440 nm of the Earth's planet file).
+    /// Share of light that gets through, per channel (wavelengths of the planet, 620, 550 and 450 nm for the Earth).
     pub transmittance: [f64; 3],
     /// Meteorological optical range along the segment, m: the distance at which 550 nm light would fall to 5 % if the
     /// air were everywhere as on this segment. Infinite if nothing stops light.
@@ -254,10 +253,9 @@ pub(super) fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64>
     Ok(time_s)
 }
 
-/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Clouds count by what of
-/// them lies above a place, as the mean over places at its height. `position_size` and `light_size` are the bytes from one
-/// element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
-/// Thread: concurrent.
+/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Clouds count by
+/// what of them lies above a place, as the mean over places at its height. `position_size` and `light_size` are the
+/// bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header. Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(
     context: *const wk_context,
@@ -322,9 +320,8 @@ unsafe fn light(
 }
 
 /// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog,
-/// precipitation and clouds drawn as a volume count, a deck and the host's objects do not. `segment_size` and `between_size` are the sizes of an element in
-/// your header.
-/// Thread: concurrent.
+/// precipitation and clouds drawn as a volume count, a deck and the host's objects do not. `segment_size` and
+/// `between_size` are the sizes of an element in your header. Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_between(
     context: *const wk_context,
@@ -392,11 +389,11 @@ unsafe fn way(
     })
 }
 
-/// Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction, a vector (east,
-/// north, up) at the place, of length 1 within 0.001. There the air, fog, rain, snow and clouds drawn as a volume before it leave 5 % of the
-/// light of 550 nm, and so 5 % of its contrast. Infinite where more is left at the end of the air or on the planet's ground.
-/// Thread: concurrent.
-/// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
+/// Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction,
+/// a vector (east, north, up) at the place, of length 1 within 0.001. There the air, fog, rain, snow and clouds drawn
+/// as a volume before it leave 5 % of the light of 550 nm, and so 5 % of its contrast. Infinite where more is left at
+/// the end of the air or on the planet's ground. Thread: concurrent. Errors: as wk_context_get_conditions;
+/// WK_ERROR_INVALID_ARGUMENT naming the direction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_visibility_at(
     context: *const wk_context,
@@ -433,10 +430,9 @@ pub unsafe extern "C" fn wk_context_get_ambient(
     unsafe { ambient("wk_context_get_ambient", context, position_m, None, out_ambient) }
 }
 
-/// As wk_context_get_ambient, at a simulation time. The clear sky's pattern is that of the air that the tables show; how bright all
-/// of it is, and clouds and fog, are those of `time_s`.
-/// Thread: as wk_view_record.
-/// Errors: as wk_context_get_ambient and wk_context_get_conditions.
+/// As wk_context_get_ambient, at a simulation time. The clear sky's pattern is that of the air that the tables show;
+/// how bright all of it is, and clouds and fog, are those of `time_s`. Thread: as wk_view_record. Errors: as
+/// wk_context_get_ambient and wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ambient_at(
     context: *mut wk_context,

@@ -168,10 +168,9 @@ impl wk_shelter_shape {
     }
 }
 
-/// Sets how the view draws rain; NULL returns to the default. Unchanged after an error.
-/// Thread: exclusive on the view.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model, or more drops of it,
-/// than the device can draw.
+/// Sets how the view draws rain; NULL returns to the default. Unchanged after an error. Thread: exclusive on the view.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model, or more drops of
+/// it, than the device can draw.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_rain) -> wk_status {
     guard("wk_view_set_rain", |call| {

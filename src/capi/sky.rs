@@ -111,11 +111,10 @@ impl wk_sky_settings {
 }
 
 /// Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
-/// WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on, and that frame shows a draft of the sky as a
-/// first frame does; wk_context_build_sky after this call makes the final picture ready. Pipelines of another model are
-/// compiled in that frame. The same settings again change nothing.
-/// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. The settings stay as they were.
+/// WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on, and that frame shows a draft of the sky as
+/// a first frame does; wk_context_build_sky after this call makes the final picture ready. Pipelines of another model
+/// are compiled in that frame. The same settings again change nothing. Thread: exclusive. Errors:
+/// WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. The settings stay as they were.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_sky_settings(
     context: *mut wk_context,

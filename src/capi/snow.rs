@@ -1,9 +1,9 @@
 //! Snow
 //!
-//! WK_STAGE_PARTICLES draws falling snow wherever the weather has it: flakes of the sizes and speeds that rate, kind and
-//! temperature give, each at a place that follows from seed and time alone, so all channels of a simulator draw the same
-//! flakes. The wind carries them, the host's depth hides them, shelters and occluder maps keep them off, sky, ground, sun
-//! and lamps light them. What is farther than the flakes is extinction in the air.
+//! WK_STAGE_PARTICLES draws falling snow wherever the weather has it: flakes of the sizes and speeds that rate, kind
+//! and temperature give, each at a place that follows from seed and time alone, so all channels of a simulator draw the
+//! same flakes. The wind carries them, the host's depth hides them, shelters and occluder maps keep them off, sky,
+//! ground, sun and lamps light them. What is farther than the flakes is extinction in the air.
 
 use std::{ffi::c_void, ptr::null};
 

@@ -1,8 +1,8 @@
 //! Stars
 //!
-//! At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the zodiacal light and
-//! the Milky Way behind its sky, where they stand over the context's place by its clock; by day, in fog and under closed clouds there
-//! is nothing of it. A budget may leave them out (WK_PART_STARS).
+//! At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the
+//! zodiacal light and the Milky Way behind its sky, where they stand over the context's place by its clock; by day, in
+//! fog and under closed clouds there is nothing of it. A budget may leave them out (WK_PART_STARS).
 
 use std::{ffi::c_void, ptr::null};
 
@@ -23,7 +23,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_stars.rs"));
 
-/// What a wk_stars sets.
+/// Flags of the settings in a wk_stars.
 pub type wk_stars_flags = u32;
 /// stars and star_count: the host's own stars in place of the catalogue's.
 pub const WK_STARS_OWN: wk_stars_flags = 1;
@@ -50,8 +50,8 @@ pub struct wk_stars {
     /// equator and equinox of J2000.0; visual magnitude in [-30, 30]; temperature of its colour as a black body, K, in
     /// [1000, 100000]. Copied. Default NULL.
     pub stars: *const f64,
-    /// With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole) to
-    /// (east, north, up), column after column. Default the identity.
+    /// With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole)
+    /// to (east, north, up), column after column. Default the identity.
     pub celestial_to_world: [f64; 9],
     /// Strength of the airglow. Range [0, 10], default 1: near the sun's least activity; 1.7 at the greatest.
     pub airglow: f64,
@@ -101,10 +101,9 @@ unsafe fn settings(p: *const wk_stars) -> Result<StarSettings> {
     Ok(settings)
 }
 
-/// Sets how the night sky is drawn; NULL returns to the default. All but the list of stars is part of the saved state: a context that
-/// loads one keeps its own list. Unchanged after an error.
-/// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+/// Sets how the night sky is drawn; NULL returns to the default. All but the list of stars is part of the saved state:
+/// a context that loads one keeps its own list. Unchanged after an error. Thread: exclusive. Errors:
+/// WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *const wk_stars) -> wk_status {
     guard("wk_context_set_stars", |call| {
@@ -116,10 +115,9 @@ pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *
     })
 }
 
-/// Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at a simulation time.
-/// It falls with the sky's light, and with what air, fog and clouds take of the star's. Minus infinity where nothing comes through.
-/// Thread: concurrent.
-/// Errors: as wk_context_get_conditions.
+/// Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at
+/// a simulation time. It falls with the sky's light, and with what air, fog and clouds take of the star's. Minus
+/// infinity where nothing comes through. Thread: concurrent. Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_limiting_magnitude_at(
     context: *const wk_context,

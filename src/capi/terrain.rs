@@ -2,12 +2,12 @@
 //!
 //! The host's terrain as a lattice of equal cells, level and aligned to true north at its origin, cut into square tiles
 //! with keys. Each cell has a height and a class of surface, or is a hole. Tiles are added, removed, and changed by
-//! rectangles, in time that grows with the rectangle: a bucket may dig in every frame. Water, the wind field and queries
-//! read the tiles. With WK_GROUND_SIMULATED each cell has water of its own, and hollows join across the borders of
-//! tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has tiles or one wk_ground_grid.
+//! rectangles, in time that grows with the rectangle: a bucket may dig in every frame. Water, the wind field and
+//! queries read the tiles. With WK_GROUND_SIMULATED each cell has water of its own, and hollows join across the borders
+//! of tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has tiles or one wk_ground_grid.
 //!
-//! Heights belong to the host: wk_context_save keeps the water of the tiles, and wk_context_load wants the same tiles set
-//! before. wk_context_set_terrain and the functions of tiles may be called between updates at any time; while steps
+//! Heights belong to the host: wk_context_save keeps the water of the tiles, and wk_context_load wants the same tiles
+//! set before. wk_context_set_terrain and the functions of tiles may be called between updates at any time; while steps
 //! remain (WK_PENDING) they act after these.
 
 use std::{ffi::c_void, ptr::null};
@@ -45,8 +45,8 @@ pub struct wk_terrain {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin; heights count from its
-    /// own. Default 0, 0, 0.
+    /// The south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin; heights count from
+    /// its own. Default 0, 0, 0.
     pub origin_m: [f64; 3],
     /// Distance between cells, m. Range [0.01, 10 000], default 1. Puddles need several cells.
     pub cell_m: f64,
@@ -69,7 +69,8 @@ impl wk_terrain {
     };
 }
 
-/// Heights and classes of a tile, or of a rectangle of its cells. Cells run from west to east, rows from south to north.
+/// Heights and classes of a tile, or of a rectangle of its cells. Cells run from west to east, rows from south to
+/// north.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_terrain_cells {
@@ -98,14 +99,15 @@ pub struct wk_terrain_cells {
     pub surface_classes: *const u8,
     /// Numbers in surface_classes, at least as many as the rectangle reaches over.
     pub surface_class_count: u32,
-    /// Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a gap.
+    /// Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a
+    /// gap.
     pub surface_class_stride: u32,
     /// 1 where no_data_m counts, else 0, the default: every number in heights_m is a height.
     pub has_no_data: u32,
-    /// Stands in heights_m for cells of which there are no data, and NaN then does too: -9999, -32768, or what your source has.
-    /// These cells become holes, whatever surface_classes says of them but a class of ground; a hole becomes ground again
-    /// by its class. Must be no height in use: of no cell to which surface_classes gives a class other than 0, and of no
-    /// cell with ground beside the rectangle in its tile. Default 0.
+    /// Stands in heights_m for cells of which there are no data, and NaN then does too: -9999, -32768, or what your
+    /// source has. These cells become holes, whatever surface_classes says of them but a class of ground; a hole
+    /// becomes ground again by its class. Must be no height in use: of no cell to which surface_classes gives a class
+    /// other than 0, and of no cell with ground beside the rectangle in its tile. Default 0.
     pub no_data_m: f32,
 }
 
@@ -138,7 +140,7 @@ pub struct wk_terrain_point {
     pub revision: u64,
     /// Key of that tile.
     pub tile: [i32; 2],
-    /// What the nearest cell is made of; WK_SURFACE_CLASS_UNSPECIFIED where nothing is said.
+    /// Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED where none is given.
     pub surface_class: wk_surface_class,
     /// 1 on the ground of a tile, else 0.
     pub has_ground: u32,
@@ -255,10 +257,9 @@ pub unsafe extern "C" fn wk_context_set_terrain_tile(
 }
 
 /// Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the
-/// ground lets it: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water that
-/// it touches, not with the tile or the terrain. Unchanged after an error.
-/// Thread: exclusive.
-/// Errors: as wk_context_set_terrain_tile, and for the key of no tile.
+/// ground lets it: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water
+/// that it touches, not with the tile or the terrain. Unchanged after an error. Thread: exclusive. Errors: as
+/// wk_context_set_terrain_tile, and for the key of no tile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_update_terrain(
     context: *mut wk_context,
@@ -306,9 +307,9 @@ pub unsafe extern "C" fn wk_context_get_terrain_revision(
     })
 }
 
-/// Gets the terrain's tiles under or above places of the host's world, at most wk_caps.max_batch of them. `position_size`
-/// and `point_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_terrain_point) of your header.
-/// Thread: concurrent.
+/// Gets the terrain's tiles under or above places of the host's world, at most wk_caps.max_batch of them.
+/// `position_size` and `point_size` are the bytes from one element to the next: 24 or more, and
+/// sizeof(wk_terrain_point) of your header. Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_points(
     context: *const wk_context,
@@ -340,10 +341,9 @@ pub unsafe extern "C" fn wk_context_get_terrain_points(
 }
 
 /// Copies the water of a tile's cells as of wk_context_get_state_time, by rows from the south-west; `cell_size` is
-/// sizeof(wk_ground_cell) of your header. Holes are dry. `out_revision` gets a number that changes whenever water on the
-/// terrain changes; with capacity 0 the call returns only this number.
-/// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
+/// sizeof(wk_ground_cell) of your header. Holes are dry. `out_revision` gets a number that changes whenever water on
+/// the terrain changes; with capacity 0 the call returns only this number. Thread: concurrent. Errors:
+/// WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_water(
     context: *const wk_context,

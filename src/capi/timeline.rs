@@ -122,9 +122,9 @@ pub unsafe extern "C" fn wk_context_set_clock(context: *mut wk_context, utc_s: f
     })
 }
 
-/// Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in [0, 60), in the
-/// last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as Unix time has it.
-/// Thread: any.
+/// Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in
+/// [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as
+/// Unix time has it. Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_utc_from_calendar(
     year: i32,
@@ -235,15 +235,13 @@ pub unsafe extern "C" fn wk_context_save(
 }
 
 /// Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
-/// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF instead of these
-/// two geoid_height_m), seed and ground_model. A state of an earlier version that holds no planet and tone curve needs the
-/// same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state, as they
-/// were when it was saved, before.
-/// Thread: exclusive.
-/// Errors: WK_ERROR_PARSE for bytes that are no saved state, are cut short, have even one byte changed, or have another
-/// format, which the message names (this version reads format 2; save states of format 1 again, because they did not
-/// say what place they were of); WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context
-/// stays as it was.
+/// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF instead of
+/// these two geoid_height_m), seed and ground_model. A state of an earlier version that holds no planet and tone curve
+/// needs the same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state,
+/// as they were when it was saved, before. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that are no saved state,
+/// are cut short, have even one byte changed, or have another format, which the message names (this version reads
+/// format 2; save states of format 1 again, because they did not say what place they were of);
+/// WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const c_void, size: usize) -> wk_status {
     guard("wk_context_load", |call| {

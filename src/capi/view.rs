@@ -58,7 +58,7 @@ pub const WK_STAGE_BACKGROUND: wk_stage_flags = 2;
 pub const WK_STAGE_SURFACE: wk_stage_flags = 4;
 /// Fog and aerial perspective on everything that the host has drawn.
 pub const WK_STAGE_MEDIUM: wk_stage_flags = 8;
-/// What falls and flies.
+/// Particles that fall and fly.
 pub const WK_STAGE_PARTICLES: wk_stage_flags = 16;
 /// Water on the windscreen.
 pub const WK_STAGE_LENS: wk_stage_flags = 32;
@@ -86,7 +86,7 @@ impl wk_view_desc {
         Self { struct_size: struct_size::<Self>(), struct_type: WK_STRUCT_TYPE_VIEW_DESC, next: null() };
 }
 
-/// Which of a report's optional fields are set.
+/// Flags of a report's optional fields that are set.
 pub type wk_report_flags = u32;
 /// wk_report.ms.
 pub const WK_REPORT_HAS_MS: wk_report_flags = 1;
@@ -113,13 +113,14 @@ pub struct wk_report {
     pub frame_id: u64,
     /// Full-screen draws recorded for this frame so far.
     pub passes: u32,
-    /// Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final quality.
+    /// Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final
+    /// quality.
     pub tables_rebuilt: u32,
     /// Display units per cd/m^2 that were applied; 0 if nothing was drawn.
     pub exposure: f64,
     /// Bytes of GPU memory that the view holds for itself.
     pub bytes: u64,
-    /// Which of the following are set.
+    /// Flags of the following fields that are set.
     pub has: wk_report_flags,
     /// 0.
     pub reserved0: u32,
@@ -213,7 +214,7 @@ pub const WK_EFFECT_WINDSCREEN: wk_effect = 10;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_effect_cost {
-    /// Which effect.
+    /// Effect whose cost this is.
     pub effect: wk_effect,
     /// 0.
     pub reserved0: u32,

@@ -142,8 +142,8 @@ pub struct wk_vulkan_image {
     /// Samples of a pixel. Default 1. Colour with several needs sampleRateShading in enabled_features of the
     /// wk_vulkan_host_desc.
     pub samples: u32,
-    /// VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is read,
-    /// DEPTH_STENCIL_ATTACHMENT too for depth with WK_DEPTH_ACCESS_READ_WRITE.
+    /// VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is
+    /// read, DEPTH_STENCIL_ATTACHMENT too for depth with WK_DEPTH_ACCESS_READ_WRITE.
     pub usage: u32,
     /// Array layers that it was created with. Default 1. For an occluder map it must be 1.
     pub array_layers: u32,

@@ -15,7 +15,7 @@ use super::{
 
 include!(concat!(env!("OUT_DIR"), "/init_weather.rs"));
 
-/// Which optional fields of a wk_weather are set.
+/// Flags of the optional fields of a wk_weather that are set.
 pub type wk_weather_has_flags = u64;
 /// vertical_visibility_m
 pub const WK_WEATHER_HAS_VERTICAL_VISIBILITY: wk_weather_has_flags = 0x1;
@@ -58,7 +58,7 @@ pub const WK_WEATHER_HAS_SURFACE_ROUGHNESS_LENGTH: wk_weather_has_flags = 0x4_00
 /// lofted_top_m
 pub const WK_WEATHER_HAS_LOFTED_TOP: wk_weather_has_flags = 0x8_0000;
 
-/// Which optional fields of a wk_cloud_layer are set.
+/// Flags of the optional fields of a wk_cloud_layer that are set.
 pub type wk_cloud_layer_has_flags = u32;
 /// thickness_m
 pub const WK_CLOUD_LAYER_HAS_THICKNESS: wk_cloud_layer_has_flags = 1;
@@ -88,7 +88,7 @@ pub struct wk_cloud_layer {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Which optional fields are set. Default 0.
+    /// Flags of the optional fields that are set. Default 0.
     pub has: wk_cloud_layer_has_flags,
     /// Kind of cloud. Default WK_CLOUD_UNKNOWN.
     pub kind: wk_cloud_kind,
@@ -142,7 +142,7 @@ pub struct wk_weather {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Which optional fields are set. Default 0.
+    /// Flags of the optional fields that are set. Default 0.
     pub has: wk_weather_has_flags,
 
     /// Meteorological optical range at the station, m: where 550 nm light falls to 5 % (the reported visibility). It is
@@ -293,7 +293,7 @@ impl wk_weather {
     };
 }
 
-/// Which fields of a wk_weather_overrides are set.
+/// Flags of the fields of a wk_weather_overrides that are set.
 pub type wk_override_flags = u32;
 /// aerosol_extinction_per_m
 pub const WK_OVERRIDE_AEROSOL_EXTINCTION: wk_override_flags = 0x1;
@@ -329,7 +329,7 @@ pub struct wk_weather_overrides {
     pub struct_type: wk_struct_type,
     /// The next extension. Default NULL.
     pub next: *const c_void,
-    /// Which fields are set; laws give the others. Default 0.
+    /// Flags of the fields that are set; laws give the others. Default 0.
     pub set: wk_override_flags,
     /// Must be 0.
     pub reserved0: u32,

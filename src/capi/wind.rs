@@ -89,7 +89,8 @@ pub struct wk_rainfall {
     pub fall_velocity_m_s: [f64; 3],
     /// Hail, small hail and ice pellets on level ground, mm/h of melted water.
     pub ice_mm_h: f64,
-    /// Stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), pellets of 0.5 to 5 mm, which are frozen raindrops.
+    /// Stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), pellets of 0.5 to 5 mm, which are frozen
+    /// raindrops.
     pub stones_per_m3: f64,
     /// Extinction by the stones, 1/m.
     pub stone_extinction_per_m: f64,
@@ -170,13 +171,11 @@ impl wk_rain_on {
 }
 
 /// Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
-/// the ground's roughness up to 100 m, and above grows and veers to the geostrophic wind (docs/clouds.md).
-/// Gusts have Kaimal's spectrum (1972, as in IEC 61400-1)
-/// and are the same all over the world. Heights count from the station's altitude above mean sea level, and reported wind holds 10 m above
-/// it. A host with terrain asks at the station's altitude plus the height above its own ground. At and below the
-/// roughness length there is no wind.
-/// Thread: concurrent.
-/// Errors: as wk_context_get_conditions.
+/// the ground's roughness up to 100 m, and above grows and veers to the geostrophic wind (docs/clouds.md). Gusts have
+/// Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the station's
+/// altitude above mean sea level, and reported wind holds 10 m above it. A host with terrain asks at the station's
+/// altitude plus the height above its own ground. At and below the roughness length there is no wind. Thread:
+/// concurrent. Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_wind_at(
     context: *const wk_context,
@@ -201,10 +200,9 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
     })
 }
 
-/// Gets what falls at a place of the host's world and a simulation time. What falls begins in the lower half of the clouds,
-/// at most 500 m above their bases, averaged over what covers the sky; above that nothing falls.
-/// Thread: concurrent.
-/// Errors: as wk_context_get_conditions.
+/// Gets what falls at a place of the host's world and a simulation time. What falls begins in the lower half of the
+/// clouds, at most 500 m above their bases, averaged over what covers the sky; above that nothing falls. Thread:
+/// concurrent. Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_rainfall_at(
     context: *const wk_context,

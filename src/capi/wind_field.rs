@@ -1,9 +1,10 @@
 //! Wind round terrain and buildings
 //!
 //! A context can solve for the wind in a box of air about a place: it goes round the terrain of
-//! wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
-//! leaves behind. It acts where a wind grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in what
-//! lands on surfaces and windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
+//! wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too,
+//! comes in as the weather's wind and leaves behind. It acts where a wind grid of your own would
+//! (wk_context_set_wind_grid): in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on drops and
+//! flakes near a camera. Nothing is solved unless you ask for it.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -24,22 +25,22 @@ include!(concat!(env!("OUT_DIR"), "/init_wind_field.rs"));
 
 /// How a wind field is led through time.
 pub type wk_wind_field_mode = u32;
-/// The mean wind: solved for over the first moments after the wind or an obstacle has changed, then it rests at no cost.
-/// Gusts are as strong, against the weather's, as the mean is there.
+/// The mean wind: solved for over the first moments after the wind or an obstacle has changed, then it rests at no
+/// cost. Gusts are as strong, against the weather's, as the mean is there.
 pub const WK_WIND_FIELD_STEADY: wk_wind_field_mode = 0;
-/// The wind with gusts, the whirls that come in with it and those that obstacles shed, stepped all the time. docs/wind-field.md says what sizes a core
-/// keeps up with.
+/// The wind with gusts, the whirls that come in with it and those that obstacles shed, stepped all the time.
+/// docs/wind-field.md says what sizes a core keeps up with.
 pub const WK_WIND_FIELD_RUNNING: wk_wind_field_mode = 1;
 
-/// What terrain and boxes do to air that passes along them.
+/// Effect of terrain and boxes on air that passes along them.
 pub type wk_wind_walls = u32;
 /// They slow it, by the weather's roughness length.
 pub const WK_WIND_WALLS_ROUGH: wk_wind_walls = 0;
 /// It slides.
 pub const WK_WIND_WALLS_SMOOTH: wk_wind_walls = 1;
 
-/// A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and top
-/// it goes over into the weather's wind.
+/// A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and
+/// top it goes over into the weather's wind.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_wind_field {
@@ -49,10 +50,11 @@ pub struct wk_wind_field {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Middle of the field's floor, in the host's world, m, within 1e12 m of the origin: no higher than the lowest ground
-    /// that matters. Where it moves the field follows by whole cells. Default 0, 0, 0.
+    /// Middle of the field's floor, in the host's world, m, within 1e12 m of the origin: no higher than the lowest
+    /// ground that matters. Where it moves the field follows by whole cells. Default 0, 0, 0.
     pub floor_center_m: [f64; 3],
-    /// Size of a cell east, north and up, m, the longest at most 8 times the shortest. Range [0.05, 1000], default 4, 4, 4.
+    /// Size of a cell east, north and up, m, the longest at most 8 times the shortest. Range [0.05, 1000], default 4,
+    /// 4, 4.
     pub cell_m: [f64; 3],
     /// Number of cells east, north and up. Range [8, 4096] each, default 128, 128, 32.
     pub cells: [u32; 3],
@@ -103,15 +105,15 @@ pub struct wk_wind_field_report {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// 1: there is a field. 0: none is set, its time has not come, or its first steady state is still being solved for; all
-    /// else is 0 then.
+    /// 1: there is a field. 0: none is set, its time has not come, or its first steady state is still being solved for;
+    /// all else is 0 then.
     pub present: u32,
     /// 1: it is steady and rests; nothing is stepped.
     pub rests: u32,
     /// Simulation time of the field, s: the present, or up to one step before it.
     pub time_s: f64,
-    /// Simulation time at which it last began from a steady field, s: when it was first set, after a leap of more than 60 s,
-    /// or far off.
+    /// Simulation time at which it last began from a steady field, s: when it was first set, after a leap of more than
+    /// 60 s, or far off.
     pub begun_s: f64,
     /// Length of its steps, s.
     pub step_s: f64,
@@ -153,12 +155,11 @@ impl wk_wind_field_report {
     }
 }
 
-/// Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. The same
-/// size, mode and walls at another place move it by whole cells; anything else begins it anew. wk_context_update leads it in
-/// steps on a grid anchored at time 0, whatever is drawn: the same on every channel. It begins with the steady field of its
-/// first moment. Part of the saved state. Unchanged after an error.
-/// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
+/// Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. The
+/// same size, mode and walls at another place move it by whole cells; anything else begins it anew. wk_context_update
+/// leads it in steps on a grid anchored at time 0, whatever is drawn: the same on every channel. It begins with the
+/// steady field of its first moment. Part of the saved state. Unchanged after an error. Thread: exclusive. Errors:
+/// WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_wind_field(
     context: *mut wk_context,

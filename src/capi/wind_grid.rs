@@ -1,8 +1,9 @@
 //! Wind that varies in space
 //!
 //! If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
-//! They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, on patches of fog and dust, and on drops and
-//! flakes near a camera, in place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's wind.
+//! They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, on patches of fog and dust, and on
+//! drops and flakes near a camera, in place of a wind field's (wk_context_set_wind_field). Everything else follows the
+//! weather's wind.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -41,7 +42,8 @@ pub struct wk_wind_grid {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The lowest node farthest to the south-west, in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0.
+    /// The lowest node farthest to the south-west, in the host's world, m, within 1e12 m of the origin. Default 0, 0,
+    /// 0.
     pub origin_m: [f64; 3],
     /// Distance between nodes east, north and up, m. Range [0.01, 10 000], default 1, 1, 1.
     pub cell_m: [f64; 3],

@@ -2,8 +2,9 @@
 //!
 //! A view may look through a window. Rain lands on it at the rate and speed at which the window meets it. Beads merge,
 //! run down by gravity or up by the air, are wiped, and bend the picture behind them. Mist on the inside blurs the
-//! picture. Snow lies on it until wipers take it or heat melts it. The stage LENS draws this over everything drawn so far, inside the window only; pixels of the mask stay. In
-//! a call with TONE the glass lies before the tone curve if the target is a float one, else after it.
+//! picture. Snow lies on it until wipers take it or heat melts it. The stage LENS draws this over everything drawn so
+//! far, inside the window only; pixels of the mask stay. In a call with TONE the glass lies before the tone curve if
+//! the target is a float one, else after it.
 //!
 //! The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
 //! WK_STAGE_PREPARE or the first stage after it. The frame rate changes nothing, and views of one seed and history
@@ -47,15 +48,15 @@ pub struct wk_wiper_arm {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Pivot, m right of and above the pane's lower left corner (that of its bounds), along the glass. Range [-4, 12] each.
-    /// Default 0, 0.
+    /// Pivot, m right of and above the pane's lower left corner (that of its bounds), along the glass. Range [-4, 12]
+    /// each. Default 0, 0.
     pub pivot_m: [f64; 2],
     /// Distance from the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6.
     pub length_m: f64,
     /// Distance from the pivot to the blade's inner end, m. Range [0, length_m), default 0.1.
     pub inner_radius_m: f64,
-    /// Angle of the parked blade, degrees anticlockwise from the glass's right as seen from the camera. Range [-360, 360],
-    /// default 0.
+    /// Angle of the parked blade, degrees anticlockwise from the glass's right as seen from the camera. Range
+    /// [-360, 360], default 0.
     pub parked_deg: f64,
     /// Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90.
     pub far_deg: f64,
@@ -94,18 +95,18 @@ pub struct wk_windscreen {
     pub pane: wk_windscreen_pane,
     /// Number of wipers in `arms`, at most 2. Default 0.
     pub arm_count: u32,
-    /// Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower left,
-    /// lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex, edges in
-    /// [0.05, 8] m, within 20 m. Its slope against gravity follows from the frame's view matrix. Default 1 m x 0.6 m across
-    /// the view, 0.7 m away.
+    /// Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower
+    /// left, lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex,
+    /// edges in [0.05, 8] m, within 20 m. Its slope against gravity follows from the frame's view matrix. Default 1 m x
+    /// 0.6 m across the view, 0.7 m away.
     pub corners_m: [f64; 12],
     /// Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6.
     pub distance_m: f64,
     /// Velocity of the glass relative to the air (the vehicle's minus the wind's) in the camera's axes, m/s: decides
     /// how many drops it meets. Range [-400, 400] each, default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
-    /// Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the vehicle's speed
-    /// on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
+    /// Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the
+    /// vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
     pub airflow_m_s: f64,
     /// Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as
     /// shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box does
@@ -121,8 +122,8 @@ pub struct wk_windscreen {
     pub arm_stride: u32,
     /// Must be 0.
     pub reserved0: u32,
-    /// Heat that the glass gets from wires in it or from a blower, W/m^2: melts snow, once it outweighs what cold air takes. A heated
-    /// windscreen has some 600. Range [0, 3000], default 0.
+    /// Heat that the glass gets from wires in it or from a blower, W/m^2: melts snow, once it outweighs what cold air
+    /// takes. A heated windscreen has some 600. Range [0, 3000], default 0.
     pub heat_w_m2: f64,
 }
 

@@ -6,17 +6,19 @@ use crate::plan::{
     parts::{Part, Worth},
 };
 
-/// Clouds, at two rungs: layers of a volume, or the grey deck in their place. How much they matter: 0.4 in the machinery trainer's
-/// experiment.
+/// Clouds, at two rungs: layers of a volume, or the grey deck in their place. How much they matter: 0.4 in the
+/// machinery trainer's experiment.
 pub const CLOUDS: Part =
     Part { name: "clouds", rungs: &["volume", "deck"], importance: 0.4, worth: Worth::Estimated(4) };
 
-/// Work of the volume in a pixel that looks towards it, and in any pixel, in units of a pixel with none of the parts, measured on a
-/// software driver (`cargo bench --bench speed -- clouds`): 34 copies beyond a clear sky, whose frame has 20.
+/// Work of the volume in a pixel that looks towards it, and in any pixel, in units of a pixel with none of the parts,
+/// measured on a software driver (`cargo bench --bench speed -- clouds`): 34 copies beyond a clear sky, whose frame has
+/// 20.
 const MARCHED: f64 = 2.0;
 const LAID: f64 = 0.3;
 
-/// Work of the step from the volume to the deck in a picture of so many pixels, a share of which looks towards the clouds.
+/// Work of the step from the volume to the deck in a picture of so many pixels, a share of which looks towards the
+/// clouds.
 pub(crate) fn clouds_work(pixels: u64, share: f64) -> StepWork {
     StepWork { fixed: pixels as f64 * (LAID + share * MARCHED), ..StepWork::default() }
 }
@@ -24,7 +26,7 @@ pub(crate) fn clouds_work(pixels: u64, share: f64) -> StepWork {
 /// A way to draw clouds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CloudMethod {
-    /// What is drawn.
+    /// Model that is drawn.
     pub model: CloudModel,
     /// How finely.
     pub settings: CloudSettings,
@@ -32,10 +34,10 @@ pub struct CloudMethod {
 
 /// Work of a ray: steps, of which each reads the map and the noise, and the light where there is cloud.
 const RAY: Units = Units { samples: 60.0, texels: 120.0, bytes: 0.0 };
-/// Of a pixel that is followed back and laid over the sky.
+/// Work of a pixel that is followed back and laid over the sky.
 const FOLLOWED: Units = Units { samples: 3.0, texels: 10.0, bytes: 32.0 };
 
-/// Of a pixel of the deck.
+/// Work of a pixel of the deck.
 const DECK: Units = Units { samples: 0.1, texels: 0.0, bytes: 0.0 };
 
 impl CloudMethod {

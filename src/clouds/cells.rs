@@ -1,12 +1,14 @@
-//! Cells of cloud over rain areas ([`crate::falling::area::RainArea`]), without which rain would fall out of a clear sky: where they stand,
-//! what they are made of, and how much of the sky they cover over a place.
+//! Cells of cloud over rain areas ([`crate::falling::area::RainArea`]), without which rain would fall out of a clear
+//! sky: where they stand, what they are made of, and how much of the sky they cover over a place.
 //!
 //! # Model
-//! A cell is an ellipse; over a polygon it goes about the corners. Its base is that of the lowest layer of the weather from which rain may fall,
-//! if that lies no higher than the area's, and the area's otherwise. Under a closed layer there are no cells: it hides the sky.
+//! A cell is an ellipse; over a polygon it goes about the corners. Its base is that of the lowest layer of the weather
+//! from which rain may fall, if that lies no higher than the area's, and the area's otherwise. Under a closed layer
+//! there are no cells: it hides the sky.
 //!
-//! The light of a place is that under a layer of the cells' cloud that covers as much of the sky as they do. A cell covers what a level disc of
-//! its area covers for level ground (Hamilton and Morgan 1952), seen from as many half widths off its middle.
+//! The light of a place is that under a layer of the cells' cloud that covers as much of the sky as they do. A cell
+//! covers what a level disc of its area covers for level ground (Hamilton and Morgan 1952), seen from as many half
+//! widths off its middle.
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};
 
@@ -28,8 +30,8 @@ use crate::{
 pub(super) const CLEAR: f64 = 7.0;
 /// Threshold over a rain area: one place of 30 000 is open.
 pub(super) const FILLED: f64 = -4.0;
-/// Change of the threshold across the edge of a cell over a rain area, over the distance from cloud to cloud: less than the map's steepest
-/// slopes, so that the field shapes the cell's faces.
+/// Change of the threshold across the edge of a cell over a rain area, over the distance from cloud to cloud: less than
+/// the map's steepest slopes, so that the field shapes the cell's faces.
 const EDGE_SLOPE: f64 = 3.0;
 /// Part of the edge's width, from outside, at which the area's own border lies: one place of a hundred is open there.
 const BORDER: f64 = 0.85;
@@ -38,7 +40,7 @@ const SPACING: f64 = 0.4;
 const LEAST_SPACING_M: f64 = 600.0;
 /// Thickness of such a cell, at most, over the area's half width.
 const DEEPEST: f64 = 2.0;
-/// The same at least, m, where its kind is as thick.
+/// Least thickness of such a cell, m, where its kind is as thick.
 const MOST_FLAT_M: f64 = 800.0;
 /// Height of a layer's base over that of a rain area up to which its rain may be the layer's, m.
 const SAME_BASE_M: f64 = 300.0;
@@ -88,7 +90,7 @@ impl AreaCell {
         Self { center_m: center_m + middle, right: shaft.right, semi_m: semi, rim_m: 0.0 }
     }
 
-    /// The same cell with an edge `rim_m` wide; the share [`BORDER`] of that lies outside of the area.
+    /// Returns the cell with an edge `rim_m` wide; the share [`BORDER`] of that lies outside of the area.
     pub(super) fn with_edge(self, rim_m: f64) -> Self {
         Self { semi_m: self.semi_m + BORDER * rim_m, rim_m, ..self }
     }
@@ -101,12 +103,13 @@ pub(super) struct AreaClouds {
     /// Lowest base of an area over the station, m, and half of the narrowest one's width, m.
     lowest_m: f64,
     half_m: f64,
-    /// What the strongest rain falls from.
+    /// Cloud that the strongest rain falls from.
     brings: &'static CloudSlab,
 }
 
 impl AreaClouds {
-    /// About a place with these axes, at `eye` in the host's world and at `place_m` over the ground; none where no rain falls in any area.
+    /// About a place with these axes, at `eye` in the host's world and at `place_m` over the ground; none where no rain
+    /// falls in any area.
     ///
     /// # Errors
     /// For a time that the weather does not know.
@@ -138,7 +141,8 @@ impl AreaClouds {
         Ok(strongest.map(|(_, brings)| Self { cells, count, lowest_m, half_m, brings }))
     }
 
-    /// What they are made of among the `others` (slab, whether a map places it), of no cover yet; none where one of these hides the sky.
+    /// Returns the slab that the cells are made of, beside the `others` (slab, whether a map places it), of no cover
+    /// yet; none where one of these hides the sky.
     pub fn slab<'a>(&self, others: impl Iterator<Item = (&'a CloudSlab, bool)> + Clone) -> Option<CloudSlab> {
         let closes =
             |(slab, is_placed): (&CloudSlab, bool)| slab.cover >= 1.0 && slab.optical_depth > 5.0 && !is_placed;
@@ -165,15 +169,16 @@ pub(super) fn edge_m(slab: &CloudSlab) -> f64 {
     (CLEAR - FILLED) / EDGE_SLOPE * slab.scale_m
 }
 
-/// View factor of a level disc from level ground, `height_m` below it and `aside_m` from under its middle (Hamilton and Morgan 1952).
+/// View factor of a level disc from level ground, `height_m` below it and `aside_m` from under its middle (Hamilton and
+/// Morgan 1952).
 fn view_factor(radius_m: f64, height_m: f64, aside_m: f64) -> f64 {
     let [r2, h2, d2] = [radius_m, height_m, aside_m].map(|v| v * v);
     let sum = h2 + d2 + r2;
     0.5 * (1.0 - (h2 + d2 - r2) / (sum * sum - 4.0 * r2 * d2).max(f64::MIN_POSITIVE).sqrt())
 }
 
-/// The layer whose light a place has under the cells of rain areas, with the part of the sky that they cover there; none without any. The place
-/// is `eye` in the host's world.
+/// The layer whose light a place has under the cells of rain areas, with the part of the sky that they cover there;
+/// none without any. The place is `eye` in the host's world.
 ///
 /// # Errors
 /// For a time that the weather does not know.

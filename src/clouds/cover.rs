@@ -1,8 +1,8 @@
 //! How much of the sky a layer is seen to cover, and the threshold of the map for a cover that is asked for.
 //!
-//! Cover is the share of the solid angle within 75 degrees of the zenith whose slant optical depth of the layer exceeds 0.1, of a layer of
-//! ice crystals 0.03, from far below. Sides of clouds hide more of the sky than their bases, so thresholds are found by looking:
-//! `cargo run --release --example lab -- thresholds` prints `thresholds.in`.
+//! Cover is the share of the solid angle within 75 degrees of the zenith whose slant optical depth of the layer exceeds
+//! 0.1, of a layer of ice crystals 0.03, from far below. Sides of clouds hide more of the sky than their bases, so
+//! thresholds are found by looking: `cargo run --release --example lab -- thresholds` prints `thresholds.in`.
 
 use std::f64::consts::PI;
 
@@ -28,7 +28,7 @@ const HIDES: [f64; 2] = [0.1, 0.03];
 /// Texels along a side of the solid noise.
 pub(super) const SOLID_SIZE: u32 = 64;
 
-/// What the solid noise is made of.
+/// Returns the settings of the solid noise.
 pub(super) fn solid_settings(seed: u64) -> NoiseSettings {
     NoiseSettings { kind: NoiseKind::Cellular, frequency: [4; 3], octaves: 3, amplitude: 0.5, persistence: 0.6, seed }
 }
@@ -100,8 +100,8 @@ fn of_kind(row: &[f64; OKTAS], cover: f64) -> f64 {
     row[i] + (row[i + 1] - row[i]) * t
 }
 
-/// Threshold of the map under which a layer covers what it is said to. Of a layer between kinds, between theirs by how near it is
-/// to each.
+/// Threshold of the map under which a layer covers what it is said to. Of a layer between kinds, between theirs by how
+/// near it is to each.
 pub fn threshold(slab: &CloudSlab) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
     for ((_, row), traits) in THRESHOLDS.iter().zip(traits()) {
@@ -119,7 +119,7 @@ const CLOSED: f64 = -7.0;
 /// Cover from which thresholds go over to [`CLOSED`], so that nothing leaps where a layer closes.
 const CLOSES: f64 = 0.99;
 
-/// What tells the kinds apart.
+/// Returns the numbers that tell the kinds of cloud apart.
 fn traits_of(slab: &CloudSlab) -> [f64; 4] {
     [slab.convection, slab.cellular, slab.fibre, slab.ice_fraction]
 }

@@ -1,17 +1,18 @@
 //! Where there is cloud: the extinction of a layer at a place. Twin of `shaders/clouds/field.wgsl`.
 //!
 //! # Model
-//! A map over the plane says how strongly cloud grows at a place, as a number z that is spread normally about 0: two sheets of noise, each
-//! made normal by ranks, whose periods have no common multiple, so that no tile shows. Cloud is where z exceeds a threshold that
-//! follows from the cover ([`super::cover`]); how far it exceeds it says how high the cloud grows there. Solid noise frays its edges.
-//! The two sheets glide against each other, which makes clouds form and dissolve, without end and as a function of time alone.
+//! A map over the plane says how strongly cloud grows at a place, as a number z that is spread normally about 0: two
+//! sheets of noise, each made normal by ranks, whose periods have no common multiple, so that no tile shows. Cloud is
+//! where z exceeds a threshold that follows from the cover ([`super::cover`]); how far it exceeds it says how high the
+//! cloud grows there. Solid noise frays its edges. The two sheets glide against each other, which makes clouds form and
+//! dissolve, without end and as a function of time alone.
 //!
-//! Of a place with the excess e = z - threshold and the height h, 0 at the base to 1 at the top, the extinction is that of the layer times
-//! (e - dome(h) + rough (noise - 1/2)) / soft, held between 0 and 1. Over heaps the dome grows
-//! with e, so that no top is cut flat.
+//! Of a place with the excess e = z - threshold and the height h, 0 at the base to 1 at the top, the extinction is that
+//! of the layer times (e - dome(h) + rough (noise - 1/2)) / soft, held between 0 and 1. Over heaps the dome grows with
+//! e, so that no top is cut flat.
 //!
-//! Ice is drawn out along the wind that carries it, and leans with height: heads stand downwind of what falls from them. Cumulonimbus has an
-//! anvil, a sheet below the layer's top about its towers (`anvil_needs`).
+//! Ice is drawn out along the wind that carries it, and leans with height: heads stand downwind of what falls from
+//! them. Cumulonimbus has an anvil, a sheet below the layer's top about its towers (`anvil_needs`).
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -23,7 +24,8 @@ pub const MAP_SIZE: usize = 256;
 pub const MAP_REACH: f64 = 4.0;
 /// Cells of cloud along the map's side.
 pub const MAP_CELLS: f64 = 16.0;
-/// Period of the second sheet over that of the first, and its turn: no whole numbers of one are a whole number of the other.
+/// Period of the second sheet over that of the first, and its turn: no whole numbers of one are a whole number of the
+/// other.
 pub(super) const SECOND_PERIOD: f64 = 1.618_033_988_749_895;
 pub(super) const SECOND_TURN_RAD: f64 = 0.9;
 pub(super) const SECOND_OFFSET: DVec2 = DVec2::new(0.37, 0.71);
@@ -45,7 +47,7 @@ pub struct Shape {
     pub scale_m: f64,
     /// Extinction inside, 1/m.
     pub extinction_per_m: f64,
-    /// Of the map, above which there is cloud.
+    /// Threshold of the map, above which there is cloud.
     pub threshold: f64,
     /// Excess at which a cloud reaches the layer's top: large for heaps, small for sheets.
     pub dome: f64,
@@ -57,7 +59,8 @@ pub struct Shape {
     pub cellular: f64,
     /// Side of the solid noise, m.
     pub solid_m: f64,
-    /// How domes of heaps grow with the excess e of their place, by sqrt(1 + held e^2), so that none reaches far above the layer.
+    /// How domes of heaps grow with the excess e of their place, by sqrt(1 + held e^2), so that none reaches far above
+    /// the layer.
     pub held: f64,
     /// Least excess of a place that has an anvil over it; [`NO_ANVIL`] without.
     pub anvil: f64,
@@ -120,7 +123,7 @@ pub struct Field<'a> {
     pub shape: Shape,
     /// Where they grow.
     pub map: &'a Map,
-    /// What frays their edges.
+    /// Solid noise that frays their edges.
     pub solid: &'a Solid,
     /// Where they are other than the layer's cover says.
     pub(super) placed: LocalCover,
@@ -155,11 +158,13 @@ impl Shape {
     }
 }
 
-/// Height over which a base is round at its edges: share of the thickness, and m at most. Bases of deep layers are the flatter.
+/// Height over which a base is round at its edges: share of the thickness, and m at most. Bases of deep layers are the
+/// flatter.
 const EDGE_SHARE: f64 = 0.08;
 const EDGE_M: f64 = 40.0;
 
-/// Excess that a place of this excess needs at a height, 0 at the base to 1 at the top: a flat base with round edges, and a dome or an anvil.
+/// Excess that a place of this excess needs at a height, 0 at the base to 1 at the top: a flat base with round edges,
+/// and a dome or an anvil.
 pub fn dome(shape: &Shape, excess: f64, height: f64) -> f64 {
     let share = (EDGE_M / shape.thickness_m).min(EDGE_SHARE);
     let edge = (1.0 - height / share).max(0.0);
@@ -180,7 +185,8 @@ impl Field<'_> {
         ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale
     }
 
-    /// The clouds about a place as they are there, within which distance that holds, m, and how much the threshold changes a metre beyond.
+    /// The clouds about a place as they are there, within which distance that holds, m, and how much the threshold
+    /// changes a metre beyond.
     pub(super) fn here(&self, position_m: DVec3) -> (Self, [f64; 2]) {
         let mut shape = self.shape;
         let steady = self.placed.shape_at(self.upright(position_m), &mut shape);
@@ -200,7 +206,7 @@ impl Field<'_> {
         self.strength(self.upright(position_m)) - s.threshold
     }
 
-    /// What the solid noise adds to the excess at a place.
+    /// Returns what the solid noise adds to the excess at a place.
     pub(super) fn frays(&self, position_m: DVec3) -> f64 {
         let s = &self.shape;
         let level = s.stretch * (self.upright(position_m) - s.drift_m);
@@ -232,7 +238,7 @@ impl Field<'_> {
 /// Slope of the map, a cell: so far is a place from its cloud's edge as its excess is over that.
 const MAP_SLOPE: f64 = 4.0;
 
-/// What there is of a cloud above and below a place, and to its sides, in metres of its full extinction.
+/// Extent of a cloud above and below a place, and to its sides, in metres of its full extinction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct About {
     /// Straight up.

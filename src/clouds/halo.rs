@@ -1,14 +1,15 @@
 //! The halo of 22 degrees that ice crystals make about the sun or moon. Twin of `shaders/clouds/halo.wgsl`.
 //!
 //! # Model
-//! A hexagonal crystal turns light that enters one side and leaves the next but one as a prism of 60 degrees does: by no less than
-//! 2 asin(n / 2) - 60 degrees (Minnaert 1954, section 134), most of it by little more. Over crystals turned in all ways the light
-//! begins with a step there and falls off nearly as exp(-angle / 4.1 degrees): the test follows light through prisms. Ice bends blue more than
-//! red, so the step is red inside; the sun's disc rounds it.
+//! A hexagonal crystal turns light that enters one side and leaves the next but one as a prism of 60 degrees does: by
+//! no less than 2 asin(n / 2) - 60 degrees (Minnaert 1954, section 134), most of it by little more. Over crystals
+//! turned in all ways the light begins with a step there and falls off nearly as exp(-angle / 4.1 degrees): the test
+//! follows light through prisms. Ice bends blue more than red, so the step is red inside; the sun's disc rounds it.
 //!
-//! Rough crystals make none. Of cirrus whose halo was seen 37 % of the crystals were smooth (Forster and Mayer 2022), and one cirrus in four
-//! had a halo (Forster et al. 2017): here a fifth of the crystals are smooth. Of what a crystal scatters half is bent round it and stays
-//! ahead (Babinet); of the light that enters the sides of a long prism 39 % goes this way.
+//! Rough crystals make none. Of cirrus whose halo was seen 37 % of the crystals were smooth (Forster and Mayer 2022),
+//! and one cirrus in four had a halo (Forster et al. 2017): here a fifth of the crystals are smooth. Of what a crystal
+//! scatters half is bent round it and stays ahead (Babinet); of the light that enters the sides of a long prism 39 %
+//! goes this way.
 //!
 //! Light that is scattered once shows it; light scattered more often does not.
 
@@ -39,8 +40,8 @@ pub fn phase(index: f64, angle: f64) -> f64 {
     begun * begun * (3.0 - 2.0 * begun) * (-(angle - first).max(0.0) / FALL_RAD).exp() / all
 }
 
-/// What the halo adds to the phase function of ice and takes from it elsewhere, 1/sr a channel, where light is turned to this cosine. Of
-/// scattering without its peak.
+/// Returns what the halo adds to the phase function of ice, or takes from it elsewhere, 1/sr a channel, at this cosine
+/// of the scattering angle. The phase function is the one without its peak.
 pub fn excess(of: &Scattering, cosine: f64) -> [f64; 3] {
     let angle = cosine.clamp(-1.0, 1.0).acos();
     let smooth = of.smooth_phase(1.0 - cosine);
@@ -60,14 +61,14 @@ mod tests {
         DVec2::from_angle(k as f64 * PI / 3.0)
     }
 
-    /// What goes through a surface of ice, unpolarised (Fresnel).
+    /// Returns the share of light that goes through a surface of ice, unpolarised (Fresnel).
     fn through(cos_in: f64, cos_out: f64, n: f64) -> f64 {
         let (s, p) = ((cos_in - n * cos_out) / (cos_in + n * cos_out), (cos_out - n * cos_in) / (cos_out + n * cos_in));
         1.0 - 0.5 * (s * s + p * p)
     }
 
-    /// Light of a direction that enters a side of a long hexagonal prism at a place of it, from -1/2 to 1/2: by how much it is turned if
-    /// it leaves by the next side but one, and its weight.
+    /// Light of a direction that enters a side of a long hexagonal prism at a place of it, from -1/2 to 1/2: by how
+    /// much it is turned if it leaves by the next side but one, and its weight.
     fn turned(d: DVec3, k: usize, place: f64, n: f64) -> Option<(f64, f64)> {
         let normal = side(k).extend(0.0);
         let cos_in = -d.dot(normal);

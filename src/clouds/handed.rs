@@ -1,27 +1,32 @@
-//! The map of the clouds' shadows as a texture for a host's own materials. The mapping is that of `shaders/clouds/shadow_map.wgsl` and of
-//! the published snippets.
+//! The map of the clouds' shadows as a texture for a host's own materials. The mapping is that of
+//! `shaders/clouds/shadow_map.wgsl` and of the published snippets.
 
 use glam::{DVec2, DVec3, DVec4};
 
 use super::shadow_map::ShadowProjection;
 use crate::moment::Moment;
 
-/// What a host's own materials look up; the texture is valid until the view is destroyed, all else after each frame.
+/// Map of the clouds' shadows for a host's own materials. The texture is valid until the view is destroyed; ask for all
+/// else after each frame.
 ///
-/// The map is a plane at the station's height, fixed to the air that carries the clouds, and repeats: 20 km from side to side.
+/// The map is a plane at the station's height, fixed to the air that carries the clouds, and repeats: 20 km from side
+/// to side.
 #[derive(Clone, Debug)]
 pub struct CloudShadows {
     /// Share of the direct light of sun or moon, whichever is brighter, that clouds let through: one channel of 8 bits.
     pub texture: wgpu::Texture,
-    /// Multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. They follow the light to the plane.
+    /// Multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. They follow the light to
+    /// the plane.
     pub uv_from_world: [DVec4; 2],
-    /// Likewise its height over the plane, m.
+    /// Vector that, multiplied by (x, y, z, 1) of a place in the host's world, m, gives its height over the plane, m.
     pub height_from_world: DVec4,
     /// u and v of the place in the plane that the camera of the last frame stood over.
     pub camera_uv: [f64; 2],
-    /// Share of the direct light on the mean over places: that in [`Context::light_at`](crate::context::Context::light_at).
+    /// Share of the direct light on the mean over places: that in
+    /// [`Context::light_at`](crate::context::Context::light_at).
     pub mean_share: f64,
-    /// How far shadows are told apart, 0 to 1: 0 without broken clouds, with the deck, and under a light near the horizon.
+    /// How far shadows are told apart, 0 to 1: 0 without broken clouds, with the deck, and under a light near the
+    /// horizon.
     pub told: f64,
     /// Height over the plane, m, from which on shadows are not told apart: 100 m above the base of the lowest clouds.
     pub top_m: f64,

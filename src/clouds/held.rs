@@ -1,4 +1,4 @@
-//! What a context holds of the clouds: how they are drawn, and where they grow, for questions.
+//! State of the clouds that a context holds: how they are drawn, and where they grow, for questions.
 
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -25,11 +25,11 @@ use crate::{
 #[derive(Clone, Default)]
 pub(crate) struct HeldClouds {
     pub model: CloudModel,
-    /// What clouds are cut out of: made when it is first asked for.
+    /// Noise that clouds are cut out of: made when it is first asked for.
     grown: Arc<OnceLock<CloudNoise>>,
 }
 
-/// What clouds are cut out of, and the light in them that was asked for last.
+/// Noise that clouds are cut out of, and the light in them that was asked for last.
 pub(super) struct CloudNoise {
     pub map: Map,
     pub solid: Solid,
@@ -85,8 +85,9 @@ impl HeldClouds {
         Ok(Self { model, ..Self::default() })
     }
 
-    /// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place: of a volume
-    /// through the clouds that it draws there, of a deck the mean over all places. `eye` is the place in the host's world.
+    /// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place: of a
+    /// volume through the clouds that it draws there, of a deck the mean over all places. `eye` is the place in the
+    /// host's world.
     ///
     /// # Errors
     /// As [`Solid::new`], and for a time that the weather does not know.
@@ -99,7 +100,7 @@ impl HeldClouds {
         Ok(sun_share((0..overhead.all().len()).map(|i| grown.field(&overhead, i)), scene))
     }
 
-    /// What there is over a scene's place.
+    /// Finds the layers of cloud over a scene's place.
     fn overhead(
         &self,
         grown: &CloudNoise,
@@ -115,7 +116,7 @@ impl HeldClouds {
         Ok(overhead.filter(|o| !o.all().is_empty()))
     }
 
-    /// What clouds are cut out of.
+    /// Returns the noise that clouds are cut out of.
     fn grown(&self, seed: u64) -> Result<&CloudNoise> {
         if let Some(grown) = self.grown.get() {
             return Ok(grown);

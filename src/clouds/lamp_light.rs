@@ -1,18 +1,22 @@
-//! What a place in a cloud scatters of a lamp or a flash, in the cloud or outside. Twin of `shaders/clouds/lit_lamps.wgsl`.
+//! Light of a lamp or a flash, in the cloud or outside, that a place in a cloud scatters. Twin of
+//! `shaders/clouds/lit_lamps.wgsl`.
 //!
 //! # Model
 //! A place stands in a box of cloud, as it does for the sun ([`super::light`]).
-//! * Of a source in the cloud: light that is scattered once, by the true phase function, and light that wanders. Without faces its mean
-//!   radiance at a scaled distance d from a source of intensity I would be 3 (1 - g') I / (4 pi d) (diffusion; Ishimaru 1978, chapter 9). In
-//!   front of a face, 0.71 / (1 - g') away, there is a plane in which it is 0: an image of the source there, of the opposite sign, stands for
-//!   that. With p and s the depths of place and source behind that plane the nearest face leaves 1 - r of the light, r = d / sqrt(d^2 + 4 p s),
-//!   the opposite face 1 - r^2, those across 1 - r^3. The slope of that is the flux, by which more light goes one way than the other.
+//! * Of a source in the cloud: light that is scattered once, by the true phase function, and light that wanders.
+//!   Without faces its mean radiance at a scaled distance d from a source of intensity I would be 3 (1 - g') I / (4 pi
+//!   d) (diffusion; Ishimaru 1978, chapter 9). In front of a face, 0.71 / (1 - g') away, there is a plane in which it
+//!   is 0: an image of the source there, of the opposite sign, stands for that. With p and s the depths of place and
+//!   source behind that plane the nearest face leaves 1 - r of the light, r = d / sqrt(d^2 + 4 p s), the opposite face
+//!   1 - r^2, those across 1 - r^3. The slope of that is the flux, by which more light goes one way than the other.
 //! * Of a source outside: the face towards it is lit as by a sky of the same irradiance ([`super::transport`]).
 //!
-//! How much cloud lies on the way tells the two apart. A flash in a cloud is in it, even where the drawn cloud has a gap there.
+//! How much cloud lies on the way tells the two apart. A flash in a cloud is in it, even where the drawn cloud has a
+//! gap there.
 //!
 //! # Error
-//! Against photons from a source in a slab and a cube, and outside of a cube: `cargo test --lib clouds::lamp_light -- --nocapture`.
+//! Against photons from a source in a slab and a cube, and outside of a cube:
+//! `cargo test --lib clouds::lamp_light -- --nocapture`.
 
 use std::f64::consts::PI;
 
@@ -25,8 +29,8 @@ use super::{
 
 /// Extrapolation length of the diffusion approximation, over 1 / (1 - g') (Milne's problem).
 const DARK_AT: f64 = 0.71;
-/// Powers of the ratio of distances by which the faces other than the nearest one take light: the one opposite to it, and those across. The
-/// slope of the sum of all images at the nearest face has them.
+/// Powers of the ratio of distances by which the faces other than the nearest one take light: the one opposite to it,
+/// and those across. The slope of the sum of all images at the nearest face has them.
 const FARTHER: [i32; 2] = [2, 3];
 /// Depth from which light comes back through the face that it fell on, over 1 / (1 - g').
 const RETURNS_FROM: f64 = 0.5;
@@ -42,14 +46,15 @@ pub struct Shine {
     pub distance: f64,
     /// Scaled depth of cloud on the way.
     pub between: f64,
-    /// What lies above and below the source of the cloud's layer.
+    /// Scaled depths of the cloud's layer above and below the source.
     pub within: [f64; 2],
     /// It shines in a cloud, whatever lies on the way.
     pub is_buried: bool,
 }
 
-/// Distance from a source over that from its image behind a face, and how fast that ratio grows along `direction`. `place` and `source` are
-/// how far these two stand from where the face lies dark, `grows` is how fast `place` grows along the direction.
+/// Distance from a source over that from its image behind a face, and how fast that ratio grows along `direction`.
+/// `place` and `source` are how far these two stand from where the face lies dark, `grows` is how fast `place` grows
+/// along the direction.
 fn mirrored(shine: &Shine, direction: DVec3, [place, grows]: [f64; 2], source: f64) -> (f64, f64) {
     let d = shine.distance;
     let square = d * d + 4.0 * place * source;
@@ -58,8 +63,9 @@ fn mirrored(shine: &Shine, direction: DVec3, [place, grows]: [f64; 2], source: f
     (d / image, (toward - 2.0 * d * source * grows / square) / image)
 }
 
-/// What a place at these depths scatters into `direction` (the way light goes), through the scaled depth `to_eye` of more cloud, 1/sr, of a source of
-/// intensity 1 a unit of scaled depth squared. `sky`: [`super::transport::Transport::under_sky`].
+/// Returns the light that a place at these depths scatters into `direction` (the way light goes), through the scaled
+/// depth `to_eye` of more cloud, 1/sr, of a source of intensity 1 a unit of scaled depth squared. `sky`:
+/// [`super::transport::Transport::under_sky`].
 pub fn scattered(of: &Scattering, sky: &Table, at: &Depths, shine: &Shine, direction: DVec3, to_eye: f64) -> f64 {
     let shine = &Shine { distance: shine.distance.max(1e-3), ..*shine };
     let d = shine.distance;
@@ -78,7 +84,8 @@ fn from_inside(of: &Scattering, at: &Depths, shine: &Shine, direction: DVec3, to
     let once = albedo * phase * (-shine.between).exp() / (d * d);
     let dark = DARK_AT / turning;
     let level = shine.toward.truncate().length() * d;
-    // Of the sides no more is known than that one looks at the nearer one, and that the source lies beyond it in the same cloud.
+    // Of the sides no more is known than that one looks at the nearer one, and that the source lies beyond it in the
+    // same cloud.
     let out = direction.truncate().length();
     let half = 0.5 * (at.left + at.right).max(d);
     // Depths of place and source, and how fast the first grows along the direction.
@@ -183,7 +190,8 @@ pub(super) mod tests {
             Shine { toward, distance: distance * scale, between: between * scale, within, is_buried: false }
         }
 
-        /// Light out of a face about a place of it, lm a unit, as the model has it; without what comes straight from the source.
+        /// Light out of a face about a place of it, lm a unit, as the model has it; without what comes straight from
+        /// the source.
         fn modelled(&self, transport: &Transport, (axis, high): (usize, bool), on: impl Fn([f64; 2]) -> DVec3) -> f64 {
             let (of, sky) = (&transport.scattering, transport.under_sky());
             let scale = of.scale();
@@ -212,7 +220,7 @@ pub(super) mod tests {
             PI * sum
         }
 
-        /// The same of a whole face.
+        /// Computes the light out of a whole face, as [`Self::modelled`] does about a place of it.
         fn modelled_face(&self, transport: &Transport, face: usize) -> f64 {
             let (axis, high) = (face / 2, face % 2 == 1);
             let on = |[u, v]: [f64; 2]| {

@@ -1,4 +1,4 @@
-//! Which of the host's lamps and of the flashes light the clouds of a picture, as shaders read them
+//! Lamps of the host and flashes that light the clouds of a picture, as shaders read them
 //! (`shaders/clouds/lit_lamps.wgsl`).
 
 use std::f64::consts::PI;
@@ -17,7 +17,8 @@ const LAMPS: usize = 16;
 const ROWS: u32 = 96;
 /// Display value below which no glow shows: a quarter of a step of 8 bits.
 const LEAST_SHOWN: f64 = 1e-3;
-/// Share of a lamp's light that a cloud sends back, at most, and the distance within which a lamp in a cloud is taken to light it, m.
+/// Share of a lamp's light that a cloud sends back, at most, and the distance within which a lamp in a cloud is taken
+/// to light it, m.
 const REFLECTS: f64 = 0.7;
 const NEAREST_M: f64 = 5.0;
 
@@ -42,19 +43,22 @@ pub(super) struct LampsUniform {
     pub lamps: [LampUniform; LAMPS],
 }
 
-/// Width and height of the glow's picture, texels, for a picture of so many pixels: `glow_size` of `shaders/between/glow.wgsl`.
+/// Width and height of the glow's picture, texels, for a picture of so many pixels: `glow_size` of
+/// `shaders/between/glow.wgsl`.
 pub(super) fn glow_size((width, height): (u32, u32)) -> (u32, u32) {
     let rows = height.min(ROWS);
     ((width * rows).div_ceil(height), rows)
 }
 
-/// The mean of a lamp's light over all directions, of that in its middle. Its beam falls by a smooth step between two cosines.
+/// The mean of a lamp's light over all directions, of that in its middle. Its beam falls by a smooth step between two
+/// cosines.
 fn even_share(lamp: &HostLight) -> f64 {
     let [inner, outer] = [lamp.inner_deg, lamp.outer_deg].map(|a| a.to_radians().cos());
     0.5 * (1.0 - inner + 0.5 * (inner - outer))
 }
 
-/// Luminance of the cloud that a lamp lights most, cd/m^2 at most; `height_m` over the sea. What is above the beam's steepest ray stays dark.
+/// Luminance of the cloud that a lamp lights most, cd/m^2 at most; `height_m` over the sea. What is above the beam's
+/// steepest ray stays dark.
 fn most_on(overhead: &CloudLayers, lamp: &HostLight, up: f64, height_m: f64) -> f64 {
     let brightest = lamp.intensity_cd.into_iter().fold(0.0, f64::max);
     let steepest = |up: f64| {
@@ -94,7 +98,8 @@ impl LampUniform {
 }
 
 impl LampsUniform {
-    /// Those of a moment, for a picture of these pixels; none where nothing of their glow would show.
+    /// Finds the lamps and flashes of a moment, for a picture of these pixels; none where nothing of their glow would
+    /// show.
     pub fn of(overhead: &CloudLayers, now: &Moment<'_>, exposure: f64, picture: (u32, u32)) -> Option<Self> {
         let (lights, flashes) = (now.lamps, now.flash_lamps());
         if lights.is_empty() && flashes.is_empty() {

@@ -1,4 +1,5 @@
-//! A layer of cloud under a host's map of cover ([`CloudMap`]), by the map's cells: how each is cut out of the field ([`super::placed`]).
+//! A layer of cloud under a host's map of cover ([`CloudMap`]), by the map's cells: how each is cut out of the field
+//! ([`super::placed`]).
 
 use std::{
     f64::consts::{PI, SQRT_2},
@@ -19,7 +20,8 @@ const STEPS: usize = 64;
 pub struct LayerMap {
     slab: CloudSlab,
     pub(super) map: Arc<CloudMap>,
-    /// Of each cell: threshold, dome, extinction (1/m), and the distance within which the threshold stays, m; as halves hold them.
+    /// Values of each cell: threshold, dome, extinction (1/m), and the distance within which the threshold stays, m; as
+    /// halves hold them.
     pub(super) texels: Vec<[f32; 4]>,
     /// Most that the threshold changes a metre.
     pub(super) slope_per_m: f64,
@@ -84,8 +86,8 @@ fn steepest(texels: &[[f32; 4]], map: &CloudMap) -> f64 {
     texels.iter().enumerate().map(change).fold(0.0, f64::max) * SQRT_2 / map.cell_m
 }
 
-/// Of each cell the distance within which a map stays as it is there, m: two cells less than to the next that is other, so that it holds between
-/// middles too.
+/// Returns for each cell the distance within which a map stays as it is there, m: two cells less than to the next cell
+/// that differs, so that it holds between middles too.
 fn steady_m(map: &CloudMap) -> Vec<f64> {
     let [columns, rows] = map.cells.map(|n| n as usize);
     let most = (columns + rows) as u32;

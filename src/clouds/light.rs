@@ -1,20 +1,21 @@
-//! What a place in a cloud scatters towards an eye. Twin of `shaders/clouds/light.wgsl`.
+//! Light that a place in a cloud scatters towards an eye. Twin of `shaders/clouds/light.wgsl`.
 //!
 //! # Model
-//! A place knows how much cloud lies about it: above and below, towards the sun and, level, to either side. As far as light is
-//! concerned it stands in a box of these depths. Light that is scattered once keeps the true phase function. Light scattered more often
-//! comes from the tables of [`super::transport`]: one for the beam that falls on the box's top, one for what falls on the side
-//! that faces the sun, one each for sky and ground. Side to side, light goes as the cosine whose leak the tables were made with, once it has turned:
-//! at the face that it falls on it is even. Top and
-//! side share the beam. The rays of the sun come to a place through the nearer of the two, so with d the way to the top less the way to the side the
-//! top has the share 1 / (1 + exp((1 - g') d)), the side the rest. A real cloud is no box: where its way to the sun, s, is longer than the
-//! box's, m, the light falls as the square of (1 + (1 - g') m) / (1 + (1 - g') s). What beam and first scatterings keep
-//! of their level momentum, exp(-(1 - g') s) - exp(-s), is added to the first moment (van de Hulst 1980). Between sky and
-//! ground of the same light a cloud that absorbs nothing is as bright as they are: what sky and ground light less than that, the sides let in.
+//! A place knows how much cloud lies about it: above and below, towards the sun and, level, to either side. As far as
+//! light is concerned it stands in a box of these depths. Light that is scattered once keeps the true phase function.
+//! Light scattered more often comes from the tables of [`super::transport`]: one for the beam that falls on the box's
+//! top, one for what falls on the side that faces the sun, one each for sky and ground. Side to side, light goes as the
+//! cosine whose leak the tables were made with, once it has turned: at the face that it falls on it is even. Top and
+//! side share the beam. The rays of the sun come to a place through the nearer of the two, so with d the way to the top
+//! less the way to the side the top has the share 1 / (1 + exp((1 - g') d)), the side the rest. A real cloud is no box:
+//! where its way to the sun, s, is longer than the box's, m, the light falls as the square of (1 + (1 - g') m) / (1 +
+//! (1 - g') s). What beam and first scatterings keep of their level momentum, exp(-(1 - g') s) - exp(-s), is added to
+//! the first moment (van de Hulst 1980). Between sky and ground of the same light a cloud that absorbs nothing is as
+//! bright as they are: what sky and ground light less than that, the sides let in.
 //!
 //! # Error
-//! Fluxes through the faces of a cube of optical depth 16 (Henyey-Greenstein 0.85) stay within 0.03 of the incident flux of a path tracer's:
-//! `cargo test --lib clouds::light`.
+//! Fluxes through the faces of a cube of optical depth 16 (Henyey-Greenstein 0.85) stay within 0.03 of the incident
+//! flux of a path tracer's: `cargo test --lib clouds::light`.
 
 use std::sync::Arc;
 
@@ -22,8 +23,8 @@ use glam::DVec3;
 
 use super::transport::{Scattering, Table, Transport, leak_rate, table_at};
 
-/// How fast the faces' shares of the beam part, over the rate at which light turns: photons through the field ask for half
-/// as much (`lab photons`), photons through cubes for one and a half times as much.
+/// How fast the faces' shares of the beam part, over the rate at which light turns: photons through the field ask for
+/// half as much (`lab photons`), photons through cubes for one and a half times as much.
 const PART_RATE: f64 = 1.0;
 
 /// Scaled depths of cloud about a place.
@@ -41,7 +42,7 @@ pub struct Depths {
     pub far: f64,
     /// Level, across the sun's direction, to the nearer side.
     pub left: f64,
-    /// Likewise the other way.
+    /// Level, across the sun's direction, to the other side.
     pub right: f64,
 }
 
@@ -59,16 +60,16 @@ pub struct Sources {
     pub sky: Arc<Table>,
 }
 
-/// What a place scatters, 1/sr and of 1.
+/// Light that a place scatters: of the sun's irradiance, 1/sr; of the radiance of sky and ground, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scattered {
-    /// Of the sun's irradiance on what faces it.
+    /// Scattered part of the sun's irradiance on what faces it.
     pub sun: f64,
-    /// Of that, what is scattered for the first time: times the phase function.
+    /// Part of that irradiance that is scattered for the first time, to be multiplied by the phase function.
     pub once: f64,
-    /// Of the sky's radiance.
+    /// Scattered part of the sky's radiance.
     pub sky: f64,
-    /// Of the ground's radiance.
+    /// Scattered part of the ground's radiance.
     pub ground: f64,
 }
 
@@ -81,9 +82,10 @@ fn reach(near: f64, far: f64, turning: f64) -> f64 {
     (near + far).max(1e-3) + 1.42 / turning
 }
 
-/// What light follows from side to side of a box, of mean 1, and its slope along the axis. In a box no wider than it is high, a cosine; the
-/// wider the box, the more of its light leaves through top and base before it comes to a side, and the more even it is between them. At
-/// the face that the light falls on it is even too, however narrow the box: `entered` is the depth behind that.
+/// Returns the profile of light from side to side of a box, of mean 1, and its slope along the axis. In a box no wider
+/// than it is high, a cosine; the wider the box, the more of its light leaves through top and base before it comes to a
+/// side, and the more even it is between them. At the face that the light falls on it is even too, however narrow the
+/// box: `entered` is the depth behind that.
 fn across([near, far]: [f64; 2], turning: f64, height: f64, entered: f64) -> (f64, f64) {
     let extent = reach(near, far, turning);
     let b = std::f64::consts::PI / extent;
@@ -96,7 +98,7 @@ fn across([near, far]: [f64; 2], turning: f64, height: f64, entered: f64) -> (f6
 }
 
 impl Sources {
-    /// Of a medium under a sun.
+    /// Creates the source terms of a medium under a sun.
     pub fn new(medium: &Transport, to_sun: DVec3) -> Self {
         let (cosine, sine) = (to_sun.z.clamp(-1.0, 1.0).abs(), to_sun.truncate().length());
         Self {
@@ -108,8 +110,8 @@ impl Sources {
         }
     }
 
-    /// What a place at these depths scatters into `direction` (the way light goes; (east, north, up)), through the scaled depth `to_eye`
-    /// of more cloud.
+    /// Returns the light that a place at these depths scatters into `direction` (the way light goes; (east, north,
+    /// up)), through the scaled depth `to_eye` of more cloud.
     pub fn scattered(&self, at: &Depths, direction: DVec3, to_eye: f64) -> Scattered {
         let of = &self.scattering;
         let turning = of.turning();
@@ -142,7 +144,8 @@ impl Sources {
         let by_top = above / cosine;
         let by_side = if sine > 1e-6 { at.near / sine } else { f64::INFINITY };
         let top_share = 1.0 / (1.0 + (PART_RATE * turning * (by_top - by_side)).min(80.0).exp());
-        // A way to the sun that is longer than the box's: light that has been scattered often falls off slowly along it.
+        // A way to the sun that is longer than the box's: light that has been scattered often falls off slowly along
+        // it.
         let aside = ((1.0 + turning * by_top.min(by_side)) / (1.0 + turning * at.to_sun)).min(1.0).powi(2);
         let share = aside * top_share.max(1.0 - top_share);
         let top = through(table_at(&self.top, above, below, leak), down, [sides_a, sides_c]);

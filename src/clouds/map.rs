@@ -1,4 +1,5 @@
-//! The map of where clouds grow: noise made normal by ranks, so that a threshold says how much of the plane lies above it.
+//! The map of where clouds grow: noise made normal by ranks, so that a threshold says how much of the plane lies above
+//! it.
 
 use glam::{DVec2, UVec2};
 
@@ -14,7 +15,7 @@ const EVEN_OCTAVES: u32 = 4;
 const PERSISTENCE: [f64; 2] = [0.55, 0.4];
 const CELLULAR_OCTAVES: u32 = 3;
 
-/// What a sheet has before its ranks are taken.
+/// Returns the value of a sheet before its ranks are taken.
 fn raw(sheet: u32, at: DVec2, seed: u32) -> f64 {
     let cells = MAP_CELLS as u32;
     let octaves = |count: u32, first: u32, persistence: f64, noise: &dyn Fn(DVec2, UVec2, u32) -> f64| {

@@ -1,4 +1,5 @@
-//! What a ray sees of clouds, in f64, for questions: the twin of `shaders/clouds/march.wgsl` and `shaders/clouds/about.wgsl`, in finer steps.
+//! Clouds as a ray sees them, in f64, for questions: the twin of `shaders/clouds/march.wgsl` and
+//! `shaders/clouds/about.wgsl`, in finer steps.
 //!
 //! # Error
 //! Pictures against this: `cargo test --test clouds radiance -- --nocapture`.
@@ -25,13 +26,14 @@ const STEP_DEPTH: f64 = 0.25;
 const STEP_ANGLE: f64 = 0.002;
 /// Share of a layer's thickness that a step goes up or down at most.
 const STEP_RISE: f64 = 0.04;
-/// What is let through at which a ray ends.
+/// Transmittance at which a ray ends.
 const LEAST: f64 = 0.001;
 /// Farthest that a ray is followed through a layer, m.
 const FARTHEST_M: f64 = 60e3;
 /// Length over which clouds fade before it, m: cut off, a cloud would show a flat face.
 const FADES_M: f64 = 15e3;
-/// Ends of the stretches of the way to the sun, in distances from cloud to cloud. On the first of them edges are frayed.
+/// Ends of the stretches of the way to the sun, in distances from cloud to cloud. On the first of them edges are
+/// frayed.
 const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
 const SUN_FRAYED: usize = 3;
 /// Slope of the map, a distance from cloud to cloud, and of the solid noise, a side of it, by which rays skip.
@@ -41,12 +43,12 @@ const SOLID_SKIP: f64 = 12.0;
 /// Threshold from which on there is no cloud: just below [`CLEAR`].
 const CLEAR_FROM: f64 = CLEAR - 0.05;
 
-/// What a ray sees.
+/// Clouds as a ray sees them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CloudsSeen {
     /// cd/m^2 a channel.
     pub light: DVec3,
-    /// Of the light behind, with what clouds scatter straight on.
+    /// Transmittance of the light behind, with what clouds scatter straight on.
     pub transmittance: f64,
     /// Where what is seen stands in the mean, m.
     pub distance_m: f64,
@@ -66,7 +68,7 @@ struct Lit<'a> {
 pub(crate) struct CloudRays<'a> {
     layers: Vec<Lit<'a>>,
     light: LightWithin<'a>,
-    /// Of the place, east and north of the world's origin, m, and above the sea.
+    /// Position of the place, east and north of the world's origin, m, and above the sea.
     place_m: DVec3,
     radius_m: f64,
     /// Some of what is above the place is a deck.
@@ -98,7 +100,7 @@ impl LightWithin<'_> {
     }
 }
 
-/// What a ray has seen so far.
+/// State of a march: what the ray has seen so far.
 #[derive(Clone, Copy)]
 struct March {
     light: DVec3,
@@ -117,7 +119,7 @@ struct AtPlace<'a> {
 }
 
 impl<'a> CloudRays<'a> {
-    /// Those of a scene's place.
+    /// Creates the clouds about a scene's place.
     pub(super) fn new(overhead: &CloudLayers, grown: &'a CloudNoise, scene: &Scene, radius_m: f64) -> Self {
         let to_sun = scene.brighter().direction;
         let media = media(overhead.liquid_um);
@@ -138,7 +140,8 @@ impl<'a> CloudRays<'a> {
         }
     }
 
-    /// Of one layer in given light over level ground, seen from a place; without a halo. In steps so much longer in depth and in angle.
+    /// Creates the clouds of one layer in given light over level ground, seen from a place; without a halo. `longer`:
+    /// lengths of steps over the usual ones, in depth and in angle.
     pub(super) fn given(
         field: Field<'a>,
         sources: &Arc<Sources>,
@@ -205,7 +208,7 @@ impl<'a> CloudRays<'a> {
         all
     }
 
-    /// What is seen in a direction up to a range, m.
+    /// Returns the clouds that are seen in a direction up to a range, m.
     pub fn seen(&self, d: DVec3, range_m: f64) -> CloudsSeen {
         let mut seen = March { light: DVec3::ZERO, transmittance: 1.0, distance: 0.0 };
         for (k, stretch) in self.stretches(d, range_m) {
@@ -257,7 +260,7 @@ impl<'a> CloudRays<'a> {
         seen
     }
 
-    /// What a place sends along a direction for each metre of its extinction, cd/m^2.
+    /// Returns the light that a place sends along a direction for each unit of its scaled depth, cd/m^2.
     fn scattered(&self, place: &AtPlace<'_>, direction: DVec3, transmittance: f64) -> DVec3 {
         let sources = self.light.of(place.of.medium);
         let s = sources.scattered(&place.depths(sources.to_sun), direction, -transmittance.ln());
@@ -269,8 +272,8 @@ impl<'a> CloudRays<'a> {
             + DVec3::from_array(light.below) * s.ground
     }
 
-    /// Optical depth of the clouds over `offset` metres (east, north, up), of all that they scatter. What a picture shows as a deck counts as
-    /// the cloud that it stands for.
+    /// Optical depth of the clouds over `offset` metres (east, north, up), of all that they scatter. What a picture
+    /// shows as a deck counts as the cloud that it stands for.
     pub fn depth(&self, offset: DVec3) -> f64 {
         let range_m = offset.length();
         let d = offset / range_m;
@@ -356,7 +359,8 @@ impl AtPlace<'_> {
     }
 }
 
-/// Metres of full extinction in a column of this excess over a stretch from a height that rises so much a metre: `cloud_stretch`.
+/// Metres of full extinction in a column of this excess over a stretch from a height that rises so much a metre:
+/// `cloud_stretch`.
 fn stretch(s: &Shape, excess: f64, [height, rise]: [f64; 2], length: f64) -> f64 {
     let to = height + rise * length;
     let (low, high) = (height.min(to).clamp(0.0, 1.0), height.max(to).clamp(0.0, 1.0));

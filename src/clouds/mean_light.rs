@@ -1,5 +1,6 @@
-//! The light that a host is told of, which laws of the weather give ([`Conditions::cloud_light_at`]), against the clouds that are drawn: the mean of
-//! what they let through to many places, at all heights of the sun and from below their base to above their top.
+//! The light that a host is told of, which laws of the weather give ([`Conditions::cloud_light_at`]), against the
+//! clouds that are drawn: the mean of what they let through to many places, at all heights of the sun and from below
+//! their base to above their top.
 
 use glam::{DVec2, DVec3};
 
@@ -40,7 +41,8 @@ fn under(layers: &[(CloudKind, f64, f64)]) -> Conditions {
     derive(&Weather { clouds, ..Weather::default() }).unwrap()
 }
 
-/// How far the light that is told lies from the mean: root of the mean square, and most, at these heights and all lights.
+/// How far the light that is told lies from the mean: root of the mean square, and most, at these heights and all
+/// lights.
 fn off(c: &Conditions, grown: &[(Map, Solid)], heights_m: &[f64]) -> (f64, (f64, String)) {
     let (mut squares, mut most) = (0.0, (0.0, String::new()));
     for height_m in heights_m {

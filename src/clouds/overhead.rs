@@ -1,4 +1,5 @@
-//! Cloud layers around a camera or a queried place: layers as volumes, how much of them is a deck, and the light on them.
+//! Cloud layers around a camera or a queried place: layers as volumes, how much of them is a deck, and the light on
+//! them.
 
 use std::{f64::consts::PI, sync::Arc};
 
@@ -24,7 +25,8 @@ pub(super) const ICE: usize = 1;
 pub(super) const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
 /// Heights of a closed layer's base over the camera between which the volume takes the deck's place, m.
 const DECK_FROM_M: [f64; 2] = [200.0, 400.0];
-/// Slant depths of a closed layer between which the sun's disc in it pales to a tenth of what is around it: a deck shows none.
+/// Slant depths of a closed layer between which the sun's disc in it pales to a tenth of what is around it: a deck
+/// shows none.
 const DISC_PALES: [f64; 2] = [12.0, 14.0];
 
 /// A layer of cloud, and how much of it is drawn as a volume: the rest is drawn as a deck.
@@ -37,11 +39,11 @@ pub(super) struct Layer {
     pub share: f64,
 }
 
-/// What there is of clouds over a place.
+/// Layers of cloud over a place.
 pub(super) struct CloudLayers {
     layers: [Layer; LAYERS],
     count: usize,
-    /// Of them, those of which something is drawn as a volume: the first ones, since only the uppermost are decks.
+    /// Number of layers of which something is drawn as a volume: the first ones, since only the uppermost are decks.
     drawn: usize,
     /// Some of what is above the place is drawn as a deck.
     pub has_deck: bool,
@@ -51,14 +53,15 @@ pub(super) struct CloudLayers {
     pub liquid_um: f64,
     /// How far the wind has carried the layers.
     pub drifts: LayerDrifts,
-    /// Of each layer, where its clouds are other than its cover says; and the cells over rain areas ([`super::placed`]).
+    /// Map of each layer whose clouds are other than its cover says; and (`areas`) the cells over rain areas
+    /// ([`super::placed`]).
     pub maps: [Option<Arc<LayerMap>>; LAYERS],
     /// See `maps`.
     pub areas: Option<AreaCells>,
 }
 
-/// How much of the lowest layer above the camera is drawn as a volume. A closed one that hides the sky, seen from further below, is a deck
-/// in the same light: nothing else is seen of it.
+/// How much of the lowest layer above the camera is drawn as a volume. A closed one that hides the sky, seen from
+/// further below, is a deck in the same light: nothing else is seen of it.
 fn volume_share(scene: &Scene, lowest: &CloudSlab) -> f64 {
     if lowest.cover < 1.0 || scene.deck_cover < 1.0 {
         return 1.0;
@@ -69,7 +72,7 @@ fn volume_share(scene: &Scene, lowest: &CloudSlab) -> f64 {
     near.max(1.0 - smoothstep(DISC_PALES[0], DISC_PALES[1], depth))
 }
 
-/// Of the diameters that there are tables for, the one nearest to the droplets of these layers.
+/// Returns the diameter nearest to the droplets of these layers, of those that there are tables for.
 pub(super) fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
     let add = |(water, sum): (f64, f64), s: &CloudSlab| {
         let liquid = s.cover * (1.0 - s.ice_fraction);
@@ -81,13 +84,14 @@ pub(super) fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -
     LIQUID_UM.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(diameter)
 }
 
-/// Width over which a pixel looks, pixels, and that from which on clouds in it differ, in distances from cloud to cloud; both of
-/// `shaders/clouds`.
+/// Width over which a pixel looks, pixels, and that from which on clouds in it differ, in distances from cloud to
+/// cloud; both of `shaders/clouds`.
 pub(super) const PIXEL_BLUR: f64 = 1.4;
 pub(super) const BLUR_FROM: f64 = 0.15;
 
 impl CloudLayers {
-    /// Says whether one pixel spans several clouds of a layer below the camera, as far as its horizon; `pixel` in radians.
+    /// Says whether one pixel spans several clouds of a layer below the camera, as far as its horizon; `pixel` in
+    /// radians.
     pub fn is_coarse(&self, scene: &Scene, radius_m: f64, pixel: f64) -> bool {
         let coarse = |layer: &Layer| {
             let over_m = (scene.place.altitude_m - layer.shape.base_m).max(0.0);
@@ -97,8 +101,8 @@ impl CloudLayers {
         self.layers().iter().any(coarse)
     }
 
-    /// What there is at a scene's place for a model, where the wind has carried the layers so far; `None` where the model is no volume.
-    /// `still`: [`Shape::of`], or what remembers it.
+    /// Creates the layers at a scene's place for a model, where the wind has carried them by `drifts`; `None` where the
+    /// model is no volume. `still`: [`Shape::of`], or a cache of it.
     pub fn new(
         model: CloudModel,
         scene: &Scene,
@@ -194,9 +198,9 @@ impl CloudLayers {
         })
     }
 
-    /// The mean light of its broken clouds as they look from the place, cd/m^2, their cover, and how far the base of the lowest of them
-    /// lies over it, m.
-    /// From below half of what is seen is lit from above and half through the cloud, from above all is lit.
+    /// The mean light of its broken clouds as they look from the place, cd/m^2, their cover, and how far the base of
+    /// the lowest of them lies over it, m. From below half of what is seen is lit from above and half through the
+    /// cloud, from above all is lit.
     pub fn mean_radiance_and_cover(&self, scene: &Scene) -> ([f32; 4], f32) {
         let (mut light, mut clear, mut over) = ([0.0; 3], 1.0, f64::INFINITY);
         for layer in self.layers() {
@@ -221,15 +225,15 @@ impl CloudLayers {
 }
 
 impl Layer {
-    /// Which of two media it is made of: droplets, or ice.
+    /// Returns the index of its medium: droplets, or ice.
     pub fn medium(&self) -> usize {
         if self.slab.ice_fraction > 0.5 { ICE } else { 0 }
     }
 }
 
-/// Light on a layer from sun, sky and the layers above it, and from the ground and the layers below it; times `exposure`. It depends on where
-/// the layer lies, not on where the eye is. Only of clouds that a map or rain areas place is the ground under them not known: it counts as
-/// the ground at the eye.
+/// Light on a layer from sun, sky and the layers above it, and from the ground and the layers below it; times
+/// `exposure`. It depends on where the layer lies, not on where the eye is. Only of clouds that a map or rain areas
+/// place is the ground under them not known: it counts as the ground at the eye.
 pub(super) fn light_on(scene: &Scene, (shape, is_placed): (&Shape, bool), exposure: f64) -> LayerLight {
     let (c, light) = (&scene.conditions, scene.brighter());
     let albedo = scene.ground_albedo;

@@ -1,5 +1,5 @@
-//! The passes of a picture's clouds: some pixels are marched, each square of them is followed back to the last frame, and the whole picture is
-//! made of both. Beside it the clouds of all directions are made, where anything shows them.
+//! The passes of a picture's clouds: some pixels are marched, each square of them is followed back to the last frame,
+//! and the whole picture is made of both. Beside it the clouds of all directions are made, where anything shows them.
 
 use std::sync::Arc;
 
@@ -29,11 +29,11 @@ pub(super) struct CloudPasses {
     picture_block: UniformBlock,
     pipelines: Option<Pipelines>,
     picture: Option<Picture>,
-    /// What the march is bound to; with which tables of the sky, and whether with the map of shadows.
+    /// Key and bind group of the march: the tables of the sky, whether the map of shadows is bound, and the group.
     marched_of: Option<(wgpu::BindGroup, bool, wgpu::BindGroup)>,
     shadows: Option<ShadowMap>,
     round: Option<CloudPanorama>,
-    /// What shadows fall on, and of which of the host's depth images that is.
+    /// Key and bind group of what shadows fall on: the host's depth image and its layer, and the group.
     shaded: Option<(Option<(wgpu::Texture, u32)>, wgpu::BindGroup)>,
     none: wgpu::TextureView,
     no_layers: wgpu::TextureView,
@@ -43,7 +43,7 @@ pub(super) struct CloudPasses {
     is_placed: bool,
 }
 
-/// What shadows are made of, and what they fall on.
+/// Projection of the shadows, and the depth that they fall on.
 pub(super) struct Shaded<'a> {
     pub lie: ShadowProjection,
     pub depth: Layer<'a>,
@@ -61,7 +61,7 @@ pub(super) struct Wanted {
     pub shows_round: bool,
 }
 
-/// What the passes draw from.
+/// Inputs of the passes.
 pub(super) struct CloudFrame<'a> {
     pub wanted: Wanted,
     pub clouds: CloudsUniform,
@@ -69,16 +69,16 @@ pub(super) struct CloudFrame<'a> {
     /// The frame's block, and the sky's tables with their layout.
     pub frame: &'a BlockView,
     pub sky: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
-    /// What stands behind the sky's own light.
+    /// Texture of what stands behind the sky's own light.
     pub behind: Option<&'a wgpu::Texture>,
     pub shaded: Option<Shaded<'a>>,
     /// Whether the air before that is shaded too.
     pub has_shafts: bool,
     /// Lamps and flashes that light them.
     pub lamps: Option<LampsUniform>,
-    /// What the clouds of all directions are made of.
+    /// Inputs of the clouds of all directions.
     pub around: PanoramaInputs,
-    /// Of the march ([`super::CloudSettings`]).
+    /// Fineness of the march ([`super::CloudSettings`]).
     pub fineness: f64,
     pub is_coarse: bool,
     pub past: HistoryUse,
@@ -156,7 +156,7 @@ impl CloudPasses {
         self.tables.bytes() + shadows + round + self.picture.as_ref().map_or(0, Picture::bytes)
     }
 
-    /// What the march is bound to.
+    /// Returns the bind group of the march.
     fn march_group(&mut self, device: &Device, layout: &wgpu::BindGroupLayout, of: &CloudFrame<'_>) -> wgpu::BindGroup {
         let is_shaded = of.has_shafts && of.shaded.is_some();
         if let Some((sky, was_shaded, group)) = &self.marched_of
@@ -188,8 +188,8 @@ impl CloudPasses {
         group
     }
 
-    /// What the passes after the march are bound to: the one that follows squares, and the one that makes a whole picture of each of the two
-    /// last ones.
+    /// Creates the bind groups of the passes after the march: the one that follows squares, and the one that makes a
+    /// whole picture of each of the two last ones.
     fn picture_groups(
         &self,
         device: &Device,
@@ -204,12 +204,12 @@ impl CloudPasses {
         [none, from(0), from(1)].map(|past| self.picture_group(device, layout, frame, (&picture.marched, past)))
     }
 
-    /// What stands for the past where there is none.
+    /// Returns the textures that stand for the past where there is none.
     fn no_past(&self) -> [&wgpu::TextureView; 4] {
         [&self.no_layers, &self.none, &self.none, &self.none]
     }
 
-    /// What a pass after the march is bound to: the marched pixels, and the past.
+    /// Creates the bind group of a pass after the march: the marched pixels, and the past.
     fn picture_group(
         &self,
         device: &Device,
@@ -243,8 +243,8 @@ impl CloudPasses {
         Ok(())
     }
 
-    /// Brings the map of shadows up to the frame. Answers the bind group of the depth that they fall on and of the map, empty where there are
-    /// no shadows, and the number of passes.
+    /// Brings the map of shadows up to the frame. Answers the bind group of the depth that they fall on and of the map,
+    /// empty where there are no shadows, and the number of passes.
     fn shade(
         &mut self,
         device: &Device,
@@ -335,7 +335,8 @@ impl CloudPasses {
         Ok(passes + of_shadows)
     }
 
-    /// Marches a frame's pixels, and makes the picture of them. Answers the passes that took, and those of the map of shadows.
+    /// Marches a frame's pixels, and makes the picture of them. Answers the passes that took, and those of the map of
+    /// shadows.
     fn draw_picture(
         &mut self,
         device: &Device,

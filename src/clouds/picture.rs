@@ -1,16 +1,17 @@
-//! A picture's clouds from frame to frame: the pixels that a frame marches, and the whole picture that is made of them and of the last.
+//! A picture's clouds from frame to frame: the pixels that a frame marches, and the whole picture that is made of them
+//! and of the last.
 
 use super::{pipelines::shades_apart, round};
 use crate::gpu::{Device, Layer, bind, flat_texture};
 
-/// Of what is seen of clouds.
+/// Format of what is seen of clouds.
 pub(super) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Of two numbers of a place in the picture.
+/// Format of two numbers of a place in the picture.
 pub(super) const PAIR: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
-/// Of what tells the pixels apart on which the host drew.
+/// Format of the depth that tells apart the pixels on which the host drew.
 pub(super) const KINDS: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
-/// Layers of the whole picture: what is seen of clouds and how far they reach, and what else stands behind the sky's own light. Below the
-/// picture there is room for the clouds of all directions.
+/// Layers of the whole picture: what is seen of clouds and how far they reach, and what else stands behind the sky's
+/// own light. Below the picture there is room for the clouds of all directions.
 pub(super) const LAYERS: u32 = 3;
 /// The last of them.
 pub(super) const BEHIND: u32 = 2;
@@ -40,7 +41,7 @@ pub(super) struct Whole {
     pub texture: wgpu::Texture,
     /// All layers, as the composition reads them.
     pub layers: wgpu::TextureView,
-    /// What is seen, and the reach.
+    /// Layers to draw into: what is seen, and the reach.
     pub written: [wgpu::TextureView; 2],
 }
 
@@ -57,18 +58,19 @@ impl Whole {
 pub(super) struct Picture {
     /// Pixels, and the side of the squares of which one is marched a frame.
     pub of: ((u32, u32), u32),
-    /// What this frame's pixels see of clouds, and how far these reach.
+    /// Clouds that this frame's pixels see, and how far these reach.
     pub marched: [wgpu::TextureView; 2],
-    /// Of each square the least and the most that is seen about it, and where it was in the last frame with how smooth it is.
+    /// Least and most that is seen about each square, and where the square was in the last frame with how smooth it is.
     pub followed: [wgpu::TextureView; 3],
     pub whole: [Whole; 2],
-    /// Which of its pixels the host drew on, where shadows have a draw of their own.
+    /// Depth that tells apart the pixels on which the host drew, where shadows have a draw of their own.
     pub kinds: Option<wgpu::TextureView>,
-    /// Which of the two is of the last frame that was drawn.
+    /// Index in `whole` of the last frame that was drawn.
     pub newest: usize,
-    /// What the passes after the march are bound to.
+    /// Bind groups of the passes after the march.
     pub groups: Option<[wgpu::BindGroup; 3]>,
-    /// As `marched`, of a first frame, which has none before it: of squares of [`BEGUN_SIDE`] on a side. With what the pass after it is bound to.
+    /// As `marched`, of a first frame, which has none before it: of squares of [`BEGUN_SIDE`] on a side. With what the
+    /// pass after it is bound to.
     pub begun: Option<([wgpu::TextureView; 2], wgpu::BindGroup)>,
 }
 
@@ -101,7 +103,7 @@ impl Picture {
         }
     }
 
-    /// Which of the two the next draw makes: the newest once more where that is of the same frame.
+    /// Returns the index in `whole` that the next draw makes: the newest once more where that is of the same frame.
     pub fn to_make(&self, is_begun: bool) -> usize {
         if is_begun { self.newest } else { 1 - self.newest }
     }

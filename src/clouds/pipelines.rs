@@ -16,7 +16,7 @@ use crate::{
     stage::{FrameUniform, flag},
 };
 
-/// What distinguishes one pipeline that marches rays from another.
+/// Key of a pipeline that marches rays.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct March {
     /// See [`super::CloudSettings`].
@@ -29,7 +29,7 @@ pub(super) struct March {
     pub is_coarse: bool,
 }
 
-/// What distinguishes one pipeline that makes a whole picture from another.
+/// Key of a pipeline that makes a whole picture.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Resolve {
     pub has_history: bool,
@@ -42,23 +42,24 @@ pub(super) struct Resolve {
     pub shades_apart: bool,
 }
 
-/// Whether shadows may have a draw of their own: a software driver would work them out for the sky too, since it takes both ways of a branch.
+/// Whether shadows may have a draw of their own: a software driver would work them out for the sky too, since it takes
+/// both ways of a branch.
 pub(super) fn shades_apart(device: &Device) -> bool {
     let can = wgpu::DownlevelFlags::INDEPENDENT_BLEND;
     device.caps().software && device.adapter.get_downlevel_capabilities().flags.contains(can)
 }
 
-/// The pipelines, and the layouts of their groups: of the march, of the passes after it, and of what shadows fall on by whether that has
-/// several samples a pixel.
+/// The pipelines, and the layouts of their groups: of the march, of the passes after it, and of what shadows fall on by
+/// whether that has several samples a pixel.
 pub(super) struct Pipelines {
     pub picture_layout: wgpu::BindGroupLayout,
     pub shadow_layouts: [wgpu::BindGroupLayout; 2],
     /// The two last ones: a view that climbs and sinks again changes between them.
     march: LruCache<March, wgpu::RenderPipeline, 2>,
-    /// Of the light of lamps and flashes, once there is any.
+    /// Pipeline of the light of lamps and flashes, once there is any.
     glow: LruCache<March, wgpu::RenderPipeline, 1>,
     pub follow: wgpu::RenderPipeline,
-    /// Those of the march and of the sky, which the clouds of all directions are marched with too.
+    /// Layouts of the march and of the sky, which the clouds of all directions are marched with too.
     pub march_layouts: [wgpu::BindGroupLayout; 2],
     /// One, or two that are drawn one after the other.
     resolve: Vec<(Resolve, Vec<wgpu::RenderPipeline>)>,

@@ -2,11 +2,12 @@
 //! areas, so that no rain falls out of a clear sky. Twin of `shaders/clouds/placed.wgsl`.
 //!
 //! # Model
-//! A part of a layer with a cover of its own is cut out of the field as all of a layer with this cover is: by threshold, dome and extinction of
-//! that cover. These are found for each cell of a map, and go over from middle to middle.
+//! A part of a layer with a cover of its own is cut out of the field as all of a layer with this cover is: by
+//! threshold, dome and extinction of that cover. These are found for each cell of a map, and go over from middle to
+//! middle.
 //!
-//! Cells over rain areas ([`super::cells`]) are a layer of their own, which is nowhere else: over an area it is closed, and opens across an edge
-//! beyond the area's border, a little wider than its clouds are, so that the field shapes it.
+//! Cells over rain areas ([`super::cells`]) are a layer of their own, which is nowhere else: over an area it is closed,
+//! and opens across an edge beyond the area's border, a little wider than its clouds are, so that the field shapes it.
 
 use std::sync::Arc;
 
@@ -31,15 +32,15 @@ use crate::{
 const LEAST: f64 = 1e-3;
 /// Cover from which on dome and extinction follow it.
 const SHAPED_FROM: f64 = 0.02;
-/// How much less excess the anvil of such a cell needs than that of a layer: across its edge, by [`EDGE_SLOPE`], it reaches this much over that
-/// many distances from cloud to cloud farther than its towers.
+/// How much less excess the anvil of such a cell needs than that of a layer: across its edge, by [`EDGE_SLOPE`], it
+/// reaches this much over that many distances from cloud to cloud farther than its towers.
 const ANVIL_WIDER: f64 = 2.2;
-/// Thickness of a cell over the distance from cloud to cloud from which on its heads grow with its height, and how rough they make it at most:
-/// by the map alone its sides would hang like curtains.
+/// Thickness of a cell over the distance from cloud to cloud from which on its heads grow with its height, and how
+/// rough they make it at most: by the map alone its sides would hang like curtains.
 const HEADS: f64 = 2.0;
 const MOST_ROUGH: f64 = 2.1;
 
-/// What one place of a layer is cut out by.
+/// Threshold by which one place of a layer is cut out, with its dome and extinction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CoverThreshold {
     pub threshold: f64,
@@ -52,7 +53,7 @@ impl CoverThreshold {
         Self { threshold: shape.threshold, dome: shape.dome, extinction_per_m: shape.extinction_per_m }
     }
 
-    /// Of a layer that covers so much.
+    /// Creates the threshold of a layer of this cover.
     pub(super) fn with_cover(slab: &CloudSlab, cover: f64) -> Self {
         let at = |cover: f64| threshold(&CloudSlab { cover, ..*slab });
         let own = at(cover.max(LEAST));
@@ -118,8 +119,8 @@ impl LocalCover {
         Self { map: Some(map), areas: None }
     }
 
-    /// Makes a layer's shape that of a place, m east and north of the world's origin. Answers within which distance the place's threshold
-    /// stays, m, and how much it changes a metre beyond.
+    /// Makes a layer's shape that of a place, m east and north of the world's origin. Answers within which distance the
+    /// place's threshold stays, m, and how much it changes a metre beyond.
     pub(super) fn shape_at(&self, place_m: DVec2, shape: &mut Shape) -> [f64; 2] {
         let (mut steady_m, mut slope_per_m) = (f64::INFINITY, 0.0);
         let mut cut = CoverThreshold::of(shape);

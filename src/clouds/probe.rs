@@ -77,8 +77,8 @@ impl EvenCloud {
     }
 }
 
-/// Share of the light that falls on a box which leaves it through each face: low and high x, low and high y, base and top. What goes
-/// through without being scattered, or scattered straight on, is in it. Of a slab base and top alone.
+/// Share of the light that falls on a box which leaves it through each face: low and high x, low and high y, base and
+/// top. What goes through without being scattered, or scattered straight on, is in it. Of a slab base and top alone.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter; GPU faults.
@@ -107,7 +107,8 @@ pub fn fluxes(device: &Device, cloud: &EvenCloud) -> Result<[f64; 6]> {
     Ok(out)
 }
 
-/// Of a beam on a box, a unit of its depth along y, what leaves straight through the far side and through the base.
+/// Returns the light of a beam on a box, a unit of its depth along y, that leaves straight through the far side and
+/// through the base.
 fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
     let steps = 4096;
     let (mut far, mut base) = (0.0, 0.0);
@@ -123,8 +124,8 @@ fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
     (far, base)
 }
 
-/// Light of a lamp of 1 cd to all sides that leaves a unit of each face of a box, of which optical depth 1 is a unit of length: what droplets have
-/// scattered. `position`: from the box's low corner. Faces as in [`fluxes`].
+/// Light of a lamp of 1 cd to all sides that leaves a unit of each face of a box, of which optical depth 1 is a unit of
+/// length: what droplets have scattered. `position`: from the box's low corner. Faces as in [`fluxes`].
 ///
 /// # Errors
 /// As [`fluxes`].

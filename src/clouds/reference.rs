@@ -1,8 +1,8 @@
 //! Light in clouds by following photons: the truth that tables and shaders are held against.
 //!
-//! Free paths through a cloud of any shape by null collisions (Woodcock et al. 1965): steps of the largest extinction, of which as many
-//! count as the extinction at their end is of it. Nothing is scaled or cut off. The error of a share p of n photons is
-//! sqrt(p (1 - p) / n).
+//! Free paths through a cloud of any shape by null collisions (Woodcock et al. 1965): steps of the largest extinction,
+//! of which as many count as the extinction at their end is of it. Nothing is scaled or cut off. The error of a share p
+//! of n photons is sqrt(p (1 - p) / n).
 
 use std::f64::consts::PI;
 
@@ -25,7 +25,8 @@ pub fn scattered(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> D
     turned(lobes, direction, chance).0
 }
 
-/// The same, and whether the Draine lobe turned the photon. Its angle is drawn by rejection from Henyey and Greenstein's lobe of the same g.
+/// Returns the way on after a droplet of this phase function, and whether the Draine lobe turned the photon. Its angle
+/// is drawn by rejection from Henyey and Greenstein's lobe of the same g.
 pub(super) fn turned(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> (DVec3, bool) {
     let by_draine = chance.even() < lobes.w_draine;
     let cosine = if by_draine {
@@ -59,7 +60,8 @@ pub struct Box<'a> {
 }
 
 impl Box<'_> {
-    /// Follows a photon from a place on the way to `direction`: the face through which it leaves (low and high x, y, z), if it does.
+    /// Follows a photon from a place on the way to `direction`: the face through which it leaves (low and high x, y,
+    /// z), if it does.
     pub fn leaves_by(&self, mut at: DVec3, mut direction: DVec3, chance: &mut Chance) -> Option<usize> {
         loop {
             let mut exit = (f64::INFINITY, 0);
@@ -85,8 +87,8 @@ impl Box<'_> {
         }
     }
 
-    /// Shares of the sun's light on the box that leave it through each face. The sun stands over the side of low x, `cosine` from the
-    /// zenith; high z is the top.
+    /// Shares of the sun's light on the box that leave it through each face. The sun stands over the side of low x,
+    /// `cosine` from the zenith; high z is the top.
     pub fn fluxes(&self, cosine: f64, photons: u32, seed: u64) -> [f64; 6] {
         let sine = (1.0 - cosine * cosine).sqrt();
         let is_slab = self.sides.x.is_infinite();

@@ -1,5 +1,6 @@
-//! The clouds in all directions from the camera, for what shows more than the picture: mirrors on the ground, the cube map. A frame makes some
-//! rows of them anew; `shaders/between/hung.wgsl` looks them up below the picture of the first layer.
+//! The clouds in all directions from the camera, for what shows more than the picture: mirrors on the ground, the cube
+//! map. A frame makes some rows of them anew; `shaders/between/hung.wgsl` looks them up below the picture of the first
+//! layer.
 
 use super::{
     picture::SEEN,
@@ -19,13 +20,13 @@ use crate::{
 pub(super) const SIDE: u32 = 96;
 /// Rows refreshed in a frame, once as many are old.
 const ROWS: u32 = 12;
-/// What makes all of them old: the camera's way, m, which turns a cloud 500 m up by a texel; the times in which a shadow grows old, as clouds
-/// go by as much of their way as of the camera's; a change of exposure.
+/// Changes that make all of them old: a way of the camera or of the clouds, m, which turns a cloud 500 m up by a texel;
+/// how many times faster they age than the map of shadows; a change of exposure.
 const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
 /// The camera's way between two frames, m, and the change of exposure after which nothing holds.
 const LEAPS: (f64, f64) = (100.0, 0.05);
 
-/// What they are made of.
+/// Inputs of the clouds of all directions.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct PanoramaInputs {
     pub standing: ShadowInputs,

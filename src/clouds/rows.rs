@@ -1,5 +1,5 @@
-//! Maps about the camera of which a frame makes some rows anew, as many as have grown old, and all of them where nothing of the map holds any
-//! more.
+//! Maps about the camera of which a frame makes some rows anew, as many as have grown old, and all of them where
+//! nothing of the map holds any more.
 
 /// How far a map has come.
 #[derive(Default)]
@@ -13,10 +13,10 @@ pub(super) struct Rows {
     made_some: bool,
 }
 
-/// What a frame does to a map.
+/// State of a map in a frame, from which the rows to make follow.
 #[derive(Clone, Copy)]
 pub(super) struct Turn {
-    /// What the map is made of is the same as in the last frame.
+    /// Inputs of the map are those of the last frame.
     pub rests: bool,
     /// The map is of something near enough.
     pub holds: bool,

@@ -5,15 +5,17 @@ use crate::error::{Error, Result, check_range};
 /// How finely a view draws clouds that are a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudSettings {
-    /// How many steps a ray takes: twice the value, twice as many. Range \[0.125, 32\], default 2; of half of them `lab chart clouds` says
-    /// that they err more than twice as much and cost hardly less.
+    /// How many steps a ray takes: twice the value, twice as many. Range \[0.125, 32\], default 2; of half of them
+    /// `lab chart clouds` says that they err more than twice as much and cost hardly less.
     pub fineness: f64,
-    /// One pixel of a square of so many on a side is marched in a frame, the others are taken over from earlier frames: 1, 2 or 4, default
+    /// One pixel of a square of so many on a side is marched in a frame, the others are taken over from earlier frames:
+    /// 1, 2 or 4, default
     /// 4. Frames without history march all.
     pub square_side: u32,
-    /// Whether the air between clouds and ground is drawn brighter where the sun shines through and darker in their shadows: shafts of light.
-    /// Default false: on the mean over places. It takes 24 look-ups a pixel, and is drawn with [`crate::frame::Stages::SURFACE`]
-    /// where the host gives depth and does not read the map of shadows itself ([`crate::frame::View::cloud_shadows`]).
+    /// Whether the air between clouds and ground is drawn brighter where the sun shines through and darker in their
+    /// shadows: shafts of light. Default false: on the mean over places. It takes 24 look-ups a pixel, and is drawn
+    /// with [`crate::frame::Stages::SURFACE`] where the host gives depth and does not read the map of shadows itself
+    /// ([`crate::frame::View::cloud_shadows`]).
     pub shafts: bool,
 }
 

@@ -1,9 +1,9 @@
-//! Shadows of clouds: the share of the direct light that they let through to a place, in f64. `shaders/clouds/shadow.wgsl` makes a map of the
-//! same.
+//! Shadows of clouds: the share of the direct light that they let through to a place, in f64.
+//! `shaders/clouds/shadow.wgsl` makes a map of the same.
 //!
 //! # Model
-//! The light goes straight through each layer above the place, and loses what the cloud on its way takes (Beer's law). The ground is level
-//! as far as a ray through the clouds over it reaches.
+//! The light goes straight through each layer above the place, and loses what the cloud on its way takes (Beer's law).
+//! The ground is level as far as a ray through the clouds over it reaches.
 //!
 //! # Error
 //! The map that pictures use against this: `cargo test --test clouds shadow -- --nocapture`.
@@ -18,7 +18,8 @@ const STEPS: usize = 32;
 /// Sine of the lowest light whose shadows are followed: lower, a ray leaves the clouds that can be told apart.
 pub const LOWEST: f64 = 0.03;
 
-/// Optical depth of a layer on the way of light to a place (east, north, above the sea), m; `to_light` is a unit vector.
+/// Optical depth of a layer on the way of light to a place (east, north, above the sea), m; `to_light` is a unit
+/// vector.
 pub(super) fn depth(field: &Field<'_>, place_m: DVec3, to_light: DVec3) -> f64 {
     let s = &field.shape;
     let (from, to) = ((s.base_m - place_m.z).max(0.0), s.base_m + s.thickness_m - place_m.z);

@@ -1,6 +1,6 @@
-//! The map of the clouds' shadows that pictures read: a window about the camera in a plane at the station's height, fixed to the air that
-//! carries the clouds, so that a frame makes only some rows of it anew. A new map is coarse at first: all of it at once would cost as much as
-//! ten frames.
+//! The map of the clouds' shadows that pictures read: a window about the camera in a plane at the station's height,
+//! fixed to the air that carries the clouds, so that a frame makes only some rows of it anew. A new map is coarse at
+//! first: all of it at once would cost as much as ten frames.
 
 use glam::{DVec2, DVec3};
 
@@ -31,24 +31,28 @@ const TEXELS: u32 = 512;
 const TEXEL_M: f64 = 40.0;
 /// Along a side of the coarse map that a new one begins as: as many texels as a frame's rows have.
 const COARSE: u32 = 64;
-/// Rows refreshed in a frame, once as many are old, and in every frame while some of the map is coarse: sixteen frames refresh
-/// all of them.
+/// Rows refreshed in a frame, once as many are old, and in every frame while some of the map is coarse: sixteen frames
+/// refresh all of them.
 const ROWS: u32 = 32;
-/// Height above the lowest base over which, in the clouds themselves, shadows go over to the mean, m: that of the shaders and snippets.
+/// Height above the lowest base over which, in the clouds themselves, shadows go over to the mean, m: that of the
+/// shaders and snippets.
 const ENDS_M: f64 = 100.0;
 /// Sines of the light's elevation between which shadows begin to be told apart.
 const FADE_SINES: [f64; 2] = [LOWEST, 0.07];
-/// Time between two frames, s, the light's turn, and the change of a layer's threshold after which nothing of the map is kept.
+/// Time between two frames, s, the light's turn, and the change of a layer's threshold after which nothing of the map
+/// is kept.
 const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
 
-/// Way of the layer that the map is fixed to, between two frames, m, after which nothing of the map is kept: another layer is the lowest.
+/// Way of the layer that the map is fixed to, between two frames, m, after which nothing of the map is kept: another
+/// layer is the lowest.
 const LEAP_OF_DRIFT_M: f64 = 1500.0;
-/// What makes the whole map old: a time, s, in which clouds change by some thousandths of their life; a turn of the light, by which the
-/// shadow of a cloud 4 km up goes by a quarter of a texel; a change of a layer's threshold of the least that shows; the camera's way, m, less
-/// than from where the map repeats to where shadows begin to show, and as much of places of a host's map.
+/// Changes that make the whole map old: a time, s, in which clouds change by some thousandths of their life; a turn of
+/// the light, by which the shadow of a cloud 4 km up goes by a quarter of a texel; a change of a layer's threshold of
+/// the least that shows; the camera's way, m, less than from where the map repeats to where shadows begin to show, and
+/// as much of places of a host's map.
 const AGES: (f64, f64, f64, f64) = (4.0, 0.0025, 0.004, 600.0);
 
-/// What a frame may take over from those before it.
+/// History that a frame may take over from those before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum HistoryUse {
     Kept,
@@ -68,7 +72,7 @@ impl HistoryUse {
     }
 }
 
-/// What the map is made of.
+/// Inputs of the map.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct ShadowInputs {
     pub time_s: f64,
@@ -77,7 +81,8 @@ pub(super) struct ShadowInputs {
     /// How far the layer to which it is fixed has come, m.
     pub drift_m: DVec2,
     pub camera_m: DVec2,
-    /// Of where they are other than their cover says ([`super::placed`]): changes with it; other for another map.
+    /// Fingerprint of where clouds are other than their cover says ([`super::placed`]): the first number changes with
+    /// the cells over areas, the second is other for another map.
     pub placed: (f64, usize),
 }
 
@@ -96,7 +101,7 @@ pub(super) struct ShadowProjection {
     /// How far shadows are told apart, and the height over the plane from which on they are not, m.
     pub told: f64,
     pub top_m: f64,
-    /// What the air takes at the camera's height, 1/m, and the height over which it thins, m.
+    /// Extinction of the air at the camera's height, 1/m, and the height over which it thins, m.
     haze: [f64; 2],
 }
 
@@ -122,7 +127,7 @@ struct Coarse {
     group: wgpu::BindGroup,
 }
 
-/// What the air takes at a scene's height, 1/m, and the height over which it thins there, m.
+/// Returns the extinction of the air at a scene's height, 1/m, and the height over which it thins there, m.
 fn haze(scene: &Scene) -> [f64; 2] {
     let (planet, h) = (&scene.planet, scene.place.altitude_m.max(0.0));
     let of = |extinction: f64, height_m: f64| (extinction * libm::exp(-h / height_m), height_m);
@@ -135,7 +140,7 @@ fn haze(scene: &Scene) -> [f64; 2] {
 }
 
 impl ShadowProjection {
-    /// Of a moment's clouds.
+    /// Creates the projection of a moment's clouds.
     pub fn new(now: &Moment<'_>, overhead: &CloudLayers) -> Self {
         let shapes = overhead.layers().iter().map(|layer| &layer.shape);
         let scene = &now.scene;
@@ -247,7 +252,7 @@ impl ShadowMap {
         texture(device, TEXELS)
     }
 
-    /// Of clouds in these tables and this block, in a texture.
+    /// Creates the map of clouds in these tables and this block, in a texture.
     pub fn new(
         (device, blocks): (&Device, &Blocks),
         tables: &CloudTables,
@@ -292,8 +297,9 @@ impl ShadowMap {
     /// Bytes of GPU memory.
     pub const BYTES: u64 = TEXELS as u64 * TEXELS as u64 + COARSE as u64 * COARSE as u64;
 
-    /// Makes some rows anew where enough have grown old, and before them the whole map coarsely where nothing of it holds any more or the picture
-    /// is cut; where a frame is a pure function of view and time, all rows. Answers the passes that it took.
+    /// Makes some rows anew where enough have grown old, and before them the whole map coarsely where nothing of it
+    /// holds any more or the picture is cut; where a frame is a pure function of view and time, all rows. Answers the
+    /// passes that it took.
     pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, lie: &ShadowProjection, past: HistoryUse) -> u32 {
         let here = lie.standing;
         self.block.write(bytemuck::bytes_of(&lie.uniform()));

@@ -16,9 +16,10 @@ fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }
 
-/// Number of the map at which a cloud reaches the layer's top, at least: one place of seventy. Where more did, tops would be cut flat.
+/// Number of the map at which a cloud reaches the layer's top, at least: one place of seventy. Where more did, tops
+/// would be cut flat.
 const HIGHEST: f64 = 2.2;
-/// The same of cumulonimbus: its towers spread where they reach the top.
+/// Number of the map at which a cumulonimbus reaches the layer's top, at least: its towers spread there.
 const HIGHEST_OF_TOWERS: f64 = 1.2;
 
 /// Cells of cloud along the side of the solid noise, and of fibres.
@@ -28,14 +29,15 @@ const SOLID_CELLS_OF_FIBRES: f64 = 0.8;
 const HEADS_AS_CLOUDS_M: f64 = 1000.0;
 /// Excess over the threshold from which on a cumulonimbus has an anvil over it.
 const ANVIL_BEYOND: f64 = -0.2;
-/// How far the top of fibres lies downwind of their base, in thicknesses: crystals fall into slower air for some kilometres (Heymsfield 1975).
+/// How far the top of fibres lies downwind of their base, in thicknesses: crystals fall into slower air for some
+/// kilometres (Heymsfield 1975).
 const LEAN: f64 = 3.0;
 
 /// Columns whose mean stands for all.
 const COLUMNS: usize = 32;
 
-/// How much of its thickness a cloudy column of a layer fills on the mean: the tops of most are below the layer's. The map's number is spread
-/// normally, edges are taken unfrayed.
+/// How much of its thickness a cloudy column of a layer fills on the mean: the tops of most are below the layer's. The
+/// map's number is spread normally, edges are taken unfrayed.
 fn filled_share(of: &Shape) -> f64 {
     let below = 0.5 * libm::erfc(-of.threshold * std::f64::consts::FRAC_1_SQRT_2);
     let one = |i: usize| {
@@ -46,12 +48,12 @@ fn filled_share(of: &Shape) -> f64 {
 }
 
 impl Shape {
-    /// Of a layer in still air over the sea.
+    /// Creates the shape of a layer in still air over the sea.
     pub(super) fn of(slab: &CloudSlab) -> Self {
         Self::still(slab, threshold(slab))
     }
 
-    /// The same over a station, once it has come so far.
+    /// Returns the shape over a station, once the wind has carried it by `drift`.
     pub(super) fn carried(self, c: &Conditions, slab: &CloudSlab, drift: &LayerDrift) -> Self {
         Self {
             base_m: c.air.station_altitude_m + slab.base_m,
@@ -61,7 +63,7 @@ impl Shape {
         }
     }
 
-    /// The same, cut out of the map by a threshold.
+    /// Creates the shape of a layer in still air over the sea, cut out of the map by a threshold.
     pub(super) fn still(slab: &CloudSlab, threshold: f64) -> Self {
         let heaps = (2.0 * slab.convection).min(1.0) * (1.0 - slab.cellular);
         // 0 for fair-weather heaps, 1 for cumulonimbus.

@@ -1,4 +1,4 @@
-//! What shaders look clouds up in: the map, the solid noise, and light that is scattered more than once.
+//! Tables in which shaders look clouds up: the map, the solid noise, and light that is scattered more than once.
 
 use std::sync::{Arc, OnceLock};
 
@@ -63,7 +63,8 @@ fn write_halves(
     );
 }
 
-/// The map as shaders look it up: a layer a sheet, each with its even and its cellular kind, since one look-up needs no more.
+/// The map as shaders look it up: a layer a sheet, each with its even and its cellular kind, since one look-up needs no
+/// more.
 fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
     let levels = map.levels();
     let size = |level: usize| [(MAP_SIZE >> level) as u32, (MAP_SIZE >> level) as u32, 2];
@@ -75,7 +76,7 @@ fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
     bind::as_layers(&made)
 }
 
-/// Of hosts' maps of layers, one below the other.
+/// Creates the texture of hosts' maps of layers, one below the other.
 fn placed(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::TextureView {
     texture(device, label, wgpu::TextureDimension::D2, [width, height, 1], (FORMAT, 1)).create_view(&Default::default())
 }
@@ -92,8 +93,8 @@ pub(super) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Samp
     })
 }
 
-/// Tables of light scattered more than once in two media, as shaders look them up: by depth above, depth below and leak, the tables side
-/// by side and the media one below the other.
+/// Tables of light scattered more than once in two media, as shaders look them up: by depth above, depth below and
+/// leak, the tables side by side and the media one below the other.
 pub(super) struct LightTables {
     texture: wgpu::Texture,
     pub media: [Arc<Transport>; 2],
@@ -140,7 +141,7 @@ impl LightTables {
     }
 }
 
-/// What shaders look up: map, solid noise, and light.
+/// Tables that shaders look up: map, solid noise, and light.
 pub(super) struct CloudTables {
     pub map: wgpu::TextureView,
     pub solid: NoiseTexture,

@@ -1,14 +1,15 @@
-//! What a ray sees of a layer of cloud, by photons that are followed back from the eye through the very field that is drawn: the truth
-//! that march and light are held against.
+//! Layer of cloud as a ray sees it, by photons that are followed back from the eye through the very field that is
+//! drawn: the truth that march and light are held against.
 //!
 //! # Model
-//! Free paths by null collisions, in f64, no step and no scaled depth. The sun is a beam, asked for at each scattering through the cloud that
-//! lies that way; what leaves through the top meets the radiance above, what leaves through the base that below: the inputs of the drawn
-//! light. Nothing is absorbed. The layer is level and has no end.
+//! Free paths by null collisions, in f64, no step and no scaled depth. The sun is a beam, asked for at each scattering
+//! through the cloud that lies that way; what leaves through the top meets the radiance above, what leaves through the
+//! base that below: the inputs of the drawn light. Nothing is absorbed. The layer is level and has no end.
 //!
 //! # Error
-//! Noise, whose standard error each answer tells. After a photon has been turned widely, the narrow lobe towards the sun is taken for wider than it
-//! is: rare photons would else outshine all others. What even slabs reflect stays the same within the test's noise.
+//! Noise, whose standard error each answer tells. After a photon has been turned widely, the narrow lobe towards the
+//! sun is taken for wider than it is: rare photons would else outshine all others. What even slabs reflect stays the
+//! same within the test's noise.
 
 use std::sync::Arc;
 
@@ -31,18 +32,20 @@ use crate::{
     weather::{CloudKind, CloudSlab},
 };
 
-/// Of the distance in which the march sees no cloud before it, what is skipped here.
+/// Share that is skipped here of the distance in which the march sees no cloud before it.
 const SKIPPED: f64 = 0.5;
 /// Distance within which the threshold stays, m, and its slope beyond: nothing is laid on the field.
 const UNMAPPED: [f64; 2] = [f64::INFINITY, 0.0];
-/// By how much the narrow lobe's asymmetry is less than 1 towards the sun, at least, a wide turn of the photon; and of how many turns.
+/// By how much the narrow lobe's asymmetry is less than 1 towards the sun, at least, a wide turn of the photon; and of
+/// how many turns.
 const WIDER: f64 = 0.03;
 const WIDER_TURNS: u32 = 3;
-/// Value of the phase function, over that of even scattering, from which on the sun is asked for every time, and the least share.
+/// Value of the phase function, over that of even scattering, from which on the sun is asked for every time, and the
+/// least share.
 const ASKED_FROM: f64 = 2.0;
 const ASKED_LEAST: f64 = 0.1;
 
-/// What falls on a layer, in any unit of radiance.
+/// Light that falls on a layer, in any unit of radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivenLight {
     /// Unit, towards the sun; (east, north, up).
@@ -63,14 +66,14 @@ impl GivenLight {
     }
 }
 
-/// What a ray sees, of the light of sun, sky and ground.
+/// Light of sun, sky and ground that a ray sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// Radiance, with what is behind the cloud.
     pub all: f64,
     /// Part of it by source: sun, above, below.
     pub by: [f64; 3],
-    /// Of what is behind, how much is seen.
+    /// Share of what is behind that is seen.
     pub through: f64,
     /// Standard error of `all`; 0 of what is not left to chance.
     pub error: f64,
@@ -86,7 +89,7 @@ pub struct LitLayer {
 }
 
 impl LitLayer {
-    /// Of a slab in still air, grown of a seed.
+    /// Creates the layer of a slab in still air, grown of a seed.
     ///
     /// # Errors
     /// As [`Solid::new`].
@@ -102,8 +105,8 @@ impl LitLayer {
         Field { shape: self.shape, map: &self.map, solid: &self.solid, placed: Default::default() }
     }
 
-    /// What the model sees from a place (east, north, up), m, in a direction: the march of questions, through this field. `longer`: lengths of its
-    /// steps over the usual ones, of those by depth and of those by angle.
+    /// Returns what the model sees from a place (east, north, up), m, in a direction: the march of questions, through
+    /// this field. `longer`: lengths of its steps over the usual ones, of those by depth and of those by angle.
     pub fn model(&self, from: DVec3, direction: DVec3, longer: [f64; 2]) -> Seen {
         // A unit of each source in a channel of its own.
         let light = LayerLight { sun: [1.0, 0.0, 0.0], above: [0.0, 1.0, 0.0], below: [0.0, 0.0, 1.0] };
@@ -115,7 +118,7 @@ impl LitLayer {
         Seen { all: by.iter().sum(), by, through: transmittance, error: 0.0 }
     }
 
-    /// The same by photons.
+    /// Returns what `count` photons find from a place (east, north, up), m, in a direction.
     pub fn photons(&self, from: DVec3, direction: DVec3, count: u32, seed: u64) -> Seen {
         let (mut chance, field) = (Chance::new(seed, 1), self.field());
         let s = &self.shape;
@@ -208,7 +211,7 @@ impl Photon<'_> {
 /// A layer and where it is looked at from.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// What it is called.
+    /// Name of the case.
     pub name: &'static str,
     /// Kind of the cloud.
     pub kind: CloudKind,
@@ -257,14 +260,14 @@ pub struct Compared {
     pub p50: f64,
     /// 95 of a hundred are below.
     pub p95: f64,
-    /// Of the mean radiance.
+    /// Relative error of the mean radiance.
     pub bias: f64,
-    /// Of the mean radiance by source (sun, above, below), over the whole of it.
+    /// Error of the mean radiance by source (sun, above, below), over the whole of it.
     pub parts: [f64; 3],
     /// Standard error of the photons, over their radiance: in the median of the rays, and of the mean.
     pub chance: [f64; 2],
-    /// 95th percentile of the relative difference from 64 times as many steps: of the model's, of its steps by depth alone, of those by angle
-    /// alone.
+    /// 95th percentile of the relative difference from 64 times as many steps: of the model's, of its steps by depth
+    /// alone, of those by angle alone.
     pub steps: [f64; 3],
 }
 

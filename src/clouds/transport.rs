@@ -1,18 +1,19 @@
-//! Light that is scattered more than once inside a layer of cloud: adding and doubling (van de Hulst 1980) with four directions a
-//! hemisphere, for the depths above and below a place.
+//! Light that is scattered more than once inside a layer of cloud: adding and doubling (van de Hulst 1980) with four
+//! directions a hemisphere, for the depths above and below a place.
 //!
 //! # Model
-//! The forward peak of the phase function counts as not scattered (delta scaling, Wiscombe 1977): what is beyond a cap is cut off,
-//! so much of it that the share g^6 is gone, for asymmetry g. What is left is smooth enough for eight directions and four
-//! Legendre moments. Depths are scaled by 1 - albedo x share.
+//! The forward peak of the phase function counts as not scattered (delta scaling, Wiscombe 1977): what is beyond a cap
+//! is cut off, so much of it that the share g^6 is gone, for asymmetry g. What is left is smooth enough for eight
+//! directions and four Legendre moments. Depths are scaled by 1 - albedo x share.
 //!
-//! A place knows the scaled depth `above` and `below` it. The layer above and the layer below are slabs of a ladder of doubled
-//! depths; between the two the radiance follows from their reflection and transmission. Its first four moments are what the place
-//! scatters: J = sum of (2 l + 1) chi_l m_l P_l / (4 pi).
+//! A place knows the scaled depth `above` and `below` it. The layer above and the layer below are slabs of a ladder of
+//! doubled depths; between the two the radiance follows from their reflection and transmission. Its first four moments
+//! are what the place scatters: J = sum of (2 l + 1) chi_l m_l P_l / (4 pi).
 //!
-//! A cloud of finite width loses light through its sides. In the diffusion approximation the light of a box goes as a cosine from side
-//! to side, and leaves as if it were absorbed at the rate D b^2 for each of the two level axes, with b = pi / (width + 2 x 0.71 / (1 - g'))
-//! and D = 1 / (3 (1 - g')) (Duderstadt and Hamilton 1976, chapter 5): [`leak_rate`]. Ladders stand for some rates ([`LEAKS`]).
+//! A cloud of finite width loses light through its sides. In the diffusion approximation the light of a box goes as a
+//! cosine from side to side, and leaves as if it were absorbed at the rate D b^2 for each of the two level axes, with b
+//! = pi / (width + 2 x 0.71 / (1 - g')) and D = 1 / (3 (1 - g')) (Duderstadt and Hamilton 1976, chapter 5):
+//! [`leak_rate`]. Ladders stand for some rates ([`LEAKS`]).
 //!
 //! # Error
 //! `cargo test --lib clouds::transport` prints reflectance and transmittance of slabs against discrete ordinates.
@@ -41,8 +42,8 @@ const AZIMUTHS: usize = 64;
 pub const THINNEST: f64 = 0.05;
 /// Slabs of a ladder, the one of no depth among them.
 pub const DEPTHS: usize = 28;
-/// Ladders, one a rate at which light leaves through the sides, per scaled depth. Light falls off with the root of the rate: the roots are
-/// 0.03 (e^(k/4) - 1).
+/// Ladders, one a rate at which light leaves through the sides, per scaled depth. Light falls off with the root of the
+/// rate: the roots are 0.03 (e^(k/4) - 1).
 pub const LEAKS: usize = 16;
 const LEAK_ROOT: f64 = 0.03;
 
@@ -80,7 +81,7 @@ pub struct Scattering {
 }
 
 impl Scattering {
-    /// Of a phase function, and of droplets that scatter the share `albedo`.
+    /// Creates the scattering of a phase function, and of droplets that scatter the share `albedo`.
     pub fn new(lobes: PhaseLobes, albedo: f64) -> Self {
         let asymmetry = lobes.moments()[0].clamp(0.0, 0.999);
         let forward = asymmetry.powi(FORWARD_POWER);
@@ -114,8 +115,8 @@ impl Scattering {
         lobes_phase(&self.lobes, 1.0, versine).min(self.cap) / (1.0 - self.forward)
     }
 
-    /// The peak that was cut off, 1/sr, of light that has gone the scaled depth `gone` in all: of what the beam counts as straight on, the
-    /// part 1 - exp(-f gone / (1 - f)) was scattered so, evenly along the way.
+    /// The peak that was cut off, 1/sr, of light that has gone the scaled depth `gone` in all: of what the beam counts
+    /// as straight on, the part 1 - exp(-f gone / (1 - f)) was scattered so, evenly along the way.
     pub fn peak(&self, versine: f64, gone: f64) -> f64 {
         let x = self.forward * gone / (1.0 - self.forward);
         let share = if x < 1e-3 { 1.0 - 0.5 * x } else { (1.0 - (-x).exp()) / x };
@@ -137,8 +138,8 @@ impl Scattering {
         (0..AZIMUTHS).map(at).sum::<f64>() / AZIMUTHS as f64
     }
 
-    /// What a beam of unit irradiance and this cosine sends into the directions down and up, a unit of scaled depth; all of it is the
-    /// albedo.
+    /// Returns the light that a beam of unit irradiance and this cosine sends into the directions down and up, a unit
+    /// of scaled depth; all of it is the albedo.
     fn sent_by_beam(&self, cosine: f64) -> (DVec4, DVec4) {
         let at = |sign: f64| DVec4::from_array(NODES.to_array().map(|mu| self.mean_phase(cosine, sign * mu)));
         let (down, up) = (at(1.0), at(-1.0));
@@ -147,8 +148,8 @@ impl Scattering {
     }
 }
 
-/// Rate at which light leaves a box of these scaled depths from side to side along its two level axes, per scaled depth, over the rate at
-/// which it is scattered; see the module. `turning`: [`Scattering::turning`].
+/// Rate at which light leaves a box of these scaled depths from side to side along its two level axes, per scaled
+/// depth, over the rate at which it is scattered; see the module. `turning`: [`Scattering::turning`].
 pub fn leak_rate(widths: [f64; 2], turning: f64) -> f64 {
     let one = |width: f64| (PI / (width + 1.42 / turning)).powi(2);
     (one(widths[0]) + one(widths[1])) / (3.0 * turning)
@@ -162,7 +163,7 @@ struct Slab {
     passes: DMat4,
 }
 
-/// What leaves a slab under a beam: scattered down, scattered up, and what is left of the beam.
+/// Light that leaves a slab under a beam: scattered down, scattered up, and what is left of the beam.
 #[derive(Clone, Copy)]
 struct UnderBeam {
     down: DVec4,
@@ -191,7 +192,8 @@ impl Slab {
         Self { depth: 2.0 * self.depth, reflects: r + t * between * r * t, passes: t * between * t }
     }
 
-    /// What leaves two of it under a beam, from what leaves one. `between`: light thrown back and forth between the two.
+    /// Returns the light that leaves two such slabs under a beam, from that which leaves one. `between`: light thrown
+    /// back and forth between the two.
     fn doubled_beam(&self, between: &DMat4, lit: &UnderBeam) -> UnderBeam {
         let (r, t) = (self.reflects, self.passes);
         let below = lit.up * lit.left;
@@ -201,8 +203,8 @@ impl Slab {
     }
 }
 
-/// What a layer of depth 1 would scatter from each direction into each, down and up, of all that it scatters: once, and as if it took
-/// nothing away.
+/// Light that a layer of depth 1 would scatter from each direction into each, down and up, over all that it scatters:
+/// once, and as if it took nothing away.
 struct Turned {
     down: DMat4,
     up: DMat4,
@@ -226,7 +228,8 @@ impl Turned {
 
 /// Slabs of doubled depths of one medium that loses light at one rate.
 struct Ladder {
-    /// From each of two thinnest slabs on, the doublings up to the deepest of the ladder, with light thrown back and forth between two of each.
+    /// From each of two thinnest slabs on, the doublings up to the deepest of the ladder, with light thrown back and
+    /// forth between two of each.
     doublings: [Vec<(Slab, DMat4)>; 2],
     slabs: Vec<Slab>,
     /// By depth above and below: light thrown back and forth between the two.
@@ -275,7 +278,8 @@ impl Ladder {
     }
 }
 
-/// What is of no depth, and then of each depth of a ladder, out of the doublings of two thinnest slabs in turn.
+/// Returns the value at no depth, and then at each depth of a ladder, out of the doublings of two thinnest slabs in
+/// turn.
 fn in_turn<T>(none: T, mut chains: [impl Iterator<Item = T>; 2]) -> Vec<T> {
     chains.iter_mut().for_each(|chain| (0..DOUBLINGS).for_each(|_| drop(chain.next())));
     let [even, odd] = chains;
@@ -283,8 +287,8 @@ fn in_turn<T>(none: T, mut chains: [impl Iterator<Item = T>; 2]) -> Vec<T> {
     std::iter::once(none).chain(pairs).take(DEPTHS).collect()
 }
 
-/// Source terms of light scattered more than once by depth above (columns), depth below (rows) and leak (blocks of rows): coefficients
-/// of Legendre's polynomials of the cosine between a direction and the way down, 1/sr.
+/// Source terms of light scattered more than once by depth above (columns), depth below (rows) and leak (blocks of
+/// rows): coefficients of Legendre's polynomials of the cosine between a direction and the way down, 1/sr.
 pub type Table = Vec<[f32; 4]>;
 
 /// Everything of a medium that does not depend on its light.
@@ -299,7 +303,7 @@ pub struct Transport {
 }
 
 impl Transport {
-    /// Of a medium: some milliseconds.
+    /// Creates the transport of a medium: some milliseconds of work.
     pub fn new(scattering: Scattering) -> Self {
         let turned = Turned::new(&scattering);
         let ladders = (0..LEAKS).map(|k| Ladder::new(&scattering, &turned, leak_of(k))).collect();
@@ -308,8 +312,8 @@ impl Transport {
         made
     }
 
-    /// Factor with which rays through an even slab find as much light leave it as falls on it, where nothing is absorbed: what leaves in
-    /// eight directions and what leaves in all of them differ by a hundredth.
+    /// Factor with which rays through an even slab find as much light leave it as falls on it, where nothing is
+    /// absorbed: what leaves in eight directions and what leaves in all of them differ by a hundredth.
     fn conserving(&self) -> f64 {
         let of = Scattering { albedo: 1.0, ..self.scattering };
         let ladders = vec![Ladder::new(&of, &Turned::new(&of), 0.0)];
@@ -349,7 +353,8 @@ impl Transport {
         })
     }
 
-    /// Under a beam of unit irradiance (facing it) that comes from above at this cosine. Light that it scatters once is not in it.
+    /// Under a beam of unit irradiance (facing it) that comes from above at this cosine. Light that it scatters once is
+    /// not in it.
     pub fn under_beam(&self, cosine: f64) -> Table {
         let cosine = cosine.clamp(0.01, 1.0);
         let of = &self.scattering;
@@ -368,7 +373,8 @@ impl Transport {
         out
     }
 
-    /// Under a sky of radiance 1 all over the upper side. All that it sends is in it. Kept: it is the same under any sun.
+    /// Under a sky of radiance 1 all over the upper side. All that it sends is in it. Kept: it is the same under any
+    /// sun.
     pub fn under_sky(&self) -> Arc<Table> {
         let one = |ladder: &Ladder, i: usize| {
             let (above, below) = (i % DEPTHS, i / DEPTHS);

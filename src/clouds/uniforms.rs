@@ -104,7 +104,7 @@ impl MediumUniform {
 /// Light on a layer from what is above and below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LayerLight {
-    /// Of the sun or moon on what faces it, lux times exposure a channel.
+    /// Illuminance by the sun or moon on what faces it, lux times exposure a channel.
     pub sun: [f64; 3],
     /// Radiance of all above, and of all below, cd/m^2 times exposure a channel.
     pub above: [f64; 3],
@@ -113,7 +113,7 @@ pub(super) struct LayerLight {
 }
 
 impl LayerUniform {
-    /// Of a layer over which the camera stands at `place_m` (east and north of the world's origin).
+    /// Creates the block of a layer over which the camera stands at `place_m` (east and north of the world's origin).
     /// `share` of it is drawn as a volume, the rest as a deck.
     pub fn new(s: &Shape, share: f64, place_m: DVec2, light: &LayerLight, medium: (usize, &Scattering)) -> Self {
         // Positions in periods, reduced in f64: metres of a far origin have no digits left in f32.

@@ -1,4 +1,5 @@
-//! What a view draws of the clouds: a layer of what they send and let through, which the composition lays between sky and fog.
+//! Clouds as a view draws them: a layer of what they send and let through, which the composition lays between sky and
+//! fog.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -43,7 +44,7 @@ struct Before {
     exposure: f64,
 }
 
-/// What the calls of a frame have made so far.
+/// Parts of a frame that its calls have made so far.
 #[derive(Clone, Copy)]
 struct Made {
     frame_id: u64,
@@ -59,14 +60,14 @@ struct Made {
 pub(crate) struct CloudsView {
     pub settings: CloudSettings,
     overhead: Option<CloudLayers>,
-    /// Of the layers, which most frames have in common with the last one.
+    /// Shapes of the layers, which most frames have in common with the last one.
     shapes: LruCache<CloudSlab, Shape, LAYERS>,
-    /// Of layers that a host's map is laid on.
+    /// Maps of the layers that a host's map is laid on.
     maps: LayerMaps,
     passes: Option<Box<CloudPasses>>,
     before: Option<Before>,
     made: Option<Made>,
-    /// What the draw that is being composed is to make.
+    /// Passes that the draw being composed is to make.
     wanted: Option<Wanted>,
     /// Lamps and flashes that light the clouds of it.
     lamps: Option<LampsUniform>,
@@ -102,7 +103,7 @@ impl CloudsView {
         count.count() as f64 / f64::from(SIDE * SIDE)
     }
 
-    /// What earlier calls of a frame have made.
+    /// Returns the parts that earlier calls of a frame have made.
     fn made_of(&self, frame: &Frame<'_>) -> Option<Made> {
         self.made.filter(|made| made.frame_id == frame.frame_id)
     }
@@ -113,7 +114,7 @@ impl CloudsView {
         self.overhead.is_some() && (shown || self.made_of(frame).is_some_and(|made| made.is_marched))
     }
 
-    /// What of a frame is still to be made for a draw of these stages.
+    /// Returns the passes of a frame that are still to be made for a draw of these stages.
     fn wanted(&self, at: &DrawContext<'_>) -> Wanted {
         let made = self.made_of(at.frame);
         let march = SHOWN.0 & at.stages.0 != 0 && !made.is_some_and(|m| m.is_marched);
@@ -127,7 +128,8 @@ impl CloudsView {
     }
 }
 
-/// Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that share.
+/// Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that
+/// share.
 fn shadow_strength(scene: &Scene) -> [f32; 4] {
     let light = scene.brighter();
     let (ground, share) = (&scene.ground, light.direct_share.max(1e-3));
@@ -164,7 +166,8 @@ impl CloudLayers {
 }
 
 impl CloudsView {
-    /// The map of shadows for a host's own materials: from the first call on each frame's first call brings it up to date.
+    /// The map of shadows for a host's own materials: from the first call on each frame's first call brings it up to
+    /// date.
     pub fn shadows(&mut self, device: &Device) -> CloudShadows {
         let made = self.passes.as_ref().and_then(|passes| passes.shadow_texture().cloned());
         let handed = self
@@ -179,7 +182,8 @@ impl CloudsView {
         }
     }
 
-    /// Side of the squares of pixels of which one is marched a frame: a pure function of view and time has no history to wait for.
+    /// Side of the squares of pixels of which one is marched a frame: a pure function of view and time has no history
+    /// to wait for.
     fn side(&self, frame: &Frame<'_>) -> u32 {
         if frame.flags.has(crate::stage::FrameFlags::NO_HISTORY) { 1 } else { self.settings.square_side }
     }

@@ -1,7 +1,8 @@
-//! A context: the weather, the time and the place that all views of a simulator share, and what effects hold for all of them.
+//! A context: the weather, the time and the place that all views of a simulator share, and what effects hold for all of
+//! them.
 //!
-//! It leads the world (`src/world`) and the list of effects (`src/effects.rs`) through time, saves and loads them, and names no
-//! effect itself: what a host asks by their names is in the front room.
+//! It leads the world (`src/world`) and the list of effects (`src/effects.rs`) through time, saves and loads them, and
+//! names no effect itself: what a host asks by their names is in the front room.
 
 mod state;
 mod update;
@@ -36,7 +37,7 @@ pub struct LightAt {
     pub sun: Light,
     /// The moon.
     pub moon: Light,
-    /// What arrives, after air, clouds and fog.
+    /// Light that arrives, after air, clouds and fog.
     pub arriving: GroundLight,
 }
 
@@ -48,7 +49,7 @@ pub struct Context {
     shared: Arc<Shared>,
     pub(crate) world: World,
     pub(crate) held: Held,
-    /// What was set when an update was called that has left steps for another call.
+    /// Settings when an update was called that has left steps for another call.
     behind: Option<Box<Settings>>,
 }
 
@@ -136,7 +137,8 @@ impl Context {
         self.refresh()
     }
 
-    /// What keeps rain off, in place of what did before: roofs, bridges, cabs. A moving box is set anew every frame.
+    /// Sets what keeps rain off, in place of what did before: roofs, bridges, cabs. A moving box is set anew every
+    /// frame.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_SHELTERS`], or naming the field; nothing changes then.
@@ -157,14 +159,15 @@ impl Context {
         self.refresh()
     }
 
-    /// What keeps rain off, as depth textures of the host's own, in place of those before; an empty list takes them away. What
-    /// they show is taken over in a submission of its own, after what is submitted already: the host may then draw into them
-    /// again. At most [`MAX_OCCLUDER_MAPS`](crate::surroundings::MAX_OCCLUDER_MAPS). Best taken along [`RainAt::fall_velocity_m_s`](crate::rain::RainAt::fall_velocity_m_s). Not part of a saved state: each
+    /// Sets what keeps rain off, as depth textures of the host's own, in place of those before; an empty list takes
+    /// them away. What they show is taken over in a submission of its own, after what is submitted already: the host
+    /// may then draw into them again. At most [`MAX_OCCLUDER_MAPS`](crate::surroundings::MAX_OCCLUDER_MAPS). Best taken
+    /// along [`RainAt::fall_velocity_m_s`](crate::rain::RainAt::fall_velocity_m_s). Not part of a saved state: each
     /// channel may have its own.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field, [`crate::Status::DeviceLost`]; nothing
-    /// changes then.
+    /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field,
+    /// [`crate::Status::DeviceLost`]; nothing changes then.
     pub fn set_occluder_maps(&mut self, maps: &[OccluderMap<'_>]) -> Result<()> {
         let device = self.device.clone();
         let _entered = device.enter()?;
@@ -192,8 +195,8 @@ impl Context {
         outcome
     }
 
-    /// The host's lamps, in place of those before: they light what Welkin draws in their beams (today rain). A moving lamp is
-    /// set anew every frame.
+    /// The host's lamps, in place of those before: they light what Welkin draws in their beams (today rain). A moving
+    /// lamp is set anew every frame.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_LIGHTS`], or naming the field; nothing changes then.
@@ -214,7 +217,7 @@ impl Context {
         &self.world.lights
     }
 
-    /// What keeps rain off.
+    /// Returns the shelters that keep rain off.
     pub fn shelters(&self) -> &[Shelter] {
         &self.world.set.shelters
     }
@@ -267,14 +270,15 @@ impl Context {
         self.world.utc_at(time_s)
     }
 
-    /// The conditions at `position` and simulation time `time_s`, past or to come. What falls is what falls at the position itself:
-    /// that of the rain areas there ([`Context::set_rain_areas`]), mixed by their rims, and nothing above the cloud that it falls
-    /// from; rain and drizzle are those of [`Context::rain_at`]. The extinction of all that falls and the total, and so the visibility, go
-    /// with it. Everything else is the weather's, the same over all of the world, at the station's height (each field says so).
+    /// The conditions at `position` and simulation time `time_s`, past or to come. What falls is what falls at the
+    /// position itself: that of the rain areas there ([`Context::set_rain_areas`]), mixed by their rims, and nothing
+    /// above the cloud that it falls from; rain and drizzle are those of [`Context::rain_at`]. The extinction of all
+    /// that falls and the total, and so the visibility, go with it. Everything else is the weather's, the same over all
+    /// of the world, at the station's height (each field says so).
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place, or the time is not finite, out of range, or before what
-    /// the timeline still knows ([`Timeline::known_from_s`](crate::weather::Timeline::known_from_s)).
+    /// [`crate::Status::InvalidArgument`] if the position is no place, or the time is not finite, out of range, or
+    /// before what the timeline still knows ([`Timeline::known_from_s`](crate::weather::Timeline::known_from_s)).
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
         self.world.conditions_at(position, time_s)
     }
@@ -287,8 +291,8 @@ impl Context {
         self.world.over().check_time(time_s)
     }
 
-    /// What holds now at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an earlier call, taken again
-    /// where nothing has changed since.
+    /// Returns the moment at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an
+    /// earlier call, taken again where nothing has changed since.
     ///
     /// # Errors
     /// As [`Context::scene_at`].
@@ -296,8 +300,8 @@ impl Context {
         self.world.moment(name, eye, kept)
     }
 
-    /// What a camera at `position` draws from at simulation time `time_s`, past or to come. Closed form: no device is
-    /// asked.
+    /// Returns the scene from which a camera at `position` draws at simulation time `time_s`, past or to come. Closed
+    /// form: no device is asked.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet; for times as

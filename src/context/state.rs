@@ -1,9 +1,9 @@
 //! Saving a context and loading it again, and a number by which channels compare theirs.
 //!
-//! A state is text: a line with the format and a checksum of all that follows, then TOML. What the description of a context
-//! fixes is compared on load; everything that can be set or that has come about since is restored, by the world and by each effect that
-//! holds a part of it. Keys may be added without another format if a state without them means what it did; a key whose meaning changes
-//! makes another format.
+//! A state is text: a line with the format and a checksum of all that follows, then TOML. What the description of a
+//! context fixes is compared on load; everything that can be set or that has come about since is restored, by the world
+//! and by each effect that holds a part of it. Keys may be added without another format if a state without them means
+//! what it did; a key whose meaning changes makes another format.
 
 use super::Context;
 use crate::{
@@ -12,9 +12,10 @@ use crate::{
     world::{LoadedWorld, SavedWorld, parse_error},
 };
 
-/// The format that is written, and the only one that is read. Format 1 did not say of which place and ground a state was.
+/// The format that is written, and the only one that is read. Format 1 did not say of which place and ground a state
+/// was.
 const FORMAT: u32 = 2;
-/// What the first line begins with.
+/// Beginning of the first line.
 const MAGIC: &str = "welkin state ";
 
 /// FNV-1a, 64 bits: never the same for two texts that differ in one byte.
@@ -27,7 +28,7 @@ fn sealed(body: &str) -> String {
     format!("{MAGIC}{FORMAT} {:016x}\n{body}", checksum(body))
 }
 
-/// What stands below the first line, if that fits.
+/// Returns the text below the first line, if that fits.
 fn unsealed(bytes: &[u8]) -> Result<&str> {
     let text = std::str::from_utf8(bytes).map_err(|_| parse_error("the bytes are no UTF-8 text"))?;
     let (head, body) = text.split_once('\n').ok_or_else(|| parse_error("the first line is missing"))?;
@@ -55,7 +56,7 @@ struct Loaded {
 }
 
 impl Context {
-    /// What the description of this context fixes.
+    /// Returns the settings that the description of this context fixes.
     fn created(&self) -> toml::Table {
         let mut table = self.world.created();
         self.held.all().iter().for_each(|effect| effect.created(&mut table));
@@ -74,20 +75,21 @@ impl Context {
         toml::to_string(&table).map_err(fault)
     }
 
-    /// Everything that decides what this context shows from now on, as UTF-8 text: weather, time, clock, lights, water, areas,
-    /// shelters, lamps, wind grid, fog law, planet, exposure and tone curve, and of which place, seed and ground model it is. Not in it: how
-    /// it is drawn (sky settings, views), and the images of [`Context::set_occluder_maps`], which are each channel's own.
+    /// Everything that decides what this context shows from now on, as UTF-8 text: weather, time, clock, lights, water,
+    /// areas, shelters, lamps, wind grid, fog law, planet, exposure and tone curve, and of which place, seed and ground
+    /// model it is. Not in it: how it is drawn (sky settings, views), and the images of [`Context::set_occluder_maps`],
+    /// which are each channel's own.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] while [`Context::update_within`] has steps to do; [`Status::Internal`] if a number cannot be written.
+    /// [`Status::WrongOrder`] while [`Context::update_within`] has steps to do; [`Status::Internal`] if a number cannot
+    /// be written.
     pub fn save(&self) -> Result<Vec<u8>> {
         Ok(sealed(&self.saved(false)?).into_bytes())
     }
 
-    /// Loads a state that [`Context::save`] wrote, in place of all that it holds, on a context that was created alike: the same
-    /// world, place, seed and ground model; for a state without planet and tone curve, as earlier versions wrote them, the same
-    /// of these too. Occluder
-    /// maps stay as they are.
+    /// Loads a state that [`Context::save`] wrote, in place of all that it holds, on a context that was created alike:
+    /// the same world, place, seed and ground model; for a state without planet and tone curve, as earlier versions
+    /// wrote them, the same of these too. Occluder maps stay as they are.
     ///
     /// # Errors
     /// [`Status::Parse`] for bytes that are no such state, cut short, changed, or of another format, which it names;

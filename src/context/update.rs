@@ -17,8 +17,8 @@ pub(crate) const UPDATE_TIME: Duration = Duration::from_millis(50);
 
 impl Context {
     /// Moves simulation time to `time_s`, [-1e10, 1e10], and all state with it, however long that takes: with
-    /// [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) and the largest terrain some seconds after a leap of a day ([`Context::update_within`] takes its
-    /// time by parts). The same time again changes nothing.
+    /// [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) and the largest terrain some seconds after a
+    /// leap of a day ([`Context::update_within`] takes its time by parts). The same time again changes nothing.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] if it is not finite or out of range, [`Status::WrongOrder`] if it lies before the
@@ -28,13 +28,13 @@ impl Context {
         Ok(())
     }
 
-    /// As [`Context::update`], with steps of the simulated ground for about as long as `most`, one at least, or of a terrain in tiles a part
-    /// of one. [`Status::Pending`]
-    /// says that steps remain: call it again with the same time, now or after a frame, until it answers [`Status::Ok`].
+    /// As [`Context::update`], with steps of the simulated ground for about as long as `most`, one at least, or of a
+    /// terrain in tiles a part of one. [`Status::Pending`] says that steps remain: call it again with the same time,
+    /// now or after a frame, until it answers [`Status::Ok`].
     ///
-    /// Until then weather and light are of the new time, water is shown and answered as of [`Context::state_time_s`], and a time
-    /// that is later still is not taken. What is set meanwhile acts after the steps that remain. So the state is the same for any
-    /// `most`, and there is none to save until the last step is done ([`Context::save`]).
+    /// Until then weather and light are of the new time, water is shown and answered as of [`Context::state_time_s`],
+    /// and a time that is later still is not taken. What is set meanwhile acts after the steps that remain. So the
+    /// state is the same for any `most`, and there is none to save until the last step is done ([`Context::save`]).
     ///
     /// # Errors
     /// As [`Context::update`].
@@ -74,7 +74,8 @@ impl Context {
         Ok(led)
     }
 
-    /// Leads the effects on until the present, or until the time is over: one step at least. Says whether they got there.
+    /// Leads the effects on until the present, or until the time is over: one step at least. Says whether they got
+    /// there.
     fn lead_steps(&mut self, within: Within) -> Result<Status> {
         let mut behind = self.behind.take();
         if let Some(then) = &mut behind {
@@ -107,8 +108,8 @@ impl Context {
         led
     }
 
-    /// Lets the effects take what the host has set since their last step, as far as it is a part of their state. While steps of an update
-    /// remain it waits for the last of them.
+    /// Lets the effects take what the host has set since their last step, as far as it is a part of their state. While
+    /// steps of an update remain it waits for the last of them.
     pub(crate) fn settle(&mut self) {
         if self.behind.is_some() {
             return;
@@ -119,8 +120,8 @@ impl Context {
         }
     }
 
-    /// Simulation time of what is simulated, s: the present, or earlier as long as [`Context::update_within`] answers that steps
-    /// remain. The present if nothing is simulated.
+    /// Simulation time of what is simulated, s: the present, or earlier as long as [`Context::update_within`] answers
+    /// that steps remain. The present if nothing is simulated.
     pub fn state_time_s(&self) -> f64 {
         let stepped = self.held.all().into_iter().filter_map(|effect| effect.stepped_to_s());
         match &self.behind {

@@ -16,11 +16,11 @@ impl Context {
         Ok(self.world.over().wind.at(time_s))
     }
 
-    /// Wind at `position` and simulation time `time_s`, (east, north, up) of the place. Height counts from the station's altitude: who
-    /// has terrain asks as far above the station as the point is above his ground.
+    /// Wind at `position` and simulation time `time_s`, (east, north, up) of the place. Height counts from the
+    /// station's altitude: who has terrain asks as far above the station as the point is above his ground.
     ///
-    /// Within a host's grid ([`Context::set_wind_grid`]) the wind is that of the grid, at any time; within a solved field
-    /// ([`Context::set_wind_field`]) that of the field, at times within a minute of its own.
+    /// Within a host's grid ([`Context::set_wind_grid`]) the wind is that of the grid, at any time; within a solved
+    /// field ([`Context::set_wind_field`]) that of the field, at times within a minute of its own.
     ///
     /// Any thread. Closed form: any time costs the same. Laws: [`crate::wind`].
     ///
@@ -31,9 +31,9 @@ impl Context {
     }
 
     /// Sets a wind that varies in space; `None` leaves the weather's, or the solved field's
-    /// ([`Context::set_wind_field`]), in place of which it blows. It is in [`Context::wind_at`], in what lands on a surface or a
-    /// windscreen, and on what falls near a camera;
-    /// [`Context::wind_displacement`], and what goes with it, know nothing of it.
+    /// ([`Context::set_wind_field`]), in place of which it blows. It is in [`Context::wind_at`], in what lands on a
+    /// surface or a windscreen, and on what falls near a camera; [`Context::wind_displacement`], and what goes with it,
+    /// know nothing of it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -48,9 +48,9 @@ impl Context {
         self.world.set.host_wind.as_ref().map(|host| &host.grid)
     }
 
-    /// How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m (east, north, up): the integral of
-    /// its velocity over the timeline, the same at every place. Continuous whatever the weather does: what goes with the air is
-    /// moved by its differences, never by velocity times time.
+    /// How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m (east, north, up): the
+    /// integral of its velocity over the timeline, the same at every place. Continuous whatever the weather does: what
+    /// goes with the air is moved by its differences, never by velocity times time.
     ///
     /// Any thread. Closed form; the same bits for any sequence of updates, and after saving and loading.
     ///
@@ -60,7 +60,8 @@ impl Context {
         Ok(self.blowing(time_s)?.drift.displacement_m.extend(0.0))
     }
 
-    /// Velocity that [`Context::wind_displacement`] is the integral of, m/s: the wind at 10 m with its gusts, which carries drops.
+    /// Velocity that [`Context::wind_displacement`] is the integral of, m/s: the wind at 10 m with its gusts, which
+    /// carries drops.
     ///
     /// # Errors
     /// For times as [`Context::conditions_at`].

@@ -11,7 +11,6 @@ use crate::{
         bind::{self, Slot},
         shader,
     },
-    moment::Moment,
     stage::{DrawContext, DrawnEffect, FrameContext, OpaqueDraw, OpaqueTarget, Outputs, Stages},
 };
 
@@ -74,7 +73,7 @@ struct PlaneUniform {
     origin: [f32; 2],
 }
 
-/// What the tests have of it in a view; nothing unless one says its height.
+/// State of the plane in a view; nothing is drawn unless a test sets its height.
 #[derive(Default)]
 pub(crate) struct PlaneView {
     /// Height of the plane over the world's origin, m.

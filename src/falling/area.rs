@@ -1,9 +1,11 @@
-//! Rain areas: regions of the ground plan with a rate of their own, fading over a rim, moving with the wind or by themselves.
+//! Rain areas: regions of the ground plan with a rate of their own, fading over a rim, moving with the wind or by
+//! themselves.
 //!
-//! Inside a region the weather's rain gives way to the area's: of the drops that fall, the share `1 - s` is the weather's and
-//! `s` the area's, `s` going smoothly from 0 on the border to 1 a rim further in. Numbers, water and extinction are therefore
-//! linear in `s`, and half-way through the rim is half of either rate. Where areas overlap, a later one of the list lies over
-//! the earlier ones in the same way, so everything stays continuous; one of rate 0 is a dry hole.
+//! Inside a region the weather's rain gives way to the area's: of the drops that fall, the share `1 - s` is the
+//! weather's and `s` the area's, `s` going smoothly from 0 on the border to 1 a rim further in. Numbers, water and
+//! extinction are therefore linear in `s`, and half-way through the rim is half of either rate. Where areas overlap, a
+//! later one of the list lies over the earlier ones in the same way, so everything stays continuous; one of rate 0 is a
+//! dry hole.
 
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -15,8 +17,8 @@ use crate::{
 
 /// Most corners of a polygon.
 pub const MAX_CORNERS: usize = 8;
-/// Farthest that an area's centre may lie from what it is asked for, beside its own size, m: beyond, it is another part of
-/// the planet.
+/// Farthest that an area's centre may lie from what it is asked for, beside its own size, m: beyond, it is another part
+/// of the planet.
 const FARTHEST_M: f64 = 3e5;
 
 /// The shape of a region on the ground plan, m to the right and ahead of its centre.
@@ -24,11 +26,12 @@ const FARTHEST_M: f64 = 3e5;
 pub enum AreaShape {
     /// Half the extent to the right and ahead, each \[10, 1e6\].
     Ellipse([f64; 2]),
-    /// Corners of a convex region, one after the other either way round, each coordinate within 1e6; the count, \[3, 8\].
+    /// Corners of a convex region, one after the other either way round, each coordinate within 1e6; the count,
+    /// \[3, 8\].
     Polygon([[f64; 2]; MAX_CORNERS], usize),
 }
 
-/// What falls in an area.
+/// Kind of rain in an area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum AreaRain {
     /// Steady rain.
@@ -40,7 +43,7 @@ pub enum AreaRain {
     Drizzle,
 }
 
-/// What moves an area.
+/// Motion of an area.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub enum AreaMotion {
     /// The wind at 10 m with its gusts, by its displacement.
@@ -60,17 +63,17 @@ pub struct RainArea {
     pub shape: AreaShape,
     /// Where `ahead` of the shape points: degrees clockwise from true north, \[-360, 360\].
     pub heading_deg: f64,
-    /// Width inside of the border over which the rain fades, m, \[1, 1e6\]; at most an ellipse's smaller half extent, or the radius of
-    /// the largest circle in a polygon.
+    /// Width inside of the border over which the rain fades, m, \[1, 1e6\]; at most an ellipse's smaller half extent,
+    /// or the radius of the largest circle in a polygon.
     pub rim_m: f64,
     /// Rate at the ground, mm/h, \[0, 500\].
     pub rate_mm_h: f64,
-    /// What falls.
+    /// Kind of the rain.
     pub kind: AreaRain,
-    /// Altitude above the sea of the cloud base that it falls from, m, \[-1000, 20 000\]: above it there is neither the area's rain
-    /// nor the weather's.
+    /// Altitude above the sea of the cloud base that it falls from, m, \[-1000, 20 000\]: above it there is neither the
+    /// area's rain nor the weather's.
     pub top_m: f64,
-    /// What moves it.
+    /// Motion of the area.
     pub motion: AreaMotion,
     /// Simulation time at which the centre is where it is said to be, s.
     pub at_s: f64,
@@ -127,7 +130,7 @@ impl RainArea {
         Ok(())
     }
 
-    /// What falls inside of it.
+    /// Returns the precipitation inside of it.
     pub fn falling(&self) -> Falling {
         let only = |kind, v: f64| if self.kind == kind { v } else { 0.0 };
         let drizzle = only(AreaRain::Drizzle, self.rate_mm_h);
@@ -267,7 +270,7 @@ pub(crate) struct Shaft {
     pub ground_m: f64,
     /// Altitude of the cloud's base, m.
     pub top_m: f64,
-    /// What falls in it.
+    /// Precipitation in it.
     pub falling: Falling,
     /// Fall speed of the drop that divides its water into halves, m/s.
     pub speed_m_s: f64,
@@ -277,16 +280,16 @@ pub(crate) struct Shaft {
     pub index: u32,
 }
 
-/// Most that a column leans: 72 degrees. Drizzle in a gale from a cloud that stands would be blown further than its area is
-/// wide.
+/// Most that a column leans: 72 degrees. Drizzle in a gale from a cloud that stands would be blown further than its
+/// area is wide.
 const MOST_LEAN: f64 = 3.0;
 /// Share of a column's height, and depths, m, between which lies the part below the cloud in which the rain sets in.
 const SOFT_SHARE: f64 = 0.25;
 const SOFT_M: [f64; 2] = [50.0, 400.0];
 
 impl Shaft {
-    /// Of an area whose centre has come to `center`, of place altitude `center_altitude_m`; `cloud_m_s` is the velocity of what
-    /// it falls from relative to the air that it falls through.
+    /// Creates the shaft of an area whose centre has come to `center`, of place altitude `center_altitude_m`;
+    /// `cloud_m_s` is the velocity of what it falls from relative to the air that it falls through.
     pub fn new(
         area: &RainArea,
         index: u32,
@@ -318,8 +321,8 @@ impl Shaft {
         }
     }
 
-    /// Where a place lies on the plan, east and north of the centre, following the lean of the column down; `None` if it lies
-    /// on another part of the planet.
+    /// Where a place lies on the plan, east and north of the centre, following the lean of the column down; `None` if
+    /// it lies on another part of the planet.
     fn plan(&self, position: DVec3, world_to_enu: &DMat3, altitude_m: f64) -> Option<DVec2> {
         let away = world_to_enu * (position - self.center);
         let near = away.length() <= self.radius_m + FARTHEST_M;

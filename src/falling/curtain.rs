@@ -1,6 +1,6 @@
-//! The pattern of curtains in rain: steep waves that fall as the drops do, so that a ray's mean over them is a closed form and
-//! nothing flickers far away. Columns of rain areas have one each ([`crate::rain`]), the weather's own rain another
-//! ([`crate::fog::patterns`]).
+//! The pattern of curtains in rain: steep waves that fall as the drops do, so that a ray's mean over them is a closed
+//! form and nothing flickers far away. Columns of rain areas have one each ([`crate::rain`]), the weather's own rain
+//! another ([`crate::fog::patterns`]).
 
 use std::f64::consts::TAU;
 
@@ -17,21 +17,21 @@ pub(crate) const AMOUNT: f64 = 0.2;
 pub(crate) const PATTERN_M: [f64; 2] = [30.0, 300.0];
 /// Lengths of the waves of columns, m.
 pub(crate) const COLUMN_LENGTHS_M: [f64; 2] = [130.0, 900.0];
-/// Those of the weather's own rain, which is seen from nearer.
+/// Lengths of the waves of the weather's own rain, m, which is seen from nearer.
 pub(crate) const OWN_LENGTHS_M: [f64; 2] = [50.0, 600.0];
-/// What the curtains of the weather's own rain fall at, m/s, whatever its rate: with a speed that follows it the pattern would be
-/// thrown about, late in a run, when the weather changes. Half of the water of 3 mm/h falls faster.
+/// Fall speed of the curtains of the weather's own rain, m/s, whatever its rate: with a speed that follows it the
+/// pattern would be thrown about, late in a run, when the weather changes. Half of the water of 3 mm/h falls faster.
 const FALL_M_S: f64 = 6.0;
-/// Standard deviation of the rain over its mean at scales of 100 m to 1 km. Clustering in space rules convective rain and hardly
-/// shows in stratiform rain (Jameson, Larsen and Kostinski 2015, a network of 21 disdrometers); the values are
-/// chosen for each to look like itself.
+/// Standard deviation of the rain over its mean at scales of 100 m to 1 km. Clustering in space rules convective rain
+/// and hardly shows in stratiform rain (Jameson, Larsen and Kostinski 2015, a network of 21 disdrometers); the values
+/// are chosen for each to look like itself.
 const VARIATION: [f64; 3] = [0.08, 0.16, 0.49];
-/// Rates between which steady rain is taken for convective, mm/h: half-way lie 40 dBZ, 11.5 mm/h by Marshall and Palmer's
-/// relation, from which on Steiner, Houze and Yuter (1995) count all rain as convective.
+/// Rates between which steady rain is taken for convective, mm/h: half-way lie 40 dBZ, 11.5 mm/h by Marshall and
+/// Palmer's relation, from which on Steiner, Houze and Yuter (1995) count all rain as convective.
 const CONVECTIVE_MM_H: [f64; 2] = [4.0, 19.0];
 
-/// Waves of a seed: lengths between the two in all directions, many times as high as wide; wave numbers to the right or east,
-/// ahead or north, and up, 1/m, and phases, rad.
+/// Waves of a seed: lengths between the two in all directions, many times as high as wide; wave numbers to the right or
+/// east, ahead or north, and up, 1/m, and phases, rad.
 pub(crate) fn waves<const N: usize>(seed: u32, [least, most]: [f64; 2]) -> [[f64; 4]; N] {
     std::array::from_fn(|i| {
         let random = random3([seed, i as u32, 0x7261_696e]).map(|v| f64::from(v) / 4_294_967_296.0);

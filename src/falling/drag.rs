@@ -1,8 +1,9 @@
-//! How what falls follows the air: drag that is linear for one step and solved exactly, so that no length of a step is unstable.
+//! How what falls follows the air: drag that is linear for one step and solved exactly, so that no length of a step is
+//! unstable.
 //!
-//! dv/dt = k (air - v) - g has the solution v(t) = s + (v(0) - s) exp(-k t) about the settled velocity s = air - g / k. The rate k is that
-//! of drag by the square at the step's first moment, so short steps converge to it; where a step is long against it, the rate at rest,
-//! which ends at the right fall.
+//! dv/dt = k (air - v) - g has the solution v(t) = s + (v(0) - s) exp(-k t) about the settled velocity s = air - g / k.
+//! The rate k is that of drag by the square at the step's first moment, so short steps converge to it; where a step is
+//! long against it, the rate at rest, which ends at the right fall.
 
 use glam::DVec3;
 

@@ -1,5 +1,5 @@
-//! One drop of rain: how fast it falls, what shape it has, how it follows the wind. Diameters are those of a sphere of as
-//! much water, mm.
+//! One drop of rain: how fast it falls, what shape it has, how it follows the wind. Diameters are those of a sphere of
+//! as much water, mm.
 
 use glam::DVec3;
 
@@ -19,8 +19,8 @@ const SEA_LEVEL_DENSITY_KG_M3: f64 = 1.225;
 /// Gas constant of dry air, J/(kg K).
 const AIR_GAS_CONSTANT: f64 = 287.053;
 
-/// Terminal speed at sea level, m/s, of a drop of `diameter_mm`: Gunn and Kinzer's table, between its entries a monotone
-/// cubic (Fritsch and Butland 1984). Below the table the speed goes with the square (Stokes), above it stays.
+/// Terminal speed at sea level, m/s, of a drop of `diameter_mm`: Gunn and Kinzer's table, between its entries a
+/// monotone cubic (Fritsch and Butland 1984). Below the table the speed goes with the square (Stokes), above it stays.
 pub fn terminal_speed_m_s(diameter_mm: f64) -> f64 {
     let table = &GUNN_KINZER;
     let (first, last) = (table[0], table[table.len() - 1]);
@@ -40,8 +40,8 @@ pub fn terminal_speed_m_s(diameter_mm: f64) -> f64 {
     va * (1.0 - 3.0 * t2 + 2.0 * t3) + vb * (3.0 * t2 - 2.0 * t3) + h * (ma * (t - 2.0 * t2 + t3) + mb * (t3 - t2))
 }
 
-/// Slope of the interpolant at entry `i` of the table: the weighted harmonic mean of its neighbours' (Fritsch and Butland
-/// 1984), which never overshoots; at the ends the neighbour's own.
+/// Slope of the interpolant at entry `i` of the table: the weighted harmonic mean of its neighbours' (Fritsch and
+/// Butland 1984), which never overshoots; at the ends the neighbour's own.
 fn slope(i: usize) -> f64 {
     let secant = |i: usize| {
         let ((a, va), (b, vb)) = (GUNN_KINZER[i], GUNN_KINZER[i + 1]);
@@ -62,15 +62,18 @@ fn slope(i: usize) -> f64 {
 /// Coefficients of [`closed_form_speed_m_s`]: least squares on Gunn and Kinzer's table.
 pub const CLOSED_FORM: [f64; 5] = [9.198_902, 0.053_827_5, 0.572_275_3, 0.008_907_134, 0.012_283_48];
 
-/// Terminal speed at sea level, m/s, in a form that a shader takes: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4 D^2))), not below
-/// 0. RMS error over the table 0.031 m/s, at most 0.078; 2 % from 0.6 mm on (tested). Monotone, and 9.2 m/s for any size.
+/// Terminal speed at sea level, m/s, in a form that a shader takes: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4 D^2))), not
+/// below
+/// 0. RMS error over the table 0.031 m/s, at most 0.078; 2 % from 0.6 mm on (tested). Monotone, and 9.2 m/s for any
+///   size.
 pub fn closed_form_speed_m_s(diameter_mm: f64) -> f64 {
     let [c0, c1, c2, c3, c4] = CLOSED_FORM;
     let d = (diameter_mm - c1).max(0.0);
     -c0 * libm::expm1(-d * (c2 + diameter_mm * (c3 + diameter_mm * c4)))
 }
 
-/// How much faster than at sea level drops fall in air of a density (kg/m^3): (rho0 / rho)^0.4 (Foote and du Toit 1969).
+/// How much faster than at sea level drops fall in air of a density (kg/m^3): (rho0 / rho)^0.4 (Foote and du Toit
+/// 1969).
 pub fn density_factor(density_kg_m3: f64) -> f64 {
     libm::pow(SEA_LEVEL_DENSITY_KG_M3 / density_kg_m3, 0.4)
 }
@@ -85,15 +88,16 @@ fn standard_density_ratio(altitude_m: f64) -> f64 {
     libm::pow(1.0 - 2.255_77e-5 * altitude_m.clamp(-1000.0, 11_000.0), 4.255_88)
 }
 
-/// [`density_factor`] at an altitude above the sea, m, over a station whose air is known: its own density there, thinning
-/// out with height as the standard atmosphere does.
+/// [`density_factor`] at an altitude above the sea, m, over a station whose air is known: its own density there,
+/// thinning out with height as the standard atmosphere does.
 pub fn factor_in(air: &crate::weather::Air, altitude_m: f64) -> f64 {
     let at_station = 100.0 * air.station_pressure_hpa / (AIR_GAS_CONSTANT * (air.temperature_c + 273.15));
     let ratio = standard_density_ratio(altitude_m) / standard_density_ratio(air.station_altitude_m);
     density_factor(at_station * ratio)
 }
 
-/// Vertical over horizontal axis of a falling drop (Brandes, Zhang and Vivekanandan 2002, eq. 16), at most 1; held at 8 mm.
+/// Vertical over horizontal axis of a falling drop (Brandes, Zhang and Vivekanandan 2002, eq. 16), at most 1; held at 8
+/// mm.
 pub fn axis_ratio(diameter_mm: f64) -> f64 {
     let d = diameter_mm.clamp(0.0, 8.0);
     (0.9951 + d * (0.0251 + d * (-0.03644 + d * (0.005_303 - d * 0.000_249_2)))).min(1.0)
@@ -107,8 +111,8 @@ pub fn streak_length_m(relative_velocity_m_s: DVec3, exposure_s: f64) -> f64 {
 /// Velocity (m/s) and displacement (m) after `dt_s` of a drop of `velocity_m_s` in air of `air_m_s`, falling at
 /// `terminal_m_s` when it has come to rest in it. Vectors (east, north, up).
 ///
-/// Drag that is linear in the difference of velocities relaxes it over terminal / g: the solution is exact for any step.
-/// (Drag that goes with the square ends at the same velocity, at most twice as fast.)
+/// Drag that is linear in the difference of velocities relaxes it over terminal / g: the solution is exact for any
+/// step. (Drag that goes with the square ends at the same velocity, at most twice as fast.)
 pub fn relax(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -> (DVec3, DVec3) {
     let settled = air_m_s - DVec3::Z * terminal_m_s;
     let time = terminal_m_s / GRAVITY_M_S2;

@@ -1,24 +1,28 @@
-//! Falling snow, grains and ice crystals: how large flakes are, how many there are, how fast they fall, and how they swirl.
+//! Falling snow, grains and ice crystals: how large flakes are, how many there are, how fast they fall, and how they
+//! swirl.
 //!
-//! *Sizes*. Melted diameters are exponential, N0 exp(-lambda Dm) with lambda = 2.55 R^-0.48 per mm (Gunn and Marshall 1958, of
-//! aggregates close to the melting point); in colder air flakes are smaller: an exponential of the diameter has the slope
-//! 1220 x 10^(-0.0245 T) per m (Ryan 1996), of which the ratio is taken. A flake of density c / D has D^2 = Dm^3 / c; c = 0.17 (Holroyd
-//! 1971; g/cm^3 and mm). So of all flakes the area that is hidden by melted diameters up to Dm is a gamma distribution of order 4, and
-//! the mean flake by area is 4 / lambda large when melted. Larger flakes than [`LARGEST_MM`] break up.
+//! *Sizes*. Melted diameters are exponential, N0 exp(-lambda Dm) with lambda = 2.55 R^-0.48 per mm (Gunn and Marshall
+//! 1958, of aggregates close to the melting point); in colder air flakes are smaller: an exponential of the diameter
+//! has the slope 1220 x 10^(-0.0245 T) per m (Ryan 1996), of which the ratio is taken. A flake of density c / D has D^2
+//! = Dm^3 / c; c = 0.17 (Holroyd 1971; g/cm^3 and mm). So of all flakes the area that is hidden by melted diameters up
+//! to Dm is a gamma distribution of order 4, and the mean flake by area is 4 / lambda large when melted. Larger flakes
+//! than [`LARGEST_MM`] break up.
 //!
-//! *Number*. So many that they hide what the weather's snow hides (`weather::hydrometeors`): their discs, of which [`AREA_RATIO`] is
-//! ice, are half of its extinction, the rest is diffraction. Falling at their speeds they must also make the rate; c is what closes
-//! that ([`FlakeSizes::density_mm_g_cm3`]), and stays near Holroyd's where no report of visibility says otherwise.
+//! *Number*. So many that they hide what the weather's snow hides (`weather::hydrometeors`): their discs, of which
+//! [`AREA_RATIO`] is ice, are half of its extinction, the rest is diffraction. Falling at their speeds they must also
+//! make the rate; c is what closes that ([`FlakeSizes::density_mm_g_cm3`]), and stays near Holroyd's where no report of
+//! visibility says otherwise.
 //!
-//! *Speeds*. a D^b m/s, D in mm: aggregates unrimed 0.8 D^0.16, rimed 0.69 D^0.41, densely rimed 0.79 D^0.27, graupel 1.3 D^0.66
-//! (Locatelli and Hobbs 1974, table 1); plane crystals 0.31 (Nakaya and Terada 1935), whatever their size. Aggregates are densely
-//! rimed at the melting point and above, rimed 5 degrees below, and unrimed 12 degrees below.
+//! *Speeds*. a D^b m/s, D in mm: aggregates unrimed 0.8 D^0.16, rimed 0.69 D^0.41, densely rimed 0.79 D^0.27, graupel
+//! 1.3 D^0.66 (Locatelli and Hobbs 1974, table 1); plane crystals 0.31 (Nakaya and Terada 1935), whatever their size.
+//! Aggregates are densely rimed at the melting point and above, rimed 5 degrees below, and unrimed 12 degrees below.
 //!
-//! *Swirl*. Beyond a Reynolds number of 116.5 the wake of a disc is no longer the same on all sides (Natarajan and Acrivos 1993): the
-//! flake glides aside, and as it turns it falls on a helix, which stands for the lift of older systems' spirals. How steeply it glides
-//! grows from there as Landau's law has it, (1 - 116.5 / Re)^(1/2), to [`GLIDE`] of its fall speed: half of the 20 degrees that thin
-//! discs in air reach (Tinklenberg, Guala and Coletti 2023). How fast it turns no one has measured of flakes: [`TURN_STROUHAL`] fall
-//! speeds over diameters are chosen, a turn in a few tenths of a second, some centimetres wide.
+//! *Swirl*. Beyond a Reynolds number of 116.5 the wake of a disc is no longer the same on all sides (Natarajan and
+//! Acrivos 1993): the flake glides aside, and as it turns it falls on a helix, which stands for the lift of older
+//! systems' spirals. How steeply it glides grows from there as Landau's law has it, (1 - 116.5 / Re)^(1/2), to
+//! [`GLIDE`] of its fall speed: half of the 20 degrees that thin discs in air reach (Tinklenberg, Guala and Coletti
+//! 2023). How fast it turns no one has measured of flakes: [`TURN_STROUHAL`] fall speeds over diameters are chosen, a
+//! turn in a few tenths of a second, some centimetres wide.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -27,7 +31,8 @@ use crate::weather::{
     hydrometeors::{hail_extinction_per_m, ice_pellet_extinction_per_m, snow_extinction_per_m},
 };
 
-/// Share of a flake's disc that is ice, as seen through it: what `weather::hydrometeors::snow_extinction_per_m` counts with.
+/// Share of a flake's disc that is ice, as seen through it: what `weather::hydrometeors::snow_extinction_per_m` counts
+/// with.
 pub const AREA_RATIO: f64 = 0.6;
 /// Density of aggregates times their diameter, g/cm^3 mm (Holroyd 1971).
 pub const HOLROYD_MM_G_CM3: f64 = 0.17;
@@ -50,7 +55,7 @@ const GUNN_MARSHALL_C: f64 = -1.0;
 /// Least rate that sizes know, mm/h: below it numbers alone go down.
 const LEAST_MM_H: f64 = 0.02;
 
-/// What a flake is: its fall speed follows.
+/// Kind of a flake, which decides its fall speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlakeKind {
     /// Aggregates of dendrites without rime: dry snow.
@@ -121,7 +126,7 @@ pub struct Swirl {
 }
 
 impl Swirl {
-    /// Of a diameter, mm, and the fall speed, m/s.
+    /// Creates the swirl of a flake of a diameter, mm, and a fall speed, m/s.
     pub fn new(diameter_mm: f64, speed_m_s: f64) -> Self {
         let d = 1e-3 * diameter_mm.max(1e-3);
         let reynolds = speed_m_s * d / VISCOSITY_M2_S;
@@ -139,8 +144,8 @@ impl Swirl {
 struct Part {
     /// Extinction, 1/m.
     extinction_per_m: f64,
-    /// Slope of the exponential of melted diameters, 1/mm, as flakes of Holroyd's density have them; 0: evenly in the logarithm of the
-    /// diameter, by area.
+    /// Slope of the exponential of melted diameters, 1/mm, as flakes of Holroyd's density have them; 0: evenly in the
+    /// logarithm of the diameter, by area.
     lambda: f64,
     /// Diameters, mm.
     range_mm: (f64, f64),
@@ -174,12 +179,12 @@ pub struct FlakeSizes {
     factor: f64,
 }
 
-/// What flakes are, in the order of [`FlakeSizes`]'s parts.
+/// Number of kinds of flakes, in the order of [`FlakeSizes`]'s parts.
 pub const PARTS: usize = 3;
 
 impl FlakeSizes {
-    /// Of what falls in air of a temperature, where things fall `speed_factor` times as fast as at sea level
-    /// ([`super::drops::altitude_factor`]).
+    /// Creates the sizes of snow in air of a temperature, where things fall `speed_factor` times as fast as at sea
+    /// level ([`super::drops::altitude_factor`]).
     pub fn new(falling: &Falling, temperature_c: f64, speed_factor: f64) -> Self {
         let of_snow = snow_extinction_per_m(falling.snow_mm_h);
         let solid =
@@ -204,7 +209,8 @@ impl FlakeSizes {
         self.parts.iter().any(|p| p.extinction_per_m > 0.0)
     }
 
-    /// Smallest and largest diameter, mm, between which flakes of a part hide all but a hundredth at either end of what they hide.
+    /// Smallest and largest diameter, mm, between which flakes of a part hide all but a hundredth at either end of what
+    /// they hide.
     pub fn range_mm(&self, part: usize) -> (f64, f64) {
         (self.diameter_mm(part, 0.01), self.diameter_mm(part, 0.99))
     }
@@ -220,7 +226,8 @@ impl FlakeSizes {
         (low * high).sqrt()
     }
 
-    /// Area of the discs' ice of flakes of a part between two diameters (mm), m^2 in a cubic metre: half of their extinction.
+    /// Area of the discs' ice of flakes of a part between two diameters (mm), m^2 in a cubic metre: half of their
+    /// extinction.
     pub fn area_between(&self, part: usize, a_mm: f64, b_mm: f64) -> f64 {
         let p = &self.parts[part];
         0.5 * p.extinction_per_m * (p.area_below(b_mm) - p.area_below(a_mm)).max(0.0)
@@ -241,8 +248,8 @@ impl FlakeSizes {
             }
     }
 
-    /// Density times diameter with which the flakes make the rate, g/cm^3 mm; 0 without any. Of discs that hide a times [`AREA_RATIO`]
-    /// of a m^2 in a cubic metre, falling at v, the rate is (2/3) c a v.
+    /// Density times diameter with which the flakes make the rate, g/cm^3 mm; 0 without any. Of discs that hide a times
+    /// [`AREA_RATIO`] of a m^2 in a cubic metre, falling at v, the rate is (2/3) c a v.
     pub fn density_mm_g_cm3(&self) -> f64 {
         const PANELS: usize = 64;
         let mut flux = 0.0;
@@ -252,7 +259,8 @@ impl FlakeSizes {
                 flux += self.speed_m_s(part, d) * 0.5 * self.parts[part].extinction_per_m / PANELS as f64;
             }
         }
-        // kg/(m^2 s) of a density of c kg/m^3 m: a sphere of density c / D weighs (pi / 6) c D^2, its disc is (pi / 4) D^2.
+        // kg/(m^2 s) of a density of c kg/m^3 m: a sphere of density c / D weighs (pi / 6) c D^2, its disc is (pi / 4)
+        // D^2.
         let of_one = flux / AREA_RATIO * (2.0 / 3.0);
         if of_one > 0.0 { self.rate_mm_h / 3600.0 / of_one } else { 0.0 }
     }
@@ -270,7 +278,7 @@ mod tests {
     use crate::weather::{Precipitation, PrecipitationKind, Weather, derive};
     use glam::DVec3;
 
-    /// What falls where no report of visibility says how much it hides.
+    /// Returns the precipitation where no report of visibility says how much it hides.
     fn falling(kind: PrecipitationKind, rate: f64) -> Falling {
         let weather = Weather { precipitation: Precipitation::of(kind, rate), ..Weather::default() };
         let f = derive(&weather).unwrap().precipitation;

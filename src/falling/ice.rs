@@ -1,9 +1,11 @@
-//! Falling ice, hail and pellets: how many stones of which size there are, how fast they fall, what they hide, what lands.
+//! Falling ice, hail and pellets: how many stones of which size there are, how fast they fall, what they hide, what
+//! lands.
 //!
-//! Pellets are frozen raindrops: Marshall and Palmer's (1948) sizes of the same water, swollen by freezing, from 0.5 to 5 mm;
-//! they fall as spheres do (Heymsfield and Westbrook 2010). Small hail goes with them. Hail is exponential from 5 to 60 mm with
-//! N0 = 115 lambda^3.63 (Cheng and English 1983), so that a rate alone says how large the stones are; they fall as Matson and
-//! Huggins (1980) photographed them. The numbers close: what falls is the rate. Diameters in mm of spheres of ice.
+//! Pellets are frozen raindrops: Marshall and Palmer's (1948) sizes of the same water, swollen by freezing, from 0.5 to
+//! 5 mm; they fall as spheres do (Heymsfield and Westbrook 2010). Small hail goes with them. Hail is exponential from 5
+//! to 60 mm with N0 = 115 lambda^3.63 (Cheng and English 1983), so that a rate alone says how large the stones are;
+//! they fall as Matson and Huggins (1980) photographed them. The numbers close: what falls is the rate. Diameters in mm
+//! of spheres of ice.
 
 use std::f64::consts::PI;
 
@@ -21,15 +23,15 @@ pub const HAIL_MM: (f64, f64) = (5.0, 60.0);
 
 /// mm/h of water of stones of 1 mm, one per m^3, falling at 1 m/s.
 const RATE: f64 = PI / 6.0 * 3.6e-3 * ICE_KG_M3 / 1000.0;
-/// Hail of the least slope, per mm, has the most water that Cheng and English's law makes of any; more of it is more stones, not
-/// larger ones. Of the steepest there is next to nothing.
+/// Hail of the least slope, per mm, has the most water that Cheng and English's law makes of any; more of it is more
+/// stones, not larger ones. Of the steepest there is next to nothing.
 const HAIL_SLOPES_PER_MM: (f64, f64) = (0.15, 3.0);
 /// Density at sea level in the standard atmosphere, kg/m^3.
 const SEA_LEVEL_KG_M3: f64 = 1.225;
 /// Panels of Simpson's rule over the sizes of a kind.
 const PANELS: usize = 96;
 
-/// What falls that is solid and nearly round.
+/// Kind of solid and nearly round precipitation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stone {
     /// Ice pellets and small hail.
@@ -62,8 +64,8 @@ impl Stone {
     }
 }
 
-/// Speed of a sphere of ice by its Best number: Re = (d^2 / 4) ((1 + 4 sqrt(X) / (d^2 sqrt(C)))^(1/2) - 1)^2 with d = 8.0 and
-/// C = 0.35 (Heymsfield and Westbrook 2010).
+/// Speed of a sphere of ice by its Best number: Re = (d^2 / 4) ((1 + 4 sqrt(X) / (d^2 sqrt(C)))^(1/2) - 1)^2 with d =
+/// 8.0 and C = 0.35 (Heymsfield and Westbrook 2010).
 fn sphere_speed_m_s(diameter_mm: f64, density: f64) -> f64 {
     const DELTA: f64 = 8.0;
     const C: f64 = 0.35;
@@ -137,13 +139,13 @@ pub struct StoneSizes {
 }
 
 impl StoneSizes {
-    /// Of what falls at the ground, where drops are `speed_factor` times as fast as at sea level
+    /// Creates the sizes of what falls at the ground, where drops are `speed_factor` times as fast as at sea level
     /// ([`super::drops::altitude_factor`]). The rate holds at every altitude.
     pub fn new(falling: &Falling, speed_factor: f64) -> Self {
         Self::of_rates(falling.ice_pellets_mm_h, falling.hail_mm_h, speed_factor)
     }
 
-    /// Of rates of pellets and hail, mm/h of melted water.
+    /// Creates the sizes from rates of pellets and hail, mm/h of melted water.
     pub fn of_rates(pellets_mm_h: f64, hail_mm_h: f64, speed_factor: f64) -> Self {
         let parts = [Part::pellets(pellets_mm_h, speed_factor), Part::hail(hail_mm_h, speed_factor)];
         Self { parts, factor: speed_factor }
@@ -190,7 +192,7 @@ impl StoneSizes {
         stone.speed_m_s(diameter_mm, self.factor)
     }
 
-    /// What lands on one side of a surface, as [`super::sizes::DropSizes::on_surface`] has it of drops.
+    /// Returns the flux on one side of a surface, as [`super::sizes::DropSizes::on_surface`] does for drops.
     pub fn on_surface(&self, normal: DVec3, air_m_s: DVec3) -> SurfaceFlux {
         self.on_surface_of(normal, air_m_s, |_| true)
     }

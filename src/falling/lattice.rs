@@ -1,5 +1,5 @@
-//! Places in a cell of air that repeats through all space: fractions of its side in 32 bits. Adding them wraps as the cell does, so they
-//! are exact at any time and place.
+//! Places in a cell of air that repeats through all space: fractions of its side in 32 bits. Adding them wraps as the
+//! cell does, so they are exact at any time and place.
 
 use glam::DVec3;
 

@@ -1,5 +1,5 @@
-//! What falls, as physics: how large drops, pellets and stones are at a rate, how fast they fall, what lands on a surface, and the
-//! regions that have rain of their own.
+//! Physics of precipitation: how large drops, pellets and stones are at a rate, how fast they fall, what lands on a
+//! surface, and the regions that have rain of their own.
 //!
 //! Rain, wet ground and the windscreen all count by these; none of it is drawn here.
 
@@ -30,21 +30,23 @@ pub fn random3(key: [u32; 3]) -> [u32; 3] {
     [x, y, z]
 }
 
-/// Depth over which what falls sets in, m: half of it above the height where it begins, half below; as a medium, about the cloud's base.
+/// Depth over which what falls sets in, m: half of it above the height where it begins, half below; as a medium, about
+/// the cloud's base.
 pub(crate) const ONSET_M: f64 = 100.0;
 
-/// Part of what falls that has begun to fall at an altitude: all below the height where it begins in its cloud, none above.
+/// Part of what falls that has begun to fall at an altitude: all below the height where it begins in its cloud, none
+/// above.
 pub(crate) fn begun(c: &Conditions, altitude_m: f64) -> f64 {
     ((c.falling_top_m() + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0)
 }
 
-/// Extinction of what falls outside of all rain areas, by species: the same everywhere below the cloud that it falls from. Inside of
-/// the cloud the cloud's own water hides it.
+/// Extinction of what falls outside of all rain areas, by species: the same everywhere below the cloud that it falls
+/// from. Inside of the cloud the cloud's own water hides it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingLayer {
-    /// Of rain and drizzle, at 550 nm, 1/m.
+    /// Extinction of rain and drizzle, at 550 nm, 1/m.
     pub liquid_per_m: f64,
-    /// Of snow, ice pellets and hail, at 550 nm, 1/m.
+    /// Extinction of snow, ice pellets and hail, at 550 nm, 1/m.
     pub solid_per_m: f64,
     /// Altitude above which nothing that falls is seen, m.
     pub top_m: f64,
@@ -56,7 +58,7 @@ impl FallingLayer {
     /// Where nothing falls.
     pub const NONE: Self = Self { liquid_per_m: 0.0, solid_per_m: 0.0, top_m: 0.0, soft_m: ONSET_M };
 
-    /// What falls in a weather.
+    /// Creates the layer of what falls in a weather.
     pub(crate) fn new(c: &Conditions) -> Self {
         Self {
             liquid_per_m: c.precipitation.liquid_extinction_per_m,
@@ -66,7 +68,7 @@ impl FallingLayer {
         }
     }
 
-    /// Of both, 1/m.
+    /// Returns the extinction of both, 1/m.
     pub fn extinction_per_m(&self) -> f64 {
         self.liquid_per_m + self.solid_per_m
     }

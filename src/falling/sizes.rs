@@ -1,8 +1,8 @@
 //! How many drops of which size there are, and what follows: water, extinction, flux through surfaces, the sizes that
 //! drawn drops get.
 //!
-//! Each kind of rain is N(D) = N0 exp(-lambda D) from 0.1 to 6 mm. Lambda is the published one; N0 is set so that the drops,
-//! falling at Gunn and Kinzer's speeds, make the rate: a published N0 misses it by up to 18 %.
+//! Each kind of rain is N(D) = N0 exp(-lambda D) from 0.1 to 6 mm. Lambda is the published one; N0 is set so that the
+//! drops, falling at Gunn and Kinzer's speeds, make the rate: a published N0 misses it by up to 18 %.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -54,7 +54,7 @@ pub enum Weight {
     Water,
 }
 
-/// What lands on a surface.
+/// Flux of precipitation on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceFlux {
     /// Drops, 1/(m^2 s).
@@ -63,8 +63,8 @@ pub struct SurfaceFlux {
     pub rate_mm_h: f64,
 }
 
-/// Where integrals over all sizes are taken: diameter (mm), weight (mm), sea-level speed (m/s); four points of Gauss in each
-/// interval of Gunn and Kinzer's table.
+/// Where integrals over all sizes are taken: diameter (mm), weight (mm), sea-level speed (m/s); four points of Gauss in
+/// each interval of Gunn and Kinzer's table.
 static NODES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
     const GAUSS: [(f64, f64); 4] = [
         (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
@@ -85,7 +85,7 @@ static NODES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
 const RATE: f64 = PI / 6.0 * 3.6e-3;
 
 impl Part {
-    /// Of `rate_mm_h` where speeds are `factor` times those at sea level.
+    /// Creates the part of `rate_mm_h` where speeds are `factor` times those at sea level.
     fn new(slope_per_mm: f64, rate_mm_h: f64, factor: f64) -> Self {
         let lambda = slope_per_mm * libm::pow(rate_mm_h.max(LEAST_RATE_MM_H), -0.21);
         if rate_mm_h <= 0.0 {
@@ -117,9 +117,9 @@ fn filled(parts: [Part; 3]) -> [Part; PARTS] {
 }
 
 impl DropSizes {
-    /// Of rain and drizzle as they fall at the ground, where drops are `speed_factor` times as fast as at sea level
-    /// ([`super::drops::altitude_factor`]). Showers have fewer and larger drops of the same water. The rate holds at every
-    /// altitude: numbers go down as speeds go up.
+    /// Creates the sizes of rain and drizzle as they fall at the ground, where drops are `speed_factor` times as fast
+    /// as at sea level ([`super::drops::altitude_factor`]). Showers have fewer and larger drops of the same water. The
+    /// rate holds at every altitude: numbers go down as speeds go up.
     pub fn new(falling: &Falling, speed_factor: f64) -> Self {
         let showers = falling.showers.clamp(0.0, 1.0);
         let rates = [falling.rain_mm_h * (1.0 - showers), falling.rain_mm_h * showers, falling.drizzle_mm_h];
@@ -133,14 +133,14 @@ impl DropSizes {
         Self { parts: filled([part(0), part(1), part(2)]), factor: speed_factor }
     }
 
-    /// Of steady rain of a rate, mm/h.
+    /// Creates the sizes of steady rain of a rate, mm/h.
     pub fn of_rain(rate_mm_h: f64, speed_factor: f64) -> Self {
         let part = |i, rate| Part::new(SLOPES_PER_MM[i], rate, speed_factor);
         Self { parts: filled([part(0, rate_mm_h), part(1, 0.0), part(2, 0.0)]), factor: speed_factor }
     }
 
-    /// The mixture of which `share` is `over`, as far as that has `begun` to fall, and the rest these; both where drops are as
-    /// fast.
+    /// The mixture of which `share` is `over`, as far as that has `begun` to fall, and the rest these; both where drops
+    /// are as fast.
     pub fn covered(mut self, over: &Self, share: f64, begun: f64) -> Self {
         for part in &mut self.parts {
             part.n0 *= 1.0 - share;
@@ -229,14 +229,14 @@ impl DropSizes {
         sizes.map(|d| self.speed_m_s(d))
     }
 
-    /// What lands on level ground in still air; the rate is the one that the sizes were made for.
+    /// Returns the flux on level ground in still air; the rate is the one that the sizes were made for.
     pub fn on_level_ground(&self) -> SurfaceFlux {
         self.on_surface(DVec3::Z, DVec3::ZERO)
     }
 
-    /// What lands on one side of a surface: the side that `normal` (unit, east, north, up) points away from, in air that
-    /// moves by `air_m_s` relative to the surface. Each size arrives along its own slant; those that come from behind do not
-    /// count.
+    /// Returns the flux on one side of a surface: the side that `normal` (unit, east, north, up) points away from, in
+    /// air that moves by `air_m_s` relative to the surface. Each size arrives along its own slant; those that come from
+    /// behind do not count.
     pub fn on_surface(&self, normal: DVec3, air_m_s: DVec3) -> SurfaceFlux {
         self.on_surface_of(normal, air_m_s, |_| true)
     }
@@ -266,8 +266,8 @@ impl DropSizes {
         }
     }
 
-    /// Diameter, mm, above which the share 1 - `u` lies of all drops larger than `smallest_mm`, for each `u` in \[0, 1\],
-    /// ascending: what a drop of the uniform random number `u` has. Within 1e-4 mm.
+    /// Diameter, mm, above which the share 1 - `u` lies of all drops larger than `smallest_mm`, for each `u` in
+    /// \[0, 1\], ascending: what a drop of the uniform random number `u` has. Within 1e-4 mm.
     pub fn diameters<const N: usize>(&self, weight: Weight, smallest_mm: f64, u: [f64; N]) -> [f64; N] {
         const CELLS: usize = 512;
         let smallest = smallest_mm.clamp(SMALLEST_MM, 0.99 * LARGEST_MM);
@@ -294,9 +294,9 @@ impl DropSizes {
         })
     }
 
-    /// [`DropSizes::diameters`] as a table for the GPU, mm: entry i belongs to u = 1 - (1 - i / 63)^4, so that the few large
-    /// drops get as many entries as the many small ones. Read by [`table_diameter_mm`]. Without rain every entry is
-    /// `smallest_mm`.
+    /// [`DropSizes::diameters`] as a table for the GPU, mm: entry i belongs to u = 1 - (1 - i / 63)^4, so that the few
+    /// large drops get as many entries as the many small ones. Read by [`table_diameter_mm`]. Without rain every entry
+    /// is `smallest_mm`.
     pub fn diameter_table(&self, weight: Weight, smallest_mm: f64) -> [f32; TABLE_LEN] {
         let u: [f64; TABLE_LEN] = std::array::from_fn(|i| {
             let left = 1.0 - i as f64 / (TABLE_LEN - 1) as f64;
@@ -306,8 +306,9 @@ impl DropSizes {
     }
 }
 
-/// Diameter, mm, of the uniform random number `u` in \[0, 1\]: linear between the entries at 63 (1 - (1 - u)^(1/4)). Off by at
-/// most 1 % from 0.5 mm on, by number and by flux (tested); no table for sizes by water; for shaders the fourth root is two square roots.
+/// Diameter, mm, of the uniform random number `u` in \[0, 1\]: linear between the entries at 63 (1 - (1 - u)^(1/4)).
+/// Off by at most 1 % from 0.5 mm on, by number and by flux (tested); no table for sizes by water; for shaders the
+/// fourth root is two square roots.
 pub fn table_diameter_mm(table: &[f32; TABLE_LEN], u: f64) -> f64 {
     let x = (TABLE_LEN - 1) as f64 * (1.0 - (1.0 - u.clamp(0.0, 1.0)).sqrt().sqrt());
     let i = (x as usize).min(TABLE_LEN - 2);

@@ -8,13 +8,14 @@ use crate::error::{Error, Result, shown};
 /// How velocity is carried, and how a step is split.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
-    /// The value from where the air came from, along a straight path, linear between grid points (Stam 1999): the sources' scheme.
+    /// The value from where the air came from, along a straight path, linear between grid points (Stam 1999): the
+    /// sources' scheme.
     SemiLagrangian,
-    /// The same along a curved path, corrected by what carrying back would have shown, within the values that it came from
-    /// (Selle et al. 2008).
+    /// The value from a curved path, corrected by the error that carrying it back shows, within the values that it came
+    /// from (Selle et al. 2008).
     MacCormack,
-    /// Half a step carried, projected, mirrored at the projection, half a step carried again and projected (Zehnder et al. 2018,
-    /// eq. 6), each carrying cubic: what projection takes is given back by the mirror.
+    /// Half a step carried, projected, mirrored at the projection, half a step carried again and projected (Zehnder et
+    /// al. 2018, eq. 6), each carrying cubic: what projection takes is given back by the mirror.
     #[default]
     Reflection,
 }
@@ -37,7 +38,8 @@ struct Taps {
     part: [f32; 3],
 }
 
-/// A place among the values of all components: offset and part along each axis, between faces and between middles of cells.
+/// A place among the values of all components: offset and part along each axis, between faces and between middles of
+/// cells.
 struct Between {
     faces: [(usize, f32); 3],
     middles: [(usize, f32); 3],
@@ -196,7 +198,8 @@ impl<'a> Carrier<'a> {
         self.moved(place, self.velocity(place), dt)
     }
 
-    /// The same along a curved one (third order, Ralston 1962).
+    /// Returns where air that is at `place` will be after `dt` (was, if negative), along a curved path (third order,
+    /// Ralston 1962).
     fn curved(&self, place: [f32; 3], dt: f32) -> [f32; 3] {
         let v1 = self.velocity(place);
         let v2 = self.velocity(self.moved(place, v1, 0.5 * dt));

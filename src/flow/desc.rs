@@ -1,4 +1,4 @@
-//! What a host asks for: a field of wind about a place.
+//! Description that the host gives of a field of wind about a place.
 
 use glam::DVec3;
 
@@ -7,15 +7,15 @@ use crate::error::{Error, Result, check_range};
 /// How a field is led through time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindFieldMode {
-    /// The mean wind round terrain and boxes: solved for over the first moments after the wind or an obstacle has changed, then it rests
-    /// at no cost. Gusts are as strong, against the weather's, as the mean is there.
+    /// The mean wind round terrain and boxes: solved for over the first moments after the wind or an obstacle has
+    /// changed, then it rests at no cost. Gusts are as strong, against the weather's, as the mean is there.
     #[default]
     Steady,
     /// The wind with gusts, the whirls that come in with it and those that obstacles shed: stepped all the time.
     Running,
 }
 
-/// What terrain and boxes do to air that passes along them.
+/// Friction of terrain and boxes on air that passes along them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindWalls {
     /// They slow it, by the weather's roughness length.
@@ -30,8 +30,8 @@ pub enum WindWalls {
 /// ([`Context::set_shelters`](crate::context::Context::set_shelters)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindFieldDesc {
-    /// The middle of the field's floor, in the host's world: no higher than the lowest ground that matters. The field moves with it by
-    /// whole cells.
+    /// The middle of the field's floor, in the host's world: no higher than the lowest ground that matters. The field
+    /// moves with it by whole cells.
     pub floor_center: DVec3,
     /// Size of a cell east, north and up, m, \[0.05, 1000\], the longest at most 8 times the shortest. Default 4.
     pub cell_m: DVec3,
@@ -67,8 +67,8 @@ impl WindFieldDesc {
     /// Bytes of memory that a field of this size takes at most, by the arrays that it holds.
     pub fn bytes(&self) -> u64 {
         let product = |more: u64| self.cells.iter().map(|n| u64::from(*n) + more).product::<u64>();
-        // Of each face with ghosts five velocities, open shares and what pushes, twice, its layer and its place in lists; of each cell
-        // pressures and their equation on all grids; of each corner what queries and shaders read.
+        // Of each face with ghosts five velocities, open shares and what pushes, twice, its layer and its place in
+        // lists; of each cell pressures and their equation on all grids; of each corner what queries and shaders read.
         product(5) * 3 * (9 * 4 + 1 + 12) + product(0) * (22 * 4) + product(1) * 24
     }
 

@@ -1,14 +1,14 @@
 //! Whirls smaller than a cell: how they mix what the grid can show.
 //!
-//! Vreman's model (2004, Phys. Fluids 16, 3670, eqs. 5 to 8): with a_ij = du_j/dx_i and b_ij = sum over m of h_m^2 a_mi a_mj,
-//! nu = c sqrt(B / (a_ij a_ij)), B = b11 b22 - b12^2 + b11 b33 - b13^2 + b22 b33 - b23^2, and c = 2.5 C_S^2 with C_S = 0.17 of isotropic
-//! turbulence, 0.07. It is zero in parallel shear and at walls, and wants no averages and no distance from a wall. What keeps up the
-//! shear over the ground is [`GroundMixing`].
+//! Vreman's model (2004, Phys. Fluids 16, 3670, eqs. 5 to 8): with a_ij = du_j/dx_i and b_ij = sum over m of h_m^2 a_mi
+//! a_mj, nu = c sqrt(B / (a_ij a_ij)), B = b11 b22 - b12^2 + b11 b33 - b13^2 + b22 b33 - b23^2, and c = 2.5 C_S^2 with
+//! C_S = 0.17 of isotropic turbulence, 0.07. It is zero in parallel shear and at walls, and wants no averages and no
+//! distance from a wall. What keeps up the shear over the ground is [`GroundMixing`].
 
 use super::lattice::{Faces, Lattice};
 
-/// How the whirls over the ground mix the mean wind: kappa u* z up to a longest way (Prandtl 1925). With the stress of rough walls
-/// ([`super::walls`]) the logarithmic profile is then in balance, which comes in over the sides.
+/// How the whirls over the ground mix the mean wind: kappa u* z up to a longest way (Prandtl 1925). With the stress of
+/// rough walls ([`super::walls`]) the logarithmic profile is then in balance, which comes in over the sides.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GroundMixing {
     /// kappa u*, m/s; 0: none.

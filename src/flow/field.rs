@@ -17,10 +17,11 @@ use crate::error::{Error, Result, check_range};
 /// Largest speed of the air that a field takes, m/s.
 pub const MAX_SPEED_M_S: f64 = 300.0;
 
-/// What a field is made of. Lengths count from the lowest corner of its box.
+/// Settings of a field. Lengths count from the lowest corner of its box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowSettings {
-    /// Cells east, north and up, 1 to 4096 each, at most 33,554,432 in all. An axis of one cell is flat: nothing changes along it.
+    /// Cells east, north and up, 1 to 4096 each, at most 33,554,432 in all. An axis of one cell is flat: nothing
+    /// changes along it.
     pub cells: [u32; 3],
     /// Size of a cell, m, \[1e-6, 10,000\].
     pub cell_m: DVec3,
@@ -30,14 +31,15 @@ pub struct FlowSettings {
     pub scheme: Scheme,
     /// How the pressure is solved for.
     pub pressure: PressureMethod,
-    /// The pressure is good enough where no cell's divergence times cell size exceeds this share of the largest speed, \[1e-7, 1\].
+    /// The pressure is good enough where no cell's divergence times cell size exceeds this share of the largest speed,
+    /// \[1e-7, 1\].
     pub tolerance: f64,
     /// Kinematic viscosity, m2/s, \[0, 1e6\]: 0 for weather, whose walls stop no air by it; tests set it.
     pub viscosity_m2_s: f64,
     /// Air slides along terrain and boxes; otherwise it sticks to them.
     pub is_slip: bool,
-    /// Roughness length of terrain, boxes and a slip wall as floor, m, \[0, 5\]: what they take of the speed of air that slides along them.
-    /// 0: nothing.
+    /// Roughness length of terrain, boxes and a slip wall as floor, m, \[0, 5\]: what they take of the speed of air
+    /// that slides along them. 0: nothing.
     pub roughness_m: f64,
     /// Whirls below a cell mix the air (Vreman 2004).
     pub has_eddies: bool,
@@ -72,7 +74,7 @@ pub struct FlowField {
     pub(super) mixing: GroundMixing,
     pub(super) pressure: Pressure,
     pub(super) velocity: Faces,
-    /// What steps are made in; the first keeps the middle of the step before.
+    /// Working memory of steps; the first keeps the middle of the step before.
     pub(super) scratch: [Faces; 3],
     /// Length of the step before, s; 0: there is none to lead on from.
     pub(super) last_dt: f64,
@@ -111,8 +113,8 @@ fn check(settings: &FlowSettings) -> Result<()> {
 }
 
 impl FlowField {
-    /// A field of air round `obstacles` that moves as `wind` says (m/s east, north, up, at a place), made free of divergence. Open
-    /// sides keep that wind as the outer one.
+    /// A field of air round `obstacles` that moves as `wind` says (m/s east, north, up, at a place), made free of
+    /// divergence. Open sides keep that wind as the outer one.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for settings outside their ranges, for a wind that is not finite or over
@@ -188,7 +190,8 @@ impl FlowField {
         self.walls.find(&self.lattice, &self.openings, self.settings.roughness_m, floor);
     }
 
-    /// The largest divergence of a cell with air in it, times the shortest cell size over the largest speed: 0 in still air.
+    /// The largest divergence of a cell with air in it, times the shortest cell size over the largest speed: 0 in still
+    /// air.
     pub fn largest_divergence(&mut self) -> f64 {
         let v = std::mem::take(&mut self.velocity);
         self.find_divergence(&v);
@@ -225,7 +228,8 @@ impl FlowField {
         0.5 * sum * cell
     }
 
-    /// The velocity at a place, m/s (east, north, up), linear between faces; outside of the box that of its nearest place.
+    /// The velocity at a place, m/s (east, north, up), linear between faces; outside of the box that of its nearest
+    /// place.
     pub fn velocity_at(&self, place_m: DVec3) -> DVec3 {
         let carrier = Carrier::new(&self.lattice, &self.velocity, self.range());
         carrier.velocity_near((place_m / self.settings.cell_m).as_vec3().to_array()).as_dvec3()

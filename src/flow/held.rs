@@ -1,4 +1,5 @@
-//! The wind field of a context: set at a date, led on the step grid, shown to all that asks for the wind, saved and loaded.
+//! The wind field of a context: set at a date, led on the step grid, shown to all that asks for the wind, saved and
+//! loaded.
 
 use serde::{Deserialize, Serialize};
 
@@ -78,7 +79,7 @@ impl HeldFlow {
         self.live.as_ref().filter(|live| live.start.is_none()).map(|live| live.report())
     }
 
-    /// What holds at a time.
+    /// Returns the description that holds at a time.
     fn at(&self, time_s: f64) -> Option<WindFieldDesc> {
         self.changes.iter().rfind(|c| c.start_s <= time_s)?.desc
     }
@@ -196,13 +197,13 @@ impl HeldFlow {
     }
 }
 
-/// What came of a part of the way to the present.
+/// Outcome of a part of the way to the present.
 enum Next {
     /// There is nothing to do.
     Rests,
-    /// What others read is as it was.
+    /// The field that others read is unchanged.
     Unchanged,
-    /// What others read has changed.
+    /// The field that others read has changed.
     Changed,
     /// The field has ended.
     Gone,

@@ -1,5 +1,5 @@
-//! The staggered grid (Harlow and Welch 1965): a velocity component stands in the middle of the faces that it passes through,
-//! pressure in the middle of cells. Around the box lie two layers of ghost values, which the sides fill.
+//! The staggered grid (Harlow and Welch 1965): a velocity component stands in the middle of the faces that it passes
+//! through, pressure in the middle of cells. Around the box lie two layers of ghost values, which the sides fill.
 
 use glam::DVec3;
 
@@ -10,7 +10,8 @@ pub(super) const GHOSTS: usize = 2;
 /// Most cells of a grid: about 6 GB.
 const MAX_CELLS: u64 = 1 << 25;
 
-/// Cells of the box and their size. An axis of one cell is flat: nothing changes along it, and its component stays zero.
+/// Cells of the box and their size. An axis of one cell is flat: nothing changes along it, and its component stays
+/// zero.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Lattice {
     /// Cells east, north and up.
@@ -95,14 +96,15 @@ impl Lattice {
         }
     }
 
-    /// Says whether no value and no ghost of a component has these indices. Along an axis that it does not point along, a
-    /// component has one value less than its list has room for; there the list stays 0, so that equal fields have equal
-    /// numbers.
+    /// Says whether no value and no ghost of a component has these indices. Along an axis that it does not point along,
+    /// a component has one value less than its list has room for; there the list stays 0, so that equal fields have
+    /// equal numbers.
     fn is_spare(&self, component: usize, i: [i64; 3]) -> bool {
         (0..3).any(|a| a != component && !self.is_flat(a) && i[a] >= (self.n[a] + GHOSTS) as i64)
     }
 
-    /// Calls `f` for every value of a component and every ghost, with their indices, which are negative before the first value.
+    /// Calls `f` for every value of a component and every ghost, with their indices, which are negative before the
+    /// first value.
     pub(super) fn each_with_ghosts(&self, component: usize, mut f: impl FnMut([i64; 3], usize)) {
         let ghosts = self.ghosts.map(|g| g as i64);
         let [x, y, _] = self.size;
@@ -164,8 +166,8 @@ impl Lattice {
         }
     }
 
-    /// Moves values of a component by whole cells: what stood `cells` farther along each axis stands here then. What comes
-    /// in from outside, ghosts too, is what `new` answers for its indices.
+    /// Moves values of a component by whole cells: what stood `cells` farther along each axis stands here then. What
+    /// comes in from outside, ghosts too, is what `new` answers for its indices.
     pub(super) fn shift(&self, component: usize, values: &mut [f32], cells: [i64; 3], new: impl Fn([i64; 3]) -> f32) {
         let before = values.to_vec();
         let has = |i: [i64; 3]| (0..3).all(|a| (0..self.count(component, a) as i64).contains(&i[a]));

@@ -25,7 +25,8 @@ const STEADY_STEP_S: f64 = 2.0;
 const CFL: f64 = 4.0;
 /// Most parts of a step.
 const MOST_PARTS: f64 = 64.0;
-/// A steady field rests when in the time in which the wind crosses it no velocity would change by more than this share of the largest.
+/// A steady field rests when in the time in which the wind crosses it no velocity would change by more than this share
+/// of the largest.
 const REST: f64 = 0.01;
 /// It rests in any case after so many such times.
 const MOST_CROSSINGS: f64 = 6.0;
@@ -40,7 +41,8 @@ const FEWEST_CELLS: u32 = 8;
 const ANCHORED_M: f64 = 10_000.0;
 /// Cells from the sides and the top over which the field goes over into the weather's wind.
 const RIM_CELLS: f32 = 4.0;
-/// Longest way of whirls that mix the mean wind, m, and cells; with gusts, one cell: what is longer the field itself shows.
+/// Longest way of whirls that mix the mean wind, m, and cells; with gusts, one cell: what is longer the field itself
+/// shows.
 const MIXING_M: f64 = 10.0;
 const STEADY_CELLS: f64 = 2.5;
 /// Von Karman's constant.
@@ -60,7 +62,7 @@ pub(super) struct Anchor {
 }
 
 impl Anchor {
-    /// Of a field about a place. In a flat world every field counts from the world's origin.
+    /// Creates the anchor of a field about a place. In a flat world every field counts from the world's origin.
     pub fn new(world: &World, center: DVec3) -> Self {
         let origin = if world.frame.kind == WorldKind::Flat { DVec3::ZERO } else { center };
         let local = world.frame.frame_at(origin);
@@ -224,7 +226,7 @@ impl<'a> Scenery<'a> {
 pub(super) struct Start {
     /// How many times cells are twice as long now, 0 for the field's own.
     level: u32,
-    /// What is left at this level, s, and parts.
+    /// Time left at this level, s, and parts left.
     left_s: f64,
     left_parts: u32,
 }
@@ -241,15 +243,16 @@ pub(super) struct Live {
     pub start: Option<Start>,
     /// Parts of a step that are left, and the length of each, s.
     pub parts: (u32, f64),
-    /// What stood in the field at its last step, as [`Scenery::hash`] has it.
+    /// Hashes of the terrain and boxes in the field at its last step, as [`Scenery::hash`] returns them.
     pub stood: [u64; 2],
     standing: Option<SolidBodies>,
-    /// Of a steady field: the wind that it was solved for, east, north and roughness length; how long it has not rested, s; and whether
-    /// it does.
+    /// State of a steady field: the wind that it was solved for, east, north and roughness length; how long it has not
+    /// rested, s; and whether it does.
     pub solved_for: [f64; 3],
     pub awake_s: f64,
     pub rests: bool,
-    /// Of a steady field: the weather's wind over which it is shown. While it rests that of the moment may be a little another.
+    /// Profile of the weather's wind over which a steady field is shown. While it rests, the present wind may differ a
+    /// little.
     pub shown_over: Option<WindProfile>,
 }
 
@@ -498,8 +501,8 @@ impl Live {
         [self.time_s - LEAP_S, self.time_s + LEAP_S]
     }
 
-    /// The weather's wind over which a steady field is shown from now on. It is that of the step which changed the field, however far
-    /// the field is led before it is published.
+    /// The weather's wind over which a steady field is shown from now on. It is that of the step which changed the
+    /// field, however far the field is led before it is published.
     pub fn wind_over(&self, world: &World) -> Option<WindProfile> {
         (self.desc.mode == WindFieldMode::Steady).then(|| world.timeline.at(self.time_s).wind)
     }

@@ -39,8 +39,9 @@ impl FlowField {
         self.last_dt = dt;
     }
 
-    /// Carries by half a step, projects, mirrors, carries by half a step and projects. The wind that carries is that of the middle of each
-    /// half, led on from the two winds before it: by the wind of the half's beginning, whirls would stray across the mean wind.
+    /// Carries by half a step, projects, mirrors, carries by half a step and projects. The wind that carries is that of
+    /// the middle of each half, led on from the two winds before it: by the wind of the half's beginning, whirls would
+    /// stray across the mean wind.
     fn step_mirrored(&mut self, dt: f64) {
         let from = std::mem::take(&mut self.velocity);
         let [mut wind, mut middle, mut to] = std::mem::take(&mut self.scratch);
@@ -63,8 +64,9 @@ impl FlowField {
         self.last_dt = dt;
     }
 
-    /// Leads the field on until it rests: until in the time in which the fastest air crosses the box's longest side no velocity
-    /// changes by more than `rest` of the largest. Steps have the length in which the fastest air passes `cfl` cells.
+    /// Leads the field on until it rests: until in the time in which the fastest air crosses the box's longest side no
+    /// velocity changes by more than `rest` of the largest. Steps have the length in which the fastest air passes `cfl`
+    /// cells.
     ///
     /// Answers whether it rests; air that sheds whirls never does, and after `most` such times this gives up.
     ///
@@ -134,8 +136,8 @@ impl FlowField {
         })
     }
 
-    /// Mixes by viscosity and by whirls below a cell, in so many explicit steps that each is stable, and lets walls take their part.
-    /// `spare` is room.
+    /// Mixes by viscosity and by whirls below a cell, in so many explicit steps that each is stable, and lets walls
+    /// take their part. `spare` is room.
     fn mix(&mut self, wind: &Faces, dt: f64, spare: &mut Faces, v: &mut Faces) {
         let even = self.settings.viscosity_m2_s;
         let ground = self.mixing.most_m2_s();

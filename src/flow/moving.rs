@@ -1,4 +1,4 @@
-//! What changes about a field while air flows through it: the outer wind, obstacles, and where the box is.
+//! Changes of a field while air flows through it: the outer wind, obstacles, and the position of the box.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::error::{Result, check_range};
 
-/// What stood in a field when its obstacles were looked up last, to look up what has changed alone.
+/// Obstacles of a field when they were last looked up, so that only changes are looked up again.
 pub(super) struct SolidBodies {
     shares: Shares,
     /// Columns in which something moves.
@@ -19,10 +19,12 @@ pub(super) struct SolidBodies {
 }
 
 impl FlowField {
-    /// Another outer wind, m/s at a place: what blows in over open sides from the next step on. The air that is in the box flows on.
+    /// Another outer wind, m/s at a place: what blows in over open sides from the next step on. The air that is in the
+    /// box flows on.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a wind that is not finite or over [`super::MAX_SPEED_M_S`]; the field is as it was then.
+    /// [`crate::Status::InvalidArgument`] for a wind that is not finite or over [`super::MAX_SPEED_M_S`]; the field is
+    /// as it was then.
     pub fn set_wind(&mut self, wind: impl Fn(DVec3) -> DVec3) -> Result<()> {
         // The highest winds of a profile stand on the sides: none is set before all are found good.
         for is_checked in [false, true] {
@@ -48,7 +50,8 @@ impl FlowField {
         Ok(())
     }
 
-    /// How whirls over the ground mix the wind: kappa u*, m/s, the longest way, m, and the height of the ground at places of the box, m.
+    /// How whirls over the ground mix the wind: kappa u*, m/s, the longest way, m, and the height of the ground at
+    /// places of the box, m.
     pub(super) fn set_mixing(&mut self, speed_m_s: f64, most_m: f64, ground_m: impl Fn(DVec2) -> f64) {
         let Self { lattice, mixing, .. } = self;
         (mixing.speed_m_s, mixing.most_m) = (speed_m_s as f32, most_m as f32);
@@ -78,8 +81,8 @@ impl FlowField {
         self.velocity = v;
     }
 
-    /// Moves the box by whole cells east, north and up; the air stays where it is, and what comes in moves as `wind` says at places of
-    /// the box as it then lies. The obstacles are to be set next.
+    /// Moves the box by whole cells east, north and up; the air stays where it is, and what comes in moves as `wind`
+    /// says at places of the box as it then lies. The obstacles are to be set next.
     ///
     /// # Errors
     /// As [`FlowField::set_wind`].
@@ -96,8 +99,8 @@ impl FlowField {
         Ok(())
     }
 
-    /// Puts other obstacles into the air without making it free of divergence, which the next step does. `standing` is what the last
-    /// call left, if terrain and what stands are the same.
+    /// Puts other obstacles into the air without making it free of divergence, which the next step does. `standing` is
+    /// what the last call left, if terrain and what stands are the same.
     ///
     /// # Errors
     /// As [`FlowField::new`]; the field is as it was then.
@@ -157,7 +160,8 @@ impl FlowField {
         (self.last_dt, self.last_change_m_s)
     }
 
-    /// The same to be restored, and the length of the last step, s, with the largest change in it, m/s.
+    /// Returns the numbers of [`Self::numbers`] to be restored, the length of the last step, s, and the largest change
+    /// in it, m/s.
     pub(super) fn numbers_mut(&mut self) -> (impl Iterator<Item = &mut Vec<f32>>, &mut f64, &mut f32) {
         let [middle, ..] = &mut self.scratch;
         let numbers = self.velocity.iter_mut().chain(middle).chain(&mut self.potentials);

@@ -1,8 +1,9 @@
 //! Multigrid for the pressure: the same equation on ever coarser grids.
 //!
-//! A coarse cell joins two cells along each axis on which cells are not much longer than on the others; so long cells become
-//! round before all axes are halved together. The opening of a coarse face is the mean of its fine ones. Odd numbers leave a coarse
-//! cell that is half closed. Residuals go down as means; corrections come up linearly between coarse cells.
+//! A coarse cell joins two cells along each axis on which cells are not much longer than on the others; so long cells
+//! become round before all axes are halved together. The opening of a coarse face is the mean of its fine ones. Odd
+//! numbers leave a coarse cell that is half closed. Residuals go down as means; corrections come up linearly between
+//! coarse cells.
 
 use std::mem::take;
 
@@ -14,12 +15,14 @@ const FEW_CELLS: usize = 32;
 /// An axis is coarsened if its cells are at most so many times as long as the shortest that can be.
 const LONGER: f32 = 1.5;
 
-/// One grid of the equation: for each cell, the sum over its faces of coefficient times (neighbour - own) is the right-hand side.
+/// One grid of the equation: for each cell, the sum over its faces of coefficient times (neighbour - own) is the
+/// right-hand side.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Level {
     pub n: [usize; 3],
     h: [f32; 3],
-    /// Of the lower face of each cell along each axis: open share / h^2. The first one of a row joins its two ends.
+    /// Coefficient of the lower face of each cell along each axis: open share / h^2. The first one of a row joins its
+    /// two ends.
     pub lower: [Vec<f32>; 3],
     /// Sum over the faces of a cell; 0: no air in it.
     pub sum: Vec<f32>,
@@ -32,7 +35,7 @@ pub(super) struct Level {
     taps: Vec<Taps>,
 }
 
-/// Which coarse cells a correction comes from along an axis, with their weights.
+/// Coarse cells that a correction comes from along an axis, with their weights.
 type Taps = [(usize, f32); 2];
 
 /// Neighbours of a row of cells: starts of the four rows beside it, and of itself.
@@ -105,7 +108,7 @@ impl Level {
         });
     }
 
-    /// What the equation leaves over: right-hand side less left-hand side.
+    /// Computes the residual of the equation: right-hand side less left-hand side.
     pub(super) fn residual(&self, x: &[f32], b: &[f32], out: &mut [f32]) {
         self.each_row(|row, _| {
             for i in 0..self.n[0] {
@@ -125,7 +128,7 @@ impl Level {
         });
     }
 
-    /// Which axes the next level joins; none where this is the last.
+    /// Returns how many cells the next level joins along each axis, 1 or 2; 1 on all where this is the last.
     fn joined(&self) -> [usize; 3] {
         let can = |a: &usize| self.n[*a] > 2;
         let shortest = (0..3).filter(can).map(|a| self.h[a]).fold(f32::INFINITY, f32::min);
@@ -175,8 +178,8 @@ impl Level {
         }
     }
 
-    /// Adds the coarse correction, linearly between coarse cells: 3/4 of the own one and 1/4 of the nearest other, each axis;
-    /// where there is no other, the own one stands for it.
+    /// Adds the coarse correction, linearly between coarse cells: 3/4 of the own one and 1/4 of the nearest other, each
+    /// axis; where there is no other, the own one stands for it.
     fn add_correction(&mut self, coarse: &Self) {
         let join = self.join;
         let taps = |a: usize, i: usize| -> Taps {
@@ -238,7 +241,7 @@ impl Levels {
         Self(levels)
     }
 
-    /// What one cycle costs in sweeps of the finest grid.
+    /// Returns the cost of one cycle in sweeps of the finest grid.
     pub(super) fn cycle_work(&self) -> f64 {
         let cells = |l: &Level| l.sum.len() as f64;
         let all: f64 = self.0.iter().map(cells).sum();

@@ -1,8 +1,8 @@
 //! Terrain and solid things in the air, as open shares of faces.
 //!
-//! Heights are exact along a face's vertical; along its level sides [`SAMPLES`] places count. So terrain slopes through cells rather than
-//! standing in them as stairs, and a box may end anywhere within a cell. A box thinner than a cell stands as one cell thick, so
-//! that no air passes between two faces that it lies between.
+//! Heights are exact along a face's vertical; along its level sides [`SAMPLES`] places count. So terrain slopes through
+//! cells rather than standing in them as stairs, and a box may end anywhere within a cell. A box thinner than a cell
+//! stands as one cell thick, so that no air passes between two faces that it lies between.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -11,7 +11,7 @@ use crate::error::{Error, Result, check_range};
 
 /// Places along each level side of a face at which obstacles are looked up.
 const SAMPLES: usize = 8;
-/// What lies nearer to a face than this share of a cell lies on it.
+/// Distance from a face, as a share of a cell, within which a thing counts as lying on the face.
 const NEAR: f64 = 1e-6;
 
 /// A box in the air, turned in any way, and what planes leave of it. Lengths count from the lowest corner of the field.
@@ -25,8 +25,8 @@ pub struct FlowBox<'a> {
     pub axes: DMat3,
     /// How fast it moves, m/s: it pushes the air before it.
     pub velocity_m_s: DVec3,
-    /// Planes that cut it: unit vectors along its axes that point out of what they leave, and how far along them from its middle the
-    /// plane lies, m.
+    /// Planes that cut it: unit vectors along its axes that point out of what they leave, and how far along them from
+    /// its middle the plane lies, m.
     pub planes: &'a [[f64; 4]],
 }
 
@@ -51,7 +51,7 @@ impl FlowBox<'_> {
 /// Height of the ground above the lowest corner of the field at a place east and north of it, m.
 pub type Heights<'a> = &'a dyn Fn(DVec2) -> f64;
 
-/// What stands or moves in the air.
+/// Obstacles that stand or move in the air.
 #[derive(Clone, Copy, Default)]
 pub struct FlowObstacles<'a> {
     /// The ground; none: the field's lowest side.
@@ -65,7 +65,8 @@ pub struct FlowObstacles<'a> {
 pub(super) struct Shares {
     /// \[0, 1\].
     pub open: Faces,
-    /// Velocity along the face's axis times the share of the face that a moving thing closes, m/s; empty where nothing moves.
+    /// Velocity along the face's axis times the share of the face that a moving thing closes, m/s; empty where nothing
+    /// moves.
     pub pushed: Faces,
 }
 
@@ -224,12 +225,12 @@ impl FlowObstacles<'_> {
     }
 }
 
-/// What is solid above a place.
+/// Solid spans above a place.
 struct Column {
     h: f64,
     /// From and to a height, lowest first, apart from each other.
     spans: Vec<[f64; 2]>,
-    /// Those of moving things, with their velocity.
+    /// Spans of moving things, with their velocity.
     moving: Vec<([f64; 2], DVec3)>,
 }
 
@@ -263,7 +264,8 @@ impl Column {
         Ok(())
     }
 
-    /// Solid share of the height of a cell; of the face at its foot, across which the vertical component passes, 1 or 0.
+    /// Solid share of the height of a cell; of the face at its foot, across which the vertical component passes, 1 or
+    /// 0.
     fn closed(&self, component: usize, cell: usize) -> f64 {
         let sum: f64 = self.spans.iter().map(|s| self.within(s, component, cell)).sum();
         sum.min(1.0)
@@ -277,7 +279,7 @@ impl Column {
         (span[1].min(high) - span[0].max(low)).max(0.0) / self.h
     }
 
-    /// The same of moving things, times their velocity along the component's axis.
+    /// Returns the share of moving things, as [`Self::closed`], times their velocity along the component's axis.
     fn pushed(&self, component: usize, cell: usize) -> f64 {
         self.moving.iter().map(|(span, v)| self.within(span, component, cell) * v[component]).sum()
     }

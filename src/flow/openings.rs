@@ -1,5 +1,5 @@
-//! How much of each face is open, and what follows from that: the coefficients of the pressure, separate bodies of air, and the
-//! faces inside of things that need a velocity because paths lead there.
+//! How much of each face is open, and what follows from that: the coefficients of the pressure, separate bodies of air,
+//! and the faces inside of things that need a velocity because paths lead there.
 
 use super::{
     lattice::{Faces, Lattice},
@@ -12,12 +12,12 @@ use super::{
 const LEAST_OPEN: f32 = 0.03;
 /// So many layers of faces inside of things get the velocity of the air beside them.
 const LAYERS: u8 = 4;
-/// Of a face that no layer has reached, and of a ghost.
+/// Layer of a face that no layer has reached, and of a ghost.
 const NO_LAYER: u8 = u8::MAX;
-/// Of a cell without air.
+/// Body number of a cell without air.
 const NO_BODY: u32 = u32::MAX;
 
-/// What is open, in a grid.
+/// Open faces in a grid.
 #[derive(Clone, Debug)]
 pub(super) struct Openings {
     /// Open share of each face, [0, 1].
@@ -208,7 +208,7 @@ impl Openings {
         self.passing = all;
     }
 
-    /// What moving things push into the bodies of air counts as if it had come in.
+    /// Adds the air that moving things push into the bodies of air, as if it had come in.
     fn add_pushed(&self, lattice: &Lattice, all: &mut [Passing]) {
         let size = lattice.h.map(f64::from);
         for a in lattice.axes().filter(|a| !self.pushed[*a].is_empty()) {

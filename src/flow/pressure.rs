@@ -1,9 +1,10 @@
 //! The pressure that makes the air's flow free of divergence: laplace(phi) = div u, then u - grad phi (Chorin 1968).
 //!
-//! Two ways to solve it. Successive over-relaxation (Young 1954) in two colours, as on a chessboard: each cell's value moves toward what its
-//! neighbours ask for, and beyond by the relaxation factor; with 2 or more it diverges, and is refused. And multigrid: a V-cycle
-//! preconditions each step of conjugate gradients (Hestenes and Stiefel 1952, with the update of Polak and Ribiere, since a V-cycle is not
-//! symmetric). Coarse grids blur thin walls and small openings: these cost more cycles, but it converges.
+//! Two ways to solve it. Successive over-relaxation (Young 1954) in two colours, as on a chessboard: each cell's value
+//! moves toward what its neighbours ask for, and beyond by the relaxation factor; with 2 or more it diverges, and is
+//! refused. And multigrid: a V-cycle preconditions each step of conjugate gradients (Hestenes and Stiefel 1952, with
+//! the update of Polak and Ribiere, since a V-cycle is not symmetric). Coarse grids blur thin walls and small openings:
+//! these cost more cycles, but it converges.
 //!
 //! The residual of the equation is the divergence that stays. Both stop by it.
 
@@ -20,7 +21,8 @@ pub enum PressureMethod {
     },
     /// Red-black over-relaxation.
     Sor {
-        /// Relaxation of the first iteration and of the last possible one, in (0, 2) both; between them it changes linearly.
+        /// Relaxation of the first iteration and of the last possible one, in (0, 2) both; between them it changes
+        /// linearly.
         relaxation: [f32; 2],
         /// At most so many, 1 to 1,000,000.
         max_iterations: u32,
@@ -31,7 +33,8 @@ impl PressureMethod {
     /// The snow simulator of the sources: 5 iterations, the relaxation falling from 1.7 to 1.1.
     pub const FIVE_SWEEPS: Self = Self::Sor { relaxation: [1.7, 1.1], max_iterations: 5 };
 
-    /// The relaxation that converges fastest on a grid of `n` cells along its longest axis: 2 / (1 + sin(pi / n)) (Young 1954).
+    /// The relaxation that converges fastest on a grid of `n` cells along its longest axis: 2 / (1 + sin(pi / n))
+    /// (Young 1954).
     pub fn best_relaxation(n: u32) -> f32 {
         (2.0 / (1.0 + libm::sin(std::f64::consts::PI / f64::from(n.max(2))))) as f32
     }
@@ -53,7 +56,7 @@ impl PressureMethod {
     }
 }
 
-/// What a solution cost and how good it is.
+/// Cost and error of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solved {
     /// V-cycles or iterations.

@@ -7,12 +7,14 @@ use glam::DVec3;
 use super::{FlowField, FlowObstacles, FlowSettings, Scheme, Side};
 use crate::error::{Error, Result, Status, check_range};
 
-/// The cavity's flow rests where in the time in which the lid passes it nothing changes by more than this share of the lid's speed.
+/// The cavity's flow rests where in the time in which the lid passes it nothing changes by more than this share of the
+/// lid's speed.
 const REST: f64 = 2e-4;
 /// After so many such times it is not waited for any longer.
 const MOST_TIMES: u32 = 500;
 
-/// The flow in a square box, 1 m wide, of `n` by `n` cells, whose lid moves with 1 m/s, once it rests, at Reynolds number `re`.
+/// The flow in a square box, 1 m wide, of `n` by `n` cells, whose lid moves with 1 m/s, once it rests, at Reynolds
+/// number `re`.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] for `re` not in \[1, 10,000\] and `n` not in \[8, 1024\].
@@ -37,8 +39,9 @@ pub fn cavity(re: f64, n: u32) -> Result<FlowField> {
     Err(Error::new(Status::Unsupported, format!("the flow in the cavity does not rest at a Reynolds number of {re}")))
 }
 
-/// Whirls without viscosity (Taylor and Green 1937), which stand still for ever: the share of their kinetic energy that is left after
-/// they have turned for 2 pi seconds, on `n` by `n` cells, in steps in which the fastest air passes `cfl` cells.
+/// Whirls without viscosity (Taylor and Green 1937), which stand still for ever: the share of their kinetic energy that
+/// is left after they have turned for 2 pi seconds, on `n` by `n` cells, in steps in which the fastest air passes `cfl`
+/// cells.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] for `n` not in \[8, 1024\] and `cfl` not in \[0.01, 64\].

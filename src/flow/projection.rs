@@ -13,8 +13,8 @@ use super::{
 impl FlowField {
     /// Makes a field, its ghosts filled, free of divergence; fills the ghosts again.
     ///
-    /// The potential of the step before is taken off first, and only what is then missing is solved for: the correction is small,
-    /// and so are its rounding errors. What rounding still leaves is solved for once more.
+    /// The potential of the step before is taken off first, and only what is then missing is solved for: the correction
+    /// is small, and so are its rounding errors. What rounding still leaves is solved for once more.
     pub(super) fn project(&mut self, v: &mut Faces, which: usize) {
         self.openings.balance(&self.lattice, &self.roles, v);
         let tolerance = self.settings.tolerance as f32 * fastest(&self.lattice, v) as f32 / self.lattice.shortest_m();
@@ -80,9 +80,11 @@ impl FlowField {
         }
     }
 
-    /// Force of the air's pressure on what stands between two places over the air's density, m4/s2, in the mean over the last step.
+    /// Force of the air's pressure on what stands between two places over the air's density, m4/s2, in the mean over
+    /// the last step.
     ///
-    /// A step's pressure is the sum of what its projections took off: of the mirrored scheme twice the first and the second.
+    /// A step's pressure is the sum of what its projections took off: of the mirrored scheme twice the first and the
+    /// second.
     pub fn pressure_force(&self, low_m: DVec3, high_m: DVec3) -> DVec3 {
         let (lattice, open) = (&self.lattice, &self.openings.open);
         let steps = [1, lattice.n[0], lattice.n[0] * lattice.n[1]];

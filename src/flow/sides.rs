@@ -2,23 +2,23 @@
 
 use super::lattice::{Faces, Lattice};
 
-/// What a side of the box is.
+/// Kind of a side of the box.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Side {
-    /// Air passes. Where the outer wind blows in over the side as a whole, it is the inflow; where it blows out, the air leaves as
-    /// it was carried there, and the flux alone is balanced: nothing is reflected by pressure. Where it does neither, the
-    /// side is a slip wall.
+    /// Air passes. Where the outer wind blows in over the side as a whole, it is the inflow; where it blows out, the
+    /// air leaves as it was carried there, and the flux alone is balanced: nothing is reflected by pressure. Where it
+    /// does neither, the side is a slip wall.
     #[default]
     Open,
     /// A wall along which air slides without friction.
     Slip,
     /// A wall at which air has the wall's velocity, m/s; its part through the wall is ignored.
     NoSlip([f32; 3]),
-    /// What leaves here comes in on the opposite side, which must be periodic too.
+    /// A side whose outflow comes in on the opposite side, which must be periodic too.
     Periodic,
 }
 
-/// What a side does to the air now.
+/// Effect of a side on the air now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
     Periodic,

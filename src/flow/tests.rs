@@ -58,8 +58,8 @@ fn a_lid_drives_the_cavity_as_published() {
 
 #[test]
 fn whirls_keep_their_energy() {
-    // Bounds of the default are the promise; those of the others lie about the figures of `truth.md`, computed with a spectral
-    // projection.
+    // Bounds of the default are the promise; those of the others lie about the figures of `truth.md`, computed with a
+    // spectral projection.
     let cases = [
         (Scheme::Reflection, 1.0, 0.98, 1.005),
         (Scheme::Reflection, 4.0, 0.95, 1.005),
@@ -366,7 +366,8 @@ fn a_field_rests_or_says_that_it_does_not() {
     assert_eq!(behind.settle(1.0, 1e-6, 1), Ok(false));
 }
 
-/// Lists of the field have room that no value needs; it stays 0 whatever has stood in the lists that a step passes round.
+/// Lists of the field have room that no value needs; it stays 0 whatever has stood in the lists that a step passes
+/// round.
 #[test]
 fn a_field_has_the_numbers_of_its_air_alone() {
     let mut moved = town(Scheme::Reflection);

@@ -1,9 +1,10 @@
 //! Turbulence of the air that blows in: whirls that the cells can show and the box has room for.
 //!
-//! They are a sum of waves, each across its own wave vector, so that no air comes from nowhere (Kraichnan 1970, Phys. Fluids 13, 22), in all
-//! directions alike. Waves of different lengths have the energy of von Karman's spectrum (1948): E(k) is proportional to x^4 / (1 + x^2)^(17/6),
-//! x = 1.339 L k, with L the integral length along the wind. The wind carries them unchanged (Taylor 1938). They mix the shear between the wake of
-//! a block and the wind; in a calm inflow the wake is too long (`src/flow/tests/bluff.rs`).
+//! They are a sum of waves, each across its own wave vector, so that no air comes from nowhere (Kraichnan 1970, Phys.
+//! Fluids 13, 22), in all directions alike. Waves of different lengths have the energy of von Karman's spectrum (1948):
+//! E(k) is proportional to x^4 / (1 + x^2)^(17/6), x = 1.339 L k, with L the integral length along the wind. The wind
+//! carries them unchanged (Taylor 1938). They mix the shear between the wake of a block and the wind; in a calm inflow
+//! the wake is too long (`src/flow/tests/bluff.rs`).
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,8 +19,8 @@ const WAVES: usize = 32;
 const FEWEST_CELLS: f64 = 4.0;
 /// Integral of x^4 / (1 + x^2)^(17/6) from 0 to infinity: half the beta function of 5/2 and 1/3.
 const WHOLE: f64 = 1.0325;
-/// Standard deviations of the wind near the ground along the mean wind, across it and upward, in friction velocities, in neutral stratification
-/// (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
+/// Standard deviations of the wind near the ground along the mean wind, across it and upward, in friction velocities,
+/// in neutral stratification (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
 const OVER_LAND: DVec3 = DVec3::new(2.4, 1.9, 1.25);
 /// Integral length along the wind, m: 10 m over open grassland (25 z^0.35 / z0^0.063, Counihan 1975).
 const INTEGRAL_M: f64 = 70.0;
@@ -32,8 +33,8 @@ struct Wave {
     cosine: DVec3,
 }
 
-/// Whirls of a seed. Those of all lengths together have a variance of 1 in each component; these are the ones that a field can show, and have their
-/// share of it.
+/// Whirls of a seed. Those of all lengths together have a variance of 1 in each component; these are the ones that a
+/// field can show, and have their share of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Turbulence([Wave; WAVES]);
 
@@ -47,7 +48,8 @@ fn share_between(low: f64, high: f64) -> f64 {
 }
 
 impl Turbulence {
-    /// Of an integral length, m, in a box of cells `cell_m` long whose shorter level side is `side_m` long; none if it is too short for any.
+    /// Creates the whirls of an integral length, m, in a box of cells `cell_m` long whose shorter level side is
+    /// `side_m` long; none if it is too short for any.
     pub fn new(seed: u64, integral_m: f64, cell_m: f64, side_m: f64) -> Option<Self> {
         let (longest, shortest) = (side_m / 2.0, FEWEST_CELLS * cell_m);
         if longest <= shortest {
@@ -99,7 +101,7 @@ pub(super) struct Whirls {
 }
 
 impl Whirls {
-    /// Of a mean wind (east, north) with a friction velocity, m/s; none if that is 0.
+    /// Creates the whirls of a mean wind (east, north) with a friction velocity, m/s; no whirls if that is 0.
     pub fn new(seed: u64, desc: &WindFieldDesc, mean_m_s: DVec2, friction_velocity_m_s: f64) -> Self {
         let along = mean_m_s.try_normalize().unwrap_or(DVec2::X).extend(0.0);
         let side_m = |i: usize| f64::from(desc.cells[i]) * desc.cell_m[i];
@@ -116,7 +118,8 @@ impl Whirls {
         }
     }
 
-    /// What they add to the wind, m/s, at a place in the air that carries them and a height above the ground, m.
+    /// Returns the wind that the whirls add, m/s, at a place in the air that carries them and a height above the
+    /// ground, m.
     pub fn at(&self, place_m: DVec3, height_m: f64) -> DVec3 {
         let Some(turbulence) = &self.turbulence else { return DVec3::ZERO };
         let local = self.axes.transpose() * turbulence.at(place_m);
@@ -149,7 +152,8 @@ mod tests {
         // What waves from 1 m to 1000 m have of all.
         println!("variance {square}, due 0.952");
         assert!((square - 0.952).abs().max_element() < 0.04, "{square}");
-        // Von Karman's longitudinal correlation at r = L / 2: 2^(2/3) / Gamma(1/3) z^(1/3) K_1/3(z) = 0.54 with z = r / (1.339 L).
+        // Von Karman's longitudinal correlation at r = L / 2: 2^(2/3) / Gamma(1/3) z^(1/3) K_1/3(z) = 0.54 with z = r /
+        // (1.339 L).
         let along = means(|w, p| w.at(p) * w.at(p + DVec3::X * 0.5 * LENGTH_M)).x / square.x;
         println!("correlation after half a length: {along:.3}");
         assert!((along - 0.54).abs() < 0.05, "{along}");

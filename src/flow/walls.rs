@@ -1,9 +1,10 @@
-//! What rough walls take of the air's speed.
+//! Loss of the air's speed at rough walls.
 //!
-//! Along a wall the mean wind grows with the logarithm of the distance (Prandtl 1925): u = u*/kappa ln(y/z0). So a wall of roughness
-//! length z0 takes the momentum u*^2 = (kappa / ln(y/z0))^2 u^2 a second from each square metre of air whose speed in the distance y
-//! is u (Schumann 1975 for the walls of a grid too coarse for the layer at them). y is the middle of the open part of the cell at the
-//! wall; y + z0 stands in the logarithm's place of y, so that it does not fall below zero in thin cells.
+//! Along a wall the mean wind grows with the logarithm of the distance (Prandtl 1925): u = u*/kappa ln(y/z0). So a wall
+//! of roughness length z0 takes the momentum u*^2 = (kappa / ln(y/z0))^2 u^2 a second from each square metre of air
+//! whose speed in the distance y is u (Schumann 1975 for the walls of a grid too coarse for the layer at them). y is
+//! the middle of the open part of the cell at the wall; y + z0 stands in the logarithm's place of y, so that it does
+//! not fall below zero in thin cells.
 
 use super::{
     lattice::{Faces, Lattice},

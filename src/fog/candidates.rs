@@ -8,10 +8,11 @@ use crate::plan::{Listed, StepWork, Units, Work};
 /// Fog, mist, dust and what falls, as a layer. How much it matters: as the air (`sky::candidates::AIR`).
 pub const FOG: Part = Part { name: "fog", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(1) };
 
-/// Work of the layer, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts.
+/// Work of the layer, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the
+/// parts.
 pub(crate) const FOG_WORK: StepWork = StepWork { object: 0.26, sky: 0.26, fixed: 0.0 };
 
-/// Which of the older simulators' curves stands in for a layer.
+/// Curve of the older simulators that stands in for a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FogCurve {
     /// [`Curve::Linear`] from the eye.
@@ -28,7 +29,7 @@ pub enum FogMethod {
     /// The closed form at every pixel, by the pipeline that can do just what the law needs.
     #[default]
     Exact,
-    /// The same by the pipeline for all laws.
+    /// The closed form at every pixel, by the pipeline for all laws.
     ExactForAll,
     /// The closed form without the layer's patches.
     Even,

@@ -1,4 +1,4 @@
-//! What a context holds of the fog: the law that stands in for the weather's, if the host asked for one.
+//! State of the fog in a context: the law that stands in for the weather's, if the host asked for one.
 
 use super::Law;
 use crate::{

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, check_range};
 
-/// What a compatibility law takes as distance.
+/// Kind of distance that a compatibility law takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum DistanceKind {
     /// From the camera's centre: turning on the spot changes nothing.
@@ -80,7 +80,7 @@ impl CompatibilityLaw {
         check_range("fog.sky_band", self.sky_band, 0.0, std::f64::consts::PI, "rad")
     }
 
-    /// What is left of an object's colour at `distance_m`: 1 clear, 0 all fog.
+    /// Returns the share of an object's colour that is left at `distance_m`: 1 clear, 0 all fog.
     pub fn visibility(&self, distance_m: f64) -> f64 {
         match self.curve {
             Curve::Linear { start_m, end_m } => ((end_m - distance_m) / (end_m - start_m)).clamp(0.0, 1.0),
@@ -101,12 +101,13 @@ impl CompatibilityLaw {
     }
 }
 
-/// What an 8-bit picture cannot show: 1/255.
+/// Largest contrast that an 8-bit picture cannot show: 1/255.
 pub const CULL_THRESHOLD: f64 = 1.0 / 255.0;
 
-/// Distance beyond which a host may cull in a homogeneous extinction (of a visibility: [`super::koschmieder_extinction_per_m`]),
-/// m: there less than 1/255 of an object's contrast is left. Infinite in clear air. The picture without the culled
-/// objects is the same only if what lies behind them is fogged as well, as Welkin's sky is.
+/// Distance beyond which a host may cull in a homogeneous extinction (of a visibility:
+/// [`super::koschmieder_extinction_per_m`]), m: there less than 1/255 of an object's contrast is left. Infinite in
+/// clear air. The picture without the culled objects is the same only if what lies behind them is fogged as well, as
+/// Welkin's sky is.
 pub fn cull_distance_m(extinction_per_m: f64) -> f64 {
     -CULL_THRESHOLD.ln() / extinction_per_m
 }

@@ -76,7 +76,8 @@ impl Slab {
         let Self { depth, albedo: w, asymmetry: g, .. } = *self;
         let mut slab = *self;
         let k = (3.0 * (1.0 - w) * (1.0 - w * g)).sqrt();
-        // Where the beam falls off exactly as the diffuse light does, the particular solution has a pole; beside it none.
+        // Where the beam falls off exactly as the diffuse light does, the particular solution has a pole; beside it
+        // none.
         if (1.0 - (k * slab.mu0).powi(2)).abs() < beside {
             slab.mu0 *= 1.0 - beside;
         }

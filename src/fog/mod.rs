@@ -2,36 +2,36 @@
 //!
 //! # Model
 //! A reported visibility V is the meteorological optical range: the distance at which a black target keeps 5 % of its
-//! contrast at 550 nm, so the **total** extinction at the station is -ln(0.05)/V = 2.996/V (Koschmieder 1924; WMO-No. 8,
-//! 2018, chapter 9). Air and tall haze have their own room; what they leave is a
-//! **layer** near the ground: fog or mist between a base and a soft top ([`Profile::Slab`]), or thinning exponentially
-//! ([`Profile::Exponential`]), and what **falls** through it from the clouds ([`FallingLayer`]), on a flat or curved planet.
+//! contrast at 550 nm, so the **total** extinction at the station is -ln(0.05)/V = 2.996/V (Koschmieder 1924; WMO-No.
+//! 8, 2018, chapter 9). Air and tall haze have their own room; what they leave is a **layer** near the ground: fog or
+//! mist between a base and a soft top ([`Profile::Slab`]), or thinning exponentially ([`Profile::Exponential`]), and
+//! what **falls** through it from the clouds ([`FallingLayer`]), on a flat or curved planet.
 //!
 //! * Transmittance along a ray is closed form: path lengths between the layer's altitudes on a sphere
 //!   ([`reference::layer_path`]), exact to f32.
-//! * Fog and what falls have heights and an optical depth of their own. What is drawn as drops, flakes or stones near the camera is left
-//!   out of the latter ([`reference::fog_beside_drops`]).
+//! * Fog and what falls have heights and an optical depth of their own. What is drawn as drops, flakes or stones near
+//!   the camera is left out of the latter ([`reference::fog_beside_drops`]).
 //! * Light: the layer is lit by the direct sun and the sky above and the ground below. Multiple scattering is the
 //!   delta-Eddington solution (Joseph, Wiscombe and Weinman 1976) of the layer, solved per channel in f64 once a frame
 //!   ([`light`]); the first scattering keeps its true phase function (Nakajima and Tanaka 1988). Both are integrated
 //!   along the pixel's ray in closed form. So fog conserves energy: it neither glows nor blackens, is bright at noon,
 //!   brighter toward a low sun, dark at night, and everything far away converges to the same radiance, ground or sky.
-//! * Patches are waves whose mean along a ray is closed form too ([`patterns`]). They go with the air; where the wind goes round something, a
-//!   ray over that place takes the lag of the air there in eight parts (`wind/detour.rs`).
+//! * Patches are waves whose mean along a ray is closed form too ([`patterns`]). They go with the air; where the wind
+//!   goes round something, a ray over that place takes the lag of the air there in eight parts (`wind/detour.rs`).
 //! * The compatibility laws of older simulators (linear, exponential, exponential squared, on range or plane
 //!   distance) are [`CompatibilityLaw`].
 //!
 //! # Error
-//! The shader follows [`mod@reference`] to f32. The light of [`mod@reference`] itself, against adding and doubling over optical depths
-//! from 0.3 to 16 and three heights of the sun, more than 8 degrees from the sun: median 4.5 %, 95th percentile 19 %, the mean
-//! over directions within 12 %, in haze and in droplets (`cargo test --test fog adding_and_doubling`). A layer's transmittance
-//! is exact. The mean of led patches along a ray is within 1.4 % of the layer's mean density of a fine sum at p95 (`cargo test --lib
-//! tests::detour -- --nocapture`).
+//! The shader follows [`mod@reference`] to f32. The light of [`mod@reference`] itself, against adding and doubling over
+//! optical depths from 0.3 to 16 and three heights of the sun, more than 8 degrees from the sun: median 4.5 %, 95th
+//! percentile 19 %, the mean over directions within 12 %, in haze and in droplets
+//! (`cargo test --test fog adding_and_doubling`). A layer's transmittance is exact. The mean of led patches along a ray
+//! is within 1.4 % of the layer's mean density of a fine sum at p95 (`cargo test --lib tests::detour -- --nocapture`).
 //!
 //! # Cost
 //! One function call in the full-screen composition (`shaders/fog/lookup.wgsl`, `fog_along`): no loop, no texture, no
-//! table; about 12 exponentials and 12 square roots a pixel, fewer where light is neutral. On a software driver a frame in patches takes 25
-//! copies of a picture, and 38 where the wind leads them (`cargo bench --bench speed -- copies`).
+//! table; about 12 exponentials and 12 square roots a pixel, fewer where light is neutral. On a software driver a frame
+//! in patches takes 25 copies of a picture, and 38 where the wind leads them (`cargo bench --bench speed -- copies`).
 //!
 //! # Axes
 //! Rays and directions are (east, north, up) at the camera, as everywhere in a frame.
@@ -268,7 +268,7 @@ impl Viewpoint {
     }
 }
 
-/// Which fog is drawn.
+/// Fog that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Law {
     /// None.

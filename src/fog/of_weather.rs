@@ -21,8 +21,9 @@ use crate::{
 /// Least change of the optical depth of the longest curtain that shows.
 const LEAST_SHOWN: f64 = 1e-3;
 
-/// What a weather has in the air near the ground: its low layer of fog, mist or dust, and what falls outside of rain areas. Each has
-/// an extinction and heights of its own; a reported visibility at the station is that through both.
+/// Matter that a weather has in the air near the ground: its low layer of fog, mist or dust, and what falls outside of
+/// rain areas. Each has an extinction and heights of its own; a reported visibility at the station is that through
+/// both.
 pub(crate) struct LowAir {
     layer: Option<FogLayer>,
     falling: FallingLayer,
@@ -30,7 +31,8 @@ pub(crate) struct LowAir {
 }
 
 impl LowAir {
-    /// Of a weather. Patches of fog go with the air: `drift_m` is how far the wind has carried it (east, north).
+    /// Creates the low air of a weather. Patches of fog go with the air: `drift_m` is how far the wind has carried it
+    /// (east, north).
     pub fn new(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Self {
         Self { layer: ground_layer(c, seed, drift_m), falling: FallingLayer::new(c), detour: None }
     }
@@ -40,7 +42,7 @@ impl LowAir {
         Self { detour, ..self }
     }
 
-    /// The same without patches.
+    /// Creates the low air of a weather without patches.
     pub fn even(c: &Conditions) -> Self {
         let air = Self::new(c, 0, [0.0; 2]);
         Self { layer: air.layer.map(|layer| FogLayer { patches: None, ..layer }), ..air }
@@ -87,8 +89,8 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
         share => Phase::Between { diameter_um, g, share },
     };
     let covered = (2.0 * (1.0 - f.coverage)).clamp(0.0, 1.0);
-    // The pattern's values are spread exponentially about its mean of 1. The densest share c of it, which is the part of
-    // the ground under fog, has the mean 1 - ln c: there the extinction shall be the reported one.
+    // The pattern's values are spread exponentially about its mean of 1. The densest share c of it, which is the part
+    // of the ground under fog, has the mean 1 - ln c: there the extinction shall be the reported one.
     let inside = 1.0 - covered * f.coverage.max(0.01).ln();
     // Gusts lift more here and less there; what is reported is their mean.
     let gusts = if f.lifted > 0.0 { f.lifted * lifting::unevenness(&c.wind) } else { 0.0 };
@@ -129,7 +131,8 @@ pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-/// What the weather's low layer leaves of the light `above` it: sun, moon, and all else on level ground, lux.
+/// Returns the light that the weather's low layer leaves of that `above` it: sun, moon, and all else on level ground,
+/// lux.
 fn through_fog(
     c: &Conditions,
     place: &Place,
@@ -207,8 +210,8 @@ impl FogModel {
         Self { detour: detour.filter(|_| self.patch_amount > 0.0), ..self }
     }
 
-    /// Optical depth straight up from an altitude. The older laws have no height: what they say of the light above the ground is
-    /// nothing.
+    /// Optical depth straight up from an altitude. The older laws have no height: what they say of the light above the
+    /// ground is nothing.
     pub(crate) fn depth_above(&self, altitude_m: f64) -> f64 {
         match self.kind {
             FogKind::Clear | FogKind::Slab | FogKind::Exponential => layer_depth_above(self, altitude_m),
@@ -253,7 +256,8 @@ mod tests {
         }
     }
 
-    /// The pattern has the mean 1, reaches clear gaps, and is as dense inside its patches as `fog_layer` takes it to be.
+    /// The pattern has the mean 1, reaches clear gaps, and is as dense inside its patches as `fog_layer` takes it to
+    /// be.
     #[test]
     fn patches_hold_the_reported_extinction_inside() {
         let patches = Patches { amount: 1.0, size_m: 100.0, seed: 5, drift_m: [0.0; 2] };

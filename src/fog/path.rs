@@ -1,11 +1,11 @@
-//! A ray's way through a layer of fog and its optical depth, in f64: what the twin of `shaders/fog/lookup.wgsl` (`reference.rs`) needs of a ray
-//! before any light.
+//! A ray's way through a layer of fog and its optical depth, in f64: what the twin of `shaders/fog/lookup.wgsl`
+//! (`reference.rs`) needs of a ray before any light.
 //!
-//! With r0 the distance of the ray's start from the planet's centre, mu the cosine of its angle with the vertical and
-//! k = 1/r0, the altitude after t metres is h0 + q/(1 + sqrt(1 + k q)) with q = t (2 mu + k t): exact, and without the
+//! With r0 the distance of the ray's start from the planet's centre, mu the cosine of its angle with the vertical and k
+//! = 1/r0, the altitude after t metres is h0 + q/(1 + sqrt(1 + k q)) with q = t (2 mu + k t): exact, and without the
 //! cancellation of sqrt(r^2) - R. Seen from its lowest point (its start, its end, or where it is level) a ray only
-//! rises, and meets an altitude d higher after c/(mu + sqrt(mu^2 + k c)), c = d (2 + k d): a form that only adds. So a slab
-//! with linear flanks is three path lengths; a flank counts with its mean, in which the path's curvature enters.
+//! rises, and meets an altitude d higher after c/(mu + sqrt(mu^2 + k c)), c = d (2 + k d): a form that only adds. So a
+//! slab with linear flanks is three path lengths; a flank counts with its mean, in which the path's curvature enters.
 
 use super::reference::{FogKind, FogModel};
 
@@ -116,7 +116,8 @@ fn ray_course(m: &FogModel, h0: f64, mu: f64, t: f64) -> RayCourse {
     RayCourse { end_altitude, end_mu, level, passes, falls, low, low_mu, before, after, high, bend }
 }
 
-/// Distances along a ray at which it enters and leaves a slab. `reach`: distances of the slab's lower and upper edge from the ray's lowest point.
+/// Distances along a ray at which it enters and leaves a slab. `reach`: distances of the slab's lower and upper edge
+/// from the ray's lowest point.
 fn slab_ends(c: &RayCourse, t: f64, reach: [f64; 2]) -> (f64, f64) {
     let [near, far] = reach.map(|x| x.min(c.before));
     if c.passes {
@@ -213,7 +214,8 @@ fn exponential_path(m: &FogModel, h0: f64, mu: f64, t: f64, end_altitude: f64, e
     at(low) * (exponential_up(k, scale, 0.0, h0 - low) + exponential_up(k, scale, 0.0, end_altitude - low))
 }
 
-/// A ray's way through two media: the sum of their optical depths; its ends are the means of theirs, weighted by those depths.
+/// A ray's way through two media: the sum of their optical depths; its ends are the means of theirs, weighted by those
+/// depths.
 pub(super) fn both_paths(fog: &LayerPath, falling: &LayerPath) -> LayerPath {
     let depth = fog.depth + falling.depth;
     let share = if fog.depth > 0.0 { falling.depth / depth } else { 1.0 };

@@ -1,5 +1,5 @@
-//! What is uneven in a layer: patches of fog, and curtains of rain. Both are sums of waves whose mean along a ray is a closed
-//! form, so that nothing flickers however far away.
+//! Patterns of uneven layers: patches of fog, and curtains of rain. Both are sums of waves whose mean along a ray is a
+//! closed form, so that nothing flickers however far away.
 
 use glam::DVec3;
 
@@ -13,11 +13,12 @@ const PATCH_ROW: f64 = 8.0;
 pub const PATCH_WAVES: usize = 6;
 /// Number of plane waves in the curtains' pattern.
 pub const CURTAIN_WAVES: usize = 8;
-/// Distance from the eye at which curtains begin, m: what is nearer is drawn drop by drop or nearly so. `CURTAIN_START` of
-/// `shaders/fog/patterns.wgsl`.
+/// Distance from the eye at which curtains begin, m: what is nearer is drawn drop by drop or nearly so. `CURTAIN_START`
+/// of `shaders/fog/patterns.wgsl`.
 pub const CURTAIN_START_M: f64 = 30.0;
 
-/// Curtains of rain: the extinction of what falls is that of even rain times 1 + `amount` times the sum of the waves' cosines.
+/// Curtains of rain: the extinction of what falls is that of even rain times 1 + `amount` times the sum of the waves'
+/// cosines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curtains {
     /// Amplitude of each wave over the extinction of all that falls; 0 for none.
@@ -30,8 +31,8 @@ impl Curtains {
     /// Even rain.
     pub const NONE: Self = Self { amount: 0.0, waves: [(DVec3::ZERO, 0.0); CURTAIN_WAVES] };
 
-    /// What they add between two distances of a ray, over what an even layer has there, and the variance of that over all places.
-    /// In both only what lies beyond [`CURTAIN_START_M`] counts.
+    /// Returns what they add between two distances of a ray, relative to what an even layer has there, and the variance
+    /// of that over all places. In both only what lies beyond [`CURTAIN_START_M`] counts.
     pub fn mean(&self, origin: DVec3, direction: DVec3, first: f64, last: f64) -> (f64, f64) {
         let start = first.max(CURTAIN_START_M);
         if last <= start {
@@ -47,8 +48,9 @@ impl Curtains {
         (part * sum, 0.5 * part * part * squares)
     }
 
-    /// The optical depth that even rain of `depth` shows with them. On the mean over all places as much of the light behind is
-    /// left as even rain leaves, so signs are seen as far: the mean of e^-x of a normal x is e^(v/2) above that of its mean.
+    /// The optical depth that even rain of `depth` shows with them. On the mean over all places as much of the light
+    /// behind is left as even rain leaves, so signs are seen as far: the mean of e^-x of a normal x is e^(v/2) above
+    /// that of its mean.
     pub fn depth(&self, depth: f64, (added, variance): (f64, f64)) -> f64 {
         (depth * (1.0 + added)).max(0.0) + 0.5 * depth * depth * variance
     }
@@ -74,10 +76,11 @@ pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, las
     (1.0 + m.patch_amount * 0.5 * sum).max(0.0)
 }
 
-/// Parts of a ray over a map of detours, each with the detour of its middle: `DETOUR_PARTS` of `shaders/fog/patterns.wgsl`.
+/// Parts of a ray over a map of detours, each with the detour of its middle: `DETOUR_PARTS` of
+/// `shaders/fog/patterns.wgsl`.
 const DETOUR_PARTS: usize = 8;
 
-/// What the lags along a ray add to the sum of the waves' means.
+/// Returns what the lags along a ray add to the sum of the waves' means.
 fn detoured(m: &FogModel, detour: &Detour, (origin, direction): (DVec3, DVec3), [first, last]: [f64; 2]) -> f64 {
     let [enters, leaves] = detour.over(origin, direction);
     let (from, to) = (enters.max(first), leaves.min(last));
@@ -136,8 +139,8 @@ mod tests {
         }
     }
 
-    /// On the mean over places what lies behind is left as much of as by even rain, at every distance; without the variance it
-    /// would be more. Near the eye and far beyond all waves there is no pattern.
+    /// On the mean over places what lies behind is left as much of as by even rain, at every distance; without the
+    /// variance it would be more. Near the eye and far beyond all waves there is no pattern.
     #[test]
     fn as_much_is_left_as_by_even_rain() {
         let n = 20_000;

@@ -1,5 +1,5 @@
-//! Asks the drawn fog from outside: `probe fog --visibility V`. The GPU path is that of the composition (a depth buffer,
-//! `view_range`, `fog_along`, `fog_apply`), only the scene is made up.
+//! Asks the drawn fog from outside: `probe fog --visibility V`. The GPU path is that of the composition (a depth
+//! buffer, `view_range`, `fog_along`, `fog_apply`), only the scene is made up.
 
 use glam::{DVec2, DVec3};
 
@@ -21,8 +21,8 @@ const WIDTH: u32 = 256;
 /// So near that a distance of 0 errs by nothing that shows.
 const NEAR_M: f64 = 1e-6;
 
-/// What is left of contrast, and the transmittance at 550 nm, over each of `distances_m` (\[0, 1e9\] m) in a flat
-/// homogeneous layer of visibility `visibility_m` (\[1, 1e6\] m), as the GPU draws it.
+/// Measures the contrast that is left, and the transmittance at 550 nm, over each of `distances_m` (\[0, 1e9\] m) in a
+/// flat homogeneous layer of visibility `visibility_m` (\[1, 1e6\] m), as the GPU draws it.
 ///
 /// The contrast is measured in the drawn picture: the difference between a white and a black target behind the fog.
 ///

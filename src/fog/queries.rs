@@ -4,13 +4,13 @@ use glam::DVec3;
 
 use super::reference::{FogModel, fog_along, layer_depth_above};
 
-/// What lies between two points.
+/// Transmittance and visibility between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
     /// Share of light that gets through, per channel (620, 550, 450 nm of the default planet).
     pub transmittance: [f64; 3],
-    /// Meteorological optical range of the air along the way, m: where 550 nm light would fall to 5 % if all the way were
-    /// like this part of it; infinite where nothing stops light.
+    /// Meteorological optical range of the air along the way, m: where 550 nm light would fall to 5 % if all the way
+    /// were like this part of it; infinite where nothing stops light.
     pub visibility_m: f64,
 }
 use super::{CONTRAST_THRESHOLD, FogLayer, FogLight, Law, LowAir, Viewpoint};
@@ -98,9 +98,9 @@ pub fn vertical_visibility_m(layer: &FogLayer, altitude_m: f64, background_per_m
     Ok(0.5 * (lo + hi))
 }
 
-/// Illuminance at which a pilot still sees a light, lx, against a background of `background_cd_m2`:
-/// log10 E = 0.05 (log10 B)^2 + 0.573 log10 B - 6.667, not below 8e-7 lx, the value by night. The curve runs midway
-/// through the steps of ICAO's table (8e-7, 1e-5, 1e-4, 1e-3 lx; night, 50, 1000, 12000 cd/m2) (ICAO Doc 9328; WMO-No. 8).
+/// Illuminance at which a pilot still sees a light, lx, against a background of `background_cd_m2`: log10 E = 0.05
+/// (log10 B)^2 + 0.573 log10 B - 6.667, not below 8e-7 lx, the value by night. The curve runs midway through the steps
+/// of ICAO's table (8e-7, 1e-5, 1e-4, 1e-3 lx; night, 50, 1000, 12000 cd/m2) (ICAO Doc 9328; WMO-No. 8).
 pub fn light_threshold_lx(background_cd_m2: f64) -> f64 {
     let b = background_cd_m2.max(1.0).log10();
     10f64.powf(0.05 * b * b + 0.573 * b - 6.667).max(8e-7)

@@ -2,12 +2,12 @@
 //! (same names, same order of parameters). A ray's way through the layer is in `path.rs`.
 //!
 //! # Light along the ray
-//! The source J of scattered light (see [`super::light`]) depends on the depth below the layer's top only. Along the ray
-//! that depth is taken as linear in optical path (exact for flat layers), so
-//! each exponential of it integrates to an exponential. Of all scattering the share f is forward, about the ray, and
-//! leaves what arrives there; the transfer equation, whose extinction is the full one, becomes
-//! dI/dt = I - (1 - f) J - f K, with K the mean of the radiance over the forward lobe. A host's object is attenuated by
-//! the full depth, and what it hides is its share of the same field: a black target's contrast is e^-t.
+//! The source J of scattered light (see [`super::light`]) depends on the depth below the layer's top only. Along the
+//! ray that depth is taken as linear in optical path (exact for flat layers), so each exponential of it integrates to
+//! an exponential. Of all scattering the share f is forward, about the ray, and leaves what arrives there; the transfer
+//! equation, whose extinction is the full one, becomes dI/dt = I - (1 - f) J - f K, with K the mean of the radiance
+//! over the forward lobe. A host's object is attenuated by the full depth, and what it hides is its share of the same
+//! field: a black target's contrast is e^-t.
 //!
 //! * **Steep rays**: the lobe is narrow beside the angle to the horizon, K is the field in the ray's own direction, and
 //!   the solution is the scaled one, L = integral of J e^(-t') dt' + I_behind (e^(-t') - e^-t), with scaled depth t'.
@@ -28,7 +28,7 @@ use crate::light::PhaseLobes;
 use crate::scene::depth::RANGE_SKY_M;
 use crate::wind::Detour;
 
-/// What a model does: the shader's switch.
+/// Kind of a fog model: the shader's switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum FogKind {
@@ -71,7 +71,7 @@ impl Term {
 /// All that a frame's fog needs, prepared in f64; [`FogModel::uniform`] is its form for shaders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FogModel {
-    /// What is drawn.
+    /// Kind of fog that is drawn.
     pub kind: FogKind,
     /// Distance of the compatibility laws.
     pub distance: DistanceKind,
@@ -138,11 +138,11 @@ pub struct FogModel {
     pub patch_waves: [(DVec3, f64); PATCH_WAVES],
     /// How obstacles to the wind lead the patches.
     pub(crate) detour: Option<Detour>,
-    /// What falls through it and above it.
+    /// Precipitation through it and above it.
     pub falling: FallingModel,
 }
 
-/// What falls, as a medium of its own: the same everywhere below the altitude where it begins, and in curtains.
+/// Precipitation as a medium of its own: the same everywhere below the altitude where it begins, and in curtains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingModel {
     /// Extinction at 550 nm, 1/m; 0 where nothing falls.
@@ -160,7 +160,7 @@ impl FallingModel {
     pub const NONE: Self = Self { extinction: 0.0, top: [0.0; 2], inverse_flank: 1.0, curtains: Curtains::NONE };
 }
 
-/// What fog does to one pixel: `colour * transmittance + radiance`.
+/// Effect of fog on one pixel: `colour * transmittance + radiance`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct FogSample {
     /// Light scattered into the ray.
@@ -170,7 +170,7 @@ pub struct FogSample {
     /// Distance, m, up to which the air counts as before the fog. The mean from which the fog's light comes, less what
     /// lies inside a layer that keeps the light from the air too.
     pub distance: f64,
-    /// Of the air's light between the eye and an object, what is left inside a layer that keeps the light from it.
+    /// Share of the air's light between the eye and an object that is left inside a layer that keeps the light from it.
     pub shade: f64,
     /// Light of sun or moon that is scattered once into the ray and no more, over the phase function.
     pub once: DVec3,
@@ -253,8 +253,9 @@ fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64
     let mean = if depth > 1e-12 { ((ends[0] - ends[1]) / depth).clamp(-1.0, 1.0) } else { entry_mu };
     let slant = entry_mu + (mean - entry_mu) * 2.0 / (2.0 + depth);
     let level = DVec3::splat(slant);
-    // Optical path of the sunlight by way of the mean place where the ray scatters it: half of what is scattered forward
-    // counts as lost. All of it leaves a seam where rays pass from ground to sky; none, too bright an aureole in haze.
+    // Optical path of the sunlight by way of the mean place where the ray scatters it: half of what is scattered
+    // forward counts as lost. All of it leaves a seam where rays pass from ground to sky; none, too bright an aureole
+    // in haze.
     let way = depth * mean_place((1.0 - slant * m.inverse_mu0) * (1.0 - 0.5 * m.forward) * depth);
     let sunlight = ((above[0] - slant * way) * m.inverse_mu0 + way).max(0.0);
     let [even, peak] = fog_phase_after(&m.lobes, m.forward, m.smooth, sunlight, versine);
@@ -302,14 +303,14 @@ fn grazing_light(m: &FogModel, mu: f64, beam: DVec3, a: [DVec3; 2], slant: f64, 
     source_along(m, mu, beam, a, s, path, left) + (one - unforward) * edges
 }
 
-/// What fog does to the pixel whose ray starts at `origin` (relative to the camera) along `direction`, with an object
-/// at `range` metres, or `plane` from the camera's plane; [`RANGE_SKY_M`] for sky.
+/// Returns the effect of fog on the pixel whose ray starts at `origin` (relative to the camera) along `direction`, with
+/// an object at `range` metres, or `plane` from the camera's plane; [`RANGE_SKY_M`] for sky.
 pub fn fog_along(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, plane: f64) -> FogSample {
     fog_beside_drops(m, origin, direction, range, plane, 0.0)
 }
 
-/// As [`fog_along`], where `hidden` of the optical depth of what falls is drawn as drops, flakes and stones: that much of it is
-/// left out, and never more than all of it.
+/// As [`fog_along`], where `hidden` of the optical depth of what falls is drawn as drops, flakes and stones: that much
+/// of it is left out, and never more than all of it.
 pub fn fog_beside_drops(
     m: &FogModel,
     origin: DVec3,
@@ -327,7 +328,8 @@ pub fn fog_beside_drops(
     }
 }
 
-/// What the layer and what falls show and let through: each has an optical depth of its own, both share their light.
+/// Returns what the layer and what falls show and let through: each has an optical depth of its own, both share their
+/// light.
 fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, hidden: f64) -> FogSample {
     let mu = direction.z.clamp(-1.0, 1.0);
     let lift = origin.z;

@@ -44,7 +44,8 @@ impl Scattering {
         Self { angstrom: layer.angstrom, albedo: layer.albedo, phase: layer.phase }
     }
 
-    /// With what falls, of which a share of the optical depth is: phase functions mix as long as neither has twice the other's.
+    /// With what falls, of which a share of the optical depth is: phase functions mix as long as neither has twice the
+    /// other's.
     fn with_falling(&self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + (b - a) * share;
         let falling = Self::OF_FALLING;
@@ -142,8 +143,8 @@ impl FogModel {
 
     /// Prepares what a weather has in the air near the ground: its `layer` of fog, if there is any, and what falls.
     ///
-    /// Both have heights and an extinction of their own. They are lit as one medium, whose optical depth is that of both and which
-    /// scatters as they do on the mean.
+    /// Both have heights and an extinction of their own. They are lit as one medium, whose optical depth is that of
+    /// both and which scatters as they do on the mean.
     ///
     /// # Errors
     /// As [`FogModel::new`].
@@ -241,8 +242,8 @@ impl FogModel {
         self.lit = self.share_at(view.altitude_m);
     }
 
-    /// Light at an altitude under or in the layer, per channel: the sun's on a surface facing it (its aureole, the forward
-    /// peak of the scattering, included), and what else falls on level ground.
+    /// Light at an altitude under or in the layer, per channel: the sun's on a surface facing it (its aureole, the
+    /// forward peak of the scattering, included), and what else falls on level ground.
     pub fn light_at(&self, altitude_m: f64) -> Option<[[f64; 3]; 2]> {
         let solutions = self.solutions?;
         let depth = layer_depth_above(self, altitude_m).min(self.depth_total);
@@ -255,7 +256,8 @@ impl FogModel {
         Some([[a.0, b.0, c.0], [a.1, b.1, c.1]])
     }
 
-    /// Share of a beam from a source at zenith cosine `mu0` that reaches an altitude, per channel, its aureole included.
+    /// Share of a beam from a source at zenith cosine `mu0` that reaches an altitude, per channel, its aureole
+    /// included.
     pub fn beam_share(&self, mu0: f64, altitude_m: f64) -> [f64; 3] {
         let depth = layer_depth_above(self, altitude_m).min(self.depth_total);
         (self.scaling * (-depth / mu0.max(MIN_MU0))).to_array().map(f64::exp)
@@ -383,7 +385,7 @@ impl FogModel {
     }
 }
 
-/// What a pipeline that includes `fog/lookup.wgsl` can draw. A GPU steps over what the uniform does not ask for, so one
+/// Features that a pipeline with `fog/lookup.wgsl` can draw. A GPU steps over what the uniform does not ask for, so one
 /// pipeline for [`FogVariant::ALL`] serves it and need never be exchanged; software drivers execute every branch and
 /// are three times as fast with the least that a model needs ([`FogModel::variant`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -396,7 +398,7 @@ pub struct FogVariant {
     pub patches: bool,
     /// Patches that go round obstacles to the wind.
     pub detour: bool,
-    /// What falls.
+    /// Precipitation.
     pub falling: bool,
     /// Curtains of rain among it.
     pub curtains: bool,
@@ -440,7 +442,7 @@ impl FogVariant {
     }
 }
 
-/// What a deep layer of droplets under this light shows in the horizontal, one scaled depth below its top.
+/// Returns the radiance of a deep layer of droplets under this light in the horizontal, one scaled depth below its top.
 fn deep_layer_radiance(light: &FogLight) -> DVec3 {
     let lobes = PhaseLobes::new(&Phase::Droplets { diameter_um: 15.0 });
     let (_, albedo, asymmetry) = delta_scaling(1.0, lobes.moments());

@@ -1,4 +1,4 @@
-//! What a view draws of the fog: its block of numbers, and the constants of the composition.
+//! Fog in a view: its block of numbers, and the constants of the composition.
 
 use super::{FogKind, FogModel, FogVariant, HeldFog, LowAirUniform, candidates};
 use crate::{
@@ -18,7 +18,7 @@ pub(crate) struct FogView {
     block: UniformBlock,
     uniform: Box<LowAirUniform>,
     model: Option<FogModel>,
-    /// What shaders must be able to draw of it, if there is any.
+    /// Features of it that shaders must be able to draw, if there is any.
     variant: Option<FogVariant>,
     /// A software driver takes both ways of every branch.
     software: bool,
@@ -39,8 +39,8 @@ impl DrawnEffect for FogView {
     fn gather(&mut self, at: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
         let (now, law) = (at.now, at.held.of::<HeldFog>()?.law.as_ref());
         let model = now.scene.fog_model(law, now.seed, now.planet_radius_m)?.led_by(now.detour.clone());
-        // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes. Detours, which few scenes
-        // have, would cost every other one registers.
+        // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes. Detours,
+        // which few scenes have, would cost every other one registers.
         self.variant = (model.kind != FogKind::Clear || model.falling.extinction > 0.0)
             .then(|| if self.software { model.variant() } else { FogVariant::all_of(&model) });
         given.fog_depth = model.depth_above(now.scene.place.altitude_m);

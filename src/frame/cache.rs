@@ -1,4 +1,4 @@
-//! What a view keeps on the GPU between frames: pipelines, bind groups, blocks, and all that has the picture's size.
+//! GPU objects that a view keeps between frames: pipelines, bind groups, blocks, and all that has the picture's size.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What a call is refused for, before anything is done for it: a refusal costs nothing and changes nothing.
+//! Checks for which a call is refused before anything is done for it: a refusal costs nothing and changes nothing.
 
 use glam::{DMat4, DVec3};
 
@@ -34,8 +34,8 @@ impl View {
         Ok(())
     }
 
-    /// Refuses what is wrong with a call, its images aside. Before anything is done for it, so that it costs nothing and changes
-    /// nothing.
+    /// Refuses what is wrong with a call, its images aside. Before anything is done for it, so that it costs nothing
+    /// and changes nothing.
     ///
     /// # Errors
     /// As [`View::record`].
@@ -47,8 +47,8 @@ impl View {
         frame.validate()
     }
 
-    /// Refuses images that cannot be drawn into or read, whatever there is to draw now: a host should not learn of them by the
-    /// first rain.
+    /// Refuses images that cannot be drawn into or read, whatever there is to draw now: a host should not learn of them
+    /// by the first rain.
     pub(super) fn check_images(&self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         if !stages.draw() {
             return Ok(());

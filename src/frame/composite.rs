@@ -22,7 +22,7 @@ use crate::{
     surroundings::layout as around_layout,
 };
 
-/// What distinguishes one compiled variant from another.
+/// Properties that distinguish one compiled variant from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Variant {
     pub stages: Stages,
@@ -31,7 +31,7 @@ pub(super) struct Variant {
     pub sampling: Sampling,
     /// Whether the host gives depth, mask, classes, normals.
     pub images: [bool; 4],
-    /// What effects and frame have added.
+    /// Constants that effects and frame have added.
     pub constants: Pipeline,
     /// Kind of pixels that this variant draws.
     pub pixels: Pixels,
@@ -90,23 +90,23 @@ impl Variant {
     }
 }
 
-/// Pipelines held for all views of a device, who share them where their formats are the same: those of some stages and weathers. On
-/// a software driver one may take more than 10 MB.
+/// Pipelines held for all views of a device, who share them where their formats are the same: those of some stages and
+/// weathers. On a software driver one may take more than 10 MB.
 const MOST_PIPELINES: usize = 32;
 
 /// Most cached pipelines of the coarse grid and of the pixels that look it up: two or three for each weather.
 const MOST_EVEN: usize = 32;
 
-/// Likewise those that tell kinds of pixels apart.
+/// Most cached pipelines that tell kinds of pixels apart.
 const MOST_KINDS: usize = 8;
 
-/// What a pipeline that tells kinds of pixels apart is made for.
+/// Properties that a pipeline that tells kinds of pixels apart is made for.
 #[derive(Clone, Copy, PartialEq)]
 struct KindsPipeline {
     format: wgpu::TextureFormat,
     sampling: Sampling,
     constants: [Constant; 4],
-    /// Those between which the weather is even are kinds of their own.
+    /// Whether pixels between which the weather is even are kinds of their own.
     with_even: bool,
 }
 
@@ -133,7 +133,7 @@ impl SharedComposite {
 
 /// Pipelines of the composition, shared by the views of a device.
 pub(super) struct Composite {
-    /// Of group 0, by [`Sampling`].
+    /// Layouts of group 0, by [`Sampling`].
     layouts: [wgpu::BindGroupLayout; 3],
     layout_tables: wgpu::BindGroupLayout,
     layout_around: wgpu::BindGroupLayout,
@@ -141,7 +141,7 @@ pub(super) struct Composite {
     evens: LruCache<Variant, wgpu::RenderPipeline, MOST_EVEN>,
     kinds: LruCache<KindsPipeline, wgpu::RenderPipeline, MOST_KINDS>,
     none: wgpu::TextureView,
-    /// The same as a texture of layers.
+    /// Placeholder for a texture of layers.
     no_layers: wgpu::TextureView,
     reads_samples: bool,
     wind: WindPicture,
@@ -199,8 +199,8 @@ impl Composite {
         [&self.layouts[sampling as usize], &self.layout_tables, &self.layout_around]
     }
 
-    /// The bind group of the frame's block, those of the effects and their textures, the copy of the host's colour and its other
-    /// images; `None` if an effect gave no block.
+    /// The bind group of the frame's block, those of the effects and their textures, the copy of the host's colour and
+    /// its other images; `None` if an effect gave no block.
     pub fn bind(
         &self,
         device: &Device,
@@ -335,8 +335,8 @@ impl Composite {
         Ok([grid, cells.clone()])
     }
 
-    /// The pipeline that writes the kinds of the pixels of `variant`, compiled at its first use; `with_even` those too between which the
-    /// weather is even.
+    /// The pipeline that writes the kinds of the pixels of `variant`, compiled at its first use; `with_even` those too
+    /// between which the weather is even.
     ///
     /// # Errors
     /// A missing shader file.

@@ -11,7 +11,8 @@ use crate::{
 };
 
 impl View {
-    /// Draws the frame's diagnostic picture if its stage is among those `asked` for; `there` are those of which there is anything.
+    /// Draws the frame's diagnostic picture if its stage is among those `asked` for; `there` are those of which there
+    /// is anything.
     pub(super) fn draw_diagnostic<'a>(
         &mut self,
         of: &FrameContext<'a>,

@@ -1,4 +1,5 @@
-//! One draw of a view: from stages and moment to the composition's pass, what effects draw before it, and what is made of it.
+//! One draw of a view: from stages and moment to the composition's pass, what effects draw before it, and what is made
+//! of it.
 
 use super::{
     View,
@@ -102,8 +103,8 @@ impl View {
         at
     }
 
-    /// What the composition must be able to draw, with the constants that are the frame's own; and what is around it, brought up to
-    /// date.
+    /// Returns the variant that the composition must be able to draw, with the constants that are the frame's own; and
+    /// brings the host's surroundings up to date.
     pub(super) fn variant(&mut self, at: &DrawContext<'_>, composition: &mut Composition) -> Result<Variant> {
         let (frame, color) = (at.frame, at.picture());
         let stages = composition.stages();

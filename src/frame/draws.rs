@@ -1,5 +1,5 @@
-//! The draws that together make a picture of a weather: its grid and cells, and one for each kind of pixels. They are found once, since to look
-//! for a pipeline among all that are made takes longer than to record a draw.
+//! The draws that together make a picture of a weather: its grid and cells, and one for each kind of pixels. They are
+//! found once, since to look for a pipeline among all that are made takes longer than to record a draw.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::{
 /// Calls of a frame whose draws a view keeps.
 pub(super) const MOST_DRAWS: usize = 4;
 
-/// What draws are made for.
+/// Key that draws are made for.
 pub(super) struct DrawKey {
     pub of: Variant,
     pub has_grid: bool,
@@ -32,7 +32,7 @@ impl DrawKey {
 
 /// The pipelines of a variant's draws.
 pub(super) struct Draws {
-    /// Of the grid and its cells, where any pixel looks the weather up.
+    /// Pipelines of the grid and its cells, where any pixel looks the weather up.
     even: Option<[wgpu::RenderPipeline; 2]>,
     pixels: Kinds,
 }
@@ -60,8 +60,8 @@ impl From<Error> for PipelineNotReady {
 }
 
 impl Draws {
-    /// The draws of a variant. Unless `at_once`, each call compiles one large pipeline; until all are there, the answer is one
-    /// draw of all pixels ([`PipelineNotReady`]). `splits` is that of [`kinds::draws`].
+    /// The draws of a variant. Unless `at_once`, each call compiles one large pipeline; until all are there, the answer
+    /// is one draw of all pixels ([`PipelineNotReady`]). `splits` is that of [`kinds::draws`].
     ///
     /// # Errors
     /// That one draw; a missing shader file.

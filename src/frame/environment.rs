@@ -1,7 +1,8 @@
-//! What stands around the camera as a cube map with rougher levels, for reflections in the host's own things.
+//! Cube map of what stands around the camera, with rougher levels, for reflections in the host's own things.
 //!
-//! Created when the host first calls `View::environment`. Each frame draws one face, or all six where nothing of earlier frames may show or
-//! light and weather leap. `shaders/frame/environment.wgsl` asks the composition's own functions; `environment_filter.wgsl` makes the levels.
+//! Created when the host first calls `View::environment`. Each frame draws one face, or all six where nothing of
+//! earlier frames may show or light and weather leap. `shaders/frame/environment.wgsl` asks the composition's own
+//! functions; `environment_filter.wgsl` makes the levels.
 
 use glam::{DMat3, DVec3};
 
@@ -32,16 +33,17 @@ const STEP: usize = 256;
 /// Pipelines held for a view: with and without a low layer, over one host's images.
 const MOST_PIPELINES: usize = 4;
 
-/// What stands around the camera, for the host's own shaders; valid until the view is destroyed.
+/// Cube map of what stands around the camera, for the host's own shaders; valid until the view is destroyed.
 #[derive(Clone, Debug)]
 pub struct Environment {
-    /// Six faces of RGBA half floats with levels down to one texel, in the order and axes of cube maps (+X -X +Y -Y +Z -Z), where X, Y
-    /// and Z are the axes of the host's world. Level m is what a mirror of roughness m over the number of the last level shows.
+    /// Six faces of RGBA half floats with levels down to one texel, in the order and axes of cube maps (+X -X +Y -Y +Z
+    /// -Z), where X, Y and Z are the axes of the host's world. Level m is what a mirror of roughness m over the number
+    /// of the last level shows.
     pub texture: wgpu::Texture,
     /// Multiply texels by this to have cd/m^2; 0 before the first frame.
     pub cd_m2_per_unit: f64,
-    /// Multiply texels by this to have units of the last frame's colour: of a scene-linear host; for others display values before the
-    /// tone curve.
+    /// Multiply texels by this to have units of the last frame's colour: of a scene-linear host; for others display
+    /// values before the tone curve.
     pub light_scale: f64,
 }
 
@@ -89,7 +91,7 @@ fn apart(blocks: impl Iterator<Item = FaceUniform>) -> Vec<u8> {
 /// Light and weather at a camera, to see when they leap.
 #[derive(Clone, Copy, PartialEq)]
 struct EnvironmentInputs {
-    /// Of what doubles and halves, the logarithms; altitude, share of a closed layer.
+    /// Logarithms of what doubles and halves; altitude, share of a closed layer.
     sizes: [f64; 6],
     to_lamp: DVec3,
     world_to_enu: DMat3,
@@ -125,7 +127,7 @@ impl EnvironmentInputs {
 /// Samples of the host's images, and the constants of a pipeline that draws every part.
 type PipelineKind = (Sampling, Constants);
 
-/// What the levels are made with.
+/// Pipeline and bind groups with which the levels are made.
 struct Filter {
     pipeline: wgpu::RenderPipeline,
     /// Over each level of the source but the last, and over all of them.
@@ -143,7 +145,7 @@ pub(super) struct EnvironmentMap {
     group: wgpu::BindGroup,
     pipelines: LruCache<PipelineKind, wgpu::RenderPipeline, MOST_PIPELINES>,
     filter: Filter,
-    /// What stood there when the last face was drawn; none: all are to be drawn.
+    /// Light and weather when the last face was drawn; none: all are to be drawn.
     drawn: Option<EnvironmentInputs>,
     next: u32,
     frame_id: Option<u64>,
@@ -309,7 +311,7 @@ impl EnvironmentMap {
         })
     }
 
-    /// Of both cubes, levels and all.
+    /// Returns the bytes of both cubes, levels and all.
     pub fn bytes(&self) -> u64 {
         let of = |levels: u32| (0..levels).map(|level| u64::from(SIZE >> level).pow(2)).sum::<u64>();
         8 * u64::from(FACES) * (of(LEVELS) + of(SOURCE_LEVELS))
@@ -391,8 +393,8 @@ impl EnvironmentMap {
 }
 
 impl View {
-    /// A cube map of what stands around the camera, for reflections in the host's own things: drawn by the first call of every frame
-    /// that has [`Stages::BACKGROUND`] or [`Stages::MEDIUM`], from the first call of this function on.
+    /// A cube map of what stands around the camera, for reflections in the host's own things: drawn by the first call
+    /// of every frame that has [`Stages::BACKGROUND`] or [`Stages::MEDIUM`], from the first call of this function on.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.

@@ -1,10 +1,10 @@
 //! Sky, air and fog at every fourth pixel, interpolated where they vary smoothly.
 //!
-//! Sky, air and fog change slowly from pixel to pixel, but for edges. A small pass draws what they add to every fourth pixel of every
-//! fourth row, another one finds the cells in which straight lines between texels are within a thousandth of the curve through them and their
-//! neighbours. A pixel of such a cell takes what the four say if what it shows is as far away as what they show. All others are
-//! drawn as ever: edges, thin things, the edge of fog, the neighbourhood of the sun's disc. The grid has no clouds: each pixel lays its own over
-//! what it looks up.
+//! Sky, air and fog change slowly from pixel to pixel, but for edges. A small pass draws what they add to every fourth
+//! pixel of every fourth row, another one finds the cells in which straight lines between texels are within a
+//! thousandth of the curve through them and their neighbours. A pixel of such a cell takes what the four say if what it
+//! shows is as far away as what they show. All others are drawn as ever: edges, thin things, the edge of fog, the
+//! neighbourhood of the sun's disc. The grid has no clouds: each pixel lays its own over what it looks up.
 
 use super::{composite::Variant, kinds::Pixels};
 use crate::{
@@ -23,8 +23,8 @@ const LEAST_SIDE: u32 = 64;
 const WEATHER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
-/// Whether a grid may stand for parts of the picture of `all`: not where something in it changes from pixel to pixel, nor where samples
-/// have depths of their own.
+/// Whether a grid may stand for parts of the picture of `all`: not where something in it changes from pixel to pixel,
+/// nor where samples have depths of their own.
 pub(super) fn may_be(all: &Variant) -> bool {
     let weather = all.stages.has(Stages::BACKGROUND) || all.stages.has(Stages::MEDIUM);
     let traits = all.constants.traits;
@@ -43,11 +43,11 @@ pub(super) fn grid_of(all: &Variant) -> Variant {
     }
 }
 
-/// What grids are made with, for all views of a device.
+/// Layouts and sampler with which grids are made, for all views of a device.
 pub(super) struct EvenLayouts {
-    /// Of what the cells are found from.
+    /// Layout of what the cells are found from.
     pub weather: wgpu::BindGroupLayout,
-    /// Of the grid and its cells, group 3 of the draws.
+    /// Layout of the grid and its cells, group 3 of the draws.
     pub grid: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
 }

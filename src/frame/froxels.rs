@@ -1,7 +1,7 @@
 //! The veil of air and fog as textures, for the host's own transparent shaders (glass, lamps, smoke).
 //!
-//! Created when the host first calls `frame_textures`, and drawn in each frame from then on. The mapping is that of `shaders/frame/froxels.wgsl` and of the
-//! published snippets.
+//! Created when the host first calls `frame_textures`, and drawn in each frame from then on. The mapping is that of
+//! `shaders/frame/froxels.wgsl` and of the published snippets.
 
 use crate::{
     error::Result,
@@ -17,7 +17,7 @@ use crate::{
 const TILE: (u32, u32) = (32, 18);
 const TILES: (u32, u32) = (8, 4);
 
-/// What a host's transparent shader samples; valid until the view is destroyed.
+/// Textures that a host's transparent shader samples; valid until the view is destroyed.
 #[derive(Clone, Debug)]
 pub struct FrameTextures {
     /// Light that air and fog add, RGB, in units of [`light_scale`](Self::light_scale); for hosts with a tone-mapped

@@ -1,4 +1,4 @@
-//! What a view knows of its last calls.
+//! History of a view: its last calls.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ pub(super) struct FrameHistory {
     pub report: Report,
     /// The scene of the last call, for the next calls of the frame.
     pub scene: Option<Box<KeptScene>>,
-    /// What the last measured call took, its wait for earlier work included.
+    /// Time that the last measured call took, its wait for earlier work included.
     pub last_call: Option<Duration>,
 }
 

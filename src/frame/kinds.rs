@@ -1,9 +1,10 @@
 //! Kinds of pixels that are drawn one after the other, each with no more of the composition than it needs.
 //!
-//! A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind only, before their
-//! shader runs. All of them are in one pass. Pixels whose weather is looked up in its grid ([`super::even`]) are kinds of their own. The others
-//! a software driver draws apart by what they show, since it takes both ways of every branch: a pixel of the sky would pay for the air before
-//! things, a thing for the sky behind it, and the sky for the planet's ground below it. A GPU branches, and draws them with one pipeline.
+//! A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind
+//! only, before their shader runs. All of them are in one pass. Pixels whose weather is looked up in its grid
+//! ([`super::even`]) are kinds of their own. The others a software driver draws apart by what they show, since it takes
+//! both ways of every branch: a pixel of the sky would pay for the air before things, a thing for the sky behind it,
+//! and the sky for the planet's ground below it. A GPU branches, and draws them with one pipeline.
 
 use super::composite::Variant;
 use crate::{
@@ -11,32 +12,33 @@ use crate::{
     stage::Stages,
 };
 
-/// Of the depth attachment: its values are exact.
+/// Format of the depth attachment: its values are exact.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Which pixels a draw of the composition is for.
+/// Pixels that a draw of the composition is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pixels {
     /// All of them.
     All,
     /// Pixels that are not interpolated from the coarse grid.
     Uneven,
-    /// Those at the far depth, above the level of the eye: sky.
+    /// Pixels at the far depth, above the level of the eye: sky.
     Above,
-    /// The same below it: the planet's own ground, and from high up the sky over it.
+    /// Pixels at the far depth, below the level of the eye: the planet's own ground, and from high up the sky over it.
     Below,
-    /// Those on which the host drew.
+    /// Pixels on which the host drew.
     Drawn,
     /// Pixels interpolated from the coarse grid ([`super::even`]).
     Even,
-    /// Those of them on which the host drew, where they have a draw of their own ([`draws_apart`]).
+    /// Pixels of [`Pixels::Even`] on which the host drew, where they have a draw of their own ([`draws_apart`]).
     EvenDrawn,
     /// No pixels of the picture, but the texels of the weather's grid.
     Grid,
 }
 
 impl Pixels {
-    /// The depth that stands for them (`shaders/frame/kinds.wgsl`) and the test that lets only them pass; no test for all.
+    /// The depth that stands for them (`shaders/frame/kinds.wgsl`) and the test that lets only them pass; no test for
+    /// all.
     pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
         let depth = match self {
             Self::All | Self::Grid => return None,
@@ -65,8 +67,8 @@ impl Pixels {
     }
 }
 
-/// Whether pixels that look the weather up and on which the host drew have a draw of their own, which reads depth: water and snow lie on them,
-/// and clouds may stand before them.
+/// Whether pixels that look the weather up and on which the host drew have a draw of their own, which reads depth:
+/// water and snow lie on them, and clouds may stand before them.
 pub(super) fn draws_apart(all: &Variant) -> bool {
     all.stages.has(Stages::SURFACE) || all.constants.traits.is_overlaid
 }
@@ -74,9 +76,9 @@ pub(super) fn draws_apart(all: &Variant) -> bool {
 /// Most draws of a picture.
 pub(super) const DRAWS: usize = 5;
 
-/// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have depths of their own, or
-/// rays are marched. With a `grid`, pixels between which the weather is even have draws of their own. If `splits`, the others have a draw for
-/// each kind of what they show.
+/// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have
+/// depths of their own, or rays are marched. With a `grid`, pixels between which the weather is even have draws of
+/// their own. If `splits`, the others have a draw for each kind of what they show.
 pub(super) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];

@@ -1,15 +1,15 @@
-//! The weather's light in the host's own numbers: what a host sets its lamps and ambient light to, so that its scene is lit as
-//! Welkin lights the sky.
+//! The weather's light in the host's own numbers: what a host sets its lamps and ambient light to, so that its scene is
+//! lit as Welkin lights the sky.
 //!
-//! A surface of albedo a that lies in sun and sky reflects the luminance L = a / pi (E_sun max(n.l, 0) + E_sky) (Lambert
-//! 1760). A scene-linear host computes just that, in its unit. A display host has no luminance: its numbers are what Welkin's tone
-//! curve T would have made of L at the exposure e. T bends, so that no pair of lights is right for every albedo; this one is right
-//! for a grey card of albedo 0.18, in shade and where it faces the sun:
+//! A surface of albedo a that lies in sun and sky reflects the luminance L = a / pi (E_sun max(n.l, 0) + E_sky)
+//! (Lambert 1760). A scene-linear host computes just that, in its unit. A display host has no luminance: its numbers
+//! are what Welkin's tone curve T would have made of L at the exposure e. T bends, so that no pair of lights is right
+//! for every albedo; this one is right for a grey card of albedo 0.18, in shade and where it faces the sun:
 //!
 //! ambient = T(e a E_sky / pi) / a,   direct = (T(e a (E_sun + E_sky) / pi) - T(e a E_sky / pi)) / a
 //!
-//! A host that multiplies numbers encoded by the sRGB curve (fixed-function OpenGL without an sRGB framebuffer) needs them with
-//! both sides encoded: enc(T) / enc(a).
+//! A host that multiplies numbers encoded by the sRGB curve (fixed-function OpenGL without an sRGB framebuffer) needs
+//! them with both sides encoded: enc(T) / enc(a).
 
 use std::f64::consts::PI;
 
@@ -21,8 +21,8 @@ use crate::{context::Context, error::Result, light::tone::srgb_encode};
 /// Albedo of the photographer's grey card.
 const GREY: f64 = 0.18;
 
-/// Light for the host's own shading of one frame. A surface of colour c (in the frame's numbers) whose normal is n shows
-/// c * (ambient + direct * max(n . direction, 0)).
+/// Light for the host's own shading of one frame. A surface of colour c (in the frame's numbers) whose normal is n
+/// shows c * (ambient + direct * max(n . direction, 0)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameLight {
     /// Unit vector in the host's world towards the sun, or towards the moon where that is brighter.
@@ -31,15 +31,16 @@ pub struct FrameLight {
     pub direct: [f64; 3],
     /// Light of sky, clouds and fog on level ground.
     pub ambient: [f64; 3],
-    /// Light that the ground sends up, on a surface that faces down: for hosts with one ambient light above and one below.
+    /// Light that the ground sends up, on a surface that faces down: for hosts with one ambient light above and one
+    /// below.
     pub ambient_below: [f64; 3],
     /// Display units per cd/m^2 with which Welkin draws the frame.
     pub exposure: f64,
 }
 
 impl Frame<'_> {
-    /// The light of sun, moon and sky at the camera, in the numbers of the frame's [`ColorSpace`] at its exposure. The images are
-    /// not looked at.
+    /// The light of sun, moon and sky at the camera, in the numbers of the frame's [`ColorSpace`] at its exposure. The
+    /// images are not looked at.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field that is out of range.
@@ -70,7 +71,7 @@ impl Frame<'_> {
     }
 }
 
-/// What the host computes with.
+/// Settings that the host computes with.
 struct Numbers {
     space: ColorSpace,
     unit: f64,
@@ -79,7 +80,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    /// What white shows under `lux`, as the grey card has it.
+    /// Returns the number that white shows under `lux`, as the grey card has it.
     fn of(&self, lux: f64) -> f64 {
         let shown = || self.curve.apply(self.exposure * GREY * lux / PI);
         match self.space {

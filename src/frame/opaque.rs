@@ -1,5 +1,5 @@
-//! The opaque step: what effects draw into the host's colour and depth, in one pass before the composition. There is no pass where no
-//! effect has anything opaque.
+//! The opaque step: what effects draw into the host's colour and depth, in one pass before the composition. There is no
+//! pass where no effect has anything opaque.
 
 use super::View;
 use crate::{
@@ -17,7 +17,7 @@ use crate::{
     },
 };
 
-/// What the step holds between frames.
+/// State that the step holds between frames.
 pub(super) struct OpaqueStep {
     layout: wgpu::BindGroupLayout,
     /// Stands for a mask where the host gives none.

@@ -11,7 +11,7 @@ use crate::{
     stage::{DrawContext, Frame, Stages},
 };
 
-/// Which parts a picture of these stages has, and what each costs in it.
+/// Returns which parts a picture of these stages has, and what each costs in it.
 pub(super) fn present(effects: &mut Effects, at: &DrawContext<'_>, stages: Stages) -> Presence {
     let place = |part: &Part| PARTS.iter().position(|p| p.name == part.name);
     let (pair, work) = together(&at.now.scene);
@@ -31,15 +31,15 @@ pub(super) fn present(effects: &mut Effects, at: &DrawContext<'_>, stages: Stage
     present
 }
 
-/// What the planner compares pictures by.
+/// Returns the camera, sun and weather by which the planner compares pictures.
 pub(super) fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
     let forward = frame.camera.rotation().transpose() * DVec3::NEG_Z;
     Situation { position: frame.camera.position, forward, sun: scene.sun.direction, conditions: scene.conditions }
 }
 
 impl View {
-    /// Sets how wrong the view's pictures may be: what they do not need is left out from some frames later on. Unchanged
-    /// after an error. Default: everything is drawn.
+    /// Sets how wrong the view's pictures may be: what they do not need is left out from some frames later on.
+    /// Unchanged after an error. Default: everything is drawn.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field and its range.
@@ -61,12 +61,12 @@ impl View {
         Ok(())
     }
 
-    /// The plan as text, for [`View::load_plan`] on other channels or another day: the parts that are drawn, and the sky's
-    /// settings.
+    /// The plan as text, for [`View::load_plan`] on other channels or another day: the parts that are drawn, and the
+    /// sky's settings.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] while the view has a budget but has not gauged its picture yet: some frames follow each jump
-    /// of camera, sun or weather.
+    /// [`Status::WrongOrder`] while the view has a budget but has not gauged its picture yet: some frames follow each
+    /// jump of camera, sun or weather.
     pub fn save_plan(&self) -> Result<String> {
         let plan = self.plan();
         if plan.parts.iter().any(|p| p.reason == Reason::NotGauged) {
@@ -75,8 +75,8 @@ impl View {
         Ok(plan::write(PARTS, &plan.rungs(), &self.effects.saved_with()))
     }
 
-    /// Pins a plan that [`View::save_plan`] wrote ([`plan::Wish::rung`]); the rest of the budget stays, and says what the
-    /// plan does not keep. Unchanged after an error.
+    /// Pins a plan that [`View::save_plan`] wrote ([`plan::Wish::rung`]); the rest of the budget stays, and says what
+    /// the plan does not keep. Unchanged after an error.
     ///
     /// # Errors
     /// [`Status::Parse`] for what is no such plan or of another version, naming line and column or the field;
@@ -89,7 +89,7 @@ impl View {
         self.set_budget(budget)
     }
 
-    /// What the last frame drew of the weather, and why.
+    /// Returns the plan of the last frame: what it drew of the weather, and why.
     pub fn plan(&self) -> &Plan {
         self.planner.plan()
     }

@@ -1,8 +1,9 @@
-//! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible: a scene lit without units, its white at 1, is black in
-//! daylight at 1 cd/m^2 a unit, and nothing else would say why.
+//! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible: a scene lit without units, its white at 1, is
+//! black in daylight at 1 cd/m^2 a unit, and nothing else would say why.
 //!
-//! Formats that end at 1 tell by themselves. Of floats a few rows of the host's picture are read back without waiting, in a
-//! view's third frame and in every 1024th from there. What is found wrong is logged as a warning, once until it was right again.
+//! Formats that end at 1 tell by themselves. Of floats a few rows of the host's picture are read back without waiting,
+//! in a view's third frame and in every 1024th from there. What is found wrong is logged as a warning, once until it
+//! was right again.
 
 use std::sync::{
     Arc,
@@ -19,10 +20,10 @@ const ROWS: u32 = 8;
 /// The frame of a view that is looked at first, and how many lie between two.
 const FIRST: u64 = 3;
 const EVERY: u64 = 1024;
-/// White in the weather's light over the brightest thing in the picture, from which on the unit cannot be right. A room whose lamps are
-/// off has less.
+/// White in the weather's light over the brightest thing in the picture, from which on the unit cannot be right. A room
+/// whose lamps are off has less.
 const DARKER: f64 = 2000.0;
-/// The same the other way round, by day.
+/// Brightest thing in the picture over white in the weather's light, from which on the unit cannot be right by day.
 const BRIGHTER: f64 = 2000.0;
 const DAY_CD_M2: f64 = 100.0;
 
@@ -55,8 +56,8 @@ pub(super) struct LuminanceUnitCheck {
 }
 
 impl LuminanceUnitCheck {
-    /// Goes on with a readback under way, and looks at the picture of this frame if its turn has come; `white_cd_m2` is the
-    /// luminance of white on level ground, `with_background` says that BACKGROUND may be in the picture already.
+    /// Goes on with a readback under way, and looks at the picture of this frame if its turn has come; `white_cd_m2` is
+    /// the luminance of white on level ground, `with_background` says that BACKGROUND may be in the picture already.
     pub fn watch(
         &mut self,
         device: &Device,
@@ -146,7 +147,8 @@ impl LuminanceUnitCheck {
         }
     }
 
-    /// Warns if a picture whose brightest pixels have `found` cd/m^2 cannot be lit by a light in which white has `white`.
+    /// Warns if a picture whose brightest pixels have `found` cd/m^2 cannot be lit by a light in which white has
+    /// `white`.
     fn judge(&mut self, found: f64, white: f64, unit: f64) {
         let wrong = found * DARKER < white || (white > DAY_CD_M2 && found > white * BRIGHTER);
         if wrong && !self.has_warned {
@@ -162,8 +164,8 @@ impl LuminanceUnitCheck {
     }
 }
 
-/// Luminance of the brightest pixels, cd/m^2; none of a picture in which nothing is drawn. With the sky in it, that of the darker
-/// fifth that is not black: what is not sky.
+/// Luminance of the brightest pixels, cd/m^2; none of a picture in which nothing is drawn. With the sky in it, that of
+/// the darker fifth that is not black: what is not sky.
 fn brightest(bytes: &[u8], looked: &WatchedPicture) -> Option<f64> {
     let half = |b: &[u8], i: usize| f64::from(half::f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32());
     let float =

@@ -47,7 +47,7 @@ impl View {
         Ok(Self { device, effects, planner, cache, history: FrameHistory::default() })
     }
 
-    /// What the last frame took and showed.
+    /// Returns the report on what the last frame took and showed.
     pub fn report(&self) -> &Report {
         &self.history.report
     }
@@ -77,8 +77,9 @@ impl View {
     /// The calls of one frame share `frame.frame_id` and come in the order of the stages; a new id begins a new frame.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] and [`crate::Status::Unsupported`] naming the field, [`crate::Status::WrongOrder`] if
-    /// a stage comes twice or late, [`crate::Status::DeviceLost`]. After an error nothing was drawn by this call.
+    /// [`crate::Status::InvalidArgument`] and [`crate::Status::Unsupported`] naming the field,
+    /// [`crate::Status::WrongOrder`] if a stage comes twice or late, [`crate::Status::DeviceLost`]. After an error
+    /// nothing was drawn by this call.
     pub fn record(&mut self, context: &Context, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let device = self.device.clone();
         self.check_call(frame, stages)?;
@@ -93,8 +94,8 @@ impl View {
         if frame_id == self.history.report.frame_id { self.history.recorded } else { Stages(0) }
     }
 
-    /// After a call that failed once it was recorded: the frame has the stages that it had before, so that the host may record
-    /// it again, and nothing is kept that there may have been no memory for.
+    /// After a call that failed once it was recorded: the frame has the stages that it had before, so that the host may
+    /// record it again, and nothing is kept that there may have been no memory for.
     pub(crate) fn take_back(&mut self, recorded: Stages) {
         self.history.recorded = recorded;
         self.forget_images();
@@ -106,8 +107,8 @@ impl View {
         self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
     }
 
-    /// Lets go the picture where it is a window's image: it goes to the screen next, and DXGI resizes a window only when
-    /// nobody holds its images.
+    /// Lets go the picture where it is a window's image: it goes to the screen next, and DXGI resizes a window only
+    /// when nobody holds its images.
     fn let_go_of_window(&mut self, frame: &Frame<'_>) {
         if frame.color.is_some_and(|color| self.device.is_of_window(color)) {
             self.cache.target = KeptView::default();
@@ -134,8 +135,8 @@ impl View {
         held.into_iter().map(|(pixels, program, constants)| (format!("{pixels:?}"), program, constants)).collect()
     }
 
-    /// Makes what the view needs of the picture's size, before anything of the frame is recorded: a large target is what memory
-    /// may be too small for.
+    /// Makes what the view needs of the picture's size, before anything of the frame is recorded: a large target is
+    /// what memory may be too small for.
     fn hold_images(&mut self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let Some(color) = frame.color else { return Ok(()) };
         let (made, bytes) = (self.hold_copy(color)?, self.bytes());
@@ -181,7 +182,8 @@ impl View {
     /// As [`View::record`], into a Rust host's own encoder; the host submits.
     ///
     /// # Errors
-    /// As [`View::record`]; [`crate::Status::Unsupported`] with `MEASURE`: timing needs the submission, which the host makes here.
+    /// As [`View::record`]; [`crate::Status::Unsupported`] with `MEASURE`: timing needs the submission, which the host
+    /// makes here.
     pub fn record_into(
         &mut self,
         context: &Context,

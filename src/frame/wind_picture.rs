@@ -26,7 +26,7 @@ struct WindUniform {
     pad: [u32; 2],
 }
 
-/// What all pictures of the wind have in common.
+/// Layout and sampler that all pictures of the wind have in common.
 pub(super) struct WindPicture {
     pub layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,

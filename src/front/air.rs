@@ -1,7 +1,7 @@
 //! Air, sky and fog by their names: what lies between two places, the sky's light and its tables, the fog laws.
 //!
-//! Queries are closed forms in f64 that need no device and no frame, but for [`Context::ambient_at`], which looks into the sky's
-//! tables. Positions are in the host's world.
+//! Queries are closed forms in f64 that need no device and no frame, but for [`Context::ambient_at`], which looks into
+//! the sky's tables. Positions are in the host's world.
 
 use std::sync::MutexGuard;
 
@@ -20,8 +20,8 @@ use crate::{
 };
 
 impl Context {
-    /// What air, fog, rain, snow and clouds drawn as a volume between `from` and `to` leave of the light at simulation time `time_s`, rain areas on the mean
-    /// over their curtains.
+    /// Finds the light that air, fog, rain, snow and clouds drawn as a volume let through between `from` and `to` at
+    /// simulation time `time_s`, rain areas on the mean over their curtains.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if a position is no place, or both are the same; for times as
@@ -41,9 +41,10 @@ impl Context {
         Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
     }
 
-    /// Slant visual range: how far a black object is seen from `position` along `direction`, a unit vector (east, north, up) there, at
-    /// simulation time `time_s`, m. Its contrast with what lies behind it falls to 5 % where [`Context::between`] leaves 5 % of the light
-    /// of 550 nm: by air, fog, rain, snow, rain areas, and clouds that are drawn as a volume. Infinite where more is left at the end of the air or on the planet's ground.
+    /// Slant visual range: how far a black object is seen from `position` along `direction`, a unit vector (east,
+    /// north, up) there, at simulation time `time_s`, m. Its contrast with what lies behind it falls to 5 % where
+    /// [`Context::between`] leaves 5 % of the light of 550 nm: by air, fog, rain, snow, rain areas, and clouds that are
+    /// drawn as a volume. Infinite where more is left at the end of the air or on the planet's ground.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place or the direction no unit vector; for times as
@@ -102,11 +103,13 @@ impl Context {
         Ok(through.map(|t| (t * left).min(1.0)))
     }
 
-    /// The sky's light on surfaces of any slope at `position` and simulation time `time_s`: nine spherical harmonics of radiance, cd/m^2 a
-    /// channel, in (east, north, up) of the place, the lit ground as the lower half. Clouds dim and whiten it.
+    /// The sky's light on surfaces of any slope at `position` and simulation time `time_s`: nine spherical harmonics of
+    /// radiance, cd/m^2 a channel, in (east, north, up) of the place, the lit ground as the lower half. Clouds dim and
+    /// whiten it.
     ///
-    /// Reads the sky's tables: builds them first if no frame did, and waits for the GPU once after every change of the air. The clear
-    /// sky's pattern is that of the air that the tables show; how bright all of it is, and clouds and fog, are those of `time_s`.
+    /// Reads the sky's tables: builds them first if no frame did, and waits for the GPU once after every change of the
+    /// air. The clear sky's pattern is that of the air that the tables show; how bright all of it is, and clouds and
+    /// fog, are those of `time_s`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`];
@@ -163,10 +166,11 @@ impl Context {
             .map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked while building the sky"))
     }
 
-    /// Builds the tables of the sky for the weather of the present time now, in sixteen parts with a wait for the GPU after
-    /// each, and shows them, so that no frame has to. Tables that another context of the device shows, or that lie in
-    /// [`ContextDesc::cache_dir`](crate::context::ContextDesc::cache_dir), are taken instead; new ones are written there. `progress` is told the share done,
-    /// 1 at last; when it answers false the build ends, and the context stays as it was.
+    /// Builds the tables of the sky for the weather of the present time now, in sixteen parts with a wait for the GPU
+    /// after each, and shows them, so that no frame has to. Tables that another context of the device shows, or that
+    /// lie in [`ContextDesc::cache_dir`](crate::context::ContextDesc::cache_dir), are taken instead; new ones are
+    /// written there. `progress` is told the share done, 1 at last; when it answers false the build ends, and the
+    /// context stays as it was.
     ///
     /// # Errors
     /// [`Status::Aborted`], [`Status::DeviceLost`], or a GPU fault.
@@ -180,9 +184,10 @@ impl Context {
         self.sky()?.show_now(set)
     }
 
-    /// Puts another planet in place of the one before: air, ground and sun. The sky's tables follow as after a change of the weather,
-    /// by a draft that fades in within sixteen frames; where radius, top or wavelengths are others, the next frame cuts to a
-    /// draft of them, and later ones refine it. Steps of the simulated ground that remain are done under the planet before.
+    /// Puts another planet in place of the one before: air, ground and sun. The sky's tables follow as after a change
+    /// of the weather, by a draft that fades in within sixteen frames; where radius, top or wavelengths are others, the
+    /// next frame cuts to a draft of them, and later ones refine it. Steps of the simulated ground that remain are done
+    /// under the planet before.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -190,11 +195,13 @@ impl Context {
         self.world.set_planet(*planet)
     }
 
-    /// Sets how the sky is drawn. Views take the new tables up in their next frame, which shows a draft as a first one does, unless
-    /// [`Context::build_sky`] has built them. A plan that was loaded or made before stays. The same settings again change nothing.
+    /// Sets how the sky is drawn. Views take the new tables up in their next frame, which shows a draft as a first one
+    /// does, unless [`Context::build_sky`] has built them. A plan that was loaded or made before stays. The same
+    /// settings again change nothing.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field, [`crate::Status::DeviceLost`], or a GPU fault; nothing changes then.
+    /// [`crate::Status::InvalidArgument`] naming the field, [`crate::Status::DeviceLost`], or a GPU fault; nothing
+    /// changes then.
     pub fn set_sky_settings(&mut self, settings: &SkySettings) -> Result<()> {
         let library = self.shared().get(|| Ok(SkyLibrary::default()))?;
         let device = self.device().clone();
@@ -248,7 +255,8 @@ mod tests {
     fn an_even_sky_lights_a_level_surface_by_pi_times_its_radiance() {
         let mut sh: Sh9 = [[0.0; 3]; 9];
         add_even_sky(&mut sh, [1.0; 3], [0.0; 3]);
-        // Irradiance from the harmonics, Ramamoorthi & Hanrahan 2001: A0 = pi, A1 = 2 pi/3; facing up Y10 = sqrt(3/(4 pi)).
+        // Irradiance from the harmonics, Ramamoorthi & Hanrahan 2001: A0 = pi, A1 = 2 pi/3; facing up Y10 = sqrt(3/(4
+        // pi)).
         let pi = std::f32::consts::PI;
         let up = pi * sh[0][0] * 0.5 / pi.sqrt() + 2.0 * pi / 3.0 * sh[2][0] * (3.0 / (4.0 * pi)).sqrt();
         assert!((up - pi).abs() < 1e-4, "{up}");

@@ -10,8 +10,8 @@ use crate::{
 };
 
 impl Context {
-    /// Sets how clouds are drawn; part of the saved state. Default [`CloudModel::Volume`]. Light on the mean, conditions and what falls do
-    /// not change with it; [`Context::sun_share`] does.
+    /// Sets how clouds are drawn; part of the saved state. Default [`CloudModel::Volume`]. Light on the mean,
+    /// conditions and what falls do not change with it; [`Context::sun_share`] does.
     pub fn set_cloud_model(&mut self, model: CloudModel) {
         self.held.clouds.model = model;
     }
@@ -21,9 +21,10 @@ impl Context {
         self.held.clouds.model
     }
 
-    /// Lays a map on layers of cloud, in place of the one before: where over the ground they stand ([`CloudMap`]); `None` takes it off. It holds
-    /// in pictures, shadows and questions, and in the light of a place ([`Context::light_at`]); what falls does not change with it. With
-    /// [`CloudModel::Deck`] it holds for light alone. Clouds change at once. Part of the saved state.
+    /// Lays a map on layers of cloud, in place of the one before: where over the ground they stand ([`CloudMap`]);
+    /// `None` takes it off. It holds in pictures, shadows and questions, and in the light of a place
+    /// ([`Context::light_at`]); what falls does not change with it. With [`CloudModel::Deck`] it holds for light alone.
+    /// Clouds change at once. Part of the saved state.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -37,10 +38,11 @@ impl Context {
         self.world.set.cloud_map.as_deref()
     }
 
-    /// The share of the direct light of sun or moon, whichever is brighter, that clouds let through to `position` at simulation time
-    /// `time_s`, 0 to 1: in the shadow of a cloud that [`CloudModel::Volume`] draws, or between two. The light of
-    /// [`Context::light_at`] is that on the mean over places: times this over [`Light::direct_share`](crate::moment::Light::direct_share),
-    /// its sun is that of the very place. With [`CloudModel::Deck`] the mean itself.
+    /// The share of the direct light of sun or moon, whichever is brighter, that clouds let through to `position` at
+    /// simulation time `time_s`, 0 to 1: in the shadow of a cloud that [`CloudModel::Volume`] draws, or between two.
+    /// The light of [`Context::light_at`] is that on the mean over places: times this over
+    /// [`Light::direct_share`](crate::moment::Light::direct_share), its sun is that of the very place. With
+    /// [`CloudModel::Deck`] the mean itself.
     ///
     /// The first question makes the field that clouds are cut out of, in some tenths of a second.
     ///

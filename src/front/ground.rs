@@ -9,10 +9,11 @@ use crate::{
 };
 
 impl Context {
-    /// The host's terrain as one grid, over which wetness and puddles are found cell by cell, in place of tiles; `None` leaves level ground everywhere. The grid
-    /// whose heights are set already keeps its water. With [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has a state, which begins as the
-    /// ground has it and which [`Context::save`] keeps together with the heights; else the weather's wetness is spread over the
-    /// terrain's hollows. Takes some tenths of a second for the largest grids.
+    /// The host's terrain as one grid, over which wetness and puddles are found cell by cell, in place of tiles; `None`
+    /// leaves level ground everywhere. The grid whose heights are set already keeps its water. With
+    /// [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has a state, which begins as the
+    /// ground has it and which [`Context::save`] keeps together with the heights; else the weather's wetness is spread
+    /// over the terrain's hollows. Takes some tenths of a second for the largest grids.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -43,13 +44,13 @@ impl Context {
         self.held.ground.revision
     }
 
-    /// What the ground is made of where neither the host's grid nor its image says so: [`SurfaceClass::Unspecified`], the
-    /// default, is natural ground. Part of the saved state.
+    /// Sets the material of the ground where neither the host's grid nor its image says it:
+    /// [`SurfaceClass::Unspecified`], the default, is natural ground. Part of the saved state.
     pub fn set_default_surface_class(&mut self, class: SurfaceClass) {
         self.held.ground.surface_class = class;
     }
 
-    /// What ground is made of of which nothing else is said.
+    /// Returns the material of ground of which nothing else is said.
     pub fn default_surface_class(&self) -> SurfaceClass {
         self.held.ground.surface_class
     }
@@ -60,8 +61,9 @@ impl Context {
         self.held.ground.water(&self.world)
     }
 
-    /// Water on the ground at `position`, now, or while steps remain at [`Context::state_time_s`]: on the host's terrain ([`Context::set_ground_grid`]), up to 3 m above it, that of
-    /// its cells; elsewhere by the hollows that are drawn, wherever the host's own ground has its own.
+    /// Water on the ground at `position`, now, or while steps remain at [`Context::state_time_s`]: on the host's
+    /// terrain ([`Context::set_ground_grid`]), up to 3 m above it, that of its cells; elsewhere by the hollows that are
+    /// drawn, wherever the host's own ground has its own.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place.
@@ -69,9 +71,9 @@ impl Context {
         self.held.ground.at(&self.world, position)
     }
 
-    /// The water on the host's terrain as a texture for the host's own materials, up to date: what has changed since is uploaded and
-    /// submitted, which is every 10 s of simulation time at most. It stays the same object until another grid is set or loaded; then
-    /// it goes, at this function's or a view's next call.
+    /// The water on the host's terrain as a texture for the host's own materials, up to date: what has changed since is
+    /// uploaded and submitted, which is every 10 s of simulation time at most. It stays the same object until another
+    /// grid is set or loaded; then it goes, at this function's or a view's next call.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a terrain, [`crate::Status::DeviceLost`], or a GPU fault.

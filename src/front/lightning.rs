@@ -9,8 +9,8 @@ use crate::{
 };
 
 impl Context {
-    /// Sets how often it flashes, where, and how flashes are drawn; part of the saved state. Flashes are a function of seed, time, rate and
-    /// cells: another rate adds and takes flashes, and moves none.
+    /// Sets how often it flashes, where, and how flashes are drawn; part of the saved state. Flashes are a function of
+    /// seed, time, rate and cells: another rate adds and takes flashes, and moves none.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -35,9 +35,9 @@ impl Context {
         self.held.lightning.trigger(flash, self.world.time_s)
     }
 
-    /// The flashes that begin from `from_s` on until `until_s` (an hour at most) and lie within `most_distance_m` (50 km at most, on the
-    /// map) of a place, in order of time: past or to come. Where the timeline has forgotten the weather of then, that of the first
-    /// moment that it knows counts.
+    /// The flashes that begin from `from_s` on until `until_s` (an hour at most) and lie within `most_distance_m` (50
+    /// km at most, on the map) of a place, in order of time: past or to come. Where the timeline has forgotten the
+    /// weather of then, that of the first moment that it knows counts.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -50,8 +50,8 @@ impl Context {
         lightning::events(&self.world, &self.held.lightning, position, (from_s, until_s), most_distance_m)
     }
 
-    /// Light of flashes at a place, on the mean of `exposure_s` (1 s at most) before `time_s`; with 0 that of the very moment. A host
-    /// that lights its own ground by it asks for the time of its frame.
+    /// Light of flashes at a place, on the mean of `exposure_s` (1 s at most) before `time_s`; with 0 that of the very
+    /// moment. A host that lights its own ground by it asks for the time of its frame.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.

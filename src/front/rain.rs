@@ -10,11 +10,12 @@ use crate::{
 };
 
 impl Context {
-    /// Regions with rain of their own, in place of those before. Where clouds are a volume ([`Context::set_cloud_model`]), they have cloud over
-    /// them.
+    /// Regions with rain of their own, in place of those before. Where clouds are a volume
+    /// ([`Context::set_cloud_model`]), they have cloud over them.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`](crate::rain::MAX_AREAS), or naming the field; nothing changes then.
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`](crate::rain::MAX_AREAS), or naming the field;
+    /// nothing changes then.
     pub fn set_rain_areas(&mut self, areas: &[RainArea]) -> Result<()> {
         self.world.set_regions(areas)?;
         self.refresh()
@@ -25,7 +26,7 @@ impl Context {
         self.world.set.regions.iter().map(|kept| &kept.area)
     }
 
-    /// What falls at `position` and simulation time `time_s`.
+    /// Returns the precipitation at `position` and simulation time `time_s`.
     ///
     /// Any thread. Laws: [`crate::rain::sizes`], [`crate::rain::ice`].
     ///
@@ -35,10 +36,11 @@ impl Context {
         rain_at(&self.world, position, time_s)
     }
 
-    /// What lands on a surface, or comes through a window, at simulation time `time_s`: each size along its own
-    /// slant in the wind, and in that which the surface's own motion makes. What a box ([`Context::set_shelters`]) keeps off,
-    /// where it is at that time by its velocity, does not land: each size is asked for by its own path to a point 5 cm before the
-    /// surface, so that a face of a box is not inside of it. Occluder maps are not asked.
+    /// Returns the precipitation that lands on a surface, or comes through a window, at simulation time `time_s`: each
+    /// size along its own slant in the wind, and in that which the surface's own motion makes. What a box
+    /// ([`Context::set_shelters`]) keeps off, where it is at that time by its velocity, does not land: each size is
+    /// asked for by its own path to a point 5 cm before the surface, so that a face of a box is not inside of it.
+    /// Occluder maps are not asked.
     ///
     /// Any thread.
     ///
@@ -48,8 +50,8 @@ impl Context {
         rain_on(&self.world, surface, time_s)
     }
 
-    /// Optical depth at 550 nm that the areas add between a place and another `offset` metres away (east, north, up of the
-    /// first), on the mean over their pattern; negative where they thin the weather's rain.
+    /// Optical depth at 550 nm that the areas add between a place and another `offset` metres away (east, north, up of
+    /// the first), on the mean over their pattern; negative where they thin the weather's rain.
     pub(super) fn areas_depth(&self, position: DVec3, offset: DVec3, time_s: f64, c: &Conditions) -> Result<f64> {
         let (over, world) = (self.world.over(), &self.world);
         if over.regions.is_empty() {

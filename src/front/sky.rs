@@ -1,5 +1,5 @@
-//! The sky's light towards a direction, as a query: what the composition (`shaders/frame/composite.wgsl`, `shaders/between/veil.wgsl`)
-//! draws where the host drew nothing, in f64.
+//! The sky's light towards a direction, as a query: what the composition (`shaders/frame/composite.wgsl`,
+//! `shaders/between/veil.wgsl`) draws where the host drew nothing, in f64.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -24,13 +24,13 @@ const NEAR_FOG_M: f64 = 50.0;
 const UNDER_DECK: f64 = 7.0 / 9.0;
 
 impl Context {
-    /// Radiance of the sky at `position` towards `directions`, unit vectors (east, north, up) there, at simulation time `time_s`: cd/m^2
-    /// a channel of linear Rec. 709, as a picture shows it where the host drew nothing. Clear air, clouds, fog, what falls in
-    /// the weather's fog layer, the night's glow, and below the horizon the planet's ground count. The discs of sun and moon, stars
-    /// and planets, rain areas, and the host's objects do not.
+    /// Radiance of the sky at `position` towards `directions`, unit vectors (east, north, up) there, at simulation time
+    /// `time_s`: cd/m^2 a channel of linear Rec. 709, as a picture shows it where the host drew nothing. Clear air,
+    /// clouds, fog, what falls in the weather's fog layer, the night's glow, and below the horizon the planet's ground
+    /// count. The discs of sun and moon, stars and planets, rain areas, and the host's objects do not.
     ///
-    /// The f64 reference of clear air answers, at three wavelengths. The first call in a new air solves it: a second or two, while
-    /// other threads that ask wait. The last four airs are kept for all contexts of the device.
+    /// The f64 reference of clear air answers, at three wavelengths. The first call in a new air solves it: a second or
+    /// two, while other threads that ask wait. The last four airs are kept for all contexts of the device.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place or a direction no unit vector; for times as
@@ -161,7 +161,7 @@ impl Seen<'_> {
         Ok((clear.lerp(under_deck, self.scene.deck_cover) + lit(self.scene.night_floor_cd_m2), through))
     }
 
-    /// What a pixel of the sky shows: `with_fog`.
+    /// Returns what a pixel of the sky shows, as `with_fog` of the shaders.
     fn with_fog(&self, d: DVec3) -> Result<DVec3> {
         let fog = fog_along(&self.fog, DVec3::ZERO, d, RANGE_SKY_M, RANGE_SKY_M);
         // Nothing of what lies behind is left.

@@ -12,8 +12,8 @@ use crate::{
 const MOST_HOURS: f64 = 720.0;
 
 impl Context {
-    /// Snow at `position` as of [`Context::state_time_s`]: on the host's terrain, up to 3 m above it, that between its cells; elsewhere
-    /// that of level, open ground.
+    /// Snow at `position` as of [`Context::state_time_s`]: on the host's terrain, up to 3 m above it, that between its
+    /// cells; elsewhere that of level, open ground.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] if the position is no place.
@@ -21,7 +21,8 @@ impl Context {
         self.held.snowpack.at(&self.world, position)
     }
 
-    /// Where the mass of the snow on the host's terrain came from and went, kg; `None` without a terrain or a simulated snow.
+    /// Where the mass of the snow on the host's terrain came from and went, kg; `None` without a terrain or a simulated
+    /// snow.
     pub fn snow_books(&self) -> Option<SnowBooks> {
         self.held.snowpack.books()
     }
@@ -31,12 +32,13 @@ impl Context {
         self.held.snowpack.coarse_s()
     }
 
-    /// Takes the snow of a strip of the host's terrain away but for the lowest `left_m`, \[0, 100\]: a plough, a shovel. Answers its
-    /// mass, kg.
+    /// Takes the snow of a strip of the host's terrain away but for the lowest `left_m`, \[0, 100\]: a plough, a
+    /// shovel. Answers its mass, kg.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] without a terrain or a simulated snow
-    /// ([`LyingSnowModel::Simulated`](crate::snowpack::LyingSnowModel::Simulated)), and while steps of an update remain.
+    /// ([`LyingSnowModel::Simulated`](crate::snowpack::LyingSnowModel::Simulated)), and while steps of an update
+    /// remain.
     pub fn take_snow(&mut self, strip: &SnowStrip, left_m: f64) -> Result<f64> {
         self.check_led()?;
         self.change_snow(|held, world| held.take(world, strip, left_m))
@@ -60,13 +62,14 @@ impl Context {
         Ok(done)
     }
 
-    /// Moves time on by `hours`, (0, 720], and lays the snow of that time by steps of ten minutes, so that a lesson may begin after a
-    /// night's snowfall. Its laws are those of ordinary steps; the state differs from theirs by up to some percent, and remembers how
-    /// much was laid so ([`Context::snow_laid_fast_s`]). All else is led as by [`Context::update`].
+    /// Moves time on by `hours`, (0, 720], and lays the snow of that time by steps of ten minutes, so that a lesson may
+    /// begin after a night's snowfall. Its laws are those of ordinary steps; the state differs from theirs by up to
+    /// some percent, and remembers how much was laid so ([`Context::snow_laid_fast_s`]). All else is led as by
+    /// [`Context::update`].
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] for another number of hours or a time beyond the range; [`Status::WrongOrder`] while steps of an
-    /// update remain.
+    /// [`Status::InvalidArgument`] for another number of hours or a time beyond the range; [`Status::WrongOrder`] while
+    /// steps of an update remain.
     pub fn accumulate(&mut self, hours: f64) -> Result<()> {
         if hours.is_nan() || hours <= 0.0 {
             return Err(Error::range("hours", "in (0, 720]", hours));

@@ -13,8 +13,8 @@ use crate::{
 };
 
 impl Context {
-    /// Sets how the night sky is drawn: the host's own stars, how they are turned, planets, airglow. All but the list of stars is part of
-    /// the saved state; one that loads a state keeps its own.
+    /// Sets how the night sky is drawn: the host's own stars, how they are turned, planets, airglow. All but the list
+    /// of stars is part of the saved state; one that loads a state keeps its own.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -25,9 +25,10 @@ impl Context {
         Ok(())
     }
 
-    /// Magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from `position` at simulation time
-    /// `time_s`: what [`limiting_magnitude`] sees against the sky's mean luminance, by which pictures leave stars out too, less what
-    /// air, fog and clouds take of the star's light at 550 nm. Negative infinity where nothing comes through.
+    /// Magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from `position` at
+    /// simulation time `time_s`: what [`limiting_magnitude`] sees against the sky's mean luminance, by which pictures
+    /// leave stars out too, less what air, fog and clouds take of the star's light at 550 nm. Negative infinity where
+    /// nothing comes through.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].

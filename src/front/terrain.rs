@@ -10,8 +10,8 @@ use crate::{
 };
 
 impl Context {
-    /// Sets the lattice of a terrain in tiles, still without any, in place of the terrain before, be that tiles or a grid; `None` leaves
-    /// none. The lattice that is set already stays with its tiles.
+    /// Sets the lattice of a terrain in tiles, still without any, in place of the terrain before, be that tiles or a
+    /// grid; `None` leaves none. The lattice that is set already stays with its tiles.
     ///
     /// With [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has water of its own, which
     /// [`Context::save`] keeps. Heights are not saved: set the same tiles before [`Context::load`].
@@ -25,12 +25,12 @@ impl Context {
         Ok(())
     }
 
-    /// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is, with as much
-    /// simulated snow; one that is there keeps its water, and its snow wherever there is ground.
+    /// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is,
+    /// with as much simulated snow; one that is there keeps its water, and its snow wherever there is ground.
     ///
     /// # Errors
-    /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] naming the field, or for more than
-    /// [`MAX_TERRAIN_CELLS`](crate::terrain::MAX_TERRAIN_CELLS) in all. Nothing changes then.
+    /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] naming the field, or for
+    /// more than [`MAX_TERRAIN_CELLS`](crate::terrain::MAX_TERRAIN_CELLS) in all. Nothing changes then.
     pub fn set_terrain_tile(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
         let waits = self.is_behind();
         self.held.ground.set_tile((&mut self.world, waits), cells)?;
@@ -38,8 +38,9 @@ impl Context {
         Ok(())
     }
 
-    /// Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the ground lets it.
-    /// The time of it grows with the rectangle and with the standing waters that it touches, not with tile or terrain.
+    /// Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where
+    /// the ground lets it. The time of it grows with the rectangle and with the standing waters that it touches, not
+    /// with tile or terrain.
     ///
     /// # Errors
     /// As [`Context::set_terrain_tile`]; also for a tile that there is not.
@@ -53,7 +54,8 @@ impl Context {
     /// Takes a tile away, with the water and the snow on it. Beside it water runs off.
     ///
     /// # Errors
-    /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that there is not.
+    /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that there is
+    /// not.
     pub fn remove_terrain_tile(&mut self, key: TileKey) -> Result<()> {
         let waits = self.is_behind();
         self.held.ground.remove_tile((&mut self.world, waits), key)?;
@@ -76,20 +78,21 @@ impl Context {
         self.world.set.tiles.as_ref().map_or(0, |terrain| terrain.revision)
     }
 
-    /// Water of each cell of a tile now, or while steps remain at [`Context::state_time_s`], by rows from the south-west; holes are dry.
-    /// `None` for a tile that there is not.
+    /// Water of each cell of a tile now, or while steps remain at [`Context::state_time_s`], by rows from the
+    /// south-west; holes are dry. `None` for a tile that there is not.
     pub fn terrain_water(&self, key: TileKey) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
         self.held.ground.tile_water(&self.world, key)
     }
 
-    /// The water on the tiles about a place as textures for the host's own materials, up to date, and the snow where it is simulated: a
-    /// window of 512 x 512 cells, one texel a cell, that holds `center` in its middle quarter and moves by 64 cells at a time. What has
-    /// changed since the last call is uploaded and submitted; all of it where the window has moved. Both stay the same objects as long as
-    /// the context lives; where no tile has ground there is neither water nor snow. A host with several cameras calls it before each.
+    /// The water on the tiles about a place as textures for the host's own materials, up to date, and the snow where it
+    /// is simulated: a window of 512 x 512 cells, one texel a cell, that holds `center` in its middle quarter and moves
+    /// by 64 cells at a time. What has changed since the last call is uploaded and submitted; all of it where the
+    /// window has moved. Both stay the same objects as long as the context lives; where no tile has ground there is
+    /// neither water nor snow. A host with several cameras calls it before each.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if `center` is no place; [`crate::Status::WrongOrder`] where no tile reaches into the window;
-    /// [`crate::Status::DeviceLost`], or a GPU fault.
+    /// [`crate::Status::InvalidArgument`] if `center` is no place; [`crate::Status::WrongOrder`] where no tile reaches
+    /// into the window; [`crate::Status::DeviceLost`], or a GPU fault.
     pub fn terrain_texture(&mut self, center: DVec3) -> Result<GroundTexture> {
         let device = self.device().clone();
         self.held.ground.terrain_texture(&device, &self.world, center)

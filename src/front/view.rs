@@ -1,4 +1,4 @@
-//! What a host sets and asks of a view's effects.
+//! Settings of a view's effects by the host, and queries about them.
 
 use crate::{
     clouds::{CloudSettings, CloudShadows},
@@ -33,9 +33,10 @@ impl View {
         Ok(())
     }
 
-    /// The map of the clouds' shadows, for a host that lights its own materials. From the first call on, the first call of each frame brings
-    /// it up to date, and [`Stages::SURFACE`](crate::frame::Stages::SURFACE) lays no shadows of clouds any more: the host does. Ask after each
-    /// frame for how the map lies; a host that draws before Welkin uses that of the last frame, in which clouds have moved by centimetres.
+    /// The map of the clouds' shadows, for a host that lights its own materials. From the first call on, the first call
+    /// of each frame brings it up to date, and [`Stages::SURFACE`](crate::frame::Stages::SURFACE) lays no shadows of
+    /// clouds any more: the host does. Ask after each frame for how the map lies; a host that draws before Welkin uses
+    /// that of the last frame, in which clouds have moved by centimetres.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -57,8 +58,8 @@ impl View {
         Ok(())
     }
 
-    /// Sets the window that the view looks through; `None` takes it away. A host that drives, turns its head or wipes sets it
-    /// anew before each frame: the water stays on the glass while its size does. Unchanged after an error.
+    /// Sets the window that the view looks through; `None` takes it away. A host that drives, turns its head or wipes
+    /// sets it anew before each frame: the water stays on the glass while its size does. Unchanged after an error.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range.
@@ -69,8 +70,8 @@ impl View {
         self.effects.glass.set(screen)
     }
 
-    /// Water on the windscreen as of the last frame, or `None` without one. Reads it back and waits for the GPU: not for
-    /// every frame.
+    /// Water on the windscreen as of the last frame, or `None` without one. Reads it back and waits for the GPU: not
+    /// for every frame.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.

@@ -26,8 +26,9 @@ pub struct Snowing {
 }
 
 impl Snowing {
-    /// Of what falls at a temperature, where things fall `factor` times as fast as at sea level. The melted diameter that divides the
-    /// water in halves is 1.4 mm R^0.45 at R mm/h (Sekhon & Srivastava 1970, eq. 8).
+    /// Creates the snowfall of `falling` at a temperature, where things fall `factor` times as fast as at sea level.
+    /// The melted diameter that divides the water in halves is 1.4 mm R^0.45 at R mm/h (Sekhon & Srivastava 1970, eq.
+    /// 8).
     pub fn new(falling: &Falling, temperature_c: f64, factor: f64) -> Self {
         let rate = falling.snow_mm_h;
         if rate <= 0.0 {
@@ -41,10 +42,10 @@ impl Snowing {
         }
     }
 
-    /// Water that stays on a surface whose outward normal has the upward component `up` and that moves outwards against the air at
-    /// `approach_m_s`, m/s. Air that turns away before the glass takes light flakes with it: a share S^3 / (S^3 + 0.77 S^2 + 0.22) of those
-    /// blown at it arrive, S their Stokes number (Landahl & Herrmann 1949). Of those that arrive faster than 1 m/s a share of one over
-    /// that speed stays (ISO 12494:2001, wet snow).
+    /// Water that stays on a surface whose outward normal has the upward component `up` and that moves outwards against
+    /// the air at `approach_m_s`, m/s. Air that turns away before the glass takes light flakes with it: a share S^3 /
+    /// (S^3 + 0.77 S^2 + 0.22) of those blown at it arrive, S their Stokes number (Landahl & Herrmann 1949). Of those
+    /// that arrive faster than 1 m/s a share of one over that speed stays (ISO 12494:2001, wet snow).
     pub fn stays_m_s(&self, up: f64, approach_m_s: f64) -> f64 {
         if self.water_m_s <= 0.0 {
             return 0.0;
@@ -63,13 +64,14 @@ fn exchange_w_m2_k(wind_m_s: f64) -> f64 {
     if v < 5.0 { 5.7 + 3.8 * v } else { 6.47 * libm::pow(v, 0.78) }
 }
 
-/// Rate at which snow melts on heated glass, m/s of water. The glass is at 0 C: warmer air adds heat, colder air takes it.
+/// Rate at which snow melts on heated glass, m/s of water. The glass is at 0 C: warmer air adds heat, colder air takes
+/// it.
 pub fn melts_m_s(heat_w_m2: f64, temperature_c: f64, wind_m_s: f64) -> f64 {
     (heat_w_m2 + exchange_w_m2_k(wind_m_s) * temperature_c).max(0.0) / (MELTING_J_KG * WATER)
 }
 
-/// Most water that one flake brings to a cell, m^3: a large flake lies on several cells. One of 5 mm that weighs 2 mg is 0.1 mm of water over
-/// its disc.
+/// Most water that one flake brings to a cell, m^3: a large flake lies on several cells. One of 5 mm that weighs 2 mg
+/// is 0.1 mm of water over its disc.
 pub fn of_a_flake_m3(cell_m: f64) -> f64 {
     1e-4 * cell_m * cell_m
 }

@@ -23,7 +23,8 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane of four corners: lower left, lower right, upper right, upper left as seen from the camera, at the origin.
+    /// The plane of four corners: lower left, lower right, upper right, upper left as seen from the camera, at the
+    /// origin.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if they are out of range, not in one plane, not convex or not in that order.
@@ -114,7 +115,8 @@ impl Rays {
     /// [`crate::Status::Unsupported`] for parallel rays: there is no eye behind the glass.
     pub fn of(projection: &DMat4) -> Result<Self> {
         // p = (x, y, z, 1) lies on the ray of (x', y') where (r_x - x' r_w) . p = (r_y - y' r_w) . p = 0; of two planes
-        // through the eye the cross product of their normals is the ray's direction, affine in x' and y' as r_w x r_w = 0.
+        // through the eye the cross product of their normals is the ray's direction, affine in x' and y' as r_w x r_w =
+        // 0.
         let row = |i: usize| {
             let r: DVec4 = projection.row(i);
             r.truncate()

@@ -16,16 +16,16 @@ const VISCOSITY: f64 = 1.0e-3;
 pub const GRAVITY: f64 = 9.81;
 /// Contact angle at which beads are drawn and weighed, degrees: between the two below.
 pub const CONTACT_DEG: f64 = 50.0;
-/// Advancing and receding contact angle of water on glass in use, degrees: clean glass has less than 20, waxed glass more
-/// than 80; road film lies between.
+/// Advancing and receding contact angle of water on glass in use, degrees: clean glass has less than 20, waxed glass
+/// more than 80; road film lies between.
 const ADVANCING_DEG: f64 = 62.0;
 const RECEDING_DEG: f64 = 32.0;
 /// Share of the retention that is left under a bead that runs, or on wet glass.
 const MOVING_RETENTION: f64 = 0.5;
 /// Slope of the capillary number over the Bond number's excess: runners of some centimetres a second on upright glass.
 const MOBILITY: f64 = 0.003;
-/// Drag coefficient of a sessile drop with the air's speed at its height, set so that a drop of 10 uL on level glass lets go
-/// near 13 m/s, the order of what Milne & Amirfazli (2009) measured.
+/// Drag coefficient of a sessile drop with the air's speed at its height, set so that a drop of 10 uL on level glass
+/// lets go near 13 m/s, the order of what Milne & Amirfazli (2009) measured.
 const DRAG: f64 = 0.35;
 /// Classes of diameter between the smallest and largest drop of rain, and their width, mm.
 const CLASSES: usize = 295;
@@ -57,8 +57,8 @@ pub fn drag_n(radius_m: f64, airflow_m_s: f64) -> f64 {
     0.5 * AIR * DRAG * area * airflow_m_s * airflow_m_s.abs()
 }
 
-/// Speed of a bead that runs or lies on wet glass, m/s: the capillary number rises linearly with the Bond number beyond the
-/// one at which the bead stops (Le Grand, Daerr & Limat 2005), Bond numbers being forces over gamma V^(1/3).
+/// Speed of a bead that runs or lies on wet glass, m/s: the capillary number rises linearly with the Bond number beyond
+/// the one at which the bead stops (Le Grand, Daerr & Limat 2005), Bond numbers being forces over gamma V^(1/3).
 pub fn speed_m_s(volume_m3: f64, drive_n: f64) -> f64 {
     let excess = drive_n - MOVING_RETENTION * retention_n(radius_m(volume_m3));
     if excess <= 0.0 {
@@ -67,8 +67,8 @@ pub fn speed_m_s(volume_m3: f64, drive_n: f64) -> f64 {
     SURFACE_TENSION / VISCOSITY * MOBILITY * excess / (SURFACE_TENSION * libm::cbrt(volume_m3))
 }
 
-/// Volume that a bead loses to the air, m^3/s: diffusion from a sessile cap, pi r D c (1 - H) (0.27 theta^2 + 1.30) (Hu &
-/// Larson 2002, eq. 19), with the Ranz-Marshall (1952) factor for the air that passes.
+/// Volume that a bead loses to the air, m^3/s: diffusion from a sessile cap, pi r D c (1 - H) (0.27 theta^2 + 1.30) (Hu
+/// & Larson 2002, eq. 19), with the Ranz-Marshall (1952) factor for the air that passes.
 pub fn evaporation_m3_s(radius_m: f64, relative_humidity: f64, temperature_c: f64, airflow_m_s: f64) -> f64 {
     const DIFFUSIVITY: f64 = 2.5e-5;
     const AIR_VISCOSITY: f64 = 1.5e-5;
@@ -99,8 +99,8 @@ pub struct Arrivals {
 }
 
 impl Arrivals {
-    /// A share of the rain on a surface whose outward normal has the upward component `up`, and that moves outwards against
-    /// the air at `approach_m_s`: each size arrives at its own speed against the surface, fall x up + approach.
+    /// A share of the rain on a surface whose outward normal has the upward component `up`, and that moves outwards
+    /// against the air at `approach_m_s`: each size arrives at its own speed against the surface, fall x up + approach.
     pub fn of(rain: &DropSizes, share: f64, up: f64, approach_m_s: f64) -> Self {
         let mut arrivals = Self { classes: [(0.0, 0.0); CLASSES], number_m2_s: 0.0, water_m_s: 0.0 };
         for (i, class) in arrivals.classes.iter_mut().enumerate() {

@@ -6,11 +6,11 @@ use glam::{DMat3, DVec2, DVec3};
 use super::{MAX_ARMS, Plane, Windscreen, geometry::Rays, laws, step::VOLUME_UNIT_M3};
 use crate::{error::Result, gpu::Layer, scene::Camera};
 
-/// Optical depth of snow over its water, 1/m: 3 / (2 r) over the density of ice, for grains of r = 0.1 mm (Wiscombe & Warren 1980, new
-/// snow).
+/// Optical depth of snow over its water, 1/m: 3 / (2 r) over the density of ice, for grains of r = 0.1 mm (Wiscombe &
+/// Warren 1980, new snow).
 const SNOW_DEPTH_PER_M: f64 = 1.5 / (1e-4 * 0.917);
 
-/// What the frame knows of its target.
+/// Target and source images of the frame.
 #[derive(Clone, Copy)]
 pub(crate) struct LensFrame<'a> {
     pub camera: &'a Camera,

@@ -4,23 +4,24 @@
 //! **State.** The glass is a lattice of cells of 4 mm, at most one bead of water in each: its volume, its place inside
 //! the cell, whether it runs; beside it how many drops have hit the cell since it was last cleared (the fine beads are
 //! drawn from that number) and a thin film. Everything is an integer, and a step uses integer arithmetic only
-//! (`shaders/glass/cells.wgsl`; the twin is [`mod@reference`]): the same seed and times give the same bits on every driver.
-//! What needs physics in floating point, speeds, rates, retention, becomes tables of integers on the CPU once a step
-//! ([`step`], from the laws in [`laws`]).
+//! (`shaders/glass/cells.wgsl`; the twin is [`mod@reference`]): the same seed and times give the same bits on every
+//! driver. What needs physics in floating point, speeds, rates, retention, becomes tables of integers on the CPU once a
+//! step ([`step`], from the laws in [`laws`]).
 //!
-//! **Snow** lies on the cells as whole units of its water: flakes land, blades take them away, heat melts them, and the melt
-//! water is beads ([`frost`], `shaders/glass/settle.wgsl`).
+//! **Snow** lies on the cells as whole units of its water: flakes land, blades take them away, heat melts them, and the
+//! melt water is beads ([`frost`], `shaders/glass/settle.wgsl`).
 //!
-//! **Time.** Steps lie on a grid of 60 Hz anchored at simulation time 0, so the frame rate does not matter. After a cut,
-//! at the first frame, and where more than [`MAX_STEPS`] would be due, the glass takes the declared state of that moment,
-//! a pure function of (seed, time, rain): beads below the size at which they run. `NO_HISTORY` shows that state always.
+//! **Time.** Steps lie on a grid of 60 Hz anchored at simulation time 0, so the frame rate does not matter. After a
+//! cut, at the first frame, and where more than [`MAX_STEPS`] would be due, the glass takes the declared state of that
+//! moment, a pure function of (seed, time, rain): beads below the size at which they run. `NO_HISTORY` shows that state
+//! always.
 //!
-//! **Cost.** Two passes over the lattice a step, a third where snow is or falls; two small copies of the picture and one pass over it a frame; nothing
-//! without a windscreen or on dry glass. **Left out**: the splash of an impact, water pushed ahead of a blade, drops
-//! farther apart than a cell seeing each other.
+//! **Cost.** Two passes over the lattice a step, a third where snow is or falls; two small copies of the picture and
+//! one pass over it a frame; nothing without a windscreen or on dry glass. **Left out**: the splash of an impact, water
+//! pushed ahead of a blade, drops farther apart than a cell seeing each other.
 //!
-//! No `held.rs`: the water belongs to a view's own window (`state.rs`). No `candidates.rs`: it is drawn in one way, and no plan leaves it
-//! out.
+//! No `held.rs`: the water belongs to a view's own window (`state.rs`). No `candidates.rs`: it is drawn in one way, and
+//! no plan leaves it out.
 
 pub mod frost;
 mod geometry;
@@ -63,8 +64,8 @@ pub const MAX_ARMS: usize = 2;
 /// Where the glass is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pane {
-    /// A flat window, its corners in the camera's axes (x right, y up, z backwards), m from the camera: lower left, lower
-    /// right, upper right, upper left as seen from the camera. Convex; edges from 0.05 to 8 m.
+    /// A flat window, its corners in the camera's axes (x right, y up, z backwards), m from the camera: lower left,
+    /// lower right, upper right, upper left as seen from the camera. Convex; edges from 0.05 to 8 m.
     Quad([DVec3; 4]),
     /// The whole picture: glass across the view at this distance, m, [0.1, 3].
     WholeView(f64),
@@ -108,15 +109,15 @@ impl Default for WiperArm {
 pub struct Windscreen {
     /// Where the glass is.
     pub pane: Pane,
-    /// Velocity of the glass against the air (the vehicle's less the wind's), m/s in the camera's axes, each within 400:
-    /// decides how many drops it meets.
+    /// Velocity of the glass against the air (the vehicle's less the wind's), m/s in the camera's axes, each within
+    /// 400: decides how many drops it meets.
     pub velocity_m_s: DVec3,
     /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]: drives the beads.
     pub airflow_m_s: f64,
-    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel for which there is no box. What the context's
-    /// boxes and maps keep off each part of the pane ([`crate::context::Context::set_shelters`],
-    /// [`crate::context::Context::set_occluder_maps`]) is taken off besides; a box that holds the camera and ends within 3 m
-    /// before the glass is the vehicle's own and keeps nothing off.
+    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel for which there is no box. What the
+    /// context's boxes and maps keep off each part of the pane ([`crate::context::Context::set_shelters`],
+    /// [`crate::context::Context::set_occluder_maps`]) is taken off besides; a box that holds the camera and ends
+    /// within 3 m before the glass is the vehicle's own and keeps nothing off.
     pub exposed: f64,
     /// Mist on the inside, [0, 1].
     pub fogging: f64,

@@ -24,7 +24,7 @@ pub(super) struct PaneAt {
     up: DVec3,
     /// Outwards, unit.
     out: DVec3,
-    /// Of the air against the glass, m/s.
+    /// Velocity of the air against the glass, m/s.
     air_m_s: DVec3,
 }
 
@@ -42,7 +42,8 @@ impl PaneAt {
         }
     }
 
-    /// Whether a box is the vehicle's own: it holds the eye and ends within [`VEHICLE_M`] before the glass, where a tunnel goes on.
+    /// Whether a box is the vehicle's own: it holds the eye and ends within [`VEHICLE_M`] before the glass, where a
+    /// tunnel goes on.
     fn sits_in(&self, shelter: &Shelter) -> bool {
         let met = |p: DVec3, way: DVec3| sheltered(shelter, p, shelter.velocity_m_s - way);
         // What both ways of a line from a point meet has the point in it: it is convex.
@@ -55,8 +56,8 @@ impl PaneAt {
         self.origin + self.along * x + self.up * y
     }
 
-    /// Drops of `sizes` that stand for as much of the falling water each: their velocities in the host's world now, and the share
-    /// of the water on the pane that they bring.
+    /// Drops of `sizes` that stand for as much of the falling water each: their velocities in the host's world now, and
+    /// the share of the water on the pane that they bring.
     pub fn drops(&self, now: &Moment<'_>, sizes: &DropSizes) -> [(DVec3, f64); SIZES] {
         let over = &now.weather;
         let to_enu = over.world.frame_at(self.origin).world_to_enu;
@@ -74,7 +75,8 @@ impl PaneAt {
         drops
     }
 
-    /// What boxes let through of such drops to each part of the pane now. The vehicle's own box is not asked.
+    /// Returns the share of such drops that boxes let through to each part of the pane now. The vehicle's own box is
+    /// not asked.
     pub fn reach(&self, shelters: &[Shelter], drops: &[(DVec3, f64); SIZES]) -> Reach {
         if shelters.is_empty() {
             return Reach::ALL;
@@ -89,7 +91,7 @@ impl PaneAt {
         })
     }
 
-    /// The same for the maps' pass, from a camera at `eye` whose axes `to_enu` turns.
+    /// Returns the pane and its drops for the maps' pass, from a camera at `eye` whose axes `to_enu` turns.
     pub fn uniform(&self, drops: &[(DVec3, f64); SIZES], (eye, to_enu): (DVec3, DMat3)) -> PaneUniform {
         let row = |v: DVec3, w: f64| (to_enu * v).extend(w).as_vec4().to_array();
         PaneUniform {

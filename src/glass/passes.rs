@@ -28,7 +28,7 @@ const SMALL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const SMALLER: u32 = 8;
 const SMALLEST: u32 = 4;
 
-/// What tells one lens pipeline from another.
+/// Key of a lens pipeline.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct LensVariant {
     pub format: wgpu::TextureFormat,
@@ -92,7 +92,7 @@ fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(view)
 }
 
-/// What lands, melts and is wiped away of snow, and its declared state.
+/// Shader that lands, melts and wipes away snow, and takes its declared state.
 const SETTLE: &str = "glass/settle.wgsl";
 
 /// The two pipelines of snow.
@@ -198,7 +198,7 @@ impl GlassKit {
     }
 }
 
-/// What a step does to the lattice.
+/// Work of a step on the lattice.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Work {
     /// Takes the declared state of the moment.
@@ -218,15 +218,16 @@ pub(super) struct Lattice {
     snow_views: [wgpu::TextureView; 2],
     /// Share of the rain that maps let through to the net over the pane.
     mapped: (wgpu::Texture, wgpu::TextureView),
-    /// Which of the two is the present state, of the cells and of the snow.
+    /// Index of the present state of the two, for the cells and for the snow.
     now: usize,
     snow_now: usize,
-    /// By the state of the snow: reading state i and, in place of the moves, the other state; reading state i and the moves.
+    /// By the state of the snow: reading state i and, in place of the moves, the other state; reading state i and the
+    /// moves.
     groups: [[[wgpu::BindGroup; 2]; 2]; 2],
     steps: wgpu::Buffer,
     stride: usize,
     slots: Vec<u8>,
-    /// What to do, and whether snow takes part in it.
+    /// Work that is due, and whether snow takes part in it.
     due: Vec<(Work, bool)>,
 }
 

@@ -1,14 +1,14 @@
 //! How much of the rain gets to which part of the pane, past what stands about.
 //!
-//! A net of nodes over the pane's bounds: boxes are asked for on the CPU, in f64, so that every channel has the same bits;
-//! the host's maps, which live on the GPU, by a pass of their own (`shaders/glass/maps.wgsl`). A cell has what lies
-//! between its nodes, in integers.
+//! A net of nodes over the pane's bounds: boxes are asked for on the CPU, in f64, so that every channel has the same
+//! bits; the host's maps, which live on the GPU, by a pass of their own (`shaders/glass/maps.wgsl`). A cell has what
+//! lies between its nodes, in integers.
 
 use std::array::from_fn;
 
 /// Nodes along the pane's lower edge, and up the glass.
 pub const NODES: [usize; 2] = [16, 8];
-/// What a node has that all rain gets to.
+/// Value of a node that all rain gets to.
 pub const ALL: u8 = 128;
 /// Words of the nodes, four bytes each.
 const WORDS: usize = NODES[0] * NODES[1] / 16;
@@ -24,7 +24,8 @@ impl Reach {
     /// All of it, everywhere.
     pub const ALL: Self = Self([[ALL as u32 * 0x0101_0101; 4]; WORDS]);
 
-    /// Of the shares, 0 to 1, at places of the pane's bounds, 0 to 1 to the right and up.
+    /// Creates the shares of the nodes from `share`, 0 to 1, at places of the pane's bounds, 0 to 1 to the right and
+    /// up.
     pub fn of(share: impl Fn([f64; 2]) -> f64) -> Self {
         let mut nodes = [0u8; NODES[0] * NODES[1]];
         for (i, node) in nodes.iter_mut().enumerate() {
@@ -35,7 +36,7 @@ impl Reach {
         Self::from_nodes(&nodes)
     }
 
-    /// Of the nodes, row by row; what is missing gets nothing.
+    /// Creates the shares from the nodes, row by row; a missing node gets nothing.
     pub fn from_nodes(nodes: &[u8]) -> Self {
         let byte = |i: usize| nodes.get(i).copied().unwrap_or(0);
         Self(from_fn(|w| from_fn(|k| u32::from_le_bytes(from_fn(|b| byte(16 * w + 4 * k + b))))))
@@ -54,7 +55,7 @@ impl Reach {
         self.0.iter().flatten().any(|w| *w != 0)
     }
 
-    /// What gets past this and past what `other` knows of.
+    /// Returns the share that gets past both this and `other`.
     pub fn and(&self, other: &Self) -> Self {
         let mut nodes = [0u8; NODES[0] * NODES[1]];
         for ((node, a), b) in nodes.iter_mut().zip(self.nodes()).zip(other.nodes()) {

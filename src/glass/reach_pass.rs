@@ -25,7 +25,7 @@ pub(crate) struct PaneUniform {
     pub drops: [[f32; 4]; SIZES],
 }
 
-/// What glass below maps needs besides.
+/// Pipelines that glass below maps needs besides.
 pub(super) struct MappedKit {
     layouts: [wgpu::BindGroupLayout; 2],
     reach: wgpu::RenderPipeline,
@@ -41,7 +41,7 @@ pub(super) struct MapReach {
     groups: [wgpu::BindGroup; 2],
 }
 
-/// What a frame's maps are and where the pane is among them.
+/// Maps of a frame, and the pane among them.
 pub(crate) struct Mapped<'a> {
     pub told: HostSurroundings<'a>,
     pub pane: PaneUniform,

@@ -1,4 +1,5 @@
-//! The cells on the CPU, bit for bit as `shaders/glass/{cells,decide,gather,declare,settle}.wgsl` have them: same names, same order.
+//! The cells on the CPU, bit for bit as `shaders/glass/{cells,decide,gather,declare,settle}.wgsl` have them: same
+//! names, same order.
 
 use glam::DVec2;
 
@@ -147,7 +148,7 @@ impl Cells {
         self.stepped_under(step, None)
     }
 
-    /// The same with what snow lay on the glass before the step.
+    /// Returns the state a step later, with the snow that lay on the glass before the step.
     pub fn stepped_under(&self, step: &StepUniform, snow: Option<&Snow>) -> Self {
         let moves = self.each(|cell| self.decide(step, cell));
         self.each(|cell| self.gather(step, (&moves, snow), cell))
@@ -263,7 +264,7 @@ impl Cells {
 pub struct Snow {
     /// Columns and rows.
     pub size: [u32; 2],
-    /// Of each cell.
+    /// Snow of each cell.
     pub cells: Vec<u32>,
 }
 

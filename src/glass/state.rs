@@ -21,21 +21,22 @@ use crate::{
     weather::Conditions,
 };
 
-/// What of the rain boxes let through to which part of the glass, and what the maps are that do, if there are any.
+/// Share of the rain that boxes let through to each part of the glass, and the maps that keep rain off, if there are
+/// any.
 pub(super) type Reached<'a> = (Reach, Option<Mapped<'a>>);
 
-/// What weather and frame come to at the glass at a moment.
+/// Weather and frame at the glass at a moment.
 pub(super) struct AtGlass<'a> {
     pub time_s: f64,
     pub seed: u64,
     pub camera: &'a Camera,
     /// Up in the world's axes, unit.
     pub up: DVec3,
-    /// Of the camera above sea level, m.
+    /// Altitude of the camera above sea level, m.
     pub altitude_m: f64,
     /// The weather at a time.
     pub weather: &'a dyn Fn(f64) -> Conditions,
-    /// What of the rain gets to the glass now.
+    /// Function that finds the share of the rain that gets to the glass now.
     pub reach: &'a dyn Fn(&Plane, &Windscreen) -> Result<Reached<'a>>,
     /// Nothing of earlier frames may show.
     pub cut: bool,
@@ -65,7 +66,7 @@ pub(crate) struct Glass {
     last: Option<(f64, Windscreen)>,
     plane: Option<Plane>,
     acting: Option<StepConditions>,
-    /// Of the last frame: what boxes let through, and whether there were maps.
+    /// Share of the rain that boxes let through in the last frame, and whether there were maps.
     reach: (Reach, bool),
     lattice: Option<Lattice>,
     below: Option<Box<MapReach>>,
@@ -77,7 +78,7 @@ pub(crate) struct Glass {
     moisture: f64,
     /// Snow of the cell that may have most, units; 0 where there is none.
     frost: f64,
-    /// Of what stays where it is on the glass.
+    /// Key of the seed, for what stays where it is on the glass.
     key: u32,
 }
 
@@ -328,7 +329,8 @@ impl Glass {
         Ok(report)
     }
 
-    /// What of the rain gets where past boxes and maps. Waits for the GPU where there are maps.
+    /// Returns the share of the rain that gets to each part past boxes and maps. Waits for the GPU where there are
+    /// maps.
     fn reached(&self, device: &Device) -> Result<Reach> {
         let (boxes, mapped) = self.reach;
         let Some(lattice) = self.lattice.as_ref().filter(|_| mapped) else { return Ok(boxes) };
@@ -364,7 +366,7 @@ fn share(from_s: f64, until_s: f64, time_s: f64) -> f64 {
     if until_s <= from_s { 1.0 } else { ((time_s - from_s) / (until_s - from_s)).clamp(0.0, 1.0) }
 }
 
-/// What moves steadily between two frames; the rest is as the later says.
+/// Interpolates what moves steadily between two frames; the rest is taken from the later one.
 fn blend(a: &Windscreen, b: &Windscreen, share: f64) -> Windscreen {
     let lerp = |a: f64, b: f64| if a == b { b } else { a + (b - a) * share };
     let mut s = *b;

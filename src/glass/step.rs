@@ -32,27 +32,29 @@ const DIRECTION_UNIT: f64 = 4096.0;
 pub struct StepUniform {
     /// Key of (seed, step), key of the seed, columns, rows.
     pub key: [u32; 4],
-    /// A cell gets at least 1, 2, 3 drops where its 32 random bits are below these; chance in 65536 that a fine bead dries.
+    /// A cell gets at least 1, 2, 3 drops where its 32 random bits are below these; chance in 65536 that a fine bead
+    /// dries.
     pub arrive: [u32; 4],
     /// Declared state: water a step in 1/256 unit, drops a step in 1/65536, the step, the largest bead that rests.
     pub declared: [u32; 4],
     /// The largest volume of a cell, units; 1 where not all of the rain gets everywhere.
     pub limits: [u32; 4],
-    /// Each arm: (pivot x, y, inner, outer radius), (direction before x, y, half way x, y), (now x, y, half width, is there).
+    /// Each arm: (pivot x, y, inner, outer radius), (direction before x, y, half way x, y), (now x, y, half width, is
+    /// there).
     pub arms: [[i32; 4]; 6],
     /// Volumes of drops, from common to rare.
     pub drops: [[u32; 4]; DROP_CLASSES / 4],
     /// Beads by volume: (radius in 1/256 cell + 1024 x loss to the air in 1/4096 unit a step), motion x, y in 1/65536
     /// cell, 256 x drive over retention.
     pub beads: [[i32; 4]; BEAD_CLASSES],
-    /// Snow. A flake lands on a cell whose 32 random bits are below the first number. Then, in units of water: a flake, what melts in a step (in
-    /// 1/4096), and the most that a cell holds.
+    /// Snow. A flake lands on a cell whose 32 random bits are below the first number. Then, in units of water: a flake,
+    /// what melts in a step (in 1/4096), and the most that a cell holds.
     pub snow: [u32; 4],
     /// [`Reach`]: the shares of the rain that get to the nodes.
     pub reach: [[u32; 4]; 8],
 }
 
-/// What acts on the glass during a step.
+/// Conditions on the glass during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepConditions {
     /// Edge of a cell, m.
@@ -85,8 +87,8 @@ impl StepConditions {
         Arrivals::of(&self.rain, self.exposed, self.up, self.approach_m_s)
     }
 
-    /// How long the largest bead lasts, s: the cap's radius follows r^2 = r0^2 - 2 k t / (3 f) for V = f r^3 and a loss of
-    /// k r. Infinite in saturated air.
+    /// How long the largest bead lasts, s: the cap's radius follows r^2 = r0^2 - 2 k t / (3 f) for V = f r^3 and a loss
+    /// of k r. Infinite in saturated air.
     pub fn drying_s(&self) -> f64 {
         let r = LARGEST * self.cell_m;
         let per_m = laws::evaporation_m3_s(r, self.relative_humidity, self.temperature_c, self.airflow_m_s) / r;

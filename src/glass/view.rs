@@ -72,7 +72,7 @@ impl GlassView {
         self.glass.as_ref().map_or(Ok(None), |g| g.snow(device))
     }
 
-    /// What windscreens of the device are drawn with, made at its first use.
+    /// Returns the kit with which the device draws windscreens, made at its first use.
     fn kit(&self, device: &Arc<Device>) -> Result<Arc<Mutex<GlassKit>>> {
         self.shared.get(|| GlassKit::new(device).map(Mutex::new))
     }
@@ -82,7 +82,7 @@ fn locked(kit: &Mutex<GlassKit>) -> Result<MutexGuard<'_, GlassKit>> {
     kit.lock().map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked over a windscreen"))
 }
 
-/// What of the rain boxes and maps let through to a pane now.
+/// Finds the share of the rain that boxes and maps let through to a pane now.
 fn reached<'a>(now: &'a Moment<'_>, frame: &Frame<'_>, plane: &Plane, screen: &Windscreen) -> Result<Reached<'a>> {
     if !now.is_sheltered() {
         return Ok((Reach::ALL, None));

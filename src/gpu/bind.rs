@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// What a shader finds at a binding.
+/// Kind of resource at a shader binding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Slot {
     /// A block of so many bytes; of 0 any.
@@ -25,7 +25,7 @@ pub(crate) enum Slot {
     FilteredArray,
     /// The six faces of a cube, looked up by direction.
     FilteredCube,
-    /// The same in three dimensions.
+    /// A texture in three dimensions that is looked up between its texels.
     FilteredVolume,
     /// How textures are looked up.
     Sampler,
@@ -100,7 +100,7 @@ pub(crate) fn nothing(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgp
     texture.create_view(&Default::default())
 }
 
-/// What stands for a texture of layers that is not there.
+/// Creates the placeholder for a texture of layers that is not there.
 pub(crate) fn no_layers(device: &wgpu::Device) -> wgpu::TextureView {
     as_layers(&device.create_texture(&wgpu::TextureDescriptor {
         label: Some("no layers"),
@@ -114,8 +114,8 @@ pub(crate) fn no_layers(device: &wgpu::Device) -> wgpu::TextureView {
     }))
 }
 
-/// All layers of a texture. With wgpu's OpenGL backend shaders find nothing in a view of one layer of several; and a texture of one layer is no
-/// array there, one of a multiple of six is of cubes.
+/// All layers of a texture. With wgpu's OpenGL backend shaders find nothing in a view of one layer of several; and a
+/// texture of one layer is no array there, one of a multiple of six is of cubes.
 pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),

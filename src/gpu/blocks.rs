@@ -1,4 +1,5 @@
-//! The uniform blocks of a view, side by side in a buffer: however many of them a call changes, one write brings them to the GPU.
+//! The uniform blocks of a view, side by side in a buffer: however many of them a call changes, one write brings them
+//! to the GPU.
 //!
 //! wgpu makes a staging buffer for every write; five of them cost as much of the CPU as two empty passes.
 
@@ -22,7 +23,7 @@ pub(crate) struct Blocks(Arc<Mutex<Vec<Page>>>);
 struct Page {
     buffer: wgpu::Buffer,
     staged: Vec<u8>,
-    /// What of it has not been brought up.
+    /// Bytes of it that have not been uploaded.
     changed: Range<usize>,
     /// The last first.
     taken: Vec<Range<usize>>,
@@ -48,8 +49,8 @@ impl Page {
         Self { buffer, staged: vec![0; bytes], changed: 0..0, taken: Vec::new() }
     }
 
-    /// The last place of so many bytes at a multiple of `step`, taken. So the first block, which every frame writes, lies at the end, and
-    /// no write spans the tables at its end that do not change.
+    /// The last place of so many bytes at a multiple of `step`, taken. So the first block, which every frame writes,
+    /// lies at the end, and no write spans the tables at its end that do not change.
     fn take(&mut self, bytes: usize, step: usize) -> Option<Range<usize>> {
         let ends = std::iter::once(self.staged.len()).chain(self.taken.iter().map(|taken| taken.start));
         let starts = ends.map(|end| end.checked_sub(bytes).map(|start| start - start % step));
@@ -118,7 +119,7 @@ impl Blocks {
 }
 
 impl UniformBlock {
-    /// What it holds from the next [`Blocks::upload`] on; what lies behind `bytes` stays.
+    /// Sets its contents from the next [`Blocks::upload`] on; what lies behind `bytes` stays.
     pub fn write(&self, bytes: &[u8]) {
         self.write_at(0, bytes);
     }

@@ -11,10 +11,10 @@ use std::{
 use super::{instance, known};
 use crate::error::{Error, Result, Status};
 
-/// What a device can do, as the host may ask before it creates anything.
+/// Capabilities of a device, which the host may query before it creates anything.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Caps {
-    /// Which native interface serves it.
+    /// Native graphics interface that serves it.
     pub backend: wgpu::Backend,
     /// The adapter's own name.
     pub adapter_name: String,
@@ -31,7 +31,7 @@ pub struct Caps {
 /// Options for a device that Welkin creates.
 #[derive(Clone, Debug)]
 pub struct DeviceOptions {
-    /// Which native interfaces may serve; `noop` draws nothing and needs no GPU.
+    /// Native graphics interfaces that may serve; `noop` draws nothing and needs no GPU.
     pub backends: wgpu::Backends,
     /// Use no compute shaders even where there are any: how a GL 3.3 host would draw.
     pub force_tier0: bool,
@@ -49,13 +49,13 @@ impl Default for DeviceOptions {
 /// A host's depth as it is attached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachedDepth {
-    /// What is attached.
+    /// Texture to attach.
     pub texture: wgpu::Texture,
-    /// What is read is a copy of it, which [`HostBinding::refresh_depth`] brings up to date.
+    /// Whether the depth that is read is a copy of it, which [`HostBinding::refresh_depth`] brings up to date.
     pub is_copied: bool,
 }
 
-/// What a host-owned device needs round every batch of GPU calls: making its context current, fences, state.
+/// Hooks that a host-owned device needs around every batch of GPU calls: making its context current, fences, state.
 pub trait HostBinding: Send + Sync {
     /// Called before the first GPU call of a batch.
     ///
@@ -64,7 +64,8 @@ pub trait HostBinding: Send + Sync {
     fn enter(&self) -> Result<()>;
     /// Called after the last one; must not fail.
     fn leave(&self);
-    /// The texture in which a host's `color` can be read, where wgpu cannot copy it itself; [`HostBinding::refresh`] fills it.
+    /// The texture in which a host's `color` can be read, where wgpu cannot copy it itself; [`HostBinding::refresh`]
+    /// fills it.
     fn reading(&self, _color: &wgpu::Texture) -> Option<wgpu::Texture> {
         None
     }
@@ -75,7 +76,8 @@ pub trait HostBinding: Send + Sync {
     fn refresh(&self, _color: &wgpu::Texture) -> Result<()> {
         Ok(())
     }
-    /// What is attached where a host's `depth`, as it is read, is to be written; `None` for that texture itself.
+    /// Returns the texture to attach where a host's `depth`, as it is read, is to be written; `None` for that texture
+    /// itself.
     fn attached_depth(&self, _depth: &wgpu::Texture) -> Option<AttachedDepth> {
         None
     }
@@ -223,8 +225,8 @@ impl Device {
         Self::adopt(instance, adapter, device, queue, options.force_tier0, None)
     }
 
-    /// Takes over ready wgpu objects: a Rust host's own, or those made round a GL or Vulkan host's handles. On OpenGL the driver first draws
-    /// what is known.
+    /// Takes over ready wgpu objects: a Rust host's own, or those made round a GL or Vulkan host's handles. On OpenGL
+    /// the driver first draws what is known.
     ///
     /// # Errors
     /// [`Status::NoAdapter`] if an OpenGL driver draws that wrong or does not finish it.
@@ -295,7 +297,7 @@ impl Device {
         Arc::new(own)
     }
 
-    /// What this device can do.
+    /// Returns the capabilities of this device.
     pub fn caps(&self) -> &Caps {
         &self.caps
     }
@@ -317,7 +319,8 @@ impl Device {
         self.enter_to_release()
     }
 
-    /// The same also when the device is lost: what it made in the host's context is still there and must be deleted in it.
+    /// Enters as [`Device::enter`] does, also when the device is lost: what the device made in the host's context is
+    /// still there and must be deleted in it.
     ///
     /// # Errors
     /// Whatever keeps the host's context from being entered.
@@ -341,7 +344,7 @@ impl Device {
         self.binding.as_ref().map_or(Ok(()), |b| b.refresh(color))
     }
 
-    /// What is attached where a host's `depth` is to be written.
+    /// Returns the texture to attach where a host's `depth` is to be written.
     pub(crate) fn attached_depth(&self, depth: &wgpu::Texture) -> AttachedDepth {
         let other = self.binding.as_ref().and_then(|b| b.attached_depth(depth));
         other.unwrap_or_else(|| AttachedDepth { texture: depth.clone(), is_copied: false })
@@ -383,7 +386,8 @@ impl Device {
         self.take_fault().map_or(Ok(()), Err)
     }
 
-    /// As [`Device::check`], after images were made, while entered: OpenGL says only when asked that there is no memory for one.
+    /// As [`Device::check`], after images were made, while entered: OpenGL says only when asked that there is no memory
+    /// for one.
     ///
     /// # Errors
     /// The fault.
@@ -441,10 +445,11 @@ impl Device {
             if cfg!(debug_assertions) { super::shader::assemble_checked(name) } else { super::shader::assemble(name) }?;
         let overrides = super::shader::overrides(&text);
         let desc = wgpu::ShaderModuleDescriptor { label: Some(name), source: wgpu::ShaderSource::Wgsl(text.into()) };
-        // By default wgpu counts the turns of each loop, to end those that never would. That takes a sixteenth of what clouds cost on a GPU.
+        // By default wgpu counts the turns of each loop, to end those that never would. That takes a sixteenth of what
+        // clouds cost on a GPU.
         let checks = wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..wgpu::ShaderRuntimeChecks::checked() };
-        // SAFETY: all shaders are this crate's own, and each loop in them ends whatever its blocks hold (tests/shaders/loops.rs); bounds are
-        // checked as ever.
+        // SAFETY: all shaders are this crate's own, and each loop in them ends whatever its blocks hold
+        // (tests/shaders/loops.rs); bounds are checked as ever.
         let module = unsafe { self.device.create_shader_module_trusted(desc, checks) };
         let made = Shader { module, overrides };
         shaders.insert(name.to_owned(), made.clone());

@@ -1,12 +1,13 @@
-//! Instances of wgpu for devices of Welkin's own: which drivers are asked, in which order, and what they are not asked for.
+//! Instances of wgpu for devices of Welkin's own: which drivers are asked, in which order, and what they are not asked
+//! for.
 
 use crate::error::{Error, Result};
 
 /// A connection to the window system that an instance may keep.
 pub(super) type KeptDisplay = Box<dyn wgpu::wgt::WgpuHasDisplayHandle>;
 
-/// The interfaces to try one after the other. OpenGL is asked alone and only where the others do not serve: merely opening it makes some
-/// drivers write to the host's terminal.
+/// The interfaces to try one after the other. OpenGL is asked alone and only where the others do not serve: merely
+/// opening it makes some drivers write to the host's terminal.
 pub(super) fn attempts(backends: wgpu::Backends) -> impl Iterator<Item = wgpu::Backends> {
     let (gl, noop) = (backends & wgpu::Backends::GL, backends & wgpu::Backends::NOOP);
     [backends - gl - noop, gl, noop].into_iter().filter(|backends| !backends.is_empty())
@@ -40,8 +41,9 @@ pub(super) fn open(backends: wgpu::Backends, display: Option<KeptDisplay>) -> Re
     Ok(wgpu::Instance::new(desc))
 }
 
-/// Whether libwayland can look for a compositor. Where it cannot it says so on standard error, and a layer that comes with Mesa
-/// (`VK_LAYER_MESA_device_select`) makes it look whenever an instance has `VK_KHR_wayland_surface`, which wgpu always asks for.
+/// Whether libwayland can look for a compositor. Where it cannot it says so on standard error, and a layer that comes
+/// with Mesa (`VK_LAYER_MESA_device_select`) makes it look whenever an instance has `VK_KHR_wayland_surface`, which
+/// wgpu always asks for.
 #[cfg(all(unix, not(any(target_os = "macos", target_os = "ios"))))]
 fn wayland_can_be_asked() -> bool {
     let is_absolute = |name: &str| std::env::var_os(name).is_some_and(|path| std::path::Path::new(&path).is_absolute());
@@ -62,8 +64,8 @@ fn without_wayland() -> Result<wgpu::Instance> {
     let leave_out = |args: wgpu::hal::vulkan::CreateInstanceCallbackArgs<'_, '_, '_>| {
         args.extensions.retain(|name| *name != ash::khr::wayland_surface::NAME);
     };
-    // SAFETY: no feature is lost but surfaces of Wayland. The list holds what the loader offers of what wgpu would like to have; without this
-    // one wgpu answers as it does on a loader that does not offer it.
+    // SAFETY: no feature is lost but surfaces of Wayland. The list holds what the loader offers of what wgpu would like
+    // to have; without this one wgpu answers as it does on a loader that does not offer it.
     let vulkan = unsafe { wgpu::hal::vulkan::Instance::init_with_callback(&desc, Some(Box::new(leave_out))) };
     let vulkan = vulkan.map_err(|e| Error::new(crate::Status::NoAdapter, format!("Vulkan cannot be opened: {e}")))?;
     // SAFETY: it was made just now, and nothing else has it.

@@ -1,8 +1,10 @@
-//! Known answers: what an OpenGL driver draws of blocks and loops whose results are known, before anything else is asked of it.
+//! Known answers: what an OpenGL driver draws of blocks and loops whose results are known, before anything else is
+//! asked of it.
 //!
-//! NVIDIA's 580.159 does not finish the sky's first tables by OpenGL, and the GPU hangs with them. Tables are built by loops whose bounds
-//! come from uniform blocks; zeros in a block end them at once, and the bits of a float never. So each kind of block is drawn
-//! out without a loop first, then one texel by a loop; whoever fails gives no device. Twin: `shaders/common/known.wgsl`.
+//! NVIDIA's 580.159 does not finish the sky's first tables by OpenGL, and the GPU hangs with them. Tables are built by
+//! loops whose bounds come from uniform blocks; zeros in a block end them at once, and the bits of a float never. So
+//! each kind of block is drawn out without a loop first, then one texel by a loop; whoever fails gives no device. Twin:
+//! `shaders/common/known.wgsl`.
 
 use std::{
     sync::Arc,
@@ -21,7 +23,7 @@ use crate::error::{Error, Status};
 /// A driver that has not finished a few texels after so long never will. A device must be there or refused within 10 s.
 pub(super) const LIMIT: Duration = Duration::from_secs(6);
 
-/// What a driver did with the known answers.
+/// Fault that a driver showed with the known answers.
 #[derive(Debug)]
 pub(super) enum Fault {
     /// Shaders find other bytes in a block.
@@ -64,7 +66,8 @@ const TEXELS: usize = 44;
 /// Bounds of the two loops.
 const TURNS: (u32, u32) = (5, 7);
 
-/// What every vector holds. Rows and rule are floats, whose bits are large numbers, as those of the air; counts are small.
+/// Returns the contents of every vector. Rows and rule are floats, whose bits are large numbers, as those of the air;
+/// counts are small.
 fn contents() -> Vec<[u32; 4]> {
     let floats = |i: usize| std::array::from_fn(|k| ((1 + i * 4 + k) as f32 * 1.25).to_bits());
     let whole = |i: usize| std::array::from_fn(|k| ((1 + (i * (k + 3)) % 11) as f32).to_bits());

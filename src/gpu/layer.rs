@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 pub(crate) struct Layer<'a> {
     /// The texture.
     pub texture: &'a wgpu::Texture,
-    /// Which of its layers.
+    /// Index of the layer in it.
     pub index: u32,
 }
 
@@ -28,8 +28,8 @@ impl Layer<'_> {
         })
     }
 
-    /// A view of the layer alone to draw into, with all that its format holds. It cannot be read from: OpenGL finds nothing in a single layer
-    /// of several.
+    /// A view of the layer alone to draw into, with all that its format holds. It cannot be read from: OpenGL finds
+    /// nothing in a single layer of several.
     pub fn attached_view(self) -> wgpu::TextureView {
         self.texture.create_view(&wgpu::TextureViewDescriptor {
             usage: Some(wgpu::TextureUsages::RENDER_ATTACHMENT),

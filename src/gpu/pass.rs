@@ -1,4 +1,5 @@
-//! The kinds of pass that effects are: a full-screen triangle with a fragment shader, quads over a layer, a mesh, or a compute shader.
+//! The kinds of pass that effects are: a full-screen triangle with a fragment shader, quads over a layer, a mesh, or a
+//! compute shader.
 //!
 //! Tables, sky, fog and composition are all built of it, so they run on tier 0 as well. The vertex stage is
 //! `common/fullscreen.wgsl`.
@@ -29,7 +30,7 @@ impl<K: PartialEq, P> Made<K, P> {
     }
 }
 
-/// What a full-screen pipeline is made of.
+/// Description of a full-screen pipeline.
 pub struct FullscreenDesc<'a> {
     /// Shader file below `shaders/`; it includes `common/fullscreen.wgsl`.
     pub shader: &'a str,
@@ -115,8 +116,8 @@ pub(crate) fn depth_test(
     }
 }
 
-/// A target whose pipeline llvmpipe compiles once instead of twice. It makes a second version of the shader for blocks of
-/// pixels that a triangle covers wholly, unless the target blends; a blend that replaces draws the same.
+/// A target whose pipeline llvmpipe compiles once instead of twice. It makes a second version of the shader for blocks
+/// of pixels that a triangle covers wholly, unless the target blends; a blend that replaces draws the same.
 fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::ColorTargetState {
     let features = target.format.guaranteed_format_features(device.device.features()).flags;
     let can = device.caps().software && features.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE);
@@ -128,19 +129,20 @@ fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::Color
     }
 }
 
-/// What a pipeline of quads is made of: strips of four corners an instance, premultiplied and blended over what is there.
+/// Description of a pipeline of quads: strips of four corners an instance, premultiplied and blended over what is
+/// there.
 pub struct QuadsDesc<'a> {
     /// Name in captures.
     pub label: &'a str,
     /// Module and entry point of the corners, and values of its `override` constants.
     pub vertex: (&'a wgpu::ShaderModule, &'a str, &'a [(&'a str, f64)]),
-    /// Of the pixels.
+    /// Module and entry point of the pixels, and values of its `override` constants.
     pub fragment: (&'a wgpu::ShaderModule, &'a str, &'a [(&'a str, f64)]),
     /// One layout a bind group, in order.
     pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
-    /// What each instance brings.
+    /// Layouts of the data that each instance brings.
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    /// Of the layer, of one sample.
+    /// Format of the layer, of one sample.
     pub format: wgpu::TextureFormat,
     /// Counts how often a pixel is drawn, in place of `fragment`.
     pub counts: bool,
@@ -186,19 +188,19 @@ pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> Result<wgpu::RenderPipeli
     }))
 }
 
-/// What a pipeline of a mesh is made of: triangles of vertices that a buffer brings, in place of what is there.
+/// Description of a pipeline of a mesh: triangles of vertices that a buffer brings, in place of what is there.
 pub(crate) struct MeshDesc<'a> {
     /// Shader file below `shaders/`.
     pub shader: &'a str,
     /// Entry point of the vertices.
     pub vertex: &'a str,
-    /// Of the pixels.
+    /// Entry point of the pixels.
     pub fragment: &'a str,
     /// One layout a bind group, in order.
     pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
-    /// What each vertex brings.
+    /// Layout of the data that each vertex brings.
     pub vertices: wgpu::VertexBufferLayout<'a>,
-    /// Of the target, of one sample.
+    /// Format of the target, of one sample.
     pub format: wgpu::TextureFormat,
 }
 
@@ -236,7 +238,7 @@ pub(crate) fn mesh(device: &Device, desc: &MeshDesc<'_>) -> Result<wgpu::RenderP
     }))
 }
 
-/// What a compute pipeline is made of.
+/// Description of a compute pipeline.
 pub(crate) struct ComputeDesc<'a> {
     /// Shader file below `shaders/`.
     pub shader: &'a str,

@@ -89,7 +89,8 @@ fn copied(device: &Device, from: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::Ext
 /// and not linearised.
 ///
 /// # Errors
-/// As [`bytes`]. With debug assertions also [`Status::Internal`] for a picture in floats with a value that is not finite.
+/// As [`bytes`]. With debug assertions also [`Status::Internal`] for a picture in floats with a value that is not
+/// finite.
 pub fn rgba(device: &Device, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>> {
     use wgpu::TextureFormat as F;
     let raw = bytes(device, texture, 0)?;

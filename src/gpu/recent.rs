@@ -1,7 +1,7 @@
 //! Least-recently-used cache of things that are made when they are first needed.
 //!
-//! Pipelines come in as many variants as hosts have formats, and weathers parts. One that has not been used for longest goes when
-//! another one is made, so that memory levels off however long a session changes between them.
+//! Pipelines come in as many variants as hosts have formats, and weathers parts. One that has not been used for longest
+//! goes when another one is made, so that memory levels off however long a session changes between them.
 
 /// Values by their keys, at most `MOST` of them.
 pub(crate) struct LruCache<K, V, const MOST: usize> {

@@ -1,11 +1,11 @@
 //! Shader assembly: plain WGSL files, `//!include "common/x.wgsl"` resolved once each.
 //!
-//! Variants come from `override` constants and entry points, and from other files in place of some: `rain/drops_view.wgsl:multi`
-//! reads `common/host_multi.wgsl` instead of `common/host.wgsl`, as of every file that there is another of for `multi`. A name may have
-//! several such words. So a host's textures may be of other types, and what a pipeline does not draw is not compiled: a driver that
-//! finds dead code only after it has inlined everything takes several times as long. There is no preprocessor. Every assembled shader is
-//! validated by naga in a test ([`names`] lists them), and every uniform's offsets are compared with naga's
-//! ([`struct_layout`]).
+//! Variants come from `override` constants and entry points, and from other files in place of some:
+//! `rain/drops_view.wgsl:multi` reads `common/host_multi.wgsl` instead of `common/host.wgsl`, as of every file that
+//! there is another of for `multi`. A name may have several such words. So a host's textures may be of other types, and
+//! what a pipeline does not draw is not compiled: a driver that finds dead code only after it has inlined everything
+//! takes several times as long. There is no preprocessor. Every assembled shader is validated by naga in a test
+//! ([`names`] lists them), and every uniform's offsets are compared with naga's ([`struct_layout`]).
 
 use std::{cell::Cell, sync::Arc};
 
@@ -34,7 +34,8 @@ const VARIANTS: [(&str, &str); 6] = [
     ("lamps", "clouds/glow_view.wgsl"),
 ];
 
-/// Names of shader `name` and its variants of one word, and of the composition's of several, which stand for what others may use.
+/// Names of shader `name` and its variants of one word, and of the composition's of several, which stand for what
+/// others may use.
 ///
 /// # Errors
 /// As [`assemble`].
@@ -48,7 +49,8 @@ pub fn with_variants(name: &str) -> Result<Vec<String>> {
     Ok(std::iter::once(String::new()).chain(words).chain(several).map(|words| format!("{name}{words}")).collect())
 }
 
-/// The text of shader `name` with its includes put before it, each once, in order of first mention; of variants after colons.
+/// The text of shader `name` with its includes put before it, each once, in order of first mention; of variants after
+/// colons.
 ///
 /// # Errors
 /// [`Status::Internal`] if a file is missing or includes form a cycle; the message names the chain.
@@ -56,7 +58,8 @@ pub fn assemble(name: &str) -> Result<String> {
     assemble_from(name, &|n| source(n).map(str::to_owned))
 }
 
-/// As [`assemble`], with `common/guarded_checked.wgsl` in place of `common/guarded.wgsl`: what is not a number stays so.
+/// As [`assemble`], with `common/guarded_checked.wgsl` in place of `common/guarded.wgsl`: what is not a number stays
+/// so.
 ///
 /// # Errors
 /// As [`assemble`].
@@ -219,8 +222,9 @@ mod tests {
         assert!(lines("a:odd").unwrap_err().to_string().contains("no variant odd"));
     }
 
-    /// An index that a compiler does not know, into an array of a value: drivers copy all of that value for it, for every pixel, and
-    /// llvmpipe takes 0.3 s to compile the copy of a block of ours. Arrays of bound blocks are indexed where they are bound.
+    /// An index that a compiler does not know, into an array of a value: drivers copy all of that value for it, for
+    /// every pixel, and llvmpipe takes 0.3 s to compile the copy of a block of ours. Arrays of bound blocks are indexed
+    /// where they are bound.
     #[test]
     fn no_function_indexes_an_array_of_a_block_that_it_was_given() {
         use wgpu::naga::{Expression as E, Function, Handle, front::wgsl::parse_str};

@@ -1,4 +1,4 @@
-//! What the contexts and views of a device share: pipelines and tables, each made once, at its first use.
+//! Objects that the contexts and views of a device share: pipelines and tables, each made once, at its first use.
 
 use std::{
     any::Any,

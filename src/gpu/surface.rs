@@ -219,10 +219,10 @@ unsafe fn create(instance: &wgpu::Instance, window: &NativeWindow) -> Result<wgp
 /// How the values that are drawn mean colour on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SurfaceEncoding {
-    /// What is drawn is display-linear, and the hardware encodes it to sRGB as it is written.
+    /// Display-linear values, which the hardware encodes to sRGB as they are written.
     #[default]
     DisplayLinear,
-    /// What is drawn is already sRGB-encoded.
+    /// Values that are already sRGB-encoded.
     DisplaySrgb,
 }
 
@@ -249,7 +249,7 @@ pub struct SurfaceOptions {
     pub pacing: Pacing,
 }
 
-/// What effects do with the image that they draw into.
+/// Usages of the image that effects draw into.
 const IMAGE_USAGE: wgpu::TextureUsages =
     wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::COPY_SRC).union(wgpu::TextureUsages::COPY_DST);
 
@@ -443,8 +443,8 @@ impl Surface {
         Ok(picture)
     }
 
-    /// Lets an image in hand go undrawn. wgpu does not take it back from a lost device, and would panic when the surface goes
-    /// before it: there it is destroyed, whoever else holds it.
+    /// Lets an image in hand go undrawn. wgpu does not take it back from a lost device, and would panic when the
+    /// surface goes before it: there it is destroyed, whoever else holds it.
     fn give_back(&mut self) {
         if let Some(image) = self.take_image()
             && self.device.is_lost()
@@ -460,7 +460,7 @@ impl Surface {
         Some(image)
     }
 
-    /// What the host draws into for an image in hand.
+    /// Returns the texture that the host draws into for an image in hand.
     fn picture(&self, image: &wgpu::SurfaceTexture) -> wgpu::Texture {
         self.stand_in.as_ref().map_or_else(|| image.texture.clone(), |s| s.texture.clone())
     }

@@ -1,5 +1,5 @@
-//! What Windows is asked about windows and modules: drivers answer a window that is gone each in their own way, and
-//! none well.
+//! Queries to Windows about windows and modules: each driver treats a window that is gone in its own way, and none
+//! well.
 #![cfg(windows)]
 
 use std::ffi::c_void;

@@ -1,14 +1,14 @@
 //! Hollows of a terrain as a tree, and which of them each cell drains to.
 //!
-//! A pit fills until its water meets that of another at a saddle: from there on both are one larger hollow, up to the height at
-//! which that one spills, and so on until the water finds the grid's border (the hierarchy of Barnes, Callaghan and Wickert
-//! 2020; the level at which each hollow spills is that of the priority-flood of Barnes, Lehman and Mulla 2014). Cells are gone
-//! through from the lowest up, equal ones by their number, so that every cell but a pit has a lower neighbour. Run-off takes
-//! the steepest of the eight ways down. At the border water leaves.
+//! A pit fills until its water meets that of another at a saddle: from there on both are one larger hollow, up to the
+//! height at which that one spills, and so on until the water finds the grid's border (the hierarchy of Barnes,
+//! Callaghan and Wickert 2020; the level at which each hollow spills is that of the priority-flood of Barnes, Lehman
+//! and Mulla 2014). Cells are gone through from the lowest up, equal ones by their number, so that every cell but a pit
+//! has a lower neighbour. Run-off takes the steepest of the eight ways down. At the border water leaves.
 
 /// No hollow: what drains there leaves the grid.
 pub(super) const OUT: u32 = u32::MAX;
-/// Of a cell that is not gone through yet.
+/// Owner of a cell that has not been visited yet.
 const UNSEEN: u32 = u32::MAX - 1;
 
 /// A hollow. Water is counted in millimetres times cells.
@@ -26,7 +26,7 @@ pub(super) struct Basin {
     /// Cells of its parts, all under water, and what these hold.
     pub below: f64,
     pub base: f64,
-    /// What it holds when it spills, its parts included.
+    /// Water that it holds when it spills, that of its parts included.
     pub capacity: f64,
     /// Cells of its own in [`Basins::cells`], ascending.
     own: std::ops::Range<usize>,
@@ -66,7 +66,7 @@ fn whole_of(wholes: &mut [u32], mut basin: u32) -> u32 {
     basin
 }
 
-/// What goes up through the cells.
+/// State of the pass through the cells from the lowest up.
 struct Rising<'a> {
     heights_mm: &'a [f64],
     list: Vec<Basin>,
@@ -136,7 +136,8 @@ impl Rising<'_> {
         };
     }
 
-    /// What hollows that meet at `cell` become: beside the border's ground each ends, else they join, two at a time.
+    /// Ends or joins the hollows that meet at `cell`: beside the border's ground each ends, else they join, two at a
+    /// time.
     fn saddle(&mut self, cell: usize, met: &[u32], size: (usize, usize)) -> u32 {
         if met.contains(&OUT) {
             let to = self.lowest_of(cell, OUT, size);
@@ -179,7 +180,7 @@ impl Rising<'_> {
 }
 
 impl Basins {
-    /// Of heights, m, on a grid of so many columns.
+    /// Finds the hollows of a grid of `heights_m`, m, with so many columns.
     pub fn new(heights_m: &[f32], columns: usize) -> Self {
         let heights_mm: Vec<f64> = heights_m.iter().map(|h| f64::from(*h) * 1e3).collect();
         let mut order: Vec<u32> = (0..heights_mm.len() as u32).collect();
@@ -236,7 +237,8 @@ impl Basins {
         }
     }
 
-    /// Level of the water, mm, and how many cells lie under it, when a hollow holds `held`, which is at least its parts'.
+    /// Level of the water, mm, and how many cells lie under it, when a hollow holds `held`, which is at least its
+    /// parts'.
     pub fn level(&self, basin: usize, held: f64) -> (f64, f64) {
         let b = &self.list[basin];
         if b.own.is_empty() {
@@ -337,7 +339,8 @@ pub(super) mod tests {
         assert_eq!(held, 25.0 * 250.0);
         let pit = trough.list.iter().position(|b| b.capacity > 0.0).unwrap();
         assert_eq!(trough.level(pit, 25.0 * 100.0), (-150.0, 25.0));
-        // Rings of a pyramid, 8 k cells in ring k, each 0.125 m higher: water to ring 4 holds 8 k (4 - k) 125 mm and the middle.
+        // Rings of a pyramid, 8 k cells in ring k, each 0.125 m higher: water to ring 4 holds 8 k (4 - k) 125 mm and
+        // the middle.
         let pyramid = made(&|x, y| 0.125 * x.abs().max(y.abs()));
         let to_ring_4: f64 = 4.0 * 125.0 + (1..4).map(|k| f64::from(8 * k) * f64::from(4 - k) * 125.0).sum::<f64>();
         let (level, under) = pyramid.level(0, to_ring_4);

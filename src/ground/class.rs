@@ -1,4 +1,4 @@
-//! What the ground is made of, and what water does to the look of each.
+//! Classes of what the ground is made of, and how water changes the look of each.
 //!
 //! | class | darkens | film | rises over a film | puddles |
 //! |---|---|---|---|---|
@@ -9,9 +9,9 @@
 //! | water | no | none: the host draws it | 0 mm | none |
 //! | building | as wet ground does | most of it | 1 mm | of the host's terrain |
 //!
-//! Porous and rough ground under water darkens by one law (Angstrom 1925; Lekner & Dorf 1988), soil as much as asphalt: dark
-//! soils have an albedo of 0.05 wet and light ones 0.4 dry (Oke 1987, table 1.1). Shares of film and slopes are chosen: no
-//! measured mirror of wet soil, rock and roofs was found.
+//! Porous and rough ground under water darkens by one law (Angstrom 1925; Lekner & Dorf 1988), soil as much as asphalt:
+//! dark soils have an albedo of 0.05 wet and light ones 0.4 dry (Oke 1987, table 1.1). Shares of film and slopes are
+//! chosen: no measured mirror of wet soil, rock and roofs was found.
 
 pub(crate) use crate::terrain::CLASSES;
 pub use crate::terrain::SurfaceClass;

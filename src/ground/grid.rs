@@ -9,12 +9,12 @@ use crate::error::{Error, Result, check_range};
 pub const MAX_GRID_NODES: u32 = 512;
 /// Largest height above or below the origin, m.
 const MOST_M: f32 = 1e5;
-/// What lies higher above the terrain than this, m, is on something that stands on it: a bridge, a roof.
+/// Height above the terrain, m, above which a place is on something that stands on it: a bridge, a roof.
 pub(super) const ABOVE_M: f64 = 3.0;
 
-/// Heights of the host's terrain on a grid that is level and aligned to north at its origin. Each node stands for the square
-/// cell about it, with one state of water; between nodes the state goes linearly. Outside of the nodes the ground is the
-/// world's own ([`GroundModel`](crate::ground::GroundModel)).
+/// Heights of the host's terrain on a grid that is level and aligned to north at its origin. Each node stands for the
+/// square cell about it, with one state of water; between nodes the state goes linearly. Outside of the nodes the
+/// ground is the world's own ([`GroundModel`](crate::ground::GroundModel)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundGrid {
     /// The node farthest to the south-west, in the host's world; its height is what `heights_m` count from.
@@ -25,7 +25,7 @@ pub struct GroundGrid {
     pub nodes: [u32; 2],
     /// Heights above the origin, m, within 1e5; eastern neighbours beside each other, then northern.
     pub heights_m: Vec<f32>,
-    /// What each cell is made of, in the order of the heights; empty: nothing is said of any.
+    /// Class of what each cell is made of, in the order of the heights; empty where none is given.
     pub classes: Vec<SurfaceClass>,
 }
 
@@ -66,8 +66,8 @@ impl GroundGrid {
         self.nodes[0] as usize * self.nodes[1] as usize
     }
 
-    /// `position` of the host's world in cells east and north of the origin, and its height over it; `to_enu` turns the host's
-    /// axes at the origin.
+    /// `position` of the host's world in cells east and north of the origin, and its height over it; `to_enu` turns the
+    /// host's axes at the origin.
     pub(crate) fn cells_at(&self, position: DVec3, to_enu: DMat3) -> (DVec2, f64) {
         let p = to_enu * (position - self.origin);
         (p.truncate() / self.cell_m, p.z)
@@ -90,7 +90,7 @@ impl GroundGrid {
         place(self) == place(other) && self.heights_m == other.heights_m
     }
 
-    /// What a cell is made of.
+    /// Returns the class of what a cell is made of.
     pub(crate) fn class(&self, cell: usize) -> SurfaceClass {
         self.classes.get(cell).copied().unwrap_or_default()
     }

@@ -1,5 +1,5 @@
-//! The water on the ground as a context holds it for all its views: as the weather reports it, or simulated over the timeline if the
-//! host asked for that; on level, open ground and cell by cell on the host's terrain.
+//! The water on the ground as a context holds it for all its views: as the weather reports it, or simulated over the
+//! timeline if the host asked for that; on level, open ground and cell by cell on the host's terrain.
 
 use std::sync::{Arc, Mutex};
 
@@ -29,13 +29,13 @@ use crate::{
 /// Where the wetness of the ground comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GroundModel {
-    /// From the weather of the moment: as reported, or as the rain of the moment keeps it. No state: rain that ends leaves
-    /// dry ground.
+    /// From the weather of the moment: as reported, or as the rain of the moment keeps it. No state: rain that ends
+    /// leaves dry ground.
     #[default]
     Reported,
-    /// A state that rain fills and that drains and dries by wind, sun and humidity ([`crate::ground::water`]). It begins at
-    /// simulation time 0 as the weather of that moment reports the ground. An update that moves time by more than a day begins it
-    /// anew, in the same way, a day before its end.
+    /// A state that rain fills and that drains and dries by wind, sun and humidity ([`crate::ground::water`]). It
+    /// begins at simulation time 0 as the weather of that moment reports the ground. An update that moves time by more
+    /// than a day begins it anew, in the same way, a day before its end.
     Simulated,
 }
 
@@ -46,13 +46,13 @@ pub struct GroundAt {
     pub water_mm: f64,
     /// Film on level ground outside of hollows, mm; on the host's terrain that of the place.
     pub film_mm: f64,
-    /// Of all the ground, on the host's terrain of the place: 0 dry, 0.3 damp, 1 under a closed film.
+    /// Wetness of all the ground, on the host's terrain that of the place: 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
     /// Share of all the ground, or of the host's terrain, under standing water.
     pub puddles: f64,
     /// Whether standing water covers the place. Off the host's terrain only paved ground has puddles.
     pub in_puddle: bool,
-    /// What the ground is made of there, by the host's terrain, else by the context's default.
+    /// Class of the ground there, from the host's terrain, else the context's default.
     pub surface_class: SurfaceClass,
 }
 
@@ -115,7 +115,7 @@ pub(crate) struct HeldGround {
     pub generation: u64,
     /// Incremented whenever the host says anew what its terrain is made of.
     pub classes_revision: u64,
-    /// Of ground of which nothing else is said.
+    /// Class of ground for which the host gives none.
     pub surface_class: SurfaceClass,
     /// The terrain has no part in steps before this, s: it was set later.
     terrain_from_s: f64,
@@ -165,7 +165,8 @@ impl HeldGround {
         }
     }
 
-    /// Puts a grid in place of the one before; see [`Context::set_ground_grid`](crate::context::Context::set_ground_grid).
+    /// Puts a grid in place of the one before; see
+    /// [`Context::set_ground_grid`](crate::context::Context::set_ground_grid).
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field; nothing changes then.
@@ -216,7 +217,7 @@ impl HeldGround {
         }))
     }
 
-    /// What the ground at a place is made of, by the cell of the host's terrain, else by the default.
+    /// Returns the class of the ground at a place: that of the terrain's cell, else the default.
     fn surface_class_at(&self, world: &World, position: DVec3) -> SurfaceClass {
         let tile = self.tile_class_at(world, position);
         let cell = self.host.as_ref().and_then(|held| {
@@ -257,7 +258,8 @@ impl HeldGround {
         }
     }
 
-    /// What weather has done to the ground up to now: `reported` with the simulated water in its place.
+    /// Returns the cover that weather has left on the ground up to now: `reported`, with the simulated water in its
+    /// place.
     fn cover(&self, world: &World, reported: SurfaceCover) -> SurfaceCover {
         match self.water(world).map(|w| w.cover()) {
             Some((wetness, puddles)) => SurfaceCover { wetness, puddles, ..reported },
@@ -265,7 +267,7 @@ impl HeldGround {
         }
     }
 
-    /// The same at a place: in a region no drier than its rain of the moment keeps the ground.
+    /// Returns the cover at a place: in a rain area at least as wet as the area's present rain keeps the ground.
     fn cover_at(&self, world: &World, position: DVec3, reported: SurfaceCover) -> SurfaceCover {
         let cover = self.cover(world, reported);
         let weather = world.timeline.at(world.time_s);
@@ -281,7 +283,7 @@ impl HeldGround {
         }
     }
 
-    /// What a camera sees of the ground.
+    /// Returns the ground as a camera sees it.
     pub fn seen(&self, world: &World, now: &Moment<'_>) -> GroundSeen<'_> {
         let has_cells = self.host.is_some() || self.tiled.is_some();
         GroundSeen {
@@ -488,7 +490,8 @@ impl HeldEffect for HeldGround {
     }
 }
 
-/// What acts on the ground from the state's time on, in the weather `c`.
+/// Returns the rain or meltwater and the evaporation that act on the ground from the state's time on, in the weather
+/// `c`.
 fn forcing(world: &World, c: &Conditions, state: &GroundState) -> Forcing {
     let forcing = Forcing::of(c, state.sunlight_w_m2);
     let snow = world.snow.as_ref().and_then(|snow| snow.meltwater(state.time_s));

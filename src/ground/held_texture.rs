@@ -28,9 +28,9 @@ fn hand_over<'a>(device: &Device, textures: impl Iterator<Item = &'a wgpu::Textu
 }
 
 impl HeldGround {
-    /// The water on the host's terrain as a texture for the host's own materials, up to date: what has changed since is uploaded and
-    /// submitted, which is every 10 s of simulation time at most. It stays the same object until another grid is set or loaded; then
-    /// it goes, at this function's or a view's next call.
+    /// The water on the host's terrain as a texture for the host's own materials, up to date: what has changed since is
+    /// uploaded and submitted, which is every 10 s of simulation time at most. It stays the same object until another
+    /// grid is set or loaded; then it goes, at this function's or a view's next call.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without a terrain, [`Status::DeviceLost`], or a GPU fault.

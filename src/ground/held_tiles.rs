@@ -28,7 +28,7 @@ pub(super) struct GroundStep<'a> {
     pub seconds: f64,
     pub conditions: &'a Conditions,
     pub forcing: &'a Forcing,
-    /// Of level ground at its beginning.
+    /// Water of level ground at the step's beginning.
     pub water: &'a GroundWater,
 }
 
@@ -59,7 +59,8 @@ impl HeldGround {
         Ok(())
     }
 
-    /// Changes the tiles by `change`, which answers the cells that it touched. `waits`: steps remain of what was set before.
+    /// Changes the tiles by `change`, which answers the cells that it touched. `waits`: steps remain of what was set
+    /// before.
     fn change(
         &mut self,
         (world, waits): (&mut World, bool),
@@ -111,7 +112,8 @@ impl HeldGround {
         self.change(on, true, |terrain| terrain.remove(key).map(Some))
     }
 
-    /// Lets the water follow the changes that had to wait, each on the terrain as it was then, up to that of the world by now.
+    /// Lets the water follow the changes that had to wait, each on the terrain as it was then, up to that of the world
+    /// by now.
     pub(super) fn follow_late(&mut self, world: &World) {
         let Some(now) = world.set.tiles.as_ref().filter(|_| !self.waiting.is_empty()) else { return };
         let count = self.waiting.iter().take_while(|(changed, _)| changed.revision <= now.revision).count();
@@ -147,7 +149,7 @@ impl HeldGround {
         self.water(world).unwrap_or_else(|| GroundWater::of_cover(&world.timeline.at(world.time_s).surface))
     }
 
-    /// What a tile's cell at a place is made of; none off the tiles.
+    /// Returns the class of a tile's cell at a place; none off the tiles.
     pub(super) fn tile_class_at(&self, world: &World, position: DVec3) -> Option<SurfaceClass> {
         let terrain = world.set.tiles.as_ref()?;
         let (_, height) = terrain.cells_at(position);
@@ -166,7 +168,7 @@ impl HeldGround {
         Some((tiled.between(terrain, cells, &self.even_water(world))?, tiled.puddles()))
     }
 
-    /// What a view's window draws from, if there are tiles.
+    /// Returns what a view's window draws from, if there are tiles.
     pub(super) fn shown_tiles<'a>(&'a self, world: &'a World, ice: f64) -> Option<Shown<'a>> {
         let terrain = world.set.tiles.as_deref()?;
         let water = self.tiled.as_ref().filter(|tiled| tiled.is_of(terrain))?;

@@ -1,9 +1,9 @@
 //! Hollows of a ground of which no heights are known: a sum of waves fixed to the host's world, in f64 the twin of
 //! `shaders/ground/hollows.wgsl`.
 //!
-//! Waves rather than noise on a lattice: a picture's pixel averages each of them exactly, so that puddles far away fade to
-//! their mean without flicker, and their sum is spread normally, so that the level of water follows from the share of ground
-//! under it.
+//! Waves rather than noise on a lattice: a picture's pixel averages each of them exactly, so that puddles far away fade
+//! to their mean without flicker, and their sum is spread normally, so that the level of water follows from the share
+//! of ground under it.
 
 use std::f64::consts::TAU;
 
@@ -13,11 +13,13 @@ use glam::{DMat3, DVec2, DVec3};
 pub const PERIOD_M: f64 = 1e4;
 /// Waves of the pattern.
 pub const WAVES: usize = 16;
-/// Turns of each wave along both axes in [`PERIOD_M`]: whole numbers. They are the same in all worlds, and only phases depend on the seed:
-/// so the shader has them as constants, since some software drivers take longer to read a uniform block than to add a wave.
+/// Turns of each wave along both axes in [`PERIOD_M`]: whole numbers. They are the same in all worlds, and only phases
+/// depend on the seed: so the shader has them as constants, since some software drivers take longer to read a uniform
+/// block than to add a wave.
 ///
-/// The waves are of three bands: 17 to 7 m, 5.3 to 2.2 m, 1.7 to 0.8 m. Each has enough of them that the pattern looks irregular also where
-/// pixels are too coarse for the shorter bands. The golden angle lies between the directions of one wave and the next.
+/// The waves are of three bands: 17 to 7 m, 5.3 to 2.2 m, 1.7 to 0.8 m. Each has enough of them that the pattern looks
+/// irregular also where pixels are too coarse for the shorter bands. The golden angle lies between the directions of
+/// one wave and the next.
 const TURNS: [(i32, i32); WAVES] = [
     (513, 432),
     (-684, 28),
@@ -42,7 +44,7 @@ const BANDS: [(usize, f64); 3] = [(6, 0.45), (6, 0.35), (4, 0.2)];
 /// The hollows of a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hollows {
-    /// Of each wave, turns.
+    /// Phase of each wave, turns.
     phases: [f64; WAVES],
 }
 
@@ -52,7 +54,7 @@ fn turns(wave: usize) -> DVec2 {
     DVec2::new(east.into(), north.into())
 }
 
-/// Of a wave, in units of the pattern's root mean square depth.
+/// Returns the amplitude of a wave, in units of the pattern's root mean square depth.
 fn amplitude(wave: usize) -> f64 {
     let mut first = 0;
     for (count, share) in BANDS {
@@ -65,7 +67,7 @@ fn amplitude(wave: usize) -> f64 {
 }
 
 impl Hollows {
-    /// Those of a world with this seed.
+    /// Creates the hollows of a world with this seed.
     pub fn new(seed: u64) -> Self {
         let mut state = seed;
         // The second of two numbers each: the lengths in TURNS are those that the first ones drew for seed 0.
@@ -103,8 +105,8 @@ fn uniform(state: &mut u64) -> f64 {
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// Axes of the pattern in the host's world: the two of its three axes that lie flattest on the ground. In an Earth-centred
-/// world these are others on each of six sides of the planet.
+/// Axes of the pattern in the host's world: the two of its three axes that lie flattest on the ground. In an
+/// Earth-centred world these are others on each of six sides of the planet.
 pub(crate) fn pattern_axes(world_to_enu: &DMat3) -> [DVec3; 2] {
     let up = (world_to_enu.transpose() * DVec3::Z).abs();
     if up.z >= up.x && up.z >= up.y {

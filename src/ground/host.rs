@@ -1,4 +1,5 @@
-//! Water on the host's terrain: what falls where on it, and how it is led through time beside that of level, open ground.
+//! Water on the host's terrain: what falls where on it, and how it is led through time beside that of level, open
+//! ground.
 
 use glam::{DMat3, DVec2};
 
@@ -27,7 +28,8 @@ pub struct GroundCell {
     pub soaked: f32,
     /// Standing water, mm.
     pub standing_mm: f32,
-    /// Share under ice, by the weather of the moment; what freezing rain leaves is not where standing boxes keep it off.
+    /// Share under ice, by the weather of the moment; what freezing rain leaves is not where standing boxes keep it
+    /// off.
     pub ice: f32,
 }
 
@@ -43,7 +45,7 @@ pub(super) struct HostGround {
     shown: Option<CellInputs>,
 }
 
-/// What a cell's water depends on where it has no state.
+/// Inputs that decide a cell's water where it has no state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CellInputs {
     water: GroundWater,
@@ -98,8 +100,8 @@ impl HostGround {
         self.water = TerrainWater::new(&self.terrain, |cell| cells[cell]);
     }
 
-    /// Leads the water from `from_s` through a step, under the weather in its middle; `water` is that of level, open ground at its
-    /// beginning. Says whether it may have changed.
+    /// Leads the water from `from_s` through a step, under the weather in its middle; `water` is that of level, open
+    /// ground at its beginning. Says whether it may have changed.
     pub fn lead(
         &mut self,
         world: &World,
@@ -121,8 +123,8 @@ impl HostGround {
         (self.begun, self.shown) = (false, None);
     }
 
-    /// Updates what follows from weather, areas and shelter without a state: the ice, and the water where it has none. Answers whether
-    /// anything may have changed.
+    /// Updates what follows from weather, areas and shelter without a state: the ice, and the water where it has none.
+    /// Answers whether anything may have changed.
     pub fn refresh(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
         // Looked at as often as a state is stepped: weather and areas may change all the time.
         let slot_s = ((world.time_s / STEP_S).floor() * STEP_S).max(world.timeline.known_from_s());

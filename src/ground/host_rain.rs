@@ -1,4 +1,4 @@
-//! What of the rain areas falls on which part of the host's terrain.
+//! Rain of the rain areas on each part of the host's terrain.
 
 use std::ops::Range;
 
@@ -22,13 +22,14 @@ pub(super) struct AreaOverGrid {
     pub liquid_mm_h: f64,
 }
 
-/// Of each area what is the same all over a part of the grid: its share, and how much of it has left its cloud.
+/// Share of each area, and how much of its rain has left its cloud, where both are the same all over a part of the
+/// grid; none where they vary.
 type Evens = [Option<(f64, f64)>; MAX_AREAS];
 
 /// Areas over a grid, in their order.
 pub(super) struct AreasOverGrid {
     list: [Option<AreaOverGrid>; MAX_AREAS],
-    /// AreaOverGrid all of the grid.
+    /// Shares that are the same all over the grid.
     evens: Evens,
 }
 
@@ -57,7 +58,8 @@ pub(super) fn liquid(f: &Falling) -> f64 {
     f.rain_mm_h + f.drizzle_mm_h
 }
 
-/// Where some cells of a grid lie: their middle in the host's world, how far they reach from it, lowest and highest altitude, m.
+/// Where some cells of a grid lie: their middle in the host's world, how far they reach from it, lowest and highest
+/// altitude, m.
 pub(super) struct Part {
     middle: DVec3,
     reach_m: f64,
@@ -103,7 +105,7 @@ impl Part {
         (most, even.then_some((most, begun[0])))
     }
 
-    /// What of areas that may be uneven over the grid is even here.
+    /// Finds share and begun rain of each area over this part, where they are even, as [`Evens`].
     fn evens(&self, overs: &AreasOverGrid, to_enu: &DMat3) -> Evens {
         let mut evens = overs.evens;
         for (even, over) in evens.iter_mut().zip(&overs.list) {
@@ -127,7 +129,7 @@ impl RainOn {
         })
     }
 
-    /// The same by what is even over all of the grid.
+    /// Returns rain and drizzle at a cell, mm/h, from what is even over all of the grid.
     pub(super) fn liquid(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, cell: usize) -> f64 {
         self.liquid_with(grid, overs, &overs.evens, own, cell)
     }

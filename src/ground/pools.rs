@@ -1,16 +1,18 @@
 //! Water in the hollows of a terrain: poured into a pit it fills it, spills into the next and joins with it (after the
-//! fill-spill-merge of Barnes, Callaghan and Wickert 2021), and sinks by what its surface loses. No water is lost on the way.
+//! fill-spill-merge of Barnes, Callaghan and Wickert 2021), and sinks by what its surface loses. No water is lost on
+//! the way.
 
 use super::basins::{Basins, OUT};
 
-/// Of a hollow whose parts are not all full.
+/// Volume of a hollow whose parts are not all full.
 const APART: f64 = -1.0;
 
-/// What each hollow holds, mm times cells, its parts included; [`APART`] while its parts have waters of their own.
+/// Water in each hollow, mm times cells, that of its parts included; [`APART`] while its parts have waters of their
+/// own.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pools {
     pub held: Vec<f64>,
-    /// What is passed down within [`Pools::sink`].
+    /// Water that is passed down within [`Pools::sink`].
     passed: Vec<f64>,
 }
 
@@ -21,7 +23,7 @@ impl Pools {
         Self { held, passed: vec![0.0; basins.list.len()] }
     }
 
-    /// Those of a saved state, if they can be of these hollows.
+    /// Creates the pools of a saved state; none if it cannot be one of these hollows.
     pub fn from_held(basins: &Basins, held: Vec<f64>) -> Option<Self> {
         let sound = held.len() == basins.list.len()
             && held.iter().zip(&basins.list).all(|(h, b)| {

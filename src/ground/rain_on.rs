@@ -1,4 +1,4 @@
-//! What falls on the cells of a grid: past standing boxes, under rain areas, and what of it is ice.
+//! Precipitation on the cells of a grid: past standing boxes, under rain areas, and its share of ice.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -51,7 +51,7 @@ pub(super) struct RainOn {
     range_m: (f64, f64),
     shadow: Shadow,
     glaze: Glaze,
-    /// What falls in this step, mm: on every cell before boxes, or else on each.
+    /// Precipitation in this step, mm: on every cell before boxes, or else on each.
     even_mm: Option<f64>,
     rates: Vec<f64>,
 }
@@ -88,8 +88,8 @@ impl RainOn {
         self.glaze.shadow.made_for = None;
     }
 
-    /// Finds what the standing boxes keep off, and says whether that may be something else than before. `falls_m_s`: of the drops
-    /// in the middle of each third of the water; `wind` of the air, east and north.
+    /// Finds what the standing boxes keep off, and says whether that may be something else than before. `falls_m_s`: of
+    /// the drops in the middle of each third of the water; `wind` of the air, east and north.
     fn shade(
         &self,
         grid: &CellGrid<'_>,
@@ -127,7 +127,8 @@ impl RainOn {
         self.shadow = shadow;
     }
 
-    /// Takes the ice from the weather, what freezing rain leaves where it gets to. Says whether any of it may have changed.
+    /// Takes the ice from the weather, what freezing rain leaves where it gets to. Says whether any of it may have
+    /// changed.
     pub fn ice_over(
         &mut self,
         grid: &CellGrid<'_>,
@@ -246,7 +247,7 @@ impl RainOn {
         }
     }
 
-    /// What falls on a cell in the step of [`Self::fall`], mm.
+    /// Returns the precipitation on a cell in the step of [`Self::fall`], mm.
     pub fn fallen_mm(&self, cell: usize) -> f64 {
         match self.even_mm {
             Some(mm) => mm * self.shadow.share(cell),

@@ -9,8 +9,8 @@ use crate::falling::sizes::DropSizes;
 
 /// Refractive index of water over that of air, visible light at 20 C (Hale & Querry 1973, rounded).
 pub const WATER_INDEX: f64 = 1.333;
-/// Share of diffuse light that a level surface of water sends back up, from above: Fresnel's law integrated over the half
-/// space.
+/// Share of diffuse light that a level surface of water sends back up, from above: Fresnel's law integrated over the
+/// half space.
 pub const WATER_OUTSIDE: f64 = 0.0664;
 /// Share of diffuse light that it sends back down, from below.
 pub const WATER_INSIDE: f64 = 0.4746;
@@ -24,9 +24,9 @@ pub fn fresnel_water(cosine: f64) -> f64 {
     0.5 * (across * across + along * along)
 }
 
-/// What a film leaves of the light that a rough ground of this albedo (\[0, 1\]) sends up, the share `entering` of the
-/// light from above getting into the water: e (1 - p) / (1 - p a), p = [`WATER_INSIDE`] (Angstrom 1925; Lekner & Dorf 1988,
-/// eq. 1 to 3).
+/// Returns the share that a film leaves of the light that a rough ground of this albedo (\[0, 1\]) sends up, where the
+/// share `entering` of the light from above gets into the water: e (1 - p) / (1 - p a), p = [`WATER_INSIDE`] (Angstrom
+/// 1925; Lekner & Dorf 1988, eq. 1 to 3).
 pub fn wet_share(albedo: f64, entering: f64) -> f64 {
     entering * (1.0 - WATER_INSIDE) / (1.0 - WATER_INSIDE * albedo)
 }
@@ -38,8 +38,8 @@ pub fn wet_albedo(albedo: f64) -> f64 {
 }
 
 /// Mean slope towards the eye of the facets that it sees on a surface whose slopes are spread normally by `slope` (root
-/// mean square along one axis), at the tangent of its zenith angle: slope^2 tan for steep looks, sqrt(pi / 2) slope, the
-/// mean of the facets weighted by their own slope, for grazing ones.
+/// mean square along one axis), at the tangent of its zenith angle: slope^2 tan for steep looks, sqrt(pi / 2) slope,
+/// the mean of the facets weighted by their own slope, for grazing ones.
 pub fn seen_slope(slope: f64, tangent: f64) -> f64 {
     let t = slope * tangent * (2.0 / PI).sqrt();
     slope * slope * tangent / (1.0 + t * t).sqrt()
@@ -51,9 +51,9 @@ pub fn seen_area(slope: f64, cosine: f64) -> f64 {
     (c * c + 0.16 * slope * slope * (1.0 - c * c)).sqrt()
 }
 
-/// Luminance that a lamp of illuminance 1 makes on rough water, per Fresnel share (Cox & Munk 1954, eq. 5, with the shadows of
-/// facets on each other): `up` is the surface's normal, `facet` the one that mirrors the lamp's middle into the eye, `disc2` =
-/// (radius of the lamp / 4)^2, rad^2.
+/// Luminance that a lamp of illuminance 1 makes on rough water, per Fresnel share (Cox & Munk 1954, eq. 5, with the
+/// shadows of facets on each other): `up` is the surface's normal, `facet` the one that mirrors the lamp's middle into
+/// the eye, `disc2` = (radius of the lamp / 4)^2, rad^2.
 pub fn glitter(slope: f64, disc2: f64, up: DVec3, facet: DVec3, to_eye: DVec3, to_lamp: DVec3) -> f64 {
     let (c, lit, seen) = (up.dot(facet), up.dot(to_lamp), up.dot(to_eye));
     let area = seen_area(slope, seen) * seen_area(slope, lit);

@@ -39,7 +39,7 @@ impl SavedGround {
         }
     }
 
-    /// What was saved, if it can be one of ours.
+    /// Returns the saved ground; none if it cannot be one of ours.
     pub fn host_ground(&self, world: &WorldFrame) -> Option<HostGround> {
         if self.nodes.iter().any(|n| *n > MAX_GRID_NODES) {
             return None;

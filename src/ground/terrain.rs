@@ -1,10 +1,10 @@
-//! Water on the host's terrain: of every cell of a [`GroundGrid`] film and pores by the laws of [`super::water`], and in the
-//! hollows of the terrain what runs off.
+//! Water on the host's terrain: of every cell of a [`GroundGrid`] film and pores by the laws of [`super::water`], and
+//! in the hollows of the terrain what runs off.
 //!
-//! What a cell sheds in a step is in its hollow at the end of the step ([`super::basins`]); a full hollow spills into the next,
-//! and what reaches the grid's border is gone. Nothing runs in from outside. Standing water loses Penman's evaporation to the air
-//! and a leak to the ground below, and takes whole what falls on it. So rain = change of film, pores and standing water +
-//! evaporated + leaked + drained.
+//! What a cell sheds in a step is in its hollow at the end of the step ([`super::basins`]); a full hollow spills into
+//! the next, and what reaches the grid's border is gone. Nothing runs in from outside. Standing water loses Penman's
+//! evaporation to the air and a leak to the ground below, and takes whole what falls on it. So rain = change of film,
+//! pores and standing water + evaporated + leaked + drained.
 
 use half::f16;
 
@@ -17,7 +17,8 @@ use super::{
 
 /// Cells that are gone through together, or passed over together where nothing falls, flows or dries.
 pub(crate) const RUN: usize = 64;
-/// Depth of water where there is none and no hollow's level is known, mm: as far as puddles' edges run out between cells.
+/// Depth of water where there is none and no hollow's level is known, mm: as far as puddles' edges run out between
+/// cells.
 const BARE_MM: f32 = -50.0;
 
 /// The host's terrain and its hollows.
@@ -34,7 +35,7 @@ impl Terrain {
     }
 }
 
-/// What a step brought and took, mm times cells.
+/// Water that a step brought and took, mm times cells.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Flows {
     pub rain: f64,
@@ -74,7 +75,8 @@ pub(crate) struct TerrainWater {
     /// Depths as in [`CellWater::standing_mm`].
     standing: Vec<f32>,
     dry: bool,
-    /// Of each run of cells, whether a step without rain may change any: one with a film, or with wet pores above water.
+    /// Flag of each run of cells: whether a step without rain may change any cell of it: one with a film, or with wet
+    /// pores above water.
     awake: Vec<bool>,
     /// Level of the water in each hollow, and what it held when that was found.
     levels: Vec<Level>,
@@ -90,8 +92,8 @@ struct Level {
 }
 
 impl TerrainWater {
-    /// On a terrain that is as wet as `water` says of open, level ground at each cell; what it says of hollows stands in the
-    /// terrain's own, gathered from what drains there.
+    /// On a terrain that is as wet as `water` says of open, level ground at each cell; what it says of hollows stands
+    /// in the terrain's own, gathered from what drains there.
     pub fn new(terrain: &Terrain, water: impl Fn(usize) -> GroundWater) -> Self {
         let basins = &terrain.basins;
         let top: Vec<GroundWater> = (0..terrain.grid.len()).map(water).collect();
@@ -132,7 +134,7 @@ impl TerrainWater {
         new
     }
 
-    /// What each hollow holds.
+    /// Returns the water in each hollow, mm times cells.
     pub fn held(&self) -> &[f64] {
         &self.pools.held
     }
@@ -142,8 +144,8 @@ impl TerrainWater {
         self.dry
     }
 
-    /// Leads it through a step in which so many millimetres fall on each cell, none on the cells of a run on which it does not
-    /// rain. Runs where nothing falls, flows or dries are passed over, which changes no bit.
+    /// Leads it through a step in which so many millimetres fall on each cell, none on the cells of a run on which it
+    /// does not rain. Runs where nothing falls, flows or dries are passed over, which changes no bit.
     pub fn step(
         &mut self,
         terrain: &Terrain,
@@ -240,8 +242,8 @@ impl TerrainWater {
         })
     }
 
-    /// Texels of each cell, by rows ([`super::GroundTexture`]): film, mm, soaked share of the pores, depth of standing water as in
-    /// [`CellWater`], mm, and the share under ice.
+    /// Texels of each cell, by rows ([`super::GroundTexture`]): film, mm, soaked share of the pores, depth of standing
+    /// water as in [`CellWater`], mm, and the share under ice.
     pub fn texels(&self, ice: impl Fn(usize) -> f32, texels: &mut Vec<[u16; 4]>) {
         texels.clear();
         // Beyond what a half float holds water only gets no deeper.
@@ -350,7 +352,8 @@ mod tests {
         assert_eq!(water.puddles(), 0.0);
     }
 
-    /// Hours of showers and sun on rough ground: to the bit what going through all cells and hollows gives, in less time.
+    /// Hours of showers and sun on rough ground: to the bit what going through all cells and hollows gives, in less
+    /// time.
     #[test]
     fn passing_over_what_rests_changes_no_bit_and_saves_most_of_the_time() {
         let (columns, rows) = (256, 256);

@@ -1,8 +1,10 @@
-//! The water on the host's terrain as a texture: what the surface pass draws from, and what a host samples in its own materials.
+//! The water on the host's terrain as a texture: what the surface pass draws from, and what a host samples in its own
+//! materials.
 //!
-//! One texel a node, the first one south-west, rows to the north: half floats, which every interface filters. Film and soaked
-//! share are within 1/2048 of their value, standing water within 1/2048 of it, so 0.06 mm at 100 mm. Standing water is signed, so that
-//! between a node under water and one above it the shore lies where the water's level meets the ground.
+//! One texel a node, the first one south-west, rows to the north: half floats, which every interface filters. Film and
+//! soaked share are within 1/2048 of their value, standing water within 1/2048 of it, so 0.06 mm at 100 mm. Standing
+//! water is signed, so that between a node under water and one above it the shore lies where the water's level meets
+//! the ground.
 
 use glam::DVec4;
 
@@ -17,17 +19,19 @@ pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_groun
 /// Water on the host's terrain for its own shaders: as [`GroundCell`](crate::ground::GroundCell), one texel a node.
 #[derive(Clone, Debug)]
 pub struct GroundTexture {
-    /// RGBA half floats: film in mm, soaked share of the pores, standing water in mm, share under ice. Standing water is negative
-    /// where none stands: how far its hollow's level lies below the ground, or -50 where the hollow is dry. Belongs to the
-    /// context; filled anew by its next [`Context::ground_texture`](crate::context::Context::ground_texture) and by frames with
+    /// RGBA half floats: film in mm, soaked share of the pores, standing water in mm, share under ice. Standing water
+    /// is negative where none stands: how far its hollow's level lies below the ground, or -50 where the hollow is dry.
+    /// Belongs to the context; filled anew by its next
+    /// [`Context::ground_texture`](crate::context::Context::ground_texture) and by frames with
     /// [`Stages::SURFACE`](crate::frame::Stages::SURFACE).
     pub texture: wgpu::Texture,
     /// Incremented whenever `texture` is replaced: where another grid was set or loaded.
     pub generation: u64,
     /// [`Context::ground_revision`](crate::context::Context::ground_revision) of what it holds.
     pub revision: u64,
-    /// The snow on the same nodes, RGBA half floats: depth in m, density in kg/m^3, wetness, albedo of visible light. `None` without
-    /// a simulated snow ([`LyingSnowModel`](crate::snowpack::LyingSnowModel)). Replaced with `texture`, filled likewise.
+    /// The snow on the same nodes, RGBA half floats: depth in m, density in kg/m^3, wetness, albedo of visible light.
+    /// `None` without a simulated snow ([`LyingSnowModel`](crate::snowpack::LyingSnowModel)). Replaced with `texture`,
+    /// filled likewise.
     pub snow: Option<wgpu::Texture>,
     /// Rows that, times (x, y, z, 1) of a place in the host's world, m, give its u and v.
     pub uv_from_world: [DVec4; 2],
@@ -50,7 +54,7 @@ pub(crate) struct Filled {
     surface: wgpu::Texture,
     /// For drawing: of the water and of the surface.
     pub views: [wgpu::TextureView; 2],
-    /// Of the grid, of the water, and of what the ground is made of.
+    /// Revisions of the grid, of the water, of the classes and of the snow in the textures.
     pub generation: u64,
     pub revision: u64,
     classes: u64,
@@ -70,7 +74,7 @@ pub(crate) struct TerrainTextures {
 }
 
 impl TerrainTextures {
-    /// What there is, however old.
+    /// Returns the textures as they are, however old.
     pub fn filled(&self) -> Option<&Filled> {
         self.filled.as_ref()
     }
@@ -161,7 +165,8 @@ fn terrain_texture(
     })
 }
 
-/// Of each node, by rows: slopes to the east and the north, height over the grid's origin in metres, number of its class.
+/// Appends for each node, by rows: slopes to the east and the north, height over the grid's origin in metres, number of
+/// its class.
 fn surface_texels(grid: &GroundGrid, texels: &mut Vec<[f32; 4]>) {
     texels.clear();
     texels.extend(grid.heights_m.iter().enumerate().map(|(node, height)| {

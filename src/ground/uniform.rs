@@ -1,4 +1,4 @@
-//! What the shaders of wet ground need of a frame: `GroundUniform` of `shaders/ground/uniform.wgsl`.
+//! Uniform block of the shaders of wet ground in a frame: `GroundUniform` of `shaders/ground/uniform.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -29,8 +29,8 @@ const RING_LAYERS: f64 = 4.0;
 /// Root mean square slopes, along one axis, of a film: thin, on the grains of asphalt that it hardly fills; and closed.
 const THIN_FILM_SLOPE: f64 = 0.3;
 const CLOSED_FILM_SLOPE: f64 = 0.15;
-/// Share of the open sea's mean square slope by wind (Cox & Munk 1954: 0.00512 per m/s, of both axes) that puddles have:
-/// they are a few metres long.
+/// Share of the open sea's mean square slope by wind (Cox & Munk 1954: 0.00512 per m/s, of both axes) that puddles
+/// have: they are a few metres long.
 const PUDDLE_SHARE_OF_SEA: f64 = 0.03;
 /// Mean square slope of puddles by the rings of drops, per mm/h.
 const RING_SLOPE2_PER_MM_H: f64 = 2e-4;
@@ -88,7 +88,7 @@ impl GroundUniform {
     }
 }
 
-/// What a frame's wet surfaces depend on.
+/// Inputs of a frame's wet surfaces.
 pub(crate) struct WetScene<'a> {
     pub scene: &'a Scene,
     pub cover: &'a SurfaceCover,
@@ -96,12 +96,12 @@ pub(crate) struct WetScene<'a> {
     pub snow: SnowHere,
     /// Whether the terrain's cells have snow of their own; else it lies on them as on level, open ground.
     pub terrain_has_snow: bool,
-    /// What falls on it.
+    /// Precipitation that falls on it.
     pub falling: Falling,
     /// Share of level ground under clear ice.
     pub glaze: f64,
     pub hollows: &'a Hollows,
-    /// Of the camera in the host's world, m.
+    /// Position of the camera in the host's world, m.
     pub position: DVec3,
     pub time_s: f64,
     /// 1/m; 0 for a flat world.
@@ -114,13 +114,14 @@ pub(crate) struct WetScene<'a> {
     pub depth_rounding: [f64; 2],
     /// Most light that a pixel holds, cd/m^2.
     pub most_cd_m2: f64,
-    /// Of the air that carries the rain, (east, north, up), where anything keeps rain off.
+    /// Velocity of the air that carries the rain, (east, north, up), m/s, where anything keeps rain off.
     pub wind_m_s: Option<DVec3>,
     /// The host's terrain about the camera.
     pub terrain: Option<DrawnTerrain>,
-    /// Of ground of which nothing else is said.
+    /// Class of ground for which the host gives none.
     pub surface_class: SurfaceClass,
-    /// From the axes of the host's image of normals to east, north, up, and what its numbers are multiplied by and added to that.
+    /// From the axes of the host's image of normals to east, north, up, and what its numbers are multiplied by and
+    /// added to that.
     pub normals: (DMat3, [f32; 2]),
 }
 
@@ -147,8 +148,9 @@ fn level_of(covered: f64) -> f32 {
     if covered <= 0.0 { NO_LEVEL } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
 }
 
-/// What follows from the sizes of drops alone, kept while the same falls: sums over all sizes would cost more than the rest of a frame's
-/// recording. The rings that a rate makes are as many at every altitude, and all speeds change by one factor.
+/// Cache of what follows from the sizes of drops alone, kept while the precipitation is unchanged: sums over all sizes
+/// would cost more than the rest of a frame's recording. The rings that a rate makes are as many at every altitude, and
+/// all speeds change by one factor.
 #[derive(Default)]
 pub(crate) struct DropsKept {
     rings: Option<(Falling, f64)>,
@@ -253,7 +255,8 @@ impl WetScene<'_> {
         }
     }
 
-    /// Of each class; the default's stands first. Nobody has marked what only the default says: it may be a hill.
+    /// Returns the look of each class; the default's stands first, with a `level` of 0: nobody has marked that ground,
+    /// and it may be a hill.
     fn looks(&self) -> [SurfaceLook; CLASSES] {
         let mut looks = SurfaceClass::ALL.map(SurfaceClass::surface_look);
         looks[0] = SurfaceLook { level: 0.0, ..self.surface_class.surface_look() };

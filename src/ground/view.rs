@@ -1,4 +1,4 @@
-//! What a view draws of the water on the ground: nothing while it is dry.
+//! Drawing of the water on the ground in a view: nothing while it is dry.
 
 use glam::DMat3;
 
@@ -25,9 +25,9 @@ use crate::{
 /// Largest number of a half float, with room for what follows.
 const MOST_UNITS: f64 = 6e4;
 
-/// What a context holds of the ground, as a camera sees it.
+/// State of the ground that a context holds, as a camera sees it.
 pub(crate) struct GroundSeen<'a> {
-    /// What weather has done to the ground at the camera.
+    /// Cover that weather has left on the ground at the camera.
     pub cover: SurfaceCover,
     pub hollows: &'a Hollows,
     /// The host's terrain about the camera.
@@ -39,14 +39,14 @@ pub(crate) struct GroundSeen<'a> {
     pub has_snowy_terrain: bool,
     /// Whether the terrain's cells have snow of their own.
     pub terrain_has_snow: bool,
-    /// Of ground of which nothing else is said.
+    /// Class of ground for which the host gives none.
     pub surface_class: SurfaceClass,
 }
 
 /// The ground of a view.
 pub(crate) struct GroundView {
     uniform: UniformBlock,
-    /// Of the frame, where there is any water on surfaces.
+    /// Uniform block of the frame, where there is any water on surfaces.
     block: Option<GroundUniform>,
     has_terrain: bool,
     has_snow: bool,
@@ -83,7 +83,8 @@ impl DrawnEffect for GroundView {
             let scene = wet_scene(now, (frame, color), &seen, glaze, given.fog_depth)?;
             self.block = Some(scene.uniform(&mut self.drops));
         }
-        // The textures of the host's terrain, of its tiles about the camera or of its grid: up to date where any of it is drawn.
+        // The textures of the host's terrain, of its tiles about the camera or of its grid: up to date where any of it
+        // is drawn.
         let is_drawn = self.block.is_some() && at.asked.has(Stages::SURFACE);
         self.views = match held.shown_tiles(at.world, now.here.surface.ice) {
             Some(shown) if is_drawn => self.window.views(at.device, now.eye, &shown),
@@ -126,8 +127,8 @@ fn glaze(now: &Moment<'_>) -> f64 {
     if falls { now.here.surface.ice } else { 0.0 }
 }
 
-/// Rotation from the axes of the host's normals to east, north, up; and the scale and offset that decode its numbers: normalised
-/// formats hold (n + 1) / 2.
+/// Rotation from the axes of the host's normals to east, north, up; and the scale and offset that decode its numbers:
+/// normalised formats hold (n + 1) / 2.
 fn normals(frame: &Frame<'_>, now: &Moment<'_>) -> (DMat3, [f32; 2]) {
     let from_eye = now.scene.world_to_enu * frame.camera.rotation().transpose();
     let turned = if frame.flags.has(FrameFlags::NORMALS_IN_EYE_SPACE) { from_eye } else { now.scene.world_to_enu };
@@ -135,7 +136,7 @@ fn normals(frame: &Frame<'_>, now: &Moment<'_>) -> (DMat3, [f32; 2]) {
     (turned, if signed { [1.0, 0.0] } else { [2.0, -1.0] })
 }
 
-/// What the block of `shaders/ground/uniform.wgsl` is made of.
+/// Collects the inputs of the block of `shaders/ground/uniform.wgsl`.
 fn wet_scene<'a>(
     now: &'a Moment<'_>,
     (frame, color): (&Frame<'_>, &wgpu::Texture),

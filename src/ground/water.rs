@@ -1,11 +1,11 @@
-//! Water on and in the ground as a state: a film, what the pores hold, what stands in hollows; millimetres over level, open
-//! ground.
+//! Water on and in the ground as a state: a film, what the pores hold, what stands in hollows; millimetres over level,
+//! open ground.
 //!
-//! A state moves on by steps of [`STEP_S`] that begin at whole multiples of it, so that it does not depend on how often it is
-//! asked. In a step rain wets (minus what freezes), pores fill, the film runs off into the hollows and away, hollows leak and
-//! overflow, and all of it dries by Penman's law. Each part is solved over the whole step, so that no step can overshoot.
-//! Not in it: freezing and thawing, dew. On the host's terrain (`terrain.rs`) each cell has film and pores by these laws,
-//! and what runs off stands in the hollows of the terrain.
+//! A state moves on by steps of [`STEP_S`] that begin at whole multiples of it, so that it does not depend on how often
+//! it is asked. In a step rain wets (minus what freezes), pores fill, the film runs off into the hollows and away,
+//! hollows leak and overflow, and all of it dries by Penman's law. Each part is solved over the whole step, so that no
+//! step can overshoot. Not in it: freezing and thawing, dew. On the host's terrain (`terrain.rs`) each cell has film
+//! and pores by these laws, and what runs off stands in the hollows of the terrain.
 
 use super::reference::{normal_density, normal_quantile, normal_share};
 use crate::{
@@ -16,12 +16,12 @@ use crate::{
 /// Length of a step, s.
 pub const STEP_S: f64 = 10.0;
 
-/// What the pores of the uppermost ground hold, mm (asphalt: initial losses of 0.3 to 0.6 mm).
+/// Capacity of the pores of the uppermost ground, mm (asphalt: initial losses of 0.3 to 0.6 mm).
 pub(crate) const PORES_MM: f64 = 0.4;
 /// Time in which dry pores take up most of what lies on them, s.
 const SOAK_S: f64 = 90.0;
-/// Run-off of a film, Nusselt (1916): g sin(slope) / (3 nu) film^3 a metre of width, on a slope of 2 % and 5 m length; mm^-2
-/// s^-1.
+/// Run-off of a film, Nusselt (1916): g sin(slope) / (3 nu) film^3 a metre of width, on a slope of 2 % and 5 m length;
+/// mm^-2 s^-1.
 const RUN_OFF: f64 = 9.81 * 0.02 / (3.0 * 1.3e-6) / 5.0 * 1e-6;
 /// Share of the run-off that meets a hollow.
 const INTO_HOLLOWS: f64 = 0.4;
@@ -29,7 +29,7 @@ const INTO_HOLLOWS: f64 = 0.4;
 const HOLLOW_MM: f64 = 6.0;
 /// Share of the ground under water when the hollows overflow.
 const OVERFLOW_SHARE: f64 = 0.35;
-/// What hollows lose to the ground below, mm/h.
+/// Loss of hollows to the ground below, mm/h.
 const LEAK_MM_H: f64 = 0.4;
 /// Film at which 1 - 1/e of the ground is covered, mm: the depth of asphalt's texture.
 const FILM_MM: f64 = 0.15;
@@ -49,12 +49,12 @@ pub struct GroundWater {
     pub hollows_mm: f64,
 }
 
-/// What acts on the ground during a step.
+/// Water that falls and evaporates during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forcing {
     /// Liquid that falls, mm/h.
     pub liquid_mm_h: f64,
-    /// What open water evaporates, mm/h.
+    /// Evaporation of open water, mm/h.
     pub evaporation_mm_h: f64,
 }
 
@@ -69,7 +69,8 @@ impl Forcing {
 }
 
 impl Forcing {
-    /// The same where snow lies whose melting is led through time: it takes the rain that falls on it and gives what runs off.
+    /// Returns the forcing where snow lies whose melting is simulated: the snow takes the rain that falls on it and
+    /// gives its run-off.
     pub(crate) fn under_snow(self, c: &Conditions, snow: Meltwater) -> Self {
         let f = &c.precipitation;
         let rain_mm_h = (f.rain_mm_h + f.drizzle_mm_h) * (1.0 - f.freezing);
@@ -77,8 +78,9 @@ impl Forcing {
     }
 }
 
-/// Evaporation of open water, mm/h: Penman (1948) in SI units (Shuttleworth 1993, eq. 4.2.31), with Penman's net long-wave
-/// loss, sigma T^4 (0.56 - 0.092 sqrt(e)) (0.1 + 0.9 n/N), e in mmHg, n/N the share of clear sky, and an albedo of 0.08.
+/// Evaporation of open water, mm/h: Penman (1948) in SI units (Shuttleworth 1993, eq. 4.2.31), with Penman's net
+/// long-wave loss, sigma T^4 (0.56 - 0.092 sqrt(e)) (0.1 + 0.9 n/N), e in mmHg, n/N the share of clear sky, and an
+/// albedo of 0.08.
 pub fn evaporation_mm_h(c: &Conditions, sunlight_w_m2: f64) -> f64 {
     let (t, humidity) = (c.air.temperature_c, c.air.relative_humidity);
     let saturated = 0.1 * saturation_pressure_hpa(t);
@@ -131,7 +133,7 @@ impl GroundWater {
         }
     }
 
-    /// Of each the more of two.
+    /// Returns the larger of the two for each kind of water.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             film_mm: self.film_mm.max(other.film_mm),
@@ -161,10 +163,10 @@ impl GroundWater {
     }
 }
 
-/// What a step does to all places alike.
+/// Changes of a step that are the same for all places.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Step {
-    /// What open water loses to the air, and standing water to the ground below, mm.
+    /// Loss of open water to the air, and of standing water to the ground below, mm.
     pub evaporated_mm: f64,
     pub leaked_mm: f64,
     /// Share of their room that pores take up.
@@ -237,8 +239,8 @@ pub(crate) fn wetness_of(film_mm: f64, soaked_mm: f64) -> f64 {
     DAMP * soaked_mm / PORES_MM + (1.0 - DAMP) * (1.0 - libm::exp(-film_mm / FILM_MM))
 }
 
-/// Depth of water, mm, at a point of a ground under `water` whose hollow there is `hollow` deep, in units of their root mean
-/// square: the film, or the water that stands in it.
+/// Depth of water, mm, at a point of a ground under `water` whose hollow there is `hollow` deep, in units of their root
+/// mean square: the film, or the water that stands in it.
 pub fn depth_at_mm(water: &GroundWater, hollow: f64) -> f64 {
     let covered = covered_by(water.hollows_mm);
     if covered <= 0.0 {
@@ -262,9 +264,9 @@ mod tests {
 
     #[test]
     fn open_water_evaporates_as_penman_says() {
-        // By hand, 20 C, humidity 0.5, 3 m/s at 2 m, 1013.25 hPa, clear, 600 W/m^2: es 2.336 kPa (WMO), slope 0.1445, psychrometric
-        // 0.0674 kPa/K, e 8.76 mmHg, long wave 5.67e-8 293.15^4 (0.56 - 0.2723) = 120.5 W/m^2, net 37.28 MJ/d, wind 16.77:
-        // (5.387 + 1.320) / (2.45 0.2119) = 12.92 mm/d.
+        // By hand, 20 C, humidity 0.5, 3 m/s at 2 m, 1013.25 hPa, clear, 600 W/m^2: es 2.336 kPa (WMO), slope 0.1445,
+        // psychrometric 0.0674 kPa/K, e 8.76 mmHg, long wave 5.67e-8 293.15^4 (0.56 - 0.2723) = 120.5 W/m^2, net 37.28
+        // MJ/d, wind 16.77: (5.387 + 1.320) / (2.45 0.2119) = 12.92 mm/d.
         let c = conditions(20.0, 0.5, 3.0 * (10.0f64 / 0.03).ln() / (2.0f64 / 0.03).ln());
         let got = 24.0 * evaporation_mm_h(&c, 600.0);
         assert!((got / 12.92 - 1.0).abs() < 0.02, "{got}");

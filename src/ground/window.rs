@@ -1,9 +1,10 @@
-//! The part of a terrain of tiles about a place as textures: about a camera for the surface pass, or about a place that the host names for
-//! its own shaders. What a grid has in [`super::texture`].
+//! The part of a terrain of tiles about a place as textures: about a camera for the surface pass, or about a place that
+//! the host names for its own shaders. What a grid has in [`super::texture`].
 //!
-//! A window of 512 x 512 cells lies about the camera, moved by 64 cells at a time. A texel is a cell, so a window of cells of 1 m reaches
-//! 224 to 288 m from the camera; beyond it lies the world's own ground. Only what has changed is filled and uploaded: all of it where the
-//! window moves or water is other than before, else the rectangles of the ground that changed.
+//! A window of 512 x 512 cells lies about the camera, moved by 64 cells at a time. A texel is a cell, so a window of
+//! cells of 1 m reaches 224 to 288 m from the camera; beyond it lies the world's own ground. Only what has changed is
+//! filled and uploaded: all of it where the window moves or water is other than before, else the rectangles of the
+//! ground that changed.
 
 use std::collections::VecDeque;
 
@@ -79,27 +80,27 @@ impl RecentChanges {
         self.0.push_back(change);
     }
 
-    /// What has changed since a revision; none if that is forgotten.
+    /// Returns the rectangles changed since a revision; none if that is forgotten.
     fn since(&self, revision: u64, now: u64) -> Option<impl Iterator<Item = CellRect> + '_> {
         let known = revision == now || self.0.front().is_some_and(|c| c.revision <= revision + 1);
         known.then(|| self.0.iter().filter(move |c| c.revision > revision).map(|c| c.rect))
     }
 }
 
-/// What a window shows.
+/// Contents of a window.
 #[derive(Clone, Copy)]
 pub(super) struct Shown<'a> {
     pub terrain: &'a Terrain,
     pub water: &'a TiledWater,
-    /// Of level ground, for tiles without water of their own, and the share of the ground under ice.
+    /// Water of level ground, for tiles without water of their own, and the share of the ground under ice.
     pub even: GroundWater,
     pub ice: f32,
     pub recent: &'a RecentChanges,
-    /// What lies on the tiles, where it is led through time.
+    /// Snow on the tiles, where it is simulated.
     pub snow: Option<&'a LyingSnow>,
 }
 
-/// Of what the textures are.
+/// Identity of what the textures hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Filled {
     rect: CellRect,
@@ -112,7 +113,7 @@ struct Filled {
     snow: u64,
 }
 
-/// Which of its textures' parts a window fills.
+/// Part of its textures that a window fills.
 #[derive(Clone, Copy)]
 enum Part {
     Ground,
@@ -130,7 +131,7 @@ pub(crate) struct TerrainWindow {
     textures: Option<([wgpu::Texture; 2], [wgpu::TextureView; 2])>,
     filled: Option<Filled>,
     water: Vec<[u16; 4]>,
-    /// Of the surface, or of the snow, which lies in as many rows below it.
+    /// Texels of the surface, or of the snow, which lies in as many rows below it.
     surface: Vec<[f32; 4]>,
 }
 
@@ -279,7 +280,8 @@ impl TerrainWindow {
     }
 }
 
-/// How far the highest water beside a cell lies below it, mm, negative; so that a shore between two cells lies where it should.
+/// How far the highest water beside a cell lies below it, mm, negative; so that a shore between two cells lies where it
+/// should.
 fn shore(shown: &Shown<'_>, cell: u32) -> f64 {
     if !shown.water.has_lakes_near(shown.terrain, cell) {
         return BARE_MM;

@@ -1,5 +1,5 @@
-//! Phase functions of droplets and other particles, and their moments. Twin of `fog_phase_after` in `shaders/fog/lookup.wgsl` and of
-//! `shaders/common/phase.wgsl`.
+//! Phase functions of droplets and other particles, and their moments. Twin of `fog_phase_after` in
+//! `shaders/fog/lookup.wgsl` and of `shaders/common/phase.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -81,8 +81,9 @@ impl PhaseLobes {
 /// phase function itself). From `versine`, not the cosine, because near the forward peak of droplets (1 - g = 0.007)
 /// the cosine has no digits left in f32.
 ///
-/// Light that meets a Henyey-Greenstein lobe n times is spread by a lobe of g^n. Of the blend, the share (1 - w)^n has met only that lobe.
-/// The rest has met Draine's about n w times and becomes more even: alpha falls with the square of that number.
+/// Light that meets a Henyey-Greenstein lobe n times is spread by a lobe of g^n. Of the blend, the share (1 - w)^n has
+/// met only that lobe. The rest has met Draine's about n w times and becomes more even: alpha falls with the square of
+/// that number.
 pub fn lobes_phase(lobes: &PhaseLobes, order: f64, versine: f64) -> f64 {
     let lobe = |g: f64| {
         let d = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;

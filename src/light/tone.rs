@@ -40,8 +40,8 @@ impl ToneCurve {
 /// How bright the picture is taken: one value for all channels of a simulator, never measured per view.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Exposure {
-    /// From the light of sun, moon and sky at the place, by the closed-form queries: equal on every channel and machine.
-    /// `compensation_ev` brightens (+) or darkens (-), in stops, [-20, 20].
+    /// From the light of sun, moon and sky at the place, by the closed-form queries: equal on every channel and
+    /// machine. `compensation_ev` brightens (+) or darkens (-), in stops, [-20, 20].
     Auto {
         /// Stops added.
         compensation_ev: f64,

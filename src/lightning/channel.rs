@@ -1,14 +1,15 @@
 //! The way of a flash, and what of it a place sees and hears.
 //!
 //! # Model
-//! A channel wanders about a straight way by halving: the middle of each stretch is moved aside by chance, by a share of the stretch's
-//! length, and less in the first two halvings. Of all shares that give a dimension near what photographs show (1.1 to 1.4; Tsonis 1991), the one taken gives 1.15 (tested).
-//! From the way of a ground flash 8 to 17 branches leave, each by 20 to 50 degrees from the way and 0.15 to 0.6 of what remains of it
-//! long; a third of them branch again. They point down, and none reaches the ground.
+//! A channel wanders about a straight way by halving: the middle of each stretch is moved aside by chance, by a share
+//! of the stretch's length, and less in the first two halvings. Of all shares that give a dimension near what
+//! photographs show (1.1 to 1.4; Tsonis 1991), the one taken gives 1.15 (tested). From the way of a ground flash 8 to
+//! 17 branches leave, each by 20 to 50 degrees from the way and 0.15 to 0.6 of what remains of it long; a third of them
+//! branch again. They point down, and none reaches the ground.
 //!
-//! What stands high draws a ground flash: from a leader of peak current I the last leap is 10 I^0.65 m (Love 1973), and the leader
-//! comes down until it is so near to the ground or to something tall; that which it meets first is struck (Armstrong and Whitehead
-//! 1968, the electrogeometric model).
+//! What stands high draws a ground flash: from a leader of peak current I the last leap is 10 I^0.65 m (Love 1973), and
+//! the leader comes down until it is so near to the ground or to something tall; that which it meets first is struck
+//! (Armstrong and Whitehead 1968, the electrogeometric model).
 
 use glam::{DVec2, DVec3};
 
@@ -17,7 +18,8 @@ use crate::chance::Chance;
 
 /// Sideways move of a stretch's middle over the stretch's length, one spread.
 const WANDERING: f64 = 0.25;
-/// The same of the first halvings: a channel wanders less in the large than in the small, for the field that draws it down is even there.
+/// Sideways move at the first halvings, over the stretch's length, one spread: a channel wanders less in the large than
+/// in the small, for the field that draws it down is even there.
 const WANDERING_FIRST: f64 = 0.12;
 const FIRST: u32 = 2;
 /// Halvings of a channel: 2^9 stretches of some 10 m.
@@ -58,7 +60,7 @@ pub struct Branch {
 pub struct Channel {
     /// From its upper end on, m east, north and up.
     pub points_m: Vec<DVec3>,
-    /// What leaves it.
+    /// Branches that leave it.
     pub branches: Vec<Branch>,
 }
 
@@ -79,7 +81,8 @@ pub fn struck(flash: &Flash, masts: &[Mast], ground_m: f64) -> DVec3 {
 }
 
 impl Channel {
-    /// Of a flash that starts `top_m` high, and ends at `end_m` (ground flashes) or as far away in the cloud.
+    /// Creates the channel of a flash that starts `top_m` high, and ends at `end_m` (ground flashes) or some kilometres
+    /// away in the cloud.
     pub fn new(flash: &Flash, top_m: f64, end_m: DVec3) -> Self {
         let mut chance = Chance::new(flash.id, 0xc4a1);
         let start = flash.place_m.extend(top_m) + aside(&mut chance, DVec3::Z) * 0.1 * (top_m - end_m.z);
@@ -105,7 +108,8 @@ impl Channel {
         std::iter::once(self.points_m.as_slice()).chain(self.branches.iter().map(|b| b.points_m.as_slice()))
     }
 
-    /// Ends every way where it first meets something: `met` says at which share of a stretch that is. Whether the main one was cut.
+    /// Ends every way where it first meets something: `met` says at which share of a stretch that is. Whether the main
+    /// one was cut.
     pub fn cut(&mut self, met: impl Fn(DVec3, DVec3) -> Option<f64>) -> bool {
         let cut = |points: &mut Vec<DVec3>| {
             let hit = points.windows(2).enumerate().find_map(|(i, p)| Some((i, p[0].lerp(p[1], met(p[0], p[1])?))));
@@ -184,7 +188,8 @@ const LEAVES_DEG: (f64, f64) = (20.0, 50.0);
 const LENGTHS: (f64, f64) = (0.15, 0.6);
 /// Share of branches that branch again.
 const AGAIN: f64 = 0.33;
-/// Light of a branch over that of what it leaves: photographs show branches of first strokes some two to four times fainter.
+/// Light of a branch over that of what it leaves: photographs show branches of first strokes some two to four times
+/// fainter.
 const FAINTER: f64 = 0.35;
 /// Least height of a branch's end over the end of the main way, m.
 const CLEAR_M: f64 = 30.0;
@@ -290,8 +295,8 @@ mod tests {
         assert_eq!(channel.points_m[POINTS - 1].z, 300.0);
     }
 
-    /// A mast of 50 m is struck at least ten times as often as ground of the area over which it draws lightning down would be
-    /// expected to be at its foot: a circle of 10 m about it against rings of the same area beside it.
+    /// A mast of 50 m is struck at least ten times as often as ground of the area over which it draws lightning down
+    /// would be expected to be at its foot: a circle of 10 m about it against rings of the same area beside it.
     #[test]
     fn a_mast_is_struck_far_more_often_than_the_ground_beside_it() {
         let mast = Mast { tip_m: DVec3::new(0.0, 0.0, 50.0) };

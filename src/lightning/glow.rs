@@ -1,4 +1,4 @@
-//! What a flash makes glow, in f64: the twin of `shaders/between/flash.wgsl`.
+//! Glow around a flash, in f64: the twin of `shaders/between/flash.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,8 @@ const BASE_REFLECTS: f64 = 0.8;
 #[cfg(test)]
 const ASYMMETRY: f64 = 0.75;
 
-/// What the face of the clouds sends of a source, cd, `k` of the shader: from below of what leaves by the base, and of what falls on it.
+/// Returns the intensity of the clouds' face in the light of a source, cd, `k` of the shader: seen from below, of the
+/// light that leaves through the base or is reflected by it.
 pub(super) fn from_clouds_cd(source: &Source, from_below: bool) -> f64 {
     match (source.is_hidden(), from_below) {
         (true, true) => source.flux_lm * source.down_share / (2.0 * PI * PI),
@@ -28,8 +29,8 @@ fn on_clouds(k: f64, h: f64, r: f64) -> f64 {
     k * h / (r * r + h * h).powf(1.5)
 }
 
-/// Light that air of `scattering_per_m` before `range` scatters once towards the eye, of a source of 1 cd `along` the ray and `h` aside, by
-/// `steps` of the angle.
+/// Light that air of `scattering_per_m` before `range` scatters once towards the eye, of a source of 1 cd `along` the
+/// ray and `h` aside, by `steps` of the angle.
 #[cfg(test)]
 fn in_air(scattering_per_m: f64, (along, h): (f64, f64), range: f64, steps: u32) -> f64 {
     let phase = |c: f64| {

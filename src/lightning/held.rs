@@ -1,4 +1,4 @@
-//! What a context holds of the lightning: its settings, and the flashes that the host triggered.
+//! State of the lightning that a context holds: its settings, and the flashes that the host triggered.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -101,8 +101,8 @@ impl HeldLightning {
     /// Takes one more flash, the present being `now_s`.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field, or for more than [`MAX_TRIGGERED`]; [`Status::WrongOrder`] for one of the past. Nothing
-    /// changes then.
+    /// [`Status::InvalidArgument`] naming the field, or for more than [`MAX_TRIGGERED`]; [`Status::WrongOrder`] for one
+    /// of the past. Nothing changes then.
     pub fn trigger(&mut self, flash: &FlashTrigger, now_s: f64) -> Result<()> {
         flash.validate()?;
         if flash.time_s < now_s {

@@ -1,13 +1,15 @@
 //! How bright a flash is, and for how long.
 //!
-//! A return stroke of 30 kA sends 1e6 W from each metre of its channel at its peak, between 400 and 1100 nm (Guo and Krider 1982: first
-//! strokes 1.0e6 W/m, later ones 2.5e5 to 4.3e5 W/m), and 870 J in all (Krider, Dawson and Uman 1968). Light goes with the current
-//! (Idone and Orville 1985). Two falling exponentials have both figures: 0.85 of the peak fades with 150 us, the rest with 5 ms. That light
-//! is taken to be of a black body of 20 000 K: 163 lm/W of what lies between these wavelengths.
+//! A return stroke of 30 kA sends 1e6 W from each metre of its channel at its peak, between 400 and 1100 nm (Guo and
+//! Krider 1982: first strokes 1.0e6 W/m, later ones 2.5e5 to 4.3e5 W/m), and 870 J in all (Krider, Dawson and Uman
+//! 1968). Light goes with the current (Idone and Orville 1985). Two falling exponentials have both figures: 0.85 of the
+//! peak fades with 150 us, the rest with 5 ms. That light is taken to be of a black body of 20 000 K: 163 lm/W of what
+//! lies between these wavelengths.
 //!
-//! Before a stroke a leader comes down: the first one at 2e5 m/s, later ones at 1e7 m/s (Rakov and Uman 2003, table 1.1). The tip of a
-//! later one, some 34 m long, has 0.1 of the stroke's light (Idone and Orville 1985; Orville and Idone 1982); the first one's steps are
-//! taken to have 0.02 of it for 1 us in each 50 us. The stroke runs up at a third of the speed of light.
+//! Before a stroke a leader comes down: the first one at 2e5 m/s, later ones at 1e7 m/s (Rakov and Uman 2003, table
+//! 1.1). The tip of a later one, some 34 m long, has 0.1 of the stroke's light (Idone and Orville 1985; Orville and
+//! Idone 1982); the first one's steps are taken to have 0.02 of it for 1 us in each 50 us. The stroke runs up at a
+//! third of the speed of light.
 
 use super::schedule::{Flash, FlashKind};
 
@@ -18,8 +20,8 @@ const OF_KA: f64 = 30.0;
 pub(super) const LM_PER_W: f64 = 163.0;
 /// Shares of the peak, and times in which they fade by 1/e, s.
 const FADES: [(f64, f64); 2] = [(0.85, 150e-6), (0.15, 5e-3)];
-/// Light of a leader over that of its stroke, its speed, m/s, and how long a place shines that it has come to, s: of the first stroke and of
-/// later ones.
+/// Light of a leader over that of its stroke, its speed, m/s, and how long a place shines that it has come to, s: of
+/// the first stroke and of later ones.
 const LEADERS: [(f64, f64, f64); 2] = [(0.02 / 50.0, 2e5, f64::INFINITY), (0.1, 1e7, 3.4e-6)];
 /// Speed of the stroke, m/s.
 const STROKE_M_S: f64 = 1e8;
@@ -93,7 +95,8 @@ impl Course {
 /// A stretch of a channel as its light depends on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// How far down the main channel, 0 at the upper end to 1; of a branch where a leader would be that had come as far.
+    /// How far down the main channel, 0 at the upper end to 1; of a branch where a leader would be that had come as
+    /// far.
     pub down: f64,
     /// Length of the main channel, m.
     pub length_m: f64,

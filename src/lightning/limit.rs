@@ -1,9 +1,10 @@
 //! Fewer changes of luminance for viewers whom flicker may harm.
 //!
-//! A flash that is drawn so rises once and fades: two changes. Of all flashes near a camera those are drawn that begin at least a second
-//! after the one drawn before, so any second has three changes at most (WCAG 2.2, success criterion 2.3.1, has three flashes, each of two
-//! changes). The choice begins anew every 10 s, with a second in which none is drawn: so it depends on the flashes of the last 10 s alone,
-//! and every channel and every way through time choose the same.
+//! A flash that is drawn so rises once and fades: two changes. Of all flashes near a camera those are drawn that begin
+//! at least a second after the one drawn before, so any second has three changes at most (WCAG 2.2, success criterion
+//! 2.3.1, has three flashes, each of two changes). The choice begins anew every 10 s, with a second in which none is
+//! drawn: so it depends on the flashes of the last 10 s alone, and every channel and every way through time choose the
+//! same.
 
 /// Length of a stretch of time whose choice depends on no other, s.
 pub const EPOCH_S: f64 = 10.0;

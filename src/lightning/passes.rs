@@ -22,7 +22,8 @@ pub(super) const MOST_PARTS: usize = 4096;
 /// Pipelines held for a view: those of some weathers that change.
 const MOST_PIPELINES: usize = 4;
 
-/// What decides which pipeline draws, beside the constants of the veil: several samples, any depth.
+/// Key of a pipeline, beside the constants of the veil: whether the depth has several samples, and whether there is any
+/// depth.
 type DepthKind = (bool, bool);
 
 /// Made when there first is a channel to draw.

@@ -1,4 +1,4 @@
-//! What a host asks: which flashes there are near a place, when their thunder comes, and how much light arrives.
+//! Queries of a host: which flashes there are near a place, when their thunder comes, and how much light arrives.
 
 use glam::DVec3;
 
@@ -40,7 +40,7 @@ pub struct FlashEvent {
     pub strokes: u32,
     /// Largest peak current of its strokes, kA.
     pub peak_ka: f64,
-    /// What it struck, or the middle of its way in the cloud, in the host's world.
+    /// Position of what it struck, or of the middle of its way in the cloud, in the host's world.
     pub position: DVec3,
     /// Distance of the nearest point of its channel, m.
     pub distance_m: f64,

@@ -16,8 +16,8 @@ pub const MOST_PER_MINUTE: f64 = 60.0;
 const WINDOW_S: f64 = 10.0;
 /// Share of flashes that go to ground at middle latitudes: one in four (Prentice and Mackerras 1977).
 const TO_GROUND: f64 = 0.25;
-/// Share of ground flashes with one stroke (Rakov and Uman 2003, table 1.1), and the chance of another after each further one with which
-/// they have 3.5 on the mean.
+/// Share of ground flashes with one stroke (Rakov and Uman 2003, table 1.1), and the chance of another after each
+/// further one with which they have 3.5 on the mean.
 const SINGLE: f64 = 0.2;
 const ANOTHER: f64 = 0.68;
 /// Most strokes: more have hardly been seen (26; Rakov and Uman 2003).
@@ -119,8 +119,8 @@ impl Storm {
         out
     }
 
-    /// Shows `to` its flashes from `from_s` on until `until_s` at a rate that depends on time, flashes a minute: in the order of their
-    /// windows. No memory is asked for.
+    /// Shows `to` its flashes from `from_s` on until `until_s` at a rate that depends on time, flashes a minute: in the
+    /// order of their windows. No memory is asked for.
     pub fn visit(&self, from_s: f64, until_s: f64, rate: impl Fn(f64) -> f64, mut to: impl FnMut(&Flash)) {
         let (first, last) = ((from_s / WINDOW_S).floor() as i64, (until_s / WINDOW_S).ceil() as i64);
         for window in first..last {

@@ -1,4 +1,4 @@
-//! What a host sets of the lightning, and flashes that it triggers.
+//! Settings of the lightning, and flashes that the host triggers.
 
 use glam::DVec3;
 
@@ -28,13 +28,16 @@ pub struct StormCell {
 /// How a context flashes, and how its views show it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightningSettings {
-    /// Flashes a minute of each storm cell, \[0, 60\], in place of those that the weather has (3 in a thunderstorm, else none).
+    /// Flashes a minute of each storm cell, \[0, 60\], in place of those that the weather has (3 in a thunderstorm,
+    /// else none).
     pub flashes_per_minute: Option<f64>,
-    /// The host's storm cells, at most [`MAX_CELLS`], in place of the weather's, one in each square of 20 km. Default none.
+    /// The host's storm cells, at most [`MAX_CELLS`], in place of the weather's, one in each square of 20 km. Default
+    /// none.
     pub cells: Vec<StormCell>,
     /// Tips of tall things in the host's world, at most [`MAX_MASTS`]: they draw ground flashes. Default none.
     pub masts: Vec<DVec3>,
-    /// Views draw at most three changes of luminance a second, for viewers whom flicker may harm. Schedule and queries stay. Default off.
+    /// Views draw at most three changes of luminance a second, for viewers whom flicker may harm. Schedule and queries
+    /// stay. Default off.
     pub limits_flicker: bool,
 }
 

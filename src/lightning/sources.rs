@@ -1,4 +1,5 @@
-//! The few places from which the light of a flash is taken to come: parts of the open channel, and what glows in the cloud.
+//! The few places from which the light of a flash is taken to come: parts of the open channel, and what glows in the
+//! cloud.
 
 use std::f64::consts::PI;
 
@@ -44,22 +45,23 @@ impl Source {
     }
 }
 
-/// Those of a flash.
+/// Light sources of a flash.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sources {
     all: [Source; OPEN_PARTS + HIDDEN_PARTS],
 }
 
 impl Sources {
-    /// Those that give light.
+    /// Returns the sources that give light.
     pub fn iter(&self) -> impl Iterator<Item = &Source> {
         self.all.iter().filter(|s| s.flux_lm > 0.0)
     }
 }
 
 impl Strike {
-    /// Where its light comes from on the mean of a span. The base of a cloud of height H lets (1 - d/H) of the light of a source d above
-    /// it through, and its top the rest: droplets absorb hardly any, so light wanders about until it gets out (gambler's ruin).
+    /// Where its light comes from on the mean of a span. The base of a cloud of height H lets (1 - d/H) of the light of
+    /// a source d above it through, and its top the rest: droplets absorb hardly any, so light wanders about until it
+    /// gets out (gambler's ruin).
     pub fn sources(&self, span: &Span, course: Course) -> Sources {
         let mut sources = Sources::default();
         let ends = [self.channel.points_m[0], self.channel.end_m()];

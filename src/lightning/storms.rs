@@ -1,4 +1,5 @@
-//! Which flashes there are near a place in a time: those of the weather's cells, of the host's, and those that it triggered.
+//! Flashes near a place within a time: those of the weather's cells, of the host's cells, and those that the host
+//! triggered.
 
 use glam::{DVec2, DVec3};
 
@@ -10,11 +11,12 @@ use super::{
 };
 use crate::world::World;
 
-/// Side of the squares of the map of which each has one cell of a thunderstorm, m, and the cell's radius: common sizes of single cells
-/// (Byers and Braham 1949).
+/// Side of the squares of the map of which each has one cell of a thunderstorm, m, and the cell's radius: common sizes
+/// of single cells (Byers and Braham 1949).
 pub(crate) const SQUARE_M: f64 = 20_000.0;
 const RADIUS_M: f64 = 2500.0;
-/// Flashes a minute of a cell where the weather says no more than that there is thunder: 1 to 5 are common (Rakov and Uman 2003, chapter 2).
+/// Flashes a minute of a cell where the weather says no more than that there is thunder: 1 to 5 are common (Rakov and
+/// Uman 2003, chapter 2).
 const PER_MINUTE: f64 = 3.0;
 
 /// The flashes of a context.
@@ -36,8 +38,8 @@ impl Storms<'_> {
         !(by_host || by_weather && thunders())
     }
 
-    /// Shows `to` the flashes that begin from `from_s` on until `until_s` within `reach_m` of a place of the map, in no order, and what
-    /// triggered them.
+    /// Shows `to` the flashes that begin from `from_s` on until `until_s` within `reach_m` of a place of the map, in no
+    /// order, and what triggered them.
     pub fn visit(
         &self,
         (near_m, reach_m): (DVec2, f64),

@@ -13,8 +13,8 @@ use crate::{
     world::World,
 };
 
-/// Temperature of the cloud's charge from which a flash starts, degrees Celsius (Krehbiel 1986: -10 to -25), and how fast air cools with height,
-/// K/m.
+/// Temperature of the cloud's charge from which a flash starts, degrees Celsius (Krehbiel 1986: -10 to -25), and how
+/// fast air cools with height, K/m.
 const CHARGE_C: f64 = -12.0;
 const COOLS_K_M: f64 = 6.5e-3;
 /// Least height of that charge over the ground, m.
@@ -34,7 +34,7 @@ pub(crate) struct CloudSpan {
 }
 
 impl CloudSpan {
-    /// Those of a weather, if it has any.
+    /// Returns the clouds of a weather that hide flashes, if it has any.
     pub fn of(c: &Conditions) -> Option<Self> {
         let station = c.air.station_altitude_m;
         let slabs = c.cloud_slabs().filter(|s| s.cover >= HIDES_FROM && s.optical_depth > 5.0);

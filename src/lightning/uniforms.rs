@@ -1,4 +1,4 @@
-//! What the shaders of lightning read.
+//! Data that the shaders of lightning read.
 
 use glam::{DMat3, DMat4};
 
@@ -20,10 +20,10 @@ pub(super) struct ChannelUniform {
 const RADIUS_M: f64 = 0.03;
 
 impl ChannelUniform {
-    /// Of a picture of so many pixels.
+    /// Creates the block of a picture of `size` pixels.
     ///
-    /// Rows x, y, w of the clip matrix M take a unit direction d to w (X, Y, 1): the cone over dX dY has the solid angle
-    /// |det M^-1| w^3 dX dY. Parallel rays have no w of their own: a pixel has an area then.
+    /// Rows x, y, w of the clip matrix M take a unit direction d to w (X, Y, 1): the cone over dX dY has the solid
+    /// angle |det M^-1| w^3 dX dY. Parallel rays have no w of their own: a pixel has an area then.
     pub fn new(clip: &DMat4, size: [u32; 2]) -> Self {
         let rows = [0, 1, 3].map(|i| clip.row(i).truncate());
         let pixels = f64::from(size[0]) * f64::from(size[1]);

@@ -1,4 +1,4 @@
-//! What a view draws of flashes: lines of light in the layer before the picture, and what they make glow in the composition.
+//! Flashes as a view draws them: lines of light in the layer before the picture, and their glow in the composition.
 
 use std::f64::consts::PI;
 
@@ -51,7 +51,7 @@ struct Shining {
     is_used: bool,
 }
 
-/// What a frame has of flashes.
+/// Light of the flashes in a frame.
 struct Lit {
     span: Span,
     course: Course,
@@ -77,10 +77,12 @@ pub(crate) struct LightningView {
     layer: Option<(wgpu::Texture, wgpu::TextureView)>,
     /// The layer to draw into, and whether something lies in it already.
     target: Option<(wgpu::TextureView, bool)>,
+    /// The light of the last draw.
+    shown: FlashBlock,
 }
 
-/// The time whose light a frame has: from the frame before it on; of one that follows none, a sixtieth of a second. While time stands,
-/// frames have the same.
+/// The time whose light a frame has: from the frame before it on; of one that follows none, a sixtieth of a second.
+/// While time stands, frames have the same.
 fn frame_time(before: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: bool) -> FrameTime {
     let alone = Span { from_s: now_s - FRAME_S, until_s: now_s };
     let span = match before {
@@ -201,7 +203,8 @@ impl LightningView {
     }
 }
 
-/// Whether a flash is drawn for viewers whom flicker may harm: of those near the square of the map that the camera is over.
+/// Whether a flash is drawn for viewers whom flicker may harm: of those near the square of the map that the camera is
+/// over.
 fn kept(storms: &Storms<'_>, near_m: DVec2, time_s: f64) -> bool {
     let middle = ((near_m / SQUARE_M).floor() + 0.5) * SQUARE_M;
     let mut times = Vec::new();
@@ -215,7 +218,8 @@ fn kept(storms: &Storms<'_>, near_m: DVec2, time_s: f64) -> bool {
 /// Depth over which what falls sets in below its cloud, m: `ONSET_M` of [`crate::falling`].
 const ONSET_M: f64 = 100.0;
 
-/// What scatters in the air about a camera, 1/m: air and haze, fog inside of it, and what falls below the clouds.
+/// Returns the scattering coefficient of the air about a camera, 1/m: air and haze, fog inside of it, and what falls
+/// below the clouds.
 fn scattering_per_m(c: &Conditions, altitude_m: f64) -> f64 {
     let height = altitude_m - c.air.station_altitude_m;
     let thin = |scale: f64| (-height.max(0.0) / scale.max(1.0)).exp();
@@ -228,7 +232,7 @@ fn scattering_per_m(c: &Conditions, altitude_m: f64) -> f64 {
 }
 
 impl Lit {
-    /// What the composition's glow reads.
+    /// Creates the block that the composition's glow reads.
     fn block(&self, c: &Conditions) -> FlashBlock {
         let clouds = CloudSpan::of(c);
         // From below the base is seen, from above the tops; inside, whichever is nearer.
@@ -301,15 +305,16 @@ impl DrawnEffect for LightningView {
         let Some(lit) = &self.lit else { return Ok(to) };
         let traits = Traits { is_fine: true, ..Traits::default() };
         to.set_traits(traits, traits);
-        to.set_frame_block(FrameBlock::Flashes(lit.block(&at.now.scene.conditions)));
-        if !lit.has_line || !at.stages.has(Stages::PARTICLES) {
-            return Ok(to);
+        let has_line = lit.has_line && at.stages.has(Stages::PARTICLES);
+        self.shown = lit.block(&at.now.scene.conditions);
+        if has_line {
+            // What falls has a layer already, into which the lines are drawn after it.
+            let over = given.before.is_some();
+            let view = given.before.clone().unwrap_or_else(|| self.layer(at.device, at.picture()));
+            to.set_texture(Texture::Before, Some(view.clone()));
+            self.target = Some((view, over));
         }
-        // What falls has a layer already, into which the lines are drawn after it.
-        let over = given.before.is_some();
-        let view = given.before.clone().unwrap_or_else(|| self.layer(at.device, at.picture()));
-        to.set_texture(Texture::Before, Some(view.clone()));
-        self.target = Some((view, over));
+        to.set_frame_block(FrameBlock::Flashes(&self.shown));
         Ok(to)
     }
 

@@ -1,4 +1,4 @@
-//! What lights the small things about a camera: the sky and the ground, each by its mean, and the sun or moon.
+//! Light on the small things about a camera: the sky and the ground, each by its mean, and the sun or moon.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::Scene;
 
-/// What lights the things that fall about a camera, cd/m^2 and lux or these times an exposure.
+/// Light on the things that fall about a camera, cd/m^2 and lux or these times an exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightAround {
     /// Mean radiance of the sky.
@@ -20,8 +20,8 @@ pub struct LightAround {
 }
 
 impl LightAround {
-    /// Of a scene: the mean of its sky and of its ground. In steady rain that is within 1 % of the light of the veil, so that no
-    /// ring shows where the veil takes over.
+    /// Creates the light of a scene: the mean of its sky and of its ground. In steady rain that is within 1 % of the
+    /// light of the veil, so that no ring shows where the veil takes over.
     pub fn of(scene: &Scene) -> Self {
         let light = scene.brighter();
         let g = &scene.ground;

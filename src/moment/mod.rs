@@ -1,4 +1,4 @@
-//! What holds at a camera's place at a time: lights, air, clouds overhead, and the light on the ground.
+//! State at a camera's place at a time: lights, air, clouds overhead, and the light on the ground.
 //!
 //! A context works it out ([`crate::context::Context::scene_at`]); every effect reads it.
 
@@ -27,7 +27,7 @@ use crate::{
 /// Largest extinction that is accepted, 1/m: a visibility of 30 cm.
 pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
 
-/// What holds at a camera at a time: every effect draws from it. Its scene is worked out once for all calls of a frame.
+/// State at a camera at a time: every effect draws from it. Its scene is worked out once for all calls of a frame.
 pub(crate) struct Moment<'a> {
     /// Place, lights, air and the weather there.
     pub scene: Scene,
@@ -49,7 +49,7 @@ pub(crate) struct Moment<'a> {
     pub here: Conditions,
     /// Extinction of what falls outside of all regions.
     pub falling: FallingLayer,
-    /// What keeps rain off: the host's boxes, and its maps if there are any.
+    /// Shelters, which keep rain off: the host's boxes, and its maps if there are any.
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
     /// The host's lamps.
@@ -84,20 +84,21 @@ impl<'a> Moment<'a> {
         Ok(self.carried.get_or_init(|| carrying))
     }
 
-    /// The wind at a place of the host's world now, m/s (east, north, up), where the weather's is `weathers`: what varies in space
-    /// replaces it there, or is added to it.
+    /// The wind at a place of the host's world now, m/s (east, north, up), where the weather's is `weathers`: what
+    /// varies in space replaces it there, or is added to it.
     pub fn wind_about(&self, position: DVec3, weathers: DVec3) -> DVec3 {
         self.wind_volume.and_then(|volume| volume.wind(position, weathers)).unwrap_or(weathers)
     }
 
-    /// The wind that varies in space as shaders read it (`shaders/surroundings/wind.wgsl`), and where the camera is in it; none where
-    /// the weather's wind blows everywhere, and then the texture is one that nothing reads.
+    /// The wind that varies in space as shaders read it (`shaders/surroundings/wind.wgsl`), and where the camera is in
+    /// it; none where the weather's wind blows everywhere, and then the texture is one that nothing reads.
     pub fn wind_texture(&self, device: &Device) -> (WindView, Option<WindMap>) {
         let map = self.wind_volume.map(|volume| WindMap::new(volume, self.eye));
         (self.wind_texture.view(device, self.wind_volume), map)
     }
 
-    /// Light of flashes in this frame, as lamps: position relative to the camera, luminous flux, and whether it shines inside a cloud.
+    /// Light of flashes in this frame, as lamps: position relative to the camera, luminous flux, and whether it shines
+    /// inside a cloud.
     pub fn flash_lamps(&self) -> &[FlashLamp] {
         self.flash.get().map_or(&[], |flash| &flash.lamps[..flash.count])
     }
@@ -112,8 +113,8 @@ impl<'a> Moment<'a> {
         self.maps.is_some_and(|m| m.ranges().is_some())
     }
 
-    /// The host's shelters, occluder maps and lamps as the camera needs them. `near`: fall speed of the slowest of what is drawn, m/s, and how far
-    /// off any of it is, m; `exposure`: what it is exposed by.
+    /// The host's shelters, occluder maps and lamps as the camera needs them. `near`: fall speed of the slowest of what
+    /// is drawn, m/s, and how far off any of it is, m; `exposure`: what it is exposed by.
     ///
     /// # Errors
     /// As [`Moment::carrying`].
@@ -189,8 +190,8 @@ pub struct Scene {
     pub world_to_enu: DMat3,
     /// Place on the map, m east and north of the world's origin.
     pub map_m: [f64; 2],
-    /// How far the wind has carried the air, m east and north (`Context::wind_displacement`); 0 where no patch of fog or curtain of
-    /// rain shows it.
+    /// How far the wind has carried the air, m east and north (`Context::wind_displacement`); 0 where no patch of fog
+    /// or curtain of rain shows it.
     pub drift_m: [f64; 2],
     /// How far the curtains of the weather's rain have fallen, m, in their period.
     pub curtains_fallen_m: f64,
@@ -204,12 +205,13 @@ pub struct Scene {
     pub moon: Light,
     /// Linear Rec. 709 colours, cd/m^2 or lux, of light at the planet's three wavelengths under the sun of 1 au.
     pub color: [[f64; 3]; 3],
-    /// The moon gives more light here than the sun, above clouds and fog: under both, whichever stands higher would be left.
+    /// The moon gives more light here than the sun, above clouds and fog: under both, whichever stands higher would be
+    /// left.
     pub moon_is_brighter: bool,
     /// Light on the ground.
     pub ground: GroundLight,
-    /// Share of it that the ground sends up again, at the planet's three wavelengths: the planet's, and as much as snow covers of it that
-    /// snow's albedo.
+    /// Share of it that the ground sends up again, at the planet's three wavelengths: the planet's, and as much as snow
+    /// covers of it that snow's albedo.
     pub ground_albedo: [f64; 3],
     /// Light on the low layer of fog, rain, snow or dust, if the place lies in one; else the same.
     pub above_fog: GroundLight,

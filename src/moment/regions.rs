@@ -1,4 +1,5 @@
-//! The weather over all places and times of a context: its timeline, its wind, and the regions that have rain of their own.
+//! The weather over all places and times of a context: its timeline, its wind, and the regions that have rain of their
+//! own.
 
 use std::sync::Arc;
 
@@ -21,13 +22,14 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Region {
     pub area: RainArea,
-    /// How far the wind had carried the air at the area's own time, m east and north: kept from when that time is past, for the
-    /// timeline forgets.
+    /// How far the wind had carried the air at the area's own time, m east and north: kept from when that time is past,
+    /// for the timeline forgets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub carried_m: Option<[f64; 2]>,
 }
 
-/// Height above the station for which the wind of a cloud that rains stands, m: the top of the surface layer, whose wind does not turn.
+/// Height above the station for which the wind of a cloud that rains stands, m: the top of the surface layer, whose
+/// wind does not turn.
 const CLOUD_WIND_M: f64 = 100.0;
 
 /// The weather of a context over places and times.
@@ -91,8 +93,8 @@ impl<'a> WeatherOver<'a> {
         Ok(self.wind.layers_at(time_s))
     }
 
-    /// How far the wind had carried the air at the own time of a region, m east and north: nowhere at time 0, from which it is
-    /// counted, whatever the timeline has forgotten since.
+    /// How far the wind had carried the air at the own time of a region, m east and north: nowhere at time 0, from
+    /// which it is counted, whatever the timeline has forgotten since.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -160,8 +162,8 @@ impl<'a> WeatherOver<'a> {
         Ok(sizes)
     }
 
-    /// The weather `c` of a time with the rates of rain and drizzle that regions make at a place, and their extinction in place of that
-    /// of as much of its own rain.
+    /// The weather `c` of a time with the rates of rain and drizzle that regions make at a place, and their extinction
+    /// in place of that of as much of its own rain.
     pub fn at_place(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         if self.regions.is_empty() {
             return c;
@@ -177,8 +179,8 @@ impl<'a> WeatherOver<'a> {
         with_falling(c, falling)
     }
 
-    /// The weather `c` of a time as it is at a place: what falls is what falls there, in regions as by [`WeatherOver::at_place`], and
-    /// the weather's own below the cloud that it falls from alone.
+    /// The weather `c` of a time as it is at a place: what falls is what falls there, in regions as by
+    /// [`WeatherOver::at_place`], and the weather's own below the cloud that it falls from alone.
     pub fn falling_at(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         let altitude_m = self.world.frame_at(position).place.altitude_m;
         let own = if altitude_m > c.falling_top_m() {
@@ -208,7 +210,8 @@ fn with_falling(c: Conditions, falling: Falling) -> Conditions {
     Conditions { extinction_per_m, precipitation: falling, ..c }
 }
 
-/// Rates and extinction of drops where `over` lies with a share over `falling`, of which the share `begun` has left its cloud.
+/// Rates and extinction of drops where `over` lies with a share over `falling`, of which the share `begun` has left its
+/// cloud.
 fn covered(falling: &Falling, over: &Falling, share: f64, begun: f64) -> Falling {
     let (kept, come) = (1.0 - share, share * begun);
     let rain = falling.rain_mm_h * kept + over.rain_mm_h * come;

@@ -15,8 +15,8 @@ pub struct NoiseImage {
 }
 
 impl NoiseImage {
-    /// Noise in a texture of `size` texels: width, height and depth, powers of two from 8 on; a depth of 1 is a plane. With a full
-    /// chain of mip levels. The same bytes on every machine.
+    /// Noise in a texture of `size` texels: width, height and depth, powers of two from 8 on; a depth of 1 is a plane.
+    /// With a full chain of mip levels. The same bytes on every machine.
     ///
     /// A volume of 128^3 takes about a second; [`super::NoiseTexture`] draws it faster.
     ///
@@ -36,8 +36,8 @@ impl NoiseImage {
         Self::from_texels(size, bytes)
     }
 
-    /// An image of these bytes, x first, then y, then z, with a full chain of mip levels: each the mean of the 2 x 2 or 2 x 2 x 2
-    /// texels above it. Where an edge has an odd number of texels its last one is left out.
+    /// An image of these bytes, x first, then y, then z, with a full chain of mip levels: each the mean of the 2 x 2 or
+    /// 2 x 2 x 2 texels above it. Where an edge has an odd number of texels its last one is left out.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] where there are not as many bytes as texels; [`Status::OutOfMemory`].
@@ -79,8 +79,8 @@ impl NoiseImage {
         self.levels[0].get(slice as usize * area..)?.get(..area)
     }
 
-    /// The image with the opacity of its texels in their place and new mip levels of it, so that a far cloud is as dense in the
-    /// mean as a near one.
+    /// The image with the opacity of its texels in their place and new mip levels of it, so that a far cloud is as
+    /// dense in the mean as a near one.
     ///
     /// # Errors
     /// [`Status::OutOfMemory`].
@@ -97,8 +97,9 @@ impl NoiseImage {
         above as f64 / self.levels[0].len() as f64
     }
 
-    /// The cutoff that gives `cover`, 0 to 1, as near as bytes can: [`NoiseImage::cover`] differs by at most the share of the
-    /// texels at one level of 255. Between levels the cutoff follows as texels filtered by a sampler would fill them.
+    /// The cutoff that gives `cover`, 0 to 1, as near as bytes can: [`NoiseImage::cover`] differs by at most the share
+    /// of the texels at one level of 255. Between levels the cutoff follows as texels filtered by a sampler would fill
+    /// them.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a cover outside \[0, 1\].

@@ -1,12 +1,14 @@
-//! From noise to opacity: cover by a threshold, density by an exponential (Tarantilis 2004, sections III.C.1 and III.B.4.d).
+//! From noise to opacity: cover by a threshold, density by an exponential (Tarantilis 2004, sections III.C.1 and
+//! III.B.4.d).
 
 use crate::error::{Error, Result, check_range};
 
-/// Turns noise n into the opacity of a cloud, b (1 - exp(-k max(0, n - c))): nothing up to the cutoff c, then Beer and Lambert's
-/// law with the noise over it as the cloud's thickness.
+/// Turns noise n into the opacity of a cloud, b (1 - exp(-k max(0, n - c))): nothing up to the cutoff c, then Beer and
+/// Lambert's law with the noise over it as the cloud's thickness.
 ///
-/// The source prints two forms whose density does not mean the same. In 1 - d^(alpha - c) the exponent counts levels of 8 bits,
-/// so that k = -255 ln d; in b (1 - E^(n - c)) it counts from 0 to 1, so that k = -ln E. With E = d^255 they agree.
+/// The source prints two forms whose density does not mean the same. In 1 - d^(alpha - c) the exponent counts levels of
+/// 8 bits, so that k = -255 ln d; in b (1 - E^(n - c)) it counts from 0 to 1, so that k = -ln E. With E = d^255 they
+/// agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudFunction {
     cutoff: f64,
@@ -15,8 +17,8 @@ pub struct CloudFunction {
 }
 
 impl CloudFunction {
-    /// By the density d of the source's planes, 0 to 1: 0.99 gives soft veils, 0.95 firm clouds, 0 edges without any softness,
-    /// 1 nothing. `cutoff` is in \[0, 1\]; a greater one gives less cloud.
+    /// By the density d of the source's planes, 0 to 1: 0.99 gives soft veils, 0.95 firm clouds, 0 edges without any
+    /// softness, 1 nothing. `cutoff` is in \[0, 1\]; a greater one gives less cloud.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a cutoff or density outside \[0, 1\].
@@ -26,13 +28,13 @@ impl CloudFunction {
         Ok(Self::of_density(cutoff, density))
     }
 
-    /// The same without checks.
+    /// Creates the function of a density without checks.
     pub(super) fn of_density(cutoff: f64, density: f64) -> Self {
         Self { cutoff, thickness: 255.0 * optical_thickness(density), bias: 1.0 }
     }
 
-    /// By the exponent E and the bias b of the source's dome, both in \[0, 1\]. An exponent of 0 gives edges without any softness,
-    /// and a clear sky stays clear with it.
+    /// By the exponent E and the bias b of the source's dome, both in \[0, 1\]. An exponent of 0 gives edges without
+    /// any softness, and a clear sky stays clear with it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a value outside \[0, 1\].
@@ -41,7 +43,8 @@ impl CloudFunction {
         Self::new(cutoff, optical_thickness(exponent), bias)
     }
 
-    /// By the optical thickness k of noise that exceeds the cutoff by 1; at least 0, and infinite for edges without any softness.
+    /// By the optical thickness k of noise that exceeds the cutoff by 1; at least 0, and infinite for edges without any
+    /// softness.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a cutoff or bias outside \[0, 1\] or a thickness below 0.

@@ -3,7 +3,8 @@
 use super::opacity::CloudFunction;
 use super::settings::{NoiseKind, NoiseSettings};
 
-/// A layer of the source's by the name of its cover. The share of the sky that is cloud is that of the texels above the cutoff.
+/// A layer of the source's by the name of its cover. The share of the sky that is cloud is that of the texels above the
+/// cutoff.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CloudPreset {
     /// 8 oktas: 0.98 to 0.99 of the sky in the mean of seeds, 0.95 to 1 of each.
@@ -45,7 +46,7 @@ impl CloudPreset {
         NoiseSettings { kind: NoiseKind::Gradient, frequency: [frequency; 3], octaves, amplitude, persistence, seed }
     }
 
-    /// What cuts it out.
+    /// Returns the function that cuts it out.
     pub fn cloud(self) -> CloudFunction {
         let (cutoff, density) = self.cutoff_and_density();
         CloudFunction::of_density(cutoff, density)

@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3, UVec2, UVec3, Vec2Swizzles as _};
 
 use super::settings::{NoiseKind, NoiseSettings, axes};
 
-/// Mean of cellular noise over the plane and over space, within 2e-4: what octaves too fine for a texture add. Summed over
-/// 4 million points.
+/// Mean of cellular noise over the plane and over space, within 2e-4: what octaves too fine for a texture add. Summed
+/// over 4 million points.
 const CELLULAR_MEANS: [f64; 2] = [0.5705, 0.4796];
 
 /// Scrambles 32 bits, one to one (Wellons 2018, *Prospecting for Hash Functions*, lowbias32).
@@ -16,7 +16,7 @@ fn scramble(bits: u32) -> u32 {
     v ^ (v >> 16)
 }
 
-/// What `more` scrambles `key` to.
+/// Scrambles `key` with `more`.
 fn scrambled(key: u32, more: u32) -> u32 {
     scramble(key.wrapping_add(more))
 }
@@ -27,8 +27,8 @@ pub(super) fn keys_of(seed: u64) -> [u32; 2] {
     [scrambled(seed, 0), scrambled(seed, 1)]
 }
 
-/// Weight of the far corner: 6 t^5 - 15 t^4 + 10 t^3, whose first and second derivatives are 0 at both ends (Perlin 2002,
-/// section 3).
+/// Weight of the far corner: 6 t^5 - 15 t^4 + 10 t^3, whose first and second derivatives are 0 at both ends (Perlin
+/// 2002, section 3).
 fn fade(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
@@ -41,9 +41,9 @@ fn signed(value: f64, is_minus: bool) -> f64 {
     if is_minus { -value } else { value }
 }
 
-/// The plane's vectors: their greater and their lesser coordinate. They point 22.5 degrees off the axes and the diagonals, along
-/// which noise would show streaks. They are 1.25 long: with that noise deviates as much from its mean as it does in
-/// space, 0.27, and the same settings have the same cover in both.
+/// The plane's vectors: their greater and their lesser coordinate. They point 22.5 degrees off the axes and the
+/// diagonals, along which noise would show streaks. They are 1.25 long: with that noise deviates as much from its mean
+/// as it does in space, 0.27, and the same settings have the same cover in both.
 const RAMP: DVec2 = DVec2::new(1.154_849_415_639_109, 0.478_354_290_456_363);
 
 /// Product of `from_corner` with one of eight vectors.
@@ -71,9 +71,9 @@ fn ring(cell: u32, step: i32, period: u32) -> u32 {
     (i64::from(cell) + i64::from(step)).rem_euclid(i64::from(period)) as u32
 }
 
-/// Gradient noise in the plane (Perlin 2002), of one octave: -0.85 to 0.85, 0 at the corners of cells, with continuous second
-/// derivatives. `at` is in cells; the pattern repeats after `period` cells, at least 1 along each axis. Another `key` is another
-/// pattern.
+/// Gradient noise in the plane (Perlin 2002), of one octave: -0.85 to 0.85, 0 at the corners of cells, with continuous
+/// second derivatives. `at` is in cells; the pattern repeats after `period` cells, at least 1 along each axis. Another
+/// `key` is another pattern.
 pub fn gradient_2d(at: DVec2, period: UVec2, key: u32) -> f64 {
     let ((i, u), (j, v)) = (cell_of(at.x, period.x), cell_of(at.y, period.y));
     let corner = |a: i32, b: i32| {
@@ -105,8 +105,8 @@ fn point_of(bits: u32) -> DVec3 {
     DVec3::new(part(bits), part(bits >> 10), part(bits >> 22))
 }
 
-/// Cellular noise in the plane, of one octave: 1 minus the distance to the nearest point in cells, of which each has one, and 0
-/// beyond (Worley 1996, F1). Coordinates as [`gradient_2d`]'s.
+/// Cellular noise in the plane, of one octave: 1 minus the distance to the nearest point in cells, of which each has
+/// one, and 0 beyond (Worley 1996, F1). Coordinates as [`gradient_2d`]'s.
 ///
 /// Points two cells away are farther than 1, so that the cells about this one are enough.
 pub fn cellular_2d(at: DVec2, period: UVec2, key: u32) -> f64 {
@@ -141,7 +141,8 @@ pub fn cellular_3d(at: DVec3, period: UVec3, key: u32) -> f64 {
     1.0 - nearest.sqrt()
 }
 
-/// What octaves too fine for a texture of `size` texels add to its gradient and to its cellular noise: their means.
+/// Returns the means that octaves too fine for a texture of `size` texels add to its gradient and to its cellular
+/// noise.
 pub(super) fn rests(settings: &NoiseSettings, size: [u32; 3]) -> [f64; 2] {
     let held = settings.octaves_in(size);
     let sum: f64 = amplitudes(settings).skip(held as usize).take((settings.octaves - held) as usize).sum();
@@ -154,8 +155,9 @@ fn amplitudes(settings: &NoiseSettings) -> impl Iterator<Item = f64> {
     std::iter::successors(Some(settings.amplitude), move |a| Some(a * persistence))
 }
 
-/// The noise at a point of a texture of `size` texels, 0 to 1, before it is rounded to a byte. `at` counts textures: 0 to 1 is
-/// one of them, and beyond it repeats. Texel i of n has its middle at (i + 0.5) / n. A texture with a depth of 1 is a plane.
+/// The noise at a point of a texture of `size` texels, 0 to 1, before it is rounded to a byte. `at` counts textures: 0
+/// to 1 is one of them, and beyond it repeats. Texel i of n has its middle at (i + 0.5) / n. A texture with a depth of
+/// 1 is a plane.
 ///
 /// Settings that [`NoiseSettings::check`] refuses give a number without meaning.
 pub fn noise_at(settings: &NoiseSettings, size: [u32; 3], at: DVec3) -> f64 {

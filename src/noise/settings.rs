@@ -1,4 +1,4 @@
-//! What a texture of noise is made of, and what of it a texture can hold.
+//! Settings of a texture of noise, and how much of its noise a texture can hold.
 
 use crate::error::{Error, Result, check_range};
 
@@ -10,24 +10,25 @@ const LONGEST: [u32; 2] = [8192, 1024];
 const SHORTEST: u32 = 8;
 const MOST_OCTAVES: u32 = 16;
 
-/// Which noise a texture holds.
+/// Kind of noise in a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum NoiseKind {
     /// Gradient noise (Perlin 2002): billows without a preferred direction. For cover.
     Gradient,
     /// Cellular noise (Worley 1996), bright at its points: round lumps. For the edges of clouds.
     Cellular,
-    /// Gradient noise mapped from \[0, 1\] to \[cellular noise, 1\] (Schneider 2015): connected lumps. For the shape of clouds.
+    /// Gradient noise mapped from \[0, 1\] to \[cellular noise, 1\] (Schneider 2015): connected lumps. For the shape of
+    /// clouds.
     GradientOverCellular,
 }
 
-/// What a texture of noise is made of. The default is that of Tarantilis (2004, section III.B.4.c) for a volume of 128^3.
+/// Settings of a texture of noise. The default is that of Tarantilis (2004, section III.B.4.c) for a volume of 128^3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseSettings {
-    /// Which noise; gradient noise by default.
+    /// Kind of noise; gradient noise by default.
     pub kind: NoiseKind,
-    /// Cells of the first octave to the texture along x, y and z, from 1 to half as many as texels. A whole number, so that the
-    /// texture repeats without a seam. Default 6. In a plane the third is not used.
+    /// Cells of the first octave to the texture along x, y and z, from 1 to half as many as texels. A whole number, so
+    /// that the texture repeats without a seam. Default 6. In a plane the third is not used.
     pub frequency: [u32; 3],
     /// Octaves, 1 to 16; default 6. Those with less than two texels to a cell add their mean alone.
     pub octaves: u32,
@@ -73,7 +74,8 @@ pub(super) fn axes(size: [u32; 3]) -> usize {
     if size[2] == 1 { 2 } else { 3 }
 }
 
-/// Powers of two, so that every mip level is the exact mean of the one above, and cells lie exactly where they do on a GPU.
+/// Powers of two, so that every mip level is the exact mean of the one above, and cells lie exactly where they do on a
+/// GPU.
 fn check_size(size: [u32; 3]) -> Result<()> {
     let axes = axes(size);
     let longest = LONGEST[axes - 2];

@@ -60,19 +60,19 @@ struct ShrinkUniform {
     z: u32,
 }
 
-/// A texture of noise on the GPU with all its mip levels, of one, two or four channels of 8 bits: R8, RG8 or RGBA8. It can be
-/// filtered, and repeats without a seam under `AddressMode::Repeat`.
+/// A texture of noise on the GPU with all its mip levels, of one, two or four channels of 8 bits: R8, RG8 or RGBA8. It
+/// can be filtered, and repeats without a seam under `AddressMode::Repeat`.
 ///
 /// One thread at a time.
 pub struct NoiseTexture {
     texture: wgpu::Texture,
-    /// What is still to draw.
+    /// Rest that is still to draw.
     build: Option<Box<Build>>,
 }
 
 impl NoiseTexture {
-    /// A texture of `size` texels (width, height and depth, powers of two from 8 on; a depth of 1 is a plane) with the noise of
-    /// one, two or four settings in its channels. Nothing is drawn yet: see [`NoiseTexture::step`].
+    /// A texture of `size` texels (width, height and depth, powers of two from 8 on; a depth of 1 is a plane) with the
+    /// noise of one, two or four settings in its channels. Nothing is drawn yet: see [`NoiseTexture::step`].
     ///
     /// # Errors
     /// Those of [`NoiseSettings::check`]; [`crate::Status::InvalidArgument`] for another number of channels;
@@ -131,9 +131,9 @@ impl NoiseTexture {
         Ok(Self { texture, build: None })
     }
 
-    /// Records the next passes: rows of slices with about `texels` texels in all channels together, one row at least, so that a
-    /// frame does as much of it as it has room for. Mip levels follow the slices they are made of. True when all is drawn. The
-    /// passes of one call may go in a submission with other work; calls go in order.
+    /// Records the next passes: rows of slices with about `texels` texels in all channels together, one row at least,
+    /// so that a frame does as much of it as it has room for. Mip levels follow the slices they are made of. True when
+    /// all is drawn. The passes of one call may go in a submission with other work; calls go in order.
     pub fn step(&mut self, encoder: &mut wgpu::CommandEncoder, texels: u32) -> bool {
         if let Some(build) = &mut self.build
             && build.step(encoder, texels)
@@ -161,8 +161,8 @@ impl NoiseTexture {
     /// Reads one channel back with its mip levels. Waits for the GPU: not for frames.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a channel that there is not; [`crate::Status::WrongOrder`] before all is drawn;
-    /// [`crate::Status::DeviceLost`], [`crate::Status::OutOfMemory`] or a GPU fault.
+    /// [`crate::Status::InvalidArgument`] for a channel that there is not; [`crate::Status::WrongOrder`] before all is
+    /// drawn; [`crate::Status::DeviceLost`], [`crate::Status::OutOfMemory`] or a GPU fault.
     pub fn read(&self, device: &Device, channel: usize) -> Result<NoiseImage> {
         let channels = self.texture.format().components() as usize;
         if channel >= channels {
@@ -211,7 +211,7 @@ fn texture(device: &Device, size: [u32; 3], format: wgpu::TextureFormat, levels:
     }))
 }
 
-/// What is still to draw of a texture.
+/// Rest of a texture that is still to draw.
 struct Build {
     size: [u32; 3],
     /// One view a mip level.

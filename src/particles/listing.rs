@@ -1,8 +1,9 @@
 //! The list of things that a picture shows, of all that fall round the camera: a few in a hundred of a lattice.
 //!
-//! Three passes of compute shaders: each thing is asked whether it can be in the picture (a bit each); those that can are counted off
-//! in the order of their numbers (`shaders/falling/order.wgsl`, `list.wgsl`); and what draws each of them, shelter and lamps with it,
-//! is found once. The draw then only spreads corners. How many there are stays on the GPU.
+//! Three passes of compute shaders: each thing is asked whether it can be in the picture (a bit each); those that can
+//! are counted off in the order of their numbers (`shaders/falling/order.wgsl`, `list.wgsl`); and what draws each of
+//! them, shelter and lamps with it, is found once. The draw then only spreads corners. How many there are stays on the
+//! GPU.
 
 use crate::gpu::bind::{self, Slot};
 
@@ -21,7 +22,7 @@ const LEAST_ROOM: u64 = 16_384;
 pub(crate) struct Listing {
     /// Bytes of what draws a thing.
     thing_bytes: u64,
-    /// Of group 1: as things are marked and ordered, and as what draws them is made.
+    /// Layouts of group 1: as things are marked and ordered, and as what draws them is made.
     pub layouts: [wgpu::BindGroupLayout; 2],
     found: wgpu::Buffer,
     held: Option<Held>,
@@ -42,8 +43,8 @@ fn blocks_of([things, rows]: [u32; 2]) -> u64 {
     u64::from(things.div_ceil(BLOCK_THINGS).next_power_of_two()) * u64::from(rows)
 }
 
-/// Most things that a list has room for, of `blocks`. Within a shell's own reach are half of its things at most, and four in ten of
-/// all; a picture 150 degrees wide shows half of those.
+/// Most things that a list has room for, of `blocks`. Within a shell's own reach are half of its things at most, and
+/// four in ten of all; a picture 150 degrees wide shows half of those.
 pub(crate) fn room(device: &wgpu::Device, blocks: u64, thing_bytes: u64) -> u64 {
     let most = device.limits().max_storage_buffer_binding_size / thing_bytes;
     (blocks * u64::from(BLOCK_THINGS) / 4).max(LEAST_ROOM).min(most)
@@ -68,7 +69,8 @@ impl Listing {
         self.held.as_ref().map_or(0, |h| h.blocks.size() + h.things.size())
     }
 
-    /// Makes room for so many things a row and so many rows; each row begins a block. A list that is too small is replaced.
+    /// Makes room for so many things a row and so many rows; each row begins a block. A list that is too small is
+    /// replaced.
     pub fn make_room(&mut self, device: &wgpu::Device, things: [u32; 2]) {
         let blocks = blocks_of(things);
         if self.held.as_ref().is_some_and(|h| h.blocks.size() >= blocks * BLOCK_BYTES) {
@@ -119,7 +121,7 @@ impl Listing {
         self.held = None;
     }
 
-    /// What is found, and what draws it.
+    /// Returns the buffers of what is found, and of what draws it.
     #[cfg(test)]
     pub fn buffers(&self) -> [&wgpu::Buffer; 2] {
         [&self.found, &self.held.as_ref().expect("a list was made").things]

@@ -1,7 +1,9 @@
-//! What rain and snow share to draw what falls near the camera: the streak camera and the layer before the picture ([`streak`]), the list
-//! of what a picture shows ([`listing`]), and things that are stepped through a wind that varies in space ([`stepping`]).
+//! Drawing of what falls near the camera, shared by rain and snow: the streak camera and the layer before the picture
+//! ([`streak`]), the list of what a picture shows ([`listing`]), and things that are stepped through a wind that varies
+//! in space ([`stepping`]).
 //!
-//! What falls, how fast and where it starts is `src/falling`'s; what a drop or a flake looks like is `src/rain`'s and `src/snow`'s.
+//! What falls, how fast and where it starts is `src/falling`'s; what a drop or a flake looks like is `src/rain`'s and
+//! `src/snow`'s.
 
 pub(crate) mod listing;
 pub(crate) mod stepping;

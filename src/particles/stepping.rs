@@ -1,15 +1,17 @@
 //! Particles integrated through a wind that varies in space, such as that round a building.
 //!
-//! Drops and flakes are those of their lattice, as many in the same shells, but each has a place and a velocity of its own, in a buffer
-//! of the view. In an even wind each starts where the lattice has it and stays there until it leaves the cell round the camera.
+//! Drops and flakes are those of their lattice, as many in the same shells, but each has a place and a velocity of its
+//! own, in a buffer of the view. In an even wind each starts where the lattice has it and stays there until it leaves
+//! the cell round the camera.
 //!
-//! A step goes by drag that is linear while it lasts, solved exactly ([`crate::falling::drag::step`]), so that no length of it is unstable.
-//! The rate is that of drag by the square at the step's first moment, so short steps converge to it; where a step is long against it, the
-//! rate at rest, which ends at the right fall.
+//! A step goes by drag that is linear while it lasts, solved exactly ([`crate::falling::drag::step`]), so that no
+//! length of it is unstable. The rate is that of drag by the square at the step's first moment, so short steps converge
+//! to it; where a step is long against it, the rate at rest, which ends at the right fall.
 //!
-//! What leaves its cell, or is left behind by the camera, comes in again on the opposite side at a place by chance (hash of its number and
-//! how often it has been there) at the speed that it has there at rest. As many leave as come in: neither dropped frames nor a camera at
-//! 300 m/s make gaps or bursts. After a jump of time, or of the camera where the host says so, all start anew.
+//! What leaves its cell, or is left behind by the camera, comes in again on the opposite side at a place by chance
+//! (hash of its number and how often it has been there) at the speed that it has there at rest. As many leave as come
+//! in: neither dropped frames nor a camera at 300 m/s make gaps or bursts. After a jump of time, or of the camera where
+//! the host says so, all start anew.
 
 use std::sync::Arc;
 
@@ -62,19 +64,19 @@ pub(crate) struct StepUniform {
     pad: [u32; 3],
 }
 
-/// What a frame steps by.
+/// Inputs by which a frame steps.
 pub(crate) struct Stepped<'a> {
-    /// What the places of those that come in are drawn by.
+    /// Seed by which the places of those that come in are drawn.
     pub seed: u32,
     /// How many there are in each shell, and the side of its cell, m.
     pub counts: [u32; SHELLS],
     pub sides_m: [f64; SHELLS],
     /// Room that each shell has at least: more may come soon.
     pub least_room: u32,
-    /// Of the camera: east, north, up of a point fixed to the world.
+    /// Position of the camera: east, north, up of a point fixed to the world.
     pub position_m: DVec3,
     pub time_s: f64,
-    /// Of the air now, and its displacement since an earlier time.
+    /// Velocity of the air now, and its displacement since an earlier time.
     pub air_m_s: DVec3,
     pub carried: &'a dyn Fn(f64) -> DVec3,
     /// Nothing of earlier frames may show.
@@ -83,14 +85,14 @@ pub(crate) struct Stepped<'a> {
     pub wind: (WindView, Option<WindMap>),
 }
 
-/// Whether what falls up to `reach_m` from the camera is stepped: where the wind varies in space there, and then, so that nothing jumps, as
-/// long as the picture has a history. `was`: in the frame before.
+/// Whether what falls up to `reach_m` from the camera is stepped: where the wind varies in space there, and then, so
+/// that nothing jumps, as long as the picture has a history. `was`: in the frame before.
 pub(crate) fn is_due(now: &Moment<'_>, device: &Device, reach_m: f64, was: bool, is_pure: bool) -> bool {
     let varies = || now.wind_volume.is_some_and(|volume| volume.distance_m(now.eye) <= reach_m);
     device.caps().tier > 0 && ((was && !is_pure) || varies())
 }
 
-/// What the last step left.
+/// State that the last step left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Left {
     time_s: f64,
@@ -190,14 +192,15 @@ pub(crate) struct StepPass {
     /// The texture of the wind that is bound; one texel where there is none.
     wind: Option<WindView>,
     sampler: wgpu::Sampler,
-    /// Of the effect's own block, of the step, and of what draws the states.
+    /// Layouts of the effect's own block, of the step, and of what draws the states.
     layouts: [wgpu::BindGroupLayout; 3],
     /// Without and with a wind that varies in space.
     steps: [Option<wgpu::ComputePipeline>; 2],
     groups: Option<[wgpu::BindGroup; 3]>,
 }
 
-/// Layout of stepped things for what lists them: the camera's places in the shells' cells with where their states begin, and the states.
+/// Layout of stepped things for what lists them: the camera's places in the shells' cells with where their states
+/// begin, and the states.
 pub(crate) fn source_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let slots = [(0, Slot::Uniform(16 * SHELLS)), (1, Slot::StorageRead(STATE_BYTES))];
     bind::layout(device, "stepped", wgpu::ShaderStages::COMPUTE, &slots)
@@ -329,7 +332,7 @@ impl StepPass {
         self.groups.as_ref().map(|[.., states]| states)
     }
 
-    /// Of each shell its states as a vertex buffer, and how many of them the last step left.
+    /// Returns for each shell its states as a vertex buffer, and how many of them the last step left.
     pub fn shells(&self) -> impl DoubleEndedIterator<Item = (wgpu::BufferSlice<'_>, u32)> {
         let counts = self.left.map_or([0; SHELLS], |left| left.counts);
         self.states.iter().flat_map(move |(rooms, buffer)| {

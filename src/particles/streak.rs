@@ -1,4 +1,5 @@
-//! What effects share that draw what falls near the camera: its camera, the layer before the picture, and how much it stands out.
+//! Parts that effects share to draw what falls near the camera: its camera, the layer before the picture, and how much
+//! it stands out.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -23,7 +24,7 @@ pub(crate) struct StreakCamera<'a> {
     pub y_sign: f32,
     /// East, north, up of a point fixed to the world.
     pub position_m: DVec3,
-    /// Of the camera.
+    /// Velocity of the camera.
     pub velocity_m_s: DVec3,
     pub exposure_s: f64,
     /// Contrast gain of what falls.
@@ -50,7 +51,7 @@ impl<'a> StreakCamera<'a> {
 /// How the fragment shaders of rain and snow read the host's depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthRead {
-    /// Of several samples.
+    /// Whether it has several samples.
     pub multi: bool,
     /// Whether there is any.
     pub any: bool,
@@ -74,8 +75,8 @@ impl DepthRead {
     }
 }
 
-/// What falls near the camera as one more veil before the picture: premultiplied, one sample a pixel. The effects of a view that draw
-/// into it share it: clones are the same layer.
+/// Layer of what falls near the camera, as one more veil before the picture: premultiplied, one sample a pixel. The
+/// effects of a view that draw into it share it: clones are the same layer.
 #[derive(Clone, Default)]
 pub(crate) struct FallingTexture(Arc<Mutex<Option<(wgpu::Texture, wgpu::TextureView)>>>);
 
@@ -142,8 +143,8 @@ pub(crate) struct StreakContrast {
 }
 
 impl StreakContrast {
-    /// Of things that go with a velocity before a camera. `variance`: from pixel to pixel, of the share that they hide, where they go so
-    /// many metres across the line of sight during the exposure.
+    /// Creates the contrast of things that go with a velocity before a camera. `variance` is that from pixel to pixel
+    /// of the share that they hide, where they go so many metres across the line of sight during the exposure.
     pub fn new(
         shot: &StreakCamera<'_>,
         velocity_m_s: DVec3,
@@ -157,8 +158,9 @@ impl StreakContrast {
         Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, tone, lamps }
     }
 
-    /// What pixel number `i` changes by things that are bright as `radiance` says in a direction, over its luminance and a hundredth of
-    /// white; and by how much they are brighter than it. So much that many pixels together spread as those of pictures do.
+    /// Returns the change of pixel number `i` by things that are bright as `radiance` says in a direction, over its
+    /// luminance and a hundredth of white; and by how much they are brighter than it. The changes of many pixels
+    /// together spread as those of pictures do.
     pub fn at(&self, i: usize, ndc: DVec2, picture: f64, radiance: impl Fn(DVec3) -> DVec3) -> [f64; 2] {
         let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
         let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;

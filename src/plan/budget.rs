@@ -1,20 +1,20 @@
-//! What a view may spend on a picture, and what of its parts matters.
+//! Budget of a view for a picture, and how much the picture's parts matter.
 
 use super::parts::Part;
 use crate::error::{Error, Result, check_range};
 
-/// What a host wants of one part.
+/// Wish of a host for one part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wish {
-    /// How much it matters to those who look, [0, 1]: what is left out first under a budget of time. Default `None`: as its room says
-    /// ([`Part::importance`]).
+    /// How much it matters to those who look, [0, 1]: what is left out first under a budget of time. Default `None`: as
+    /// its room says ([`Part::importance`]).
     pub importance: Option<f64>,
-    /// Draw it at this rung, whatever the tolerance and the time, so that all channels of a simulator draw alike; what of these that
-    /// does not keep is still said ([`Plan::gave_way`](super::Plan::gave_way)). Default `None`: plan.
+    /// Draw it at this rung, whatever the tolerance and the time, so that all channels of a simulator draw alike; what
+    /// of these that does not keep is still said ([`Plan::gave_way`](super::Plan::gave_way)). Default `None`: plan.
     pub rung: Option<usize>,
 }
 
-/// What a view may spend on a picture, and how wrong it may be.
+/// Limits of a view's picture: the time that it may take, and how wrong it may be.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Budget {
     /// Largest error of what is left out, (0, 1]: 95th percentile over pixels of |Y' - Y| / (Y + 0.01 white) after
@@ -23,7 +23,8 @@ pub struct Budget {
     /// Longest time of the weather in a frame, ms, (0, 1000]: parts are left out as the times reported by
     /// [`View::report_time`](crate::frame::View::report_time) demand. It wins over the tolerance. Default `None`.
     pub milliseconds: Option<f64>,
-    /// Of single parts, in the order of [`frame::PARTS`](crate::frame::PARTS); those that it does not reach have none. Default: empty.
+    /// Wishes for single parts, in the order of [`frame::PARTS`](crate::frame::PARTS); parts that it does not reach
+    /// have none. Default: empty.
     pub wishes: Vec<Wish>,
 }
 

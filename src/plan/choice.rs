@@ -1,5 +1,5 @@
-//! What there is to choose in a gauged picture, and the choice: within the tolerance the least work, and if that takes too long
-//! what is missed least.
+//! Options in a gauged picture, and the choice among them: within the tolerance the least work, and if that takes too
+//! long what is missed least.
 
 use super::{
     estimate::{Estimate, Estimator},
@@ -11,7 +11,7 @@ use super::{
 /// Leaving out takes a tenth more certainty than staying out, so that a picture at the border does not flicker.
 const CERTAINTY: f64 = 0.9;
 
-/// What is asked of a picture.
+/// Demands on a picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Asked {
     pub tolerance: Option<f64>,
@@ -33,7 +33,7 @@ pub(super) struct Choices {
     pub worth: [Estimate; MOST_STEPS],
     /// Steps of the parts that are there.
     there: Set,
-    /// What keeps the tolerance with the least work.
+    /// Steps that keep the tolerance with the least work.
     cheapest: Option<Set>,
 }
 
@@ -50,7 +50,8 @@ impl Choices {
         }
     }
 
-    /// Takes a picture that the estimator has seen: its work, the steps of what is there, what is asked, and what is left out now.
+    /// Takes a picture that the estimator has seen: its work, the steps of what is there, what is asked, and what is
+    /// left out now.
     pub fn take(&mut self, all: Amount, there: Set, governor: &Governor, asked: &Asked, before: Set) {
         (self.all, self.there) = (all, there);
         let Self { ladder, estimator, search, worth, .. } = self;
@@ -86,7 +87,7 @@ impl Choices {
         (set, if fits { GaveWay::Tolerance } else { GaveWay::Time })
     }
 
-    /// What is missed of a picture: what its parts are worth in it times how much they matter.
+    /// Returns how much is missed of a picture: what its parts are worth in it times how much they matter.
     fn loss(&self, set: Set, asked: &Asked) -> f64 {
         let of = |part: usize| match self.ladder.rung(set, part) {
             0 => 0.0,

@@ -35,7 +35,7 @@ impl Estimate {
 /// Estimates that are kept until the next gauge.
 const KEPT: usize = 8;
 
-/// What the gauge saw of a picture, and what follows; holds its memory between calls.
+/// Findings of the gauge about a picture, and the estimates that follow; holds its memory between calls.
 pub(super) struct Estimator {
     /// Change of luminance at each pixel by each step, with the steps above it taken too.
     changes: Vec<[f32; MOST_STEPS]>,

@@ -34,10 +34,10 @@ const FAILED: u32 = 4;
 /// Values of `override` constants.
 type Constants = Vec<(&'static str, f64)>;
 
-/// What the gauge finds the worth of, at most.
+/// Most channels whose worth the gauge finds.
 pub const CHANNELS: usize = 5;
 
-/// What the gauge saw at one pixel.
+/// Finding of the gauge at one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sample {
     /// Change of luminance in each channel.
@@ -93,8 +93,8 @@ impl Gauge {
         self.state.load(Ordering::Acquire) == IDLE
     }
 
-    /// Records the pass; `groups`, `layouts` and `constants` are those of the composition, `shader` is for the samples that
-    /// the host's colour and depth have.
+    /// Records the pass; `groups`, `layouts` and `constants` are those of the composition, `shader` is for the samples
+    /// that the host's colour and depth have.
     pub fn record(
         &mut self,
         device: &Arc<Device>,

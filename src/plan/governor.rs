@@ -1,9 +1,9 @@
 //! The governor: what a picture takes on this machine, by the times that the host reports.
 //!
-//! A picture's time is taken as proportional to its work, by a factor that reported times correct: the median of the last
-//! five. What a part costs beside a plain pixel differs from machine to machine; whenever a part comes or goes, the step
-//! in the reported times corrects its share, so that a part which is dearer here than it was where the constants were
-//! measured does not come back into a picture that has no time for it.
+//! A picture's time is taken as proportional to its work, by a factor that reported times correct: the median of the
+//! last five. What a part costs beside a plain pixel differs from machine to machine; whenever a part comes or goes,
+//! the step in the reported times corrects its share, so that a part which is dearer here than it was where the
+//! constants were measured does not come back into a picture that has no time for it.
 //!
 //! More is drawn again only when it would leave room to spare, so that a load at the border does not swing.
 
@@ -12,7 +12,7 @@ use super::parts::{MOST_STEPS, Set};
 /// More is drawn again where it would take no more than this share of the budget.
 const ROOM: f64 = 0.85;
 
-/// What had to give way.
+/// Limit that had to give way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GaveWay {
     /// Nothing: what was asked holds, by the estimates.
@@ -20,13 +20,13 @@ pub enum GaveWay {
     Nothing,
     /// The tolerance: the time allows no better picture.
     Tolerance,
-    /// Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes longer
-    /// than the budget.
+    /// Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes
+    /// longer than the budget.
     Time,
 }
 
-/// Work of a picture, in pixels with none of the parts: those pixels, what each step of a part saves that may be taken, and what two
-/// parts cost beside each other, beyond what each does.
+/// Work of a picture, in pixels with none of the parts: those pixels, what each step of a part saves that may be taken,
+/// and what two parts cost beside each other, beyond what each does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Amount {
     pub pixels: f64,
@@ -71,7 +71,7 @@ pub(super) struct Governor {
     /// Milliseconds of a unit of work.
     recent: [f64; SEEN],
     reports: usize,
-    /// What the steps save here over what the constants say.
+    /// Ratios of what the steps save here to what the constants say.
     ratios: [f64; MOST_STEPS],
     /// The set that was absent at the last report, and how many reports it has been.
     absent: Set,
@@ -110,7 +110,8 @@ impl Governor {
         }
     }
 
-    /// Parts came or went between two sets with these times a unit of work: were it not for them the times would be one.
+    /// Parts came or went between two sets with these times a unit of work: were it not for them the times would be
+    /// one.
     fn learn(&mut self, all: &Amount, (from, k_from): (Set, f64), (to, k_to): (Set, f64)) {
         let time = |set: Set, k: f64| k * all.without(set).weighed(&self.ratios);
         // With the parts and without; where some come while others go, neither is told apart.
@@ -142,7 +143,8 @@ impl Governor {
         }
     }
 
-    /// Of the last reports, so that a slow frame or two change nothing; of an even number the lower one.
+    /// Returns the median of the last reports, so that a slow frame or two change nothing; of an even number the lower
+    /// one.
     fn median(&self) -> f64 {
         let mut sorted = self.recent;
         let seen = &mut sorted[..self.reports.clamp(1, SEEN)];
@@ -150,7 +152,7 @@ impl Governor {
         seen[(seen.len() - 1) / 2]
     }
 
-    /// What a picture of so much work should take, ms; `None` before the first report.
+    /// Returns the time that a picture of so much work should take, ms; `None` before the first report.
     pub fn ms(&self, amount: &Amount) -> Option<f64> {
         self.ms_per_work().map(|k| k * amount.weighed(&self.ratios))
     }
@@ -160,8 +162,8 @@ impl Governor {
         amount.weighed(&self.ratios)
     }
 
-    /// Whether a picture keeps a budget of time. One of more work than is drawn now leaves room to spare, so that a load at the
-    /// border does not swing.
+    /// Whether a picture keeps a budget of time. One of more work than is drawn now leaves room to spare, so that a
+    /// load at the border does not swing.
     pub fn fits(&self, amount: &Amount, budget_ms: Option<f64>, now: &Amount) -> bool {
         match (budget_ms, self.ms(amount)) {
             (Some(budget), Some(ms)) => {

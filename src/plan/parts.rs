@@ -1,8 +1,8 @@
 //! Parts of the weather that a picture may do with less of, and the steps by which it does.
 //!
-//! A part is drawn at one of its rungs: the first is all of it, the last is nothing of it or the cheapest that stands for it.
-//! Each room registers its own parts ([`crate::frame::PARTS`] lists them); what follows from the list (budgets, plans, the C API,
-//! saved plans) grows with it.
+//! A part is drawn at one of its rungs: the first is all of it, the last is nothing of it or the cheapest that stands
+//! for it. Each room registers its own parts ([`crate::frame::PARTS`] lists them); what follows from the list (budgets,
+//! plans, the C API, saved plans) grows with it.
 
 /// Most parts that a list may have.
 pub const MOST_PARTS: usize = 16;
@@ -27,13 +27,14 @@ pub struct Part {
 /// How the gauge learns what a part is worth in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worth {
-    /// The gauge composes the picture without it, in this channel; parts that share one are taken to be worth as much together as
-    /// each.
+    /// The gauge composes the picture without it, in this channel; parts that share one are taken to be worth as much
+    /// together as each.
     Composed(usize),
-    /// A closed form says what each rung changes (`plan::Unseen`); to the last rung the gauge adds what then stands in the part's
-    /// place, in this channel.
+    /// A closed form says what each rung changes (`plan::Unseen`); to the last rung the gauge adds what then stands in
+    /// the part's place, in this channel.
     Unseen(usize),
-    /// The gauge estimates it in this channel, whether the part is drawn now or not: the error of the whole picture, not where in it.
+    /// The gauge estimates it in this channel, whether the part is drawn now or not: the error of the whole picture,
+    /// not where in it.
     Estimated(usize),
 }
 
@@ -72,8 +73,8 @@ impl Reason {
     }
 }
 
-/// Work of one step of a part in a picture, in pixels with none of the parts: for each pixel in which the host drew something, for
-/// each in which it drew nothing, and whatever the picture is.
+/// Work of one step of a part in a picture, in pixels with none of the parts: for each pixel in which the host drew
+/// something, for each in which it drew nothing, and whatever the picture is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepWork {
     /// For each pixel in which the host drew something.

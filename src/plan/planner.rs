@@ -19,7 +19,7 @@ use crate::{
 /// A part of the weather in a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartPlan {
-    /// Which.
+    /// Part that is planned.
     pub part: &'static Part,
     /// The rung at which it is drawn once it has faded; 0, all of it, if there is none of it.
     pub rung: usize,
@@ -29,7 +29,8 @@ pub struct PartPlan {
     pub reason: Reason,
     /// Error of the picture with this part alone at each rung, as last gauged; that of the first is 0.
     pub worth: [Estimate; MOST_RUNGS],
-    /// What all of it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
+    /// Work that all of it adds to this picture with everything, or would add, in units of a pixel with none of the
+    /// parts.
     pub work: f64,
     /// Steps that it has gone down, a part of one while it fades.
     depth: f32,
@@ -42,7 +43,7 @@ impl PartPlan {
     }
 }
 
-/// What a view draws, and why.
+/// Plan of a view: what it draws, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// One entry for each of [`frame::PARTS`](crate::frame::PARTS).
@@ -53,9 +54,9 @@ pub struct Plan {
     pub work: f64,
     /// Work of the picture with everything.
     pub work_of_everything: f64,
-    /// What the picture should take, ms, by the times reported so far; `None` before the first.
+    /// Time that the picture should take, ms, by the times reported so far; `None` before the first.
     pub milliseconds: Option<f64>,
-    /// What could not be kept of the budget.
+    /// Limit of the budget that could not be kept.
     pub gave_way: GaveWay,
 }
 
@@ -92,18 +93,20 @@ impl Plan {
     }
 }
 
-/// What was predicted of a frame, to be held against what it was.
+/// Prediction for a frame, to be compared with what it was.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prediction {
-    /// What the weather should take in this frame, ms; `None` before the first gauge, and before the first reported time.
+    /// Time that the weather should take in this frame, ms; `None` before the first gauge, and before the first
+    /// reported time.
     pub milliseconds: Option<f64>,
     /// Error of what this frame leaves out, parts that still fade not counted; `None` before the first gauge.
     pub error: Option<Estimate>,
-    /// The newest gauge's picture: the bound that had been predicted for what it left out, and the error that was found.
+    /// The newest gauge's picture: the bound that had been predicted for what it left out, and the error that was
+    /// found.
     pub checked: Option<[f64; 2]>,
 }
 
-/// What a frame has of a part.
+/// Presence of a part in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PartNow {
     /// Whether weather and stages draw it at all.
@@ -112,7 +115,7 @@ pub(crate) struct PartNow {
     pub steps: [StepWork; MOST_RUNGS],
 }
 
-/// What a frame has of each part, and what each costs.
+/// Presence of each part in a frame, and its cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Presence {
     pub pixels: u64,
@@ -133,14 +136,14 @@ impl Presence {
     }
 }
 
-/// What the gauge cannot see, in closed form.
+/// Changes that the gauge cannot see, in closed form.
 pub(crate) trait Unseen {
-    /// What the first steps of a part change at pixel number `pixel` of the gauge, at `ndc`, where the picture has this luminance
-    /// and what drops hide this optical depth.
+    /// Returns the changes by the first steps of a part at pixel number `pixel` of the gauge, at `ndc`, where the
+    /// picture has this luminance and what drops hide this optical depth.
     fn change(&self, part: &Part, pixel: usize, ndc: DVec2, picture: [f64; 2]) -> [f32; MOST_RUNGS - 1];
 }
 
-/// What a gauge was made of: a picture far from it needs another.
+/// Situation in which a gauge was made: a picture far from it needs another.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Situation {
     pub position: DVec3,
@@ -174,17 +177,18 @@ struct Gauging<U> {
     there: Situation,
     absent: Set,
     bound: Option<f64>,
-    /// What the gauge cannot see of it, where there is such a part.
+    /// Changes that the gauge cannot see of it, where a part has any.
     unseen: Option<U>,
 }
 
-/// Least share of a build of the sky's tables with the default settings that one frame pays, since finer strips are not cut, and the
-/// share that it pays where there is time.
+/// Least share of a build of the sky's tables with the default settings that one frame pays, since finer strips are not
+/// cut, and the share that it pays where there is time.
 const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
 /// Where that is less than this share of a picture's own work, it pays so much: no frame takes half as much again.
 const SLICE: f64 = 0.3;
 
-/// A part changes a pixel by no more than this in a frame while it fades, and takes at least and at most so many frames.
+/// A part changes a pixel by no more than this in a frame while it fades, and takes at least and at most so many
+/// frames.
 const FADE_STEP: f64 = 0.005;
 const FADE_FRAMES: (f64, f64) = (8.0, 128.0);
 
@@ -200,7 +204,7 @@ pub(crate) struct Planner<U> {
     choices: Choices,
     governor: Governor,
     gauging: Option<Gauging<U>>,
-    /// Of the gauge that the choices stand on.
+    /// Situation of the gauge that the choices stand on.
     planned: Option<Situation>,
     last: Option<Situation>,
     left_out: Set,
@@ -269,12 +273,12 @@ impl<U: Unseen> Planner<U> {
         &self.plan
     }
 
-    /// Of the last frame.
+    /// Returns the prediction for the last frame.
     pub fn prediction(&self) -> Prediction {
         self.prediction
     }
 
-    /// What the last frame took.
+    /// Takes the time of the last frame, ms.
     pub fn report_time(&mut self, milliseconds: f64) -> Result<()> {
         if !(milliseconds.is_finite() && milliseconds > 0.0 && milliseconds <= 1e5) {
             return Err(Error::range("milliseconds", "in (0, 1e5] ms", milliseconds));
@@ -297,7 +301,8 @@ impl<U: Unseen> Planner<U> {
         (self.planned, self.gauging, self.left_out, self.frames) = (None, None, 0, EVERY);
     }
 
-    /// Once a frame: takes a gauge's answer, chooses, fades, predicts. `pure`: the picture may not depend on earlier ones.
+    /// Once a frame: takes a gauge's answer, chooses, fades, predicts. `pure`: the picture may not depend on earlier
+    /// ones.
     pub fn begin(&mut self, device: &Device, here: &Situation, present: &Presence, pure: bool) {
         let mut pure = pure;
         self.work = present.most_work();

@@ -1,7 +1,7 @@
 //! A plan as text, so that other channels and later sessions draw alike.
 //!
-//! Beside the parts that are drawn it holds the sky's settings: views of a context with others would not draw alike, and
-//! refuse it.
+//! Beside the parts that are drawn it holds the sky's settings: views of a context with others would not draw alike,
+//! and refuse it.
 
 use toml::{Table, Value};
 

@@ -1,8 +1,9 @@
-//! Which steps down to take: those that save most work within a tolerance, or those that are missed least in the time.
+//! Search for the steps down to take: those that save most work within a tolerance, or those that are missed least in
+//! the time.
 //!
-//! A handful of steps is searched whole. Of more, sets are tried from the least work upwards, a limited number of them: the first that
-//! keeps the tolerance is the best. If none did, steps are added one at a time to the few best sets, and then exchanged as long as that
-//! saves more. The number of trials grows with the square of the number of steps.
+//! A handful of steps is searched whole. Of more, sets are tried from the least work upwards, a limited number of them:
+//! the first that keeps the tolerance is the best. If none did, steps are added one at a time to the few best sets, and
+//! then exchanged as long as that saves more. The number of trials grows with the square of the number of steps.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
@@ -24,7 +25,7 @@ pub(super) struct Free<'a> {
     pub ladder: &'a Ladder,
     /// Steps that may be taken: whole parts.
     pub steps: Set,
-    /// Those of pinned parts.
+    /// Steps of pinned parts.
     pub pinned: Set,
 }
 
@@ -62,8 +63,8 @@ impl Free<'_> {
     }
 }
 
-/// A picture that might be drawn: its work as bits, which numbers above 0 are ordered by, the steps taken, and the part from which
-/// on it may still be raised.
+/// A picture that might be drawn: its work as bits, which numbers above 0 are ordered by, the steps taken, and the part
+/// from which on it may still be raised.
 type Next = Reverse<(u64, Set, usize)>;
 
 /// A set, the work that it saves, and how much it strains the tolerance.
@@ -78,7 +79,8 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// The set of least work that keeps a tolerance: that strains it by at most 1. `None` if no set was found that does.
+    /// The set of least work that keeps a tolerance: that strains it by at most 1. `None` if no set was found that
+    /// does.
     pub fn cheapest(
         &mut self,
         free: Free<'_>,
@@ -130,8 +132,8 @@ impl Search {
         None
     }
 
-    /// Takes one step more at a time from some sets at once: those that save most, and those that save most for their strain, which
-    /// may be too much, since what another part changes may take it back.
+    /// Takes one step more at a time from some sets at once: those that save most, and those that save most for their
+    /// strain, which may be too much, since what another part changes may take it back.
     fn downwards(
         &mut self,
         free: Free<'_>,
@@ -242,7 +244,7 @@ pub(super) fn least_missed(
     }
 }
 
-/// Of equal work that with more in it.
+/// Finds the set with the least work; of equal work that with more in it.
 fn cheapest_of_all(free: Free<'_>, work: &impl Fn(Set) -> f64) -> Set {
     let mut best = (work(free.pinned), free.pinned);
     free.each(|set| {

@@ -1,4 +1,4 @@
-//! What a way to draw an effect costs, in units of work that do not hang on a machine.
+//! Cost of a way to draw an effect, in units of work that do not depend on a machine.
 
 /// A way to draw an effect, as its room lists it.
 #[derive(Clone, Debug, PartialEq)]
@@ -7,7 +7,7 @@ pub struct Listed<M> {
     pub name: &'static str,
     /// With what it is built.
     pub method: M,
-    /// What it costs.
+    /// Cost of the method.
     pub work: Work,
 }
 
@@ -38,7 +38,7 @@ impl Units {
     }
 }
 
-/// What a look-up and a byte cost, in samples.
+/// Costs of a look-up and of a byte, in samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Price {
     /// Samples that take as long as a filtered look-up.

@@ -1,4 +1,4 @@
-//! What the sky needs to know of a planet: its air, its ground and its sun, with units and accepted ranges.
+//! Properties of a planet that the sky needs: its air, its ground and its sun, with units and accepted ranges.
 //!
 //! A [`Planet`] is plain data. Everything that walks over its fields (range checks, the planet file, the hash that
 //! names cached tables) reads one list, `FIELDS`, so that a new field cannot be forgotten in one of them.
@@ -138,7 +138,7 @@ impl Field {
         if self.section.is_empty() { self.key.to_owned() } else { format!("{}.{}", self.section, self.key) }
     }
 
-    /// What the field accepts, with its unit.
+    /// Returns the range that the field accepts, with its unit.
     pub fn accepted(&self) -> String {
         let (lo, hi) = self.range;
         let unit = if self.unit == "1" { String::new() } else { format!(" {}", self.unit) };
@@ -192,8 +192,8 @@ impl Planet {
         }
     }
 
-    /// The planet's own haze, which lies in its air beside what the weather says; `None` where the weather alone says it: where it is
-    /// the Earth's ([`Mie::earth_at`], to 1e-9 of each number), or there is none.
+    /// The planet's own haze, which lies in its air beside what the weather says; `None` where the weather alone says
+    /// it: where it is the Earth's ([`Mie::earth_at`], to 1e-9 of each number), or there is none.
     pub fn own_haze(&self) -> Option<Mie> {
         let numbers = |m: &Mie| {
             let [s, e] = [m.scattering_per_m, m.extinction_per_m];
@@ -205,7 +205,7 @@ impl Planet {
         (differs && is_there).then_some(self.mie)
     }
 
-    /// The same planet at three other wavelengths, nm, each in `[365, 835]`: every spectrum is taken as the Earth's
+    /// Returns the planet at three other wavelengths, nm, each in `[365, 835]`: every spectrum is taken as the Earth's
     /// (Bodhaine's gas, ozone's cross-section, the sun's spectrum; a flat one for the ground) times a factor that runs
     /// linearly between this planet's three wavelengths and is constant outside; haze follows a power of the wavelength
     /// between two of them (Angstrom 1929) and goes on beyond. At its own wavelengths it is itself.
@@ -248,13 +248,13 @@ impl Planet {
         self.top_radius_m - self.bottom_radius_m
     }
 
-    /// Reads a planet file (TOML; every key of [`Planet`] by its name, sections `rayleigh`, `mie`, `absorption`). Without `mie` the haze
-    /// is the Earth's at the file's wavelengths.
+    /// Reads a planet file (TOML; every key of [`Planet`] by its name, sections `rayleigh`, `mie`, `absorption`).
+    /// Without `mie` the haze is the Earth's at the file's wavelengths.
     ///
     /// # Errors
-    /// [`crate::Status::Parse`] with line and column for what is not TOML, for a key that is missing, unknown or of the wrong
-    /// kind; [`crate::Status::InvalidArgument`] for a value that is not finite or out of range. The message names the key, its
-    /// unit and the accepted range.
+    /// [`crate::Status::Parse`] with line and column for what is not TOML, for a key that is missing, unknown or of the
+    /// wrong kind; [`crate::Status::InvalidArgument`] for a value that is not finite or out of range. The message names
+    /// the key, its unit and the accepted range.
     pub fn from_toml(text: &str) -> Result<Self> {
         file::parse(text)
     }

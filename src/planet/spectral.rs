@@ -80,8 +80,8 @@ pub(crate) fn between(at: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     if x < at[b] { line(a, b) } else { line(b, c) }
 }
 
-/// Value at `x` of the powers of x through neighbours of three points in any order, going on beyond the outer two; of the
-/// broken line where a value is 0 or two points coincide.
+/// Value at `x` of the powers of x through neighbours of three points in any order, going on beyond the outer two; of
+/// the broken line where a value is 0 or two points coincide.
 pub(crate) fn power_between(at: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| at[*a].total_cmp(&at[*b]));
@@ -106,8 +106,8 @@ pub fn rec709_of_transfer(transfer: impl Fn(f64) -> f64) -> [f64; 3] {
     out
 }
 
-/// Colour of sunlight above the air at 1 au as illuminance on a surface facing it: about 133 klx, a little bluer than D65's
-/// white is warm.
+/// Colour of sunlight above the air at 1 au as illuminance on a surface facing it: about 133 klx, a little bluer than
+/// D65's white is warm.
 pub fn sun_rec709() -> [f64; 3] {
     static SUN: LazyLock<[f64; 3]> = LazyLock::new(|| rec709_of_transfer(|_| 1.0));
     *SUN
@@ -118,14 +118,14 @@ pub fn sun_rec709() -> [f64; 3] {
 pub struct SpectralSet {
     /// Wavelengths, nm, ascending.
     pub wavelengths_nm: Vec<f64>,
-    /// Colour per transfer at that wavelength, cd/m^2: the sun and the eye, integrated in steps of 1 nm over the hat that
-    /// linear interpolation between the wavelengths puts there.
+    /// Colour per transfer at that wavelength, cd/m^2: the sun and the eye, integrated in steps of 1 nm over the hat
+    /// that linear interpolation between the wavelengths puts there.
     pub weights: Vec<[f64; 3]>,
 }
 
 impl SpectralSet {
-    /// `count` wavelengths from 390 to 710 nm, `[2, 200]`; beyond them the end values go on, where the eye sees less than
-    /// 0.1 % of white.
+    /// `count` wavelengths from 390 to 710 nm, `[2, 200]`; beyond them the end values go on, where the eye sees less
+    /// than 0.1 % of white.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for another count.
@@ -160,8 +160,8 @@ impl SpectralSet {
 }
 
 impl SpectralSet {
-    /// The planet at the set's wavelengths, three by three (the last ones repeated to fill the last planet), under a sun of
-    /// irradiance 1, so that what is computed for them are transfers.
+    /// The planet at the set's wavelengths, three by three (the last ones repeated to fill the last planet), under a
+    /// sun of irradiance 1, so that what is computed for them are transfers.
     pub fn planets(&self, planet: &Planet) -> Vec<Planet> {
         let three = |chunk: &[f64]| {
             let last = chunk[chunk.len() - 1];
@@ -190,13 +190,14 @@ impl SpectralSet {
 pub(crate) struct Part {
     /// The planet there; lights do not matter.
     pub planet: Planet,
-    /// Columns: what a transfer at each wavelength adds to the three transfers at the whole planet's wavelengths that look
-    /// the same.
+    /// Columns: what a transfer at each wavelength adds to the three transfers at the whole planet's wavelengths that
+    /// look the same.
     pub columns: [[f64; 3]; 3],
 }
 
-/// `planet` as a set of `count` wavelengths, a multiple of 3. The set's colour, taken back by the conversion of the planet's
-/// own wavelengths, is a triple of transfers: whoever converts these sees the set's colour. With 3 it is the planet itself.
+/// `planet` as a set of `count` wavelengths, a multiple of 3. The set's colour, taken back by the conversion of the
+/// planet's own wavelengths, is a triple of transfers: whoever converts these sees the set's colour. With 3 it is the
+/// planet itself.
 ///
 /// # Errors
 /// As [`SpectralSet::new`].
@@ -233,9 +234,9 @@ pub struct Conversion {
 }
 
 impl Conversion {
-    /// Each wavelength stands for one channel: its transfer times the sun's component. The wavelengths must stand for red,
-    /// green and blue in this order (`EARTH_WAVELENGTHS_NM` do, as well as three can). Always positive, and what lamps,
-    /// fog and clouds given in Rec. 709 can share.
+    /// Each wavelength stands for one channel: its transfer times the sun's component. The wavelengths must stand for
+    /// red, green and blue in this order (`EARTH_WAVELENGTHS_NM` do, as well as three can). Always positive, and what
+    /// lamps, fog and clouds given in Rec. 709 can share.
     pub fn per_channel() -> Self {
         let sun = sun_rec709();
         let mut matrix = [[0.0; 3]; 3];
@@ -251,8 +252,9 @@ impl Conversion {
     /// The matrix that fits best in relative least squares for a family of transfers of air: direct sunlight, thin and
     /// thick skies under suns of 1 to 20 air masses, three amounts of haze, ozone crossed once or twice as often as
     /// gas. Sunlight that is only dimmed keeps its colour exactly. For wavelengths in any order. At
-    /// `EARTH_WAVELENGTHS_NM` it is a little better than [`Conversion::per_channel`] in clear air (9 against 13 % of the
-    /// luminance in the worst channel, rms over skies and suns) and worse in haze (20 against 12 %): use that one there.
+    /// `EARTH_WAVELENGTHS_NM` it is a little better than [`Conversion::per_channel`] in clear air (9 against 13 % of
+    /// the luminance in the worst channel, rms over skies and suns) and worse in haze (20 against 12 %): use that one
+    /// there.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] unless the three wavelengths differ by 5 nm at least and lie in `[365, 835]`.
@@ -307,8 +309,8 @@ struct AirSample {
     kind: u8,
 }
 
-/// The family of the fit. A list made by plain loops: chained flattening iterators compile to a read of an inner iterator
-/// that is not there yet, harmless but reported by valgrind in a host's program.
+/// The family of the fit. A list made by plain loops: chained flattening iterators compile to a read of an inner
+/// iterator that is not there yet, harmless but reported by valgrind in a host's program.
 fn airs() -> [AirSample; 144] {
     const HAZES: [f64; 3] = [0.03, 0.2, 0.6];
     const SUN_MASSES: [f64; 6] = [1.0, 1.5, 2.5, 5.0, 10.0, 20.0];

@@ -59,7 +59,7 @@ struct Blocks {
 
 const SHAFT_AT: usize = size_of::<ColumnsUniform>().next_multiple_of(256);
 
-/// What decides which pipeline draws, beside the constants of the veil.
+/// Properties that decide which pipeline draws, beside the constants of the veil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ShaftKind {
     pub multi: bool,
@@ -95,8 +95,8 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
     bind::layout(device, "rain areas", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
 
-/// The part of the picture that a column may be in, ndc; `None` if it is in none. `clip` takes camera-relative east, north,
-/// up.
+/// The part of the picture that a column may be in, ndc; `None` if it is in none. `clip` takes camera-relative east,
+/// north, up.
 fn part_of_picture(column: &Column, own_top: f64, clip: &DMat4) -> Option<[f32; 4]> {
     let r = column.shaft().radius_m;
     let [mut low, mut high] = [DVec3::INFINITY, DVec3::NEG_INFINITY];

@@ -5,13 +5,13 @@ use crate::particles::stepping::STATE_BYTES;
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Streaks and splashes of rain, at three rungs: single drops near the camera, cones in their place, or neither, so that all rain is
-/// extinction in the fog's layer. Importance: that of particles in the machinery trainer's thesis.
+/// Streaks and splashes of rain, at three rungs: single drops near the camera, cones in their place, or neither, so
+/// that all rain is extinction in the fog's layer. Importance: that of particles in the machinery trainer's thesis.
 pub const RAIN: Part =
     Part { name: "rain", rungs: &["drops", "cones", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work of the layer of rain, its cones and splashes a pixel, and of a drop of the lattice that is drawn one by one, measured on a
-/// software driver (`cargo bench -- parts`) in units of a pixel with none of the parts.
+/// Work of the layer of rain, its cones and splashes a pixel, and of a drop of the lattice that is drawn one by one,
+/// measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts.
 const LAYER_OF_PIXEL: f64 = 0.3;
 const ONE_DROP: f64 = 1.4;
 
@@ -20,8 +20,8 @@ pub(crate) fn rain_work(pixels: u64, drops: u32) -> [StepWork; 2] {
     [ONE_DROP * f64::from(drops), LAYER_OF_PIXEL * pixels as f64].map(|fixed| StepWork { fixed, ..StepWork::default() })
 }
 
-/// Work of a drop of the lattice: to ask whether the picture shows it, and the streaks of the few that it shows; as measured
-/// against cones over 640 x 360.
+/// Work of a drop of the lattice: to ask whether the picture shows it, and the streaks of the few that it shows; as
+/// measured against cones over 640 x 360.
 const DROP: Units = Units { samples: 20.0, texels: 1.0, bytes: 13.0 };
 /// Work of stepping one: an exponential, a look at the wind, its state read and written.
 const STEP: Units = Units { samples: 2.0, texels: 1.0, bytes: 32.0 };

@@ -1,4 +1,5 @@
-//! The cones on the GPU: their texture, their block, one full-screen draw, and before it what keeps rain off them, if anything does.
+//! The cones on the GPU: their texture, their block, one full-screen draw, and before it what keeps rain off them, if
+//! anything does.
 
 use super::{
     cones::{ConeUniform, SIDE, STRETCHES, texture},
@@ -17,7 +18,7 @@ use crate::{
     surroundings::SurroundingsBlock,
 };
 
-/// What a view holds for rain on cones, made when it first draws them.
+/// State for rain on cones that a view holds, made when it first draws them.
 pub(super) struct ConePass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,
@@ -59,8 +60,8 @@ impl ConePass {
         self.bytes + self.open.as_ref().map_or(0, OpenPass::bytes)
     }
 
-    /// Brings the block up and makes the pipeline for a kind of depth, with or without anything that keeps rain off, if it is
-    /// not there.
+    /// Brings the block up and makes the pipeline for a kind of depth, with or without anything that keeps rain off, if
+    /// it is not there.
     ///
     /// # Errors
     /// A missing shader file.
@@ -106,7 +107,7 @@ impl ConePass {
     }
 }
 
-/// Which pipeline draws.
+/// Properties that decide which pipeline draws.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct ConeKind {
     pub depth: DepthRead,

@@ -1,21 +1,22 @@
-//! Rain on three nested cones about the camera (after Wang and Wade 2004): a texture of streaks, made once, moved as drops
-//! move.
+//! Rain on three nested cones about the camera (after Wang and Wade 2004): a texture of streaks, made once, moved as
+//! drops move.
 //!
 //! Each cone stands for the drops of a band of distances, the outer ones 2.8 times as far as the last. Seen from the
-//! camera, a drop at distance r that moves with velocity V relative to it keeps its azimuth about V and goes along Mercator's latitude
-//! s = ln tan(theta / 2), theta counted from V, at the even speed |V| / r; its streak is |V| x exposure / r long there, at any
-//! theta. So the texture is laid over (azimuth, s) and goes along s: streaks converge on both ends of V as they should.
-//! Towards these ends the azimuth is divided into half as many tiles for each halving of sin theta, so streaks keep their width.
-//! The cone of the sources was narrowed to a tip, where every streak met in a point.
+//! camera, a drop at distance r that moves with velocity V relative to it keeps its azimuth about V and goes along
+//! Mercator's latitude s = ln tan(theta / 2), theta counted from V, at the even speed |V| / r; its streak is |V| x
+//! exposure / r long there, at any theta. So the texture is laid over (azimuth, s) and goes along s: streaks converge
+//! on both ends of V as they should. Towards these ends the azimuth is divided into half as many tiles for each halving
+//! of sin theta, so streaks keep their width. The cone of the sources was narrowed to a tip, where every streak met in
+//! a point.
 //!
-//! A cone shows as many streaks as there are drops in its band: the texture's four channels hold 1, 4, 16 and 64 parts of the
-//! streaks, of which as many are taken as are wanted; where more are wanted than there are, contrast goes down as that of
-//! drops would.
-//! What they hide on the mean is the optical depth of the band's drops.
+//! A cone shows as many streaks as there are drops in its band: the texture's four channels hold 1, 4, 16 and 64 parts
+//! of the streaks, of which as many are taken as are wanted; where more are wanted than there are, contrast goes down
+//! as that of drops would. What they hide on the mean is the optical depth of the band's drops.
 //!
-//! Nothing is carried from frame to frame. A cone shows a set of streaks, with an offset by chance and moved by what the air, the
-//! fall and the camera have done since its birth, a second ago at most: exact at any time, and the same on every channel. Then
-//! another grows in its place, in no two cones at once, so that one more look a pixel does for all cones.
+//! Nothing is carried from frame to frame. A cone shows a set of streaks, with an offset by chance and moved by what
+//! the air, the fall and the camera have done since its birth, a second ago at most: exact at any time, and the same on
+//! every channel. Then another grows in its place, in no two cones at once, so that one more look a pixel does for all
+//! cones.
 
 use glam::{DVec2, DVec3};
 use half::f16;
@@ -73,7 +74,7 @@ pub(crate) struct ConeUniform {
     pub sets: [[f32; 4]; CONES + 1],
 }
 
-/// What all drops that are drawn have in common.
+/// Means over all drops that are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mean {
     /// By what they hide: diameter, m, and fall speed, m/s.
@@ -179,8 +180,8 @@ impl ConeUniform {
         c
     }
 
-    /// Where so large a share of the drops nearer than `distance_m` is drawn one by one, and all of what falls hides `share` times
-    /// what it does. Single drops may reach into a band: its cone begins where they end.
+    /// Where so large a share of the drops nearer than `distance_m` is drawn one by one, and all of what falls hides
+    /// `share` times what it does. Single drops may reach into a band: its cone begins where they end.
     pub fn behind(mut self, (distance_m, drops): (f64, f64), share: f64) -> Self {
         for (j, band) in self.bands.iter_mut().enumerate() {
             let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
@@ -234,8 +235,8 @@ fn streaks() -> Vec<Streak> {
     all
 }
 
-/// The texture with all its mip levels: optical depth over the mean of all channels together. The mean of each channel is
-/// exactly its share of the streaks.
+/// The texture with all its mip levels: optical depth over the mean of all channels together. The mean of each channel
+/// is exactly its share of the streaks.
 pub(crate) fn texture() -> Vec<Vec<[f16; 4]>> {
     let n = SIDE as i64;
     let mut level = vec![[0.0f64; 4]; (n * n) as usize];

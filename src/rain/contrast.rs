@@ -1,10 +1,12 @@
-//! How much the streaks of rain stand out of a picture, in closed form: for the planner, and for whoever asks what drops are worth.
+//! How much the streaks of rain stand out of a picture, in closed form: for the planner, and for whoever asks what
+//! drops are worth.
 //!
-//! Streaks are thrown at random, so the variance of what they hide from pixel to pixel is the sum of their squared covers
-//! (Campbell 1909). A drop of diameter D at distance r, drawn L long and w wide (its own width, or what is left of a pixel), hides
-//! on the mean its disc over L w of it, across as the chords of a disc, whose mean square is 32 / (3 pi^2) = 1.08 times the square of
-//! their mean; as many as n a volume r^2 dr make 1.08 n disc^2 / ((L + w) w) dr. With w = D near the eye and w = a r beyond, its
-//! integral has a closed form: each doubling of the distance adds as much as the one before.
+//! Streaks are thrown at random, so the variance of what they hide from pixel to pixel is the sum of their squared
+//! covers (Campbell 1909). A drop of diameter D at distance r, drawn L long and w wide (its own width, or what is left
+//! of a pixel), hides on the mean its disc over L w of it, across as the chords of a disc, whose mean square is 32 / (3
+//! pi^2) = 1.08 times the square of their mean; as many as n a volume r^2 dr make 1.08 n disc^2 / ((L + w) w) dr. With
+//! w = D near the eye and w = a r beyond, its integral has a closed form: each doubling of the distance adds as much as
+//! the one before.
 //!
 //! A contrast gain g makes of a streak that hides c one that hides 1 - (1 - c)^g.
 
@@ -15,12 +17,13 @@ use crate::{particles::StreakContrast, plan::parts::MOST_RUNGS, stage::Tone};
 
 /// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
 const LEAST_PIXELS: f64 = 1.2;
-/// What cones miss of the contrast of streaks, at most. Their error over that of a veil without any is a tenth of it in the lab's
-/// chart (docs/lab/rain.csv: 0.20 % of 2.65 %), where single streaks near the eye hardly count.
+/// Largest share of the contrast of streaks that cones miss. Their error over that of a veil without any is a tenth of
+/// it in the lab's chart (docs/lab/rain.csv: 0.20 % of 2.65 %), where single streaks near the eye hardly count.
 const CONES_MISS: f64 = 0.3;
 
-/// Variance from pixel to pixel of the share that drops between two distances (m) hide, for a camera whose pixels span an angle
-/// (rad) and before which drops move `along_m` across the line of sight during the exposure, with a contrast gain.
+/// Variance from pixel to pixel of the share that drops between two distances (m) hide, for a camera whose pixels span
+/// an angle (rad) and before which drops move `along_m` across the line of sight during the exposure, with a contrast
+/// gain.
 pub fn cover_variance(
     classes: &Classes,
     pixel_angle: f64,
@@ -53,7 +56,7 @@ fn gained(cover: f64, gain: f64) -> f64 {
 /// Between which drops are counted, m: where near ones have faded, and up to where they are drawn.
 const COUNTED_M: (f64, f64) = (0.2, super::cones::BANDS_M[super::cones::CONES]);
 
-/// What the streaks of a picture change in it.
+/// Change of a picture by its streaks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Streaks {
     seen: StreakContrast,
@@ -74,9 +77,9 @@ impl Streaks {
         Self { seen: StreakContrast::new(shot, wind_m_s - fall, variance, (tone, lamps)), light }
     }
 
-    /// What pixel number `i` of a picture changes with cones in place of drops, and without streaks, over its luminance and a hundredth
-    /// of white, beside what the veil in their place adds. `picture` and `hidden` are its luminance without streaks and the optical depth
-    /// of what they hide.
+    /// Returns the change of pixel number `i` of a picture with cones in place of drops, and without streaks, over its
+    /// luminance and a hundredth of white, beside what the veil in their place adds. `picture` and `hidden` are its
+    /// luminance without streaks and the optical depth of what they hide.
     pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let [streaks, contrast] = self.seen.at(i, ndc, picture, |d| self.light.radiance(d));
         // On the mean they bring their own light.

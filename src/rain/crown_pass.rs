@@ -1,5 +1,6 @@
-//! Splashes where there are compute shaders: a list of the slots whose splash the picture may show ([`crate::particles::listing`]), for
-//! each of which the place of its crown is sought in the picture's depth once. Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
+//! Splashes where there are compute shaders: a list of the slots whose splash the picture may show
+//! ([`crate::particles::listing`]), for each of which the place of its crown is sought in the picture's depth once.
+//! Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
 
 use super::cull_pass::listed_pipeline;
 use crate::{
@@ -14,17 +15,17 @@ use crate::{
 /// Bytes of a `Crown` of `shaders/rain/splash.wgsl`.
 const CROWN_BYTES: u64 = 64;
 
-/// What a view holds to make crowns.
+/// State that a view holds to make crowns.
 pub(super) struct CrownPass {
     listing: Listing,
-    /// What marks and orders, by whether rims of areas are near and depth has several samples.
+    /// Pipelines that mark and order, by whether rims of areas are near and depth has several samples.
     marks: Made<[bool; 2], [wgpu::ComputePipeline; 2]>,
     makes: Made<CrownKind, wgpu::ComputePipeline>,
     draws: Made<DepthRead, wgpu::RenderPipeline>,
     counts: bool,
 }
 
-/// Which shaders a frame needs: for what depth, with rims of areas near, with occluder maps.
+/// Kind of the shaders that a frame needs: for what depth, with rims of areas near, with occluder maps.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct CrownKind {
     pub depth: DepthRead,
@@ -43,8 +44,8 @@ impl CrownPass {
         self.listing.bytes()
     }
 
-    /// Makes the pipelines that a frame needs, if they are not there. `frame` and `around` are the layouts of the drops' own
-    /// groups.
+    /// Makes the pipelines that a frame needs, if they are not there. `frame` and `around` are the layouts of the
+    /// drops' own groups.
     ///
     /// # Errors
     /// A missing shader file.

@@ -1,5 +1,5 @@
-//! Drops by a list of those that the picture shows ([`crate::particles::listing`]): its shaders are `shaders/rain/cull.wgsl` and
-//! `cull_streaks.wgsl`.
+//! Drops by a list of those that the picture shows ([`crate::particles::listing`]): its shaders are
+//! `shaders/rain/cull.wgsl` and `cull_streaks.wgsl`.
 
 use super::{
     LocalUniform,
@@ -25,9 +25,9 @@ use crate::{
 /// Bytes of a `Streak` of `shaders/rain/drops.wgsl`.
 const STREAK_BYTES: u64 = 48;
 
-/// What a view holds to draw drops by lists.
+/// State that a view holds to draw drops by lists.
 pub(super) struct CullPass {
-    /// Of the frame's blocks, and of stepped drops.
+    /// Layouts of the frame's blocks, and of stepped drops.
     layouts: [wgpu::BindGroupLayout; 2],
     frame: wgpu::BindGroup,
     /// In place of stepped drops.

@@ -6,11 +6,11 @@ use crate::{
     weather::Falling,
 };
 
-/// What falls as stones round a camera.
+/// Precipitation that falls as stones around a camera.
 #[derive(Default)]
 pub(super) struct Ice {
     here: Option<Falling>,
-    /// What they were counted for: what falls, how fast, the most of them.
+    /// Stones as last counted, after what they were counted for: what falls, how fast, the most of them.
     counted: Option<(Falling, f64, u32, Stones)>,
 }
 
@@ -26,7 +26,7 @@ impl Ice {
         self.here.is_some() && settings.model != RainModel::Veil
     }
 
-    /// Those that a view of these settings draws, if any; as many as it may draw drops.
+    /// Returns the stones that a view of these settings draws, if any; at most as many as it may draw drops.
     pub fn stones(&mut self, scene: &Scene, settings: &RainSettings, most: u32) -> Option<Stones> {
         let falling = self.here.filter(|_| self.is_drawn(settings))?;
         let air = &scene.conditions.air;

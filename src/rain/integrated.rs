@@ -1,5 +1,5 @@
-//! Drops that are stepped through a wind that varies in space: their lattice as `particles::stepping` wants it, which has the model.
-//! `cull_pass` draws them.
+//! Drops that are stepped through a wind that varies in space: their lattice as `particles::stepping` wants it, which
+//! has the model. `cull_pass` draws them.
 
 use glam::DVec3;
 
@@ -18,7 +18,7 @@ use crate::{
 /// Sets the places of drops that come in apart from those of the lattice.
 const COMES_IN: u32 = 0x9e37_79b9;
 
-/// What steps drops.
+/// Creates the pass that steps drops.
 pub(super) fn pass(device: &Device, blocks: &Blocks) -> StepPass {
     StepPass::new(device, blocks, ("rain/step.wgsl", "step_drops"), 64, size_of::<RainUniform>())
 }
@@ -33,7 +33,7 @@ pub(super) struct SteppedDrops<'a> {
     pub most: u32,
 }
 
-/// What they are stepped by.
+/// Returns the inputs by which drops are stepped.
 pub(super) fn stepped<'a>(
     drops: &SteppedDrops<'_>,
     (camera, air): (&StreakCamera<'_>, &MovingAir),

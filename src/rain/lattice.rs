@@ -1,14 +1,15 @@
-//! Where drops are that have no state: a lattice of cells that the air carries along, each drop in one place of its cell,
-//! falling at its own speed.
+//! Where drops are that have no state: a lattice of cells that the air carries along, each drop in one place of its
+//! cell, falling at its own speed.
 //!
-//! A shell is a cube of side L filled with drops at random places, repeated through all space; what a camera sees of it is
-//! the copy nearest to it. Everything is a fraction of L in 32 bits, and adding wraps as the lattice does, so positions are
-//! exact at any time and place: place = random(seed, shell, class, index) + displacement of the air - speed x fall phase.
-//! Fall speeds are whole multiples of [`SPEED_UNIT`], the phase is the distance that one such unit has fallen.
+//! A shell is a cube of side L filled with drops at random places, repeated through all space; what a camera sees of it
+//! is the copy nearest to it. Everything is a fraction of L in 32 bits, and adding wraps as the lattice does, so
+//! positions are exact at any time and place: place = random(seed, shell, class, index) + displacement of the air -
+//! speed x fall phase. Fall speeds are whole multiples of [`SPEED_UNIT`], the phase is the distance that one such unit
+//! has fallen.
 //!
-//! The innermost shell holds every drop of its volume. Each further one is wider by the cube root of 2 and holds as many
-//! drops, each of which stands for twice as many as one of the last: so streaks make together the contrast that all drops
-//! would, those included that are too far to be drawn (`docs/lab/README.md`, the chart of rain).
+//! The innermost shell holds every drop of its volume. Each further one is wider by the cube root of 2 and holds as
+//! many drops, each of which stands for twice as many as one of the last: so streaks make together the contrast that
+//! all drops would, those included that are too far to be drawn (`docs/lab/README.md`, the chart of rain).
 
 use glam::DVec3;
 
@@ -25,7 +26,7 @@ pub const SHELLS: usize = 4;
 pub const CLASSES: usize = 32;
 /// Side of the innermost shell's cell, m.
 pub const SIDE_M: f64 = 4.0;
-/// What fall speeds are multiples of, m/s.
+/// Unit of which fall speeds are multiples, m/s.
 pub const SPEED_UNIT: f64 = 1.0 / 64.0;
 /// Sides over that of the innermost shell: 2^(1/3) from each to the next.
 const WIDER: [f64; SHELLS] = [1.0, 1.259_921_049_894_873_2, 1.587_401_051_968_199_4, 2.0];
@@ -54,12 +55,12 @@ pub fn side_m(shell: usize) -> f64 {
 pub struct Moment {
     /// Displacement of the air (east, north, up).
     pub air: [u32; 3],
-    /// What a drop of one speed unit has fallen.
+    /// Distance that a drop of one speed unit has fallen.
     pub fall: u32,
 }
 
 impl Moment {
-    /// Of `shell`, after the air has moved by `displacement_m` and drops have fallen for `time_s`.
+    /// Creates the moment of `shell`, after the air has moved by `displacement_m` and drops have fallen for `time_s`.
     pub fn new(shell: usize, displacement_m: DVec3, time_s: f64) -> Self {
         let side = side_m(shell);
         Self {
@@ -76,8 +77,8 @@ impl Moment {
         place
     }
 
-    /// Where a camera at `position_m` (east, north, up of a point fixed to the world) stands in the cell of the moving air:
-    /// a drop's start less this is what lies between them.
+    /// Where a camera at `position_m` (east, north, up of a point fixed to the world) stands in the cell of the moving
+    /// air: a drop's start less this is what lies between them.
     pub fn camera(&self, shell: usize, position_m: DVec3) -> [u32; 3] {
         let p = position_m.to_array().map(|x| fraction(x, side_m(shell)));
         [0, 1, 2].map(|i| p[i].wrapping_sub(self.air[i]))
@@ -99,7 +100,8 @@ pub struct Drop {
     pub share: f64,
 }
 
-/// Share of its drops that `shell` shows at `distance_m`: it takes over from the smaller shell and hands on to the larger.
+/// Share of its drops that `shell` shows at `distance_m`: it takes over from the smaller shell and hands on to the
+/// larger.
 pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     let reach = 0.5 * side_m(shell);
     let outer = 1.0 - smoothstep(FADE * reach, reach, distance_m);
@@ -112,8 +114,8 @@ pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     inner * outer
 }
 
-/// All drops of `classes` as a camera at `position_m` (east, north, up of a point fixed to the world) sees them, after the
-/// air has moved by `displacement_m` in `time_s`. Equal ids of two cameras are the same drop.
+/// All drops of `classes` as a camera at `position_m` (east, north, up of a point fixed to the world) sees them, after
+/// the air has moved by `displacement_m` in `time_s`. Equal ids of two cameras are the same drop.
 pub fn drops(
     classes: &Classes,
     seed: u64,

@@ -1,4 +1,4 @@
-//! What lights a drop: the sky and the ground that it shows, small and upside down, and the sun or moon through it.
+//! Light on a drop: the sky and the ground that it shows, small and upside down, and the sun or moon through it.
 
 use std::f64::consts::PI;
 
@@ -6,9 +6,9 @@ use glam::DVec3;
 
 pub use crate::moment::LightAround as DropLight;
 
-/// What a drop scatters of light that comes from where `c` = 1 is straight behind it, 4 pi on the whole: rays through the
-/// sphere and the backward share that makes rainbows (geometric optics of water: asymmetry .88 of what is not diffracted). As
-/// `drop_phase` of `shaders/rain/phase.wgsl`.
+/// Returns the phase function of a drop, 4 pi on the whole, for light from an angle of cosine `c`, 1 straight behind
+/// it: rays through the sphere and the backward share that makes rainbows, as two lobes of Henyey and Greenstein (1941)
+/// whose asymmetry is 0.81 together. As `drop_phase` of `shaders/rain/phase.wgsl`.
 pub fn phase(c: f64) -> f64 {
     let lobe = |g: f64| (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5);
     0.93 * lobe(0.9) + 0.07 * lobe(-0.35)
@@ -16,10 +16,10 @@ pub fn phase(c: f64) -> f64 {
 
 /// The share of what surrounds a drop above the horizon in what it shows along a ray that rises by a sine `z`.
 ///
-/// Most of a drop's disc shows what lies near the ray's own direction, upside down: half of the disc turns rays by less than 26
-/// degrees, its rim by 83. So a drop a little above the horizon shows more sky than ground already. Fitted to rays that are refracted and
-/// reflected by Snell's and Fresnel's laws, with which it agrees within 0.01 (`tests/rain/photometry.rs`). As `sky_share` of
-/// `shaders/rain/phase.wgsl`.
+/// Most of a drop's disc shows what lies near the ray's own direction, upside down: half of the disc turns rays by less
+/// than 26 degrees, its rim by 83. So a drop a little above the horizon shows more sky than ground already. Fitted to
+/// rays that are refracted and reflected by Snell's and Fresnel's laws, with which it agrees within 0.01
+/// (`tests/rain/photometry.rs`). As `sky_share` of `shaders/rain/phase.wgsl`.
 pub fn sky_share(z: f64) -> f64 {
     let level = 1.0 - z.abs().min(1.0);
     0.5 + z.signum() * 0.4415 * (1.0 - level * level * level.sqrt())

@@ -1,8 +1,8 @@
 //! Drops round a camera that stands in or near the rim of rain areas: how many of each class fall at each place.
 //!
-//! The weather and each area have their own count of every class. A place keeps the drops whose number lies below the mixture
-//! of the counts there. The number of a drop has nothing to do with its place, so that thins evenly, and the same drop stays or
-//! goes on every channel. A camera that no rim is near sees one pure rain and needs none of this.
+//! The weather and each area have their own count of every class. A place keeps the drops whose number lies below the
+//! mixture of the counts there. The number of a drop has nothing to do with its place, so that thins evenly, and the
+//! same drop stays or goes on every channel. A camera that no rim is near sees one pure rain and needs none of this.
 
 use glam::{DMat3, DVec3};
 
@@ -33,7 +33,7 @@ pub(crate) struct LocalUniform {
     pub cones: [[f32; 4]; ROWS],
 }
 
-/// Which rains fall within reach of a camera.
+/// Rains that fall within reach of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Local {
     /// One for all of it.

@@ -1,12 +1,13 @@
 //! Rain: sized by its rate, falling at the speeds that drops have, each drop where (seed, id, time) puts it.
 //!
-//! The model: [`drops`] has the physics of one drop in f64, [`sizes`] that of many, [`ice`] that of hail and pellets. [`lattice`]
-//! has the places: a repeated cell of air full of drops that a camera sees the nearest copy of, with no state and no update.
-//! One quad draws a drop's streak, as faint as the drop's disc is small against the way it falls during the exposure, by a
-//! list of those that the picture shows where there are compute shaders; [`cones`] show what falls farther off, [`contrast`]
-//! says what all of it is worth. Streaks make a layer of their own, which the composition puts before the picture. What is too
-//! small or too far is the fog's extinction; under a rain area of its own ([`RainArea`]) it is a column of rain, whose
-//! drops fall thinned by the area's rim near the camera and as a veil beyond.
+//! The model: [`drops`] has the physics of one drop in f64, [`sizes`] that of many, [`ice`] that of hail and pellets.
+//! [`lattice`] has the places: a repeated cell of air full of drops that a camera sees the nearest copy of, with no
+//! state and no update. One quad draws a drop's streak, as faint as the drop's disc is small against the way it falls
+//! during the exposure, by a list of those that the picture shows where there are compute shaders; [`cones`] show what
+//! falls farther off, [`contrast`] says what all of it is worth. Streaks make a layer of their own, which the
+//! composition puts before the picture. What is too small or too far is the fog's extinction; under a rain area of its
+//! own ([`RainArea`]) it is a column of rain, whose drops fall thinned by the area's rim near the camera and as a veil
+//! beyond.
 //!
 //! No `reference.rs`: each file has the f64 side of its own shader. No `held.rs`: drops follow from seed
 //! and time; those that are stepped ([`RainModel::Integrated`]) belong to a view and are not saved.

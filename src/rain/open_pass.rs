@@ -1,5 +1,5 @@
-//! What comes through to the cones, on a coarse grid over the picture: each stretch's open shares, asked once a cell and looked up by
-//! every pixel. Drawn only where something near keeps rain off.
+//! Shares of the rain that come through to the cones, on a coarse grid over the picture: each stretch's open shares,
+//! asked once a cell and looked up by every pixel. Drawn only where something near keeps rain off.
 
 use std::sync::Arc;
 

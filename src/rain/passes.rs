@@ -35,14 +35,14 @@ pub(super) use crate::particles::LAYER_FORMAT as FORMAT;
 
 /// Drops as one more veil before the picture: premultiplied, one sample a pixel.
 pub(crate) struct RainLayer {
-    /// Of drops, and behind it of splashes.
+    /// Block of drops, and behind it that of splashes.
     block: UniformBlock,
-    /// Of columns of areas, and behind it of their drops: read and written where a rim of an area is near.
+    /// Columns of areas, and behind them their drops: read and written where a rim of an area is near.
     local: wgpu::Buffer,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     surroundings: wgpu::BindGroupLayout,
-    /// Of drops and of splashes, for devices that cannot draw by lists.
+    /// Pipelines of drops and of splashes, for devices that cannot draw by lists.
     pipelines: Made<CrownKind, [wgpu::RenderPipeline; 2]>,
     listed: Option<Box<(CullPass, CrownPass)>>,
     cones: Option<ConePass>,
@@ -56,16 +56,16 @@ pub(crate) struct RainLayer {
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
-/// What a frame draws into the layer before the picture.
+/// Inputs of a frame's draw into the layer before the picture.
 pub(crate) struct LayerDraw<'a> {
     pub rain: &'a RainUniform,
     /// Cones in place of drops and splashes, or beyond the drops.
     pub cones: Option<&'a ConeUniform>,
     /// Drops that are stepped in place of those without a state.
     pub stepped: Option<&'a Stepped<'a>>,
-    /// Of the camera.
+    /// View rays of the camera.
     pub rays: &'a ViewRays,
-    /// What keeps rain off, and lamps.
+    /// Surroundings: what keeps rain off, and lamps.
     pub surroundings: &'a SurroundingsBlock,
     /// Whether maps are among it, and lamps.
     pub maps: bool,
@@ -222,8 +222,8 @@ impl RainLayer {
         self.draw_into(to.encoder, over, |pass, layer| {
             if drawn.cones.is_some() {
                 layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
-                // The drops' layout lacks a group before this one. wgpu 30 does not see that on OpenGL it then lies elsewhere,
-                // nor that a group is set, if it is the same one.
+                // The drops' layout lacks a group before this one. wgpu 30 does not see that on OpenGL it then lies
+                // elsewhere, nor that a group is set, if it is the same one.
                 pass.set_bind_group(2, None, &[]);
                 pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
             }

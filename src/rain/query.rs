@@ -1,4 +1,4 @@
-//! What falls at a place, and what lands on a surface there.
+//! Precipitation at a place, and on a surface there.
 
 use glam::DVec3;
 
@@ -13,7 +13,7 @@ use crate::{
     world::World,
 };
 
-/// What falls at a place: rain and drizzle, hail and ice pellets.
+/// Precipitation at a place: rain and drizzle, hail and ice pellets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainAt {
     /// On level ground, mm/h.
@@ -30,8 +30,8 @@ pub struct RainAt {
     pub median_volume_diameter_mm: f64,
     /// Drops that land on level ground, 1/(m^2 s).
     pub drops_per_m2_s: f64,
-    /// Velocity of the drop that divides the water that falls into halves, m/s (east, north, up): one half comes steeper, the other
-    /// flatter. Along it an occluder's picture is taken. 0 without rain.
+    /// Velocity of the drop that divides the water that falls into halves, m/s (east, north, up): one half comes
+    /// steeper, the other flatter. Along it an occluder's picture is taken. 0 without rain.
     pub fall_velocity_m_s: DVec3,
     /// Hail and ice pellets on level ground, mm/h of melted water.
     pub ice_mm_h: f64,
@@ -61,7 +61,7 @@ pub struct RainSurface {
     pub area_m2: f64,
 }
 
-/// What lands on a surface.
+/// Precipitation that lands on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainOn {
     /// Water, mm/h: litres a square metre and hour.
@@ -87,9 +87,9 @@ impl RainSurface {
     }
 }
 
-/// The drops and stones in the air of a place, and the wind that carries them: that at 10 m with its gusts, or what varies in space
-/// there. Above the
-/// cloud that they fall from there are none. In rain areas ([`Context::set_rain_areas`](crate::context::Context::set_rain_areas)) they are theirs, mixed by their rims.
+/// The drops and stones in the air of a place, and the wind that carries them: that at 10 m with its gusts, or what
+/// varies in space there. Above the cloud that they fall from there are none. In rain areas
+/// ([`Context::set_rain_areas`](crate::context::Context::set_rain_areas)) they are theirs, mixed by their rims.
 fn drops_at(world: &World, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
     let place = world.frame.place_at("position", position)?.place;
     let c = world.weather_at(time_s)?;

@@ -1,10 +1,10 @@
 //! Rain areas seen from a camera: the columns of their rain, and what one ray meets of them. The shaders' twin in f64.
 //!
 //! A column is the region's plan carried up to its cloud along the lean of the falling drops. A ray's way through it is
-//! found exactly (an ellipse or a convex polygon in the plan, two levels in height) and cut where the rim and the soft top end;
-//! on each of the four pieces what falls is integrated by Gauss's four points. The pattern of curtains, a sum of waves that fall
-//! as the drops do, multiplies it by its exact mean, of the first half kilometre and of the rest. Columns count by how much more they take than the weather's own
-//! rain, which is drawn with the fog.
+//! found exactly (an ellipse or a convex polygon in the plan, two levels in height) and cut where the rim and the soft
+//! top end; on each of the four pieces what falls is integrated by Gauss's four points. The pattern of curtains, a sum
+//! of waves that fall as the drops do, multiplies it by its exact mean, of the first half kilometre and of the rest.
+//! Columns count by how much more they take than the weather's own rain, which is drawn with the fog.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -58,7 +58,7 @@ pub(crate) struct ColumnUniform {
 }
 
 impl ColumnUniform {
-    /// What stands for none.
+    /// Placeholder for no column.
     pub const NONE: Self = Self {
         center: [0.0; 2],
         lean: [0.0; 2],
@@ -90,7 +90,7 @@ pub(crate) struct Column {
     pub top: f64,
     /// 1/m; fades with the distance of what is too far to be seen.
     extinction: f64,
-    /// What drops of it hide near the camera, 1/m.
+    /// Extinction by which drops of it hide near the camera, 1/m.
     pub near: f64,
     /// Distance that its drops have fallen, m, in the pattern's period.
     fallen: f64,
@@ -156,7 +156,7 @@ impl Column {
         })
     }
 
-    /// What falls in it.
+    /// Returns the shaft of what falls in it.
     pub fn shaft(&self) -> &Shaft {
         &self.shaft
     }
@@ -320,7 +320,8 @@ impl AreaField {
         self.columns[i].share(p) * left
     }
 
-    /// Optical depth that a ray from `origin` (relative to the camera) along `d` meets in column `i` before `range`, `None` if it misses it.
+    /// Optical depth that a ray from `origin` (relative to the camera) along `d` meets in column `i` before `range`,
+    /// `None` if it misses it.
     pub fn met(&self, i: usize, origin: DVec3, d: DVec3, range: f64, patterned: bool) -> Option<f64> {
         let c = &self.columns[i];
         let lean = c.shaft.lean;

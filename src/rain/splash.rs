@@ -52,9 +52,9 @@ pub struct Landing {
     pub xy_m: DVec2,
     /// 0 when it has landed, 1 when it is gone.
     pub age: f64,
-    /// Of its drop, mm.
+    /// Diameter of its drop, mm.
     pub diameter_mm: f64,
-    /// Of its drop, m/s.
+    /// Speed of its drop, m/s.
     pub speed_m_s: f64,
     /// Acceptance threshold: the share of what level ground gets from which on the drop lands; below 1 on level ground.
     pub chance: f64,
@@ -105,8 +105,9 @@ impl Splashes {
         CELLS * CELLS * self.slots()
     }
 
-    /// What may have landed and stand at `time_s`, on slopes that get more than level ground too, round a camera at `position_m` (east, north, up of a point fixed to the world),
-    /// ten metres to either side: the twin of `arrival_of` in `shaders/rain/splash.wgsl`, whatever lies below.
+    /// Returns the drops that may have landed and stand at `time_s`, on slopes that get more than level ground too,
+    /// around a camera at `position_m` (east, north, up of a point fixed to the world), ten metres to either side: the
+    /// twin of `arrival_of` in `shaders/rain/splash.wgsl`, whatever lies below.
     pub fn landings(&self, seed: u64, position_m: DVec3, time_s: f64) -> impl Iterator<Item = Landing> {
         let (u, seed) = (self.uniform((position_m, 0.0), time_s, 1.0, [0.0; 2]), short_seed(seed));
         let sizes = self.sizes;
@@ -132,9 +133,8 @@ impl Splashes {
         ((MARGIN * self.standing()).ceil() as u32).min(MOST_SLOTS)
     }
 
-    /// For a camera at a place (east, north, up of a point fixed to the world, m) so high above the ground, m; so large a
-    /// share of them is shown.
-    /// The host's depth may be off by `depth_grain`, a step and a part of it.
+    /// For a camera at a place (east, north, up of a point fixed to the world, m) so high above the ground, m; so large
+    /// a share of them is shown. The host's depth may be off by `depth_grain`, a step and a part of it.
     pub(crate) fn uniform(
         &self,
         (position_m, height_m): (DVec3, f64),

@@ -12,7 +12,7 @@ use crate::{
     particles::DepthRead,
 };
 
-/// What a frame draws of stones.
+/// Stones that a frame draws.
 #[derive(Clone, Copy)]
 pub(crate) struct StoneDraw {
     pub block: StoneUniform,
@@ -27,7 +27,7 @@ impl StoneDraw {
     }
 }
 
-/// What a view holds for stones, made when the first ones fall.
+/// State for stones that a view holds, made when the first ones fall.
 pub(super) struct StonePass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,
@@ -37,7 +37,7 @@ pub(super) struct StonePass {
     counts: bool,
 }
 
-/// Which pipelines draw: with what depth, and whether there are occluder maps.
+/// Kind of the pipelines that draw: with what depth, and whether there are occluder maps.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct StoneKind {
     pub depth: DepthRead,
@@ -58,8 +58,8 @@ impl StonePass {
         Self { block, layout, group, pipelines: Made::NONE, counts }
     }
 
-    /// Brings the block up, and makes the pipelines for a kind of depth if they are not there. `rain` and `around` are the
-    /// layouts of the drops' own groups, `format` that of their layer.
+    /// Brings the block up, and makes the pipelines for a kind of depth if they are not there. `rain` and `around` are
+    /// the layouts of the drops' own groups, `format` that of their layer.
     ///
     /// # Errors
     /// A missing shader file.

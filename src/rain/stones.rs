@@ -1,8 +1,9 @@
-//! Stones of ice among the drops: how many of which size each shell of the lattice holds, and where they hop after landing.
+//! Stones of ice among the drops: how many of which size each shell of the lattice holds, and where they hop after
+//! landing.
 //!
-//! They have a lattice of their own, of the same kind as the drops' ([`super::lattice`]): each shell twice as wide as the one
-//! before, and all stones of its volume in it, since hail is rare and seen from afar. Of pellets, for which there is no room, each
-//! stands for some, and the shells where it would stand for many are left to the veil.
+//! They have a lattice of their own, of the same kind as the drops' ([`super::lattice`]): each shell twice as wide as
+//! the one before, and all stones of its volume in it, since hail is rare and seen from afar. Of pellets, for which
+//! there is no room, each stands for some, and the shells where it would stand for many are left to the veil.
 
 use glam::DVec3;
 
@@ -20,7 +21,7 @@ const SIDE_M: f64 = 4.0;
 const MOST_WEIGHT: f64 = 16.0;
 /// Classes of diameter, of pellets and hail each.
 const CLASSES: usize = 8;
-/// Of both.
+/// Classes of pellets and hail together.
 pub(crate) const STONE_CLASSES: usize = 2 * CLASSES;
 
 /// Side of a cell of the grid of landings, m.
@@ -61,7 +62,7 @@ fn side_m(shell: usize) -> f64 {
     SIDE_M * f64::from(1u32 << shell)
 }
 
-/// What the stones of one class have in common.
+/// Properties that the stones of one class have in common.
 struct StoneClass {
     stone: Stone,
     diameter_mm: f64,
@@ -86,7 +87,7 @@ impl StoneClass {
     }
 }
 
-/// What the air and the ground round a camera hold.
+/// Stones in the air and on the ground around a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stones {
     /// Diameter (m), fall speed (speed units), share of landings of the classes up to this one, 1 for clear ice.
@@ -105,7 +106,8 @@ pub struct Stones {
 }
 
 impl Stones {
-    /// Of what falls where drops are `speed_factor` times as fast as at sea level; at most `most` are drawn.
+    /// Creates the stones of what falls where drops are `speed_factor` times as fast as at sea level; at most `most`
+    /// are drawn.
     pub fn new(falling: &Falling, speed_factor: f64, most: u32) -> Self {
         let sizes = StoneSizes::new(falling, speed_factor);
         let volume = SIDE_M.powi(3);
@@ -173,8 +175,8 @@ impl Stones {
         }
     }
 
-    /// What the drawn ones hide of what lies beyond all of them, as an optical depth: their discs, half of their extinction; the
-    /// rest is diffraction.
+    /// Returns the optical depth by which the drawn ones hide what lies beyond all of them: their discs, half of their
+    /// extinction; the rest is diffraction.
     pub fn hidden_depth(&self) -> f64 {
         let edge = 0.5 * (1.0 + FADE);
         self.reach.iter().map(|(reach, extinction)| 0.5 * extinction * edge * reach).sum()
@@ -198,8 +200,8 @@ impl Stones {
         self.standing().ceil() as u32
     }
 
-    /// For a camera at `position_m` (east, north, up of a point fixed to the world) `height_m` above the ground, after the air
-    /// has moved by `displacement_m`.
+    /// For a camera at `position_m` (east, north, up of a point fixed to the world) `height_m` above the ground, after
+    /// the air has moved by `displacement_m`.
     pub(crate) fn uniform(&self, position_m: DVec3, height_m: f64, displacement_m: DVec3, time_s: f64) -> StoneUniform {
         let cell = |x: f64| (x / SIDE).floor();
         let turns = time_s / LIFE_S;

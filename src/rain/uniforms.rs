@@ -57,8 +57,8 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// Of what falls at an altitude that makes drops faster by `density_factor` ([`super::drops::factor_in`]), at most `most`
-    /// drops in all shells together.
+    /// Creates the classes of what falls at an altitude that makes drops faster by `density_factor`
+    /// ([`super::drops::factor_in`]), at most `most` drops in all shells together.
     pub fn new(falling: &Falling, density_factor: f64, most: u32) -> Self {
         let (low, high) = DRAWN_MM;
         let step = (high / low).powf(1.0 / CLASSES as f64);

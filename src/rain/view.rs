@@ -32,7 +32,7 @@ use crate::{
     wind::Remembered,
 };
 
-/// What a view holds for its drops.
+/// State that a view holds for its drops.
 pub(crate) struct RainView {
     blocks: Blocks,
     layer: RainLayer,
@@ -52,7 +52,7 @@ pub(crate) struct RainView {
     births: Remembered,
     /// Whether drops were stepped in the last frame.
     is_stepped: bool,
-    /// What was drawn last, and in which frame.
+    /// Frame that was drawn last, and what was drawn in it.
     drawn: (u64, RainReport),
 }
 
@@ -65,7 +65,7 @@ const LEAST_OF_CONES: f64 = 1e-2;
 /// Steps in which rain sets in below its cloud, so that a climbing camera does not count drops anew in each frame.
 const ONSET_STEPS: f64 = 32.0;
 
-/// What falls in a weather without rain areas, as much of it as has left its cloud at an altitude.
+/// Returns what falls in a weather without rain areas, as much of it as has left its cloud at an altitude.
 fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
     let share = (begun(c, altitude_m) * ONSET_STEPS).ceil() / ONSET_STEPS;
     let f = c.precipitation;
@@ -78,7 +78,7 @@ fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
     }
 }
 
-/// What there is of rain and ice before a picture.
+/// Presence of rain and ice before a picture.
 #[derive(Clone, Copy)]
 struct RainPresence {
     /// Drops near the camera, as streaks or cones.
@@ -118,7 +118,8 @@ impl RainView {
         }
     }
 
-    /// Says whether the layer counts how often its pixels are drawn, in place of their light; its passes are made anew where that changes.
+    /// Says whether the layer counts how often its pixels are drawn, in place of their light; its passes are made anew
+    /// where that changes.
     pub fn set_counting(&mut self, device: &Device, counts: bool) {
         if self.layer.counts() != counts {
             let layer = self.layer.texture().clone();
@@ -126,7 +127,7 @@ impl RainView {
         }
     }
 
-    /// What falls that the settings draw before the picture.
+    /// Returns the presence of what falls that the settings draw before the picture.
     fn presence(&self) -> RainPresence {
         RainPresence {
             drops: self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.has_drops(&self.field)),
@@ -135,7 +136,7 @@ impl RainView {
         }
     }
 
-    /// What of it the plan keeps in this frame.
+    /// Returns the part of [`Self::presence`] that the plan keeps in this frame.
     fn kept(&self) -> RainPresence {
         let presence = self.presence();
         RainPresence { drops: presence.drops && self.shares[0] > 0.0, ..presence }
@@ -174,8 +175,9 @@ impl RainView {
         self.shares = if self.is_planned() { shares } else { [1.0; 2] };
     }
 
-    /// What drops or cones of the weather's own rain hide where all are drawn, as an extinction (their discs: half of theirs,
-    /// the rest is diffraction; times the contrast's gain), the distance up to which they do, and the share of it that is drawn.
+    /// Returns the extinction by which drops or cones of the weather's own rain hide where all are drawn (their discs:
+    /// half of their extinction, the rest is diffraction; times the contrast's gain), the distance up to which they do,
+    /// and the share of it that is drawn.
     fn hidden(&mut self, device: &Device, now: &Moment<'_>) -> ([f32; 2], f32) {
         let scene = &now.scene;
         let falling = self.own;
@@ -190,7 +192,8 @@ impl RainView {
         ([hidden, reach].map(|v| v as f32), share as f32)
     }
 
-    /// Whether there are cones: always, by choice, and beyond the drops where lamps light what the veil does not know of.
+    /// Whether there are cones: always, by choice, and beyond the drops where lamps light what the veil does not know
+    /// of.
     fn has_cones(&self, now: &Moment<'_>) -> bool {
         match self.settings.model {
             RainModel::Automatic | RainModel::Cones => true,
@@ -300,8 +303,8 @@ impl RainView {
         }
     }
 
-    /// The rain that cones are made for: that at the camera, plus a small share of each rain area nearby, so that cones exist before the
-    /// camera enters it.
+    /// The rain that cones are made for: that at the camera, plus a small share of each rain area nearby, so that cones
+    /// exist before the camera enters it.
     fn falling_at(&mut self, device: &Device, scene: &Scene) -> Classes {
         let weather = self.own;
         let (base, bits) = match self.local.unwrap_or(Local::Pure(weather)) {
@@ -326,7 +329,7 @@ impl RainView {
         StreakCamera::new(at, self.settings.shutter_s, self.settings.contrast_gain)
     }
 
-    /// What streaks are worth in a picture, if the plan decides about them.
+    /// Returns what streaks are worth in a picture, if the plan decides about them.
     pub fn streaks(&mut self, at: &DrawContext<'_>) -> Option<Streaks> {
         if !self.is_planned() {
             return None;
@@ -338,7 +341,8 @@ impl RainView {
         Some(Streaks::new((&classes, wind), &self.camera(at), light, now.has_lamps()))
     }
 
-    /// Draws the drops round the camera into the layer, in which something lies already if `over`; answers what of them.
+    /// Draws the drops round the camera into the layer, in which something lies already if `over`; answers what of
+    /// them.
     fn draw_near(
         &mut self,
         at: &DrawContext<'_>,

@@ -1,9 +1,10 @@
 //! Depth conventions: from a host's depth sample and projection to a ray of the world and metres along it.
 //!
-//! A depth buffer holds the ratio of two linear forms of the eye-space point p = (x, y, z, 1), d = (r_z . p) / (r_w . p),
-//! with r_z and r_w rows of the host's projection (r_z halved with r_w where clip space runs from -1 to 1). A pixel's
-//! ray solves (r_x - x r_w) . p = (r_y - y r_w) . p = 0, which leaves one unknown, the distance. [`ViewRays`] does this
-//! algebra in f64 once a frame, so a pixel costs three multiply-adds and one division, in f32, without a cancellation:
+//! A depth buffer holds the ratio of two linear forms of the eye-space point p = (x, y, z, 1), d = (r_z . p) / (r_w .
+//! p), with r_z and r_w rows of the host's projection (r_z halved with r_w where clip space runs from -1 to 1). A
+//! pixel's ray solves (r_x - x r_w) . p = (r_y - y r_w) . p = 0, which leaves one unknown, the distance. [`ViewRays`]
+//! does this algebra in f64 once a frame, so a pixel costs three multiply-adds and one division, in f32, without a
+//! cancellation:
 //!
 //! * the depth is first turned so that 0 is far (e = d or 1 - d; the latter is exact in f32 for d >= 1/2), and the
 //!   constants 1/far and 1/near - 1/far are formed in f64, never as a difference on the GPU;
@@ -24,7 +25,7 @@ use crate::error::{Error, Result, check_range};
 /// Distance that stands for "nothing was drawn here": the pixel shows the sky. Every real distance is below it.
 pub const RANGE_SKY_M: f64 = 1e12;
 
-/// What clip-space z runs over before the viewport maps it to the depth buffer's 0 to 1.
+/// Range of clip-space z before the viewport maps it to the depth buffer's 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum ClipSpace {
     /// -1 to 1: OpenGL without `glClipControl`.
@@ -51,7 +52,7 @@ pub enum DepthKind {
     },
 }
 
-/// What the numbers in the host's depth buffer mean, beside the projection matrix.
+/// Meaning of the numbers in the host's depth buffer, beside the projection matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct DepthMapping {
     /// Perspective, orthographic or logarithmic.
@@ -180,7 +181,8 @@ impl ViewRays {
                 det,
             ));
         }
-        // Directions d with (r_x - x r_w) . d = (r_y - y r_w) . d = 0 and r_w . d = 1, so that clip w counts along them.
+        // Directions d with (r_x - x r_w) . d = (r_y - y r_w) . d = 0 and r_w . d = 1, so that clip w counts along
+        // them.
         let direction = [x3.cross(y3) / det, y3.cross(w3) / det, w3.cross(x3) / det];
         // The centre of projection: where x, y and w all vanish; not the eye-space origin for some stereo matrices.
         let eye = -DMat3::from_cols(x3, y3, w3).transpose().inverse() * DVec3::new(x.w, y.w, w.w);
@@ -245,7 +247,7 @@ impl ViewRays {
         })
     }
 
-    /// The same rays in axes turned by `to_world`.
+    /// Returns the rays in axes turned by `to_world`.
     fn turned(mut self, to_world: DMat3) -> Self {
         self.origin = self.origin.map(|v| to_world * v);
         self.direction = self.direction.map(|v| to_world * v);

@@ -46,7 +46,8 @@ pub(crate) struct FlashLamp {
     pub flux_lm: [f64; 3],
     /// How far its light reaches about that, m.
     pub radius_m: f64,
-    /// Of a source inside a cloud the share of its light that leaves by the cloud's base; none of one that is open to all sides.
+    /// Share of its light that leaves by the cloud's base, of a source inside a cloud; none of one that is open to all
+    /// sides.
     pub down_share: Option<f64>,
 }
 
@@ -54,7 +55,8 @@ pub(crate) struct FlashLamp {
 pub(crate) const MAX_FLASH_LAMPS: usize = 8;
 
 impl FlashLamp {
-    /// Luminous intensity, cd a channel: to all sides, or straight down from a cloud's base, which shines by Lambert's law.
+    /// Luminous intensity, cd a channel: to all sides, or straight down from a cloud's base, which shines by Lambert's
+    /// law.
     pub fn intensity_cd(&self) -> [f64; 3] {
         let share = self.down_share.map_or(0.25, |share| share) / std::f64::consts::PI;
         self.flux_lm.map(|lm| lm * share)

@@ -10,13 +10,13 @@ const WGS84_A: f64 = 6_378_137.0;
 /// First eccentricity squared of the WGS 84 ellipsoid (NIMA TR8350.2, 2000).
 const WGS84_E2: f64 = 6.694_379_990_141_4e-3;
 
-/// Farthest that mean sea level lies above or below the ellipsoid, m: from -107 m south of India to 86 m at New Guinea (EGM2008, Pavlis
-/// et al. 2012), and some more for other surfaces of reference.
+/// Farthest that mean sea level lies above or below the ellipsoid, m: from -107 m south of India to 86 m at New Guinea
+/// (EGM2008, Pavlis et al. 2012), and some more for other surfaces of reference.
 const GEOID_M: f64 = 120.0;
 /// Lowest and highest altitude of a place, m.
 const ALTITUDES_M: [f64; 2] = [-1e4, 1e9];
-/// By so much the altitude of a position may lie outside and count as at the end, m: at 1e9 m coordinates are rounded to a
-/// ten-millionth of a metre, and what is computed of them to some more.
+/// By so much the altitude of a position may lie outside and count as at the end, m: at 1e9 m coordinates are rounded
+/// to a ten-millionth of a metre, and what is computed of them to some more.
 const ROUNDING_M: f64 = 1e-3;
 /// Farthest position from the world's origin, m.
 const FARTHEST_M: f64 = 1e12;
@@ -43,7 +43,8 @@ impl Place {
         check_range("altitude_m", self.altitude_m, ALTITUDES_M[0], ALTITUDES_M[1], "m")
     }
 
-    /// Earth-centred coordinates on WGS 84, m, where mean sea level is the ellipsoid ([`WorldFrame::geoid_height_m`] is 0).
+    /// Earth-centred coordinates on WGS 84, m, where mean sea level is the ellipsoid ([`WorldFrame::geoid_height_m`] is
+    /// 0).
     pub fn to_ecef(&self) -> DVec3 {
         let (sp, cp) = libm::sincos(self.latitude_deg.to_radians());
         let (sl, cl) = libm::sincos(self.longitude_deg.to_radians());
@@ -52,8 +53,8 @@ impl Place {
         DVec3::new(r * cl, r * sl, (n * (1.0 - WGS84_E2) + self.altitude_m) * sp)
     }
 
-    /// The place of Earth-centred coordinates, its altitude above the ellipsoid, by Bowring's iteration (Bowring 1976); within 1e-6 m of the inverse
-    /// from the centre's neighbourhood (1 km) to 1e9 m.
+    /// The place of Earth-centred coordinates, its altitude above the ellipsoid, by Bowring's iteration (Bowring 1976);
+    /// within 1e-6 m of the inverse from the centre's neighbourhood (1 km) to 1e9 m.
     pub fn from_ecef(p: DVec3) -> Self {
         let rho = libm::hypot(p.x, p.y);
         let longitude = libm::atan2(p.y, p.x);
@@ -80,7 +81,7 @@ impl Place {
     }
 }
 
-/// Which of the host's axes point where, in flat and tangent worlds.
+/// Directions of the host's axes, in flat and tangent worlds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Axes {
     /// x east, y north, z up.
@@ -98,8 +99,8 @@ pub enum WorldKind {
     Flat,
     /// East-north-up at the origin's place with the curved planet below.
     Tangent,
-    /// Earth-centred, Earth-fixed (WGS 84); axes do not matter, and the origin only for the sunlight on simulated ground. Altitudes count from
-    /// mean sea level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
+    /// Earth-centred, Earth-fixed (WGS 84); axes do not matter, and the origin only for the sunlight on simulated
+    /// ground. Altitudes count from mean sea level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
     Ecef,
 }
 
@@ -114,9 +115,9 @@ pub struct WorldFrame {
     pub origin: Place,
     /// Bearing of the world's north axis, degrees clockwise from true north, [-360, 360].
     pub grid_bearing_deg: f64,
-    /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place, m, [-120, 120]: 47.8 m at Frankfurt, -30 m at
-    /// New York. One number for all of the world; it varies by some metres over 100 km. For Earth-centred worlds, whose coordinates know the
-    /// ellipsoid alone. Default 0.
+    /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place, m, [-120, 120]: 47.8 m at
+    /// Frankfurt, -30 m at New York. One number for all of the world; it varies by some metres over 100 km. For
+    /// Earth-centred worlds, whose coordinates know the ellipsoid alone. Default 0.
     pub geoid_height_m: f64,
 }
 
@@ -127,7 +128,7 @@ impl Default for WorldFrame {
     }
 }
 
-/// What a point of the host's world knows of the planet below it.
+/// Place of a point of the host's world on its planet, and the axes there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalFrame {
     /// Latitude, longitude and altitude of the point.
@@ -150,8 +151,8 @@ impl WorldFrame {
     /// Up, north, altitude and place at a position of the host's world that the host names `name`.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] by that name if the position is not finite, farther than 1e12 m from the world's origin, or
-    /// not at an altitude in \[-1e4, 1e9\] m.
+    /// [`crate::Status::InvalidArgument`] by that name if the position is not finite, farther than 1e12 m from the
+    /// world's origin, or not at an altitude in \[-1e4, 1e9\] m.
     pub fn place_at(&self, name: &str, position: DVec3) -> Result<LocalFrame> {
         if !(position.is_finite() && position.length() <= FARTHEST_M) {
             return Err(Error::range(name, "finite and within 1e12 m of the world's origin", position));
@@ -191,7 +192,8 @@ impl WorldFrame {
         }
     }
 
-    /// Where a place on the planet lies in a tangent or Earth-centred host's world; the inverse of [`WorldFrame::frame_at`].
+    /// Where a place on the planet lies in a tangent or Earth-centred host's world; the inverse of
+    /// [`WorldFrame::frame_at`].
     pub(crate) fn position_of(&self, place: &Place) -> DVec3 {
         match self.kind {
             WorldKind::Ecef => Place { altitude_m: place.altitude_m + self.geoid_height_m, ..*place }.to_ecef(),

@@ -190,7 +190,8 @@ pub fn body_of_tables() -> Vec<u8> {
     Name::RESULTS.iter().flat_map(table).collect()
 }
 
-/// Whether a file with this body is taken, for fuzzers: it gets the right key and the right sum, at which they would stop.
+/// Whether a file with this body is taken, for fuzzers: it gets the right key and the right sum, at which they would
+/// stop.
 pub fn takes_tables(body: &[u8]) -> bool {
     let mut file = [MAGIC, 0_u64.to_le_bytes().as_slice(), body].concat();
     file.extend(fnv(SEED, &file).to_le_bytes());

@@ -5,14 +5,14 @@ use super::settings::{SkyModel, SkySettings};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Air and haze between the camera and what the host drew. How much it matters: atmosphere on objects, of the importance weights in
-/// the experiment of the machinery trainer's thesis.
+/// Air and haze between the camera and what the host drew. How much it matters: atmosphere on objects, of the
+/// importance weights in the experiment of the machinery trainer's thesis.
 pub const AIR: Part = Part { name: "air", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(0) };
 /// The clear sky above the horizon, behind clouds: a closed deck hides it.
 pub const SKY: Part = Part { name: "sky", rungs: &["all", "none"], importance: 0.2, worth: Worth::Composed(2) };
 
-/// Work of a pixel, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts: air between and
-/// clear sky for one lamp and for each further one.
+/// Work of a pixel, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts:
+/// air between and clear sky for one lamp and for each further one.
 const AIR_WORK: (f64, f64) = (0.4, 0.2);
 const SKY_WORK: (f64, f64) = (0.07, 0.05);
 /// Where the host drew nothing, the pixel's way to the air costs this share of it all the same.

@@ -1,12 +1,14 @@
-//! The air before the discs of sun and moon above the level of the eye: its optical depth by the sine of elevation, in a stretch of it that
-//! holds what is seen of a disc. So a pixel of the sky asks for no path through the air.
+//! The air before the discs of sun and moon above the level of the eye: its optical depth by the sine of elevation, in
+//! a stretch of it that holds what is seen of a disc. So a pixel of the sky asks for no path through the air.
 //!
 //! # Model
-//! Refraction lifts a disc by less than 0.6 degrees, and what is seen of it goes through the air where it is seen. Within the stretch the
-//! logarithm of the depth is a polynomial of the third degree in the root of the share of the stretch, through four depths of the reference (`reference::ray`).
+//! Refraction lifts a disc by less than 0.6 degrees, and what is seen of it goes through the air where it is seen.
+//! Within the stretch the logarithm of the depth is a polynomial of the third degree in the root of the share of the
+//! stretch, through four depths of the reference (`reference::ray`).
 //!
 //! # Error
-//! Of the transmittance, anywhere on a disc of the size of the sun: below 0.5 %; of one of 11 degrees: below 6 % (test).
+//! Of the transmittance, anywhere on a disc of the size of the sun: below 0.5 %; of one of 11 degrees: below 6 %
+//! (test).
 
 use super::{
     reference::ray::Ray,
@@ -17,7 +19,8 @@ use super::{
 const LIFT: f64 = 0.0105;
 /// Sine of elevation from which on the lift is less than the stretch's room beside the disc.
 const NOT_LIFTED: f64 = 0.2;
-/// How far a stretch reaches beyond a disc on both sides, rad, and how far the lamp may go and its size change before it is laid anew.
+/// How far a stretch reaches beyond a disc on both sides, rad, and how far the lamp may go and its size change before
+/// it is laid anew.
 const ROOM: (f64, f64) = (2e-3, 1e-3);
 /// Change of altitude after which it is laid anew, of itself and m.
 const CLIMB: (f64, f64) = (1e-3, 1.0);
@@ -33,12 +36,12 @@ pub(super) struct DiscDepth {
     radius: f64,
     from: f64,
     scale: f64,
-    /// Of the logarithm of the depth, by degree and wavelength.
+    /// Coefficients of the logarithm of the depth, by degree and wavelength.
     terms: [[f64; 3]; 4],
 }
 
 impl DiscDepth {
-    /// Of a lamp at a sine of elevation with an angular radius, rad.
+    /// Computes the depth before the disc of a lamp at a sine of elevation with an angular radius, rad.
     pub fn new(air: &AirUniform, altitude_m: f64, sine: f64, radius: f64) -> Self {
         let medium = air.medium();
         let lift = if sine < NOT_LIFTED { LIFT } else { 0.0 };

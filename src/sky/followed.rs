@@ -76,8 +76,9 @@ impl FollowedSky {
         }
     }
 
-    /// Builds the tables of `planet` on by a `share` of the work of a build with the default settings. The first frame has a draft; a share
-    /// of 1 builds them whole, for pictures that may not depend on earlier ones. Answers whether anything was built.
+    /// Builds the tables of `planet` on by a `share` of the work of a build with the default settings. The first frame
+    /// has a draft; a share of 1 builds them whole, for pictures that may not depend on earlier ones. Answers whether
+    /// anything was built.
     pub fn build_toward(
         &mut self,
         device: &Device,

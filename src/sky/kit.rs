@@ -1,9 +1,9 @@
-//! What all tables of one device and one setting share: pipelines, builds under way, and the finished tables of every
-//! planet that someone still shows.
+//! Resources that all tables of one device and one setting share: pipelines, builds under way, and the finished tables
+//! of every planet that someone still shows.
 //!
-//! A planet is built once, whoever asks: a second one who wants it joins the build or takes what is finished. Every part of
-//! a build is a submission of its own under the kit's lock, so that parts lie on the queue in their order whichever frames
-//! they belong to. Nothing here keeps tables alive: they go with the last who shows them.
+//! A planet is built once, whoever asks: a second one who wants it joins the build or takes what is finished. Every
+//! part of a build is a submission of its own under the kit's lock, so that parts lie on the queue in their order
+//! whichever frames they belong to. Nothing here keeps tables alive: they go with the last who shows them.
 
 mod first;
 
@@ -72,7 +72,7 @@ impl Ticket {
     }
 }
 
-/// What asking for a planet gives.
+/// Answer to a request for a planet's tables.
 pub(crate) enum Claim {
     Finished(Arc<TableSet>),
     Building(Arc<Ticket>),
@@ -103,7 +103,7 @@ fn table_named<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Optio
     scratch.0.iter().chain(set.tables()).find(|(n, _)| *n == name).map(|(_, t)| t)
 }
 
-/// What one step of a build came to: its work as a share of a whole build, and the share of this one that is done.
+/// Result of one step of a build: its work as a share of a whole build, and the share of this one that is done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Step {
     pub work: f64,
@@ -192,8 +192,8 @@ impl Kit {
         self.lock().count
     }
 
-    /// Finished tables of a checked planet, or a claim on its build, which may be another's. Whole tables that are finished
-    /// stand for a draft.
+    /// Finished tables of a checked planet, or a claim on its build, which may be another's. Whole tables that are
+    /// finished stand for a draft.
     ///
     /// # Errors
     /// GPU faults.
@@ -375,9 +375,9 @@ impl Kit {
         parts.add(encoder, build.set.result(Name::Lights), light, triple == 0);
     }
 
-    /// Tables of a checked planet: those that someone shows, those of the cache's file, or new ones, built in sixteen parts
-    /// with a wait for the GPU after each; the cache is written afterwards. The host's context is entered for each part and
-    /// left while `progress` is told the share done; when that answers false the build ends.
+    /// Tables of a checked planet: those that someone shows, those of the cache's file, or new ones, built in sixteen
+    /// parts with a wait for the GPU after each; the cache is written afterwards. The host's context is entered for
+    /// each part and left while `progress` is told the share done; when that answers false the build ends.
     pub fn build(
         &self,
         planet: &Planet,

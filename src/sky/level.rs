@@ -30,9 +30,9 @@ pub(crate) struct Level {
     pub settings: SkySettings,
     pub blocks: Blocks,
     pub passes: Vec<Pass>,
-    /// Of one triple.
+    /// Strips of one triple of wavelengths.
     pub strips: Vec<Strip>,
-    /// Of all triples.
+    /// Cost of the strips of all triples.
     pub total_cost: f64,
 }
 

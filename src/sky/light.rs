@@ -1,7 +1,7 @@
 //! Light of the sky for hosts: irradiance and nine spherical harmonics at any altitude and sun angle, on the CPU.
 //!
-//! Built with the tables on the GPU from the radiances of every order, read back once a build, then looked up without the
-//! GPU. Everything is per unit irradiance of the lamp.
+//! Built with the tables on the GPU from the radiances of every order, read back once a build, then looked up without
+//! the GPU. Everything is per unit irradiance of the lamp.
 
 use half::f16;
 
@@ -44,7 +44,7 @@ impl LightTable {
         Ok(Self { air, suns: width / LIGHT_TILES as usize, altitudes: height, values })
     }
 
-    /// The same light in a table of other sizes.
+    /// Returns the same light in a table of other sizes.
     pub(crate) fn resized(self, suns: usize, altitudes: usize) -> Self {
         if (self.suns, self.altitudes) == (suns, altitudes) {
             return self;
@@ -70,14 +70,14 @@ impl LightTable {
         Self { air: self.air.mix(&other.air, t), values, ..*self }
     }
 
-    /// Irradiance of the sky on a level surface facing up, per unit irradiance of the lamp. `mu_s`: cosine of the lamp's
-    /// geometric zenith angle. Thread-safe.
+    /// Irradiance of the sky on a level surface facing up, per unit irradiance of the lamp. `mu_s`: cosine of the
+    /// lamp's geometric zenith angle. Thread-safe.
     pub fn irradiance(&self, altitude_m: f64, mu_s: f64) -> [f32; 3] {
         self.tile(0, altitude_m, mu_s).map(|v| v.max(0.0))
     }
 
-    /// The sky's radiance in spherical harmonics in the frame in which `toward` (unit, z up) points at the lamp, per unit
-    /// irradiance of the lamp. Thread-safe.
+    /// The sky's radiance in spherical harmonics in the frame in which `toward` (unit, z up) points at the lamp, per
+    /// unit irradiance of the lamp. Thread-safe.
     pub fn sh9(&self, altitude_m: f64, toward: [f64; 3]) -> Sh9 {
         let m: [[f32; 3]; 6] = std::array::from_fn(|i| self.tile(i + 1, altitude_m, toward[2]));
         let level = toward[0].hypot(toward[1]);

@@ -4,13 +4,13 @@ use super::Planet;
 use super::uniforms::LampUniform;
 use crate::error::{Error, Result, check_range};
 
-/// What a lamp's disc looks like.
+/// Appearance of a lamp's disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Disc {
     /// A sun: dark towards the limb by wavelength (Hestroffer and Magnan 1998).
     Sun,
-    /// A moon, lit from the unit direction given (towards the sun), in the observer's frame; its law is that of Lommel and
-    /// Seeliger.
+    /// A moon, lit from the unit direction given (towards the sun), in the observer's frame; its law is that of Lommel
+    /// and Seeliger.
     Moon {
         /// Unit direction towards the sun.
         lit_from: [f64; 3],
@@ -20,7 +20,8 @@ pub enum Disc {
 /// A far light: the sun, or the moon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lamp {
-    /// Unit direction towards it in the observer's level frame (z up; x and y any level axes), geometric, not refracted.
+    /// Unit direction towards it in the observer's level frame (z up; x and y any level axes), geometric, not
+    /// refracted.
     pub toward: [f64; 3],
     /// Irradiance at the top of the air on a surface facing it, per wavelength of the planet; 0 switches it off.
     pub irradiance: [f64; 3],
@@ -44,7 +45,7 @@ impl Lamp {
         }
     }
 
-    /// The same with the sun over the x axis at a zenith angle, rad.
+    /// Returns the planet's sun over the x axis at a zenith angle, rad.
     pub fn sun_at_zenith_angle(planet: &Planet, zenith_angle: f64) -> Self {
         Self::sun(planet, [zenith_angle.sin(), 0.0, zenith_angle.cos()])
     }
@@ -105,7 +106,8 @@ fn limb_exponent(wavelength_nm: f64) -> f64 {
     -0.023 + 0.292 / (wavelength_nm * 1e-3).clamp(0.4, 1.1)
 }
 
-/// Mean of Lommel and Seeliger's law over the moon's disc as seen, so that the disc sends the irradiance that was given.
+/// Mean of Lommel and Seeliger's law over the moon's disc as seen, so that the disc sends the irradiance that was
+/// given.
 fn moon_mean(toward: &[f64; 3], lit_from: &[f64; 3]) -> f64 {
     let cos_apart = toward.iter().zip(lit_from).map(|(a, b)| a * b).sum::<f64>().clamp(-1.0, 1.0);
     let sin_apart = (1.0 - cos_apart * cos_apart).sqrt();

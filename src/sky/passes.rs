@@ -100,7 +100,7 @@ pub(crate) struct Builder {
     pub sampler: wgpu::Sampler,
 }
 
-/// What the builds of one detail share: sizes, directions to sum over, and what each pass is to do.
+/// Buffers that the builds of one detail share: sizes, directions to sum over, and what each pass is to do.
 pub(crate) struct Blocks {
     pub dims: wgpu::Buffer,
     rule: wgpu::Buffer,
@@ -184,9 +184,9 @@ pub(crate) fn fade_blend() -> wgpu::BlendState {
 /// Shows tables out of two, faded.
 pub(crate) struct FadePasses {
     layout: wgpu::BindGroupLayout,
-    /// Of light, from tables of any size.
+    /// Pipeline that fades the light, from tables of any size.
     light: wgpu::RenderPipeline,
-    /// Texel by texel.
+    /// Pipeline that fades texel by texel.
     texels: wgpu::RenderPipeline,
     /// Texels of the light.
     light_size: (u32, u32),

@@ -13,7 +13,7 @@ use crate::gpu::bind::Slot;
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
 use crate::gpu::{Device, flat_texture, readback};
 
-/// What is asked along a ray.
+/// Quantity that is asked for along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
     /// Radiance of the air along a whole ray, and transmittance to space (0 if the ray meets the ground).
@@ -54,7 +54,7 @@ impl Ray {
     }
 }
 
-/// What the drawn sky answers, per wavelength of the planet.
+/// Answer of the drawn sky, per wavelength of the planet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Answer {
     /// W m^-2 sr^-1 nm^-1, per the lamps' irradiance as given.

@@ -3,7 +3,7 @@
 use super::settings::{SkyModel, SkySettings};
 use super::uniforms::LIGHT_TILES;
 
-/// What a build pass does; the names are the entry points of `sky/build.wgsl`.
+/// Kind of a build pass; the names are the entry points of `sky/build.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PassKind {
     Norm,
@@ -46,10 +46,10 @@ impl Name {
         Name::PartSources,
         Name::PartLights,
     ];
-    /// What a finished build leaves.
+    /// Tables that a finished build leaves.
     pub const RESULTS: [Name; 4] = [Name::Sources, Name::Lights, Name::OnceGas, Name::OnceHaze];
 
-    /// What a build makes of one triple of wavelengths at a time, where there are several.
+    /// Tables that a build makes of one triple of wavelengths at a time, where there are several.
     pub const OF_A_TRIPLE: [Name; 2] = [Name::Sources, Name::Lights];
 
     /// Size in texels of a result: triples of wavelengths lie one below the other where they are kept apart.
@@ -112,8 +112,8 @@ impl Pass {
         }
     }
 
-    /// Time of one texel, in that of a cell of a march, as measured on the software driver: slices of a build are cut by
-    /// it, so that each frame pays the same.
+    /// Time of one texel, in that of a cell of a march, as measured on the software driver: slices of a build are cut
+    /// by it, so that each frame pays the same.
     pub fn texel_time(&self, s: &SkySettings) -> f64 {
         match self.kind {
             PassKind::Scatter => 0.24 * self.texel_cost(s),

@@ -97,7 +97,8 @@ impl TableSet {
         }
     }
 
-    /// The light on the CPU, of the size that `settings` say; read back when it is first asked for, which waits for the GPU.
+    /// The light on the CPU, of the size that `settings` say; read back when it is first asked for, which waits for the
+    /// GPU.
     pub fn read_light(&self, device: &Device, settings: &SkySettings) -> Result<Arc<LightTable>> {
         if let Some(known) = self.light.get() {
             return Ok(known.clone());

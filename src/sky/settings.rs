@@ -51,17 +51,18 @@ impl SkyModel {
 }
 
 /// Numbers of the sky's tables. The defaults hold the errors stated in the documentation of [`crate::sky`]. With every
-/// number at its least at once the default model's median error is 5 % in clear air, 6 % with ozone and in haze of 30 km
-/// visibility (95th percentile 26 to 48 %, at twilight and in the sun's glow); in haze of 9 km the orders' tail is missed
-/// (15 %, which 16 orders bring to 9 %). `tests/sky_gpu.rs` holds the border.
+/// number at its least at once the default model's median error is 5 % in clear air, 6 % with ozone and in haze of 30
+/// km visibility (95th percentile 26 to 48 %, at twilight and in the sun's glow); in haze of 9 km the orders' tail is
+/// missed (15 %, which 16 orders bring to 9 %). `tests/sky_gpu.rs` holds the border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SkySettings {
-    /// Which model draws, default [`SkyModel::Directional`].
+    /// Model that draws, default [`SkyModel::Directional`].
     pub model: SkyModel,
-    /// Wavelengths that the tables are built for, a multiple of 3 in `[3, 15]`, default 3: the planet's own. More of them
-    /// are spread over what the eye sees, and summed to the three transfers at the planet's wavelengths that look the same
-    /// (models [`SkyModel::Directional`] and [`SkyModel::IsotropicTables`]): colours are then right where three cannot tell
-    /// them, at the price of building every table so many times. See [`crate::sky`] for errors and costs.
+    /// Wavelengths that the tables are built for, a multiple of 3 in `[3, 15]`, default 3: the planet's own. More of
+    /// them are spread over what the eye sees, and summed to the three transfers at the planet's wavelengths that look
+    /// the same (models [`SkyModel::Directional`] and [`SkyModel::IsotropicTables`]): colours are then right where
+    /// three cannot tell them, at the price of building every table so many times. See [`crate::sky`] for errors and
+    /// costs.
     pub wavelengths: u32,
     /// Orders of scattering that are carried one by one, `[3, 16]`, default 5; the rest is a geometric series.
     pub orders: u32,
@@ -140,8 +141,9 @@ impl SkySettings {
         Self { model, ..Self::default() }
     }
 
-    /// The same sky from small tables over the planet, a twentieth of the work with the default numbers: what is shown until
-    /// the tables of these settings are built. Light scattered once, which the observer's tables march, stays as fine.
+    /// Returns the settings of the same sky from small tables over the planet, a twentieth of the work with the default
+    /// numbers: these tables are shown until those of the full settings are built. Light scattered once, which the
+    /// observer's tables march, stays as fine.
     pub(crate) fn draft(&self) -> Self {
         Self {
             orders: self.orders.min(4),
@@ -150,7 +152,8 @@ impl SkySettings {
             zeniths: self.zeniths.min(9),
             azimuths: self.azimuths.min(6),
             rule_zeniths: self.rule_zeniths.min(5),
-            // The radiances' width is no power of two then, as that of the whole ones: llvmpipe compiles a pass anew where it becomes one.
+            // The radiances' width is no power of two then, as that of the whole ones: llvmpipe compiles a pass anew
+            // where it becomes one.
             rule_azimuths: self.rule_azimuths.min(9),
             build_panels: self.build_panels.min(2),
             ..*self

@@ -9,15 +9,15 @@ use super::reference::sun::{disc_strips, sun_transmittance};
 use crate::error::{Error, Result, check_range};
 use crate::planet::Planet;
 
-/// Contrast below which a black target is lost against the horizon sky by definition of the meteorological optical range
-/// (WMO).
+/// Contrast below which a black target is lost against the horizon sky by definition of the meteorological optical
+/// range (WMO).
 pub const LEAST_CONTRAST: f64 = 0.05;
 
 /// Strips of the sun's disc: the light of a half-set sun is within 0.3 % of 200 strips.
 const STRIPS: usize = 24;
 
-/// A line that dips no deeper than this below the ground's sphere is not hidden by it: two points on level ground see each
-/// other over 200 m.
+/// A line that dips no deeper than this below the ground's sphere is not hidden by it: two points on level ground see
+/// each other over 200 m.
 const GRAZE_M: f64 = 1e-3;
 
 /// Sunlight that reaches a point.
@@ -31,7 +31,7 @@ pub struct Sunlight {
     pub visible_share: f64,
 }
 
-/// What lies between two points.
+/// Line of sight between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
     /// Straight distance, m.
@@ -78,12 +78,12 @@ pub fn sunlight(planet: &Planet, altitude_m: f64, sun_zenith: f64) -> Result<Sun
     Ok(out)
 }
 
-/// What one point sees of another. Positions in metres from the planet's centre, any axes. The ground is the sphere of the
-/// bottom radius, lowered to the lower point if that lies below.
+/// Finds what one point sees of another. Positions in metres from the planet's centre, any axes. The ground is the
+/// sphere of the bottom radius, lowered to the lower point if that lies below.
 ///
 /// # Errors
-/// [`crate::Status::InvalidArgument`] for a planet out of range, a position that is not finite, lies farther than 1e12 m
-/// or deeper than 1e5 m below the ground's sphere.
+/// [`crate::Status::InvalidArgument`] for a planet out of range, a position that is not finite, lies farther than
+/// 1e12 m or deeper than 1e5 m below the ground's sphere.
 pub fn sight(planet: &Planet, from_m: [f64; 3], to_m: [f64; 3]) -> Result<Sight> {
     planet.check()?;
     let altitude = |name: &str, p: &[f64; 3]| -> Result<f64> {

@@ -120,7 +120,8 @@ impl SolvedSky {
         self.reference.aerial(&line.view(), WHOLE_M)
     }
 
-    /// Radiance that the air scatters into the first `distance_m` of a ray, and what it lets through there, a wavelength.
+    /// Radiance that the air scatters into the first `distance_m` of a ray, and what it lets through there, a
+    /// wavelength.
     ///
     /// # Errors
     /// As [`SolvedSky::radiance`].

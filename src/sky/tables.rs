@@ -1,5 +1,5 @@
-//! The tables over a planet as one simulator shows them: built at once or by parts, and followed through a change of its
-//! air without a jump.
+//! The tables over a planet as one simulator shows them: built at once or by parts, and followed through a change of
+//! its air without a jump.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -33,10 +33,10 @@ const FADE: f32 = 1.0 / 16.0;
 /// Airs whose optical depth differs by more than this share need a draft before the whole tables: it errs by less.
 const FAR: f64 = 0.03;
 
-/// The same for the albedo of the ground.
+/// Albedos of the ground that differ by more than this need a draft before the whole tables.
 const FAR_ALBEDO: f64 = 0.1;
 
-/// What [`SkyTables::update`] did.
+/// Progress that [`SkyTables::update`] made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TablesProgress {
     /// Work submitted by this call, as a share of a whole build; 0 where another has built the planet.
@@ -54,8 +54,8 @@ pub struct TablesProgress {
 pub struct SkyTables {
     pub(crate) device: Arc<Device>,
     kit: Arc<Kit>,
-    /// The light as it is shown: that of one planet, or of two while one fades into the other. Where pixels march, the sources
-    /// of the shown planet lie below it.
+    /// The light as it is shown: that of one planet, or of two while one fades into the other. Where pixels march, the
+    /// sources of the shown planet lie below it.
     pub(crate) light: Table,
     shown: Option<Arc<TableSet>>,
     state: State,
@@ -109,14 +109,14 @@ impl SkyTables {
         [("SKY_MARCH", crate::stage::flag(self.settings().model == SkyModel::BruteForce))]
     }
 
-    /// Follows `planet`, with at most `fraction` of the work of a whole build in this call (about: a strip of 1/1024 is not
-    /// cut). At `fraction` 1 its tables are built and shown at once. Else the first planet is shown at once as a draft, and
-    /// so is, faded in over sixteen calls, one whose air is another than that shown; the whole tables are built beside what
-    /// is shown over 8/7 of 1/fraction calls, every eighth of which rests, and fade in like the draft. A planet that is
-    /// given meanwhile comes after them, or ends their build if they were far from it.
+    /// Follows `planet`, with at most `fraction` of the work of a whole build in this call (about: a strip of 1/1024 is
+    /// not cut). At `fraction` 1 its tables are built and shown at once. Else the first planet is shown at once as a
+    /// draft, and so is, faded in over sixteen calls, one whose air is another than that shown; the whole tables are
+    /// built beside what is shown over 8/7 of 1/fraction calls, every eighth of which rests, and fade in like the
+    /// draft. A planet that is given meanwhile comes after them, or ends their build if they were far from it.
     ///
-    /// What is shown depends on the calls alone, on nothing that is timed. What is built is submitted by this call; what is
-    /// shown of it is recorded into `encoder`, to be submitted after.
+    /// What is shown depends on the calls alone, on nothing that is timed. What is built is submitted by this call;
+    /// what is shown of it is recorded into `encoder`, to be submitted after.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a planet or fraction out of range; GPU faults.
@@ -233,9 +233,9 @@ impl SkyTables {
         }
     }
 
-    /// The light of the sky over altitudes and sun angles as it is shown. Each build is read back once, when it is first
-    /// asked for, which waits for the GPU; later calls, and all look-ups in the answer, do not. Dark before the first
-    /// planet is shown.
+    /// The light of the sky over altitudes and sun angles as it is shown. Each build is read back once, when it is
+    /// first asked for, which waits for the GPU; later calls, and all look-ups in the answer, do not. Dark before the
+    /// first planet is shown.
     ///
     /// # Errors
     /// GPU faults.
@@ -250,10 +250,10 @@ impl SkyTables {
         })
     }
 
-    /// Builds and shows the tables of `planet` now, in sixteen parts with a wait for the GPU after each, or reads them from
-    /// `cache`, a directory in which the tables are kept afterwards. `progress` is told the share done after each part;
-    /// when it answers false the build ends, and what was shown before stays. A cache's file that is damaged or cannot be
-    /// written is logged, and the tables are built and shown nonetheless.
+    /// Builds and shows the tables of `planet` now, in sixteen parts with a wait for the GPU after each, or reads them
+    /// from `cache`, a directory in which the tables are kept afterwards. `progress` is told the share done after each
+    /// part; when it answers false the build ends, and what was shown before stays. A cache's file that is damaged or
+    /// cannot be written is logged, and the tables are built and shown nonetheless.
     ///
     /// # Errors
     /// [`crate::Status::Aborted`]; [`crate::Status::InvalidArgument`] for the planet; GPU faults.
@@ -298,23 +298,23 @@ impl SkyTables {
         }
     }
 
-    /// What is shown.
+    /// Returns the tables that are shown.
     pub(crate) fn shown(&self) -> Option<&Arc<TableSet>> {
         self.shown.as_ref()
     }
 
-    /// The share of a build that is as much work as `share` of one with the default settings; small tables take sixteen calls
-    /// all the same.
+    /// The share of a build that is as much work as `share` of one with the default settings; small tables take sixteen
+    /// calls all the same.
     pub(crate) fn paced(&self, share: f32) -> f32 {
         (share * self.kit.pace as f32).min(FADE)
     }
 
-    /// What is shown, where it is no draft.
+    /// Returns the tables that are shown, unless they are a draft.
     pub(crate) fn shown_whole(&self) -> Option<&Arc<TableSet>> {
         self.shown.as_ref().filter(|s| s.detail == Detail::Whole)
     }
 
-    /// What fades in, with its share; 0 in the one call before the first step.
+    /// Returns the tables that fade in, with their share; 0 in the one call before the first step.
     pub(crate) fn fading(&self) -> Option<(&Arc<TableSet>, f32)> {
         match &self.state {
             State::Fading(set, t) => Some((set, *t)),

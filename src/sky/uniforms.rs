@@ -1,4 +1,4 @@
-//! What the sky's shaders read in uniform buffers, field for field as `shaders/sky` declares it.
+//! Uniform buffers that the sky's shaders read, field for field as `shaders/sky` declares them.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -164,7 +164,8 @@ impl DimsUniform {
         }
     }
 
-    /// Texture coordinates of the sky above the horizon: of the centre of its first texel, and from there to that of its last one.
+    /// Texture coordinates of the sky above the horizon: of the centre of its first texel, and from there to that of
+    /// its last one.
     pub fn sky_above(&self) -> [f32; 4] {
         let [x, y, above, azimuths] =
             [self.sky_x, self.sky_y, self.sky_above - 1, self.sky_azimuths - 1].map(f64::from);

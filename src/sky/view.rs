@@ -1,4 +1,4 @@
-//! What a view draws of the sky and of clear air: its tables as seen from the camera's height.
+//! Sky and clear air as a view draws them: its tables as seen from the camera's height.
 
 use std::sync::{Arc, Mutex};
 

@@ -48,7 +48,8 @@ impl Layered {
     }
 }
 
-/// The same layers, each a texture of its own that passes read: OpenGL finds nothing in a single layer of several.
+/// Layers as in [`Layered`], each a texture of its own that passes read: OpenGL finds nothing in a single layer of
+/// several.
 struct Apart {
     layers: Vec<wgpu::TextureView>,
 }
@@ -110,12 +111,12 @@ impl ObserverPasses {
     }
 }
 
-/// What a lamp's tables were drawn for.
+/// Inputs that a lamp's tables were drawn for.
 #[derive(Clone, Copy, PartialEq)]
 struct DrawnFor {
     /// The planet's tables.
     set: u64,
-    /// Those that lie over them, and their share.
+    /// Tables that lie over them, and their share.
     over: Option<(u64, f32)>,
     altitude_m: f64,
     mu_s: f64,
@@ -123,7 +124,7 @@ struct DrawnFor {
 
 /// Tables of which one fades into the other: each is drawn once, and every step lays one over the other.
 struct Fade {
-    /// What fades out, and what fades in.
+    /// Layers that fade out, and (`next`) those that fade in.
     first: Apart,
     next: Apart,
     drawn: [Option<DrawnFor>; LAMPS],
@@ -204,7 +205,7 @@ impl SkyVolume {
         self.light == tables.light.view
     }
 
-    /// Of the tables that it was made for.
+    /// Returns the settings of the tables that it was made for.
     pub fn settings(&self) -> &SkySettings {
         &self.kit.settings
     }
@@ -235,8 +236,8 @@ impl SkyVolume {
         &self.view_group
     }
 
-    /// Brings the tables up to date and says whether anything had to be drawn. Nothing is, when neither altitude nor sun
-    /// nor air changed: turning the camera is free.
+    /// Brings the tables up to date and says whether anything had to be drawn. Nothing is, when neither altitude nor
+    /// sun nor air changed: turning the camera is free.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for an observer out of range.
@@ -420,7 +421,7 @@ impl SkyVolume {
     }
 }
 
-/// What shaders look up: the observer's sky and air, and the planet's light.
+/// Creates the bind group of what shaders look up: the observer's sky and air, and the planet's light.
 fn view_group(kit: &Kit, view: &wgpu::Buffer, [tables, light]: [&wgpu::TextureView; 2]) -> wgpu::BindGroup {
     let sampler = wgpu::BindingResource::Sampler(&kit.builder.sampler);
     bind(&kit.device, &kit.observer_layouts.view, &[view.as_entire_binding(), tex(tables), tex(light), sampler])

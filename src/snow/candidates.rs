@@ -4,11 +4,12 @@ use super::{SnowModel, SnowSettings};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Flakes, at two rungs: each near the camera, or none, so that all snow is extinction in the fog's layer. Importance: as of rain.
+/// Flakes, at two rungs: each near the camera, or none, so that all snow is extinction in the fog's layer. Importance:
+/// as of rain.
 pub const SNOW: Part = Part { name: "snow", rungs: &["flakes", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work of the layer of what falls a pixel, and of a flake of the lattice, in units of a pixel with none of the parts: from the copies that
-/// `cargo bench --bench speed -- falling` prints.
+/// Work of the layer of what falls a pixel, and of a flake of the lattice, in units of a pixel with none of the parts:
+/// from the copies that `cargo bench --bench speed -- falling` prints.
 const LAYER_OF_PIXEL: f64 = 0.1;
 const ONE_FLAKE: f64 = 0.5;
 

@@ -1,9 +1,10 @@
 //! How much flakes stand out of a picture, in closed form, for the planner.
 //!
-//! Flakes are thrown at random, so the variance of what they hide from pixel to pixel is the sum of their squared covers (Campbell 1909).
-//! A flake that hides an area A, drawn L long and w wide at a distance r, hides on the mean A / ((L + w) w) of that; n / k a volume, each
-//! standing for k, make (n / k) (k A)^2 / ((L + w) w) dr. The mean square of a disc's chords is 32 / (3 pi^2) = 1.08 times the square of
-//! their mean. Unlike drops flakes are summed over distances, since a farther shell's stand for more.
+//! Flakes are thrown at random, so the variance of what they hide from pixel to pixel is the sum of their squared
+//! covers (Campbell 1909). A flake that hides an area A, drawn L long and w wide at a distance r, hides on the mean A /
+//! ((L + w) w) of that; n / k a volume, each standing for k, make (n / k) (k A)^2 / ((L + w) w) dr. The mean square of
+//! a disc's chords is 32 / (3 pi^2) = 1.08 times the square of their mean. Unlike drops flakes are summed over
+//! distances, since a farther shell's stand for more.
 
 use glam::{DVec2, DVec3};
 
@@ -24,8 +25,8 @@ const LEAST_PIXELS: f64 = 1.2;
 /// Panels of the sum over distances.
 const PANELS: usize = 24;
 
-/// Variance from pixel to pixel of the share that flakes hide, for a camera whose pixels span an angle (rad) and before which they move
-/// `along_m` across the line of sight during the exposure.
+/// Variance from pixel to pixel of the share that flakes hide, for a camera whose pixels span an angle (rad) and before
+/// which they move `along_m` across the line of sight during the exposure.
 pub fn cover_variance(flakes: &Flakes, pixel_angle: f64, along_m: f64) -> f64 {
     let step = libm::log(flakes.reach_m().max(NEAREST_M) / NEAREST_M) / PANELS as f64;
     let at = |panel: usize| {
@@ -45,7 +46,7 @@ pub fn cover_variance(flakes: &Flakes, pixel_angle: f64, along_m: f64) -> f64 {
     (0..PANELS).map(at).sum()
 }
 
-/// What the flakes of a picture change in it.
+/// Contrast of the flakes in a picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlakeContrast {
     seen: StreakContrast,
@@ -66,8 +67,9 @@ impl FlakeContrast {
         Self { seen: StreakContrast::new(shot, wind_m_s - fall, variance, (tone, lamps)), light }
     }
 
-    /// What pixel number `i` of a picture changes without flakes, over its luminance and a hundredth of white, beside what the veil in
-    /// their place adds. `picture` and `hidden` are its luminance without flakes and the optical depth of what they hide.
+    /// Returns the change that flakes make to pixel number `i` of a picture without flakes, over the pixel's luminance
+    /// and a hundredth of white, beside what the veil in their place adds. `picture` and `hidden` are its luminance
+    /// without flakes and the optical depth of what they hide.
     pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let [flakes, contrast] = self.seen.at(i, ndc, picture, |d| flake_radiance(&self.light, d));
         [(flakes - hidden * contrast) as f32, 0.0, 0.0]

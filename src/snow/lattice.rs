@@ -1,16 +1,17 @@
-//! Where flakes are: a lattice of cells of air that the wind carries along, each flake at a place of its cell by chance, falling at its
-//! own speed on a helix of its own, with no state.
+//! Where flakes are: a lattice of cells of air that the wind carries along, each flake at a place of its cell by
+//! chance, falling at its own speed on a helix of its own, with no state.
 //!
-//! A shell is a cube of side L full of flakes, repeated through all space; a camera sees of each flake the copy nearest to it. Places,
-//! falls and turns are fractions in 32 bits and wrap as the lattice does (`src/falling/lattice.rs`): place = random(seed, shell, class,
-//! index) + displacement of the air - speed x fall phase, and the flake stands beside it by its helix, at the angle random + turns x turn
-//! phase. Speeds and turns are whole multiples of [`SPEED_UNIT`] and [`TURN_UNIT`], and so exact at any time; within a class each flake
-//! has its own, up to an eighth faster or slower (flakes of one size scatter by as much about Locatelli and Hobbs's lines).
+//! A shell is a cube of side L full of flakes, repeated through all space; a camera sees of each flake the copy nearest
+//! to it. Places, falls and turns are fractions in 32 bits and wrap as the lattice does (`src/falling/lattice.rs`):
+//! place = random(seed, shell, class, index) + displacement of the air - speed x fall phase, and the flake stands
+//! beside it by its helix, at the angle random + turns x turn phase. Speeds and turns are whole multiples of
+//! [`SPEED_UNIT`] and [`TURN_UNIT`], and so exact at any time; within a class each flake has its own, up to an eighth
+//! faster or slower (flakes of one size scatter by as much about Locatelli and Hobbs's lines).
 //!
-//! Each shell is twice as wide as the last. A shell that has no room for all its flakes draws some that stand for others: of each
-//! class so many that all drawn flakes hide as much as each other, which of all choices leaves the contrast closest to that of all
-//! flakes (importance sampling by area). Shells whose contrast would be off by more than the square root of 3 are left to
-//! the veil.
+//! Each shell is twice as wide as the last. A shell that has no room for all its flakes draws some that stand for
+//! others: of each class so many that all drawn flakes hide as much as each other, which of all choices leaves the
+//! contrast closest to that of all flakes (importance sampling by area). Shells whose contrast would be off by more
+//! than the square root of 3 are left to the veil.
 
 use glam::DVec3;
 
@@ -29,9 +30,9 @@ pub const CLASSES: usize = 32;
 const CLASSES_OF: [usize; PARTS] = [20, 6, 6];
 /// Side of the innermost shell's cell, m.
 pub const SIDE_M: f64 = 4.0;
-/// What fall speeds are multiples of, m/s.
+/// Unit of which fall speeds are multiples, m/s.
 pub const SPEED_UNIT: f64 = 1.0 / 1024.0;
-/// What turns are multiples of, 1/s.
+/// Unit of which turns are multiples, 1/s.
 pub const TURN_UNIT: f64 = 1.0 / 256.0;
 /// A shell takes over from the smaller one, and hands on to the larger, between this share of its reach and all of it.
 pub const FADE: f64 = 0.85;
@@ -39,7 +40,7 @@ pub const FADE: f64 = 0.85;
 pub const NEAREST_M: f64 = 0.3;
 /// Variance of what drawn flakes hide over that of all flakes, up to which a shell is drawn.
 const MOST_NOISE: f64 = 3.0;
-/// What sets flakes apart from drops in the numbers that places are made of: `SALT` of `shaders/snow/flakes.wgsl`.
+/// Number that sets flakes apart from drops in the random numbers of places: `SALT` of `shaders/snow/flakes.wgsl`.
 pub(super) const SALT: u32 = 0x5e0_0000;
 
 /// Side of a shell's cell, m.
@@ -62,11 +63,13 @@ pub struct Flakes {
     pub shells: usize,
     /// Flakes of all shells.
     pub drawn: u32,
-    /// What the flakes hide over a way, 1/m: their ice, half of their extinction; the rest is diffraction.
+    /// Extinction of the flakes along a way that hides the background, 1/m: their ice, half of their extinction; the
+    /// rest is diffraction.
     pub hidden_per_m: f64,
 }
 
-/// Flakes that stand for all of a volume: how many each of a class stands for, and the variance of what they hide over that of all.
+/// Flakes that stand for all of a volume: how many each of a class stands for, and the variance of what they hide over
+/// that of all.
 fn thinned(numbers: &[f64; CLASSES], areas: &[f64; CLASSES], volume_m3: f64, room: f64) -> ([f64; CLASSES], f64) {
     let weights = |level: f64| areas.map(|a| (level / a.max(1e-12)).max(1.0));
     let count = |w: &[f64; CLASSES]| numbers.iter().zip(w).map(|(n, w)| n * volume_m3 / w).sum::<f64>();
@@ -85,7 +88,8 @@ fn thinned(numbers: &[f64; CLASSES], areas: &[f64; CLASSES], volume_m3: f64, roo
 }
 
 impl Flakes {
-    /// Of so many sizes; at most `most` are drawn. Of the share `begun` of them alone: at the edge of the cloud that they fall from.
+    /// Creates the flakes of these sizes, at most `most` of them drawn; only the share `begun` of them at the edge of
+    /// the cloud that they fall from.
     pub fn new(sizes: &FlakeSizes, begun: f64, most: u32) -> Self {
         let mut this = Self {
             table: [[0.0; 4]; CLASSES],
@@ -173,19 +177,20 @@ impl Flakes {
     }
 }
 
-/// How far a shell's lattice has come at a moment, in 2^-32 of its side, and how far flakes have turned, in 2^-32 of a turn.
+/// How far a shell's lattice has come at a moment, in 2^-32 of its side, and how far flakes have turned, in 2^-32 of a
+/// turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Moment {
     /// Displacement of the air (east, north, up).
     pub air: [u32; 3],
-    /// What a flake of one speed unit has fallen.
+    /// Distance that a flake of one speed unit has fallen.
     pub fall: u32,
     /// How far a flake of one turn unit has turned.
     pub turn: u32,
 }
 
 impl Moment {
-    /// Of `shell`, after the air has moved by `displacement_m` and flakes have fallen for `time_s`.
+    /// Creates the moment of `shell`, after the air has moved by `displacement_m` and flakes have fallen for `time_s`.
     pub fn new(shell: usize, displacement_m: DVec3, time_s: f64) -> Self {
         let side = side_m(shell);
         Self {
@@ -240,8 +245,9 @@ pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     inner * outer
 }
 
-/// All flakes as a camera at `position_m` (east, north, up of a point fixed to the world) sees them, after the air has moved by
-/// `displacement_m` in `time_s`. Equal ids of two cameras are the same flake. The f64 side of `flake_of` in `shaders/snow/flakes.wgsl`.
+/// All flakes as a camera at `position_m` (east, north, up of a point fixed to the world) sees them, after the air has
+/// moved by `displacement_m` in `time_s`. Equal ids of two cameras are the same flake. The f64 side of `flake_of` in
+/// `shaders/snow/flakes.wgsl`.
 pub fn flakes(
     of: &Flakes,
     seed: u64,

@@ -23,12 +23,12 @@ use crate::{
 /// Bytes of a `Spot` of `shaders/snow/flakes.wgsl`.
 const SPOT_BYTES: u64 = 64;
 
-/// What a frame draws with and into.
+/// Inputs and target of a frame's flakes.
 pub(super) struct FlakeDraw<'a> {
     pub block: &'a FlakesUniform,
     /// By what they are stepped, if they are.
     pub stepped: Option<&'a Stepped<'a>>,
-    /// Of the camera.
+    /// Rays of the camera.
     pub rays: &'a ViewRays,
     pub surroundings: &'a SurroundingsBlock,
     /// Whether occluder maps are among them.
@@ -40,14 +40,14 @@ pub(super) struct FlakeDraw<'a> {
     pub depth: Option<Layer<'a>>,
 }
 
-/// What a view holds for flakes, made when the first ones fall.
+/// GPU resources of a view for flakes, made when the first ones fall.
 pub(super) struct SnowPass {
     block: UniformBlock,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     surroundings: wgpu::BindGroupLayout,
     pipelines: Made<FlakeKind, wgpu::RenderPipeline>,
-    /// Those that the picture shows, where there are compute shaders and no steps.
+    /// List of the flakes that the picture shows, where there are compute shaders and no steps.
     listed: Option<Box<ListedFlakes>>,
     step: Option<Box<StepPass>>,
     none: wgpu::TextureView,
@@ -166,7 +166,8 @@ enum Source {
     Stepped,
 }
 
-/// Which pipeline draws: with what depth, whether there are occluder maps, and what.
+/// Variant of the pipeline that draws: how it reads depth, whether there are occluder maps, and the source of the
+/// flakes.
 #[derive(Clone, Copy, PartialEq)]
 struct FlakeKind {
     depth: DepthRead,
@@ -207,7 +208,8 @@ fn pipeline(
     )
 }
 
-/// The flakes that a picture shows ([`crate::particles::listing`]): shaders are `shaders/snow/cull.wgsl` and `cull_spots.wgsl`.
+/// The flakes that a picture shows ([`crate::particles::listing`]): shaders are `shaders/snow/cull.wgsl` and
+/// `cull_spots.wgsl`.
 struct ListedFlakes {
     layout: wgpu::BindGroupLayout,
     /// The flakes' block.

@@ -1,4 +1,4 @@
-//! What the shaders of snow do, in f64: what a flake scatters, and the sky that it passes on.
+//! Reference of the shaders of snow, in f64: the light that a flake scatters, and the sky that it passes on.
 
 use glam::DVec3;
 
@@ -6,18 +6,21 @@ use crate::moment::LightAround;
 
 /// Asymmetry of what a flake's ice scatters beside diffraction.
 ///
-/// Aggregates of ice crystals have an asymmetry of about 0.77 in visible light (Raisanen et al. 2015 fit 0.78 to measurements of blowing
-/// snow). Half of what a large particle takes from a beam is diffraction, straight on: (0.77 - 0.5) / 0.5 is left for the rest.
+/// Aggregates of ice crystals have an asymmetry of about 0.77 in visible light (Raisanen et al. 2015 fit 0.78 to
+/// measurements of blowing snow). Half of what a large particle takes from a beam is diffraction, straight on: (0.77 -
+/// 0.5) / 0.5 is left for the rest.
 pub const ASYMMETRY: f64 = 0.54;
 
-/// What a flake scatters of a beam at the cosine `c`, 1 straight on; 4 pi on the whole. Ice takes next to nothing of visible light.
+/// Returns the light that a flake scatters of a beam at the cosine `c`, 1 straight on; 4 pi on the whole. Ice takes
+/// next to nothing of visible light.
 pub fn flake_phase(c: f64) -> f64 {
     let g = ASYMMETRY;
     (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5)
 }
 
-/// The share of what surrounds a flake above the horizon in what it sends along a ray that rises by a sine `z`: [`flake_phase`] over a
-/// half space. By the Legendre series of both, 1/2 + (3/4) g z - (7/16) g^3 P3(z), cut there; within 0.02 of the integral.
+/// The share of what surrounds a flake above the horizon in what it sends along a ray that rises by a sine `z`:
+/// [`flake_phase`] over a half space. By the Legendre series of both, 1/2 + (3/4) g z - (7/16) g^3 P3(z), cut there;
+/// within 0.02 of the integral.
 pub fn flake_sky_share(z: f64) -> f64 {
     0.5 + z * (0.50835 - 0.17222 * z * z)
 }

@@ -1,4 +1,4 @@
-//! What a host may ask of the picture of falling snow.
+//! Settings that a host may choose for the picture of falling snow.
 
 use crate::{
     error::{Result, check_range},
@@ -17,16 +17,18 @@ pub enum SnowModel {
     Flakes,
 }
 
-/// How a view draws falling snow. What falls, and where each flake is, does not depend on it, but for how many are drawn.
+/// How a view draws falling snow. What falls, and where each flake is, does not depend on it, but for how many are
+/// drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SnowSettings {
     /// With what it is drawn.
     pub model: SnowModel,
-    /// Most flakes that are drawn, [1000, 8 000 000]; further ones are stood for by those that are, or left to the veil: the more, the
-    /// farther flakes reach, up to 16 m. `None`, the default: 1 000 000, or 60 000 on a software driver.
+    /// Most flakes that are drawn, [1000, 8 000 000]; further ones are stood for by those that are, or left to the
+    /// veil: the more, the farther flakes reach, up to 16 m. `None`, the default: 1 000 000, or 60 000 on a software
+    /// driver.
     pub most_flakes: Option<u32>,
-    /// Time for which a picture is exposed, s, [1e-4, 0.1]: flakes that move by more than their size in it are streaks. Default 1/250:
-    /// an eye follows flakes in a light wind and sees their shapes.
+    /// Time for which a picture is exposed, s, [1e-4, 0.1]: flakes that move by more than their size in it are streaks.
+    /// Default 1/250: an eye follows flakes in a light wind and sees their shapes.
     pub shutter_s: f64,
 }
 

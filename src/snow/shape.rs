@@ -1,9 +1,10 @@
 //! The shape of a flake, as `shaders/snow/shape.wgsl` draws it.
 //!
-//! Each flake is a disc that noise eats away at: value = max(1 - exp(-5 W), 0) with W = offset + strength n - r^2, of r in radii and
-//! noise n of the flake's own (the procedural flake of the older system that the shape is from, with n from -1 to 1 in place of a
-//! noise that may leave a hole where the flake should be). Offset and strength are such that the mean over discs is the share of a flake
-//! that is ice, so near flakes hide what far ones, drawn as faint discs, do.
+//! Each flake is a disc that noise eats away at: value = max(1 - exp(-5 W), 0) with W = offset + strength n - r^2, of r
+//! in radii and noise n of the flake's own (the procedural flake of the older system that the shape is from, with n
+//! from -1 to 1 in place of a noise that may leave a hole where the flake should be). Offset and strength are such that
+//! the mean over discs is the share of a flake that is ice, so near flakes hide what far ones, drawn as faint discs,
+//! do.
 
 use crate::falling::random3;
 
@@ -11,9 +12,9 @@ use crate::falling::random3;
 const OCTAVES: u32 = 4;
 /// Cells of the coarsest in a radius.
 const CELLS: f64 = 2.2;
-/// What is added to the noise.
+/// Constant that is added to the noise.
 const OFFSET: f64 = 0.8563;
-/// What the noise counts for.
+/// Weight of the noise.
 const NOISE: f64 = 2.0;
 
 fn corner(cell: [i32; 2], seed: u32) -> f64 {

@@ -1,5 +1,5 @@
-//! Flakes that are stepped through a wind that varies in space: their lattice as [`crate::particles::stepping`] wants it, which has the model.
-//! Their helix is none of the step; it is drawn about the place where a flake is.
+//! Flakes that are stepped through a wind that varies in space: their lattice as [`crate::particles::stepping`] wants
+//! it, which has the model. Their helix is none of the step; it is drawn about the place where a flake is.
 
 use glam::DVec3;
 
@@ -17,12 +17,12 @@ use crate::{
     surroundings::{WindMap, WindView},
 };
 
-/// What steps flakes.
+/// Creates the pass that steps flakes.
 pub(super) fn pass(device: &Device, blocks: &Blocks) -> StepPass {
     StepPass::new(device, blocks, ("snow/step.wgsl", "step_flakes"), 128, size_of::<FlakesUniform>())
 }
 
-/// What they are stepped by.
+/// Creates the inputs of a step of the flakes.
 pub(super) fn stepped<'a>(
     (seed, flakes): (u64, &Flakes),
     (camera, air): (&StreakCamera<'_>, &MovingAir),

@@ -51,7 +51,7 @@ pub(crate) struct MovingAir {
 }
 
 impl FlakesUniform {
-    /// Of flakes, for a camera in moving air; `light` is exposed.
+    /// Creates the block of flakes, for a camera in moving air; `light` is exposed.
     pub fn new(seed: u64, flakes: &Flakes, light: &LightAround, shot: &StreakCamera<'_>, air: &MovingAir) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let last = flakes.upto[CLASSES - 1];

@@ -30,7 +30,7 @@ use crate::{
 /// Steps in which snow sets in below its cloud, so that a climbing camera does not count flakes anew in each frame.
 const ONSET_STEPS: f64 = 32.0;
 
-/// What flakes were counted for.
+/// Conditions for which the flakes were counted.
 #[derive(Clone, Copy, PartialEq)]
 struct Counted {
     falling: Falling,
@@ -40,7 +40,7 @@ struct Counted {
     most: u32,
 }
 
-/// What a view holds for its flakes.
+/// State of the flakes that a view keeps.
 pub(crate) struct SnowView {
     pub settings: SnowSettings,
     /// The layer before the picture, which what else falls shares.
@@ -93,7 +93,7 @@ impl SnowView {
         self.is_there && self.share > 0.0
     }
 
-    /// What flakes are worth in a picture, if the plan decides about them.
+    /// Returns the contrast of the flakes in a picture, if the plan decides about them.
     pub fn contrast(&self, at: &DrawContext<'_>) -> Option<FlakeContrast> {
         let flakes = self.flakes().filter(|_| self.is_planned())?;
         let wind = at.now.carrying().ok()?.velocity_m_s();

@@ -1,4 +1,5 @@
-//! One column of lying snow, in whole units of mass and depth: what it was given and what it gave add up to the last bit.
+//! One column of lying snow, in whole units of mass and depth: what it was given and what it gave add up to the last
+//! bit.
 
 use super::laws;
 use crate::weather::{Conditions, Falling};
@@ -19,11 +20,11 @@ pub(super) struct Column {
     pub water: i64,
     /// In units of depth.
     pub depth: i64,
-    /// Of visible light.
+    /// Albedo of visible light.
     pub albedo: i64,
 }
 
-/// What moves from one column to another.
+/// Snow that moves from one column to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Part {
     pub ice: i64,
@@ -37,7 +38,7 @@ impl Part {
     }
 }
 
-/// What a step took and gave, in units of mass.
+/// Mass that a step took and gave, in units of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Exchange {
     pub fallen: i64,
@@ -45,10 +46,11 @@ pub(super) struct Exchange {
     pub sublimated: i64,
 }
 
-/// What acts on columns during a step: the same for all of a field but for what is kept off.
+/// Forcing of columns during a step: equal for all of a field but for what is kept off.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Forcing {
-    /// Units of ice that fall, their depth as they land, and the share of the albedo's way to that of new snow that they go.
+    /// Units of ice that fall, their depth as they land, and the share of the albedo's way to that of new snow that
+    /// they go.
     ice: i64,
     depth: i64,
     renewed: f64,
@@ -70,7 +72,7 @@ impl Settling {
         Self(Box::new([[0.0; 2]; DENSITIES]))
     }
 
-    /// Of air of this temperature, in a step so long.
+    /// Sets the factors for air of this temperature, in a step so long.
     pub fn set(&mut self, temperature_c: f64, seconds: f64) {
         for (i, settling) in self.0.iter_mut().enumerate() {
             let density = DENSITY_STEP * (i as f64 + 0.5);
@@ -90,7 +92,7 @@ fn share(number: i64, part: i64, whole: i64) -> i64 {
 }
 
 impl Forcing {
-    /// Of a weather in which `falling` falls, under sunlight in W/m^2.
+    /// Creates the forcing of a weather in which `falling` falls, under sunlight in W/m^2.
     pub fn new(c: &Conditions, falling: &Falling, sunlight_w_m2: f64, seconds: f64) -> Self {
         let hours = seconds / 3600.0;
         let (t, wind) = (c.air.temperature_c, c.wind.speed_m_s());

@@ -1,20 +1,24 @@
 //! Snow that the wind carries along the ground: from where it blows to where it is weaker.
 //!
-//! **Wind at the surface.** A wind that varies in space is taken as it is, with its direction, but for what blows against the mean wind. Else the surface's shape bends the mean wind: slopes that face
-//! it quicken it and lee slopes calm it by 0.58 of their slope (Liston and Elder 2006), crests quicken it and hollows calm it by 2 H / L
-//! (Jackson and Hunt 1975). Behind what stands up the wind is calmed below a line that falls by 1 in [`LEE_RUN`] from its top: the idea of
-//! Winstral and Marks (2002), with the length of drifts behind solid fences (Tabler 2003). Before it a line rises as steeply to
-//! its top, and the wind below is calmed by the fourth power of how far below: a tenth five heights before a wall and two thirds one height before
-//! it. The drift there ends up half as high as the wall, as fences get it to windward (Tabler 1980, J. Glaciol. 26, 405).
+//! **Wind at the surface.** A wind that varies in space is taken as it is, with its direction, but for what blows
+//! against the mean wind. Else the surface's shape bends the mean wind: slopes that face it quicken it and lee slopes
+//! calm it by 0.58 of their slope (Liston and Elder 2006), crests quicken it and hollows calm it by 2 H / L (Jackson
+//! and Hunt 1975). Behind what stands up the wind is calmed below a line that falls by 1 in [`LEE_RUN`] from its top:
+//! the idea of Winstral and Marks (2002), with the length of drifts behind solid fences (Tabler 2003). Before it a line
+//! rises as steeply to its top, and the wind below is calmed by the fourth power of how far below: a tenth five heights
+//! before a wall and two thirds one height before it. The drift there ends up half as high as the wall, as fences get
+//! it to windward (Tabler 1980, J. Glaciol. 26, 405).
 //!
-//! **Transport.** Along the wind the flux goes to what the wind can carry ([`saltation_kg_m_s`]): upwards over [`ERODING_M`] where there is
-//! loose snow, downwards over [`LANDING_M`]. One sweep down the wind does this for a whole step, whatever its length and the cells' size:
-//! what leaves a cell enters the next ones, what leaves the last ones is blown out. As much comes in from the country about the field as its
-//! snow yields. What hops ([`saltation_kg_m_s`]) and what is suspended ([`suspension_kg_m_s`]) are carried side by side: the second grows
-//! over [`LIFTING_M`] and lands over [`SINKING_M`], so that it reaches farther into a lee.
+//! **Transport.** Along the wind the flux goes to what the wind can carry ([`saltation_kg_m_s`]): upwards over
+//! [`ERODING_M`] where there is loose snow, downwards over [`LANDING_M`]. One sweep down the wind does this for a whole
+//! step, whatever its length and the cells' size: what leaves a cell enters the next ones, what leaves the last ones is
+//! blown out. As much comes in from the country about the field as its snow yields. What hops ([`saltation_kg_m_s`])
+//! and what is suspended ([`suspension_kg_m_s`]) are carried side by side: the second grows over [`LIFTING_M`] and
+//! lands over [`SINKING_M`], so that it reaches farther into a lee.
 //!
-//! The sweep goes from patch to patch down the wind, as from cell to cell: what leaves the last cells of one, and the line of a lee over
-//! them, is what comes to the next. Patches that have no snow, get none and have none to their lee are left out.
+//! The sweep goes from patch to patch down the wind, as from cell to cell: what leaves the last cells of one, and the
+//! line of a lee over them, is what comes to the next. Patches that have no snow, get none and have none to their lee
+//! are left out.
 
 use glam::DVec2;
 
@@ -27,20 +31,20 @@ use super::{
 /// Ways over which the flux of what hops grows and falls to 1/e, m.
 const ERODING_M: f64 = 30.0;
 const LANDING_M: f64 = 3.0;
-/// The same of what is suspended: it is fully developed after some 500 to 1000 m (Takeuchi 1980), and sinks half a metre at 0.4 m/s in a
-/// wind of 12 m/s.
+/// Ways over which the flux of suspended snow grows and falls to 1/e, m: it is fully developed after some 500 to 1000 m
+/// (Takeuchi 1980), and sinks half a metre at 0.4 m/s in a wind of 12 m/s.
 const LIFTING_M: f64 = 250.0;
 const SINKING_M: f64 = 15.0;
 /// Run of the line below which the wind is calmed, over its fall.
 const LEE_RUN: f64 = 12.0;
-/// What the calm takes of the wind.
+/// Share of the wind that the calm takes.
 const CALMED: f64 = 0.85;
 /// Least height of what casts a lee, m.
 const LEAST_M: f64 = 1.0;
 /// Distances over which slope and curvature of the surface are taken, m.
 const SHAPES_M: [f64; 3] = [6.0, 10.0, 15.0];
 
-/// What comes over a cell's border with the wind.
+/// Snow and lee that cross a cell's border with the wind.
 #[derive(Clone, Copy, Debug, Default)]
 struct Air {
     /// Snow that hops and that is suspended, in units of mass.
@@ -49,17 +53,17 @@ struct Air {
     lee: Option<[f64; 2]>,
 }
 
-/// What a sweep knows of a patch.
+/// State of a sweep for a patch.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Edges {
-    /// What has left it down the wind: along each row to the east or west, along each column to the north or south.
+    /// Air that has left it down the wind: along each row to the east or west, along each column to the north or south.
     left: [Vec<Air>; 2],
     /// Wind over each cell: its parts along the sweep, m/s, or its speed over the mean wind's and nothing.
     wind: Vec<[f64; 2]>,
-    /// The line of the calm before what stands to its lee, along each row and each column where the wind comes in: its height and that of
-    /// what casts it, m. Empty where nothing stands.
+    /// The line of the calm before what stands to its lee, along each row and each column where the wind comes in: its
+    /// height and that of what casts it, m. Empty where nothing stands.
     fronts: [Vec<Option<[f64; 2]>>; 2],
-    /// Of the sweep that it was in last.
+    /// Number of the sweep that it was in last.
     swept: u64,
     /// Snow may lie on it or come to it in this sweep; and some may lie to its lee.
     has_snow: bool,
@@ -71,9 +75,9 @@ pub(super) struct Edges {
 pub(super) struct Drift {
     /// Numbers of the patches down the wind.
     order: Vec<u32>,
-    /// What comes to a patch: along each row, and along each column.
+    /// Air that comes to a patch: along each row, and along each column.
     coming: [Vec<Air>; 2],
-    /// Of the patches to the lee: see [`Edges`].
+    /// Fronts of the patches to the lee: see [`Edges`].
     fronts: [Vec<Option<[f64; 2]>>; 2],
     sweeps: u64,
 }
@@ -84,7 +88,7 @@ struct Way {
     shares: [f64; 2],
     /// Whether it goes west, and south.
     back: [bool; 2],
-    /// Of the wind.
+    /// Direction of the wind, unit.
     unit: DVec2,
     speed: f64,
     /// Way through a cell, m.
@@ -111,7 +115,7 @@ impl Way {
     }
 }
 
-/// What a whole sweep is done with.
+/// Inputs of a whole sweep.
 struct Sweep<'a> {
     way: &'a Way,
     /// Along the mean wind.
@@ -132,7 +136,8 @@ struct Through {
     sum: f64,
     /// Share of the flux that goes east or west.
     across: f64,
-    /// Share of the way to its new flux that drift goes within a cell, where it grows and where it falls: of hopping and of suspended snow.
+    /// Share of the way to its new flux that drift goes within a cell, where it grows and where it falls: of hopping
+    /// and of suspended snow.
     grown: [[f64; 2]; 2],
 }
 
@@ -151,8 +156,8 @@ fn smooth(x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Height of ground and snow so many cells along an axis from a cell, m, and how many they were: fewer at the end of the ground, and none
-/// where something stands.
+/// Height of ground and snow so many cells along an axis from a cell, m, and how many they were: fewer at the end of
+/// the ground, and none where something stands.
 fn along(field: &Field, (patch, place): (usize, [usize; 2]), axis: usize, up: bool, cells: usize) -> (f64, usize) {
     let (mut at, mut patch, mut left) = (place, patch, cells);
     loop {
@@ -172,8 +177,8 @@ fn along(field: &Field, (patch, place): (usize, [usize; 2]), axis: usize, up: bo
     if patch.is_blocked(cell) { (f64::NAN, 0) } else { (patch.surface_m(cell), cells - left) }
 }
 
-/// Factor on the wind at a cell by the surface's slope and curvature, in the mean of several distances: over a single one each drift would be
-/// repeated at that distance up the wind.
+/// Factor on the wind at a cell by the surface's slope and curvature, in the mean of several distances: over a single
+/// one each drift would be repeated at that distance up the wind.
 fn shaped(field: &Field, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
     let here = field.patches[patch].surface_m(place[1] * field.size[0] + place[0]);
     let (mut steep, mut crest) = (0.0, 0.0);
@@ -196,8 +201,8 @@ fn shaped(field: &Field, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
     1.0 + 0.58 * (share * steep).clamp(-0.5, 0.5) + (share * crest).clamp(-0.4, 0.4)
 }
 
-/// A calm's line over a cell, from the lines over its two neighbours on the side of what casts it: its height, m, lower by the way through the
-/// cell, and the height of what casts it, m.
+/// A calm's line over a cell, from the lines over its two neighbours on the side of what casts it: its height, m, lower
+/// by the way through the cell, and the height of what casts it, m.
 fn fallen(way: &Way, beside: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
     for (share, known) in way.shares.into_iter().zip(beside).filter_map(|(share, known)| Some((share, known?))) {
@@ -208,7 +213,7 @@ fn fallen(way: &Way, beside: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     (sum > 0.0).then(|| [line / sum - way.through_m / LEE_RUN, caster / sum])
 }
 
-/// What a lee leaves of the wind at a cell, up to a factor, and the line over it.
+/// Returns the share of the wind that a lee leaves at a cell, up to a factor, and the line over it.
 fn calmed(patch: &Patch, cell: usize, way: &Way, before: [Air; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, before.map(|air| air.lee)).map(|[line, caster]| [line, caster.max(LEAST_M)]);
     if patch.is_hole(cell) {
@@ -222,7 +227,8 @@ fn calmed(patch: &Patch, cell: usize, way: &Way, before: [Air; 2]) -> (f64, Opti
     }
 }
 
-/// What the calm before what stands to the lee leaves of the wind at a cell, up to a factor, and the line over it.
+/// Returns the share of the wind that is left at a cell by the calm before what stands to the lee, up to a factor, and
+/// the line over it.
 fn dammed(patch: &Patch, cell: usize, way: &Way, behind: [Option<[f64; 2]>; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, behind);
     if patch.is_hole(cell) {
@@ -278,7 +284,8 @@ impl Drift {
         }
     }
 
-    /// Puts the patches in the order of the wind, and finds which of them snow may reach and which have such in their lee.
+    /// Puts the patches in the order of the wind, and finds which of them snow may reach and which have such in their
+    /// lee.
     fn choose(&mut self, field: &mut Field, way: &Way, comes_in: bool) {
         self.order.clear();
         self.order.extend(0..field.patches.len() as u32);
@@ -413,8 +420,8 @@ impl Drift {
 }
 
 impl Sweep<'_> {
-    /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell along the row and along the column, hopping
-    /// and suspended, the lee's line over it, and whether its column of snow has changed.
+    /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell along the row and along
+    /// the column, hopping and suspended, the lee's line over it, and whether its column of snow has changed.
     fn cell(&self, patch: &mut Patch, cell: usize, before: [Air; 2]) -> ([[i64; 2]; 2], Option<[f64; 2]>, bool) {
         let (calm, lee) = if self.is_local { (1.0, None) } else { calmed(patch, cell, self.way, before) };
         let mut leaving = [0, 1].map(|kind| before[0].snow[kind] + before[1].snow[kind]);
@@ -451,7 +458,7 @@ impl Sweep<'_> {
     }
 }
 
-/// What the country about a field yields to each row and each column of cells at its border.
+/// Returns the snow that the country about a field yields to each row and each column of cells at its border.
 fn inflow(field: &Field, step: &Step<'_>, way: &Way) -> [[i64; 2]; 2] {
     let country = step.country;
     let threshold = threshold_m_s(country.is_wet(), country.density_kg_m3());

@@ -1,12 +1,13 @@
 //! Columns of snow side by side on patches of ground, and the books of their mass.
 //!
-//! A **patch** is a rectangle of cells; all of a field have the same size and lie on one lattice, side by side or apart. A grid of the
-//! host's is one patch, its tiles are many. Nothing depends on where one patch ends and the next begins: sums are of whole numbers, what
-//! goes with the wind goes from patch to patch ([`super::drift`]), and what slides does so in the order of the lattice's rows
-//! ([`super::slides`]). A patch without snow has no columns and is passed over until something falls, drifts or slides onto it.
+//! A **patch** is a rectangle of cells; all of a field have the same size and lie on one lattice, side by side or
+//! apart. A grid of the host's is one patch, its tiles are many. Nothing depends on where one patch ends and the next
+//! begins: sums are of whole numbers, what goes with the wind goes from patch to patch ([`super::drift`]), and what
+//! slides does so in the order of the lattice's rows ([`super::slides`]). A patch without snow has no columns and is
+//! passed over until something falls, drifts or slides onto it.
 //!
-//! The ground is abstract here: heights, what stands on cells, where there is none, and which cells what falls gets to. Where these come
-//! from is `site.rs`'s part.
+//! The ground is abstract here: heights, what stands on cells, where there is none, and which cells what falls gets to.
+//! Where these come from is `site.rs`'s part.
 
 use std::sync::OnceLock;
 
@@ -31,9 +32,9 @@ const SHARE_UNITS: f64 = 4_294_967_296.0;
 pub(super) struct Patch {
     /// Where it lies on the lattice, in patches east and north.
     pub key: [i32; 2],
-    /// Of the host's tile by which the ground was taken.
+    /// Revision of the host's tile from which the ground was taken.
     pub tile_revision: u64,
-    /// Of each cell, m. Empty until the ground is known.
+    /// Height of each cell, m. Empty until the ground is known.
     pub heights_m: Vec<f32>,
     /// At most as high as any of them, m.
     pub lowest_m: f64,
@@ -50,7 +51,7 @@ pub(super) struct Patch {
     pub revision: u64,
     /// West, east, south, north of it.
     pub near: [u32; 4],
-    /// What the wind carries over its borders, and how fast it is.
+    /// Snow that the wind carries over its borders, and the wind's speed.
     pub edges: Edges,
     hash: OnceLock<u64>,
 }
@@ -129,7 +130,7 @@ impl Patch {
         self.columns.iter().map(Column::mass).sum()
     }
 
-    /// The same for the same snow.
+    /// Returns a hash that is equal for equal snow.
     pub fn hash(&self) -> u64 {
         *self.hash.get_or_init(|| {
             let fold = |hash: u64, v: i64| (hash ^ v as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
@@ -193,7 +194,7 @@ impl Patch {
     }
 }
 
-/// What the columns of a field gave and have.
+/// Sums over the columns of a field: what they gave and what they have.
 #[derive(Default)]
 struct Sums {
     fallen: i64,
@@ -215,7 +216,7 @@ impl Sums {
 /// Where the mass of a field came from and went, in units of mass times cells since it began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Books {
-    /// What lay when its ground was set.
+    /// Mass that lay when its ground was set.
     pub began: i64,
     pub fallen: i64,
     pub blown_in: i64,
@@ -234,13 +235,13 @@ impl Books {
         Self { began, fallen, blown_in, blown_out, ran_off, sublimated, taken }
     }
 
-    /// What must lie.
+    /// Returns the mass that must lie.
     pub fn balance(&self) -> i64 {
         self.began + self.fallen + self.blown_in - self.blown_out - self.ran_off - self.sublimated - self.taken
     }
 }
 
-/// What falls at a place of the lattice whose ground is so high, m.
+/// Function that returns the forcing at a place of the lattice whose ground is so high, m.
 pub(super) type FallsAt<'a> = &'a dyn Fn([i32; 2], f64) -> Forcing;
 /// The wind at 10 m over a place of the lattice whose snow reaches so high, m; m/s east and north.
 pub(super) type WindAt<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
@@ -253,10 +254,10 @@ pub(super) struct WindOver<'a> {
     pub local: Option<WindAt<'a>>,
 }
 
-/// What a step is done with.
+/// Inputs of a step.
 pub(super) struct Step<'a> {
     pub seconds: f64,
-    /// What acts on all cells, and in its place where it differs from place to place.
+    /// Forcing of all cells, and the function that replaces it where it varies from place to place.
     pub even: &'a Forcing,
     pub falls: Option<FallsAt<'a>>,
     pub settling: &'a Settling,
@@ -265,7 +266,7 @@ pub(super) struct Step<'a> {
     pub country: &'a Column,
     /// Steep snow slides in this step.
     pub slides: bool,
-    /// Of the patches that it changes.
+    /// Revision given to the patches that it changes.
     pub revision: u64,
 }
 
@@ -275,7 +276,7 @@ pub(super) struct Field {
     /// Cells of a patch, east and north.
     pub size: [usize; 2],
     pub cell_m: f64,
-    /// Of tiles: the origin of their lattice and its cells, m. None of a grid.
+    /// Lattice of tiles: the origin and the cells, m. None for a grid.
     pub lattice: Option<[f64; 4]>,
     /// By their keys: rows from the south, in each from the west.
     #[expect(clippy::vec_box, reason = "a new one is put among the others, which are many and large")]
@@ -313,7 +314,7 @@ impl Field {
         self.patches.len() * self.size[0] * self.size[1]
     }
 
-    /// What lies, in units of mass times cells.
+    /// Returns the mass that lies, in units of mass times cells.
     pub fn lying(&self) -> i64 {
         self.patches.iter().map(|p| p.lying()).sum()
     }

@@ -26,9 +26,9 @@ pub enum LyingSnowModel {
     /// From the weather of the moment: as deep as it is reported, everywhere.
     #[default]
     Reported,
-    /// A state that snowfall fills and that settles, drifts, slides and melts ([`crate::snowpack`]). It begins as deep as the weather
-    /// reports it. An update that moves time by more than a day is fast-forward ([`crate::context::Context::accumulate`]); of one of
-    /// more than 30 days its last 30 count.
+    /// A state that snowfall fills and that settles, drifts, slides and melts ([`crate::snowpack`]). It begins as deep
+    /// as the weather reports it. An update that moves time by more than a day is fast-forward
+    /// ([`crate::context::Context::accumulate`]); of one of more than 30 days its last 30 count.
     Simulated,
 }
 
@@ -66,20 +66,20 @@ pub(crate) struct HeldSnow {
     site: Option<Site>,
     /// Tiles that were changed while steps remained, on the terrain as it was then.
     waiting: Vec<(TileKey, Arc<Terrain>)>,
-    /// What the host has set since the snow last settled, in order: one ground, or none and one.
+    /// Grounds that the host has set since the snow last settled, in order: one ground, or none and one.
     grounds: Vec<HostGround>,
     settling: Settling,
     /// Steps that end up to here are coarse.
     coarse_until_s: f64,
     revision: u64,
     published: u64,
-    /// What has come from under the snow since it was last published: from when on, for how long, s.
+    /// Meltwater that has come from under the snow since it was last published: from when on, for how long, s.
     melts: Vec<(f64, f64, Meltwater)>,
-    /// What was published is of another past.
+    /// Flag: what was published belongs to another past.
     forgets: bool,
 }
 
-/// What the host has set that snow lies on: a grid, tiles, or neither.
+/// Ground that the host has set and snow lies on: a grid, tiles, or neither.
 #[derive(Clone)]
 struct HostGround {
     grid: Option<Arc<TerrainHeights>>,
@@ -158,7 +158,7 @@ impl HeldSnow {
         }
     }
 
-    /// Of the host's terrain.
+    /// Returns site and snow field of the host's terrain, if there are any.
     pub(super) fn field(&self) -> Option<(&Site, &Field)> {
         Some((self.site.as_ref()?, self.state.as_ref()?.field.as_ref()?))
     }
@@ -172,7 +172,7 @@ impl HeldSnow {
         self.state.as_ref().map_or(0.0, |s| s.coarse_s)
     }
 
-    /// Of patches that change now.
+    /// Returns the revision of patches that change now.
     pub(super) fn next_revision(&self) -> u64 {
         self.revision + 1
     }
@@ -201,7 +201,8 @@ impl HeldSnow {
         }
     }
 
-    /// Takes the terrain as it is by now: the snow stays on cells that stay; on new ones it is as deep as on level ground.
+    /// Takes the terrain as it is by now: the snow stays on cells that stay; on new ones it is as deep as on level
+    /// ground.
     fn settle_on(&mut self, ground: &HostGround) {
         match (&ground.grid, &ground.tiles) {
             (Some(grid), _) => {

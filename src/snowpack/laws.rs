@@ -1,7 +1,8 @@
-//! The laws of lying snow, in f64: how dense it lands, how it settles, melts and refreezes, when the wind moves it and how much.
+//! The laws of lying snow, in f64: how dense it lands, how it settles, melts and refreezes, when the wind moves it and
+//! how much.
 //!
-//! Each is a closed form with its source. The columns (`column.rs`) and the drift (`drift.rs`) take whole units of mass from them, so no
-//! mass is lost to rounding.
+//! Each is a closed form with its source. The columns (`column.rs`) and the drift (`drift.rs`) take whole units of mass
+//! from them, so no mass is lost to rounding.
 
 use crate::weather::{Conditions, lifting::drift_friction_velocity_m_s, saturation_pressure_hpa};
 
@@ -24,20 +25,21 @@ pub const HELD_SHARE: f64 = 0.1;
 pub const WET_SHARE: f64 = 0.005;
 /// Wind at 10 m above which dry snow moves, m/s (Li and Pomeroy 1997).
 pub const DRY_THRESHOLD_M_S: f64 = 7.7;
-/// The same of wet snow.
+/// Wind at 10 m above which wet snow moves, m/s (Li and Pomeroy 1997).
 pub const WET_THRESHOLD_M_S: f64 = 9.9;
 /// Slope up to which loose snow lies.
 pub const REPOSE_DEG: f64 = 38.0;
 /// Latent heat of melting over the specific heat of water, C.
 const MELTING_C: f64 = 3.34e5 / 4186.0;
 
-/// Density of new snow, kg/m^3, at an air temperature in C and a wind at 10 m in m/s (Pahaut 1976 in Vionnet et al. 2012, eq. 1).
+/// Density of new snow, kg/m^3, at an air temperature in C and a wind at 10 m in m/s (Pahaut 1976 in Vionnet et al.
+/// 2012, eq. 1).
 pub fn new_density_kg_m3(temperature_c: f64, wind_m_s: f64) -> f64 {
     (109.0 + 6.0 * temperature_c + 26.0 * wind_m_s.max(0.0).sqrt()).clamp(50.0, 400.0)
 }
 
-/// How fast snow settles by the change of its grains, 1/s (Anderson 1976 in Jordan 1991, eq. 29): slower above 100 kg/m^3, twice as fast
-/// where it is wet.
+/// How fast snow settles by the change of its grains, 1/s (Anderson 1976 in Jordan 1991, eq. 29): slower above 100
+/// kg/m^3, twice as fast where it is wet.
 pub fn metamorphism_per_s(temperature_c: f64, density_kg_m3: f64, wet: bool) -> f64 {
     let cold = (-temperature_c).max(0.0);
     let dense = (density_kg_m3 - 100.0).max(0.0);
@@ -54,9 +56,9 @@ pub fn albedo_kept(thaws: bool, seconds: f64) -> f64 {
     libm::exp(-seconds / if thaws { THAW_S } else { FROST_S })
 }
 
-/// What melts, mm/h: without the sun, and per W/m^2 of sunlight that the snow takes up. By temperature and sun with the factors of
-/// Pellicciotti et al. (2005), above 1 C; rain adds its own heat, and with it the moist wind that the US Army Corps of Engineers (1956)
-/// counts in the open, 0.24 mm a day for each degree and m/s.
+/// Returns the melting rate, mm/h: without the sun, and per W/m^2 of sunlight that the snow takes up. By temperature
+/// and sun with the factors of Pellicciotti et al. (2005), above 1 C; rain adds its own heat, and with it the moist
+/// wind that the US Army Corps of Engineers (1956) counts in the open, 0.24 mm a day for each degree and m/s.
 pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
     let t = c.air.temperature_c;
     let rain = if rain_mm_h > 0.0 && t > 0.0 {
@@ -67,13 +69,14 @@ pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
     if t > 1.0 { (0.05 * t + rain, 0.0094) } else { (rain, 0.0) }
 }
 
-/// What of the liquid refreezes, mm/h (Bergstroem 1976: 0.05 of 3.5 mm a day for each degree of frost).
+/// Returns the rate at which the liquid refreezes, mm/h (Bergstroem 1976: 0.05 of 3.5 mm a day for each degree of
+/// frost).
 pub fn refreezing_mm_h(temperature_c: f64) -> f64 {
     0.05 * 3.5 / 24.0 * (-temperature_c).max(0.0)
 }
 
-/// What snow loses to dry air, mm/h, by the bulk formula over a roughness of 1 mm: rho (k / ln(2 / z0))^2 U (qs - q), nothing where the
-/// air is moister than its surface.
+/// Returns the loss of snow to dry air, mm/h, by the bulk formula over a roughness of 1 mm: rho (k / ln(2 / z0))^2 U
+/// (qs - q), nothing where the air is moister than its surface.
 pub fn sublimation_mm_h(c: &Conditions) -> f64 {
     let t = c.air.temperature_c.min(0.0);
     let pressure = c.air.station_pressure_hpa;
@@ -85,13 +88,15 @@ pub fn sublimation_mm_h(c: &Conditions) -> f64 {
     (3600.0 * air * exchange * c.wind.speed_at_height_m_s(2.0) * dry).max(0.0)
 }
 
-/// Wind at 10 m above which snow moves, m/s: denser snow is bound harder, above 300 kg/m^3 by the growth of Liston et al. (2007, eq. 20).
+/// Wind at 10 m above which snow moves, m/s: denser snow is bound harder, above 300 kg/m^3 by the growth of Liston et
+/// al. (2007, eq. 20).
 pub fn threshold_m_s(wet: bool, density_kg_m3: f64) -> f64 {
     let loose = if wet { WET_THRESHOLD_M_S } else { DRY_THRESHOLD_M_S };
     loose * libm::exp(0.013 * (density_kg_m3 - 300.0).max(0.0))
 }
 
-/// What hops along the ground, kg/(m s): Pomeroy and Gray (1990), 0.68 rho / (u* g) u*t (u*^2 - u*t^2), for winds at 10 m.
+/// Returns the flux of snow that hops along the ground, kg/(m s): Pomeroy and Gray (1990), 0.68 rho / (u* g) u*t (u*^2
+/// - u*t^2), for winds at 10 m.
 pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;
@@ -100,8 +105,9 @@ pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     0.68 * 1.3 / (u * 9.81) * t * (u * u - t * t)
 }
 
-/// What is suspended over the ground where the wind has blown long enough, kg/(m s), for winds at 10 m: Tabler's (1990, U^3.8 / 233847)
-/// for all snow up to 5 m less what hops, from the threshold on by the share of the friction that is over it, as in what hops.
+/// Returns the flux of suspended snow over the ground where the wind has blown long enough, kg/(m s), for winds at 10
+/// m: Tabler's (1990, U^3.8 / 233847) for all snow up to 5 m less what hops, from the threshold on by the share of the
+/// friction that is over it, as in what hops.
 pub fn suspension_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;

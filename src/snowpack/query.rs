@@ -1,4 +1,4 @@
-//! What a host asks of lying snow.
+//! Queries of the host about lying snow.
 
 use glam::DVec3;
 use half::f16;
@@ -44,21 +44,22 @@ pub struct SnowAt {
     pub density_kg_m3: f64,
     /// Held water over what the snow can hold, 0 to 1.
     pub wetness: f64,
-    /// Of visible light; 0 without snow.
+    /// Albedo of visible light; 0 without snow.
     pub albedo: f64,
     /// Share of the ground that it covers.
     pub cover: f64,
-    /// The place above or below the one asked for on the snow's surface, in the host's world; off the host's terrain the place itself.
+    /// The place above or below the one asked for on the snow's surface, in the host's world; off the host's terrain
+    /// the place itself.
     pub surface: DVec3,
     /// How a wheel holds.
     pub friction: SnowFriction,
 }
 
-/// Where the mass of the snow on the host's terrain came from and went since it began, kg: what began, fell and blew in is what lies,
-/// blew out, ran off, sublimated and was taken.
+/// Where the mass of the snow on the host's terrain came from and went since it began, kg: what began, fell and blew in
+/// is what lies, blew out, ran off, sublimated and was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct SnowBooks {
-    /// What lay when the terrain was set.
+    /// Mass that lay when the terrain was set.
     pub began_kg: f64,
     /// Snow and ice that fell, and rain that fell on snow.
     pub fallen_kg: f64,

@@ -35,12 +35,12 @@ pub(super) struct SavedSnow {
 #[serde(deny_unknown_fields)]
 struct SavedField {
     cells: usize,
-    /// Of a grid: ice, water, depth and albedo.
+    /// Columns of a grid: ice, water, depth and albedo.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     columns: Option<[String; 4]>,
     books: [i64; 7],
     melted: [f64; 2],
-    /// Of tiles: the origin of their lattice and its cells, m.
+    /// Lattice of tiles: the origin and the cells, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     lattice: Option<[f64; 4]>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -110,7 +110,7 @@ impl SavedField {
         }
     }
 
-    /// What was saved, on ground that is still to be known.
+    /// Returns the saved field, on ground that is still to be known.
     fn field(&self) -> Option<Field> {
         if self.cells.saturating_mul(self.tiles.len().max(1)) > MOST_CELLS
             || self.columns.is_some() == self.lattice.is_some()
@@ -150,7 +150,7 @@ impl SavedSnow {
         }
     }
 
-    /// What was saved, if it can be one of ours.
+    /// Returns the saved state; none if it cannot be one of ours.
     pub fn state(&self) -> Option<SnowState> {
         let field = match &self.field {
             Some(field) => Some(field.field()?),

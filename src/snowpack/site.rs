@@ -1,4 +1,5 @@
-//! Where a field of snow lies: the heights of the world's grid or tiles, the standing boxes on them, and the wind over them.
+//! Where a field of snow lies: the heights of the world's grid or tiles, the standing boxes on them, and the wind over
+//! them.
 //!
 //! All that the snow knows of the host's terrain goes through here.
 
@@ -36,7 +37,7 @@ const MOST_PARTS: u32 = 24;
 /// The flakes whose fall decides what boxes keep off, mm.
 const FLAKE_MM: f64 = 4.0;
 
-/// Of what the ground is.
+/// Kind of the ground.
 enum Ground {
     Grid(Arc<TerrainHeights>),
     /// Tiles of the terrain with this number, as of a revision.
@@ -60,7 +61,8 @@ pub(super) struct Site {
     stale: bool,
 }
 
-/// All that flakes go with in a wind that varies in space: shade that was found in another is not what a loaded state would find.
+/// All that flakes go with in a wind that varies in space: shade that was found in another is not what a loaded state
+/// would find.
 #[derive(Clone, Copy, PartialEq)]
 struct ShadedIn {
     revision: u64,
@@ -77,8 +79,8 @@ impl Site {
         Self { ground, origin, to_enu, cell_m, boxes: Vec::new(), slant: DVec3::ZERO, air: None, stale: true }
     }
 
-    /// Of a grid. The snow that lies on one with nodes at the same places stays, be it `old`'s or loaded; on another it is as deep as on
-    /// level ground.
+    /// Creates the site of a grid. The snow that lies on one with nodes at the same places stays, be it `old`'s or
+    /// loaded; on another it is as deep as on level ground.
     pub fn of_grid(
         terrain: &Arc<TerrainHeights>,
         old: Option<&Self>,
@@ -107,7 +109,7 @@ impl Site {
         Self::new(Ground::Grid(t.clone()), (t.origin, t.to_enu), t.cell_m)
     }
 
-    /// Of tiles, none of which is known yet. The snow on tiles of the same lattice stays.
+    /// Creates the site of tiles, none of which is known yet. The snow on tiles of the same lattice stays.
     pub fn of_tiles(terrain: &Terrain, old: Option<&Self>, field: &mut Option<Field>) -> Self {
         let lattice = [terrain.desc.origin.x, terrain.desc.origin.y, terrain.desc.origin.z, terrain.desc.cell_m];
         let fits = |f: &Field| f.lattice == Some(lattice) && f.size == [terrain.side(); 2];
@@ -147,8 +149,8 @@ impl Site {
         self.is_up_to(terrain);
     }
 
-    /// Synchronises one tile with the terrain: a removed one loses its snow, a new one starts with that of the country, a changed
-    /// one keeps its own wherever there is ground.
+    /// Synchronises one tile with the terrain: a removed one loses its snow, a new one starts with that of the country,
+    /// a changed one keeps its own wherever there is ground.
     pub fn follow(&mut self, terrain: &Terrain, key: TileKey, (field, country, revision): (&mut Field, Column, u64)) {
         let at = field.find([key.east, key.north]);
         let tile = terrain.slot(key).map(|slot| terrain.tile(slot));
@@ -234,8 +236,8 @@ impl Site {
         (p.z <= ground_m(field, &about) + ABOVE_M).then_some(about)
     }
 
-    /// Finds the cells that standing boxes shelter from falling snow, and those that they stand on. Flakes go with `air` where the wind varies
-    /// in space. Says whether the boxes or the ground have changed.
+    /// Finds the cells that standing boxes shelter from falling snow, and those that they stand on. Flakes go with
+    /// `air` where the wind varies in space. Says whether the boxes or the ground have changed.
     pub fn shade(&mut self, field: &mut Field, c: &Conditions, shelters: &[Shelter], air: Option<&Air<'_>>) -> bool {
         let fall = aggregate_speed_m_s(FLAKE_MM, c.air.temperature_c);
         let slant = slant(DVec2::new(c.wind.east_m_s, c.wind.north_m_s), fall);
@@ -310,7 +312,8 @@ impl Site {
         }
     }
 
-    /// Whether flakes on their way to a place of the host's world meet a box: the way is followed back until it is above the box.
+    /// Whether flakes on their way to a place of the host's world meet a box: the way is followed back until it is
+    /// above the box.
     fn meets(&self, shelter: &Shelter, landed: DVec3, air: &Air<'_>, fall: f64) -> bool {
         let up = self.to_enu.row(2);
         let half_height = (shelter.axes.transpose() * up).abs().dot(shelter.half_size_m);
@@ -393,12 +396,13 @@ impl Air<'_> {
     }
 }
 
-/// How flakes of this fall speed go with a wind, m/s: eddies bring them into the lee, so that no shadow is longer than its box is high.
+/// How flakes of this fall speed go with a wind, m/s: eddies bring them into the lee, so that no shadow is longer than
+/// its box is high.
 fn slanted(wind: DVec2, fall: f64) -> DVec2 {
     wind * (fall / wind.length().max(fall))
 }
 
-/// The same over their fall, in sixteenths.
+/// Returns the way of flakes with a wind over their fall, in sixteenths.
 fn slant(wind: DVec2, fall: f64) -> DVec3 {
     (slanted(wind, fall) / fall * 16.0).round().extend(-16.0) / 16.0
 }

@@ -1,5 +1,5 @@
-//! Snow that is too steep slides down until no slope is above the angle of repose: to the neighbour below that is steepest, by half of
-//! what is too much. Cells are looked at by the rows of the lattice, whatever patches they lie in.
+//! Snow that is too steep slides down until no slope is above the angle of repose: to the neighbour below that is
+//! steepest, by half of what is too much. Cells are looked at by the rows of the lattice, whatever patches they lie in.
 
 use super::{
     column::UNITS,
@@ -61,7 +61,8 @@ fn steepest(field: &Field, cell: (u32, u32), rise: f64) -> Option<((u32, u32), f
     found.reduce(|a, b| if b.1 > a.1 { b } else { a })
 }
 
-/// Lets the snow of a cell slide, and what loses its hold by that. Answers whether it has come to rest before `left` moves are done.
+/// Lets the snow of a cell slide, and what loses its hold by that. Answers whether it has come to rest before `left`
+/// moves are done.
 fn settle(field: &mut Field, moving: &mut Vec<(u32, u32)>, rise: f64, left: &mut usize, revision: u64) -> bool {
     while let Some(cell) = moving.pop() {
         let column = field.patches[cell.0 as usize].column(cell.1 as usize);

@@ -1,4 +1,5 @@
-//! What a host does to lying snow: it ploughs and digs it away, and its wheels press tracks. Both are strips along a path.
+//! Actions of the host on lying snow: it ploughs and digs it away, and its wheels press tracks. Both are strips along a
+//! path.
 
 use glam::{DVec2, DVec3};
 
@@ -56,8 +57,8 @@ fn lies_on(path: &[DVec2], half_m: f64, p: DVec2) -> bool {
     along || path[1..path.len() - 1].iter().any(|bend| p.distance(*bend) <= half_m)
 }
 
-/// Does `act` to the columns under a strip, with the share of each that it covers, and counts what it says. Patches on which it has acted
-/// are of this revision then.
+/// Does `act` to the columns under a strip, with the share of each that it covers, and counts what it says. Patches on
+/// which it has acted are of this revision then.
 fn each_under(
     (site, field): (&Site, &mut Field),
     strip: &SnowStrip,

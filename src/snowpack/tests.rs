@@ -246,7 +246,8 @@ fn a_fence_gets_a_lower_drift_to_windward_that_fills_up() {
         "before a fence of 2 m, more than in the open: {first:.0} kg/m after 12 h, {near:.0} after 120 h and {grows:.0} in ten hours more, \
          {far:.0} farther than 30 m; highest {highest:.2} m"
     );
-    // Tabler (1980): no higher than half the fence, most of it within some twelve heights, and once full it takes no more.
+    // Tabler (1980): no higher than half the fence, most of it within some twelve heights, and once full it takes no
+    // more.
     assert!(first > 100.0 && far < 0.25 * near && grows < 0.05 * near);
     assert!((0.5..1.05).contains(&highest), "{highest}");
     let steepest = depths.windows(2).map(|d| (d[1] - d[0]).abs()).fold(0.0, f64::max);

@@ -65,22 +65,22 @@ impl PartialEq for Constants {
 pub(crate) enum Texture {
     /// A layer before the picture: colour with the exposure on it, and cover.
     Before = 0,
-    /// What lies on the ground, by cells of the host's terrain.
+    /// Cover that lies on the ground, by cells of the host's terrain.
     OnGround = 1,
     /// Heights and classes of the host's terrain.
     Terrain = 2,
-    /// Layers of the sky. The last is what stands behind the sky's own light: radiance over [`FrameUniform::behind`]. Before it may be
-    /// two of what hangs before the sky: light with the exposure on it and what it lets through, and how far away it is
-    /// (`shaders/between/hung.wgsl`).
+    /// Layers of the sky. The last is what stands behind the sky's own light: radiance over [`FrameUniform::behind`].
+    /// Before it may be two of what hangs before the sky: light with the exposure on it and what it lets through, and
+    /// how far away it is (`shaders/between/hung.wgsl`).
     Behind = 3,
 }
 
 /// Places for blocks of the effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Block {
-    /// Of what lies between the eye and a place.
+    /// Block of what lies between the eye and a place.
     Between = 0,
-    /// Of what lies on surfaces.
+    /// Block of what lies on surfaces.
     OnSurfaces = 1,
 }
 
@@ -95,12 +95,13 @@ pub(crate) struct Traits {
     pub is_marched: bool,
     /// Something is in the picture that changes from pixel to pixel, as stars do: it cannot be looked up in a grid.
     pub is_fine: bool,
-    /// Each pixel lays clouds over what it looks up in the grid. Fog lies before clouds: where both are, nothing is looked up.
+    /// Each pixel lays clouds over what it looks up in the grid. Fog lies before clouds: where both are, nothing is
+    /// looked up.
     pub is_overlaid: bool,
 }
 
 impl Traits {
-    /// Those that either has.
+    /// Returns the traits that either has.
     fn or(self, other: Self) -> Self {
         Self {
             veils_all: self.veils_all | other.veils_all,
@@ -121,7 +122,7 @@ pub(crate) struct Pipeline {
     pub of_veil: Constants,
     /// Constants of the composition alone.
     pub composed: Constants,
-    /// What the effects say beside their constants.
+    /// Traits that the effects state beside their constants.
     pub traits: Traits,
 }
 
@@ -140,7 +141,7 @@ impl Pipeline {
 enum Scope {
     /// Every shader that applies air, cloud and fog.
     Between,
-    /// The same, and the veil for hosts' shaders.
+    /// Every shader that applies air, cloud and fog, and the veil for hosts' shaders.
     BetweenAndVeil,
     /// The composition alone.
     Composition,
@@ -158,7 +159,8 @@ struct ScopedConstant {
 /// Most constants of one effect.
 const MOST_OF_ONE: usize = 24;
 
-/// What one effect adds to a draw. It returns it; the frame merges those of all effects ([`Composition::merge`]).
+/// Contribution of one effect to a draw. The effect returns it; the frame merges those of all effects
+/// ([`Composition::merge`]).
 pub(crate) struct Contribution<'a> {
     constants: [ScopedConstant; MOST_OF_ONE],
     count: usize,
@@ -228,7 +230,8 @@ impl<'a> Contribution<'a> {
         self.own_block = Some((place, block.clone()));
     }
 
-    /// Gives a texture. At [`Texture::Behind`] and [`Texture::Before`] it takes the place of what it names as its input.
+    /// Gives a texture. At [`Texture::Behind`] and [`Texture::Before`] it takes the place of what it names as its
+    /// input.
     pub fn set_texture(&mut self, place: Texture, view: Option<wgpu::TextureView>) {
         self.textures[place as usize] = view;
     }
@@ -338,7 +341,8 @@ impl Composition {
         self.least.between.push((name, value));
     }
 
-    /// Adds a constant of the frame's own to the composition: its value where every part is drawn, and where only what shows now is.
+    /// Adds a constant of the frame's own to the composition: its value where every part is drawn, and where only what
+    /// shows now is.
     pub fn set_constant(&mut self, name: &'static str, whole: f64, least: f64) {
         self.whole.composed.push((name, whole));
         self.least.composed.push((name, least));
@@ -369,7 +373,8 @@ impl Composition {
         &self.whole
     }
 
-    /// Those without the parts of which nothing is drawn now: cheaper than a branch on a software driver, which takes both ways.
+    /// Constants of a pipeline without the parts of which nothing is drawn now: cheaper than a branch on a software
+    /// driver, which takes both ways.
     pub fn least(&self) -> &Pipeline {
         &self.least
     }

@@ -1,4 +1,5 @@
-//! What effects read of a frame: one context from its gathering to its first pass, one for each of its draws. Both are read-only.
+//! Contexts of a frame that effects read: one from its gathering to its first pass, one for each of its draws. Both are
+//! read-only.
 
 use std::sync::Arc;
 
@@ -40,7 +41,7 @@ pub(crate) struct DrawTarget<'a> {
     pub is_veiled: bool,
 }
 
-/// What the plan has chosen for a draw.
+/// Shares that the plan has chosen for a draw.
 #[derive(Clone, Copy)]
 pub(crate) struct PlannedShares {
     parts: &'static [Part],
@@ -73,7 +74,7 @@ impl PlannedShares {
     }
 }
 
-/// What has been made of exposed light in a picture.
+/// Tone curve that has been applied to exposed light in a picture.
 pub(crate) type Tone = fn(f64) -> f64;
 
 /// One draw of a frame into the host's picture.
@@ -105,7 +106,7 @@ impl DrawContext<'_> {
         u64::from(self.picture().width()) * u64::from(self.picture().height())
     }
 
-    /// What is made of exposed light in its picture.
+    /// Returns the tone curve that is applied to exposed light in its picture.
     pub fn tone(&self) -> Tone {
         match (self.frame.color_space, self.now.tone) {
             (ColorSpace::SceneLinear, _) | (_, ToneCurve::Linear) => |x| x,

@@ -22,15 +22,16 @@ pub(crate) struct LensPicture<'a> {
 /// Takes a part, whether a picture has it, and the work of each of its steps.
 pub(crate) type PutPart<'a> = dyn FnMut(&Part, bool, &[StepWork]) + 'a;
 
-/// One effect of a view, run by these functions in this order. Each reads its context and returns what it adds; none sees another but
-/// by the outputs that it names.
+/// One effect of a view, run by these functions in this order. Each reads its context and returns what it adds; none
+/// sees another but by the outputs that it names.
 pub(crate) trait DrawnEffect {
-    /// What [`DrawnEffect::gather`] takes from other effects and gives to them.
+    /// Names the outputs that [`DrawnEffect::gather`] takes from other effects and gives to them.
     fn gathers(&self) -> Exchange {
         Exchange::NONE
     }
 
-    /// What [`DrawnEffect::compose`] and [`DrawnEffect::draw`] take from other effects and give to them.
+    /// Names the outputs that [`DrawnEffect::compose`] and [`DrawnEffect::draw`] take from other effects and give to
+    /// them.
     fn composes(&self) -> Exchange {
         Exchange::NONE
     }
@@ -46,7 +47,8 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// Makes what it needs of the picture's size, before anything is recorded: a large target is what memory may be too small for.
+    /// Makes what it needs of the picture's size, before anything is recorded: a large target is what memory may be too
+    /// small for.
     fn hold(&mut self, _device: &Device, _color: &wgpu::Texture, _stages: Stages) {}
 
     /// Brings what it keeps up to the moment.
@@ -59,8 +61,8 @@ pub(crate) trait DrawnEffect {
         false
     }
 
-    /// Draws what is opaque, into the host's colour and depth, before the composition of stage SURFACE. What lies on surfaces, air and
-    /// what falls see its depth as they see the host's.
+    /// Draws what is opaque, into the host's colour and depth, before the composition of stage SURFACE. What lies on
+    /// surfaces, air and what falls see its depth as they see the host's.
     fn draw_opaque(
         &mut self,
         _at: &DrawContext<'_>,
@@ -73,7 +75,7 @@ pub(crate) trait DrawnEffect {
     /// Names its parts, whether a picture of these stages has them, and their work.
     fn parts(&mut self, _at: &DrawContext<'_>, _stages: Stages, _put: &mut PutPart<'_>) {}
 
-    /// What it adds to the composition: constants, blocks, textures.
+    /// Returns what it adds to the composition: constants, blocks, textures.
     fn compose(&mut self, _at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
         Ok(Contribution::none())
     }
@@ -83,7 +85,8 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// What the veil for the host's own shaders is drawn with in place of the composition's group 0, if anything is.
+    /// Returns the shader, layout and bind group with which the veil for the host's own shaders is drawn in place of
+    /// the composition's group 0, if there are any.
     fn veil(
         &mut self,
         _at: &DrawContext<'_>,

@@ -1,9 +1,10 @@
-//! What a frame is made of: the host's images and what they mean, the stages that it is drawn in, and the one shape that every
-//! effect of a frame has ([`DrawnEffect`]).
+//! Parts of a frame: the host's images and what they mean, the stages that it is drawn in, and the trait that every
+//! effect of a frame implements ([`DrawnEffect`]).
 //!
-//! A frame goes through its stages in the order in which a host interleaves them with its own drawing. Stages that neighbour each
-//! other in one call are one full-screen draw, the composition, to which each effect adds its functions, constants, blocks and
-//! textures ([`Composition`]); what cannot be a function of one pixel (falling drops, the windscreen) is drawn in passes of its own.
+//! A frame goes through its stages in the order in which a host interleaves them with its own drawing. Stages that
+//! neighbour each other in one call are one full-screen draw, the composition, to which each effect adds its functions,
+//! constants, blocks and textures ([`Composition`]); what cannot be a function of one pixel (falling drops, the
+//! windscreen) is drawn in passes of its own.
 
 mod composition;
 mod context;
@@ -51,14 +52,16 @@ pub struct FrameFlags(pub u32);
 impl FrameFlags {
     /// The camera jumped: nothing of earlier frames may show. Tables of the sky are whole, as without history.
     pub const CUT: Self = Self(1);
-    /// Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame if
-    /// they are not yet.
+    /// Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame
+    /// if they are not yet.
     pub const NO_HISTORY: Self = Self(2);
-    /// Measure what each effect costs ([`Report::costs`]). The stages are drawn one by one and each is waited for, so such
-    /// a frame is slower, and its picture may differ by rounding. For [`View::record`](crate::frame::View::record) only.
+    /// Measure what each effect costs ([`Report::costs`]). The stages are drawn one by one and each is waited for, so
+    /// such a frame is slower, and its picture may differ by rounding. For [`View::record`](crate::frame::View::record)
+    /// only.
     pub const MEASURE: Self = Self(16);
 
-    /// [`Frame::normals`] are in the axes of the camera: x right, y up, z towards the viewer; without it in the host's world.
+    /// [`Frame::normals`] are in the axes of the camera: x right, y up, z towards the viewer; without it in the host's
+    /// world.
     pub const NORMALS_IN_EYE_SPACE: Self = Self(32);
 
     /// Whether any flag of `other` is set.
@@ -70,15 +73,15 @@ impl FrameFlags {
 /// The layer that each image of a frame is in its texture, from 0. The other layers stay untouched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ImageLayers {
-    /// Of [`Frame::color`].
+    /// Layer of [`Frame::color`].
     pub color: u32,
-    /// Of [`Frame::depth`].
+    /// Layer of [`Frame::depth`].
     pub depth: u32,
-    /// Of [`Frame::mask`].
+    /// Layer of [`Frame::mask`].
     pub mask: u32,
-    /// Of [`Frame::surface_classes`].
+    /// Layer of [`Frame::surface_classes`].
     pub surface_classes: u32,
-    /// Of [`Frame::normals`].
+    /// Layer of [`Frame::normals`].
     pub normals: u32,
 }
 
@@ -89,28 +92,28 @@ pub struct Frame<'a> {
     pub frame_id: u64,
     /// The camera.
     pub camera: Camera,
-    /// What the numbers in `depth` mean.
+    /// Meaning of the numbers in `depth`.
     pub depth_mapping: DepthMapping,
     /// Whether Welkin may write `depth`. Default: it only reads it.
     pub depth_access: DepthAccess,
     /// Colour to draw into; may be absent for [`Stages::PREPARE`] alone. Needs RENDER_ATTACHMENT and COPY_SRC.
     pub color: Option<&'a wgpu::Texture>,
-    /// The host's depth; without it every pixel shows the sky. Needs TEXTURE_BINDING. It has as many samples as `color`, or
-    /// any number where `color` has one (resolved): then the first sample counts. With [`DepthAccess::ReadWrite`] it needs
-    /// RENDER_ATTACHMENT too.
+    /// The host's depth; without it every pixel shows the sky. Needs TEXTURE_BINDING. It has as many samples as
+    /// `color`, or any number where `color` has one (resolved): then the first sample counts. With
+    /// [`DepthAccess::ReadWrite`] it needs RENDER_ATTACHMENT too.
     pub depth: Option<&'a wgpu::Texture>,
     /// Red channel 1 keeps the host's pixel (cab, HUD), 0 draws weather.
     pub mask: Option<&'a wgpu::Texture>,
-    /// What each pixel shows is made of: red is the number of a [`SurfaceClass`](crate::ground::SurfaceClass) over 255, 0 where
-    /// the host's terrain or the context's default says it. Of one sample; needs TEXTURE_BINDING.
+    /// Material of what each pixel shows: red is the number of a [`SurfaceClass`](crate::ground::SurfaceClass) over
+    /// 255, 0 where the host's terrain or the context's default gives it. Of one sample; needs TEXTURE_BINDING.
     pub surface_classes: Option<&'a wgpu::Texture>,
-    /// Unit normals of the surfaces, in the host's world or in eye space ([`FrameFlags::NORMALS_IN_EYE_SPACE`]): (n + 1) / 2 in
-    /// normalised formats, n in float formats. What is no unit vector, as zeros and ones are, leaves it to the host's terrain and
-    /// depth. Of one sample; needs TEXTURE_BINDING.
+    /// Unit normals of the surfaces, in the host's world or in eye space ([`FrameFlags::NORMALS_IN_EYE_SPACE`]): (n +
+    /// 1) / 2 in normalised formats, n in float formats. What is no unit vector, as zeros and ones are, leaves it to
+    /// the host's terrain and depth. Of one sample; needs TEXTURE_BINDING.
     pub normals: Option<&'a wgpu::Texture>,
-    /// Which layers of array textures the images are, as for the eyes of a stereo pair. Default: the first of each.
+    /// Layers of array textures that the images are, as for the eyes of a stereo pair. Default: the first of each.
     pub layers: ImageLayers,
-    /// What the numbers in `color` mean.
+    /// Meaning of the numbers in `color`.
     pub color_space: ColorSpace,
     /// Luminance of the value 1 in a scene-linear `color`, cd/m^2, [1e-9, 1e9], default 1.
     pub cd_m2_per_unit: f64,

@@ -1,4 +1,4 @@
-//! What effects draw that is opaque: into the host's own colour and depth, before what lies on surfaces.
+//! Opaque drawing by effects: into the host's own colour and depth, before what lies on surfaces.
 
 use glam::DMat4;
 
@@ -8,22 +8,22 @@ use crate::{
     scene::{ClipSpace, DepthKind},
 };
 
-/// What Welkin may do with a host's depth.
+/// Access that Welkin has to a host's depth.
 ///
 /// Nothing that this version draws is opaque, so both give the same picture; sea and terrain will be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum DepthAccess {
-    /// Read it. Not a bit of it changes, and nothing opaque of Welkin's is drawn ([`Report::opaque_left_out`](super::Report::opaque_left_out)
-    /// counts that).
+    /// Read it. Not a bit of it changes, and nothing opaque of Welkin's is drawn
+    /// ([`Report::opaque_left_out`](super::Report::opaque_left_out) counts that).
     #[default]
     Read,
-    /// Test and write it where Welkin draws opaque things: in [`Stages::SURFACE`](super::Stages::SURFACE), before the water on surfaces. They
-    /// hide, and are hidden by, what the host drew before. Stencil stays as it is. Needs a depth format with RENDER_ATTACHMENT and as many
-    /// samples as the colour.
+    /// Test and write it where Welkin draws opaque things: in [`Stages::SURFACE`](super::Stages::SURFACE), before the
+    /// water on surfaces. They hide, and are hidden by, what the host drew before. Stencil stays as it is. Needs a
+    /// depth format with RENDER_ATTACHMENT and as many samples as the colour.
     ReadWrite,
 }
 
-/// What pipelines of opaque things are made for.
+/// Properties of the target that pipelines of opaque things are made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OpaqueTarget {
     pub color: wgpu::TextureFormat,
@@ -37,7 +37,7 @@ pub(crate) struct OpaqueTarget {
 
 #[cfg_attr(not(test), expect(dead_code, reason = "for opaque effects, which only the tests have yet"))]
 impl OpaqueTarget {
-    /// Of a frame that is drawn into `color` and `depth`.
+    /// Returns the target of a frame that is drawn into `color` and `depth`.
     pub fn of(frame: &Frame<'_>, color: &wgpu::Texture, depth: &wgpu::Texture) -> Self {
         Self {
             color: color.format(),
@@ -48,7 +48,8 @@ impl OpaqueTarget {
         }
     }
 
-    /// What is nearer passes and is written; of two at one depth the host's stays. Stencil is kept.
+    /// Returns the depth test: what is nearer passes and is written; of two at one depth the host's stays. Stencil is
+    /// kept.
     pub fn depth_test(&self) -> wgpu::DepthStencilState {
         let nearer = if self.reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less };
         pass::depth_test(self.depth, nearer, true)
@@ -60,12 +61,12 @@ impl OpaqueTarget {
     }
 }
 
-/// What opaque things are drawn with, beside the pass itself: its attachments are the host's, and its group 0 is that of
-/// `shaders/common/opaque.wgsl`.
+/// Target, layout and clip space with which opaque things are drawn, beside the pass itself: its attachments are the
+/// host's, and its group 0 is that of `shaders/common/opaque.wgsl`.
 #[cfg_attr(not(test), expect(dead_code, reason = "as above"))]
 pub(crate) struct OpaqueDraw<'a> {
     pub target: OpaqueTarget,
-    /// Of group 0.
+    /// Layout of group 0.
     pub layout: &'a wgpu::BindGroupLayout,
     /// From camera-relative east-north-up to wgpu's clip space of these images.
     pub clip: DMat4,

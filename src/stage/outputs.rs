@@ -1,9 +1,9 @@
-//! What effects give each other in a frame, by name: the order in which they are run follows from it.
+//! Outputs that effects give each other in a frame, by name: the order in which they are run follows from it.
 
 use super::{Contribution, Texture};
 use crate::error::{Error, Result, Status};
 
-/// What one effect gives and others take. Each has one giver.
+/// Output that one effect gives and others take. Each has one giver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Output {
     /// Light of flashes of lightning, in the moment.
@@ -16,11 +16,11 @@ pub(crate) enum Output {
     Sky,
     /// The layer before the picture, with rain in it.
     Rain,
-    /// The same with flakes in it too.
+    /// The layer before the picture, with rain and flakes in it.
     Snow,
 }
 
-/// What has been given so far.
+/// Outputs that have been given so far.
 #[derive(Clone, Default)]
 pub(crate) struct Outputs {
     /// [`Output::FogDepth`]; 0 where it was not given.
@@ -32,7 +32,7 @@ pub(crate) struct Outputs {
 }
 
 impl Outputs {
-    /// Those of the `needs` of an effect: it sees nothing else.
+    /// Returns those outputs that an effect `needs`: it sees nothing else.
     pub fn only(&self, needs: &[Output]) -> Self {
         let has = |output| needs.contains(&output);
         Self {
@@ -61,7 +61,7 @@ impl Outputs {
     }
 }
 
-/// What an effect takes from others and gives to them in one step of a frame.
+/// Outputs that an effect takes from others and gives to them in one step of a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Exchange {
     pub needs: &'static [Output],

@@ -1,9 +1,9 @@
 //! A frame's report, and what each effect of it costs where the host asks for that
 //! ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
 //!
-//! Wall time round a submission that is waited for, one an effect: true on every driver (timestamps of software drivers are
-//! not), at the price of a wait. It holds the CPU's part and the driver's own hand-over, some tens of microseconds an effect on a
-//! GPU. Frames that are not measured submit once and wait for nothing.
+//! Wall time round a submission that is waited for, one an effect: true on every driver (timestamps of software drivers
+//! are not), at the price of a wait. It holds the CPU's part and the driver's own hand-over, some tens of microseconds
+//! an effect on a GPU. Frames that are not measured submit once and wait for nothing.
 
 use std::{
     sync::Arc,
@@ -17,7 +17,7 @@ use crate::{
     plan::Prediction,
 };
 
-/// What a frame spends time on.
+/// Item that a frame spends time on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum CostItem {
@@ -100,7 +100,7 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// What `item` cost, ms; 0 if it did not run.
+    /// Returns the cost of `item`, ms; 0 if it did not run.
     pub fn ms(&self, item: CostItem) -> f64 {
         self.ms[item as usize]
     }
@@ -110,50 +110,53 @@ impl Costs {
     }
 }
 
-/// What the last frame of a view took and showed.
+/// Report on what the last frame of a view took and showed.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Report {
     /// The host's frame_id.
     pub frame_id: u64,
     /// Full-screen draws recorded for this frame_id so far.
     pub passes: u32,
-    /// Tables built, refined or faded for this frame_id so far; 0 when only the camera turned and the sky has its final quality.
+    /// Tables built, refined or faded for this frame_id so far; 0 when only the camera turned and the sky has its final
+    /// quality.
     pub tables_rebuilt: u32,
     /// Display units per cd/m^2 that were applied.
     pub exposure: f64,
     /// Bytes of GPU memory the view holds for itself.
     pub bytes: u64,
-    /// What of the rain round the camera was drawn.
+    /// Rain around the camera that was drawn.
     pub rain: RainReport,
-    /// What of the snow round the camera was drawn.
+    /// Snow around the camera that was drawn.
     pub snow: SnowReport,
-    /// What each effect cost, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
+    /// Cost of each effect, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
     pub costs: Option<Costs>,
     /// Effects with something opaque that was not drawn, because the host's depth may only be read
     /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)). 0 in this version, which has none.
     pub opaque_left_out: u32,
-    /// What the plan expects of the frame.
+    /// Prediction of the frame by the plan.
     pub prediction: Prediction,
-    /// What the host said that the weather took in it, ms ([`View::report_time`](crate::frame::View::report_time)).
+    /// Time that the weather took in it as the host reported it, ms
+    /// ([`View::report_time`](crate::frame::View::report_time)).
     pub reported_ms: Option<f64>,
 }
 
-/// What of what falls round the camera was drawn, and what there was no room for.
+/// Drops and stones around the camera that were drawn, and those for which there was no room.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainReport {
     /// Drops and stones round the camera, of which those in the picture were drawn.
     pub drops: u32,
-    /// Drops that each drop stood for: 1 unless more fell than [`crate::rain::RainSettings::most_drops`]; 0 without any.
+    /// Drops that each drop stood for: 1 unless more fell than [`crate::rain::RainSettings::most_drops`]; 0 without
+    /// any.
     pub drop_weight: f64,
     /// The contrast gain ([`crate::rain::RainSettings::contrast_gain`]) of what was drawn; 0 where nothing fell.
     pub contrast_gain: f64,
     /// Splashes of the smallest drops that a second and m^2 of level ground had no room for.
     pub splashes_left_out_per_m2_s: f64,
-    /// Likewise the smallest stones that did not hop.
+    /// Smallest stones that did not hop, a second and m^2 of level ground, for want of room.
     pub stones_left_out_per_m2_s: f64,
 }
 
-/// What of the snow round the camera was drawn.
+/// Flakes around the camera that were drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnowReport {
     /// Flakes round the camera, of which those in the picture were drawn; 0 where none were.
@@ -219,8 +222,8 @@ impl<'a> Recording<'a> {
         self.device.submit(std::mem::replace(self.encoder, next));
     }
 
-    /// What was recorded since the last item is `item`'s: where it is measured, it is submitted and waited for. If
-    /// it did not run, the time goes to nobody.
+    /// Charges what was recorded since the last item to `item`: where it is measured, it is submitted and waited for.
+    /// If it did not run, the time is charged to no item.
     pub fn ends(&mut self, item: CostItem, ran: bool) -> Result<()> {
         let Some(watch) = &mut self.watch else { return Ok(()) };
         if ran {
@@ -234,7 +237,7 @@ impl<'a> Recording<'a> {
         Ok(())
     }
 
-    /// What the frame cost up to here, and how long this call has lasted, if it is measured.
+    /// Returns the costs of the frame up to here, and how long this call has lasted, if it is measured.
     pub fn costs(&self) -> Option<(Costs, Duration)> {
         let watch = self.watch.as_ref()?;
         let costs = Costs { whole_ms: watch.costs.whole_ms + ms_since(watch.start), ..watch.costs };

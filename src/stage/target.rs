@@ -1,4 +1,4 @@
-//! What a host hands over to be drawn into: colour, depth, mask, and how to read them.
+//! Images that a host hands over to be drawn into: colour, depth, mask, and how to read them.
 
 use super::{Frame, uniform::is_float};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     gpu::check_depth_format,
 };
 
-/// What the numbers in the host's colour texture mean.
+/// Meaning of the numbers in the host's colour texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum ColorSpace {
     /// Linear Rec. 709, proportional to luminance; [`Frame::cd_m2_per_unit`](super::Frame::cd_m2_per_unit) gives the
@@ -36,8 +36,8 @@ impl Stages {
     pub const PARTICLES: Self = Self(16);
     /// Water on the windscreen.
     pub const LENS: Self = Self(32);
-    /// Exposure, tone curve, display encoding and dither of a scene-linear picture. Nothing in the other colour spaces, where the
-    /// host has done that.
+    /// Exposure, tone curve, display encoding and dither of a scene-linear picture. Nothing in the other colour spaces,
+    /// where the host has done that.
     pub const TONE: Self = Self(64);
     /// Everything at once.
     pub const ALL: Self = Self(127);
@@ -254,7 +254,7 @@ impl Sampling {
     /// All of them; their values as numbers are their places here.
     pub const ALL: [Self; 3] = [Self::Single, Self::Multi, Self::Resolved];
 
-    /// Of a frame's images.
+    /// Returns the sampling of a frame's images.
     pub fn of(color: &wgpu::Texture, depth: Option<&wgpu::Texture>) -> Self {
         match (color.sample_count() > 1, depth.is_some_and(|d| d.sample_count() > 1)) {
             (true, _) => Self::Multi,

@@ -50,14 +50,15 @@ pub(crate) struct FrameUniform {
     /// Colour of the light of flashes, of luminance 1, and how many places it comes from.
     pub flash_color: [f32; 3],
     pub flash_count: u32,
-    /// Height of the face of the clouds that they light over the camera, m, their cover, what the haze before them takes, 1/m, and what
-    /// scatters in the air, 1/m.
+    /// Height of the face of the clouds that they light over the camera, m, their cover, what the haze before them
+    /// takes, 1/m, and what scatters in the air, 1/m.
     pub flash_plane: f32,
     pub flash_cover: f32,
     pub flash_haze: f32,
     pub flash_scattering: f32,
     pub flashes: [FlashUniform; MAX_FLASH_LAMPS],
-    /// Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that share.
+    /// Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that
+    /// share.
     pub cloud_shadow: [f32; 4],
     /// Pixels of the picture.
     pub picture: [f32; 2],
@@ -71,7 +72,8 @@ pub(crate) struct FrameUniform {
     /// A power of two: what light is multiplied by to be about 1 where it is white.
     pub even_scale: f32,
     pub pad: f32,
-    /// What bows add to the phase function of drops in the low air, and in columns under rain areas, 1/sr a channel, over the angle.
+    /// Tables of what bows add to the phase function of drops in the low air, and in columns under rain areas, 1/sr a
+    /// channel, over the angle.
     pub bows: [BowTable; 2],
 }
 
@@ -87,7 +89,7 @@ pub(crate) struct FlashBlock {
     pub sources: [FlashUniform; MAX_FLASH_LAMPS],
 }
 
-/// What one effect writes into a frame's block: the fields of [`FrameUniform`] that are its own.
+/// Fields of [`FrameUniform`] that one effect writes into a frame's block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum FrameBlock<'a> {
     /// Shares that are drawn of the air before things and of the clear sky.
@@ -96,19 +98,20 @@ pub(crate) enum FrameBlock<'a> {
     Fog { share: f32 },
     /// [`FrameUniform::behind`].
     Stars { behind: [f32; 2] },
-    /// Share that is drawn as a volume; mean light with cover, and height, where the plan gauges; shadows where they are cast.
+    /// Share that is drawn as a volume; mean light with cover, and height, where the plan gauges; shadows where they
+    /// are cast.
     Clouds { drawn: f32, mean: Option<([f32; 4], f32)>, shadow: Option<[f32; 4]> },
-    /// What drops hide, 1/m and to which distance, m, and the share of that which is drawn.
+    /// Extinction by which drops hide, 1/m, and the distance up to which they do, m; and the share of it that is drawn.
     Rain { hidden: [f32; 2], share: f32 },
     /// As of drops, of flakes.
     Snow { hidden: [f32; 2], share: f32 },
     /// Flashes that shine.
-    Flashes(FlashBlock),
+    Flashes(&'a FlashBlock),
     /// [`FrameUniform::bows`].
     Bows(&'a [BowTable; 2]),
 }
 
-/// What a bow adds to the phase function over the angle.
+/// Table of what a bow adds to the phase function over the angle.
 pub(crate) type BowTable = [[f32; 4]; BOW_ENTRIES];
 
 impl FrameUniform {
@@ -160,14 +163,15 @@ pub(crate) fn is_float(format: wgpu::TextureFormat) -> bool {
     matches!(format, F::Rgba16Float | F::Rgba32Float | F::Rg11b10Ufloat)
 }
 
-/// By what eyes adapt to, so that it holds for a scene-linear picture whatever its host exposes it by; by a display's exposure where that
-/// shows darker things. Of both only the power of two, so that another one rounds nothing anew.
+/// By what eyes adapt to, so that it holds for a scene-linear picture whatever its host exposes it by; by a display's
+/// exposure where that shows darker things. Of both only the power of two, so that another one rounds nothing anew.
 fn even_scale(adaptation_cd_m2: f64, display_exposure: f64) -> f32 {
     let eyes = Exposure::Auto { compensation_ev: 0.0 }.factor(adaptation_cd_m2);
     eyes.max(display_exposure).log2().floor().clamp(-100.0, 100.0).exp2() as f32
 }
 
-/// The block of a frame before any effect has added to it: nothing is drawn of them. `tone` says that the whole picture is tone-mapped.
+/// The block of a frame before any effect has added to it: nothing is drawn of them. `tone` says that the whole picture
+/// is tone-mapped.
 pub(crate) fn uniform(
     frame: &Frame<'_>,
     now: &Moment<'_>,

@@ -1,5 +1,5 @@
-//! What stands behind the sky's own light towards one direction, in f64: the twin of `night_light` in `shaders/between/sky.wgsl` and of
-//! the layer that it reads, without the points.
+//! Light behind the sky's own light towards one direction, in f64: the twin of `night_light` in
+//! `shaders/between/sky.wgsl` and of the layer that it reads, without the points.
 
 use glam::DVec3;
 
@@ -24,7 +24,7 @@ pub(crate) struct NightBehind {
 }
 
 impl NightBehind {
-    /// Of a scene at a universal time, through fog of an optical depth straight up.
+    /// Creates the night's light of a scene at a universal time, through fog of an optical depth straight up.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time out of the almanac's range.

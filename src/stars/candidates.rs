@@ -4,8 +4,8 @@ use super::catalogue::catalogue;
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Stars, planets and the glow between them, at two rungs: as they are, or an even sky of the glow's mean luminance. What they are worth is
-/// taken to be what the clear sky's own light and they are worth together.
+/// Stars, planets and the glow between them, at two rungs: as they are, or an even sky of the glow's mean luminance.
+/// What they are worth is taken to be what the clear sky's own light and they are worth together.
 pub const STARS: Part = Part { name: "stars", rungs: &["all", "none"], importance: 0.3, worth: Worth::Composed(2) };
 
 /// Work of the layer a pixel, in units of a pixel with none of the parts.

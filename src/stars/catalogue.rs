@@ -18,8 +18,8 @@ pub struct Star {
     pub motion: DVec3,
     /// Visual magnitude (Johnson V) above the air, [-30, 30].
     pub magnitude: f64,
-    /// Temperature of the black body of the star's colour, K, [1000, 100000]. [`super::light::temperature_of_color_index`] gives it for
-    /// a B-V.
+    /// Temperature of the black body of the star's colour, K, [1000, 100000].
+    /// [`super::light::temperature_of_color_index`] gives it for a B-V.
     pub temperature_k: f64,
 }
 
@@ -30,8 +30,8 @@ impl Star {
         Self { direction, motion: DVec3::ZERO, magnitude, temperature_k }
     }
 
-    /// The same star with a proper motion in right ascension (times the cosine of the declination) and declination, arc seconds a
-    /// Julian year.
+    /// Returns the star with a proper motion in right ascension (times the cosine of the declination) and declination,
+    /// arc seconds a Julian year.
     #[must_use]
     pub fn moving(self, right_ascension_as: f64, declination_as: f64) -> Self {
         let east = DVec3::Z.cross(self.direction).normalize_or(DVec3::Y);
@@ -40,8 +40,8 @@ impl Star {
         Self { motion: east * rad(right_ascension_as) + north * rad(declination_as), ..self }
     }
 
-    /// Unit vector at `years` Julian years after J2000.0. Motion in a straight line across the sky: the change of distance, 0.001
-    /// degrees a century for the nearest stars, is left out.
+    /// Unit vector at `years` Julian years after J2000.0. Motion in a straight line across the sky: the change of
+    /// distance, 0.001 degrees a century for the nearest stars, is left out.
     pub fn direction_at(&self, years: f64) -> DVec3 {
         (self.direction + self.motion * years).normalize()
     }
@@ -62,15 +62,16 @@ impl Star {
     }
 }
 
-/// One record a number of the catalogue (HR), from 1 on, little-endian: right ascension and declination in 1e-5 degrees (u32, i32),
-/// magnitude in 0.01 (i16), temperature in K (u16), 0 for the 14 numbers that are no stars. `catalogue.py` writes it.
+/// One record a number of the catalogue (HR), from 1 on, little-endian: right ascension and declination in 1e-5 degrees
+/// (u32, i32), magnitude in 0.01 (i16), temperature in K (u16), 0 for the 14 numbers that are no stars. `catalogue.py`
+/// writes it.
 static PACKED: &[u8] = include_bytes!("catalogue.bin");
 /// Bytes of a record.
 const RECORD: usize = 12;
 
-/// Number (HR) and proper motion in right ascension (times the cosine of the declination) and declination, arc seconds a year, of
-/// the brighter stars that move by more than half an arc second a year, and of those with names that move by more than 0.2:
-/// Hipparcos (ESA 1997, van Leeuwen 2007), to 0.01", which is 0.0003 degrees in a century.
+/// Number (HR) and proper motion in right ascension (times the cosine of the declination) and declination, arc seconds
+/// a year, of the brighter stars that move by more than half an arc second a year, and of those with names that move by
+/// more than 0.2: Hipparcos (ESA 1997, van Leeuwen 2007), to 0.01", which is 0.0003 degrees in a century.
 const MOTIONS: [(u16, f64, f64); 49] = [
     (15, 0.14, -0.16),
     (21, 0.52, -0.18),
@@ -154,8 +155,8 @@ fn unpacked(number: u16, r: &[u8]) -> Option<Star> {
     (temperature > 0).then(|| moving.map_or(star, |m| star.moving(m.1, m.2)))
 }
 
-/// The 9096 stars of the Yale Bright Star Catalogue, 5th revised edition (Hoffleit and Warren 1991), the brightest first: all down to
-/// magnitude 6.5, some to 7.96. Unpacked at the first call. Any thread.
+/// The 9096 stars of the Yale Bright Star Catalogue, 5th revised edition (Hoffleit and Warren 1991), the brightest
+/// first: all down to magnitude 6.5, some to 7.96. Unpacked at the first call. Any thread.
 pub fn catalogue() -> &'static [Star] {
     &loaded().stars
 }

@@ -7,19 +7,20 @@ use glam::{DMat3, DVec3};
 use super::starlight::Starlight;
 use crate::almanac::celestial::equatorial_direction;
 
-/// Light of all stars of the disc over the sun's place, both sides together, solar luminosities (V) a square parsec (Flynn et al. 2006,
-/// MNRAS 372, 1149).
+/// Light of all stars of the disc over the sun's place, both sides together, solar luminosities (V) a square parsec
+/// (Flynn et al. 2006, MNRAS 372, 1149).
 const COLUMN_LV_PC2: f64 = 24.3;
-/// Tenth-magnitude stars a square degree of one solar luminosity a square parsec: a square degree at 10 pc is 0.030 square parsecs, and
-/// the sun has magnitude 4.83 there.
+/// Tenth-magnitude stars a square degree of one solar luminosity a square parsec: a square degree at 10 pc is 0.030
+/// square parsecs, and the sun has magnitude 4.83 there.
 const S10_PER_LV_PC2: f64 = 3.563;
 /// From the sun to the centre, kpc (GRAVITY Collaboration 2019).
 const CENTRE_KPC: f64 = 8.2;
-/// Lengths over which the disc's stars and dust thin out by e outwards, kpc (Juric et al. 2008; Drimmel and Spergel 2001).
+/// Lengths over which the disc's stars and dust thin out by e outwards, kpc (Juric et al. 2008; Drimmel and Spergel
+/// 2001).
 const STARS_LENGTH_KPC: f64 = 2.6;
 const DUST_LENGTH_KPC: f64 = 2.3;
-/// Heights over which light and dust fall by e far off the plane, kpc, as sech^2(z / 2h): that of the light lies between those of young
-/// (0.1) and old stars (0.3).
+/// Heights over which light and dust fall by e far off the plane, kpc, as sech^2(z / 2h): that of the light lies
+/// between those of young (0.1) and old stars (0.3).
 const STARS_HEIGHT_KPC: f64 = 0.13;
 const DUST_HEIGHT_KPC: f64 = 0.08;
 /// Absorption in the plane near the sun, optical depth a kiloparsec: 0.8 magnitudes.
@@ -28,8 +29,8 @@ const DUST_PER_KPC: f64 = 0.8 / 1.0857;
 const REACH_KPC: f64 = 15.0;
 const STEPS: u32 = 64;
 
-/// From the equator and equinox of J2000.0 to galactic axes: x to the galactic centre, z to the north galactic pole (pole 192.85948,
-/// +27.12825; longitude of the celestial pole 122.93192 degrees; ESA 1997, volume 1, section 1.5.3).
+/// From the equator and equinox of J2000.0 to galactic axes: x to the galactic centre, z to the north galactic pole
+/// (pole 192.85948, +27.12825; longitude of the celestial pole 122.93192 degrees; ESA 1997, volume 1, section 1.5.3).
 pub fn equator_to_galactic() -> DMat3 {
     let pole = equatorial_direction(192.859_48, 27.128_25);
     // On the great circle of the celestial pole, whose galactic longitude is known, the way to the centre follows.
@@ -41,9 +42,9 @@ pub fn equator_to_galactic() -> DMat3 {
 
 /// Light of all stars along a galactic direction (unit), S10: tenth-magnitude stars a square degree.
 ///
-/// Integrates `j(R, z) exp(-depth)` along the line of sight, `j` and the dust each as exp(-R/length) sech^2(z / 2 height). Symmetric in
-/// longitude and latitude: clouds of stars and dark clouds, which vary it by half, are not in it, nor is the bulge. What was measured
-/// brings them ([`super::starlight`]).
+/// Integrates `j(R, z) exp(-depth)` along the line of sight, `j` and the dust each as exp(-R/length) sech^2(z / 2
+/// height). Symmetric in longitude and latitude: clouds of stars and dark clouds, which vary it by half, are not in it,
+/// nor is the bulge. What was measured brings them ([`super::starlight`]).
 pub fn disc_s10(galactic: DVec3) -> f64 {
     let at_sun = COLUMN_LV_PC2 / (4.0 * STARS_HEIGHT_KPC * 1e3);
     let squared_sech = |x: f64| x.cosh().powi(-2);
@@ -65,8 +66,8 @@ pub fn disc_s10(galactic: DVec3) -> f64 {
     sum * S10_PER_LV_PC2
 }
 
-/// Light of the stars that are not drawn as points, S10, along a galactic direction (unit): from a table of [`Starlight`], within 4 %
-/// of it.
+/// Light of the stars that are not drawn as points, S10, along a galactic direction (unit): from a table of
+/// [`Starlight`], within 4 % of it.
 pub fn unresolved_s10(galactic: DVec3) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     let table = TABLE.get_or_init(|| {
@@ -97,7 +98,7 @@ const ROWS: usize = 2 * LATITUDES_DEG.len() - 1;
 /// Steps of a turn of longitude.
 const COLUMNS: usize = 144;
 
-/// Of a row of the table, from south to north.
+/// Returns the galactic latitude of a row of the table, degrees; rows run from south to north.
 fn latitude_deg(row: usize) -> f64 {
     let plane = LATITUDES_DEG.len() - 1;
     if row < plane { -LATITUDES_DEG[plane - row] } else { LATITUDES_DEG[row - plane] }
@@ -151,8 +152,8 @@ mod tests {
 
     #[test]
     fn starlight_is_as_measured() {
-        // Leinert et al. 1998, section 10, and Roach and Megill 1961: some 30 at the poles without the stars of the eye, 160 to 640 in
-        // the plane, more towards the centre.
+        // Leinert et al. 1998, section 10, and Roach and Megill 1961: some 30 at the poles without the stars of the
+        // eye, 160 to 640 in the plane, more towards the centre.
         for pole in [DVec3::Z, -DVec3::Z] {
             let s10 = unresolved_s10(pole);
             assert!((28.0..38.0).contains(&s10), "{s10}");

@@ -1,4 +1,5 @@
-//! The glow on the GPU: a ball of directions with zodiacal light and starlight at its corners, to which the shader adds airglow and air.
+//! The glow on the GPU: a ball of directions with zodiacal light and starlight at its corners, to which the shader adds
+//! airglow and air.
 
 use bytemuck::Zeroable as _;
 use glam::{DMat3, DVec3, Vec3};
@@ -18,8 +19,8 @@ use crate::{
     },
 };
 
-/// Galactic latitudes of the ball's rows, degrees, and how many columns of corners one side of a patch of the row spans. Few, as a
-/// software driver pays for every edge: 95 % of the patches glow within 3 % of the tables.
+/// Galactic latitudes of the ball's rows, degrees, and how many columns of corners one side of a patch of the row
+/// spans. Few, as a software driver pays for every edge: 95 % of the patches glow within 3 % of the tables.
 const RINGS: [(f64, usize); 15] = [
     (0.0, 1),
     (1.0, 1),
@@ -37,7 +38,8 @@ const RINGS: [(f64, usize); 15] = [
     (78.0, 4),
     (90.0, 4),
 ];
-/// Rows of the ball from the south galactic pole to the north one, and corners a row: the last stands where the first does.
+/// Rows of the ball from the south galactic pole to the north one, and corners a row: the last stands where the first
+/// does.
 const ROWS: usize = 2 * RINGS.len() - 1;
 const COLUMNS: usize = 49;
 /// Angle that the sun moves on, rad, until the zodiacal light is found anew: six hours.
@@ -82,7 +84,7 @@ pub(super) struct Dusk {
     pub share: f64,
 }
 
-/// What a view holds for the glow.
+/// Resources that a view holds for the glow.
 pub(super) struct GlowPass {
     block: wgpu::Buffer,
     corners: wgpu::Buffer,
@@ -95,9 +97,10 @@ pub(super) struct GlowPass {
     written: Option<GlowUniform>,
 }
 
-/// The triangles of the ball that a picture may show. A software driver pays for all that it is given, most of which stand elsewhere.
+/// The triangles of the ball that a picture may show. A software driver pays for all that it is given, most of which
+/// stand elsewhere.
 struct VisibleTriangles {
-    /// Of the ball, in J2000.0.
+    /// Directions of the ball's corners, in J2000.0.
     directions: Vec<Vec3>,
     all: Vec<[u16; 3]>,
     /// Beyond which sides of the picture each corner lies, a bit a side.
@@ -238,8 +241,8 @@ fn corners(sun: DVec3) -> Vec<Corner> {
     (0..ROWS * COLUMNS).map(corner).collect()
 }
 
-/// Triangles between each two rows. Where one row has fewer corners than the other, each of its sides is the base of several triangles
-/// of the other's, so that there is no gap.
+/// Triangles between each two rows. Where one row has fewer corners than the other, each of its sides is the base of
+/// several triangles of the other's, so that there is no gap.
 fn indices() -> Vec<u16> {
     let at = |row: usize, column: usize| (row * COLUMNS + column) as u16;
     let mut list = Vec::new();
@@ -346,7 +349,8 @@ mod tests {
                 let is_met = kept.chunks_exact(3).any(|t| {
                     let [a, b, c] = [0, 1, 2].map(|k| triangles.directions[usize::from(t[k])]);
                     let sides = [a.cross(b), b.cross(c), c.cross(a)].map(|n| n.dot(ray));
-                    // Seen from within or from without, and a rounding beyond an edge; not on the other side of the ball.
+                    // Seen from within or from without, and a rounding beyond an edge; not on the other side of the
+                    // ball.
                     let is_inside = sides.iter().all(|s| *s > -1e-6) || sides.iter().all(|s| *s < 1e-6);
                     is_inside && (a + b + c).dot(ray) > 0.0
                 });

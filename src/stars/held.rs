@@ -1,5 +1,5 @@
-//! What a context holds of the night sky: its settings. The host's own stars are no part of a saved state; a context that loads one
-//! keeps those that it has.
+//! State of the night sky that a context holds: its settings. The host's own stars are no part of a saved state; a
+//! context that loads one keeps those that it has.
 
 use std::sync::Arc;
 
@@ -51,7 +51,7 @@ impl HeldStars {
         Ok(Self { settings })
     }
 
-    /// What of it lights the ground.
+    /// Returns the settings of the night's light on the ground.
     pub fn night(&self) -> NightSettings {
         NightSettings { airglow: self.settings.airglow, celestial_to_world: self.settings.celestial_to_world }
     }
@@ -74,7 +74,8 @@ impl HeldEffect for HeldStars {
     }
 }
 
-/// Light of the moonless sky on level ground, lux a channel, where the air's optical depths straight up are `zenith_depth`.
+/// Light of the moonless sky on level ground, lux a channel, where the air's optical depths straight up are
+/// `zenith_depth`.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] for a time or place out of range.

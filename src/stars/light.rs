@@ -7,8 +7,8 @@ use crate::light::{
     spectrum::{black_body, rec709_of_wavelength},
 };
 
-/// Illuminance of a star of magnitude 0 above the air on a surface that faces it, lux (Allen 1973, Astrophysical Quantities;
-/// Crumey 2014, MNRAS 442, 2600).
+/// Illuminance of a star of magnitude 0 above the air on a surface that faces it, lux (Allen 1973, Astrophysical
+/// Quantities; Crumey 2014, MNRAS 442, 2600).
 pub const MAGNITUDE_0_LUX: f64 = 2.54e-6;
 
 /// Illuminance of a star above the air on a surface that faces it, lux (Pogson 1856).
@@ -16,15 +16,16 @@ pub fn illuminance_lux(magnitude: f64) -> f64 {
     MAGNITUDE_0_LUX * 10f64.powf(-0.4 * magnitude)
 }
 
-/// Temperature of the black body that has a star's B-V, K (Ballesteros 2012, EPL 97, 34008, eq. 14). For B-V in [-0.4, 2.0]; values
-/// outside count as the ends.
+/// Temperature of the black body that has a star's B-V, K (Ballesteros 2012, EPL 97, 34008, eq. 14). For B-V in
+/// [-0.4, 2.0]; values outside count as the ends.
 pub fn temperature_of_color_index(b_v: f64) -> f64 {
     let x = 0.92 * b_v.clamp(-0.4, 2.0);
     4600.0 * (1.0 / (x + 1.7) + 1.0 / (x + 0.62))
 }
 
-/// Colour of a black body in linear Rec. 709 (white is D65, as everywhere) of luminance 1: Planck's law and the standard observer of
-/// 1931, summed in steps of 5 nm. Light redder than Rec. 709 can show, below 1900 K, loses its negative blue.
+/// Colour of a black body in linear Rec. 709 (white is D65, as everywhere) of luminance 1: Planck's law and the
+/// standard observer of 1931, summed in steps of 5 nm. Light redder than Rec. 709 can show, below 1900 K, loses its
+/// negative blue.
 fn integrated_color(temperature_k: f64) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for nm in (360..=830).step_by(5).map(f64::from) {
@@ -39,8 +40,8 @@ fn integrated_color(temperature_k: f64) -> [f64; 3] {
 /// Steps of the table of colours, in millionths of a kelvin's inverse (mired).
 const MIRED_STEP: f64 = 10.0;
 
-/// Linear Rec. 709 colour of luminance 1 of a black body of a temperature in [1000, 100000] K, from a table in steps of 10 mired,
-/// within 0.5 % of the sum over wavelengths. Any thread.
+/// Linear Rec. 709 colour of luminance 1 of a black body of a temperature in [1000, 100000] K, from a table in steps of
+/// 10 mired, within 0.5 % of the sum over wavelengths. Any thread.
 pub fn color_of_temperature(temperature_k: f64) -> [f64; 3] {
     static TABLE: OnceLock<[[f64; 3]; 101]> = OnceLock::new();
     let table = TABLE.get_or_init(|| std::array::from_fn(|i| integrated_color(1e6 / (MIRED_STEP * i as f64).max(1.0))));
@@ -53,8 +54,8 @@ pub fn color_of_temperature(temperature_k: f64) -> [f64; 3] {
 /// The sun's temperature as a black body's, K (IAU 2015 resolution B3).
 const SUN_K: f64 = 5772.0;
 
-/// The same colour to an eye for which unscattered sunlight is white, as for all that is drawn (von Kries; `world::lights`), of
-/// luminance 1.
+/// Returns the colour, of luminance 1, of a black body to an eye for which unscattered sunlight is white, as for all
+/// that is drawn (von Kries; `world::lights`).
 pub fn color_by_sunlight(temperature_k: f64) -> [f64; 3] {
     let (color, white) = (color_of_temperature(temperature_k), color_of_temperature(SUN_K));
     let adapted: [f64; 3] = std::array::from_fn(|k| color[k] / white[k]);
@@ -67,15 +68,16 @@ pub fn star_lux(magnitude: f64, temperature_k: f64) -> [f64; 3] {
     color_by_sunlight(temperature_k).map(|c| c * illuminance_lux(magnitude))
 }
 
-/// Relative air mass towards an apparent elevation, degrees (Kasten and Young 1989, eq. 3). Below the horizon as at it: 38.
+/// Relative air mass towards an apparent elevation, degrees (Kasten and Young 1989, eq. 3). Below the horizon as at it:
+/// 38.
 pub fn air_mass(elevation_deg: f64) -> f64 {
     let h = elevation_deg.max(0.0);
     1.0 / (h.to_radians().sin() + 0.505_72 * (h + 6.079_95).powf(-1.6364))
 }
 
-/// Share of a star's light that the air lets through at each of the three wavelengths, towards an apparent elevation, where straight
-/// up the optical depths are `zenith_depth` (Bouguer 1729). Channel by channel, as the sky's own conversion
-/// (`sky::spectral::Conversion::per_channel`) has it.
+/// Share of a star's light that the air lets through at each of the three wavelengths, towards an apparent elevation,
+/// where straight up the optical depths are `zenith_depth` (Bouguer 1729). Channel by channel, as the sky's own
+/// conversion (`sky::spectral::Conversion::per_channel`) has it.
 pub fn transmittance(zenith_depth: [f64; 3], elevation_deg: f64) -> [f64; 3] {
     let mass = air_mass(elevation_deg);
     zenith_depth.map(|depth| (-depth * mass).exp())
@@ -108,7 +110,8 @@ mod tests {
 
     #[test]
     fn color_indices_give_the_temperatures_of_known_stars() {
-        // Ballesteros 2012, figure 5 and text: the sun (0.65) 5780 K, Vega (0.0) 9500 to 10200 K, Betelgeuse (1.85) 3200 to 3600 K.
+        // Ballesteros 2012, figure 5 and text: the sun (0.65) 5780 K, Vega (0.0) 9500 to 10200 K, Betelgeuse (1.85)
+        // 3200 to 3600 K.
         assert!((temperature_of_color_index(0.65) - 5780.0).abs() < 60.0, "{}", temperature_of_color_index(0.65));
         assert!((9500.0..10_200.0).contains(&temperature_of_color_index(0.0)));
         assert!((3000.0..3600.0).contains(&temperature_of_color_index(1.85)));

@@ -1,4 +1,5 @@
-//! Which stars need no drawing: those that no eye could see against the sky, and those that change no step of the display.
+//! Stars that need no drawing: those that no eye could see against the sky, and those that change no step of the
+//! display.
 
 use std::f64::consts::PI;
 
@@ -9,13 +10,13 @@ const LUX_PER_FOOT_CANDLE: f64 = 10.763_91;
 /// cd/m^2 in a nanolambert.
 const CD_M2_PER_NANOLAMBERT: f64 = 1e-5 / PI;
 
-/// Least illuminance at the eye of a star that can be seen against a background of `background_cd_m2`, lux: Hecht's law as Schaefer
-/// (1990, PASP 102, 212, after Knoll, Tousey and Hulburt 1946) has it,
+/// Least illuminance at the eye of a star that can be seen against a background of `background_cd_m2`, lux: Hecht's law
+/// as Schaefer (1990, PASP 102, 212, after Knoll, Tousey and Hulburt 1946) has it,
 ///
 /// `I = C (1 + (K B)^(1/2))^2`, with log C = -9.80 and log K = -1.90 for rods, -8.35 and -5.90 for cones,
 ///
-/// in foot-candles and nanolamberts; whichever sees more counts. Backgrounds below 0 count as 0. A good observer sees half a magnitude
-/// more.
+/// in foot-candles and nanolamberts; whichever sees more counts. Backgrounds below 0 count as 0. A good observer sees
+/// half a magnitude more.
 pub fn threshold_lux(background_cd_m2: f64) -> f64 {
     let b = background_cd_m2.max(0.0) / CD_M2_PER_NANOLAMBERT;
     let eye = |log_c: f64, log_k: f64| 10f64.powf(log_c) * (1.0 + (10f64.powf(log_k) * b).sqrt()).powi(2);
@@ -27,9 +28,10 @@ pub fn limiting_magnitude(background_cd_m2: f64) -> f64 {
     -2.5 * (threshold_lux(background_cd_m2) / MAGNITUDE_0_LUX).log10()
 }
 
-/// Least illuminance of a star whose brightest pixel is `share` of a display step, lux: `step` is the smallest difference that the
-/// display shows in the dark (of 8 bits by the sRGB curve 1/255/12.92 of white), `exposure` the display's units per cd/m^2,
-/// `pixel_sr` the solid angle of a pixel. 0 where any of them is not positive: nothing is dropped.
+/// Least illuminance of a star whose brightest pixel is `share` of a display step, lux: `step` is the smallest
+/// difference that the display shows in the dark (of 8 bits by the sRGB curve 1/255/12.92 of white), `exposure` the
+/// display's units per cd/m^2, `pixel_sr` the solid angle of a pixel. 0 where any of them is not positive: nothing is
+/// dropped.
 pub fn display_threshold_lux(share: f64, step: f64, exposure: f64, pixel_sr: f64) -> f64 {
     if !(share > 0.0 && step > 0.0 && exposure > 0.0 && pixel_sr > 0.0) {
         return 0.0;
@@ -48,7 +50,8 @@ mod tests {
 
     #[test]
     fn eyes_see_what_they_are_known_to_see() {
-        // Dark site, 21.6 to 22 mag/arcsec^2: 6 to 7. Suburb, 18: 4 to 5. Middle of a city, 16: under 4.5 (Bortle 2001).
+        // Dark site, 21.6 to 22 mag/arcsec^2: 6 to 7. Suburb, 18: 4 to 5. Middle of a city, 16: under 4.5 (Bortle
+        // 2001).
         for (sky, low, high) in [(22.0, 6.3, 7.0), (21.6, 6.2, 6.8), (18.0, 4.0, 5.2), (16.0, 3.0, 4.5)] {
             let m = limiting_magnitude(of_magnitude(sky));
             assert!((low..high).contains(&m), "{sky}: {m}");

@@ -1,9 +1,9 @@
-//! Where the planets stand round the sun: the series of Simon, Bretagnon, Chapront, Chapront-Touze, Francou and Laskar (1994, A&A 282,
-//! 663, section 6): mean elements to the second order in time, and the largest periodic terms of the semi-major axis and the mean
-//! longitude.
+//! Where the planets stand round the sun: the series of Simon, Bretagnon, Chapront, Chapront-Touze, Francou and Laskar
+//! (1994, A&A 282, 663, section 6): mean elements to the second order in time, and the largest periodic terms of the
+//! semi-major axis and the mean longitude.
 //!
-//! The authors give the greatest errors of the longitude over 1800 to 2050 as 4" for Mercury, 5" for Venus, 6" for the Earth, 17"
-//! for Mars, 71" for Jupiter, 81" for Saturn and 86" for Uranus, and half as much again over 1000 to 3000.
+//! The authors give the greatest errors of the longitude over 1800 to 2050 as 4" for Mercury, 5" for Venus, 6" for the
+//! Earth, 17" for Mars, 71" for Jupiter, 81" for Saturn and 86" for Uranus, and half as much again over 1000 to 3000.
 
 use glam::DVec3;
 
@@ -14,7 +14,8 @@ const AMPLITUDE: f64 = 1e-7;
 /// Obliquity of the ecliptic of J2000.0 (IAU 1976), arc seconds.
 const OBLIQUITY_AS: f64 = 84_381.448;
 
-/// One planet's elements: polynomials in millennia of terrestrial time since J2000.0, mean ecliptic and equinox of J2000.0.
+/// One planet's elements: polynomials in millennia of terrestrial time since J2000.0, mean ecliptic and equinox of
+/// J2000.0.
 pub(super) struct Orbit {
     /// Semi-major axis, au.
     axis: [f64; 3],
@@ -29,7 +30,7 @@ pub(super) struct Orbit {
     node: [f64; 3],
     /// Multiples of the argument, cosines and sines of the axis; the last grows with time.
     axis_terms: [[f64; 9]; 3],
-    /// Of the longitude; the last two grow with time.
+    /// Multiples of the argument, cosines and sines of the longitude; the last two grow with time.
     longitude_terms: [[f64; 10]; 3],
 }
 
@@ -183,7 +184,8 @@ fn eccentric_anomaly(mean: f64, eccentricity: f64) -> f64 {
 }
 
 impl Orbit {
-    /// Place from the sun's centre at `t` millennia of terrestrial time since J2000.0, au, in the mean equator and equinox of J2000.0.
+    /// Place from the sun's centre at `t` millennia of terrestrial time since J2000.0, au, in the mean equator and
+    /// equinox of J2000.0.
     pub fn heliocentric(&self, t: f64) -> DVec3 {
         let polynomial = |c: &[f64; 3]| c[0] + t * (c[1] + t * c[2]);
         let angle = |c: &[f64; 3]| (c[0] + t * (c[1] + t * c[2]) / 3600.0).to_radians();

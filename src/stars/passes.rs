@@ -28,7 +28,7 @@ pub struct StarDepth<'a> {
     pub multisampled: bool,
 }
 
-/// What a pipeline is made for: the target's format, several samples of depth, any depth at all.
+/// Key of a pipeline: the target's format, whether the depth has several samples, and whether there is any depth.
 type PointsKind = (wgpu::TextureFormat, bool, bool);
 
 /// The stars that the buffer holds.
@@ -40,14 +40,14 @@ struct Loaded {
     /// All of them, the brightest first, and the illuminance of each above the air, lux.
     all: Vec<StarInstance>,
     lux: Vec<f32>,
-    /// Those that the next draw shows, behind the planets.
+    /// Stars that the next draw shows, after the planets.
     shown: Vec<StarInstance>,
-    /// And those that the buffer has.
+    /// Stars that the buffer has.
     written: Vec<StarInstance>,
     buffer: wgpu::Buffer,
 }
 
-/// What a view holds for stars: the buffer of all, a block, and pipelines by what they draw into.
+/// Resources that a view holds for stars: the buffer of all, a block, and pipelines by what they draw into.
 pub struct StarPass {
     block: wgpu::Buffer,
     /// For depths of one and of several samples.
@@ -85,12 +85,13 @@ impl StarPass {
         }
     }
 
-    /// Brings everything up for a draw into a target of `format` (one sample a pixel, blendable), hidden by `depth` if there is one, and
-    /// says how many points it will draw. Stars that stand still are uploaded once; moving ones once a year of the simulated time.
+    /// Brings everything up for a draw into a target of `format` (one sample a pixel, blendable), hidden by `depth` if
+    /// there is one, and says how many points it will draw. Stars that stand still are uploaded once; moving ones once
+    /// a year of the simulated time.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a setting or view out of range; a missing shader file. GPU faults come through
-    /// [`Device::check`].
+    /// [`crate::Status::InvalidArgument`] for a setting or view out of range; a missing shader file. GPU faults come
+    /// through [`Device::check`].
     pub fn prepare(
         &mut self,
         device: &Device,
@@ -203,11 +204,12 @@ struct Frustum {
     rows: [Vec3; 3],
     /// By how much x and y may lie beyond w.
     margins: [f32; 2],
-    /// The same as a share of w.
+    /// Further margin of x and y beyond w, as a share of w.
     footprint: [f32; 2],
 }
 
-/// Farthest that a star is seen from its place in the catalogue, rad: refraction lifts by 0.6 degrees, denser air by more.
+/// Farthest that a star is seen from its place in the catalogue, rad: refraction lifts by 0.6 degrees, denser air by
+/// more.
 const MOST_MOVED: f64 = 0.012;
 
 impl Frustum {

@@ -19,9 +19,11 @@ use crate::{
 /// The heavens over a place at a time: one matrix for all stars, and what is not in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heavens {
-    /// From the equator and equinox of J2000.0 to (east, north, up): precession, nutation and the Earth's turning, or the host's own.
+    /// From the equator and equinox of J2000.0 to (east, north, up): precession, nutation and the Earth's turning, or
+    /// the host's own.
     pub to_world: DMat3,
-    /// The Earth's velocity over the speed of light in the axes of J2000.0: annual aberration. 0 with a host's own matrix.
+    /// The Earth's velocity over the speed of light in the axes of J2000.0: annual aberration. 0 with a host's own
+    /// matrix.
     pub velocity: DVec3,
     /// Julian years since J2000.0, for proper motions; 0 with a host's own matrix.
     pub years: f64,
@@ -33,10 +35,11 @@ pub struct Heavens {
 
 impl Heavens {
     /// The heavens over `place` at `utc`: within 0.005 degrees from 1950 to 2100 for the stars of the catalogue that
-    /// stand still and those of which it has the motion (tested against another almanac): most of it is the catalogue's own place.
+    /// stand still and those of which it has the motion (tested against another almanac): most of it is the catalogue's
+    /// own place.
     ///
-    /// UT1 is taken as UTC. A host's own matrix gives stars as the catalogue has them: no motion, no aberration; the planets and the sun
-    /// then stand among them as at `utc`.
+    /// UT1 is taken as UTC. A host's own matrix gives stars as the catalogue has them: no motion, no aberration; the
+    /// planets and the sun then stand among them as at `utc`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a place, time or setting out of range.
@@ -50,13 +53,13 @@ impl Heavens {
         Ok(Self { to_world, velocity, years, sun, planets: planets(utc) })
     }
 
-    /// Unit vector (east, north, up) towards a direction of J2000.0 as one who moves with the Earth sees it, without refraction:
-    /// aberration to the first order in v/c, which leaves out 0.0001 degrees.
+    /// Unit vector (east, north, up) towards a direction of J2000.0 as one who moves with the Earth sees it, without
+    /// refraction: aberration to the first order in v/c, which leaves out 0.0001 degrees.
     pub fn seen(&self, direction: DVec3) -> DVec3 {
         self.to_world * (direction + self.velocity).normalize()
     }
 
-    /// The same of a star, moved to the time.
+    /// Returns the unit vector towards a star, moved to the time, as [`Self::seen`] does for a direction.
     pub fn star(&self, star: &Star) -> DVec3 {
         self.seen(star.direction_at(self.years))
     }
@@ -71,8 +74,8 @@ pub(super) fn to_world_and_sun(utc: Utc, place: &Place, hosts: Option<DMat3>) ->
     Ok((hosts.unwrap_or(own), sun_direction(utc)))
 }
 
-/// A direction (east, north, up; unit) as the air lifts it: Saemundsson 1986 times the air's density over that of 1010 hPa and 10 C
-/// (`density`, 0 without air).
+/// A direction (east, north, up; unit) as the air lifts it: Saemundsson 1986 times the air's density over that of 1010
+/// hPa and 10 C (`density`, 0 without air).
 pub fn lifted(direction: DVec3, density: f64) -> DVec3 {
     let level = direction.x.hypot(direction.y);
     if level < 1e-6 {

@@ -33,9 +33,10 @@ pub const BODIES: [Body; 6] = [Body::Mercury, Body::Venus, Body::Mars, Body::Jup
 /// A planet as the Earth sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanetPlace {
-    /// Which.
+    /// Identity of the planet.
     pub body: Body,
-    /// Unit vector from the Earth's centre in the equator and equinox of J2000.0, light time taken off; aberration is not in it.
+    /// Unit vector from the Earth's centre in the equator and equinox of J2000.0, light time taken off; aberration is
+    /// not in it.
     pub direction: DVec3,
     /// Distance from the Earth, au.
     pub distance_au: f64,
@@ -53,20 +54,21 @@ fn millennia(utc: Utc) -> f64 {
     utc.julian_centuries_tt() / 10.0
 }
 
-/// The sun's direction from the Earth in the equator and equinox of J2000.0, within 10" (the mean of Earth and moon stands for the
-/// Earth).
+/// The sun's direction from the Earth in the equator and equinox of J2000.0, within 10" (the mean of Earth and moon
+/// stands for the Earth).
 pub fn sun_direction(utc: Utc) -> DVec3 {
     -EARTH.heliocentric(millennia(utc)).normalize()
 }
 
-/// The Earth's velocity round the sun over the speed of light, in the equator and equinox of J2000.0: what annual aberration comes
-/// from. 1e-4; within 1e-7, as the sun's own motion and the moon's pull on the Earth are left out.
+/// The Earth's velocity round the sun over the speed of light, in the equator and equinox of J2000.0: what annual
+/// aberration comes from. 1e-4; within 1e-7, as the sun's own motion and the moon's pull on the Earth are left out.
 pub fn earth_velocity(utc: Utc) -> DVec3 {
     let (t, half_day) = (millennia(utc), 0.5 / MILLENNIUM_DAYS);
     (EARTH.heliocentric(t + half_day) - EARTH.heliocentric(t - half_day)) * LIGHT_DAYS_PER_AU
 }
 
-/// The planets at a time. Directions within 0.03 degrees from 1950 to 2100, magnitudes within 0.03 of the formulas (tested against another almanac).
+/// The planets at a time. Directions within 0.03 degrees from 1950 to 2100, magnitudes within 0.03 of the formulas
+/// (tested against another almanac).
 pub fn planets(utc: Utc) -> [PlanetPlace; 6] {
     let t = millennia(utc);
     let earth = EARTH.heliocentric(t);
@@ -75,7 +77,8 @@ pub fn planets(utc: Utc) -> [PlanetPlace; 6] {
 
 fn planet(body: Body, orbit: &Orbit, t: f64, earth: DVec3) -> PlanetPlace {
     let now = orbit.heliocentric(t);
-    // Where it stood when the light left: one step is enough, as no planet moves by more than 0.001 of its distance meanwhile.
+    // Where it stood when the light left: one step is enough, as no planet moves by more than 0.001 of its distance
+    // meanwhile.
     let away = LIGHT_DAYS_PER_AU * (now - earth).length() / MILLENNIUM_DAYS;
     let from_sun = orbit.heliocentric(t - away);
     let from_earth = from_sun - earth;
@@ -83,8 +86,8 @@ fn planet(body: Body, orbit: &Orbit, t: f64, earth: DVec3) -> PlanetPlace {
     PlanetPlace { body, direction: from_earth.normalize(), distance_au: from_earth.length(), magnitude }
 }
 
-/// Visual magnitude (Mallama and Hilton 2018, Astronomy and Computing 25, 10) of a body at `from_sun` and `from_earth`, au. What
-/// depends on the side that Mars turns to us (0.06 magnitudes) is left out.
+/// Visual magnitude (Mallama and Hilton 2018, Astronomy and Computing 25, 10) of a body at `from_sun` and `from_earth`,
+/// au. What depends on the side that Mars turns to us (0.06 magnitudes) is left out.
 fn magnitude(body: Body, from_sun: DVec3, from_earth: DVec3) -> f64 {
     let (r, d) = (from_sun.length(), from_earth.length());
     let a = from_sun.angle_between(from_earth).to_degrees();
@@ -105,12 +108,14 @@ fn magnitude(body: Body, from_sun: DVec3, from_earth: DVec3) -> f64 {
     of_phase + 5.0 * (r * d).log10()
 }
 
-/// Latitude of a direction towards a planet as the planet's own equator has it: of the point that faces where one looks from.
+/// Latitude of a direction towards a planet as the planet's own equator has it: of the point that faces where one looks
+/// from.
 fn latitude_facing(pole: DVec3, toward: DVec3) -> f64 {
     -toward.normalize().dot(pole).clamp(-1.0, 1.0).asin()
 }
 
-/// Effective tilt of Saturn's rings, rad: the geometric mean of those to sun and Earth, 0 where these look on different faces.
+/// Effective tilt of Saturn's rings, rad: the geometric mean of those to sun and Earth, 0 where these look on different
+/// faces.
 fn ring_tilt(from_sun: DVec3, from_earth: DVec3) -> f64 {
     // North pole at J2000.0: right ascension 40.589, declination 83.537 degrees (Archinal et al. 2018).
     let pole = crate::almanac::celestial::equatorial_direction(40.589, 83.537);

@@ -14,8 +14,8 @@ pub const FADE: f64 = 1.585;
 
 /// The cubic B-spline (Schoenberg 1946; Unser 1999): `2/3 - a^2 + a^3 / 2` for `a = |x| < 1`, `(2 - a)^3 / 6` up to 2.
 ///
-/// Its values at whole steps from any place on add up to exactly 1, and so do their products on a grid of pixels: a star's light is the
-/// same wherever it stands between pixels. Its standard deviation is 0.577 pixels.
+/// Its values at whole steps from any place on add up to exactly 1, and so do their products on a grid of pixels: a
+/// star's light is the same wherever it stands between pixels. Its standard deviation is 0.577 pixels.
 pub fn spline(x: f64) -> f64 {
     let a = x.abs();
     if a < 1.0 { 2.0 / 3.0 - a * a * (1.0 - 0.5 * a) } else { (2.0 - a).max(0.0).powi(3) / 6.0 }
@@ -31,14 +31,15 @@ pub fn weight(offset: DVec2) -> f64 {
 pub struct Point {
     /// Pixels from the target's first corner.
     pub pixel: DVec2,
-    /// Radiance on a pixel that it fell on as a whole, the target's units a channel: illuminance over the pixel's solid angle.
+    /// Radiance on a pixel that it fell on as a whole, the target's units a channel: illuminance over the pixel's solid
+    /// angle.
     pub light: [f64; 3],
     /// Solid angle of a pixel there, sr.
     pub pixel_sr: f64,
 }
 
-/// Where and how bright a star is on the picture: its direction in J2000.0, its illuminance above the air, lux a channel. `None`
-/// outside the picture, below the horizon, or too faint.
+/// Where and how bright a star is on the picture: its direction in J2000.0, its illuminance above the air, lux a
+/// channel. `None` outside the picture, below the horizon, or too faint.
 pub fn point(view: &StarView<'_>, direction: DVec3, lux: [f64; 3]) -> Option<Point> {
     let seen = lifted(view.heavens.seen(direction), view.air_density);
     let clip = view.clip * seen.extend(0.0);
@@ -92,7 +93,8 @@ mod tests {
                 let sum = |k: usize| picture.iter().map(|p| p[k]).sum::<f64>();
                 assert!((sum(0) - 1.0).abs() < 1e-12 && (sum(2) - 4.0).abs() < 1e-12, "{pixel}");
                 let most = picture.iter().map(|p| p[0]).fold(0.0, f64::max);
-                // At worst it falls on four pixels alike: a little over half of what one in a pixel's middle gives to that.
+                // At worst it falls on four pixels alike: a little over half of what one in a pixel's middle gives to
+                // that.
                 assert!((0.229..=PEAK_WEIGHT + 1e-12).contains(&most), "{most}");
             }
         }

@@ -1,4 +1,4 @@
-//! What a host may set of the stars.
+//! Settings of the stars.
 
 use std::sync::Arc;
 
@@ -17,7 +17,8 @@ pub struct StarSettings {
     pub stars: Option<Arc<[Star]>>,
     /// Whether Mercury to Uranus are drawn. Default true.
     pub planets: bool,
-    /// From the equator and equinox of J2000.0 to (east, north, up), in place of the Earth's own turning: a rotation. `None` by default.
+    /// From the equator and equinox of J2000.0 to (east, north, up), in place of the Earth's own turning: a rotation.
+    /// `None` by default.
     pub celestial_to_world: Option<DMat3>,
     /// Strength of the airglow, [0, 10]: 1, the default, near the sun's least activity, 1.7 at the greatest.
     pub airglow: f64,

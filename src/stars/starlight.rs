@@ -1,10 +1,11 @@
 //! Starlight as measured from beyond the dust of the planets, and what lies between the places of its table.
 //!
-//! Pioneer 10 mapped the sky from more than 2.8 au, where there is no zodiacal light: Leinert et al. 1998, tables 37 (440 nm) and 38
-//! (640 nm), after Toller 1981 and Weinberg et al. 1974; good to 5 to 8 %. Stars brighter than magnitude 6.5 are taken out, which are
-//! those that are drawn as points; light of faint stars, of dust that they light, and of other galaxies is in. Its places are 4 to 10
-//! degrees apart, too far for the band's dark lane: between them the disc of [`super::galaxy`] says how the light varies, times the mean
-//! of measured over modelled light about each direction.
+//! Pioneer 10 mapped the sky from more than 2.8 au, where there is no zodiacal light: Leinert et al. 1998, tables 37
+//! (440 nm) and 38 (640 nm), after Toller 1981 and Weinberg et al. 1974; good to 5 to 8 %. Stars brighter than
+//! magnitude 6.5 are taken out, which are those that are drawn as points; light of faint stars, of dust that they
+//! light, and of other galaxies is in. Its places are 4 to 10 degrees apart, too far for the band's dark lane: between
+//! them the disc of [`super::galaxy`] says how the light varies, times the mean of measured over modelled light about
+//! each direction.
 
 use glam::DVec3;
 
@@ -18,8 +19,8 @@ const DECLINATIONS_DEG: [f64; 25] = [
 ];
 /// Share of the light at 640 nm in that at the middle of the eye's curve, 550 nm, on a straight line between the two.
 const RED_SHARE: f64 = 0.55;
-/// Over how far measured light is compared with modelled light, rad: 5 degrees, half of the tables' step; and where the tables have
-/// no values, towards the sun as it was seen from the spacecraft.
+/// Over how far measured light is compared with modelled light, rad: 5 degrees, half of the tables' step; and where the
+/// tables have no values, towards the sun as it was seen from the spacecraft.
 const NEAR_RAD: f64 = 0.0873;
 const FAR_RAD: f64 = 0.35;
 /// How little what lies far counts beside what is near.

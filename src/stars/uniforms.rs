@@ -16,7 +16,7 @@ use crate::{
 /// Largest optical depth straight up that a view takes: e^-1000 is nothing.
 pub(super) const MOST_ZENITH_DEPTH: f64 = 1e3;
 
-/// What a picture of the stars is made of.
+/// Inputs of a picture of the stars.
 #[derive(Clone, Copy, Debug)]
 pub struct StarView<'a> {
     /// Where the stars stand.
@@ -25,7 +25,7 @@ pub struct StarView<'a> {
     pub clip: DMat4,
     /// The camera's rays in the same axes, to read its depth.
     pub rays: &'a ViewRays,
-    /// Of the target, pixels.
+    /// Size of the target, pixels.
     pub size: [u32; 2],
     /// 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
     pub y_sign: f32,
@@ -39,8 +39,8 @@ pub struct StarView<'a> {
     pub horizon_deg: f64,
     /// Units of the target per cd/m^2, [0, 1e12].
     pub scale: f64,
-    /// Illuminance at the eye of the faintest star that is drawn, lux, [0, 1e6]: the greater of [`super::limits::threshold_lux`] and
-    /// [`super::limits::display_threshold_lux`], or 0 for all.
+    /// Illuminance at the eye of the faintest star that is drawn, lux, [0, 1e6]: the greater of
+    /// [`super::limits::threshold_lux`] and [`super::limits::display_threshold_lux`], or 0 for all.
     pub faintest_lux: f64,
 }
 
@@ -65,8 +65,9 @@ impl StarView<'_> {
 
     /// Solid angle of a pixel over the cube of clip w, sr.
     ///
-    /// Rows x, y, w of the clip matrix M take a unit direction d to w (X, Y, 1), X and Y of the picture: d = w M^-1 (X, Y, 1). The cone
-    /// over dX dY has the solid angle |det M^-1| dX dY / |M^-1 (X, Y, 1)|^3, and |M^-1 (X, Y, 1)| = 1/w. A pixel is 2/width by 2/height.
+    /// Rows x, y, w of the clip matrix M take a unit direction d to w (X, Y, 1), X and Y of the picture: d = w M^-1 (X,
+    /// Y, 1). The cone over dX dY has the solid angle |det M^-1| dX dY / |M^-1 (X, Y, 1)|^3, and |M^-1 (X, Y, 1)| =
+    /// 1/w. A pixel is 2/width by 2/height.
     pub fn pixel_sr(&self) -> f64 {
         let rows = [0, 1, 3].map(|i| self.clip.row(i).truncate());
         let determinant = DMat3::from_cols(rows[0], rows[1], rows[2]).determinant().abs();

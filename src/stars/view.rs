@@ -1,4 +1,4 @@
-//! What a view draws of the night sky: a layer behind the sky's own light, of the glow and the points before it.
+//! Night sky as a view draws it: a layer behind the sky's own light, of the glow and the points before it.
 
 use std::f64::consts::PI;
 
@@ -29,7 +29,8 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(super) const POINTS_BEGIN_DEG: (f64, f64) = (0.0, -3.0);
 /// Least share of the night's light that clouds and fog let through to be drawn.
 pub(super) const LEAST_THROUGH: f64 = 1e-3;
-/// Reflectance of the land under the clouds, with which light goes back and forth; of what passes straight it changes nothing.
+/// Reflectance of the land under the clouds, with which light goes back and forth; of what passes straight it changes
+/// nothing.
 pub(crate) const LAND_ALBEDO: f64 = 0.2;
 /// Stars whose brightest pixel is less than this share of a step of the display are not drawn.
 const SHARE_OF_STEP: f64 = 0.25;
@@ -44,7 +45,7 @@ struct Tonight {
     dusk: Dusk,
     air_density: f64,
     horizon_deg: f64,
-    /// What an eye can see against the sky, lux.
+    /// Least illuminance of a star that an eye can see against the sky, lux.
     threshold_lux: f64,
 }
 
@@ -145,8 +146,8 @@ impl Tonight {
     }
 }
 
-/// Units of the layer per cd/m^2 where a pixel has a solid angle: half floats end at 65504, which Venus at its brightest stays below, and
-/// grow coarse below 6e-5.
+/// Units of the layer per cd/m^2 where a pixel has a solid angle: half floats end at 65504, which Venus at its
+/// brightest stays below, and grow coarse below 6e-5.
 fn scale(pixel_sr: f64) -> f64 {
     256.0 * (pixel_sr / 5e-7).clamp(1e-3, 1.0)
 }
@@ -206,8 +207,8 @@ impl DrawnEffect for StarsView {
         Ok(to)
     }
 
-    /// Draws the layer behind the sky's own light: the glow, and the points before it. It rests while camera, heavens and air stay as they
-    /// are.
+    /// Draws the layer behind the sky's own light: the glow, and the points before it. It rests while camera, heavens
+    /// and air stay as they are.
     fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
         let block = merged.composition.block();
         if !self.is_there(merged.composition.stages()) || block.behind[1] == 0.0 {

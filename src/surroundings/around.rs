@@ -1,5 +1,5 @@
-//! Shelters, occluder maps and lamps around a camera, as shaders read them: one bind group (2) for all shaders, and one upload a frame,
-//! none where there is nothing of them.
+//! Shelters, occluder maps and lamps around a camera, as shaders read them: one bind group (2) for all shaders, and one
+//! upload a frame, none where there is nothing of them.
 
 use glam::{DMat3, DVec3};
 
@@ -46,7 +46,7 @@ pub(crate) struct SurroundingsBlock {
     bound: (Option<wgpu::Texture>, wgpu::BindGroup),
 }
 
-/// Which surroundings there are: shaders' variants depend on it.
+/// Presence of surroundings: shaders' variants depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub(crate) struct HasSurroundings {
     /// Anything that keeps rain off.
@@ -76,7 +76,8 @@ impl ShelterReach {
     }
 }
 
-/// The host's shelters, occluder maps and lamps, and the camera near which they matter: at `eye`, its axes turned by `to_enu`.
+/// The host's shelters, occluder maps and lamps, and the camera near which they matter: at `eye`, its axes turned by
+/// `to_enu`.
 pub(crate) struct HostSurroundings<'a> {
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
@@ -86,7 +87,7 @@ pub(crate) struct HostSurroundings<'a> {
     pub eye: DVec3,
     pub to_enu: DMat3,
     pub time_s: f64,
-    /// Of the air, in the camera's axes.
+    /// Velocity of the air, in the camera's axes.
     pub wind_m_s: DVec3,
     pub near: ShelterReach,
     /// Exposure that lies on the drops.
@@ -94,7 +95,7 @@ pub(crate) struct HostSurroundings<'a> {
 }
 
 impl HostSurroundings<'_> {
-    /// Which there are.
+    /// Returns which surroundings there are.
     pub fn present(&self) -> HasSurroundings {
         let maps = self.maps.is_some_and(|m| m.ranges().is_some());
         HasSurroundings {

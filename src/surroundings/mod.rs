@@ -1,5 +1,5 @@
-//! The host's boxes and occluder maps, which keep rain off, its lamps and terrain, and the wind that varies in space, for all effects
-//! alike.
+//! The host's boxes and occluder maps, which keep rain off, its lamps and terrain, and the wind that varies in space,
+//! for all effects alike.
 
 mod around;
 mod occluder;

@@ -1,8 +1,8 @@
-//! What keeps rain off, as the host's own pictures of it: up to four depth textures, from any direction.
+//! Occluder maps: the host's own pictures of what keeps rain off, up to four depth textures, from any direction.
 //!
-//! A drop is gone where its own slanted path back crosses a surface that a map shows: `shaders/surroundings/occluders.wgsl`. A map
-//! knows nothing of what its surfaces hide; taken along the drops' own direction ([`crate::context::RainAt`]) it hides nothing
-//! that matters, whatever the wind.
+//! A drop is gone where its own slanted path back crosses a surface that a map shows:
+//! `shaders/surroundings/occluders.wgsl`. A map knows nothing of what its surfaces hide; taken along the drops' own
+//! direction ([`crate::context::RainAt`]) it hides nothing that matters, whatever the wind.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -19,8 +19,9 @@ pub const OCCLUDER_MAP_TEXELS: (u32, u32) = (8, 4096);
 /// A depth texture of what keeps rain off, and where it was taken from.
 #[derive(Clone, Copy, Debug)]
 pub struct OccluderMap<'a> {
-    /// Its depth: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8) or R32Float, one sample, with TEXTURE_BINDING;
-    /// from 8 to 4096 texels along either side. What it shows is taken over when it is set; it may be drawn anew after that.
+    /// Its depth: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8) or R32Float, one sample, with
+    /// TEXTURE_BINDING; from 8 to 4096 texels along either side. What it shows is taken over when it is set; it may be
+    /// drawn anew after that.
     pub depth: &'a wgpu::Texture,
     /// From where in the world, and how that is seen.
     pub taken: Taken,
@@ -33,14 +34,14 @@ pub struct Taken {
     pub clip_from_world: DMat4,
     /// Whether 1 is near and 0 far.
     pub reversed: bool,
-    /// What clip z runs over.
+    /// Range of clip z.
     pub clip: ClipSpace,
     /// Row 0 of the texture lies at clip y = -1, as OpenGL draws.
     pub first_row_at_minus_y: bool,
     /// Simulation time of what it shows, s.
     pub time_s: f64,
-    /// Velocity of what it shows, in the host's world, m/s, at most 2000 in all: a truck's own map need not be taken anew every
-    /// frame. 0 for what stands still.
+    /// Velocity of what it shows, in the host's world, m/s, at most 2000 in all: a truck's own map need not be taken
+    /// anew every frame. 0 for what stands still.
     pub velocity_m_s: DVec3,
 }
 
@@ -71,8 +72,8 @@ pub(crate) struct OccluderUniform {
 }
 
 impl Taken {
-    /// A map with parallel rays (`half_m`: half its width, half its height) or of what lies below `eye`, reversed depth: a
-    /// helper for hosts without matrices of their own. It looks along `forward` over `depth_m`.
+    /// A map with parallel rays (`half_m`: half its width, half its height) or of what lies below `eye`, reversed
+    /// depth: a helper for hosts without matrices of their own. It looks along `forward` over `depth_m`.
     pub fn parallel(eye: DVec3, forward: DVec3, half_m: [f64; 2], depth_m: f64) -> Self {
         let f = forward.normalize();
         let right = f.cross(f.any_orthonormal_vector()).normalize();
@@ -141,8 +142,8 @@ impl Taken {
 }
 
 impl Occluder {
-    /// For a camera at `eye` whose axes `to_enu` turns, at a time; `part`: where the map lies in the table, texels, and its
-    /// size.
+    /// For a camera at `eye` whose axes `to_enu` turns, at a time; `part`: where the map lies in the table, texels, and
+    /// its size.
     pub fn uniform(&self, eye: DVec3, to_enu: DMat3, time_s: f64, part: [[u32; 2]; 2]) -> OccluderUniform {
         let [low, size] = part.map(|p| p.map(f64::from));
         let moved = eye - self.origin_m - self.velocity_m_s * (time_s - self.time_s);

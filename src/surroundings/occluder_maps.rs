@@ -1,4 +1,5 @@
-//! The maps on the GPU: one table of the ranges of distances that their texels span, and cells of 8 and 64 texels beside them.
+//! The maps on the GPU: one table of the ranges of distances that their texels span, and cells of 8 and 64 texels
+//! beside them.
 
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ use crate::{
 
 /// The bits of two floats: not all drivers draw into floats of 32 bits.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
-/// Of a texel of nothing, which no path meets: those of 1e12 and of -1e12.
+/// Value of a texel of nothing, which no path meets: the bits of 1e12 and of -1e12.
 const NOTHING: wgpu::Color = wgpu::Color { r: 0x5368_d4a5_u32 as f64, g: 0xd368_d4a5_u32 as f64, b: 0.0, a: 0.0 };
 
 /// `MapUniform` of `shaders/surroundings/occluder_map.wgsl`.
@@ -162,8 +163,8 @@ impl OccluderMaps {
     /// Takes over what `maps` show, in place of those before: records it.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field; nothing changes
-    /// then.
+    /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field; nothing
+    /// changes then.
     pub fn set(
         &mut self,
         device: &Arc<Device>,

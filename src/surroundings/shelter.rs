@@ -1,8 +1,9 @@
-//! What keeps rain off: boxes of the host (roofs, bridges, cabs, trucks) and convex shapes cut from them, standing or moving.
+//! Shelters, which keep rain off: boxes of the host (roofs, bridges, cabs, trucks) and convex shapes cut from them,
+//! standing or moving.
 //!
-//! A drop is gone where its own slanted path back through the box's air meets the box: whatever the wind, it is dry behind a
-//! box and wet before it, and inside of one it is dry. Tested per drop and box, exactly. What meets a box that planes cut is
-//! clipped by these too.
+//! A drop is gone where its own slanted path back through the box's air meets the box: whatever the wind, it is dry
+//! behind a box and wet before it, and inside of one it is dry. Tested per drop and box, exactly. What meets a box that
+//! planes cut is clipped by these too.
 
 use glam::{DMat3, DVec3};
 
@@ -13,7 +14,7 @@ pub const MAX_SHELTERS: usize = 32;
 
 /// Most planes that cut one box.
 pub const MAX_PLANES: usize = 16;
-/// What planes leave of a box is at least this far from all of its faces somewhere, m.
+/// Least distance that some place within what planes leave of a box has from all of its faces, m.
 const THINNEST_M: f64 = 1e-5;
 
 /// Planes that cut a box to a convex shape: what lies beyond any of them is not part of it.
@@ -27,8 +28,8 @@ impl Planes {
     /// None: the box stays whole.
     pub const NONE: Self = Self { all: [[0.0; 4]; MAX_PLANES], count: 0 };
 
-    /// Each of them a unit vector along the box's axes that points out of the shape, and how far along it from the box's
-    /// middle the plane lies, m, within 1e6.
+    /// Each of them a unit vector along the box's axes that points out of the shape, and how far along it from the
+    /// box's middle the plane lies, m, within 1e6.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_PLANES`].
@@ -41,7 +42,7 @@ impl Planes {
         Ok(Self { all, count: planes.len() })
     }
 
-    /// Those that there are, as they were given.
+    /// Returns the planes that there are, as they were given.
     pub fn as_slice(&self) -> &[[f64; 4]] {
         &self.all[..self.count]
     }
@@ -63,7 +64,7 @@ pub struct Shelter {
     pub half_size_m: DVec3,
     /// Its velocity in the host's world, m/s, at most 2000 in all.
     pub velocity_m_s: DVec3,
-    /// What cuts it to another convex shape.
+    /// Planes that cut it to another convex shape.
     pub planes: Planes,
 }
 
@@ -137,8 +138,8 @@ impl Shelter {
         self.velocity_m_s.length() <= 0.1
     }
 
-    /// Whether it can keep rain off a drop within `reach_m` of a camera: nothing is tested that the picture does not need.
-    /// `wind` is the air's velocity in the camera's axes; drops fall at `slowest_m_s` at least. Errs towards yes.
+    /// Whether it can keep rain off a drop within `reach_m` of a camera: nothing is tested that the picture does not
+    /// need. `wind` is the air's velocity in the camera's axes; drops fall at `slowest_m_s` at least. Errs towards yes.
     pub(crate) fn matters(&self, eye: DVec3, to_enu: DMat3, wind: DVec3, slowest_m_s: f64, reach_m: f64) -> bool {
         let center = to_enu * (self.center_m - eye);
         let radius = self.half_size_m.length();
@@ -152,8 +153,8 @@ impl Shelter {
         (center.truncate() - drift * along).length() <= reach_m + radius
     }
 
-    /// The box as shaders test it, for a camera at `eye` whose axes `to_enu` turns: rows from camera-relative east, north,
-    /// up into the box's own space, where it reaches from -1 to 1, and its velocity and whether it has any.
+    /// The box as shaders test it, for a camera at `eye` whose axes `to_enu` turns: rows from camera-relative east,
+    /// north, up into the box's own space, where it reaches from -1 to 1, and its velocity and whether it has any.
     pub(crate) fn rows(&self, eye: DVec3, to_enu: DMat3) -> [[f32; 4]; 4] {
         let axes = to_enu * self.axes;
         let center = to_enu * (self.center_m - eye);

@@ -15,23 +15,23 @@ pub(crate) struct SnowHere {
     pub density_kg_m3: f64,
     /// Held water over what the snow can hold.
     pub wetness: f64,
-    /// Of visible light; 0 without snow.
+    /// Albedo for visible light; 0 without snow.
     pub albedo: f64,
 }
 
-/// What snow does to the water below it.
+/// Effect of snow on the water below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meltwater {
     /// Share of the ground whose rain the snow takes.
     pub covered: f64,
-    /// What runs off, mm/h over all of the ground.
+    /// Runoff, mm/h over all of the ground.
     pub runoff_mm_h: f64,
 }
 
 /// The snow on a tile of the host's terrain.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TileSnow {
-    /// Of each cell in half floats: depth in m, density in kg/m^3, wetness, albedo.
+    /// Snow of each cell in half floats: depth in m, density in kg/m^3, wetness, albedo.
     pub cells: Vec<[u16; 4]>,
     /// Other whenever they may be.
     pub revision: u64,
@@ -46,9 +46,10 @@ pub(crate) struct LyingSnow {
     pub cover: f64,
     /// Wind at 10 m above which it moves, m/s.
     pub threshold_m_s: f64,
-    /// Of each node of the host's terrain, in its order: depth in m, density in kg/m^3, wetness, albedo. Empty without one.
+    /// Snow of each node of the host's terrain, in its order: depth in m, density in kg/m^3, wetness, albedo. Empty
+    /// without one.
     pub cells: Vec<[f32; 4]>,
-    /// The same of the host's tiles that have any snow, by how many tiles they lie east and north.
+    /// Snow of the host's tiles that have any, by how many tiles they lie east and north.
     pub tiles: BTreeMap<[i32; 2], TileSnow>,
     /// Incremented whenever `cells` or `tiles` change.
     pub revision: u64,
@@ -74,8 +75,8 @@ impl LyingSnow {
         }
     }
 
-    /// What came from under the snow in the slot before the one in which `time_s` lies: the last that is known at that time, however
-    /// far the snow has been led since.
+    /// Returns the water that came from under the snow in the slot before the one in which `time_s` lies: the last that
+    /// is known at that time, however far the snow has been led since.
     pub fn meltwater(&self, time_s: f64) -> Option<Meltwater> {
         let wanted = (time_s / MELT_SLOT_S).floor() as i64 - 1;
         self.melt.iter().rev().find(|(slot, _)| *slot <= wanted).map(|(_, water)| *water)

@@ -15,12 +15,12 @@ pub(crate) struct TerrainHeights {
     pub nodes: [u32; 2],
     /// Above the origin, m; eastern neighbours beside each other, then northern.
     pub heights_m: Vec<f32>,
-    /// The same for the same terrain.
+    /// Hash, equal for equal terrain.
     pub hash: u64,
 }
 
 impl TerrainHeights {
-    /// Of heights that are one for each node.
+    /// Creates the terrain from heights, one for each node.
     pub fn new((origin, to_enu): (DVec3, DMat3), cell_m: f64, nodes: [u32; 2], heights_m: Vec<f32>) -> Self {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0000_0100_0000_01b3);

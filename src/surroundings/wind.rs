@@ -1,5 +1,5 @@
-//! The wind that varies in space as shaders read it: a texture for all views of a context, and where a camera is in it. The shaders'
-//! side is `shaders/surroundings/wind.wgsl`.
+//! The wind that varies in space as shaders read it: a texture for all views of a context, and where a camera is in it.
+//! The shaders' side is `shaders/surroundings/wind.wgsl`.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -45,7 +45,7 @@ pub(crate) struct WindView {
 struct Texture {
     texture: wgpu::Texture,
     nodes: [u32; 3],
-    /// Of the values that were uploaded last.
+    /// Revision of the values that were uploaded last.
     revision: u64,
     shown: WindView,
 }

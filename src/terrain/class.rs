@@ -1,13 +1,13 @@
-//! What the ground is made of.
+//! Material of the ground.
 
 use crate::error::{Error, Result};
 
-/// What the ground is made of; the numbers are those of the C header, of terrains and of images.
+/// Material of the ground; the numbers are those of the C header, of terrains and of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[repr(u8)]
 pub enum SurfaceClass {
-    /// Not said. In a terrain or an image: as the context's default. As that default: natural ground, soil where the host's
-    /// colour is not green and vegetation where it is.
+    /// Not said. In a terrain or an image: as the context's default. As that default: natural ground, soil where the
+    /// host's colour is not green and vegetation where it is.
     #[default]
     Unspecified = 0,
     /// Earth, sand, gravel: darkens, and mirrors hardly.

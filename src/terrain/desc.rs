@@ -1,4 +1,4 @@
-//! What a host says of its terrain, and what of that is refused.
+//! Description of a host's terrain, and what of it is refused.
 
 use std::cmp::Ordering;
 
@@ -57,7 +57,8 @@ impl TerrainDesc {
     }
 }
 
-/// Which tile of the lattice: tiles east and north of the origin, each within 1 000 000. Keys go by rows from the south.
+/// Key of a tile in the lattice: tiles east and north of the origin, each within 1 000 000. Keys go by rows from the
+/// south.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct TileKey {
     /// Tiles to the east; negative to the west.
@@ -151,13 +152,15 @@ pub struct TerrainCells<'a> {
     pub first: [u32; 2],
     /// Cells of the rectangle east and north; (0, 0) stands for the whole tile.
     pub size: [u32; 2],
-    /// Heights above the terrain's origin, m, within 1e5. Empty in an update: they stay. That of a hole need be no height.
+    /// Heights above the terrain's origin, m, within 1e5. Empty in an update: they stay. That of a hole need be no
+    /// height.
     pub heights_m: Rows<'a, f32>,
-    /// What the cells are made of, `None` for a hole. Empty: in an update they stay, in a new tile nothing is said of any.
+    /// Materials of the cells, `None` for a hole. Empty: in an update they stay, in a new tile all are unspecified.
     pub classes: Rows<'a, Option<SurfaceClass>>,
-    /// Stands among the heights for cells of which there are no data, which become holes, as NaN then does too: -9999, -32768, or what the
-    /// host's source has. Finite; must be no height in use: neither of a cell for which `classes` has a class other than unspecified, nor of a cell with ground of
-    /// the same tile outside of the rectangle. Default none: every number is a height.
+    /// Stands among the heights for cells of which there are no data, which become holes, as NaN then does too: -9999,
+    /// -32768, or what the host's source has. Finite; must be no height in use: neither of a cell for which `classes`
+    /// has a class other than unspecified, nor of a cell with ground of the same tile outside of the rectangle. Default
+    /// none: every number is a height.
     pub no_data_m: Option<f32>,
 }
 
@@ -246,7 +249,7 @@ impl CellRect {
         Self { low: self.low.map(|v| v - by), high: self.high.map(|v| v + by) }
     }
 
-    /// What holds both.
+    /// Returns the smallest rectangle that holds both.
     pub fn with(self, other: Self) -> Self {
         Self {
             low: [0, 1].map(|i| self.low[i].min(other.low[i])),
@@ -254,7 +257,7 @@ impl CellRect {
         }
     }
 
-    /// What two have in common, if anything.
+    /// Returns the cells that two rectangles have in common, if any.
     pub fn meets(self, other: Self) -> Option<Self> {
         let low = [0, 1].map(|i| self.low[i].max(other.low[i]));
         let high = [0, 1].map(|i| self.high[i].min(other.high[i]));

@@ -10,9 +10,9 @@ pub(crate) struct Tile {
     pub heights_m: Vec<f32>,
     /// Numbers of classes, or [`HOLE`]; empty where nothing is said of any cell.
     classes: Vec<u8>,
-    /// Of the terrain when this tile changed last.
+    /// Revision of the terrain when this tile changed last.
     pub revision: u64,
-    /// The same for tiles with the same cells: the sum of its cells' hashes.
+    /// Hash, equal for tiles with the same cells: the sum of its cells' hashes.
     pub hash: u64,
 }
 
@@ -59,13 +59,14 @@ impl Tile {
         self.class_number(cell) != HOLE
     }
 
-    /// What a cell is made of; unspecified for a hole.
+    /// Returns the material of a cell; unspecified for a hole.
     pub fn class(&self, cell: usize) -> SurfaceClass {
         let number = usize::from(self.class_number(cell));
         SurfaceClass::ALL.get(number).copied().unwrap_or_default()
     }
 
-    /// Takes the values of a rectangle that was checked; what is no height leaves a hole's as it was. Says whether any is new.
+    /// Takes the values of a rectangle that was checked; what is no height leaves a hole's as it was. Says whether any
+    /// is new.
     pub fn take(&mut self, cells: &TerrainCells<'_>, tile_cells: u32) -> bool {
         let before = self.hash;
         let size = cells.size_in(tile_cells);

@@ -27,7 +27,7 @@ pub(crate) const AROUND: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [
 pub struct TerrainPoint {
     /// Height of the ground above the terrain's origin, m, linear between cells.
     pub height_m: f64,
-    /// What the nearest cell is made of.
+    /// Material of the nearest cell.
     pub surface_class: SurfaceClass,
     /// The tile of the nearest cell, and its revision.
     pub tile: TileKey,
@@ -50,11 +50,11 @@ pub(crate) struct Terrain {
     /// By number; those that are in no `slots` are empty.
     tiles: Vec<Arc<Tile>>,
     slots: BTreeMap<TileKey, u32>,
-    /// What all tiles lie within.
+    /// Rectangle that holds all tiles.
     bounds: Option<CellRect>,
     /// Grows with every change.
     pub revision: u64,
-    /// The same for the same tiles.
+    /// Hash, equal for equal tiles.
     pub hash: u64,
 }
 
@@ -139,7 +139,8 @@ impl Terrain {
         self.desc.origin + self.to_enu.transpose() * plan
     }
 
-    /// Puts a tile where there was none, or other cells into the one that is there. Answers the cells that may have changed.
+    /// Puts a tile where there was none, or other cells into the one that is there. Answers the cells that may have
+    /// changed.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -312,7 +313,8 @@ impl Terrain {
         (p.truncate() / self.desc.cell_m, p.z)
     }
 
-    /// The cells about a place and their shares: four where there is ground all round. None where the nearest is no ground.
+    /// The cells about a place and their shares: four where there is ground all round. None where the nearest is no
+    /// ground.
     pub fn about(&self, cells: DVec2) -> Option<impl Iterator<Item = (CellId, f64)> + Clone + use<>> {
         if !cells.is_finite() || cells.abs().max_element() >= f64::from(1 << 30) {
             return None;
@@ -335,7 +337,8 @@ impl Terrain {
         Some(self.about(cells)?.map(|(cell, share)| share * f64::from(self.height(cell))).sum())
     }
 
-    /// The same at a place in metres, for what flows over the ground: beyond the tiles that lie farthest out as at their border.
+    /// Returns the height at a place in metres, for what flows over the ground: beyond the tiles that lie farthest out
+    /// as at their border.
     pub fn height_near(&self, place_m: DVec2) -> Option<f64> {
         let all = self.bounds?;
         let end = |v: [i32; 2], off: i32| DVec2::new(f64::from(v[0] - off), f64::from(v[1] - off));

@@ -1,8 +1,10 @@
-//! The work of a GPU for a frame, counted without a GPU: passes, bytes of a view for each pixel, and for each draw of the composition the most
-//! texels and operations of a pixel. The test compares the counts with the table of docs/lab/counts.md.
+//! The work of a GPU for a frame, counted without a GPU: passes, bytes of a view for each pixel, and for each draw of
+//! the composition the most texels and operations of a pixel. The test compares the counts with the table of
+//! docs/lab/counts.md.
 //!
-//! The counts are static. Each shader is parsed by naga with the constants of a GPU's pipelines. Where a constant decides a branch, the side
-//! that is taken counts; elsewhere the dearer side does. The body of a loop counts once. The driver assigns registers, so they are not counted.
+//! The counts are static. Each shader is parsed by naga with the constants of a GPU's pipelines. Where a constant
+//! decides a branch, the side that is taken counts; elsewhere the dearer side does. The body of a loop counts once. The
+//! driver assigns registers, so they are not counted.
 
 use std::{collections::HashMap, sync::Arc};
 
@@ -117,11 +119,11 @@ impl Counted {
     }
 }
 
-/// What is known of a function's expressions.
+/// Facts that are known of a function's expressions.
 struct Known {
     /// Numbers in each.
     sizes: Vec<u32>,
-    /// Those that constants decide.
+    /// Values of those that constants decide.
     values: HashMap<Handle<Expression>, bool>,
 }
 
@@ -142,7 +144,8 @@ impl Known {
         known
     }
 
-    /// Goes through statements with what `held` variables of the function are known to hold: `a && b` is a branch that writes one.
+    /// Goes through statements with what `held` variables of the function are known to hold: `a && b` is a branch that
+    /// writes one.
     fn walk(&mut self, function: &Function, block: &Block, held: &mut HashMap<Handle<LocalVariable>, bool>) {
         let local = |pointer: Handle<Expression>| match function.expressions[pointer] {
             Expression::LocalVariable(variable) => Some(variable),
@@ -231,7 +234,7 @@ fn work(expression: &Expression, size: u32) -> Count {
     }
 }
 
-/// What is counted of a weather's frames.
+/// Counts of a weather's frames.
 struct Counts {
     passes: u32,
     bytes_a_pixel: f64,
@@ -301,7 +304,7 @@ pub(super) fn dearest_pixel(weather: &str) -> [u32; 2] {
     [most.texels, most.operations]
 }
 
-/// What a pixel of each draw is, in the order of the table.
+/// Meaning of a pixel of each draw, in the order of the table.
 const DRAWS: [(&str, &str); 4] = [
     ("Uneven", "drawn whole"),
     ("Grid", "a texel of the grid"),

@@ -168,7 +168,8 @@ fn nobody_sees_what_a_gpu_looks_up() {
     nobody_sees_what_is_looked_up(true);
 }
 
-/// A GPU compiles a pipeline a frame, and draws at every pixel until all are there; pure pictures do not depend on what was drawn before.
+/// A GPU compiles a pipeline a frame, and draws at every pixel until all are there; pure pictures do not depend on what
+/// was drawn before.
 #[test]
 fn pure_pictures_of_a_gpu_wait_for_no_pipeline() {
     let stages = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM);

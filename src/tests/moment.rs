@@ -85,10 +85,10 @@ fn stages_apart_take_one_scene() {
     }
 }
 
-/// What a host changes, and its call.
+/// Name of a change that a host makes, and its call.
 type Change = (&'static str, fn(&mut Context));
 
-/// What the host changes between two calls of a frame shows in the later one.
+/// Changes by the host between two calls of a frame show in the later one.
 #[test]
 fn a_change_between_two_calls_takes_another_scene() {
     let changes: [Change; 8] = [

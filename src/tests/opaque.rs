@@ -29,7 +29,7 @@ const SIZE: (u32, u32) = (64, 36);
 const ASPECT: f64 = 64.0 / 36.0;
 const EYE: DVec3 = DVec3::new(3.0, -5.0, 10.0);
 const PLANE_M: f64 = 3.0;
-/// Of the host's thing.
+/// Luminance of the host's thing, cd/m^2.
 const HOST_CD_M2: f32 = 7000.0;
 const BACK_CD_M2: f32 = 20.0;
 
@@ -46,8 +46,8 @@ fn sample_ndc(pixel: usize, (sample, samples): (u32, u32)) -> DVec2 {
     ndc(pixel) + off * DVec2::new(2.0 / f64::from(SIZE.0), -2.0 / f64::from(SIZE.1))
 }
 
-/// Draws the host's wall and the plane, and holds each sample of each pixel against where the two are met. How many pixels show the
-/// plane, the wall in its front, and neither.
+/// Draws the host's wall and the plane, and holds each sample of each pixel against where the two are met. How many
+/// pixels show the plane, the wall in its front, and neither.
 fn assert_drawn(name: &str, case: &Mapped, format: (wgpu::TextureFormat, DepthFormat), samples: u32) {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float, format.0, samples);
     host.view.effects.plane.height_m = Some(PLANE_M);

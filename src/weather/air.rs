@@ -23,8 +23,8 @@ pub fn density_ratio(pressure_hpa: f64, temperature_c: f64) -> f64 {
     pressure_hpa / STANDARD_PRESSURE_HPA * STANDARD_TEMPERATURE_K / (temperature_c + 273.15)
 }
 
-/// Scale height of air of this temperature (C), m: R T / g. With [`density_ratio`] at the same level, the column above it
-/// follows the pressure alone, as hydrostatics wants.
+/// Scale height of air of this temperature (C), m: R T / g. With [`density_ratio`] at the same level, the column above
+/// it follows the pressure alone, as hydrostatics wants.
 pub fn scale_height_m(temperature_c: f64) -> f64 {
     SCALE_HEIGHT_M_PER_K * (temperature_c + 273.15)
 }

@@ -2,13 +2,16 @@
 //!
 //! # Model
 //! * Up to 100 m the logarithmic law ([`WindProfile::speed_at_height_m_s`]).
-//! * High above the ground the geostrophic wind. The geostrophic drag law (Rossby and Montgomery 1935) ties it to the friction velocity u*
-//!   and the roughness length z0: along the wind at the ground u*/k (ln(u* / (f z0)) - A), across it u*/k B, to its right on the northern
-//!   hemisphere; k = 0.4, A = 1.8 and B = 4.5 (Troen and Petersen 1989, European Wind Atlas, section 8.1).
-//! * Between them what is wanting for the geostrophic wind turns and dies away as Ekman's (1905) spiral does where the eddy viscosity is even:
-//!   by exp(-(1 + i) (z - 100 m) sqrt(f / (2 K))), where K = k u* 100 m is the surface layer's at its top.
+//! * High above the ground the geostrophic wind. The geostrophic drag law (Rossby and Montgomery 1935) ties it to the
+//!   friction velocity u* and the roughness length z0: along the wind at the ground u*/k (ln(u* / (f z0)) - A), across
+//!   it u*/k B, to its right on the northern hemisphere; k = 0.4, A = 1.8 and B = 4.5 (Troen and Petersen 1989,
+//!   European Wind Atlas, section 8.1).
+//! * Between them what is wanting for the geostrophic wind turns and dies away as Ekman's (1905) spiral does where the
+//!   eddy viscosity is even: by exp(-(1 + i) (z - 100 m) sqrt(f / (2 K))), where K = k u* 100 m is the surface layer's
+//!   at its top.
 //!
-//! f is that of 43 degrees north: conditions have no place. Above the friction layer the wind is the same at all heights.
+//! f is that of 43 degrees north: conditions have no place. Above the friction layer the wind is the same at all
+//! heights.
 
 use super::conditions::WindProfile;
 

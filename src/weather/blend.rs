@@ -1,8 +1,8 @@
 //! Blending of two `Conditions`: what a change of weather looks like half-way.
 //!
-//! Each quantity is blended in the variable in which the eye sees even steps, and each layer's geometry is weighted by how much
-//! of the layer there is, so that a layer which fades in from nothing stands where it will stay as soon as it can be seen. Every
-//! field is continuous in time, those of layers that come and go too.
+//! Each quantity is blended in the variable in which the eye sees even steps, and each layer's geometry is weighted by
+//! how much of the layer there is, so that a layer which fades in from nothing stands where it will stay as soon as it
+//! can be seen. Every field is continuous in time, those of layers that come and go too.
 
 use super::conditions::{
     AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, GroundLayer, SeaState, SurfaceCover,
@@ -14,8 +14,8 @@ pub(super) fn mix(a: f64, b: f64, t: f64) -> f64 {
     if t >= 1.0 { b } else { a + (b - a) * t }
 }
 
-/// What no layer at all counts for beside a whole one: a layer's geometry moves while there is about so much of it, which nobody
-/// sees. Were it 0, the geometry would jump from that of no layer in the moment in which the layer begins.
+/// Weight of no layer at all beside a whole one: a layer's geometry moves while there is about so much of it, which
+/// nobody sees. Were it 0, the geometry would jump from that of no layer in the moment in which the layer begins.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// 0 at `a`, 1 at `b`, level at both.
@@ -24,20 +24,20 @@ pub(crate) fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Weight of `b` where amounts of `a` and `b` fade into each other: (t qb) / ((1 - t) qa + t qb), each amount counted as
-/// [`LEAST_SHARE`] of the larger more than it is.
+/// Weight of `b` where amounts of `a` and `b` fade into each other: (t qb) / ((1 - t) qa + t qb), each amount counted
+/// as [`LEAST_SHARE`] of the larger more than it is.
 fn share(qa: f64, qb: f64, t: f64) -> f64 {
     let least = LEAST_SHARE * qa.max(qb);
     let (a, b) = ((1.0 - t) * (qa + least), t * (qb + least));
     if a + b > 0.0 { b / (a + b) } else { t }
 }
 
-/// Least extinction that counts in [`geometric_weight`], 1/m: clearer than air at any height that has weather. From exactly nothing
-/// no factor leads to anything.
+/// Least extinction that counts in [`geometric_weight`], 1/m: clearer than air at any height that has weather. From
+/// exactly nothing no factor leads to anything.
 const CLEAREST_PER_M: f64 = 1e-9;
 
-/// Weight for which mix(a, b, w) = a^(1-t) b^t, both positive: visibility then changes by equal factors in equal parts of t,
-/// which is how differences of visibility are seen (Weber and Fechner).
+/// Weight for which mix(a, b, w) = a^(1-t) b^t, both positive: visibility then changes by equal factors in equal parts
+/// of t, which is how differences of visibility are seen (Weber and Fechner).
 pub(super) fn geometric_weight(a: f64, b: f64, t: f64) -> f64 {
     let log_ratio = libm::log(b.max(CLEAREST_PER_M) / a.max(CLEAREST_PER_M));
     let whole = libm::expm1(log_ratio);
@@ -56,10 +56,10 @@ fn burden_per_m(c: &Conditions) -> f64 {
 impl Conditions {
     /// The weather between `self` (at `t` = 0) and `to` (at 1); `t` outside is clamped, NaN counts as 0.
     ///
-    /// Extinctions share one weight that makes the total geometric (see the module); cloud layers blend slot by slot, covers
-    /// linearly, optical depth in tau / (tau + 10), which is nearly the light that a cloud stops; no more of the sky is clear than at
-    /// the clearer end, however much of one overcast has gone and of another has come; wind blends as a vector, so a turn by more
-    /// than 90 degrees passes through a lull; everything else is linear.
+    /// Extinctions share one weight that makes the total geometric (see the module); cloud layers blend slot by slot,
+    /// covers linearly, optical depth in tau / (tau + 10), which is nearly the light that a cloud stops; no more of the
+    /// sky is clear than at the clearer end, however much of one overcast has gone and of another has come; wind blends
+    /// as a vector, so a turn by more than 90 degrees passes through a lull; everything else is linear.
     pub fn lerp(&self, to: &Self, t: f64) -> Self {
         if t >= 1.0 {
             return *to;
@@ -86,8 +86,8 @@ impl Conditions {
     }
 }
 
-/// Clear sky between two weathers, where layers placed independently would leave `independent` clear: as much less of it as at the
-/// ends, and no less and no more than at either.
+/// Clear sky between two weathers, where layers placed independently would leave `independent` clear: as much less of
+/// it as at the ends, and no less and no more than at either.
 fn clear_between_ends([a, b]: [&Conditions; 2], independent: f64, t: f64) -> f64 {
     let less = |c: &Conditions| clear_between(&c.clouds) - c.clear_sky();
     let ends = [a.clear_sky(), b.clear_sky()];

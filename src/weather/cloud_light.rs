@@ -1,28 +1,29 @@
 //! The light that clouds let through, at any height: below their layers, in them and above.
 //!
 //! # Model
-//! What of a layer lies above a place decides, and what lies below it sends light up again. Of a layer above a place one needs
-//! the part of the sky that its clouds cover there and their optical depth there ([`super::cloud_part`]). Layers, and the two
-//! parts of a layer in which a place lies, are combined by adding (van de Hulst 1980), each a mixture of cover and holes. Fluxes
-//! are those of two streams, whose beam keeps what droplets scatter nearly straight on (Joseph, Wiscombe and Weinman 1976):
-//! divided anywhere, a layer lets through what it does as a whole.
+//! What of a layer lies above a place decides, and what lies below it sends light up again. Of a layer above a place
+//! one needs the part of the sky that its clouds cover there and their optical depth there ([`super::cloud_part`]).
+//! Layers, and the two parts of a layer in which a place lies, are combined by adding (van de Hulst 1980), each a
+//! mixture of cover and holes. Fluxes are those of two streams, whose beam keeps what droplets scatter nearly straight
+//! on (Joseph, Wiscombe and Weinman 1976): divided anywhere, a layer lets through what it does as a whole.
 //!
 //! # Error
-//! Of the direct light, against the mean over places of the clouds that are drawn: `cargo test --lib clouds::mean_light -- --nocapture`.
+//! Of the direct light, against the mean over places of the clouds that are drawn:
+//! `cargo test --lib clouds::mean_light -- --nocapture`.
 
 use super::cloud_part::{LOWEST, Part};
 use super::conditions::{CloudSlab, Conditions};
 
-/// Part of the optical depth by which a layer hides what is behind it from the eye, which light that is scattered straight on
-/// does not.
+/// Part of the optical depth by which a layer hides what is behind it from the eye, which light that is scattered
+/// straight on does not.
 const HIDING: f64 = 0.25;
 /// Least part of the sky that counts for a mean over layers, beside what there is of them: [`over_layers`].
 const LEAST_COVER: f64 = 1e-6;
 /// Most height above its cloud's base at which what falls begins, m.
 const MOST_GROWTH_M: f64 = 500.0;
 
-/// Mean of `f` over layers by the part of the sky in which each is the first to be met, in the order of `layers` (cover, layer);
-/// `without` where there are none. Continuous where a layer comes or goes.
+/// Mean of `f` over layers by the part of the sky in which each is the first to be met, in the order of `layers`
+/// (cover, layer); `without` where there are none. Continuous where a layer comes or goes.
 fn over_layers<'a>(
     layers: impl Iterator<Item = (f64, &'a CloudSlab)>,
     without: f64,
@@ -36,15 +37,15 @@ fn over_layers<'a>(
     sum / met
 }
 
-/// What clouds leave of the light, each as a part of what there is above them.
+/// Light that clouds leave, each field as a share of the light above them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudLight {
-    /// Of the sun's beam, what arrives as a beam (mean over the place: a hole counts by its chance).
+    /// Share of the sun's beam that arrives as a beam (mean over the place: a hole counts by its chance).
     pub direct: f64,
-    /// Of the sun's beam on a horizontal surface, what arrives diffuse from the clouds, light thrown back and forth between
-    /// ground and cloud included.
+    /// Share of the sun's beam on a horizontal surface that arrives diffuse from the clouds, light thrown back and
+    /// forth between ground and cloud included.
     pub diffuse: f64,
-    /// Of the clear sky's diffuse light, what arrives.
+    /// Share of the clear sky's diffuse light that arrives.
     pub sky: f64,
 }
 
@@ -59,37 +60,41 @@ impl Conditions {
         self
     }
 
-    /// What the clouds leave of sun and sky: horizontal irradiance = sun (direct + diffuse) + sky light x sky.
+    /// Returns the light that the clouds leave of sun and sky: horizontal irradiance = sun (direct + diffuse) + sky
+    /// light x sky.
     ///
-    /// `cos_sun_zenith`: cosine of the sun's zenith distance, held above 0.03. `ground_albedo`: 0 to 1, default of most land
-    /// 0.2. Layers are combined from the top by adding (van de Hulst 1980), each a mixture of cover and holes; the host's
-    /// [`super::CloudLightOverride`] is blended in last.
+    /// `cos_sun_zenith`: cosine of the sun's zenith distance, held above 0.03. `ground_albedo`: 0 to 1, default of most
+    /// land 0.2. Layers are combined from the top by adding (van de Hulst 1980), each a mixture of cover and holes; the
+    /// host's [`super::CloudLightOverride`] is blended in last.
     pub fn cloud_light(&self, cos_sun_zenith: f64, ground_albedo: f64) -> CloudLight {
         self.cloud_light_at(cos_sun_zenith, ground_albedo, f64::NEG_INFINITY)
     }
 
-    /// What of the layers lies above a place at `altitude_m` above the sea, from the top.
+    /// Returns the parts of the layers that lie above a place at `altitude_m` above the sea, from the top.
     fn layers_above(&self, altitude_m: f64) -> impl Iterator<Item = Part<'_>> {
         let height_m = altitude_m - self.air.station_altitude_m;
         self.clouds.iter().rev().filter(|s| s.cover > 0.0).map(move |s| s.above(height_m))
     }
 
-    /// Height above the sea on whose light clouds over a place feed: the tops of the layers that light meets first, on the mean.
+    /// Height above the sea on whose light clouds over a place feed: the tops of the layers that light meets first, on
+    /// the mean.
     pub(crate) fn lit_top_m(&self, altitude_m: f64) -> f64 {
         let station_m = self.air.station_altitude_m;
         let layers = self.layers_above(altitude_m).map(|part| (part.cover, part.slab));
         over_layers(layers, altitude_m, |s| s.top_m() + station_m).max(altitude_m)
     }
 
-    /// Height above the sea at which what falls begins: within the layers that one meets first from below, on the mean, at
-    /// least 100 m above the station; 2 km if no cloud is known. What falls grows on its way down through the lower half of
-    /// its cloud, so that it falls on a hill inside of a low deck too, and through the lowest 500 m of a thicker cloud.
+    /// Height above the sea at which what falls begins: within the layers that one meets first from below, on the mean,
+    /// at least 100 m above the station; 2 km if no cloud is known. What falls grows on its way down through the lower
+    /// half of its cloud, so that it falls on a hill inside of a low deck too, and through the lowest 500 m of a
+    /// thicker cloud.
     pub(crate) fn falling_top_m(&self) -> f64 {
         let begins_m = |s: &CloudSlab| s.base_m.max(100.0) + (0.5 * (s.top_m() - s.base_m)).min(MOST_GROWTH_M);
         self.over_first_clouds(begins_m)
     }
 
-    /// Height above the sea at which what falls leaves its cloud: as [`Conditions::falling_top_m`], at the clouds' bases.
+    /// Height above the sea at which what falls leaves its cloud: as [`Conditions::falling_top_m`], at the clouds'
+    /// bases.
     pub(crate) fn falling_base_m(&self) -> f64 {
         self.over_first_clouds(|s| s.base_m.max(100.0))
     }
@@ -100,8 +105,8 @@ impl Conditions {
         self.air.station_altitude_m + over_layers(layers, 2000.0, height_m)
     }
 
-    /// Part of the sky over a place hidden by cloud that one cannot see through: a thin layer, or what is left of one above the
-    /// place, counts for what it takes of the light.
+    /// Part of the sky over a place hidden by cloud that one cannot see through: a thin layer, or what is left of one
+    /// above the place, counts for what it takes of the light.
     pub(crate) fn opaque_cover(&self, altitude_m: f64) -> f64 {
         let hidden = |part: Part<'_>| -part.cover * libm::expm1(-HIDING * part.depth);
         let clear = self.layers_above(altitude_m).map(hidden).fold(1.0, |clear, hidden| clear * (1.0 - hidden));
@@ -120,8 +125,8 @@ impl Conditions {
         }
     }
 
-    /// What goes up at a height above the sea from all that lies below it: as parts of the sun's horizontal irradiance and of the sky's light
-    /// above all clouds.
+    /// Returns the light that goes up at a height above the sea from all that lies below it: as shares of the sun's
+    /// horizontal irradiance and of the sky's light above all clouds.
     pub(crate) fn light_up_at(&self, cos_sun_zenith: f64, ground_albedo: f64, altitude_m: f64) -> [f64; 2] {
         let (fluxes, below) = self.fluxes_at(cos_sun_zenith, ground_albedo, altitude_m);
         let (o, weight) = (&self.cloud_light, self.said_share(altitude_m));
@@ -137,7 +142,7 @@ impl Conditions {
         self.cloud_light.weight * over_layers(self.cloud_slabs().map(|s| (s.cover, s)), 1.0, below)
     }
 
-    /// What comes down at a height above the sea, and what of it goes up again.
+    /// Finds the light that comes down at a height above the sea, and the share of it that goes up again.
     fn fluxes_at(&self, cos_sun_zenith: f64, ground_albedo: f64, altitude_m: f64) -> (Fluxes, FromBelow) {
         let mu = cos_sun_zenith.clamp(LOWEST, 1.0);
         let height_m = altitude_m - self.air.station_altitude_m;
@@ -161,26 +166,28 @@ impl Conditions {
     }
 }
 
-/// What comes down at a height, of what there is above all clouds.
+/// Light that comes down at a height, as shares of that above all clouds.
 struct Fluxes {
-    /// Of the sun's beam, what no cloud scattered; and with what was scattered nearly straight on.
+    /// Share of the sun's beam that no cloud scattered; `beam` adds what was scattered nearly straight on.
     direct: f64,
     beam: f64,
-    /// Of the beam, all the rest that comes down, and of the sky's light.
+    /// Rest of the beam that comes down, and the share of the sky's light that does.
     diffuse: f64,
     sky: f64,
 }
 
 /// Light that comes down through the parts of layers above a place, of 1 above them all.
 struct FromAbove {
-    /// Of the beam, what came through a cloud unscattered; and with what was scattered nearly straight on.
+    /// Share of the beam that came through a cloud unscattered; `beam_through` adds what was scattered nearly straight
+    /// on.
     through: f64,
     beam_through: f64,
-    /// Of the sky, and of the beam, what met no cloud.
+    /// Shares of the sky's light and of the beam that met no cloud.
     clear: f64,
     slanted: f64,
-    /// Of what met no cloud, what would have met one if the place were below all layers. As a sum of what each layer adds: the
-    /// difference of two products that are nearly equal would be their rounding errors, light where there is none.
+    /// Light that met no cloud, but would have met one if the place were below all layers. As a sum of what each layer
+    /// adds: the difference of two products that are nearly equal would be their rounding errors, light where there is
+    /// none.
     open: f64,
     /// Scattered light of the beam, and all light of the sky.
     diffuse: f64,
@@ -225,14 +232,14 @@ impl FromAbove {
 
 /// Share of light that all which lies below a place sends up again.
 struct FromBelow {
-    /// Of the beam.
+    /// Share of the beam.
     beam: f64,
-    /// Of light from all sides.
+    /// Share of light from all sides.
     even: f64,
 }
 
 impl FromBelow {
-    /// Of ground under `parts`, lowest first.
+    /// Creates the shares of ground under `parts`, lowest first.
     fn new<'a>(parts: impl Iterator<Item = Part<'a>>, ground_albedo: f64, mu: f64) -> Self {
         let albedo = ground_albedo.clamp(0.0, 1.0);
         let ground = Self { beam: albedo, even: albedo };
@@ -277,7 +284,8 @@ mod tests {
         }
     }
 
-    /// Under one overcast that comes for another, the product of the holes in all layers is no light, in whatever order it is taken.
+    /// Under one overcast that comes for another, the product of the holes in all layers is no light, in whatever order
+    /// it is taken.
     #[test]
     fn no_light_comes_from_the_rounding_of_holes() {
         let part = |cover, optical_depth, base_m| CloudSlab { cover, ..sheet(optical_depth, base_m) };
@@ -329,8 +337,8 @@ mod tests {
         skies
     }
 
-    /// Most that one share of the light differs between two heights within which it changes steadily: over a hundredth of a millimetre nothing may
-    /// change by more than a hundredth.
+    /// Most that one share of the light differs between two heights within which it changes steadily: over a hundredth
+    /// of a millimetre nothing may change by more than a hundredth.
     fn check_steady(shares: &impl Fn(f64) -> [f64; 4], low: (f64, [f64; 4]), high: (f64, [f64; 4])) {
         let most = (0..4).map(|k| (high.1[k] - low.1[k]).abs()).fold(0.0, f64::max);
         if most < 0.01 {

@@ -8,12 +8,13 @@ use crate::error::{Error, Result, check_range};
 /// Most cells of a map east and north.
 pub const MAX_CLOUD_MAP_CELLS: u32 = 128;
 
-/// How much of the cover that layers have in the weather they have over each part of the ground: 0 for none, 1 for all of it. Give a layer
-/// the cover 1, and the map says its cover.
+/// How much of the cover that layers have in the weather they have over each part of the ground: 0 for none, 1 for all
+/// of it. Give a layer the cover 1, and the map says its cover.
 ///
-/// The map stands still over the ground: what a lesson needs is a storm or a clearing in a place that is known beforehand. Clouds go through
-/// it with their wind, and grow and dissolve as it says. It is level and aligned to north. Between the middles of cells what is covered goes
-/// over from one to the other, beyond the outermost middles theirs hold on.
+/// The map stands still over the ground: what a lesson needs is a storm or a clearing in a place that is known
+/// beforehand. Clouds go through it with their wind, and grow and dissolve as it says. It is level and aligned to
+/// north. Between the middles of cells what is covered goes over from one to the other, beyond the outermost middles
+/// theirs hold on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CloudMap {
     /// Middle of the cell farthest to the south-west, m east and north of the world's origin, each within 1e7.
@@ -75,7 +76,7 @@ impl CloudMap {
 }
 
 impl Conditions {
-    /// The same with the cover that layers have over a place under a map.
+    /// Returns the weather with the cover that its layers have over a place under a map.
     pub(crate) fn under_map(mut self, map: &CloudMap, place_m: DVec2) -> Self {
         let left = map.at(place_m);
         let hidden = 1.0 - super::conditions::clear_between(&self.clouds);
@@ -83,7 +84,8 @@ impl Conditions {
             slab.cover *= left;
         }
         let still_hidden = 1.0 - super::conditions::clear_between(&self.clouds);
-        // While one layer comes for another less is clear than independent layers leave: as much less of what is still hidden.
+        // While one layer comes for another less is clear than independent layers leave: as much less of what is still
+        // hidden.
         if hidden > 0.0 {
             self.clear_sky = 1.0 - (1.0 - self.clear_sky) * (still_hidden / hidden);
         }

@@ -1,10 +1,10 @@
-//! What of a layer of cloud lies above or below a place, and what that does with light.
+//! Parts of a layer of cloud above or below a place, and what they do with light.
 //!
 //! # Model
-//! How much of its cover and of its optical depth a layer has above a height follows from how it is shaped: laws fitted to means over
-//! the clouds that are drawn (`clouds::field`), for all kinds between sheets, cells, heaps, towers and fibres. A beam that comes
-//! slantwise meets more of broken clouds than one that comes straight down, since it meets their sides too ([`Part::meet`]); some of what
-//! it meets is thin.
+//! How much of its cover and of its optical depth a layer has above a height follows from how it is shaped: laws fitted
+//! to means over the clouds that are drawn (`clouds::field`), for all kinds between sheets, cells, heaps, towers and
+//! fibres. A beam that comes slantwise meets more of broken clouds than one that comes straight down, since it meets
+//! their sides too ([`Part::meet`]); some of what it meets is thin.
 //!
 //! # Error
 //! `cargo test --lib clouds::mean_light -- --nocapture` prints it, kind by kind, against the clouds that are drawn.
@@ -19,7 +19,7 @@ const MOST_SPREAD: f64 = 2.6;
 /// Covers between which clouds go over from broken to closed (`CLOSES` of `clouds::cover`).
 const CLOSES: [f64; 2] = [0.99, 1.0];
 
-/// What of a layer lies on one side of a height.
+/// Part of a layer that lies on one side of a height.
 pub(super) struct Part<'a> {
     pub slab: &'a CloudSlab,
     /// Part of the sky that its clouds cover, 0 to 1.
@@ -47,8 +47,9 @@ impl CloudSlab {
 
     /// Share of its cover and of its optical depth above a height, of 1 from base to top.
     ///
-    /// Laws fitted to means over the clouds that are drawn (`clouds::field`). Of broken clouds ever fewer reach ever higher; a
-    /// cumulonimbus has its anvil over it; a closed layer ends below its top, sheets more unevenly than what is heaped.
+    /// Laws fitted to means over the clouds that are drawn (`clouds::field`). Of broken clouds ever fewer reach ever
+    /// higher; a cumulonimbus has its anvil over it; a closed layer ends below its top, sheets more unevenly than what
+    /// is heaped.
     fn shares_above(&self, height: f64) -> [f64; 2] {
         if height <= 0.0 || height >= 1.0 {
             return [1.0 - height; 2];
@@ -64,7 +65,8 @@ impl CloudSlab {
         mix2(broken, even, self.closed())
     }
 
-    /// The same of clouds that are broken: how far their excess over the field's threshold, spread normally, lifts their domes.
+    /// Returns these shares for broken clouds: how far their excess over the field's threshold, spread normally, lifts
+    /// their domes.
     fn broken_above(&self, height: f64, heaped: f64) -> [f64; 2] {
         let tall = (2.0 * self.convection - 1.0).max(0.0);
         let left = (1.0 - height / (1.0 - 0.15 * heaped * (1.0 - tall))).max(0.0);
@@ -86,14 +88,14 @@ impl CloudSlab {
         self.shares_above(self.height(height_m))
     }
 
-    /// What of it lies above a height over the station.
+    /// Returns the part of the layer above a height over the station.
     pub(super) fn above(&self, height_m: f64) -> Part<'_> {
         let [cover, depth] = self.shares_above_m(height_m);
         let depth = if cover > 0.0 { self.optical_depth * (depth / cover) } else { 0.0 };
         Part { slab: self, cover: self.cover * cover, depth, share: 1.0 - self.height(height_m) }
     }
 
-    /// What of it lies below a height over the station.
+    /// Returns the part of the layer below a height over the station.
     pub(super) fn below(&self, height_m: f64) -> Part<'_> {
         let [_, above] = self.shares_above_m(height_m);
         Part { slab: self, cover: self.cover, depth: self.optical_depth * (1.0 - above), share: self.height(height_m) }
@@ -103,9 +105,9 @@ impl CloudSlab {
 impl Part<'_> {
     /// Share of a beam from a sine of elevation that meets its clouds.
     ///
-    /// Of gaps between clouds that lie at random, (1 - cover) is raised to a power that grows with the tangent of the zenith angle
-    /// by the height of clouds over their distances (Kauth and Penquite 1967). Straight up less is covered than the sky is seen to
-    /// be, of which sides are a part.
+    /// Of gaps between clouds that lie at random, (1 - cover) is raised to a power that grows with the tangent of the
+    /// zenith angle by the height of clouds over their distances (Kauth and Penquite 1967). Straight up less is covered
+    /// than the sky is seen to be, of which sides are a part.
     fn hit(&self, mu: f64) -> f64 {
         let s = self.slab;
         if self.cover >= 1.0 {
@@ -140,7 +142,7 @@ impl Part<'_> {
         if hit > 0.0 { self.depth * (self.cover / hit) } else { 0.0 }
     }
 
-    /// What it does with a beam from a sine of elevation.
+    /// Returns what the part does with a beam from a sine of elevation.
     pub(super) fn meet(&self, mu: f64) -> Met {
         let g = self.slab.asymmetry;
         let hit = self.hit(mu);
@@ -158,7 +160,7 @@ impl Part<'_> {
     }
 }
 
-/// What a part of a layer does with a beam.
+/// Shares into which a part of a layer splits a beam.
 pub(super) struct Met {
     /// Share that meets its clouds.
     pub hit: f64,
@@ -176,10 +178,11 @@ impl Met {
     }
 }
 
-/// Reflectance of a slab without absorption under a parallel beam: the two-stream solution of Meador and Weaver (1980, eq. 24)
-/// with Eddington's coefficients after the delta scaling of Joseph, Wiscombe and Weinman (1976). Transmittance, direct and
-/// diffuse together, is 1 minus this. Against discrete ordinates (Henyey-Greenstein, g = 0.85, depths 1 to 64) it errs by at most
-/// 0.0044 with the sun overhead and 0.029 at 60 degrees (tested); of five two-stream closures tried it is the nearest.
+/// Reflectance of a slab without absorption under a parallel beam: the two-stream solution of Meador and Weaver
+/// (1980, eq. 24) with Eddington's coefficients after the delta scaling of Joseph, Wiscombe and Weinman (1976).
+/// Transmittance, direct and diffuse together, is 1 minus this. Against discrete ordinates (Henyey-Greenstein, g =
+/// 0.85, depths 1 to 64) it errs by at most 0.0044 with the sun overhead and 0.029 at 60 degrees (tested); of five
+/// two-stream closures tried it is the nearest.
 pub fn slab_reflectance(optical_depth: f64, asymmetry: f64, cos_zenith: f64) -> f64 {
     let mu = cos_zenith.clamp(0.01, 1.0);
     let tau = optical_depth * (1.0 - asymmetry * asymmetry);

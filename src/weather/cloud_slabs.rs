@@ -1,10 +1,11 @@
-//! Clouds as slabs of water: what a layer that the host or a report states is made of. [`super::cloud_light`] has their light.
+//! Clouds as slabs of water: what a layer that the host or a report states is made of. [`super::cloud_light`] has their
+//! light.
 
 use super::conditions::{CloudSlab, WindProfile};
 use super::kinds::{CloudKind, PrecipitationKind};
 use super::model::{CloudLayer, MAX_CLOUD_LAYERS, Weather};
 
-/// What a kind of cloud is made of, as means over its depth, and how it looks.
+/// Composition of a kind of cloud, as means over its depth, and its look.
 struct Substance {
     thickness_m: f64,
     water_g_m3: f64,
@@ -18,10 +19,10 @@ struct Substance {
 }
 
 /// Water and droplets of stratus and cumulus from Diem (1948) and aufm Kampe and Weickmann (1957) as commonly tabulated
-/// (stratus 0.2 g/m^3, 7 um; fair cumulus 0.5, 4). Towering cumulus fills half of its layer with the 2.5 g/m^3 of its core; a
-/// cumulonimbus is diluted by entrainment; ice from Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud
-/// atlas). Cells of stratocumulus are some three to five times as wide as deep, elements of altocumulus 1 to 5 degrees wide (WMO
-/// cloud atlas).
+/// (stratus 0.2 g/m^3, 7 um; fair cumulus 0.5, 4). Towering cumulus fills half of its layer with the 2.5 g/m^3 of its
+/// core; a cumulonimbus is diluted by entrainment; ice from Heymsfield (2003). Thicknesses are typical of temperate
+/// latitudes (WMO cloud atlas). Cells of stratocumulus are some three to five times as wide as deep, elements of
+/// altocumulus 1 to 5 degrees wide (WMO cloud atlas).
 fn substance(kind: CloudKind) -> Substance {
     let s = |[thickness_m, water_g_m3, droplet_radius_um]: [f64; 3],
              convection,
@@ -58,8 +59,8 @@ const WIDER: f64 = 3.0;
 const MIDDLE_FROM_M: f64 = 2000.0;
 const HIGH_FROM_M: f64 = 6000.0;
 
-/// The kind of a layer whose kind nobody named: by level, by cover (more than half is a sheet), and by what falls from it
-/// (`raining` is more than drizzle, which falls from stratus).
+/// The kind of a layer whose kind nobody named: by level, by cover (more than half is a sheet), and by what falls from
+/// it (`raining` is more than drizzle, which falls from stratus).
 fn likely_kind(layer: &CloudLayer, raining: bool, showers: bool) -> CloudKind {
     let sheet = layer.cover > 0.5;
     match (layer.base_m, sheet) {
@@ -76,16 +77,16 @@ fn likely_kind(layer: &CloudLayer, raining: bool, showers: bool) -> CloudKind {
     }
 }
 
-/// Optical depth of water of `water_path_kg_m2` in droplets of `radius_um`: tau = 3 W / (2 rho r) (Stephens 1978), rho that of
-/// water or ice.
+/// Optical depth of water of `water_path_kg_m2` in droplets of `radius_um`: tau = 3 W / (2 rho r) (Stephens 1978), rho
+/// that of water or ice.
 pub fn cloud_optical_depth(water_path_kg_m2: f64, radius_um: f64, ice_fraction: f64) -> f64 {
     let density = 1000.0 + (917.0 - 1000.0) * ice_fraction;
     1.5 * water_path_kg_m2 / (density * radius_um * 1e-6)
 }
 
-/// Water that a cloud must hold for the rate it lets fall, kg/m^2: the rate over the pace at which cloud water turns into rain
-/// (Kessler 1969), 1e-3 1/s by drops growing together and 2.2 q^0.875 1/s by falling rain sweeping droplets up. q, rain water
-/// in air (kg/kg, density 1.2 kg/m^3), follows the rate by Marshall and Palmer's 0.072 R^0.88 g/m^3.
+/// Water that a cloud must hold for the rate it lets fall, kg/m^2: the rate over the pace at which cloud water turns
+/// into rain (Kessler 1969), 1e-3 1/s by drops growing together and 2.2 q^0.875 1/s by falling rain sweeping droplets
+/// up. q, rain water in air (kg/kg, density 1.2 kg/m^3), follows the rate by Marshall and Palmer's 0.072 R^0.88 g/m^3.
 pub fn water_path_for_rate_kg_m2(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;
@@ -141,9 +142,9 @@ fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
 
 /// The slabs of the weather, each in the slot of its level so that a blend pairs low with low and high with high.
 ///
-/// Rain needs cloud: the layer it falls from holds [`water_path_for_rate_kg_m2`] at least, and where the host named no cloud
-/// at all an overcast of nimbostratus at 600 m is there (`rain_needs_cloud` false switches both off). Ice crystals fall from
-/// a clear sky.
+/// Rain needs cloud: the layer it falls from holds [`water_path_for_rate_kg_m2`] at least, and where the host named no
+/// cloud at all an overcast of nimbostratus at 600 m is there (`rain_needs_cloud` false switches both off). Ice
+/// crystals fall from a clear sky.
 pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: bool) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     let p = &w.precipitation;
     let raining = p.rate_mm_h > 0.0 && p.kind != PrecipitationKind::IceCrystals;
@@ -169,8 +170,8 @@ pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: boo
 /// First slots of low, middle and high clouds.
 const LEVEL_SLOTS: [usize; 3] = [0, 7, 11];
 
-/// Puts slabs, lowest first, into the slots of their level; where one has more than slots, the others make room. Slots are then
-/// in the order of heights, which is how light goes through them ([`Conditions::cloud_light`]).
+/// Puts slabs, lowest first, into the slots of their level; where one has more than slots, the others make room. Slots
+/// are then in the order of heights, which is how light goes through them ([`Conditions::cloud_light`]).
 fn into_slots(mut slabs: Vec<CloudSlab>) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     slabs.sort_by(|a, b| a.base_m.total_cmp(&b.base_m));
     let below = |limit_m: f64| slabs.partition_point(|s| s.base_m < limit_m);

@@ -9,9 +9,9 @@ pub const LN_20: f64 = 2.995_732_273_553_991;
 
 /// The physical state of the weather at one place and moment.
 ///
-/// Made by [`super::derive`] or [`super::Timeline::at`]. No field is a kind: what a report names by words is a quantity here,
-/// so that any two conditions can be blended ([`Conditions::lerp`]). Heights are above the station unless they say otherwise;
-/// extinctions are at 550 nm. Plain data, any thread.
+/// Made by [`super::derive`] or [`super::Timeline::at`]. No field is a kind: what a report names by words is a quantity
+/// here, so that any two conditions can be blended ([`Conditions::lerp`]). Heights are above the station unless they
+/// say otherwise; extinctions are at 550 nm. Plain data, any thread.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Total extinction at station height, 1/m: air, aerosol, fog, what falls and what the wind lifts.
@@ -23,13 +23,14 @@ pub struct Conditions {
     pub aerosol: AerosolLayer,
     /// Droplets or lifted snow in a layer at the ground; drawn by the fog.
     pub fog: GroundLayer,
-    /// What falls.
+    /// Precipitation.
     pub precipitation: Falling,
-    /// Cloud layers, lowest first, each in a slot of its height class; those with `cover == 0` are absent. The order of the slots
-    /// is that in which light meets them, also while a change moves one past another. See [`Conditions::cloud_slabs`].
+    /// Cloud layers, lowest first, each in a slot of its height class; those with `cover == 0` are absent. The order of
+    /// the slots is that in which light meets them, also while a change moves one past another. See
+    /// [`Conditions::cloud_slabs`].
     pub clouds: [CloudSlab; MAX_CLOUD_LAYERS],
-    /// Part of the sky that no layer hides, at most: less than layers placed independently would leave while one overcast comes for
-    /// another. 1 where only the layers say it.
+    /// Part of the sky that no layer hides, at most: less than layers placed independently would leave while one
+    /// overcast comes for another. 1 where only the layers say it.
     #[serde(default = "whole")]
     pub clear_sky: f64,
     /// Cloud light as the host set it, in place of the slabs'.
@@ -38,7 +39,7 @@ pub struct Conditions {
     pub wind: WindProfile,
     /// The sea's surface.
     pub sea: SeaState,
-    /// What weather has done to the ground.
+    /// Water, ice and snow on the ground.
     pub surface: SurfaceCover,
     /// Ozone column, Dobson units.
     pub ozone_du: f64,
@@ -113,7 +114,7 @@ pub struct GroundLayer {
     pub lifted: f64,
 }
 
-/// What falls, as rates of liquid water at the ground.
+/// Precipitation, as rates of liquid water at the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "SavedFalling")]
 pub struct Falling {
@@ -279,7 +280,7 @@ pub struct SeaState {
     pub temperature_c: f64,
 }
 
-/// What weather has done to the ground, where no simulation says it better.
+/// Water, ice and snow on the ground, where no simulation says it better.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceCover {
     /// 0 dry, 0.3 damp, 1 under a closed film.
@@ -307,8 +308,8 @@ impl AerosolLayer {
         wavelengths_nm.map(|l| self.extinction_per_m * libm::pow(l / 550.0, -self.angstrom_exponent))
     }
 
-    /// Scattering at station height, 1/m, at each wavelength (nm): extinction less absorption, the absorption following its
-    /// own exponent and never above the extinction.
+    /// Scattering at station height, 1/m, at each wavelength (nm): extinction less absorption, the absorption following
+    /// its own exponent and never above the extinction.
     pub fn scattering_at(&self, wavelengths_nm: [f64; 3]) -> [f64; 3] {
         let absorption = self.extinction_per_m * (1.0 - self.single_scattering_albedo);
         let extinction = self.extinction_at(wavelengths_nm);
@@ -449,8 +450,8 @@ impl Falling {
         self.liquid_extinction_per_m + self.solid_extinction_per_m
     }
 
-    /// The same with `whole` as the extinction of all, 1/m, in which liquid and solid keep their shares. What has no species
-    /// counts as solid: no drop is drawn of it.
+    /// Returns the precipitation with `whole` as the extinction of all, 1/m, in which liquid and solid keep their
+    /// shares. What has no species counts as solid: no drop is drawn of it.
     pub(crate) fn with_extinction(self, whole: f64) -> Self {
         let before = self.extinction_per_m();
         if before <= 0.0 {
@@ -462,8 +463,8 @@ impl Falling {
 }
 
 impl Conditions {
-    /// Meteorological optical range at station height, m: ln 20 / [`Conditions::extinction_per_m`], and 1e9 where less than that takes
-    /// light, as without any air.
+    /// Meteorological optical range at station height, m: ln 20 / [`Conditions::extinction_per_m`], and 1e9 where less
+    /// than that takes light, as without any air.
     pub fn visibility_m(&self) -> f64 {
         (LN_20 / self.extinction_per_m).min(1e9)
     }
@@ -473,8 +474,8 @@ impl Conditions {
         self.clouds.iter().filter(|slab| slab.cover > 0.0)
     }
 
-    /// Part of the sky hidden by cloud: 1 - product of (1 - cover), layers placed independently (random overlap), or more while one
-    /// overcast comes for another.
+    /// Part of the sky hidden by cloud: 1 - product of (1 - cover), layers placed independently (random overlap), or
+    /// more while one overcast comes for another.
     pub fn cloud_cover(&self) -> f64 {
         1.0 - self.clear_sky()
     }

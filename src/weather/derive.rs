@@ -1,4 +1,5 @@
-//! From what is said to what is: every coupling between the parts of the weather, each a named law that the host can override.
+//! From what is said to what is: every coupling between the parts of the weather, each a named law that the host can
+//! override.
 
 use super::conditions::{CloudLightOverride, Conditions, clear_between};
 use super::model::Weather;
@@ -16,7 +17,8 @@ pub struct Overrides {
     pub precipitation_extinction_per_m: Option<f64>,
     /// Visibility that the air above a mist or fog keeps, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
     pub visibility_above_fog_m: Option<f64>,
-    /// Growth of particles by humidity over their size at 80 %, in place of Haenel's law. Range [0.1, 20]; 1 switches it off.
+    /// Growth of particles by humidity over their size at 80 %, in place of Haenel's law. Range [0.1, 20]; 1 switches
+    /// it off.
     pub humidity_growth: Option<f64>,
     /// Air density at sea level over the standard's. Range [0, 10].
     pub rayleigh_density_ratio: Option<f64>,
@@ -24,7 +26,8 @@ pub struct Overrides {
     pub rayleigh_scale_height_m: Option<f64>,
     /// Whether rain brings its cloud. Law: it does.
     pub rain_needs_cloud: Option<bool>,
-    /// Part of the sun's beam, and diffuse part of it, below the clouds, in place of the slabs' light. Range [0, 1] each.
+    /// Part of the sun's beam, and diffuse part of it, below the clouds, in place of the slabs' light. Range [0, 1]
+    /// each.
     pub cloud_light: Option<(f64, f64)>,
     /// Significant wave height, m, in place of what wind or state say. Range [0, 30].
     pub wave_height_m: Option<f64>,
@@ -66,7 +69,8 @@ pub fn derive(weather: &Weather) -> Result<Conditions> {
 /// As [`derive()`], with the host's figures in place of some laws.
 ///
 /// The reported visibility V is total, so everything in it is counted once: extinction ln 20 / V is shared by air
-/// (Bodhaine et al. 1999), what falls (drop and flake spectra, held to what V leaves) and particles, which take the rest.
+/// (Bodhaine et al. 1999), what falls (drop and flake spectra, held to what V leaves) and particles, which take the
+/// rest.
 ///
 /// # Errors
 /// As [`Weather::validate`] and [`Overrides::validate`].

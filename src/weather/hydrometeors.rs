@@ -1,4 +1,4 @@
-//! What falls, and how much light it stops.
+//! Precipitation, and how much light it stops.
 
 use super::blend::mix;
 use super::conditions::Falling;
@@ -7,9 +7,9 @@ use super::model::Precipitation;
 
 /// Extinction of rain at `rate_mm_h`, 1/m, any visible wavelength.
 ///
-/// Geometric optics (Q = 2) over the Marshall-Palmer (1948) distribution of drops from 0.1 to 6 mm, its number renormalised
-/// so that falling at Gunn and Kinzer's (1949) speeds the drops make the rate; a cubic in ln R fitted to that integral from
-/// 0.01 to 400 mm/h, within 0.7 % of it (tested). Below 0.01 mm/h the cubic's slope there goes on.
+/// Geometric optics (Q = 2) over the Marshall-Palmer (1948) distribution of drops from 0.1 to 6 mm, its number
+/// renormalised so that falling at Gunn and Kinzer's (1949) speeds the drops make the rate; a cubic in ln R fitted to
+/// that integral from 0.01 to 400 mm/h, within 0.7 % of it (tested). Below 0.01 mm/h the cubic's slope there goes on.
 pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
     fitted(
         [-8.093_669_161_877_56, 0.621_661_386_993_859_1, 5.708_736_555_017_379e-3, 6.728_417_057_882_727e-4],
@@ -18,8 +18,9 @@ pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
     )
 }
 
-/// Extinction of showers, 1/m: as for rain, with the thunderstorm distribution of Joss et al. (1968), 3.0 R^-0.21 per mm, whose
-/// fewer and larger drops hide about 0.6 of what those of steady rain do; a quartic in ln R, within 0.7 % of the integral.
+/// Extinction of showers, 1/m: as for rain, with the thunderstorm distribution of Joss et al. (1968), 3.0 R^-0.21 per
+/// mm, whose fewer and larger drops hide about 0.6 of what those of steady rain do; a quartic in ln R, within 0.7 % of
+/// the integral.
 pub fn shower_extinction_per_m(rate_mm_h: f64) -> f64 {
     fitted(
         [
@@ -46,8 +47,8 @@ fn fitted<const N: usize>(c: [f64; N], least_mm_h: f64, rate_mm_h: f64) -> f64 {
     libm::exp(value + slope * (log_rate - x))
 }
 
-/// Rate of rain, mm/h, whose extinction is `extinction_per_m`: the inverse of [`rain_extinction_per_m`] by bisection, held to
-/// \[0, 500\].
+/// Rate of rain, mm/h, whose extinction is `extinction_per_m`: the inverse of [`rain_extinction_per_m`] by bisection,
+/// held to \[0, 500\].
 pub fn rain_rate_mm_h(extinction_per_m: f64) -> f64 {
     let (mut low, mut high) = (0.0, 500.0);
     for _ in 0..60 {
@@ -57,9 +58,9 @@ pub fn rain_rate_mm_h(extinction_per_m: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968), N0 = 30 000 per m^3 mm and
-/// 5.7 R^-0.21 per mm; a power law fitted from 0.1 to 1 mm/h, and above a quartic in ln R that goes on from it, within 0.5 % of the
-/// integral to 500 mm/h (tested).
+/// Extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968), N0 = 30 000 per m^3 mm
+/// and 5.7 R^-0.21 per mm; a power law fitted from 0.1 to 1 mm/h, and above a quartic in ln R that goes on from it,
+/// within 0.5 % of the integral to 500 mm/h (tested).
 pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;
@@ -72,8 +73,8 @@ pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
 ///
 /// Gunn and Marshall's (1958) sizes, N0 = 3800 R^-0.87 and 2.55 R^-0.48 per mm of melted diameter; flakes of density
 /// 0.17 g/cm^3 over their diameter in mm (Holroyd 1971), so D^2 = Dm^3 / 0.17; Q = 2 on 0.6 of the disc (aggregates'
-/// area ratio). The integral is (pi / 2) 0.6 (N0 / 0.17) 6 / Lambda^4. It puts 1 mm/h at a visibility of 1.0 km, where the
-/// classes by visibility (light above 1 km) divide.
+/// area ratio). The integral is (pi / 2) 0.6 (N0 / 0.17) 6 / Lambda^4. It puts 1 mm/h at a visibility of 1.0 km, where
+/// the classes by visibility (light above 1 km) divide.
 pub fn snow_extinction_per_m(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 { 0.0 } else { SNOW_AT_1_MM_H * libm::pow(rate_mm_h, SNOW_EXPONENT) }
 }
@@ -88,15 +89,16 @@ pub fn snow_rate_mm_h(extinction_per_m: f64) -> f64 {
     if extinction_per_m <= 0.0 { 0.0 } else { libm::pow(extinction_per_m / SNOW_AT_1_MM_H, 1.0 / SNOW_EXPONENT) }
 }
 
-/// Extinction of ice pellets and small hail, 1/m: as for rain, of frozen raindrops ([`crate::rain::ice`]); a cubic in ln R
-/// from 0.1 mm/h on, within 1 % of the integral.
+/// Extinction of ice pellets and small hail, 1/m: as for rain, of frozen raindrops ([`crate::rain::ice`]); a cubic in
+/// ln R from 0.1 mm/h on, within 1 % of the integral.
 pub fn ice_pellet_extinction_per_m(rate_mm_h: f64) -> f64 {
     let c = [-8.240_465_571_633_957, 0.742_613_523_695_101_4, -0.013_905_257_292_335_787, 0.001_826_927_515_728_196_2];
     fitted(c, 0.1, rate_mm_h)
 }
 
-/// Extinction of hail, 1/m: Cheng and English's (1983) stones ([`crate::rain::ice`]); a quintic in ln R from 0.1 mm/h on, within 2 %
-/// of the integral, and beyond the rate of which their law makes no larger stones in proportion to the rate.
+/// Extinction of hail, 1/m: Cheng and English's (1983) stones ([`crate::rain::ice`]); a quintic in ln R from 0.1 mm/h
+/// on, within 2 % of the integral, and beyond the rate of which their law makes no larger stones in proportion to the
+/// rate.
 pub fn hail_extinction_per_m(rate_mm_h: f64) -> f64 {
     const MOST_MM_H: f64 = 37.0;
     let c = [
@@ -113,7 +115,8 @@ pub fn hail_extinction_per_m(rate_mm_h: f64) -> f64 {
 /// Part of the water of a shower that falls as hail where the report names hail beside rain.
 const HAIL_SHARE: f64 = 0.2;
 
-/// The rates of what falls, from the report's kind: liquid and frozen parts apart, hail beside rain taking [`HAIL_SHARE`].
+/// The rates of what falls, from the report's kind: liquid and frozen parts apart, hail beside rain taking
+/// [`HAIL_SHARE`].
 pub(super) fn falling(p: &Precipitation) -> Falling {
     use PrecipitationKind as K;
     let liquid = p.liquid_fraction.unwrap_or_else(|| p.kind.default_liquid_fraction());
@@ -141,7 +144,7 @@ pub(super) fn falling(p: &Precipitation) -> Falling {
     by_species(f)
 }
 
-/// The same rates with the extinction of their drops, and of their flakes, pellets and stones.
+/// Returns these rates with the extinction of their drops, and of their flakes, pellets and stones.
 pub(super) fn by_species(f: Falling) -> Falling {
     let [steady, showers] = [rain_extinction_per_m, shower_extinction_per_m].map(|law| law(f.rain_mm_h));
     Falling {

@@ -38,7 +38,7 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// What the dry particles of the air are. Sets the defaults of [`super::Aerosol`]'s optional fields.
+    /// Kind of dry particles in the air. Sets the defaults of [`super::Aerosol`]'s optional fields.
     AerosolKind, "aerosol.kind" {
         /// Average continental air: soil, soot-poor industry, sulphates.
         Continental = 0, "continental";
@@ -114,9 +114,9 @@ kinds! {
 }
 
 kinds! {
-    /// What falls. Frontal (stratiform) rain is [`PrecipitationKind::Rain`], convective rain the same with
-    /// [`super::Precipitation::showers`], relief (orographic) rain, many small drops, [`PrecipitationKind::Drizzle`] of 0.5 to
-    /// 3 mm/h.
+    /// Kind of precipitation. Frontal (stratiform) rain is [`PrecipitationKind::Rain`], convective rain the same with
+    /// [`super::Precipitation::showers`], relief (orographic) rain, many small drops, [`PrecipitationKind::Drizzle`] of
+    /// 0.5 to 3 mm/h.
     PrecipitationKind, "precipitation.kind" {
         /// Nothing falls; the rate must be 0.
         None = 0, "none";
@@ -146,7 +146,7 @@ kinds! {
 }
 
 kinds! {
-    /// What the wind lifts from the ground.
+    /// Kind of matter that the wind lifts from the ground.
     LoftedKind, "lofted.kind" {
         /// Nothing.
         None = 0, "none";

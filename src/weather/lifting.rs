@@ -1,28 +1,30 @@
-//! What the wind lifts comes in gusts: how unevenly, by the law of grains that hop along the ground.
+//! Unevenness of what the wind lifts, which comes in gusts: by the law of grains that hop along the ground.
 
 use super::{
     conditions::{Conditions, GroundLayer, WindProfile},
     smoothstep,
 };
 
-/// Wind at 10 m that first moves dry sand or snow, m/s: a friction velocity of 0.25 to 0.3 m/s over smooth ground (Bagnold 1941;
-/// for dry snow 7.7 m/s, Li and Pomeroy 1997).
+/// Wind at 10 m that first moves dry sand or snow, m/s: a friction velocity of 0.25 to 0.3 m/s over smooth ground
+/// (Bagnold 1941; for dry snow 7.7 m/s, Li and Pomeroy 1997).
 pub const LIFTING_M_S: f64 = 7.0;
 
-/// Absorption of lifted dust goes with (wavelength / 550 nm)^-exponent (Russell et al. 2010). Lifted snow absorbs nothing.
+/// Absorption of lifted dust goes with (wavelength / 550 nm)^-exponent (Russell et al. 2010). Lifted snow absorbs
+/// nothing.
 pub(crate) const DUST_ABSORPTION_EXPONENT: f64 = 2.7;
 
-/// What a wind carries of loose grains, up to a factor: u^3 (1 - (ut / u)^2), nothing below the threshold (Owen 1964).
+/// Returns the amount of loose grains that a wind carries, up to a factor: u^3 (1 - (ut / u)^2), nothing below the
+/// threshold (Owen 1964).
 pub fn carried(speed_m_s: f64) -> f64 {
     speed_m_s * (speed_m_s * speed_m_s - LIFTING_M_S * LIFTING_M_S).max(0.0)
 }
 
-/// What gusts carry on the mean, m^3/s^3, below which the wind lifts nothing, and from which on its unevenness counts in full: what a
-/// calmer wind still carries was lifted before and has mixed.
+/// Amounts that gusts carry on the mean, m^3/s^3: below the first the wind lifts nothing, and from the second on its
+/// unevenness counts in full. What a calmer wind still carries was lifted before and has mixed.
 const CALM: [f64; 2] = [1e-3, 0.3];
 
-/// Standard deviation of what gusts carry over its mean, held to \[0, 1\]: 0 where no gust lifts anything, 1 where only gusts do.
-/// Gusts are normal about the mean wind.
+/// Standard deviation of what gusts carry over its mean, held to \[0, 1\]: 0 where no gust lifts anything, 1 where only
+/// gusts do. Gusts are normal about the mean wind.
 pub fn unevenness(wind: &WindProfile) -> f64 {
     const STEPS: i32 = 60;
     let (mean, deviation) = (wind.speed_m_s(), wind.speed_m_s() * wind.turbulence_intensity);
@@ -41,7 +43,8 @@ pub fn unevenness(wind: &WindProfile) -> f64 {
 
 /// Radius of blown snow, m: 60 to 100 um (Pomeroy and Male 1992).
 const BLOWN_RADIUS_M: f64 = 7e-5;
-/// Depth of low drifting snow and of high blowing snow, m, and how far the wind is above the threshold from one to the other, m/s.
+/// Depth of low drifting snow and of high blowing snow, m, and how far the wind is above the threshold from one to the
+/// other, m/s.
 const BLOWN_TOP_M: [f64; 2] = [1.5, 50.0];
 const BLOWN_RISE_M_S: f64 = 5.0;
 
@@ -50,14 +53,15 @@ pub fn drift_friction_velocity_m_s(wind_m_s: f64) -> f64 {
     0.02264 * libm::pow(wind_m_s, 1.295)
 }
 
-/// Snow in the air at a height above loose snow, kg/m^3: 0.8 exp(-1.55 (4.784 u*^-0.544 - z^-0.544)) (Pomeroy and Male 1992).
+/// Snow in the air at a height above loose snow, kg/m^3: 0.8 exp(-1.55 (4.784 u*^-0.544 - z^-0.544)) (Pomeroy and Male
+/// 1992).
 pub fn blown_kg_m3(wind_m_s: f64, height_m: f64) -> f64 {
     let u = drift_friction_velocity_m_s(wind_m_s);
     0.8 * libm::exp(-1.55 * (4.784 * libm::pow(u, -0.544) - libm::pow(height_m, -0.544)))
 }
 
-/// Adds the layer of snow that the wind lifts where loose snow covers the share `covered` of the ground and moves above this threshold,
-/// unless the weather has a layer at the ground. Spheres that hide twice their area: 3 eta / (2 rho r).
+/// Adds the layer of snow that the wind lifts where loose snow covers the share `covered` of the ground and moves above
+/// this threshold, unless the weather has a layer at the ground. Spheres that hide twice their area: 3 eta / (2 rho r).
 pub(crate) fn lift_snow(c: &mut Conditions, threshold_m_s: f64, covered: f64) {
     let wind = c.wind.speed_m_s();
     if c.fog.extinction_per_m > 0.0 || wind <= threshold_m_s || covered <= 0.0 {

@@ -27,8 +27,8 @@ pub struct Weather {
     pub relative_humidity: f64,
     /// Pressure reduced to mean sea level (QNH), hPa. Range [800, 1100], default 1013.25.
     pub pressure_hpa: f64,
-    /// Height of the station above mean sea level, m. Range [-500, 9000], default 0. Visibility, temperature and cloud bases
-    /// refer to this height.
+    /// Height of the station above mean sea level, m. Range [-500, 9000], default 0. Visibility, temperature and cloud
+    /// bases refer to this height.
     pub station_altitude_m: f64,
     /// Particles of the air. Default continental, every optional field none.
     pub aerosol: Aerosol,
@@ -36,7 +36,7 @@ pub struct Weather {
     pub fog: Fog,
     /// Cloud layers, at most [`MAX_CLOUD_LAYERS`], in any order. Default none.
     pub clouds: Vec<CloudLayer>,
-    /// What falls. Default nothing.
+    /// Precipitation. Default none.
     pub precipitation: Precipitation,
     /// Wind. Default calm.
     pub wind: Wind,
@@ -44,7 +44,7 @@ pub struct Weather {
     pub sea: Sea,
     /// The ground. Default everything none, no snow.
     pub surface: Surface,
-    /// What the wind lifts. Default nothing.
+    /// Matter that the wind lifts. Default none.
     pub lofted: Lofted,
     /// Ozone column, Dobson units. Range [0, 700], default 300.
     pub ozone_du: f64,
@@ -53,7 +53,7 @@ pub struct Weather {
 /// Particles that hang in the air and fill the height of the mixed layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aerosol {
-    /// What they are. Sets the values of the fields below where those are `None`.
+    /// Kind of the particles. Sets the values of the fields below where those are `None`.
     pub kind: AerosolKind,
     /// Angstrom exponent: extinction goes with wavelength^-exponent. Range [-1, 4]; default by kind.
     pub angstrom_exponent: Option<f64>,
@@ -61,19 +61,21 @@ pub struct Aerosol {
     pub single_scattering_albedo: Option<f64>,
     /// Asymmetry of the phase function (mean cosine). Range [-0.99, 0.99]; default by kind and humidity.
     pub asymmetry: Option<f64>,
-    /// Height over which the particles thin out by 1/e, m. Range [10, 20 000]; default by kind. Held to the station's altitude over
-    /// 4.6 at least (435 m at 2000 m): the sky counts densities from the sea, and holds a hundred times those at the station there.
+    /// Height over which the particles thin out by 1/e, m. Range [10, 20 000]; default by kind. Held to the station's
+    /// altitude over 4.6 at least (435 m at 2000 m): the sky counts densities from the sea, and holds a hundred times
+    /// those at the station there.
     pub scale_height_m: Option<f64>,
 }
 
 /// Droplets at the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fog {
-    /// Which fog.
+    /// Kind of fog.
     pub kind: FogKind,
     /// Top of the fog above the station, m. Range [0.1, 2000]; default by kind or from the vertical visibility.
     pub top_m: Option<f64>,
-    /// Part of the ground under fog, fraction. Range [0, 1]; default by kind: 1, or 0.4 for patches, 0.6 for partial fog.
+    /// Part of the ground under fog, fraction. Range [0, 1]; default by kind: 1, or 0.4 for patches, 0.6 for partial
+    /// fog.
     pub coverage: Option<f64>,
     /// Visibility inside the fog, m. Range [1, 10 000]; default `visibility_m`, or 200 m where the fog is shallow or in
     /// patches and the reported visibility is the better one above or beside it.
@@ -89,18 +91,19 @@ pub struct CloudLayer {
     pub base_m: f64,
     /// Thickness, m. Range [1, 20 000]; default by kind.
     pub thickness_m: Option<f64>,
-    /// Which cloud.
+    /// Kind of cloud.
     pub kind: CloudKind,
     /// Water, liquid or ice, g/m^3. Range [0, 10]; default by kind.
     pub water_g_m3: Option<f64>,
     /// Effective radius of droplets or crystals, um. Range [1, 500]; default by kind.
     pub droplet_radius_um: Option<f64>,
-    /// Wind that carries it; default the weather's at the middle of the layer ([`super::WindProfile::mean_at_height_m_s`]).
+    /// Wind that carries it; default the weather's at the middle of the layer
+    /// ([`super::WindProfile::mean_at_height_m_s`]).
     pub wind: Option<LayerWind>,
     /// Distance from cloud to cloud, m. Range [50, 200 000]; default by kind and thickness.
     pub spacing_m: Option<f64>,
-    /// Time in which its clouds come and go, s. Range [60, 1e6]; default 1200: a fair-weather cumulus lives some 20 minutes
-    /// (Stull 1988, chapter 13).
+    /// Time in which its clouds come and go, s. Range [60, 1e6]; default 1200: a fair-weather cumulus lives some 20
+    /// minutes (Stull 1988, chapter 13).
     pub life_s: Option<f64>,
 }
 
@@ -113,10 +116,10 @@ pub struct LayerWind {
     pub from_deg: f64,
 }
 
-/// What falls from the clouds.
+/// Precipitation from the clouds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precipitation {
-    /// What falls, the heaviest part if several do.
+    /// Kind of precipitation, the heaviest part if several fall.
     pub kind: PrecipitationKind,
     /// How much, mm/h of liquid water. Range [0, 500]; must be 0 if `kind` is none.
     pub rate_mm_h: f64,
@@ -181,10 +184,10 @@ pub struct Surface {
     pub roughness_length_m: Option<f64>,
 }
 
-/// What the wind lifts from the ground.
+/// Matter that the wind lifts from the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lofted {
-    /// Which.
+    /// Kind of matter.
     pub kind: LoftedKind,
     /// Depth of the lifted layer, m. Range [0.1, 5000]; default by kind.
     pub top_m: Option<f64>,

@@ -1,5 +1,5 @@
-//! What hangs in the air: particles through the mixed layer, droplets in a layer at the ground, and how a reported visibility
-//! is shared out among them.
+//! Matter that hangs in the air: particles through the mixed layer, droplets in a layer at the ground, and how a
+//! reported visibility is shared out among them.
 
 use super::conditions::{AerosolLayer, Air, GroundLayer, LN_20};
 use super::derive::Overrides;
@@ -17,9 +17,10 @@ struct Properties {
     growth_exponent: f64,
 }
 
-/// OPAC's aerosol types (Hess, Koepke and Schult 1998, table 4: humidity 80 %, 550 nm; exponents 500 to 800 nm), smoke after
-/// Dubovik et al. (2002), ash after Ball et al. (2015); absorption exponents after Russell et al. (2010): soot 1, smoke 1.8,
-/// dust 2.7; growth exponents after Haenel (1976) and Titos et al. (2016); scale heights as typical of a mixed layer.
+/// OPAC's aerosol types (Hess, Koepke and Schult 1998, table 4: humidity 80 %, 550 nm; exponents 500 to 800 nm), smoke
+/// after Dubovik et al. (2002), ash after Ball et al. (2015); absorption exponents after Russell et al. (2010): soot 1,
+/// smoke 1.8, dust 2.7; growth exponents after Haenel (1976) and Titos et al. (2016); scale heights as typical of a
+/// mixed layer.
 fn properties(kind: AerosolKind) -> Properties {
     let p = |ssa, g, angstrom, absorption, height, growth| Properties {
         single_scattering_albedo: ssa,
@@ -43,7 +44,8 @@ fn properties(kind: AerosolKind) -> Properties {
     }
 }
 
-/// Humidity at which the properties' table holds, and beyond which particles are treated as grown enough (they become mist).
+/// Humidity at which the properties' table holds, and beyond which particles are treated as grown enough (they become
+/// mist).
 const TABLE_HUMIDITY: f64 = 0.8;
 const MAX_HUMIDITY: f64 = 0.97;
 
@@ -72,8 +74,9 @@ fn effective_kind(w: &Weather) -> AerosolKind {
     }
 }
 
-/// Scale heights that particles at a station may be above the sea, at most. The sky counts their density from the sea: e^4.6, a
-/// hundred times that at the station, is what its tables still hold. The haze of a plateau lies on the plateau.
+/// Scale heights that particles at a station may be above the sea, at most. The sky counts their density from the sea:
+/// e^4.6, a hundred times that at the station, is what its tables still hold. The haze of a plateau lies on the
+/// plateau.
 const DEEPEST_SCALES: f64 = 4.6;
 
 /// Height over which the particles thin out by 1/e, m: as given or by kind, at least the station's altitude over
@@ -95,8 +98,8 @@ fn is_dry(w: &Weather) -> bool {
     is_dry_obscuration(effective_kind(w)) && !foggy
 }
 
-/// Aerosol of the weather, `extinction_per_m` at station height being known: swelling takes absorption's share down (water
-/// does not absorb), and brings asymmetry and spectrum towards a droplet's, by the volume of water taken up.
+/// Aerosol of the weather, `extinction_per_m` at station height being known: swelling takes absorption's share down
+/// (water does not absorb), and brings asymmetry and spectrum towards a droplet's, by the volume of water taken up.
 pub(super) fn aerosol_layer(w: &Weather, extinction_per_m: f64, swelling: Option<f64>) -> AerosolLayer {
     let kind = effective_kind(w);
     let p = properties(kind);
@@ -115,7 +118,7 @@ pub(super) fn aerosol_layer(w: &Weather, extinction_per_m: f64, swelling: Option
     }
 }
 
-/// What the reported visibility leaves for particles, shared out.
+/// Extinction that the reported visibility leaves for particles, shared out.
 pub(super) struct Shares {
     /// To the mixed layer, 1/m.
     pub aerosol_per_m: f64,
@@ -131,8 +134,8 @@ fn visibility_above_m(w: &Weather, o: &Overrides) -> f64 {
     o.visibility_above_fog_m.unwrap_or(if fog { 10_000.0 } else { 5_000.0 })
 }
 
-/// How deep the layer lies and how far one sees in it where the report looks over or past it, m; `None` where it is part of
-/// the reported visibility.
+/// How deep the layer lies and how far one sees in it where the report looks over or past it, m; `None` where it is
+/// part of the reported visibility.
 fn visibility_inside_m(w: &Weather) -> Option<f64> {
     let beside = match (w.fog.kind, w.lofted.kind) {
         (FogKind::Shallow, _) => true,
@@ -144,21 +147,23 @@ fn visibility_inside_m(w: &Weather) -> Option<f64> {
     beside.then(|| w.fog.visibility_inside_m.unwrap_or(usual))
 }
 
-/// Optical depth straight up of the particles that the sky's tables carry at most. Their orders of scattering are a series,
-/// off by 11 % at p95 here; what is thicker goes to the ground layer, whose two-stream solution holds at any depth.
+/// Optical depth straight up of the particles that the sky's tables carry at most. Their orders of scattering are a
+/// series, off by 11 % at p95 here; what is thicker goes to the ground layer, whose two-stream solution holds at any
+/// depth.
 const SKY_DEPTH: f64 = 1.0;
 
-/// Depth left to the sky of particles `depth` deep: all up to [`SKY_DEPTH`], then ever less, as 1 / depth. Under so much
-/// dust the air that the sky draws would be lit as if there were none above it.
+/// Depth left to the sky of particles `depth` deep: all up to [`SKY_DEPTH`], then ever less, as 1 / depth. Under so
+/// much dust the air that the sky draws would be lit as if there were none above it.
 fn sky_depth(depth: f64) -> f64 {
     if depth <= SKY_DEPTH { depth } else { SKY_DEPTH * SKY_DEPTH / depth }
 }
 
-/// Shares the extinction of aerosol and fog, max(0, ln 20 / V - air - precipitation), between the mixed layer and the ground.
+/// Shares the extinction of aerosol and fog, max(0, ln 20 / V - air - precipitation), between the mixed layer and the
+/// ground.
 ///
-/// Haze, dust, sand, smoke and ash take all of it, as far as [`sky_depth`] lets them; other air takes no more than leaves
-/// [`visibility_above_m`] and the rest is mist or fog, named or not, since dry background air never gets thicker than
-/// that.
+/// Haze, dust, sand, smoke and ash take all of it, as far as [`sky_depth`] lets them; other air takes no more than
+/// leaves [`visibility_above_m`] and the rest is mist or fog, named or not, since dry background air never gets thicker
+/// than that.
 pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &Overrides) -> Shares {
     let rayleigh = air.rayleigh_extinction_per_m;
     let rest = (LN_20 / w.visibility_m - rayleigh - falling_per_m).max(0.0);
@@ -192,10 +197,10 @@ fn lowest_base_m(w: &Weather) -> Option<f64> {
 
 /// Top of the ground layer above the station, m, where the host does not say.
 ///
-/// Shallow fog ends at 2 m by definition (WMO-No. 306, MI). An obscured sky says that fog is deeper than one sees upwards:
-/// twice the vertical visibility, 150 m at least. Without it the sky shows through, so the fog is about one visibility deep,
-/// 20 to 150 m. Mist reaches the lowest cloud up to 600 m, 60 m at least, else 300 m. Snow blows up to some tens of metres
-/// (Budd, Dingle and Radok 1966) and drifts below eye height; spray keeps to 10 m.
+/// Shallow fog ends at 2 m by definition (WMO-No. 306, MI). An obscured sky says that fog is deeper than one sees
+/// upwards: twice the vertical visibility, 150 m at least. Without it the sky shows through, so the fog is about one
+/// visibility deep, 20 to 150 m. Mist reaches the lowest cloud up to 600 m, 60 m at least, else 300 m. Snow blows up to
+/// some tens of metres (Budd, Dingle and Radok 1966) and drifts below eye height; spray keeps to 10 m.
 fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
     let through = (LN_20 / ground_per_m.max(1e-9)).clamp(20.0, 150.0);
     match (w.fog.kind, w.lofted.kind) {
@@ -212,9 +217,10 @@ fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
     }
 }
 
-/// The layer at the ground. Droplets of 10 um scatter without colour or loss (albedo 1, asymmetry 0.85: Hess et al. 1998,
-/// fog); lifted snow has asymmetry 0.89 and dust its own properties. Where dry particles are too thick for the sky, the
-/// layer is what the sky leaves of them: as much as above one another in `aerosol`, thinning out to twice its scale height.
+/// The layer at the ground. Droplets of 10 um scatter without colour or loss (albedo 1, asymmetry 0.85: Hess et al.
+/// 1998, fog); lifted snow has asymmetry 0.89 and dust its own properties. Where dry particles are too thick for the
+/// sky, the layer is what the sky leaves of them: as much as above one another in `aerosol`, thinning out to twice its
+/// scale height.
 pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &AerosolLayer) -> GroundLayer {
     if extinction_per_m <= 0.0 {
         return GroundLayer::NONE;

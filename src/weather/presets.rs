@@ -244,8 +244,9 @@ fn gale() -> Weather {
     Weather { clouds, wind, pressure_hpa: 985.0, ..day(20_000.0, 9.0, 0.7) }
 }
 
-/// Beaufort 10: 24.5 to 28.4 m/s, waves of about 9 m (WMO-No. 306, section E), which is sea state 8 (code table 3700), and spray that
-/// lowers the visibility. The gust is 1.23 times the ten-minute mean, the factor at sea (Harper, Kepert and Ginger 2010, table 1.1).
+/// Beaufort 10: 24.5 to 28.4 m/s, waves of about 9 m (WMO-No. 306, section E), which is sea state 8 (code table 3700),
+/// and spray that lowers the visibility. The gust is 1.23 times the ten-minute mean, the factor at sea (Harper, Kepert
+/// and Ginger 2010, table 1.1).
 fn storm_at_sea() -> Weather {
     let clouds = vec![CloudLayer::of(CloudKind::Stratocumulus, 1.0, 500.0)];
     let wind = Wind { gust_m_s: Some(32.0), ..Wind::of(26.0, 250.0) };

@@ -10,8 +10,8 @@ const GRASS_ROUGHNESS_M: f64 = 0.03;
 const GUST_PEAK_FACTOR: f64 = 2.3;
 const GRAVITY_M_S2: f64 = 9.80665;
 
-/// Roughness length of the sea, m: Charnock (1955) with 0.0144 (Garratt 1977) and the smooth-flow limit 0.11 nu / u*, solved with
-/// the log law for a wind at 10 m by repeated substitution.
+/// Roughness length of the sea, m: Charnock (1955) with 0.0144 (Garratt 1977) and the smooth-flow limit 0.11 nu / u*,
+/// solved with the log law for a wind at 10 m by repeated substitution.
 pub fn sea_roughness_length_m(speed_10_m_s: f64) -> f64 {
     let mut z0 = 1e-4;
     // The map contracts by about 0.2 a round; 20 rounds settle it to the last bit that matters.
@@ -37,13 +37,14 @@ pub fn wave_height_of_state_m(state: u8) -> f64 {
     }
 }
 
-/// Share of level ground that snow of this depth covers, m: sparse first, then whole (a hyperbolic tangent as of Niu and Yang 2007, over
-/// 2.5 times a roughness of 1 cm).
+/// Share of level ground that snow of this depth covers, m: sparse first, then whole (a hyperbolic tangent as of Niu
+/// and Yang 2007, over 2.5 times a roughness of 1 cm).
 pub fn snow_cover(depth_m: f64) -> f64 {
     if depth_m > 0.25 { 1.0 } else { libm::tanh(depth_m / 0.025) }
 }
 
-/// Wind profile: turbulence from the log law's sigma / U = 1 / ln(10 / z0) (Panofsky and Dutton 1984), or from a reported gust.
+/// Wind profile: turbulence from the log law's sigma / U = 1 / ln(10 / z0) (Panofsky and Dutton 1984), or from a
+/// reported gust.
 pub(super) fn wind_profile(w: &Weather) -> WindProfile {
     let roughness = w.surface.roughness_length_m.unwrap_or(GRASS_ROUGHNESS_M);
     let neutral = (1.0 / libm::log(10.0 / roughness).max(1.0)).min(1.0);

@@ -149,7 +149,7 @@ impl Timeline {
         self.changes.iter().rposition(|c| c.end_s() <= now_s && c.start_s <= now_s)
     }
 
-    /// What [`known_from_s`](Self::known_from_s) will be after an advance to `now_s`, if that forgets anything.
+    /// Returns the new [`known_from_s`](Self::known_from_s) after an advance to `now_s`, if that forgets anything.
     pub(crate) fn ends_before(&self, now_s: f64) -> Option<f64> {
         self.last_ended(now_s).map(|i| self.changes[i].end_s())
     }

@@ -14,7 +14,7 @@ pub(crate) struct WindOver<'a> {
     pub timeline: &'a Timeline,
     /// How far it had carried the air when the last change ended that the timeline has forgotten.
     pub kept: Drift,
-    /// The same of the layers of cloud.
+    /// Drifts of the layers of cloud at that time.
     pub kept_layers: &'a LayerDrifts,
     /// Revision of the timeline: no two contexts share one, and every change of the timeline makes a new one.
     pub revision: u64,
@@ -36,7 +36,7 @@ impl<'a> WindOver<'a> {
         self.carrying_as(time_s, self.at(time_s))
     }
 
-    /// The same, where the wind at the moment is known.
+    /// Returns [`Self::carrying_until`] where the wind at the moment is known.
     pub fn carrying_as(self, time_s: f64, now: Blowing) -> Carrying<'a> {
         Carrying { over: self, time_s, now }
     }
@@ -61,7 +61,8 @@ impl Carrying<'_> {
         self.now.velocity_m_s().extend(0.0)
     }
 
-    /// How far the wind has carried the air since a moment, m, and before what the timeline knows with the wind of its first one.
+    /// How far the wind has carried the air since a moment, m, and before what the timeline knows with the wind of its
+    /// first one.
     pub fn since(&self, from_s: f64, remembered: &Remembered) -> DVec3 {
         let known_s = from_s.max(self.over.timeline.known_from_s()).min(self.time_s);
         let first = remembered.at(&self.over, known_s);

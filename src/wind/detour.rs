@@ -1,13 +1,14 @@
 //! How obstacles hold up and turn aside what drifts with the wind near the ground: patches of fog and of dust.
 //!
-//! Patches go with the displacement of the weather's wind, the same everywhere. Where the wind varies in space the air at a place has
-//! come another way. It is followed back along the level wind w near the ground; with e the wind that enters the grid, both over the speed of
-//! e, and s the way of free air, the air at a place is behind by
+//! Patches go with the displacement of the weather's wind, the same everywhere. Where the wind varies in space the air
+//! at a place has come another way. It is followed back along the level wind w near the ground; with e the wind that
+//! enters the grid, both over the speed of e, and s the way of free air, the air at a place is behind by
 //!
 //! L = integral of (e - w) e^(-s / life) ds,
 //!
-//! so that a patch is what it would be L farther on. Eddies stir patches: what happened to air more than the life of a patch ago shows no
-//! more, and no lag grows longer than that life. With an endless life L would be the drift of Darwin (1953).
+//! so that a patch is what it would be L farther on. Eddies stir patches: what happened to air more than the life of a
+//! patch ago shows no more, and no lag grows longer than that life. With an endless life L would be the drift of Darwin
+//! (1953).
 
 use std::sync::Arc;
 
@@ -23,8 +24,8 @@ const HEIGHT_M: f64 = 2.0;
 const LEAST_WIND_M_S: f64 = 0.2;
 /// Steps back over three lives of a patch.
 const STEPS: usize = 48;
-/// Part of the map on each side over which detours fade, so that the pattern is whole beyond. A solved field goes over into the weather's
-/// wind there: what enters is asked within.
+/// Part of the map on each side over which detours fade, so that the pattern is whole beyond. A solved field goes over
+/// into the weather's wind there: what enters is asked within.
 const EDGE: f64 = 0.15;
 /// Heights over the ground at which a grid is asked how high its obstacles reach.
 const LEVELS: usize = 12;
@@ -98,9 +99,10 @@ impl Level<'_> {
 }
 
 impl DetourMap {
-    /// Of a grid of wind in the weather's. `ground_m` answers the ground's height over the grid's origin so many metres east and north of
-    /// it, `weathers_m_s` the weather's wind so high over the ground; `life_m` is how far free air comes while a patch lives, a sixth of
-    /// the grid at most, so that lags are gone at its edges. None where no wind blows.
+    /// Creates the map of a grid of wind in the weather's. `ground_m` answers the ground's height over the grid's
+    /// origin so many metres east and north of it, `weathers_m_s` the weather's wind so high over the ground; `life_m`
+    /// is how far free air comes while a patch lives, a sixth of the grid at most, so that lags are gone at its edges.
+    /// None where no wind blows.
     pub fn new(
         volume: &WindVolume,
         ground_m: &dyn Fn(DVec2) -> f64,

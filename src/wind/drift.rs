@@ -1,8 +1,9 @@
 //! The wind along the timeline: how far the air has come, and how fast it goes.
 //!
-//! Between the starts and ends of changes the mean wind is one polynomial of time, which eight points of Gauss and Legendre
-//! integrate exactly while at most five changes overlap; gusts and wander are integrated in closed form. Nothing is
-//! stepped: any time costs the same, and what is carried over ended changes is the same for any sequence of updates.
+//! Between the starts and ends of changes the mean wind is one polynomial of time, which eight points of Gauss and
+//! Legendre integrate exactly while at most five changes overlap; gusts and wander are integrated in closed form.
+//! Nothing is stepped: any time costs the same, and what is carried over ended changes is the same for any sequence of
+//! updates.
 
 use glam::DVec2;
 
@@ -12,7 +13,8 @@ use super::{
 };
 use crate::weather::{Conditions, Timeline, WindProfile, timeline::Change};
 
-/// Nodes and weights of Gauss and Legendre's rule of 8 points on [-1, 1], one half (Abramowitz and Stegun 1964, table 25.4).
+/// Nodes and weights of Gauss and Legendre's rule of 8 points on [-1, 1], one half (Abramowitz and Stegun 1964, table
+/// 25.4).
 pub(super) const GAUSS: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
@@ -38,9 +40,9 @@ pub struct Blowing {
     pub drift: Drift,
     /// The mean wind, as the conditions have it.
     pub mean_m_s: DVec2,
-    /// What the wandering direction makes of the mean.
+    /// Change of the mean by the wandering direction.
     pub turned_m_s: DVec2,
-    /// What gusts add.
+    /// Velocity that gusts add.
     pub gust_m_s: DVec2,
 }
 
@@ -48,8 +50,8 @@ impl Drift {
     /// Time 0.
     pub const ZERO: Self = Self { time_s: 0.0, path_m: 0.0, displacement_m: DVec2::ZERO };
 
-    /// At the end of the last change that the timeline will have forgotten once it has advanced to `now_s`: what must be
-    /// kept beside it. To be asked before it advances.
+    /// At the end of the last change that the timeline will have forgotten once it has advanced to `now_s`: what must
+    /// be kept beside it. To be asked before it advances.
     pub fn kept(self, wind: &Wind, timeline: &Timeline, now_s: f64) -> Self {
         timeline.ends_before(now_s).map_or(self, |end_s| wind.blowing(timeline, self, end_s).drift)
     }

@@ -9,18 +9,18 @@ pub const MAX_NODES: [u32; 3] = [64, 64, 32];
 /// Largest speed of a node, m/s.
 const MAX_SPEED_M_S: f64 = 300.0;
 
-/// What the numbers of a grid are.
+/// Meaning of a grid's velocities.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindGridKind {
     /// The whole wind, which replaces the weather's within the grid.
     #[default]
     Whole,
-    /// What is to be added to the weather's wind.
+    /// Wind to be added to the weather's.
     Added,
 }
 
-/// Velocities of the air at the nodes of a grid that is level and aligned to north; between them they go linearly along each
-/// axis. Outside blows the weather's wind.
+/// Velocities of the air at the nodes of a grid that is level and aligned to north; between them they go linearly along
+/// each axis. Outside blows the weather's wind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindGrid {
     /// The node lowest and farthest to the south-west, in the host's world.
@@ -29,7 +29,7 @@ pub struct WindGrid {
     pub cell_m: DVec3,
     /// Nodes east, north and up, 2 to [`MAX_NODES`].
     pub nodes: [u32; 3],
-    /// What `velocities_m_s` are.
+    /// Meaning of `velocities_m_s`.
     pub kind: WindGridKind,
     /// (east, north, up), m/s, at most 300 in all; eastern neighbours beside each other, then northern, then upper.
     pub velocities_m_s: Vec<[f32; 3]>,
@@ -71,7 +71,8 @@ impl WindGrid {
     }
 }
 
-/// The eight nodes about a place so many cells from the first of a grid, with their weights by linear interpolation; none outside.
+/// The eight nodes about a place so many cells from the first of a grid, with their weights by linear interpolation;
+/// none outside.
 pub(super) fn about(nodes: [u32; 3], cells: DVec3) -> Option<[(usize, f64); 8]> {
     let c = cells.to_array();
     let inside = c.iter().zip(nodes).all(|(x, n)| n > 1 && (0.0..=f64::from(n - 1)).contains(x));
@@ -92,7 +93,7 @@ pub(super) fn about(nodes: [u32; 3], cells: DVec3) -> Option<[(usize, f64); 8]> 
 mod tests {
     use super::*;
 
-    /// What is linear in every coordinate comes back exactly.
+    /// Returns a wind that is linear in every coordinate, which comes back exactly.
     fn linear(p: DVec3) -> DVec3 {
         DVec3::new(3.0 + 0.5 * p.x - 0.25 * p.z, -1.0 + 0.125 * p.y, 0.5 * p.z - 0.0625 * p.x)
     }

@@ -1,7 +1,7 @@
 //! Gusts as sums of waves along the way that the mean wind has blown, and the integrals of such waves.
 //!
-//! Eddies are carried past by the mean wind (Taylor 1938): a gust is a function of the path s, the integral of the mean speed,
-//! and not of time. When the wind picks up the same gusts pass faster, and none of them starts anew.
+//! Eddies are carried past by the mean wind (Taylor 1938): a gust is a function of the path s, the integral of the mean
+//! speed, and not of time. When the wind picks up the same gusts pass faster, and none of them starts anew.
 
 use std::f64::consts::TAU;
 
@@ -30,8 +30,8 @@ struct Tone {
     phase: f64,
 }
 
-/// The gusts of a seed: two sums of waves with a variance of 1 each, spread over wavelengths as Kaimal et al. (1972) found it,
-/// and the wave that turns the wind.
+/// The gusts of a seed: two sums of waves with a variance of 1 each, spread over wavelengths as Kaimal et al. (1972)
+/// found it, and the wave that turns the wind.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Gusts {
     along: [Tone; TONES],
@@ -39,18 +39,19 @@ pub(super) struct Gusts {
     wander: Tone,
 }
 
-/// How the air stirs about the mean wind, per m/s of mean speed, in quantities that can be mixed. Vectors (east, north).
+/// How the air stirs about the mean wind, per m/s of mean speed, in quantities that can be mixed. Vectors (east,
+/// north).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stir {
     /// Standard deviation of gusts along the wind.
     along: DVec2,
-    /// What the wander adds to the mean, as a series in its wave: orders -12 to 12. A wind d that turns by w sin p is the
-    /// sum of J_n(w) d e^(i n p) (Jacobi and Anger).
+    /// Velocity that the wander adds to the mean, as a series in its wave: orders -12 to 12. A wind d that turns by w
+    /// sin p is the sum of J_n(w) d e^(i n p) (Jacobi and Anger).
     turning: [DVec2; 2 * ORDERS + 1],
 }
 
 impl Stir {
-    /// Of a wind whose mean blows towards `direction` (of length 1, 0 in a calm).
+    /// Creates the stir of a wind whose mean blows towards `direction` (of length 1, 0 in a calm).
     pub fn new(direction: DVec2, turbulence_intensity: f64, wander: f64) -> Self {
         let mut turning = [DVec2::ZERO; 2 * ORDERS + 1];
         if wander > 0.0 {
@@ -73,7 +74,8 @@ impl Stir {
     }
 }
 
-/// A stretch of path on which the stirring goes evenly from one state to another: `from` at `start_m`, `to` after `length_m`.
+/// A stretch of path on which the stirring goes evenly from one state to another: `from` at `start_m`, `to` after
+/// `length_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stretch {
     pub start_m: f64,
@@ -119,8 +121,8 @@ fn wave(k: f64, length: f64) -> [DVec2; 3] {
     [end, plain, DVec2::new(ramp.y, -ramp.x) / k]
 }
 
-/// What stirring adds to the mean wind at a place of a stretch, per m/s of mean speed: the turning, and the gusts; and how far both
-/// have carried the air since its start, m.
+/// Velocities that stirring adds to the mean wind at a place of a stretch, per m/s of mean speed: the turning, and the
+/// gusts; and how far both have carried the air since its start, m.
 pub(super) struct Stirred {
     pub turned: DVec2,
     pub gust: DVec2,
@@ -149,7 +151,7 @@ impl Gusts {
         Self { along, across, wander }
     }
 
-    /// What the stirring does over the first `y_m` of a stretch.
+    /// Returns what the stirring adds over the first `y_m` of a stretch.
     pub fn over(&self, stretch: &Stretch, y_m: f64) -> Stirred {
         let (from, rise, there) = (&stretch.from, &stretch.rise_per_m(), &stretch.stir_after(y_m));
         // In standard deviations: now, and the integrals of it and of it times the way.

@@ -1,9 +1,10 @@
 //! How far the wind has carried each layer of cloud, and how much of their lives its clouds have lived.
 //!
-//! A layer goes with the mean wind at its height, or with its own ([`CloudSlab::wind_m_s`](crate::weather::CloudSlab)). Its way is counted in
-//! distances from cloud to cloud, and time in lives, so that a weather with wider or longer-lived clouds does not shift those that are there.
-//! Both are integrals over the timeline: between the starts and ends of changes by eight points of Gauss and Legendre, as in
-//! [`Drift`](super::Drift), so that any sequence of updates finds the same bits.
+//! A layer goes with the mean wind at its height, or with its own ([`CloudSlab::wind_m_s`](crate::weather::CloudSlab)).
+//! Its way is counted in distances from cloud to cloud, and time in lives, so that a weather with wider or longer-lived
+//! clouds does not shift those that are there. Both are integrals over the timeline: between the starts and ends of
+//! changes by eight points of Gauss and Legendre, as in [`Drift`](super::Drift), so that any sequence of updates finds
+//! the same bits.
 
 use glam::{DMat2, DVec2};
 
@@ -13,8 +14,8 @@ use crate::weather::{CloudSlab, Conditions, MAX_CLOUD_LAYERS, Timeline, timeline
 /// How far one layer has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LayerDrift {
-    /// Integral of the wind (east, north) over the distance from cloud to cloud, since time 0, in a pattern that is not drawn out
-    /// ([`stretch`]).
+    /// Integral of the wind (east, north) over the distance from cloud to cloud, since time 0, in a pattern that is not
+    /// drawn out ([`stretch`]).
     pub way: DVec2,
     /// Lives of its clouds since time 0.
     pub lives: f64,
@@ -120,7 +121,8 @@ impl LayerDrifts {
         }
     }
 
-    /// At the end of the last change that the timeline will have forgotten once it has advanced to `now_s`. To be asked before it advances.
+    /// At the end of the last change that the timeline will have forgotten once it has advanced to `now_s`. To be asked
+    /// before it advances.
     pub fn kept(self, timeline: &Timeline, now_s: f64) -> Self {
         timeline.ends_before(now_s).map_or(self, |end_s| self.until(timeline, end_s))
     }
@@ -167,8 +169,8 @@ mod tests {
             let t = f64::from(i) * step_s;
             let (a, b, weather) = (at(t), at(t + step_s), timeline.at(t + 0.5 * step_s));
             let ends = [timeline.at(t + 1e-6), timeline.at(t + step_s - 1e-6)];
-            // Of a layer that has hardly begun, or is nearly gone, the wind is another one within a second; beside it the points of a rule for
-            // even changes lie thinly.
+            // Of a layer that has hardly begun, or is nearly gone, the wind is another one within a second; beside it
+            // the points of a rule for even changes lie thinly.
             for (slot, slab) in weather.clouds.iter().enumerate().filter(|(_, s)| s.cover > 0.05) {
                 let want = rate(slab);
                 let way = (b.slots[slot].way - a.slots[slot].way) / step_s;

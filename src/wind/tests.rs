@@ -1,5 +1,5 @@
-//! The wind against its own definition: displacement is the integral of velocity, whatever the timeline does; gusts are as
-//! strong, as long and as varied as they should be.
+//! The wind against its own definition: displacement is the integral of velocity, whatever the timeline does; gusts are
+//! as strong, as long and as varied as they should be.
 
 use std::f64::consts::TAU;
 

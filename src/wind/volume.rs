@@ -1,7 +1,9 @@
-//! Wind that varies in space, in the one form that queries and shaders read, whoever made it: a host's [`WindGrid`] or a solved field.
+//! Wind that varies in space, in the one form that queries and shaders read, whoever made it: a host's [`WindGrid`] or
+//! a solved field.
 //!
-//! Each node has a share of the weather's wind that it replaces and its own velocity times that share, so that the wind at a place is
-//! own + (1 - share) x weather's: share 1 is the whole wind, 0 a difference, and what lies between leads from one to the other.
+//! Each node has a share of the weather's wind that it replaces and its own velocity times that share, so that the wind
+//! at a place is own + (1 - share) x weather's: share 1 is the whole wind, 0 a difference, and what lies between leads
+//! from one to the other.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -20,7 +22,8 @@ pub(crate) struct WindVolume {
     pub cell_m: DVec3,
     /// Nodes east, north and up.
     pub nodes: [u32; 3],
-    /// East, north, up, m/s, times the share; and the share. Eastern neighbours beside each other, then northern, then upper.
+    /// East, north, up, m/s, times the share; and the share. Eastern neighbours beside each other, then northern, then
+    /// upper.
     pub values: Vec<[f32; 4]>,
     /// Times that it holds for, s, if not for all.
     pub holds_s: Option<[f64; 2]>,
@@ -34,7 +37,7 @@ fn next_revision() -> u64 {
 }
 
 impl WindVolume {
-    /// Of places and sizes that are still to be filled with values.
+    /// Creates a volume whose places and sizes are still to be filled with values.
     pub fn empty() -> Self {
         Self {
             origin: DVec3::ZERO,
@@ -97,8 +100,8 @@ impl WindVolume {
         Some(about(self.nodes, cells)?.into_iter().map(|(i, weight)| value(i) * weight).sum())
     }
 
-    /// The wind at a place of the host's world, m/s (east, north, up), where the weather's is `weathers`; none where the volume
-    /// does not reach.
+    /// The wind at a place of the host's world, m/s (east, north, up), where the weather's is `weathers`; none where
+    /// the volume does not reach.
     pub fn wind(&self, position: DVec3, weathers: DVec3) -> Option<DVec3> {
         let found = self.at(self.cells_at(position))?;
         Some(found.truncate() + weathers * (1.0 - found.w))

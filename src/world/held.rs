@@ -12,21 +12,22 @@ pub(crate) struct Within {
     pub most: std::time::Duration,
 }
 
-/// What a context holds of an effect for all its views. `src/effects.rs` lists them; a context leads, saves and loads the list.
+/// State of an effect that a context holds for all its views. `src/effects.rs` lists them; a context leads, saves and
+/// loads the list.
 pub(crate) trait HeldEffect: std::any::Any {
     /// Makes ready to be led from the present to `time_s`.
     fn begin(&mut self, _world: &World, _time_s: f64) -> Result<()> {
         Ok(())
     }
 
-    /// Leads the state on until the present, by steps of a grid that is anchored at time 0, or until the time is over: one step at
-    /// least. Says whether it got there.
+    /// Leads the state on until the present, by steps of a grid that is anchored at time 0, or until the time is over:
+    /// one step at least. Says whether it got there.
     fn lead(&mut self, _world: &World, _within: Within) -> Result<Status> {
         Ok(Status::Ok)
     }
 
-    /// Takes what the host has set of the world into the state, so that it can be saved as it is: after a change, and after the steps that
-    /// the change had to wait for.
+    /// Takes what the host has set of the world into the state, so that it can be saved as it is: after a change, and
+    /// after the steps that the change had to wait for.
     fn settle(&mut self, _world: &World) {}
 
     /// Puts what others read of its state where they read it. Called when the state may have changed.
@@ -50,19 +51,19 @@ pub(crate) trait HeldEffect: std::any::Any {
         Ok(())
     }
 
-    /// The same for an effect whose state is that of things in the world. `for_hash`: the state is hashed and never loaded, so hashes
-    /// may stand for large parts of it.
+    /// Saves an effect whose state is that of things in the world. `for_hash`: the state is hashed and never loaded, so
+    /// hashes may stand for large parts of it.
     fn save_in(&self, _world: &World, _for_hash: bool, state: &mut toml::Table) -> Result<()> {
         self.save(state)
     }
 }
 
-/// What a context holds of its effects, each found by its type.
+/// States of the effects that a context holds, each found by its type.
 #[derive(Clone, Copy)]
 pub(crate) struct HeldEffects<'a>(pub &'a [&'a dyn HeldEffect]);
 
 impl<'a> HeldEffects<'a> {
-    /// What it holds of one effect.
+    /// Returns the state of one effect.
     ///
     /// # Errors
     /// [`crate::Status::Internal`] where it holds none of this type.

@@ -54,8 +54,8 @@ impl World {
         }
     }
 
-    /// The scene now at a camera at `eye`, which the host calls `name`: that in `kept` where it is of the same time, place, weather and
-    /// settings, else a new one in its place.
+    /// The scene now at a camera at `eye`, which the host calls `name`: that in `kept` where it is of the same time,
+    /// place, weather and settings, else a new one in its place.
     ///
     /// # Errors
     /// As [`World::scene_named`]; `kept` stays as it was.

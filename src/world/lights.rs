@@ -23,8 +23,8 @@ use crate::{
 const SUN_LUX: f64 = 133_334.0;
 /// Colour of moonlight over sunlight: the moon's albedo rises towards red (Velikodsky et al. 2011), luminance kept.
 const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
-/// Linear Rec. 709 colours, lux, of unscattered sunlight's parts at each of the planet's wavelengths: what a transfer of
-/// light at these wavelengths looks like is their sum weighted by it ([`Conversion::fitted`]; each wavelength as one
+/// Linear Rec. 709 colours, lux, of unscattered sunlight's parts at each of the planet's wavelengths: what a transfer
+/// of light at these wavelengths looks like is their sum weighted by it ([`Conversion::fitted`]; each wavelength as one
 /// channel where two of them are too close to tell colours apart).
 ///
 /// Adapted (von Kries) to unscattered sunlight as white, as daylight film and eyes are: on a D65 display it would look
@@ -46,19 +46,20 @@ const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
 
 /// Reflectance of the land under the clouds, with which light goes back and forth.
 const LAND_ALBEDO: f64 = 0.2;
-/// The same of snow of which only the depth is known.
+/// Reflectance of snow of which only the depth is known.
 const SNOW_ALBEDO: f64 = 0.82;
 
-/// Steps from bare to covered land in which the sky follows. Half of one changes the light of a clear sky by less than a hundredth.
+/// Steps from bare to covered land in which the sky follows. Half of one changes the light of a clear sky by less than
+/// a hundredth.
 const SNOW_STEPS: f64 = 16.0;
 
-/// What light from above meets on land of which snow covers this share.
+/// Land as light from above meets it, partly under snow.
 pub(super) struct LandSeen {
     /// Share that snow covers.
     pub snow: f64,
     /// Share of the light that goes up again.
     pub albedo: f64,
-    /// The same of the snow.
+    /// Share of the light that the snow sends up again.
     snow_albedo: f64,
 }
 
@@ -72,7 +73,8 @@ impl LandSeen {
         planet.ground_albedo.map(|bare| bare + (self.snow_albedo - bare) * self.snow)
     }
 
-    /// A planet whose ground is this land. The share that snow covers goes by steps: tables of its sky are not built anew for every flake.
+    /// A planet whose ground is this land. The share that snow covers goes by steps: tables of its sky are not built
+    /// anew for every flake.
     pub fn under_sky(&self, planet: Planet) -> Planet {
         let stepped = Self { snow: (self.snow * SNOW_STEPS).round() / SNOW_STEPS, ..*self };
         Planet { ground_albedo: stepped.albedo_on(&planet), ..planet }

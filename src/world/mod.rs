@@ -1,9 +1,9 @@
-//! The world that all views of a simulator share: its place on the planet, the timeline of weathers, the clock and its lights, the wind,
-//! and the host's shelters, occluder maps and lamps. It names no effect; effects that have a state of their own are led along with it
-//! ([`HeldEffect`]).
+//! The world that all views of a simulator share: its place on the planet, the timeline of weathers, the clock and its
+//! lights, the wind, and the host's shelters, occluder maps and lamps. It names no effect; effects that have a state of
+//! their own are led along with it ([`HeldEffect`]).
 //!
-//! Everything here is a function of (description, timeline, time, position): two worlds with the same input answer alike on every
-//! machine, without a device and a frame.
+//! Everything here is a function of (description, timeline, time, position): two worlds with the same input answer
+//! alike on every machine, without a device and a frame.
 
 mod air;
 mod binary;
@@ -88,14 +88,14 @@ impl Default for NightSettings {
     }
 }
 
-/// What the host has set that decides a step of what is simulated. Steps that an update leaves for another call are done under what was
-/// set when it was called.
+/// Settings of the host that decide a step of what is simulated. Steps that an update leaves for another call are done
+/// under the settings at the time of the update.
 #[derive(Clone)]
 pub(crate) struct Settings {
     pub shelters: Vec<Shelter>,
     /// The host's terrain; whatever holds it saves it.
     pub terrain: Option<Arc<TerrainHeights>>,
-    /// The same in tiles, of which the host keeps the heights; never both.
+    /// The host's terrain in tiles, of which the host keeps the heights; never together with `terrain`.
     pub tiles: Option<Arc<Terrain>>,
     pub regions: Vec<Region>,
     /// Where over the ground layers of cloud stand.
@@ -119,7 +119,7 @@ pub(crate) struct HostWind {
     pub volume: WindVolume,
 }
 
-/// What an effect does to the light of a scene.
+/// Function by which an effect changes the light of a scene.
 pub(crate) type Dim = fn(&mut Scene) -> Result<()>;
 
 /// The cloud over rain areas as it stands over a place, `eye` in the host's world.
@@ -129,15 +129,15 @@ pub(crate) type CloudOverAreas =
 /// Light of the moonless sky on level ground at a time and place, lux, under air of given optical depths straight up.
 pub(crate) type NightLux = fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[f64; 3]>;
 
-/// What the effects do to every world.
+/// Functions by which the effects act on every world.
 #[derive(Clone, Copy)]
 pub(crate) struct Couplings {
     /// Takes the light that the weather's low layer takes.
     pub dim: Dim,
     /// The cloud over rain areas that takes light from a place, with the part of the sky that it covers there.
     pub cloud_over_areas: CloudOverAreas,
-    /// Light of the moonless sky on level ground, lux a channel, at a time and place where the air's optical depths straight up are
-    /// given.
+    /// Light of the moonless sky on level ground, lux a channel, at a time and place where the air's optical depths
+    /// straight up are given.
     pub night_lux: NightLux,
 }
 
@@ -153,7 +153,7 @@ pub(crate) struct World {
     wind: Wind,
     /// How far the wind had carried the air when the last change ended that the timeline has forgotten.
     pub drifted: Drift,
-    /// The same of the layers of cloud.
+    /// Drifts of the layers of cloud at that time.
     layers_drifted: LayerDrifts,
     pub set: Settings,
     pub night: NightSettings,
@@ -178,7 +178,7 @@ fn next_revision() -> u64 {
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// What a world is made of.
+/// Description that a world is made from.
 pub(crate) struct Made {
     pub frame: WorldFrame,
     pub planet: Planet,
@@ -323,13 +323,14 @@ impl World {
         self.timeline.advance_keeping(self.time_s, keep_s);
     }
 
-    /// Extinction of what falls in the weather `c` outside of all regions; none where a law of the host's stands in for it.
+    /// Extinction of what falls in the weather `c` outside of all regions; none where a law of the host's stands in for
+    /// it.
     pub fn falling(&self, c: &Conditions) -> FallingLayer {
         if self.set.undimmed { FallingLayer::NONE } else { FallingLayer::new(c) }
     }
 
-    /// What holds now at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an earlier call, taken again
-    /// where nothing has changed since.
+    /// Returns the moment at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an
+    /// earlier call, taken again where nothing has changed since.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.

@@ -20,7 +20,7 @@ use crate::{
 /// Most characters of what is wrong with a state.
 const MOST_FAULT: usize = 200;
 
-/// What is saved of a world.
+/// Saved state of a world.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SavedWorld {
@@ -31,7 +31,8 @@ pub(crate) struct SavedWorld {
     timeline: String,
     /// How far the wind had carried the air when the last forgotten change ended: time, path, east, north.
     drifted: [f64; 4],
-    /// The same of the layers of cloud by their slots: ways (east, north) in distances from cloud to cloud, and lives. None: time 0.
+    /// Drifts of the layers of cloud at that time, by their slots: ways (east, north) in distances from cloud to cloud,
+    /// and lives. None: time 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     layers_drifted: Vec<[f64; 3]>,
     created: toml::Table,
@@ -73,7 +74,7 @@ fn drifted_from([time_s, path_m, east, north]: [f64; 4], timeline: &Timeline) ->
     sound.then_some(drift).ok_or_else(|| parse_error(wanted))
 }
 
-/// The same of the layers of cloud. States of before have none: their clouds stand as at time 0.
+/// Reads the drifts of the layers of cloud. Older states have none: their clouds stand as at time 0.
 fn layers_drifted_from(saved: &[[f64; 3]], time_s: f64) -> Result<LayerDrifts> {
     let mut drifts = LayerDrifts { time_s, ..LayerDrifts::ZERO };
     let fits = saved.is_empty() || saved.len() == drifts.slots.len();
@@ -104,7 +105,7 @@ pub(crate) struct LoadedWorld {
 }
 
 impl World {
-    /// What the description of this world fixes of what it shows, under the names of the C header.
+    /// Returns what the description of this world fixes of what it shows, under the names of the C header.
     pub fn created(&self) -> toml::Table {
         // Named one by one: a new field has to be put here, or among what is saved, unless it follows from the rest.
         let Self {
@@ -150,7 +151,8 @@ impl World {
         table
     }
 
-    /// What the description fixed before it could be set: a state from then is compared by it, later ones restore it.
+    /// Returns what the description fixed before it could be set: a state from then is compared by it, later ones
+    /// restore it.
     fn fixed_before(&self) -> [(&'static str, toml::Value); 2] {
         let planet = format!("hash {:016x}", self.set.planet.hash());
         [("planet_toml", planet.into()), ("tone_curve", format!("{:?}", self.tone).into())]

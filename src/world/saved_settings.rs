@@ -1,4 +1,4 @@
-//! What a host sets on a context beside weather and time, as it is saved.
+//! Settings of a context beside weather and time, as they are saved.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ pub(super) struct SavedSettings {
     cloud_map: Option<SavedCloudMap>,
 }
 
-/// The same as a context holds them.
+/// Settings beside weather and time, as a context holds them.
 pub(super) struct SetBeside {
     pub exposure: Exposure,
     pub tone: Option<ToneCurve>,

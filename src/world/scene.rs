@@ -1,4 +1,4 @@
-//! What a camera's place and the present moment come to: lights, air, clouds overhead, and the light on the ground.
+//! Scene at a camera's place at the present moment: lights, air, clouds overhead, and the light on the ground.
 
 use std::f64::consts::PI;
 
@@ -20,16 +20,17 @@ use crate::{
     wind::Blowing,
 };
 
-/// Luminance of a moonless sky, cd/m^2, and its light on level ground, lux, while the sun stands too high for either to matter: of
-/// the sky's own light they are less than 1e-4 then. Below, [`Couplings::night_lux`](super::Couplings::night_lux) says how bright it is.
+/// Luminance of a moonless sky, cd/m^2, and its light on level ground, lux, while the sun stands too high for either to
+/// matter: of the sky's own light they are less than 1e-4 then. Below,
+/// [`Couplings::night_lux`](super::Couplings::night_lux) says how bright it is.
 const UNSEEN_NIGHT_CD_M2: [f64; 3] = [1.9e-4, 1.7e-4, 1.9e-4];
 const UNSEEN_NIGHT_LUX: f64 = 8e-4;
 /// Elevations of the sun between which the night's own light takes the place of those figures, degrees.
 const NIGHT_BEGINS_DEG: (f64, f64) = (-4.0, -8.0);
 /// Night in the table below, lux.
 const TABLE_NIGHT_LUX: f64 = 6.4e-4;
-/// Clear-sky illuminance on level ground in twilight: sun's elevation in degrees, ln(lux) (Explanatory Supplement to the
-/// Astronomical Almanac 1992, table 8.1, night included at -18).
+/// Clear-sky illuminance on level ground in twilight: sun's elevation in degrees, ln(lux) (Explanatory Supplement to
+/// the Astronomical Almanac 1992, table 8.1, night included at -18).
 const TWILIGHT_LN_LUX: [(f64, f64); 6] =
     [(-18.0, -7.34), (-15.0, -6.3), (-12.0, -4.82), (-9.0, -1.9), (-6.0, 1.227), (-0.8, 6.116)];
 /// Colour of twilight's light in linear Rec. 709 of luminance 1: about 11 000 K (Lee & Hernandez-Andres 2003).
@@ -42,14 +43,14 @@ fn map(a: [f64; 3], b: [f64; 3], f: impl Fn(f64, f64) -> f64) -> [f64; 3] {
 /// Optical depths straight up, per wavelength.
 struct ZenithDepths {
     gas: [f64; 3],
-    /// Of haze: what it scatters, and what it takes.
+    /// Depths of haze: by scattering, and in `soot` by absorption.
     haze: [f64; 3],
     soot: [f64; 3],
     ozone: [f64; 3],
 }
 
 impl ZenithDepths {
-    /// Of the air above `altitude_m`.
+    /// Creates the depths of the air above `altitude_m`.
     fn new(planet: &Planet, altitude_m: f64) -> Self {
         let h = altitude_m.max(0.0);
         let column = |scale: f64| if scale > 0.0 { scale * libm::exp(-h / scale) } else { 0.0 };
@@ -65,17 +66,18 @@ impl ZenithDepths {
         }
     }
 
-    /// Of gas and haze together.
+    /// Returns the depths of gas and haze together.
     fn grey(&self) -> [f64; 3] {
         [0, 1, 2].map(|i| self.gas[i] + self.haze[i] + self.soot[i])
     }
 }
 
-/// Albedo of the grey ground that is adapted to, and what counts as that of ground under snow: its snow, of albedo 0.8, then shows two stops
-/// over grey, as photographers place it (Adams 1981, The Negative: zone VII).
+/// Albedo of the grey ground that is adapted to, and what counts as that of ground under snow: its snow, of albedo 0.8,
+/// then shows two stops over grey, as photographers place it (Adams 1981, The Negative: zone VII).
 const GROUND_KEY: f64 = 0.18;
 const SNOW_KEY: f64 = 0.2;
-/// Longest way of scattered light through haze, in thicknesses: that of a low sun is scattered out of its slant way. Fitted to sums over skies.
+/// Longest way of scattered light through haze, in thicknesses: that of a low sun is scattered out of its slant way.
+/// Fitted to sums over skies.
 const LONGEST_WAY: f64 = 4.0;
 /// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
 const LUX_PER_W_M2: f64 = 110.0;
@@ -98,11 +100,12 @@ fn air_mass(elevation_deg: f64) -> f64 {
     1.0 / (libm::sin(h.to_radians()) + 0.505_72 * libm::pow(h + 6.079_95, -1.6364)).max(0.02)
 }
 
-/// Light of a source of `spectrum` above clear air over ground of an `albedo`: (direct on a surface facing it, sky on level ground).
+/// Light of a source of `spectrum` above clear air over ground of an `albedo`: (direct on a surface facing it, sky on
+/// level ground).
 ///
-/// The sky's share by day is what the two-stream slab (Meador & Weaver 1980) lets through diffusely, and sends back to the ground of what
-/// goes up there; below 5 degrees it is led over to measured twilight. From 6 degrees on, in visibilities from 3 km
-/// on, it is within 6 % of what is seen of the sky (`tests/frame/radiance.rs`).
+/// The sky's share by day is what the two-stream slab (Meador & Weaver 1980) lets through diffusely, and sends back to
+/// the ground of what goes up there; below 5 degrees it is led over to measured twilight. From 6 degrees on, in
+/// visibilities from 3 km on, it is within 6 % of what is seen of the sky (`tests/frame/radiance.rs`).
 fn clear_light(
     (planet, color): (&Planet, &[[f64; 3]; 3]),
     (altitude_m, albedo): (f64, [f64; 3]),
@@ -136,8 +139,8 @@ fn clear_light(
     (color_of(color, direct).map(|v| v.max(0.0)), map(dusk, color_of(color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
 
-/// Light above all clouds at a height over a scene's place, lux a channel: direct light on what faces sun or moon (whichever is brighter
-/// there), and the sky's light on level ground, with the night's floor.
+/// Light above all clouds at a height over a scene's place, lux a channel: direct light on what faces sun or moon
+/// (whichever is brighter there), and the sky's light on level ground, with the night's floor.
 pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     let one = |light: &Light| {
         let elevation = libm::asin(light.direction.z.clamp(-1.0, 1.0)).to_degrees();
@@ -149,9 +152,9 @@ pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [
     (direct, [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + PI * scene.night_floor_cd_m2[i]))
 }
 
-/// What is looked at: grey ground under `total` lux and a share of the sky. With the sun near the horizon the part of
-/// the sky round it is many times brighter than the mean, and it is what pictures then show; above the air it is the
-/// sunlit planet, whatever the sun's height over the place.
+/// Returns the luminance of what is looked at: grey ground under `total` lux and a share of the sky. With the sun near
+/// the horizon the part of the sky round it is many times brighter than the mean, and it is what pictures then show;
+/// above the air it is the sunlit planet, whatever the sun's height over the place.
 fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -> f64 {
     let elevation = libm::asin(sun.direction.z.clamp(-1.0, 1.0)).to_degrees();
     let low = (1.0 - smoothstep(0.0, 30.0, elevation)) * smoothstep(-12.0, -4.0, elevation);
@@ -160,31 +163,32 @@ fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -
     ground + (0.15 * direct / PI - ground).max(0.0) * smoothstep(10e3, 80e3, altitude_m)
 }
 
-/// What the clouds leave of the light that the air below them scatters: their total transmission, on the mean.
+/// Returns the share that the clouds leave of the light that the air below them scatters: their total transmission, on
+/// the mean.
 fn medium_share(left: &CloudLight) -> f64 {
     (left.direct + left.diffuse).clamp(0.0, 1.0)
 }
 
 impl World {
-    /// What a camera at `position` draws from at simulation time `time_s`, past or to come. Closed form: no device is
-    /// asked.
+    /// Returns the scene that a camera at `position` draws from at simulation time `time_s`, past or to come. Closed
+    /// form: no device is asked.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position, which the host calls `name`, is not a place on or above the planet, or
-    /// the time is not known.
+    /// [`crate::Status::InvalidArgument`] if the position, which the host calls `name`, is not a place on or above the
+    /// planet, or the time is not known.
     pub fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
         Ok(self.scene_and_wind(name, position, time_s)?.0)
     }
 
-    /// The same, with the wind if it had to be worked out.
+    /// Returns that scene, with the wind if it had to be worked out.
     pub(super) fn scene_and_wind(&self, name: &str, position: DVec3, time_s: f64) -> Result<(Scene, Option<Blowing>)> {
         let conditions = self.weather_at(time_s)?;
         let land = self.land(&conditions);
         self.scene_over((name, position), time_s, conditions, &land)
     }
 
-    /// This weather with the clouds that the host's map has over a place, if there is a map, and with those over rain areas besides, if any
-    /// stand over it. `map_m`: the place on the ground's map.
+    /// This weather with the clouds that the host's map has over a place, if there is a map, and with those over rain
+    /// areas besides, if any stand over it. `map_m`: the place on the ground's map.
     ///
     /// # Errors
     /// For a time that the weather does not know.
@@ -200,7 +204,7 @@ impl World {
         Ok([mapped, under_areas])
     }
 
-    /// The same in this weather over this land.
+    /// Returns the scene in this weather over this land, with the wind if it had to be worked out.
     fn scene_over(
         &self,
         (name, position): (&str, DVec3),
@@ -257,8 +261,8 @@ impl World {
         Ok((scene, wind))
     }
 
-    /// Sunlight on level ground at the world's origin, in whole W/m^2: what another machine's rounding changes in a light
-    /// that is only drawn must not change a state.
+    /// Sunlight on level ground at the world's origin, in whole W/m^2: what another machine's rounding changes in a
+    /// light that is only drawn must not change a state.
     pub fn sunlight_w_m2(&self, time_s: f64) -> Result<f64> {
         let frame = &self.frame;
         let origin = if frame.kind == WorldKind::Ecef { frame.position_of(&frame.origin) } else { DVec3::ZERO };
@@ -348,7 +352,7 @@ impl World {
 }
 
 impl GroundLight {
-    /// Of the light of sun, moon and all else that arrives at a place, lux.
+    /// Sums up the light of sun, moon and all else that arrives at a place, lux.
     pub(crate) fn new([sun_lux, moon_lux, sky_lux]: [[f64; 3]; 3], [sun, moon]: [&Light; 2], altitude_m: f64) -> Self {
         let total_lux = luminance(&sky_lux)
             + luminance(&sun_lux) * sun.direction.z.max(0.0)

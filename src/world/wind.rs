@@ -13,8 +13,8 @@ use crate::{
 
 /// Optical depths of the low layer beyond which nobody sees its patches.
 const SEEN_DEPTHS: f64 = 8.0;
-/// Steps of the weather's wind, m/s, and of the doublings of a patch's size by which detours are worked out anew: while a weather changes
-/// not in every frame.
+/// Steps of the weather's wind, m/s, and of the doublings of a patch's size by which detours are worked out anew: while
+/// a weather changes not in every frame.
 const WIND_STEP_M_S: f64 = 0.125;
 const SIZE_STEP: f64 = 1.0 / 32.0;
 
@@ -44,14 +44,14 @@ impl World {
         self.set.host_wind = grid.map(|grid| self.host_wind(grid));
     }
 
-    /// What queries and shaders read of a host's grid.
+    /// Returns a host's grid with the form of it that queries and shaders read.
     pub(super) fn host_wind(&self, grid: Arc<WindGrid>) -> Arc<HostWind> {
         let volume = WindVolume::of_grid(&grid, self.frame.frame_at(grid.origin).world_to_enu);
         Arc::new(HostWind { grid, volume })
     }
 
-    /// How far the air about a camera at `eye` is behind that which the wind's displacement brings, where patches of the weather's low
-    /// layer show it.
+    /// How far the air about a camera at `eye` is behind that which the wind's displacement brings, where patches of
+    /// the weather's low layer show it.
     pub fn detour(&self, eye: DVec3, c: &Conditions, time_s: f64) -> Option<Detour> {
         // Patches of a host's law are the host's.
         if self.set.undimmed || !c.fog.is_patchy() {
@@ -108,8 +108,8 @@ impl World {
         })
     }
 
-    /// The wind that carries what falls past a place: that at 10 m with its gusts, m/s (east, north, up), and where the wind varies in
-    /// space that.
+    /// The wind that carries what falls past a place: that at 10 m with its gusts, m/s (east, north, up), and where the
+    /// wind varies in space that.
     ///
     /// # Errors
     /// As [`World::weather_at`].

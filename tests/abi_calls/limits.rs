@@ -1,5 +1,5 @@
-//! Limits: what lies beyond one is refused by the parameter's name in the header, what lies at one is served everywhere, and of
-//! several answers none is given where one cannot be.
+//! Limits: what lies beyond one is refused by the parameter's name in the header, what lies at one is served
+//! everywhere, and of several answers none is given where one cannot be.
 
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};

@@ -1,5 +1,5 @@
-//! Planets with haze of their own, and what may be changed on a living context with views: planet, tone curve, sky settings. A picture
-//! after a change is that of a context which was created so, to the bit. On a device that computes.
+//! Planets with haze of their own, and what may be changed on a living context with views: planet, tone curve, sky
+//! settings. A picture after a change is that of a context which was created so, to the bit. On a device that computes.
 
 use std::{
     ffi::{CString, c_char},
@@ -135,7 +135,8 @@ fn a_planets_own_haze_is_drawn_beside_the_weathers() {
         let [both, weathers] = scenes.each_ref().map(Scene::left_over_10_km);
         for i in 0..3 {
             let separate = own[i] / none[i] * weathers[i];
-            // The way rises by some metres above the ground, over which a mixture of one scale height thins a little less.
+            // The way rises by some metres above the ground, over which a mixture of one scale height thins a little
+            // less.
             assert!((both[i] / separate - 1.0).abs() < 1e-2, "{both:?} {weathers:?}");
         }
     }

@@ -1,4 +1,5 @@
-//! Saved states: they hold all that decides what a context shows, come back whole or not at all, and are told apart by format.
+//! Saved states: they hold all that decides what a context shows, come back whole or not at all, and are told apart by
+//! format.
 
 use std::{
     ffi::{CString, c_void},
@@ -249,8 +250,8 @@ const SETTERS: [(&str, Set); 22] = [
     ("all at once", set_all),
 ];
 
-/// Images of the host's, each channel's own like its depth, how the sky is drawn, and tiles, whose heights the host sets before it loads
-/// (their water: tests/ground/tiles.rs); the header says so.
+/// Images of the host's, each channel's own like its depth, how the sky is drawn, and tiles, whose heights the host
+/// sets before it loads (their water: tests/ground/tiles.rs); the header says so.
 const NOT_STATE: [&str; 4] = [
     "wk_context_set_occluder_maps",
     "wk_context_set_sky_settings",
@@ -384,8 +385,8 @@ fn answers(context: *mut wk_context, time_s: f64) -> Vec<(&'static str, f64)> {
     ]
 }
 
-/// The state of each format that was ever written. That of the present one is written anew by WELKIN_BLESS=1, which is right
-/// only as long as no release wrote it: afterwards a state that no longer loads needs another format.
+/// The state of each format that was ever written. That of the present one is written anew by WELKIN_BLESS=1, which is
+/// right only as long as no release wrote it: afterwards a state that no longer loads needs another format.
 #[test]
 fn states_of_older_formats_load_or_are_refused_by_their_number() {
     let world = World::new();

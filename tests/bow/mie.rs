@@ -1,5 +1,5 @@
-//! Mie's theory (Mie 1908) by the recurrences of Bohren and Huffman (1983), section 4.8: what a sphere of water does to light, without
-//! any ray.
+//! Mie's theory (Mie 1908) by the recurrences of Bohren and Huffman (1983), section 4.8: what a sphere of water does to
+//! light, without any ray.
 
 #[derive(Clone, Copy)]
 struct Complex(f64, f64);
@@ -45,7 +45,8 @@ fn coefficients(x: f64, index: f64) -> Vec<[Complex; 2]> {
         .collect()
 }
 
-/// Light that a sphere sends to scattering angles whose cosines are given, of what falls on a square of its radius, 1/sr, unpolarised.
+/// Light that a sphere sends to scattering angles whose cosines are given, of what falls on a square of its radius,
+/// 1/sr, unpolarised.
 pub fn intensities(x: f64, index: f64, cosines: &[f64]) -> Vec<f64> {
     let terms = coefficients(x, index);
     let one = |mu: f64| {

@@ -9,8 +9,8 @@ use crate::mie::intensities;
 const NM: f64 = 550.0;
 const STEP_DEG: f64 = 0.1;
 
-/// Light of drops about a radius, micrometres, spread by 15 %, at angles from the point opposite to the light, as smoothed by the light's
-/// disc: of the model, with what the outside of the drop reflects, and of Mie.
+/// Light of drops about a radius, micrometres, spread by 15 %, at angles from the point opposite to the light, as
+/// smoothed by the light's disc: of the model, with what the outside of the drop reflects, and of Mie.
 fn both(radius_um: f64, degrees: &[f64]) -> [Vec<f64>; 2] {
     let n = water_index(NM);
     let rays = [Rays { inside: 1, index: n }, Rays { inside: 2, index: n }];

@@ -1,4 +1,5 @@
-//! Broken clouds through the C functions for the tests of every kind of host, and what the map of their shadows must hold.
+//! Broken clouds through the C functions for the tests of every kind of host, and what the map of their shadows must
+//! hold.
 
 use welkin::capi::{cloud_shadow::*, clouds::*, frame::*, report::*, timeline::*, view::*, weather::*};
 

@@ -36,7 +36,8 @@ pub fn set_grid(scene: &Scene, nodes: [u32; 2]) {
     ok(unsafe { wk_context_set_ground_grid(scene.context, &grid) });
 }
 
-/// Weather with rain of this rate from one time to another, more of it round the south-western corner; a roof in the east.
+/// Weather with rain of this rate from one time to another, more of it round the south-western corner; a roof in the
+/// east.
 pub fn rain(scene: &Scene, rate_mm_h: f64, from_s: f64, to_s: f64) {
     let weather = wk_weather {
         precipitation_kind: if rate_mm_h > 0.0 { WK_PRECIPITATION_RAIN } else { WK_PRECIPITATION_NONE },
@@ -90,7 +91,8 @@ pub fn cells(scene: &Scene, count: usize) -> (Vec<[f32; 4]>, u64) {
     (cells.iter().map(|c| [c.film_mm, c.soaked, c.standing_mm, c.ice]).collect(), revision)
 }
 
-/// Fails unless the texels are the cells, in their order, to a half float's precision; where no water stands they may be negative.
+/// Fails unless the texels are the cells, in their order, to a half float's precision; where no water stands they may
+/// be negative.
 #[track_caller]
 pub fn assert_cells(texels: &[[f32; 4]], cells: &[[f32; 4]]) {
     assert_eq!(texels.len(), cells.len());

@@ -42,7 +42,8 @@ pub fn in_a_process(name: &str) -> bool {
     false
 }
 
-/// Whether the device's memory is the process's, which the limit is on. A card has its own, and no test should fill that.
+/// Whether the device's memory is the process's, which the limit is on. A card has its own, and no test should fill
+/// that.
 pub fn is_limited(device: *mut wk_device) -> bool {
     let mut caps = init::<wk_caps>("wk_caps");
     // SAFETY: live pointers.

@@ -40,7 +40,8 @@ pub fn lose_and_ask(device: *mut wk_device, scene: &Scene, frame: &wk_frame, sha
     save_and_go_on(scene);
 }
 
-/// What the header promises of a lost device: weather, time, queries and state go on, and another device's context takes the state.
+/// What the header promises of a lost device: weather, time, queries and state go on, and another device's context
+/// takes the state.
 fn save_and_go_on(scene: &Scene) {
     let (mut before, mut after, mut size) = (0, 0, 0);
     let mut conditions = init::<wk_conditions>("wk_conditions");

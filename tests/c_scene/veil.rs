@@ -1,5 +1,5 @@
-//! A thing of glass in fog and in rain: what a host's own shader makes of it with the frame's veil, and what Welkin itself draws
-//! before an opaque thing at the same place.
+//! A thing of glass in fog and in rain: what a host's own shader makes of it with the frame's veil, and what Welkin
+//! itself draws before an opaque thing at the same place.
 
 use welkin::capi::{device::*, frame::*, status::*, timeline::*, veil::*, view::*, weather::*, weather_kinds::*};
 

@@ -91,7 +91,8 @@ fn the_base_that_is_seen_is_the_one_asked_for() {
             let wall = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
             write(&sky, &wall, &[(0.1 / LOOK_M) as f32]);
             let mut light = |z: f64| drawn(&mut sky, &wall, place(look, z));
-            // Of clouds far away, where the planet has curved, some is drawn before the wall too: half-way to what is seen in cloud counts.
+            // Of clouds far away, where the planet has curved, some is drawn before the wall too: half-way to what is
+            // seen in cloud counts.
             let (under, within) = (light(0.98 * base_m), light(1.02 * base_m));
             assert!((within / under - 1.0).abs() > 0.3, "{under} {within}");
             let is_within = |light: f64| (light - under).abs() > 0.5 * (within - under).abs();

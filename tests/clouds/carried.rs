@@ -32,7 +32,8 @@ fn shadows_go_with_the_wind_of_their_layer_and_a_change_of_it_moves_none_at_once
     let (stayed, apart) = (off(&here, &shares(&sky, DVec3::ZERO, 1015.0)), off(&here, &moved));
     println!("15 s later: {apart:.3} apart where the wind has carried them, {stayed:.3} where they were");
     assert!(apart < 0.04 && stayed > 0.1, "{apart} {stayed}");
-    // After a quarter of an hour of drift another wind blows from one moment to the next, of the layer or of the weather.
+    // After a quarter of an hour of drift another wind blows from one moment to the next, of the layer or of the
+    // weather.
     let before = shares(&sky, DVec3::ZERO, 1999.999);
     let north = LayerWind { speed_m_s: 60.0, from_deg: 0.0 };
     for (own, start_s) in [(Some(north), 2000.0), (None, 3000.0)] {

@@ -185,7 +185,8 @@ fn volume_and_deck_are_as_bright_as_one_another() {
     assert!((volume / deck - 1.0).abs() < 0.1, "{volume} and {deck}");
 }
 
-/// A wall 30 m ahead stands before the clouds, one 40 km ahead behind them, and no pixel of either shows what the other hides.
+/// A wall 30 m ahead stands before the clouds, one 40 km ahead behind them, and no pixel of either shows what the other
+/// hides.
 #[test]
 fn things_stand_before_and_behind_clouds() {
     let mut sky = Sky::new(BROKEN, CloudModel::Volume);

@@ -1,5 +1,5 @@
-//! Clouds where a picture does not look at them: in mirrors, in the cube map, before the host's own transparent things, and in a picture that
-//! is drawn stage by stage.
+//! Clouds where a picture does not look at them: in mirrors, in the cube map, before the host's own transparent things,
+//! and in a picture that is drawn stage by stage.
 
 use glam::DVec3;
 use welkin::{
@@ -105,7 +105,8 @@ fn a_puddle_mirrors_the_clouds_that_stand_over_it() {
     agree("mirrored", &mirrored, &seen);
 }
 
-/// What is seen in texels of 1.5 degrees holds the light of pictures and follows their clouds, but for the edges of these.
+/// What is seen in texels of 1.5 degrees holds the light of pictures and follows their clouds, but for the edges of
+/// these.
 fn agree(name: &str, shown: &[f64], drawn: &[f64]) {
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
     let logs = |v: &[f64]| v.iter().map(|v| v.ln()).collect::<Vec<_>>();

@@ -33,7 +33,8 @@ fn far(sky: &mut Sky, (height_m, down): (f64, f64)) -> [Vec<f64>; 2] {
     [got, (0..SIZE.0 * SIZE.1).map(mean).collect()]
 }
 
-/// A ray a pixel meets a cloud or misses it: from space such a picture is grains of black and white, which dance as it moves.
+/// A ray a pixel meets a cloud or misses it: from space such a picture is grains of black and white, which dance as it
+/// moves.
 #[test]
 fn clouds_smaller_than_a_pixel_are_seen_as_their_mean() {
     // Few, broken and closed; nearly half or more of the picture is clouds.

@@ -62,8 +62,8 @@ fn a_sky_seen_through_a_slit_needs_no_volume_and_one_that_fills_the_picture_does
     assert!(clouds.last().p95 > 0.1 && clouds.work > 0.5 * f64::from(SIZE.0 * SIZE.1), "{clouds:?}");
 }
 
-/// A digger's driver sees the sky over the pit's edge in the upper half of the picture: fair weather stands there as a volume, and where
-/// little is asked of it as a deck.
+/// A digger's driver sees the sky over the pit's edge in the upper half of the picture: fair weather stands there as a
+/// volume, and where little is asked of it as a deck.
 #[test]
 fn a_fair_sky_behind_a_diggers_site_is_drawn_as_what_it_is_worth() {
     let fair = "LOWI 121150Z 00000KT 9999 FEW040 18/12 Q1015";

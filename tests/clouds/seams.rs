@@ -1,5 +1,5 @@
-//! Clouds across the seams that hosts have met: flights through layers, two eyes, two channels, targets and depths of every kind, saved
-//! states and time that goes back.
+//! Clouds across the seams that hosts have met: flights through layers, two eyes, two channels, targets and depths of
+//! every kind, saved states and time that goes back.
 
 use std::sync::Arc;
 
@@ -35,7 +35,8 @@ fn mean(picture: &[[f64; 3]]) -> f64 {
     picture.iter().map(luminance).sum::<f64>() / picture.len() as f64
 }
 
-/// Up through a layer at a speed, 60 frames a second: the brightness of each frame, and of a picture without history at its place.
+/// Up through a layer at a speed, 60 frames a second: the brightness of each frame, and of a picture without history at
+/// its place.
 fn fly(report: &str, speed_m_s: f64, from_m: f64, to_m: f64, every: usize) -> Vec<[f64; 2]> {
     let [mut flown, mut fresh] = [0, 1].map(|_| Sky::new(report, CloudModel::Volume));
     // Settled before it begins.
@@ -52,8 +53,8 @@ fn fly(report: &str, speed_m_s: f64, from_m: f64, to_m: f64, every: usize) -> Ve
     seen
 }
 
-/// What is seen on the way up is what stands there, frame by frame: nothing jumps, and nothing trails behind. With WELKIN_ACCEPT all the way
-/// from below a layer to above it, and more slowly.
+/// What is seen on the way up is what stands there, frame by frame: nothing jumps, and nothing trails behind. With
+/// WELKIN_ACCEPT all the way from below a layer to above it, and more slowly.
 #[test]
 fn a_climb_through_layers_shows_no_jump() {
     let quick =
@@ -81,7 +82,8 @@ fn a_climb_through_layers_shows_no_jump() {
     }
 }
 
-/// A ray through cloud alone ends with nothing left, not with less than nothing: the disc of the sun behind it takes a root of that.
+/// A ray through cloud alone ends with nothing left, not with less than nothing: the disc of the sun behind it takes a
+/// root of that.
 #[test]
 fn what_passes_whole_clouds_is_never_less_than_nothing() {
     let mut sky = Sky::new(BROKEN, CloudModel::Volume);
@@ -119,7 +121,8 @@ fn context(device: &Arc<Device>) -> Context {
     context
 }
 
-/// Channels, a loaded state and a time that was left and came back show the same clouds to the bit; another seed others.
+/// Channels, a loaded state and a time that was left and came back show the same clouds to the bit; another seed
+/// others.
 #[test]
 fn clouds_follow_from_seed_and_time_alone() {
     let device = Device::headless(&DeviceOptions::default()).unwrap();

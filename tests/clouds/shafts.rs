@@ -48,8 +48,8 @@ fn way(i: usize) -> DVec3 {
     forward() + right * (at(x, SIZE.0) * half * 16.0 / 9.0) - right.cross(forward()) * (at(y, SIZE.1) * half)
 }
 
-/// Phase function of air, 1/sr, at `nu`, the cosine of the scattering angle: of gas (Rayleigh) and of haze (Cornette and Shanks 1992,
-/// asymmetry 0.76), which together have this extinction, 1/m.
+/// Phase function of air, 1/sr, at `nu`, the cosine of the scattering angle: of gas (Rayleigh) and of haze (Cornette
+/// and Shanks 1992, asymmetry 0.76), which together have this extinction, 1/m.
 fn phase(nu: f64, extinction: f64) -> f64 {
     const G: f64 = 0.76;
     let gas = 1.3e-5;

@@ -10,8 +10,8 @@ use welkin::{
 
 use crate::{drawn::Sky, seen_lux::seen_lux};
 
-/// Real reports of broken or overcast cloud below 1000 ft: of all such ones those under which the told sun was furthest from the mean over places,
-/// and some of each kind.
+/// Real reports of broken or overcast cloud below 1000 ft: of all such ones those under which the told sun was furthest
+/// from the mean over places, and some of each kind.
 const REPORTS: [&str; 16] = [
     "YTRE 092059Z AUTO 21003KT //// // BKN007 22/20 Q1016",
     "YPTN 092130Z AUTO 00000KT 9999 // BKN005 24/23 Q1008",
@@ -120,7 +120,8 @@ fn so_it_is_under_real_reports_of_low_cloud() {
     assert!(most.0 < 0.2, "{most:?}");
 }
 
-/// All light on level ground: what is told of, and what the sky is seen to give with the sun's own light at those places.
+/// All light on level ground: what is told of, and what the sky is seen to give with the sun's own light at those
+/// places.
 #[test]
 fn the_light_that_is_told_of_is_seen() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);
@@ -175,8 +176,8 @@ fn a_climb_through_a_deck_changes_light_and_exposure_steadily() {
     }
 }
 
-/// What is lit by the sun above the clouds stays lit by it, however much of it they take: a high moon by day, whose few lux come through
-/// where a low sun's do not, is not what gives light.
+/// What is lit by the sun above the clouds stays lit by it, however much of it they take: a high moon by day, whose few
+/// lux come through where a low sun's do not, is not what gives light.
 #[test]
 fn by_day_clouds_are_not_lit_by_the_moon() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);

@@ -25,8 +25,9 @@ fn along(m: &FogModel, azimuth: f64, mu: f64, range: f64) -> [f64; 2] {
     [f.radiance.y, f.transmittance.y]
 }
 
-/// Within a tenth, or what an 8-bit picture can show. A black board against the same ray continued through the fog shows Koschmieder's contrast, e^(-sigma d): high and
-/// low sun and overcast, looking level, up and down, also where the ground falls away below the station's.
+/// Within a tenth, or what an 8-bit picture can show. A black board against the same ray continued through the fog
+/// shows Koschmieder's contrast, e^(-sigma d): high and low sun and overcast, looking level, up and down, also where
+/// the ground falls away below the station's.
 #[test]
 fn a_black_board_keeps_koschmieders_contrast() {
     let lights = [light(50.0, 0.8, 0.15), light(6.0, 0.4, 0.06), light(40.0, 0.0, 0.3)];

@@ -19,8 +19,9 @@ fn float_texture(width: u32, height: u32, usage: wgpu::TextureUsages) -> wgpu::T
     flat_texture(&device().device, "host", (width, height), wgpu::TextureFormat::Rgba32Float, usage)
 }
 
-/// `answer(input)` for each input, where `body` defines `fn answer(input: vec4f) -> vec4f` and may read the uniform
-/// `u` of type `uniform_type`, of which a fog, if there is one, comes first; `include` is the library's shader file under test.
+/// `answer(input)` for each input, where `body` defines `fn answer(input: vec4f) -> vec4f` and may read the uniform `u`
+/// of type `uniform_type`, of which a fog, if there is one, comes first; `include` is the library's shader file under
+/// test.
 pub fn evaluate(include: &str, body: &str, uniform_type: &str, uniform: &[u8], inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     evaluate_with(include, body, uniform_type, uniform, inputs, &[])
 }

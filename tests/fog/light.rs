@@ -134,8 +134,8 @@ fn radiance_in_droplets_follows_adding_and_doubling() {
     assert!(e.at(0.5) < 0.045 && e.at(0.95) < 0.19 && e.mean_worst() < 0.12);
 }
 
-/// No glow: away from the sun, the level view is never much brighter than a white surface turned to the light; no blackening: nor
-/// much darker than a layer of its depth transmits.
+/// No glow: away from the sun, the level view is never much brighter than a white surface turned to the light; no
+/// blackening: nor much darker than a layer of its depth transmits.
 #[test]
 fn fog_neither_glows_nor_blackens() {
     for depth in [0.3, 1.0, 4.0, 16.0, 64.0] {

@@ -75,7 +75,8 @@ fn low() -> (Camera, f32) {
     (camera, 0.1 / 800.0)
 }
 
-/// Optical depths that the picture shows and that the query says, from a place of this easting to a wall so far off, over a grid of pixels.
+/// Optical depths that the picture shows and that the query says, from a place of this easting to a wall so far off,
+/// over a grid of pixels.
 fn optical_depths(host: &mut Host, id: u64, east_m: f64, wall_m: f32) -> Vec<(f64, f64)> {
     let (mut camera, depth) = (low().0, 0.1 / wall_m);
     camera.position.x = east_m;

@@ -131,7 +131,8 @@ fn agrees_with_pictures(mut host: Host) {
                     let pixel = drawn[(row + 1) * SIZE as usize - 1 - column];
                     let want = [0, 1, 2].map(|k| f64::from(pixel[k]));
                     let off = (luminance(&texel) / luminance(&want) - 1.0).abs();
-                    // Of rain, a picture leaves to drops what those near the eye hide. A thousandth or two are those of light that is looked up.
+                    // Of rain, a picture leaves to drops what those near the eye hide. A thousandth or two are those of
+                    // light that is looked up.
                     let documented = if w == 5 { 0.02 } else { 4e-3 };
                     assert!(
                         off < documented,
@@ -217,8 +218,8 @@ fn faces_follow_one_after_the_other() {
     assert_eq!(seen.len(), 6, "{seen:?}");
 }
 
-/// What a rough mirror shows, by brute force over all texels of level 0 (Karis 2013): each direction `l` with its cosine, and the density of
-/// reflections there.
+/// What a rough mirror shows, by brute force over all texels of level 0 (Karis 2013): each direction `l` with its
+/// cosine, and the density of reflections there.
 fn mirror(level: &Level, n: DVec3, roughness: f64) -> [f64; 3] {
     let a2 = roughness.powi(4);
     let (mut sum, mut weight) = ([0.0; 3], 0.0);

@@ -7,7 +7,8 @@ use crate::night::{Night, light};
 
 const SIZE: (u32, u32) = (160, 90);
 
-/// Light of the moon's disc in a picture of it, lux, and what arrives there by the query. Directions: azimuth and elevation, degrees.
+/// Light of the moon's disc in a picture of it, lux, and what arrives there by the query. Directions: azimuth and
+/// elevation, degrees.
 fn drawn_and_asked(sun: (f64, f64), moon: (f64, f64)) -> (f64, f64) {
     let given = |(azimuth_deg, elevation_deg)| Some(GivenDirection { azimuth_deg, elevation_deg });
     let mut night = Night::new(SIZE);

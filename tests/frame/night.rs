@@ -90,7 +90,8 @@ pub fn light(picture: &[[f32; 4]], less: &[[f32; 4]], camera: &Camera, (width, h
     (0..picture.len()).map(texel).sum()
 }
 
-/// What `light` should be: that of every star of the catalogue and of the planets, through the air, on the picture, and the camera's limit.
+/// What `light` should be: that of every star of the catalogue and of the planets, through the air, on the picture, and
+/// the camera's limit.
 fn expected_light(night: &Night, camera: &Camera, (width, height): (u32, u32)) -> f64 {
     let scene = night.context.scene_at(camera.position, 0.0).unwrap();
     let settings = StarSettings::default();

@@ -105,7 +105,8 @@ fn a_black_object_is_seen_as_far_as_a_plain_sum_of_the_way_leaves_5_percent() {
     }
 }
 
-/// A moonless night in common air shows stars to magnitude 5.5, the middle of the day none but Venus; fog takes two magnitudes or more.
+/// A moonless night in common air shows stars to magnitude 5.5, the middle of the day none but Venus; fog takes two
+/// magnitudes or more.
 #[test]
 fn the_faintest_star_follows_sky_and_clouds() {
     let mut host = host();
@@ -144,8 +145,8 @@ fn ambient_light_agrees_with_the_light_on_level_ground() {
     }
 }
 
-/// Under a layer that lets no beam through a host must not cast shadows, and its ground gets what the layer's own solution
-/// lets down; above the layer nothing is taken.
+/// Under a layer that lets no beam through a host must not cast shadows, and its ground gets what the layer's own
+/// solution lets down; above the layer nothing is taken.
 #[test]
 fn fog_and_dust_take_the_sun_from_the_ground() {
     let mut host = host();
@@ -197,8 +198,8 @@ fn a_saved_context_goes_on_alike_and_channels_agree() {
     assert!(ContextDesc::default().world.validate().is_ok());
 }
 
-/// What is asked of a time to come is, to the bit, what the context says when that time is there; and of a time past, what
-/// it said then.
+/// What is asked of a time to come is, to the bit, what the context says when that time is there; and of a time past,
+/// what it said then.
 #[test]
 fn every_time_answers_as_the_present_did_or_will() {
     let at = DVec3::new(300.0, -200.0, 40.0);

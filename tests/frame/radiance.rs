@@ -160,7 +160,8 @@ fn radiance_asked_for_is_the_radiance_drawn() {
     night.hold("night", [0.006, 0.14, 0.18]);
 }
 
-/// How far the light that is told is from what is seen of skies of these visibilities over ground under so much snow, at worst.
+/// How far the light that is told is from what is seen of skies of these visibilities over ground under so much snow,
+/// at worst.
 fn told_over_seen(visibilities_m: &[f64], snow_depth_m: f64) -> f64 {
     let mut sky = Sky::new();
     let mut worst = 0.0f64;

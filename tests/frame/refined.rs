@@ -1,5 +1,5 @@
-//! The first frames: a draft of the sky, refined without a visible step into the picture that a frame without history has
-//! at once.
+//! The first frames: a draft of the sky, refined without a visible step into the picture that a frame without history
+//! has at once.
 
 use glam::DVec3;
 use welkin::{
@@ -12,8 +12,8 @@ use welkin::{
 
 use super::host::texture;
 
-/// Frames in which the tables of a draft become whole: slices of 1/80 in seven of eight frames, a frame in which observers
-/// draw them, and a fade of sixteen, with a few to spare for slices that do not come out even.
+/// Frames in which the tables of a draft become whole: slices of 1/80 in seven of eight frames, a frame in which
+/// observers draw them, and a fade of sixteen, with a few to spare for slices that do not come out even.
 const FRAMES: u64 = 120;
 
 struct Host {

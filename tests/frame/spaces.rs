@@ -227,8 +227,8 @@ fn a_pixel_at_an_edge_is_the_mean_of_its_samples_composed_one_by_one() {
     }
 }
 
-/// Rain of the default model from a camera on its side, below a block over all that is to the right of it in the world, which is one
-/// half of the picture from top to bottom.
+/// Rain of the default model from a camera on its side, below a block over all that is to the right of it in the world,
+/// which is one half of the picture from top to bottom.
 #[test]
 fn a_block_keeps_rain_off_the_same_half_whatever_samples_and_orientation() {
     const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;

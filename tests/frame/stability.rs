@@ -1,5 +1,5 @@
-//! Where frames break elsewhere: turning, teleports, far origins, standing time, a sun in the picture, banding, changing
-//! air.
+//! Where frames break elsewhere: turning, teleports, far origins, standing time, a sun in the picture, banding,
+//! changing air.
 
 use glam::DVec3;
 use welkin::{
@@ -78,7 +78,8 @@ fn a_far_origin_does_not_change_the_picture() {
 #[test]
 fn the_sun_in_the_picture_stays_finite_and_is_where_the_almanac_says() {
     let mut host = Host::new(FLOAT);
-    // From a jet and from space it is seen below the level of the eye, over a horizon that lies 3 and 20 degrees below it.
+    // From a jet and from space it is seen below the level of the eye, over a horizon that lies 3 and 20 degrees below
+    // it.
     for (id, (height_m, elevation_deg)) in
         [(0.0, 70.0), (0.0, 10.0), (0.0, 1.0), (11e3, 0.2), (11e3, -2.0), (4e5, -15.0)].into_iter().enumerate()
     {

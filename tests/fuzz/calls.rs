@@ -348,7 +348,8 @@ fn frame(dice: &mut Dice, world: &mut World) -> Struct {
     frame
 }
 
-/// One line a function of the header but for initialisers, and for hosts' devices and windows, whose tests are their own.
+/// One line a function of the header but for initialisers, and for hosts' devices and windows, whose tests are their
+/// own.
 pub const CALLS: &[(&str, Call)] = &[
     ("wk_version", |_, _| {
         let (mut a, mut b, mut c) = (0, 0, 0);

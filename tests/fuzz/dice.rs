@@ -1,7 +1,7 @@
 //! Seeded random numbers, and values that a careless or hostile host might pass.
 
-/// The same sequence for the same seed, on every machine (Steele, Lea and Flood 2014, SplitMix64); or what bytes say, two a
-/// throw, so that a fuzzer that changes a byte changes one throw.
+/// The same sequence for the same seed, on every machine (Steele, Lea and Flood 2014, SplitMix64); or what bytes say,
+/// two a throw, so that a fuzzer that changes a byte changes one throw.
 pub struct Dice {
     state: u64,
     /// Bytes still to be thrown, the last of them first.

@@ -1,5 +1,5 @@
-//! Random sequences of calls over the whole C interface, on the backend that needs no GPU: no crash, no internal error, no
-//! refusal that names nothing a host knows, no answer that is no number.
+//! Random sequences of calls over the whole C interface, on the backend that needs no GPU: no crash, no internal error,
+//! no refusal that names nothing a host knows, no answer that is no number.
 //!
 //! Seeded: `WELKIN_FUZZ_SEED=N` plays sequence N again and prints its calls.
 
@@ -162,8 +162,8 @@ fn damaged_texts_are_read_or_refused_by_name() {
     tally.assert_clean();
 }
 
-/// Every call answers on a device that is lost, by its status or as if nothing had happened; all can be destroyed, and a new
-/// device works beside it.
+/// Every call answers on a device that is lost, by its status or as if nothing had happened; all can be destroyed, and
+/// a new device works beside it.
 #[test]
 fn a_lost_device_is_answered_by_every_call() {
     let judge = Judge;
@@ -185,7 +185,8 @@ fn a_lost_device_is_answered_by_every_call() {
     }
 }
 
-/// Three threads call at random on the same objects, exclusive ones too, and destroy what the others use: each call is answered.
+/// Three threads call at random on the same objects, exclusive ones too, and destroy what the others use: each call is
+/// answered.
 #[test]
 fn threads_that_break_the_rules_are_answered() {
     let judge = Judge;

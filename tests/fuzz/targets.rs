@@ -1,5 +1,5 @@
-//! What coverage-guided fuzzers run (`make fuzz`), and the tests replay on `fuzz/corpus`: one function a kind of input. Each
-//! panics where Welkin does, where a refusal is unfit for a host, and where what was read does not hold together.
+//! What coverage-guided fuzzers run (`make fuzz`), and the tests replay on `fuzz/corpus`: one function a kind of input.
+//! Each panics where Welkin does, where a refusal is unfit for a host, and where what was read does not hold together.
 
 use std::{ffi::CString, ptr::null_mut};
 

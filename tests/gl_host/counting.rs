@@ -1,4 +1,5 @@
-//! A host that calls Welkin while its rendering is conditional or one of its queries counts, in its own context and beside it.
+//! A host that calls Welkin while its rendering is conditional or one of its queries counts, in its own context and
+//! beside it.
 
 use std::{
     ffi::{CStr, c_char, c_void},
@@ -46,7 +47,8 @@ unsafe extern "system" fn refuse_to_begin(_: u32, _: u32) {
     unsafe { function::<unsafe extern "system" fn()>("glEndConditionalRender")() };
 }
 
-/// A driver that refuses to begin conditional rendering at any time, so that a trial does not tell whether it is active.
+/// A driver that refuses to begin conditional rendering at any time, so that a trial does not tell whether it is
+/// active.
 unsafe extern "C" fn without_trials(user: *mut c_void, name: *const c_char) -> *const c_void {
     // SAFETY: Welkin passes NUL-terminated names.
     match unsafe { CStr::from_ptr(name) }.to_bytes() {

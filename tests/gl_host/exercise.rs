@@ -290,7 +290,8 @@ fn draw(adopted: &GlDevice) {
     encoder.copy_texture_to_texture(first.as_image_copy(), second.as_image_copy(), first.size());
     queue.submit([encoder.finish()]);
     let texels = read_back(adopted, &second);
-    // Outside of the scissor is the clear colour: exactly what was asked for, whatever the host's clamps and scales say.
+    // Outside of the scissor is the clear colour: exactly what was asked for, whatever the host's clamps and scales
+    // say.
     assert_eq!(texels[..4], [128, 64, 191, 255], "the clear colour");
 }
 

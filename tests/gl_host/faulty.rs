@@ -206,7 +206,8 @@ fn a_driver_that_never_finishes_is_given_up() {
     }
 }
 
-/// A driver that draws what is known, and then hangs in the first table: the frame that asked for it answers, and all can be destroyed.
+/// A driver that draws what is known, and then hangs in the first table: the frame that asked for it answers, and all
+/// can be destroyed.
 #[test]
 fn a_driver_that_hangs_in_the_first_table_loses_the_device_by_name() {
     let host = Host::new(Api::Core(4, 5), Window::None, GlMode::Shared);

@@ -1,5 +1,5 @@
-//! The terrain's water in an OpenGL host's own shaders: the cells that the CPU's copy has, the right way up, and between them what
-//! the queries say.
+//! The terrain's water in an OpenGL host's own shaders: the cells that the CPU's copy has, the right way up, and
+//! between them what the queries say.
 
 use glow::HasContext;
 use welkin::capi::{
@@ -19,7 +19,8 @@ use crate::{
 /// Samples a texel this often along either side.
 const FINE: u32 = 4;
 
-/// What the host's fragment shader writes: of the texture as it is filtered, or how it looks by the published functions.
+/// What the host's fragment shader writes: of the texture as it is filtered, or how it looks by the published
+/// functions.
 const SAMPLED: &str = "colour = texture(ground, uv);";
 const LOOK: &str = "WelkinGround w = welkin_ground(ground, uv); colour = vec4(w.soaked, w.film, w.pool, w.ice);";
 const MATERIAL: &str = "WelkinGround w = welkin_ground(ground, uv);
@@ -89,7 +90,8 @@ fn drawn(host: &Host, api: Api, from: &wk_ground_texture, fine: u32, writes: &st
     pixels
 }
 
-/// Where pixel `i` of a picture with `fine` pixels a texel lies, in nodes; none in the outer half of the border's texels.
+/// Where pixel `i` of a picture with `fine` pixels a texel lies, in nodes; none in the outer half of the border's
+/// texels.
 fn place(from: &wk_ground_texture, fine: u32, i: usize) -> Option<[f64; 2]> {
     let width = (fine * from.width) as usize;
     let at = [i % width, i / width].map(|p| (p as f64 + 0.5) / f64::from(fine) - 0.5);

@@ -1,5 +1,5 @@
-//! A device that is lost: of Welkin's own on Vulkan and OpenGL, and in an OpenGL host's contexts in both modes. Everything
-//! can be destroyed, and a new device draws the same picture.
+//! A device that is lost: of Welkin's own on Vulkan and OpenGL, and in an OpenGL host's contexts in both modes.
+//! Everything can be destroyed, and a new device draws the same picture.
 
 use glow::HasContext;
 use welkin::capi::{device::*, frame::*, status::*, texture::*, view::*};

@@ -1,6 +1,6 @@
 //! Every kind of image, format, sample count and colour space that a host can hand over, in both modes, drawn into by
-//! wk_view_record with all stages in rain, while the host's OpenGL is in a state that nobody expects: each as a device of
-//! Welkin's own with Vulkan draws it.
+//! wk_view_record with all stages in rain, while the host's OpenGL is in a state that nobody expects: each as a device
+//! of Welkin's own with Vulkan draws it.
 
 use std::{cell::RefCell, collections::HashMap, ptr::null_mut};
 

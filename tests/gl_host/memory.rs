@@ -1,5 +1,5 @@
-//! Memory that runs out: what the driver cannot give is refused as that, nothing is lost, and what fits is drawn as before.
-//! The limit is on the whole process, so each case runs in one of its own.
+//! Memory that runs out: what the driver cannot give is refused as that, nothing is lost, and what fits is drawn as
+//! before. The limit is on the whole process, so each case runs in one of its own.
 
 use std::ptr::null_mut;
 

@@ -1,5 +1,5 @@
-//! The scene of the matrix, painted and read through a third context that shares the host's objects: the host's own may be in
-//! any state meanwhile.
+//! The scene of the matrix, painted and read through a third context that shares the host's objects: the host's own may
+//! be in any state meanwhile.
 
 use glow::HasContext;
 
@@ -96,7 +96,8 @@ impl Painter {
         Self { context, gl, es, ground, wall, vertices }
     }
 
-    /// Does `work` with the painter's context, then makes the host's current again; either sees what the other has done.
+    /// Does `work` with the painter's context, then makes the host's current again; either sees what the other has
+    /// done.
     fn with<T>(&self, host: &Host, work: impl FnOnce(&glow::Context) -> T) -> T {
         // SAFETY: the contexts are current in turn.
         unsafe {

@@ -1,4 +1,5 @@
-//! Targets that change their size between the frames of a view: each picture is that of a view that never saw another size.
+//! Targets that change their size between the frames of a view: each picture is that of a view that never saw another
+//! size.
 
 use std::ptr::{null, null_mut};
 

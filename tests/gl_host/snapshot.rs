@@ -154,8 +154,8 @@ pub struct Objects {
     pub arrays: Vec<Option<glow::VertexArray>>,
 }
 
-/// Single values of the whole context: OpenGL 4.5's and ES 3.2's state tables, the compatibility profile's that shaders or
-/// pixel copies can see.
+/// Single values of the whole context: OpenGL 4.5's and ES 3.2's state tables, the compatibility profile's that shaders
+/// or pixel copies can see.
 const INTS: &[u32] = &[
     0x0B40, 0x0B45, 0x0B46, 0x0B72, 0x0B74, 0x0B91, 0x0B92, 0x0B93, 0x0B94, 0x0B95, 0x0B96, 0x0B97,
     0x0B98, // raster

@@ -98,8 +98,8 @@ fn old_contexts_keep_their_state() {
     }
 }
 
-/// Drivers answer with the latest version they have, whatever a host asks for. This one can be told to be old: the tests
-/// that ask for no more run again in a process of which it knows nothing else.
+/// Drivers answer with the latest version they have, whatever a host asks for. This one can be told to be old: the
+/// tests that ask for no more run again in a process of which it knows nothing else.
 #[test]
 fn an_old_driver_keeps_the_state() {
     let hidden = [

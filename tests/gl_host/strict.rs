@@ -17,7 +17,8 @@ use crate::{
     images::{framebuffer, image_of, texture},
 };
 
-/// Functions that came with OpenGL ES 3.2, and those that came with 3.1 (Khronos' registry, gl.xml), of which wgpu and Welkin may ask.
+/// Functions that came with OpenGL ES 3.2, and those that came with 3.1 (Khronos' registry, gl.xml), of which wgpu and
+/// Welkin may ask.
 const SINCE_3_2: &[&str] = &[
     "glBlendBarrier",
     "glBlendEquationSeparatei",

@@ -1,5 +1,5 @@
-//! Several windows whose contexts share objects, served by one device: calls come back to the window they came from, on one
-//! thread or on one each; a host that forgets which is told so.
+//! Several windows whose contexts share objects, served by one device: calls come back to the window they came from, on
+//! one thread or on one each; a host that forgets which is told so.
 
 use std::{
     cell::Cell,

@@ -1,4 +1,5 @@
-//! Depth that is written: every kind of image that a host hands over gets back what was drawn into it, and Welkin reads it at once.
+//! Depth that is written: every kind of image that a host hands over gets back what was drawn into it, and Welkin reads
+//! it at once.
 
 use glow::HasContext;
 use welkin::{

@@ -1,4 +1,5 @@
-//! Water on the windscreen: the cells against their twin and the flux, and what the lens makes of a picture. One binary.
+//! Water on the windscreen: the cells against their twin and the flux, and what the lens makes of a picture. One
+//! binary.
 
 pub mod cells;
 #[path = "../support/coarse_sky.rs"]

@@ -88,8 +88,8 @@ fn map_of(host: &Host, roofed: impl Fn(DVec2) -> bool) -> (wgpu::Texture, Taken)
     (depth_texture(&host.device, (SIDE, SIDE), &depths), taken)
 }
 
-/// The declared glass, what half a second later has landed in each column, and the drops a second that are reported; below
-/// a roof, and below the map of one where `mapped` says so of east and north.
+/// The declared glass, what half a second later has landed in each column, and the drops a second that are reported;
+/// below a roof, and below the map of one where `mapped` says so of east and north.
 fn columns(
     device: &Arc<Device>,
     roof: Option<Shelter>,

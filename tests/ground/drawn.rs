@@ -183,7 +183,8 @@ fn sky_and_masked_pixels_stay_and_one_call_equals_the_stages_one_by_one() {
     }
     for (a, b) in whole.iter().zip(host.pixels()) {
         for c in 0..3 {
-            // On a software driver each call looks up what it finds even, within a thousandth of it and of what is near white.
+            // On a software driver each call looks up what it finds even, within a thousandth of it and of what is near
+            // white.
             assert!((a[c] - b[c]).abs() <= 2e-3 * a[c].abs() + 1e-3, "{a:?} {b:?}");
         }
     }

@@ -1,4 +1,5 @@
-//! Snow on the ground: the same however time goes, kept by a saved state, laid fast, ploughed, pressed, thawed into water, and drawn.
+//! Snow on the ground: the same however time goes, kept by a saved state, laid fast, ploughed, pressed, thawed into
+//! water, and drawn.
 
 use std::time::Duration;
 

@@ -85,8 +85,8 @@ fn the_sun_in_a_puddle_is_bright_and_finite() {
 
 #[test]
 fn a_rough_film_spreads_the_suns_light_and_keeps_its_sum() {
-    // The mirrored lamp's light over all directions is what the film mirrors of its illuminance: here from straight above,
-    // sum of L cos over a wide look down = F(0) E.
+    // The mirrored lamp's light over all directions is what the film mirrors of its illuminance: here from straight
+    // above, sum of L cos over a wide look down = F(0) E.
     let mut host = Host::new();
     host.ground_is(SurfaceState::Wet);
     host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: 90.0 })).unwrap();

@@ -1,5 +1,5 @@
-//! Snow on terrain in tiles, through a context: as on a grid of the same heights, the same however time goes, kept by a saved state and by
-//! tiles that change, drawn.
+//! Snow on terrain in tiles, through a context: as on a grid of the same heights, the same however time goes, kept by a
+//! saved state and by tiles that change, drawn.
 
 use std::time::Duration;
 

@@ -1,4 +1,5 @@
-//! Water on the host's terrain: where it falls, stands and stays away, the same however time goes, kept by a saved state.
+//! Water on the host's terrain: where it falls, stands and stays away, the same however time goes, kept by a saved
+//! state.
 
 use glam::{DMat3, DVec3};
 use welkin::{

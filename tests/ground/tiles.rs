@@ -1,4 +1,5 @@
-//! Terrain in tiles through a context: stepped in parts, saved and loaded, changed meanwhile, drawn as a grid of the same heights is.
+//! Terrain in tiles through a context: stepped in parts, saved and loaded, changed meanwhile, drawn as a grid of the
+//! same heights is.
 
 use std::time::Duration;
 

@@ -415,7 +415,8 @@ fn a_flash_lights_the_clouds_about_it_and_not_the_gaps_between_them() {
         bearings.push([bearing(toward), bearing(flash)]);
         assert!(at(0.1) < 0.01 && at(0.5) < 0.05, "{} {}", at(0.1), at(0.5));
     }
-    // Clouds stand where they stand: on the mean the glow lies where the flash is, and goes with it from one to the next.
+    // Clouds stand where they stand: on the mean the glow lies where the flash is, and goes with it from one to the
+    // next.
     let off = bearings.iter().map(|[glow, flash]| glow - flash).sum::<f64>() / 3.0;
     assert!(off.abs() < 15.0 && bearings.windows(2).all(|pair| pair[1][0] > pair[0][0] + 5.0), "{off}: {bearings:?}");
 }

@@ -12,8 +12,8 @@ fn drawn(device: &Arc<Device>, size: [u32; 3], settings: &NoiseSettings) -> Nois
 #[test]
 fn presets_have_the_cover_of_their_names() {
     let device = Device::headless(&DeviceOptions::default()).unwrap();
-    // In hundredths, as three other ways to make this noise gave them: cover in the mean of 8 seeds, and of each; mean opacity, with
-    // one hundredth more to each side for what 8 seeds leave to chance.
+    // In hundredths, as three other ways to make this noise gave them: cover in the mean of 8 seeds, and of each; mean
+    // opacity, with one hundredth more to each side for what 8 seeds leave to chance.
     for (preset, cover, each, opacity) in [
         (CloudPreset::Overcast, 98..=99, 0.95..=1.0, 84..=89),
         (CloudPreset::Broken, 80..=83, 0.72..=0.89, 59..=63),

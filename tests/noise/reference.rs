@@ -5,8 +5,8 @@ use welkin::noise::{
     NoiseImage, NoiseKind, NoiseSettings, cellular_2d, cellular_3d, gradient_2d, gradient_3d, noise_at,
 };
 
-/// Points of space that lie on no lattice, `count` of them in a cube of `side` cells (Kronecker's sequence by the powers of the
-/// root of x^4 = x + 1; Roberts 2018).
+/// Points of space that lie on no lattice, `count` of them in a cube of `side` cells (Kronecker's sequence by the
+/// powers of the root of x^4 = x + 1; Roberts 2018).
 fn points(count: u32, side: f64) -> impl Iterator<Item = DVec3> {
     const STEP: DVec3 = DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_4);
     (1..=count).map(move |i| (STEP * f64::from(i)).fract() * side)
@@ -167,7 +167,8 @@ fn one_octave_is_the_noise_itself_and_more_are_a_sum() {
     let at = |settings: &NoiseSettings, p| noise_at(settings, size, p);
     let two = NoiseSettings { octaves: 2, ..one };
     for p in points(200, 1.0) {
-        // At most 0.5 + 0.25: nothing is clamped. The second octave is the first one's at twice the frequency but for its key.
+        // At most 0.5 + 0.25: nothing is clamped. The second octave is the first one's at twice the frequency but for
+        // its key.
         let second = at(&two, p) - at(&one, p);
         assert!((0.0..=0.26).contains(&second), "{second}");
         let corner = (p * 6.0).floor() / 6.0;

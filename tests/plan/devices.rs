@@ -24,8 +24,8 @@ struct Profile {
     drop: f64,
 }
 
-/// Mesa's software driver: shares by `cargo bench --bench speed -- parts`, fog with the air before it by `-- copies` (5.3 copies beside a clear noon of
-/// 11.6), nanoseconds of a drop by `-- rain`.
+/// Mesa's software driver: shares by `cargo bench --bench speed -- parts`, fog with the air before it by `-- copies`
+/// (5.3 copies beside a clear noon of 11.6), nanoseconds of a drop by `-- rain`.
 const SOFTWARE: Profile = Profile {
     name: "llvmpipe",
     pixel_ns: 67.0,
@@ -37,8 +37,8 @@ const SOFTWARE: Profile = Profile {
     drop: 1.04,
 };
 
-/// An H100 at 1920x1080, from docs/lab/gpu.md. A clear noon takes 1.358 ms; the shares of air and sky in it are the software driver's. Fog adds
-/// 0.246 ms. To dry haze 150,000 drops add 0.738 ms, and 400,000 drops 0.973 ms.
+/// An H100 at 1920x1080, from docs/lab/gpu.md. A clear noon takes 1.358 ms; the shares of air and sky in it are the
+/// software driver's. Fog adds 0.246 ms. To dry haze 150,000 drops add 0.738 ms, and 400,000 drops 0.973 ms.
 const GPU: Profile = Profile {
     name: "H100",
     pixel_ns: 0.463,
@@ -117,7 +117,8 @@ fn there(plan: &Plan) -> Vec<bool> {
     plan.parts.iter().map(|p| p.reason != Reason::Absent).collect()
 }
 
-/// Asserts that the plan keeps its time if any set of rungs does, and that no set that fits with room to spare loses less.
+/// Asserts that the plan keeps its time if any set of rungs does, and that no set that fits with room to spare loses
+/// less.
 fn is_best(name: &str, profile: &Profile, share: f64, budget_ms: f64, of: &Settled) {
     let Settled { plan, drops, .. } = of;
     let there = there(plan);

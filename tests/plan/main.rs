@@ -74,7 +74,8 @@ fn planned_pictures_are_sufficient_and_minimal() {
         for (i, part) in plan.parts.iter().enumerate() {
             match part.reason {
                 Reason::WithinTolerance => left_out += 1,
-                // Stars are taken to be worth what the clear sky is: the gauge's few pixels would miss the points. They may stay in needlessly.
+                // Stars are taken to be worth what the clear sky is: the gauge's few pixels would miss the points. They
+                // may stay in needlessly.
                 Reason::Needed if part.part.name == "stars" => {}
                 Reason::Needed if part.work > 0.02 * plan.work => {
                     let mut fewer = plan.rungs();

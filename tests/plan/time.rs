@@ -7,8 +7,8 @@ use welkin::{
 
 use crate::scenes::{Bench, PlanScene};
 
-/// A machine on which the parts cost other shares of a pixel than where the constants were measured: its time of a frame
-/// by the host's own pixels, ms.
+/// A machine on which the parts cost other shares of a pixel than where the constants were measured: its time of a
+/// frame by the host's own pixels, ms.
 struct Machine {
     ms: f64,
     air: f64,

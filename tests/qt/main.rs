@@ -1,6 +1,6 @@
-//! The widget of `docs/hosts-qt.md` as a Qt user meets it: taken from the article, compiled after Qt's headers, run with and without
-//! samples in both profiles, twice in a window, resized, under an overlay. Needs Qt 6's development files; without them it is skipped with
-//! a line. `WELKIN_LIB` names a ready library; without it the test builds one.
+//! The widget of `docs/hosts-qt.md` as a Qt user meets it: taken from the article, compiled after Qt's headers, run
+//! with and without samples in both profiles, twice in a window, resized, under an overlay. Needs Qt 6's development
+//! files; without them it is skipped with a line. `WELKIN_LIB` names a ready library; without it the test builds one.
 #![cfg(target_os = "linux")]
 
 #[path = "../x_server/mod.rs"]

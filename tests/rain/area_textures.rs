@@ -1,4 +1,5 @@
-//! Rain areas in the textures for the host's own transparent shaders: what lies behind a shaft is veiled there as in the picture.
+//! Rain areas in the textures for the host's own transparent shaders: what lies behind a shaft is veiled there as in
+//! the picture.
 
 use glam::{DVec2, DVec3};
 use welkin::{

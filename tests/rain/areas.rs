@@ -1,5 +1,5 @@
-//! Rain areas: what falls where, what a camera sees of it from outside, on the rim and inside, and that all of it moves and is
-//! kept as the weather is.
+//! Rain areas: what falls where, what a camera sees of it from outside, on the rim and inside, and that all of it moves
+//! and is kept as the weather is.
 
 use std::sync::Arc;
 
@@ -128,8 +128,8 @@ fn conditions_of_a_place_are_those_of_the_rain_there() {
             let (rate, ice) = (falls.rain_mm_h + falls.drizzle_mm_h, falls.hail_mm_h + falls.ice_pellets_mm_h);
             assert!((rate - rain.rate_mm_h).abs() <= 1e-3 * rain.rate_mm_h, "{at}: {rate} {}", rain.rate_mm_h);
             assert!((ice - rain.ice_mm_h).abs() <= 1e-3 * rain.ice_mm_h, "{at}: {ice} {}", rain.ice_mm_h);
-            // The weather's laws are fits to the sizes at sea level, within 0.5 % for each kind of rain and 3 % for stones; in thinner
-            // air all fall faster and are fewer.
+            // The weather's laws are fits to the sizes at sea level, within 0.5 % for each kind of rain and 3 % for
+            // stones; in thinner air all fall faster and are fewer.
             let faster = factor_in(&c.air, z) / factor_in(&c.air, 0.0);
             let truth = faster * (rain.extinction_per_m + rain.stone_extinction_per_m);
             let limit = 5e-3 * rain.extinction_per_m + 0.03 * rain.stone_extinction_per_m;
@@ -204,8 +204,8 @@ fn what_lies_between_two_points_is_the_sum_of_the_rain_there() {
     }
 }
 
-/// Along a side of a polygon, up and down, and over an area whose cloud is lower than the weather's: ways that are parallel to
-/// what bounds it.
+/// Along a side of a polygon, up and down, and over an area whose cloud is lower than the weather's: ways that are
+/// parallel to what bounds it.
 #[test]
 fn ways_along_the_sides_and_above_the_cloud_of_an_area_are_the_sum_of_their_rain_too() {
     let precipitation = Precipitation::of(PrecipitationKind::Rain, 3.0);
@@ -336,7 +336,8 @@ fn drops_fall_inside_half_of_them_in_the_middle_of_the_rim_and_none_outside() {
         let mut sides = |x: f64| [[0.0, 0.45], [0.55, 1.0]].map(|part| brightness(&mut host, eye(x), part) / inside);
         let [left, right] = sides(1500.0);
         assert!(left > 0.5 && right < 1e-3, "{model:?}: {left} {right} on the border");
-        // Cones show the rain of some metres away to who stands dry, and that it is dry there to who stands in the rain.
+        // Cones show the rain of some metres away to who stands dry, and that it is dry there to who stands in the
+        // rain.
         let ([outside, _], [_, inside]) = (sides(1505.0), sides(1495.0));
         println!("{model:?}: {outside} from 5 m outside, {inside} from 5 m inside");
         seen.push((outside, inside));

@@ -1,12 +1,12 @@
-//! Rain drawn drop by drop in f64, as a truth that shares nothing with what it judges: no class of sizes, no lattice, no shell, no cone,
-//! no table of Welkin's.
+//! Rain drawn drop by drop in f64, as a truth that shares nothing with what it judges: no class of sizes, no lattice,
+//! no shell, no cone, no table of Welkin's.
 //!
-//! Each drop of the air before a camera has a diameter of its own out of Marshall and Palmer's distribution (1948; N0 set so that
-//! what falls is the rate), a place of its own, and falls as Gunn and Kinzer (1949) measured. While the shutter is open its disc
-//! goes along its way; a pixel is hidden for the part of the exposure in which the disc lies before it, which is
-//! the photometric model of Garg and Nayar (2007): (tau / T) (E_drop - E_background), tau = 2 a / v where a drop of radius a passes with
-//! its middle. The sums are exact in the limit of many points: disc and way are cut into points, each counted in the pixel
-//! that it falls on.
+//! Each drop of the air before a camera has a diameter of its own out of Marshall and Palmer's distribution (1948; N0
+//! set so that what falls is the rate), a place of its own, and falls as Gunn and Kinzer (1949) measured. While the
+//! shutter is open its disc goes along its way; a pixel is hidden for the part of the exposure in which the disc lies
+//! before it, which is the photometric model of Garg and Nayar (2007): (tau / T) (E_drop - E_background), tau = 2 a / v
+//! where a drop of radius a passes with its middle. The sums are exact in the limit of many points: disc and way are
+//! cut into points, each counted in the pixel that it falls on.
 
 use std::f64::consts::PI;
 
@@ -229,9 +229,9 @@ impl Film {
     }
 }
 
-/// Mean radiance that a sphere of water shows along the unit vector `view` of surroundings that send `radiance` from each direction, by
-/// rays through it: Snell's refraction, Fresnel's shares, the ray that passes, the one that is reflected outside, and one that is
-/// reflected inside once.
+/// Mean radiance that a sphere of water shows along the unit vector `view` of surroundings that send `radiance` from
+/// each direction, by rays through it: Snell's refraction, Fresnel's shares, the ray that passes, the one that is
+/// reflected outside, and one that is reflected inside once.
 pub fn sphere_radiance(view: DVec3, radiance: impl Fn(DVec3) -> f64) -> f64 {
     const WATER: f64 = 1.333;
     let side = view.any_orthonormal_vector();

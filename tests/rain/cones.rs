@@ -1,4 +1,5 @@
-//! Rain on cones: as much of the picture as drops hide, nothing to see at the tips, moving as the air and the camera do.
+//! Rain on cones: as much of the picture as drops hide, nothing to see at the tips, moving as the air and the camera
+//! do.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use welkin::{
@@ -34,8 +35,8 @@ fn many_streaks(host: &mut Host) {
     host.view.set_rain(many).unwrap();
 }
 
-/// Light of the drops before a black wall by day, mean over the picture: half floats round what is small as finely as what
-/// is large, where they cut off what little drops take from white.
+/// Light of the drops before a black wall by day, mean over the picture: half floats round what is small as finely as
+/// what is large, where they cut off what little drops take from white.
 fn light(host: &mut Host) -> f64 {
     host.draw(|_, _| [0.0; 3]);
     host.record(Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
@@ -256,8 +257,8 @@ fn cones_leave_a_cab_dry_and_a_veil_draws_nothing() {
     assert_eq!(host.view.report().passes, 0);
 }
 
-/// The closed form by which the plan knows what streaks are worth, against pictures of them: the deviation from pixel to pixel
-/// of what they hide.
+/// The closed form by which the plan knows what streaks are worth, against pictures of them: the deviation from pixel
+/// to pixel of what they hide.
 #[test]
 fn streaks_stand_out_as_the_sum_of_their_squared_covers_says() {
     let mut host = amid_walls((320, 180));

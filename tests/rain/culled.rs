@@ -30,8 +30,8 @@ fn picture(host: &mut Host) -> Vec<[f32; 4]> {
     host.pixels()
 }
 
-/// How far apart two pictures are: by roundings of half floats but where the end of a streak falls on the other side of a
-/// pixel's middle.
+/// How far apart two pictures are: by roundings of half floats but where the end of a streak falls on the other side of
+/// a pixel's middle.
 fn same(a: &[[f32; 4]], b: &[[f32; 4]], what: &str) {
     let mut mean = 0.0;
     let mut apart = 0;

@@ -44,8 +44,8 @@ pub fn classes(weather: &Weather, most: u32) -> Classes {
     Classes::new(&derive(weather).unwrap().precipitation, 1.0, most)
 }
 
-/// What the discs of the drawn drops hide up to `range_m`, as an optical depth: half of their extinction, the other half
-/// being diffraction.
+/// What the discs of the drawn drops hide up to `range_m`, as an optical depth: half of their extinction, the other
+/// half being diffraction.
 pub fn depth_to(classes: &Classes, range_m: f64) -> f64 {
     let n = 4000;
     let h = range_m / f64::from(n);
@@ -81,8 +81,8 @@ fn drops_cover_as_much_of_the_picture_as_their_extinction_says() {
     }
 }
 
-/// A camera at 300 m/s sees drops as streaks of 5 m, longer than the drops' reach: they hide no less and no more than at rest,
-/// which is what is left out of the veil.
+/// A camera at 300 m/s sees drops as streaks of 5 m, longer than the drops' reach: they hide no less and no more than
+/// at rest, which is what is left out of the veil.
 #[test]
 fn what_drops_hide_does_not_hang_on_how_fast_the_camera_goes() {
     let mut host = white((240, 135));

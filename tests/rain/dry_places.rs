@@ -1,5 +1,5 @@
-//! Dry places in motion, and those of the default model, whose cones know no distance of their streaks: what shows rain where
-//! rays say that none comes.
+//! Dry places in motion, and those of the default model, whose cones know no distance of their streaks: what shows rain
+//! where rays say that none comes.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -112,8 +112,8 @@ fn lit(host: &mut Host, from_s: f64) -> Vec<f64> {
     sum
 }
 
-/// Share of the rain before what pixel `i` shows that rays past the deck leave, of drops that hide so much and fall so; and
-/// whether there are no splashes, which know whether their own place is dry, not how much of the way to it.
+/// Share of the rain before what pixel `i` shows that rays past the deck leave, of drops that hide so much and fall so;
+/// and whether there are no splashes, which know whether their own place is dry, not how much of the way to it.
 fn share(host: &Host, deck: &Shelter, falls: &[(f64, DVec3)], i: usize) -> (f64, bool) {
     let at = DVec2::new((i % 160) as f64 + 0.5, (i / 160) as f64 + 0.5);
     let (p, _) = host.cast(DVec2::new(at.x / 80.0 - 1.0, 1.0 - at.y / 45.0)).unwrap();

@@ -110,7 +110,8 @@ fn contrasts_are_on_the_mean_what_the_query_says() {
     }
 }
 
-/// By how many pixels two rows of the same rain, two seconds apart, are most alike: at any time as far as the wind has gone.
+/// By how many pixels two rows of the same rain, two seconds apart, are most alike: at any time as far as the wind has
+/// gone.
 #[test]
 fn curtains_go_with_the_wind() {
     let mut host = Host::new((256, 144));
@@ -144,7 +145,8 @@ fn curtains_go_with_the_wind() {
     }
 }
 
-/// Rings of distance through shell 0, cones and veil to where curtains begin: boards all over the picture, nearer ones first.
+/// Rings of distance through shell 0, cones and veil to where curtains begin: boards all over the picture, nearer ones
+/// first.
 #[test]
 fn no_ring_shows_where_drops_give_way_to_cones_and_those_to_the_veil() {
     for (rate, visibility_m) in [(5.0, 3000.0), (40.0, 1200.0)] {

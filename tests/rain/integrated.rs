@@ -1,4 +1,5 @@
-//! Drops that are stepped, as a host sees them: the same rain as the drops without a state, whatever time and camera do.
+//! Drops that are stepped, as a host sees them: the same rain as the drops without a state, whatever time and camera
+//! do.
 
 use glam::DVec3;
 use welkin::{

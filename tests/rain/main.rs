@@ -1,4 +1,5 @@
-//! Rain as a host sees it, and what else falls and blows: where drops are drawn, what they cover, where it is dry. One binary, so that it links once.
+//! Rain as a host sees it, and what else falls and blows: where drops are drawn, what they cover, where it is dry. One
+//! binary, so that it links once.
 
 mod area_textures;
 mod areas;

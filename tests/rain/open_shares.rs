@@ -1,5 +1,5 @@
-//! What keeps rain off the cones is asked on a coarse grid and looked up by each pixel: against rays through each pixel and those
-//! round it.
+//! What keeps rain off the cones is asked on a coarse grid and looked up by each pixel: against rays through each pixel
+//! and those round it.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -38,8 +38,8 @@ fn mean_fall(host: &Host, rate: f64, wind: f64) -> DVec3 {
     host.context.carrying_wind(host.context.time_s()).unwrap() - DVec3::Z * (sum / discs)
 }
 
-/// Whether the rain comes to all places before what a pixel shows and an eighth of a band beyond, or to none, on all rays up to three cells from it, if that does
-/// not hang on where within `slack_m` they are.
+/// Whether the rain comes to all places before what a pixel shows and an eighth of a band beyond, or to none, on all
+/// rays up to three cells from it, if that does not hang on where within `slack_m` they are.
 fn agreed(host: &Host, boxes: &[Shelter], fall: DVec3, ndc: DVec2, slack_m: f64) -> Option<bool> {
     let far = (host.cast(ndc).unwrap().0.length() * 1.125 + 0.21).min(BANDS_M[CONES]);
     let mut first = None;

@@ -1,5 +1,5 @@
-//! How much rain shows: streaks against the photometric model of Garg and Nayar (2007), the rain's motion against drops that are
-//! drawn one by one ([`crate::brute`]), and what trainees see by day.
+//! How much rain shows: streaks against the photometric model of Garg and Nayar (2007), the rain's motion against drops
+//! that are drawn one by one ([`crate::brute`]), and what trainees see by day.
 //!
 //! `cargo test --test rain photometry -- --nocapture` prints the tables of docs/lab/rain.md.
 
@@ -76,8 +76,8 @@ fn alone(streak: &Streak, all: &[(lattice::Drop, Streak)]) -> bool {
     })
 }
 
-/// What a streak sends over what a drop would that fills the pixel, at each pixel near its middle: how far off its line (in
-/// radii), and that share; how many pixels wide.
+/// What a streak sends over what a drop would that fills the pixel, at each pixel near its middle: how far off its line
+/// (in radii), and that share; how many pixels wide.
 fn section(streak: &Streak, pixels: &[f64], full: f64) -> (Vec<(f64, f64)>, f64) {
     let along = streak.half.normalize();
     let (low, high) = (streak.middle - looked_at(streak), streak.middle + looked_at(streak));
@@ -89,8 +89,8 @@ fn section(streak: &Streak, pixels: &[f64], full: f64) -> (Vec<(f64, f64)>, f64)
     (seen, f64::from(high.x as u32 - low.x as u32))
 }
 
-/// Each streak of a drop of the innermost shell changes the pixels on its line by tau / T of what lies between drop and background,
-/// and all of a section across it by the mean of that: before black, over the drop's own light.
+/// Each streak of a drop of the innermost shell changes the pixels on its line by tau / T of what lies between drop and
+/// background, and all of a section across it by the mean of that: before black, over the drop's own light.
 #[test]
 fn streaks_stand_out_for_as_long_as_their_drops_pass() {
     let mut host = Host::new(SIZE);
@@ -162,7 +162,8 @@ fn streaks_stand_out_for_as_long_as_their_drops_pass() {
     }
 }
 
-/// Pixels from a point to its picture, at one metre, of a channel of 1280 x 720 that sees 50 degrees from bottom to top.
+/// Pixels from a point to its picture, at one metre, of a channel of 1280 x 720 that sees 50 degrees from bottom to
+/// top.
 const FOCAL: f64 = 772.0;
 
 /// A camera whose picture is a part of such a channel's.
@@ -180,8 +181,8 @@ fn over(values: &[f64], threshold: f64) -> f64 {
     values.iter().filter(|v| v.abs() > threshold).count() as f64 / values.len() as f64
 }
 
-/// The rain of the default model, near drops and cones, against each drop of the air by itself: what it hides on the mean, how far that
-/// differs from pixel to pixel, and from one frame of 1/60 s to the next.
+/// The rain of the default model, near drops and cones, against each drop of the air by itself: what it hides on the
+/// mean, how far that differs from pixel to pixel, and from one frame of 1/60 s to the next.
 #[test]
 fn rain_moves_from_frame_to_frame_as_all_its_drops_do() {
     let size = (400, 225);
@@ -332,8 +333,8 @@ fn save(host: &Host, frame: &[[u8; 3]], name: &str) {
     picture.save(std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)).unwrap();
 }
 
-/// With the trainers' setting rain by day is seen before dark hills, as thin long streaks; at gain 1 hardly, and before the sky never.
-/// The whole channel with WELKIN_ACCEPT, a part of it, pixel for pixel, otherwise.
+/// With the trainers' setting rain by day is seen before dark hills, as thin long streaks; at gain 1 hardly, and before
+/// the sky never. The whole channel with WELKIN_ACCEPT, a part of it, pixel for pixel, otherwise.
 #[test]
 fn trainees_see_rain_by_day_and_no_snow() {
     let size = if std::env::var_os("WELKIN_ACCEPT").is_some() { (1280, 720) } else { (384, 216) };

@@ -1,7 +1,8 @@
-//! Channels of a simulator: processes that are told the same draw the same drops, whenever each of them began, and however
-//! it came to where it is.
+//! Channels of a simulator: processes that are told the same draw the same drops, whenever each of them began, and
+//! however it came to where it is.
 //!
-//! A test starts this binary once more for each further channel and names it, and a file for its answer, in the environment.
+//! A test starts this binary once more for each further channel and names it, and a file for its answer, in the
+//! environment.
 
 use std::{
     collections::BTreeMap,
@@ -251,7 +252,8 @@ fn neighbouring_channels_of_two_processes_show_the_same_drops() {
     let (list, other) = (lines(&a, "drop "), lines(&b, "drop "));
     assert!(list.len() > 60, "{}", list.len());
     assert_eq!(list, other, "ids and places in the overlap");
-    // The same drop in both pictures: where the left one shows it is where the right one does, and the reference has it.
+    // The same drop in both pictures: where the left one shows it is where the right one does, and the reference has
+    // it.
     let [left, right] = projectors();
     let mut host = Host::new((16, 16));
     tell(&mut host);

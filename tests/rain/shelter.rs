@@ -1,4 +1,5 @@
-//! What keeps rain off, against f64 rays through the true geometry: by the host's own maps of it, moving things included.
+//! What keeps rain off, against f64 rays through the true geometry: by the host's own maps of it, moving things
+//! included.
 
 use glam::{DMat4, DVec2, DVec3};
 use welkin::{
@@ -102,8 +103,8 @@ pub fn through(host: &mut Host, boxes: &[Shelter]) -> Vec<f64> {
     host.pixels().iter().map(|p| f64::from(p[1]) / WHITE).collect()
 }
 
-/// Whether the way of what came to `p` with `velocity` met any of the boxes, if that does not hang on where within `slack_m`
-/// `p` is.
+/// Whether the way of what came to `p` with `velocity` met any of the boxes, if that does not hang on where within
+/// `slack_m` `p` is.
 pub fn surely(boxes: &[Shelter], p: DVec3, velocity: DVec3, slack_m: f64) -> Option<bool> {
     let hit = |p: DVec3| boxes.iter().any(|b| sheltered(b, p, velocity));
     let first = hit(p);
@@ -114,8 +115,9 @@ pub fn surely(boxes: &[Shelter], p: DVec3, velocity: DVec3, slack_m: f64) -> Opt
     all.map(|d| hit(p + d)).all(|h| h == first).then_some(first)
 }
 
-/// One picture against the truth: every drop whose way is surely free of `boxes` is there, and nothing is dark but by such
-/// drops; `visible` is what the picture shows. Answers how many drops were surely kept off and how many were drawn.
+/// One picture against the truth: every drop whose way is surely free of `boxes` is there, and nothing is dark but by
+/// such drops; `visible` is what the picture shows. Answers how many drops were surely kept off and how many were
+/// drawn.
 pub fn check(
     host: &mut Host,
     (visible, boxes): (&[Shelter], &[Shelter]),
@@ -401,7 +403,8 @@ fn splashes_are_as_many_as_the_flux_brings_and_drawn_where_the_twin_has_them() {
     assert!(visible > 100 && f64::from(found) > 0.97 * f64::from(visible), "{found} of {visible}");
 }
 
-/// The ground below a bridge 40 m wide, so wide that some of it is dry in any wind: by maps of it, and by the box that it is.
+/// The ground below a bridge 40 m wide, so wide that some of it is dry in any wind: by maps of it, and by the box that
+/// it is.
 #[test]
 fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
     const RAYS: usize = 50;
@@ -428,8 +431,8 @@ fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
         });
         let textures = taken.map(|k| map(&host, &deck, &k, (256, 512)));
         let maps = [0, 1, 2].map(|k| OccluderMap { depth: &textures[k], taken: taken[k] });
-        // Straight down on the ground; the deck itself is not in the picture. Grass shows no film, so that it grows darker by
-        // just the share of the water that it gets.
+        // Straight down on the ground; the deck itself is not in the picture. Grass shows no film, so that it grows
+        // darker by just the share of the water that it gets.
         let down = DVec3::new(0.0, 1e-3, -1.0);
         host.camera = Camera::look_to(DVec3::new(0.0, 0.0, 25.0), down, DVec3::Z, 1.5, 128.0 / 360.0, NEAR_M);
         let greens = |host: &mut Host, maps: &[OccluderMap<'_>], boxes: &[Shelter]| -> Vec<f64> {
@@ -442,8 +445,8 @@ fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
         let open = greens(&mut host, &[], &[]);
         for (by, maps, boxes) in [("maps", &maps[..], &[][..]), ("a box", &[], &deck[..])] {
             let seen = greens(&mut host, maps, boxes);
-            // Of each row of the picture, which lies across the wind: pixels below the deck, and the water that they get, seen
-            // and true.
+            // Of each row of the picture, which lies across the wind: pixels below the deck, and the water that they
+            // get, seen and true.
             let mut rows = vec![[0.0; 3]; 360];
             // The same of blocks of four by four pixels.
             let mut blocks = vec![[0.0; 3]; 32 * 90];

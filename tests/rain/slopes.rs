@@ -26,7 +26,8 @@ struct Count {
     drawn_all_the_same: u32,
 }
 
-/// Landings within five metres on the surface whose height, from world's origin, and normal `surface` has; none near edges.
+/// Landings within five metres on the surface whose height, from world's origin, and normal `surface` has; none near
+/// edges.
 fn count(host: &mut Host, splashes: &Splashes, from: f64, surface: impl Fn(DVec2) -> Option<(f64, DVec3)>) -> Count {
     let clip = host.camera.projection * DMat4::from_mat3(host.camera.rotation());
     let eye = host.camera.position;

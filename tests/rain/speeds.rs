@@ -1,5 +1,5 @@
-//! Fall speeds against a law of drag that shares nothing with the table they are read from: Beard (1976), from Davies and Bond
-//! numbers. The library interpolates what Gunn and Kinzer measured.
+//! Fall speeds against a law of drag that shares nothing with the table they are read from: Beard (1976), from Davies
+//! and Bond numbers. The library interpolates what Gunn and Kinzer measured.
 
 use welkin::rain::drops::{density_factor, terminal_speed_m_s};
 

@@ -1,5 +1,5 @@
-//! Rain under what a simulator may do to it: storms, pauses, jumps of time, far places, fast cameras. Drops stay finite, come
-//! in no bursts and leave no gaps.
+//! Rain under what a simulator may do to it: storms, pauses, jumps of time, far places, fast cameras. Drops stay
+//! finite, come in no bursts and leave no gaps.
 
 use glam::{DVec2, DVec3};
 use welkin::{

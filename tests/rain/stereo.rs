@@ -1,5 +1,5 @@
-//! The two eyes of one head, each a view of one context with an asymmetric projection: far things lie in the same direction, near
-//! drops are displaced as eyes see them, and both eyes see the same drops.
+//! The two eyes of one head, each a view of one context with an asymmetric projection: far things lie in the same
+//! direction, near drops are displaced as eyes see them, and both eyes see the same drops.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -21,7 +21,8 @@ const APART_M: f64 = 0.065;
 /// How far to the left of its place in the right eye's picture anything infinitely far lies in the left eye's, pixels.
 const SHIFT: u32 = 6;
 
-/// Left and right eye of a head that looks level to the north. What is about 2 m away has the same place in both pictures.
+/// Left and right eye of a head that looks level to the north. What is about 2 m away has the same place in both
+/// pictures.
 fn eyes(head: DVec3) -> [Camera; 2] {
     let (width, height) = (f64::from(SIZE.0), f64::from(SIZE.1));
     [-1.0, 1.0].map(|side| {
@@ -32,7 +33,8 @@ fn eyes(head: DVec3) -> [Camera; 2] {
     })
 }
 
-/// How much farther right than if it were infinitely far a thing lies in the left eye's picture, against the right eye's, pixels.
+/// How much farther right than if it were infinitely far a thing lies in the left eye's picture, against the right
+/// eye's, pixels.
 fn parallax(distance_m: f64) -> f64 {
     let focal = eyes(DVec3::ZERO)[0].projection.x_axis.x * 0.5 * f64::from(SIZE.0);
     focal * APART_M / distance_m

@@ -70,8 +70,8 @@ pub fn alone(streak: &Streak, all: &[Streak]) -> bool {
     })
 }
 
-/// How far a drop went that left a dark bar in the picture, from the bar's spread: that of an even way is its square over 12, and a
-/// disc's own is a quarter of its radius' square.
+/// How far a drop went that left a dark bar in the picture, from the bar's spread: that of an even way is its square
+/// over 12, and a disc's own is a quarter of its radius' square.
 fn drawn_length(streak: &Streak, pixels: &[f64]) -> Option<f64> {
     let reach = streak.half.abs() + 2.0 * streak.end + 3.0;
     let (low, high) = (streak.middle - reach, streak.middle + reach);

@@ -1,4 +1,5 @@
-//! Values that are no numbers: limits let them through in builds with debug assertions, and a picture that holds one cannot be read.
+//! Values that are no numbers: limits let them through in builds with debug assertions, and a picture that holds one
+//! cannot be read.
 
 use welkin::gpu::{Device, DeviceOptions, readback, shader};
 

@@ -1,5 +1,6 @@
-//! Every loop of every shader ends, whatever the blocks, buffers and textures hold that it reads. A driver that hands a shader another
-//! block's bytes must get a wrong picture of it, not a GPU that hangs: wgpu counts no turns of our loops.
+//! Every loop of every shader ends, whatever the blocks, buffers and textures hold that it reads. A driver that hands a
+//! shader another block's bytes must get a wrong picture of it, not a GPU that hangs: wgpu counts no turns of our
+//! loops.
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashSet},
@@ -24,8 +25,8 @@ type Expression = Handle<wgpu::naga::Expression>;
 /// Most turns of a loop: more than a march of 4,096 cells and than a thread's part of the longest list take.
 const MOST_TURNS: f64 = 262_144.0;
 
-/// Whether a loop stops at some turn by what its body begins with: `if !(i < end) { break; }` with an end that has a limit, of a counter
-/// that only grows.
+/// Whether a loop stops at some turn by what its body begins with: `if !(i < end) { break; }` with an end that has a
+/// limit, of a counter that only grows.
 fn ends(function: &Function, body: &Block, continuing: &Block, values: &[Value]) -> bool {
     body.iter().any(|statement| {
         let Statement::If { condition, accept, reject } = statement else { return false };
@@ -138,7 +139,8 @@ fn counts_up(function: &Function, read: Expression, blocks: (&Block, &Block)) ->
     steps(function, read, blocks, &[B::Add])
 }
 
-/// Whether the end is at most some number beyond where the counter starts: `min(first + 32u, all)` after `var i = first`.
+/// Whether the end is at most some number beyond where the counter starts: `min(first + 32u, all)` after
+/// `var i = first`.
 fn is_from_start(function: &Function, read: Expression, end: Expression) -> bool {
     let Some(variable) = counter(function, read) else { return false };
     let E::Math { fun: M::Min, arg, arg1: Some(arg1), .. } = function.expressions[end] else { return false };

@@ -1,5 +1,5 @@
-//! What all shaders keep to, read from naga's form of each of them: operations have answers (operands.rs), loops end (loops.rs), and what
-//! drivers are handed is valid (written.rs).
+//! What all shaders keep to, read from naga's form of each of them: operations have answers (operands.rs), loops end
+//! (loops.rs), and what drivers are handed is valid (written.rs).
 
 mod accepted;
 mod arithmetic;

@@ -1,5 +1,6 @@
-//! Every operation of every shader that has no answer for some operands: a division, a remainder, a root, a logarithm, a power, an
-//! inverse cosine or sine, a unit vector. Its operands are proven safe by their ranges, or it stands in a list with its reason.
+//! Every operation of every shader that has no answer for some operands: a division, a remainder, a root, a logarithm,
+//! a power, an inverse cosine or sine, a unit vector. Its operands are proven safe by their ranges, or it stands in a
+//! list with its reason.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 

@@ -1,7 +1,9 @@
-//! Ranges of the values in a shader, found from its source by naga: what no operand can leave, whatever the blocks and textures hold.
+//! Ranges of the values in a shader, found from its source by naga: what no operand can leave, whatever the blocks and
+//! textures hold.
 //!
-//! Each function is evaluated for the arguments of each of its calls. A variable may have any value that is stored in it anywhere: first it
-//! is taken not to be negative, which holds where all that is stored is then not negative either. Branches narrow nothing.
+//! Each function is evaluated for the arguments of each of its calls. A variable may have any value that is stored in
+//! it anywhere: first it is taken not to be negative, which holds where all that is stored is then not negative either.
+//! Branches narrow nothing.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,6 +1,7 @@
-//! Every shader in the languages that drivers are handed: GLSL of OpenGL 3.3 and of OpenGL ES 3.0 as naga writes it, and SPIR-V with
-//! the bounds checks that wgpu asks for where a device has no robustImageAccess. The rules that naga's form shows are checked
-//! everywhere; glslang and SPIRV-Tools (Debian: glslang-tools, spirv-tools) read what is written where they are installed.
+//! Every shader in the languages that drivers are handed: GLSL of OpenGL 3.3 and of OpenGL ES 3.0 as naga writes it,
+//! and SPIR-V with the bounds checks that wgpu asks for where a device has no robustImageAccess. The rules that naga's
+//! form shows are checked everywhere; glslang and SPIRV-Tools (Debian: glslang-tools, spirv-tools) read what is written
+//! where they are installed.
 
 use std::{collections::BTreeSet, path::PathBuf, process::Command};
 
@@ -55,8 +56,8 @@ fn integers_are_not_chosen_by_components() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// naga's check of bounds subtracts signed ones from the coordinates' size (`write_coordinate_one` of its SPIR-V writer): of unsigned
-/// coordinates that is no valid SPIR-V (VUID-VkShaderModuleCreateInfo-pCode-08737).
+/// naga's check of bounds subtracts signed ones from the coordinates' size (`write_coordinate_one` of its SPIR-V
+/// writer): of unsigned coordinates that is no valid SPIR-V (VUID-VkShaderModuleCreateInfo-pCode-08737).
 #[test]
 fn texels_are_loaded_by_signed_coordinates() {
     let found = faults(|e, info, module| match e {
@@ -157,7 +158,8 @@ fn glsl_of_the_oldest_versions_is_read() {
                     back::glsl::Writer::new(&mut out, &module, &info, &options, &how, BoundsCheckPolicies::default());
                 let done = writer.and_then(|mut writer| writer.write());
                 if let Err(e) = done {
-                    // Lists of what falls are in buffers, samples of their own and multisampled textures come later: no such device is given these.
+                    // Lists of what falls are in buffers, samples of their own and multisampled textures come later: no
+                    // such device is given these.
                     let beyond = ["BUFFER_STORAGE", "SAMPLE_VARIABLES", "MULTISAMPLED_TEXTURES"];
                     let is_expected = beyond.iter().any(|feature| e.to_string().contains(feature));
                     assert!(is_expected, "{name}, {}, {label}: {e}", entry.name);
@@ -208,8 +210,9 @@ fn spir_v_with_bounds_checks_is_valid() {
     read_by("spirv-val", "spirv-tools", &files, &["--target-env", "vulkan1.1"], 1);
 }
 
-/// Pipelines that test for equal depth draw with other programs than those that wrote it: each vertex shader of a full screen says that
-/// its positions are the same in all of them, and no fragment shader's input does, for which naga would write what OpenGL ES refuses.
+/// Pipelines that test for equal depth draw with other programs than those that wrote it: each vertex shader of a full
+/// screen says that its positions are the same in all of them, and no fragment shader's input does, for which naga
+/// would write what OpenGL ES refuses.
 #[test]
 fn positions_of_full_screens_are_invariant() {
     use wgpu::naga::{Binding, BuiltIn};

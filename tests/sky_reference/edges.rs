@@ -125,8 +125,8 @@ fn horizon_has_no_seam() {
         for sun in [30.0, 85.0, 91.0] {
             let view = |d: f64| View::degrees(altitude, sun, horizon + d, 40.0);
             let at = |d: f64| truth.aerial(&view(d), 1e9).unwrap();
-            // Above, the light itself is even; below, the path shortens like a square root, so the light per share of the
-            // path that is not transmitted is.
+            // Above, the light itself is even; below, the path shortens like a square root, so the light per share of
+            // the path that is not transmitted is.
             for side in [-1.0, 1.0] {
                 let even = |d: f64, c: usize| {
                     let along = at(d);

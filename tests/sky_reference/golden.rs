@@ -13,8 +13,8 @@ use welkin::sky::reference::{Orders, Reference, View};
 
 use super::{accept, golden, solve};
 
-/// Radiance table of the CPU reference of Bruneton's 2017 implementation, 4 orders: sun and view zenith angles, values at
-/// 440, 520 and 600 nm.
+/// Radiance table of the CPU reference of Bruneton's 2017 implementation, 4 orders: sun and view zenith angles, values
+/// at 440, 520 and 600 nm.
 const TABLE: [(f64, f64, [f64; 3]); 5] = [
     (60.0, 0.0, [2.0240e-2, 1.1083e-2, 6.4186e-3]),
     (60.0, 85.0, [0.11143, 0.09987, 0.07861]),

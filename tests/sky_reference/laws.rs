@@ -158,8 +158,9 @@ fn white_planet_returns_all_light() {
 }
 
 /// A source system's single scattering from the side away from the sun over that towards it, phase left out: its own
-/// air (no haze, H = 7994 m, 100 km) in red, green, blue; ratios computed apart, their own steps leaving 0.003 where the
-/// shadow's edge crosses the ray (a sum in 1500 equal steps gives 0.2933 and 0.6985 where they have 0.295 and 0.695).
+/// air (no haze, H = 7994 m, 100 km) in red, green, blue; ratios computed apart, their own steps leaving 0.003 where
+/// the shadow's edge crosses the ray (a sum in 1500 equal steps gives 0.2933 and 0.6985 where they have 0.295 and
+/// 0.695).
 #[test]
 fn far_side_of_the_sky_against_published_ratios() {
     let mut planet = Planet::earth();

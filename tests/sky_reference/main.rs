@@ -62,8 +62,8 @@ fn differences(a: &Reference, b: &Reference) -> Vec<f64> {
     out
 }
 
-/// A solution and finer ones: everyday a coarse one and one half as fine again; accepted the finest one with each of its
-/// sizes doubled in turn, whose differences add up to no less than all doubled at once (which would take an hour).
+/// A solution and finer ones: everyday a coarse one and one half as fine again; accepted the finest one with each of
+/// its sizes doubled in turn, whose differences add up to no less than all doubled at once (which would take an hour).
 fn resolutions() -> (Resolution, Vec<Resolution>) {
     if !accept() {
         let base = Resolution { altitudes: 10, sun_angles: 30, zeniths: 10, azimuths: 9, ..Resolution::QUICK };

@@ -1,4 +1,5 @@
-//! Falling snow as a host sees it: where flakes are drawn, what they hide, where none fall. One binary, so that it links once.
+//! Falling snow as a host sees it: where flakes are drawn, what they hide, where none fall. One binary, so that it
+//! links once.
 
 #[path = "../support/coarse_sky.rs"]
 mod coarse_sky;

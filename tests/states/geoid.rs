@@ -1,4 +1,5 @@
-//! Altitudes of Earth-centred worlds count from mean sea level where the host says how high that lies, and from the ellipsoid else.
+//! Altitudes of Earth-centred worlds count from mean sea level where the host says how high that lies, and from the
+//! ellipsoid else.
 
 use glam::DVec3;
 use welkin::{

@@ -1,4 +1,5 @@
-//! What a host may change between two steps, each a call or two on a context: from a number, so that one differs from the next.
+//! What a host may change between two steps, each a call or two on a context: from a number, so that one differs from
+//! the next.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
-//! Scripted runs end in states whose hashes are committed: the same on every machine, in every build, whatever instructions the compiler
-//! may use.
+//! Scripted runs end in states whose hashes are committed: the same on every machine, in every build, whatever
+//! instructions the compiler may use.
 //!
 //! `WELKIN_BLESS=1` writes the hashes of this build. A change of the models changes them, and says so in its notes.
 

@@ -1,5 +1,5 @@
-//! Neither Welkin nor what it loads writes to the host's standard output or standard error when a device is made, not even where no
-//! variable of the environment is set, as in services and containers.
+//! Neither Welkin nor what it loads writes to the host's standard output or standard error when a device is made, not
+//! even where no variable of the environment is set, as in services and containers.
 
 use std::process::Command;
 

@@ -1,5 +1,5 @@
-//! A saved state is what the context is: whatever the host has changed since the last step, the context that saves it, one that loads it
-//! over itself and one that loads it anew have one hash, save the same bytes, and go on alike.
+//! A saved state is what the context is: whatever the host has changed since the last step, the context that saves it,
+//! one that loads it over itself and one that loads it anew have one hash, save the same bytes, and go on alike.
 
 use std::{
     sync::{Arc, OnceLock},

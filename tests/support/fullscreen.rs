@@ -1,4 +1,5 @@
-//! Full-screen pipelines of shaders that lab, benchmarks and tests have of their own: those of the library are made by their file's name.
+//! Full-screen pipelines of shaders that lab, benchmarks and tests have of their own: those of the library are made by
+//! their file's name.
 
 /// Of a module's entry points: of its vertex stage, and of its fragment stage with the values of its constants.
 pub fn pipeline(

@@ -1,4 +1,5 @@
-//! The thread's last failed call of the C interface: its message, and whether the field that it names is one of the header's.
+//! The thread's last failed call of the C interface: its message, and whether the field that it names is one of the
+//! header's.
 
 use std::{
     collections::BTreeSet,

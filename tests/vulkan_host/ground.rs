@@ -1,4 +1,5 @@
-//! The terrain's water in a Vulkan host's own image: the cells that the CPU's copy has, in the layout that the header promises.
+//! The terrain's water in a Vulkan host's own image: the cells that the CPU's copy has, in the layout that the header
+//! promises.
 
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, ground_grid::*, ground_texture::*, view::*, vulkan::*};

@@ -17,8 +17,8 @@ pub struct Setup {
     pub extensions: Vec<&'static CStr>,
     pub core: vk::PhysicalDeviceFeatures,
     pub timeline: bool,
-    /// Whether the validation layer gives each object a number of its own, never used again. A driver does not: without,
-    /// a new image has the number of the one that was destroyed last.
+    /// Whether the validation layer gives each object a number of its own, never used again. A driver does not:
+    /// without, a new image has the number of the one that was destroyed last.
     pub unique_handles: bool,
 }
 

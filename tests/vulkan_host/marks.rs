@@ -1,4 +1,5 @@
-//! Images of surface classes and normals of a Vulkan host, and targets of other sizes: the picture that an own device draws.
+//! Images of surface classes and normals of a Vulkan host, and targets of other sizes: the picture that an own device
+//! draws.
 
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, view::*, vulkan::*};

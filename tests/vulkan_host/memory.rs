@@ -1,5 +1,5 @@
-//! Memory that runs out on a Vulkan host: the frame that does not fit is refused as that, the host's images are as they were, and
-//! what fits is drawn as before.
+//! Memory that runs out on a Vulkan host: the frame that does not fit is refused as that, the host's images are as they
+//! were, and what fits is drawn as before.
 
 use ash::vk;
 use welkin::capi::{device::*, frame::*, status::*, view::*, vulkan::*};

@@ -1,5 +1,5 @@
-//! Memory for image handles that is given again, the last freed first: where a handle is an address, as Mesa's are, a new
-//! image then has the number of a destroyed one, which else hangs on what the process did before.
+//! Memory for image handles that is given again, the last freed first: where a handle is an address, as Mesa's are, a
+//! new image then has the number of a destroyed one, which else hangs on what the process did before.
 
 use std::{
     alloc::{Layout, alloc},

@@ -1,5 +1,5 @@
-//! The veil in a Vulkan host's own shader: the published WGSL, compiled to SPIR-V and run in the host's pipeline. Glass before
-//! the sky shows what Welkin draws before an opaque thing at its place.
+//! The veil in a Vulkan host's own shader: the published WGSL, compiled to SPIR-V and run in the host's pipeline. Glass
+//! before the sky shows what Welkin draws before an opaque thing at its place.
 
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, veil::*, view::*, vulkan::*};

@@ -1,5 +1,5 @@
-//! Depth that is written on a Vulkan host: it comes back in the layout asked for with what was drawn in it, and depth that was not created
-//! for that is refused by name.
+//! Depth that is written on a Vulkan host: it comes back in the layout asked for with what was drawn in it, and depth
+//! that was not created for that is refused by name.
 
 use ash::vk;
 use welkin::{

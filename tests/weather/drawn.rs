@@ -16,8 +16,8 @@ use crate::{accepted::report, coarse_sky::coarse_sky, frame_host::Host, host::Di
 /// Cameras: at the ground looking level and up, in low cloud, high above.
 const EYES: [(f64, f64); 4] = [(2.0, 0.05), (1.5, 0.6), (700.0, -0.1), (11_000.0, -0.3)];
 
-/// Built anew for each weather, in a small part of the coarse sky's time. Its corners are those of any sky, and its nodes lie further
-/// apart, so that a curve between them may sooner pass below 0.
+/// Built anew for each weather, in a small part of the coarse sky's time. Its corners are those of any sky, and its
+/// nodes lie further apart, so that a curve between them may sooner pass below 0.
 fn smallest_sky() -> SkySettings {
     SkySettings { suns: 16, altitudes: 8, zeniths: 6, azimuths: 4, rule_zeniths: 4, rule_azimuths: 6, ..coarse_sky() }
 }

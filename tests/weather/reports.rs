@@ -18,8 +18,9 @@ fn of(station: &str) -> MetarReport {
     Weather::from_metar(text).unwrap_or_else(|e| panic!("{text}: {e}"))
 }
 
-/// What a report must come out as: station; day, hour, minute; visibility m and whether it is a minimum; temperature, humidity (two
-/// digits); pressure; wind speed knots, direction, gust knots; clouds as (eighths, feet); kind of precipitation, rate.
+/// What a report must come out as: station; day, hour, minute; visibility m and whether it is a minimum; temperature,
+/// humidity (two digits); pressure; wind speed knots, direction, gust knots; clouds as (eighths, feet); kind of
+/// precipitation, rate.
 struct Expected {
     station: &'static str,
     time: (u32, u32, u32),
@@ -40,7 +41,8 @@ fn expected() -> Vec<Expected> {
         station, time, visibility_m, air, wind_kt, clouds, falling, fog, aerosol, lofted,
     };
     let none = (P::None, 0.0, 0.0);
-    // Open-ended visibilities have a band instead of a figure: at least what is reported, and no further than clean air allows.
+    // Open-ended visibilities have a band instead of a figure: at least what is reported, and no further than clean air
+    // allows.
     vec![
         e("KDEN", (17, 18, 53), (30e3, 60e3, true), (28.0, 0.22, 1020.0), (9.0, 240.0, None), &[], none, F::None, A::Continental, L::None),
         e("LEMD", (12, 12, 0), (30e3, 60e3, true), (31.0, 0.26, 1018.0), (5.0, 40.0, None), &[], none, F::None, A::Continental, L::None),
@@ -245,7 +247,8 @@ fn a_group_at_fault_is_named_and_the_others_are_read() {
     }
 }
 
-/// One random damage to a report: characters replaced, words dropped, doubled, swapped, taken from other reports, or cut.
+/// One random damage to a report: characters replaced, words dropped, doubled, swapped, taken from other reports, or
+/// cut.
 fn damage(text: &str, words: &[&str], dice: &mut Dice) -> String {
     let mut chars: Vec<char> = text.chars().collect();
     let mut split: Vec<&str> = text.split(' ').collect();
@@ -355,7 +358,8 @@ fn any_sequence_of_presets_flows_without_a_jump() {
         let t = i as f64 / steps as f64;
         let now = timeline.at(t);
         assert_eq!(figures(&now).len(), count, "every figure is a number at {t}");
-        // The shortest transition is 20 s; smoothstep's steepest is 1.5 times the mean; visibility ranges over a factor 1000.
+        // The shortest transition is 20 s; smoothstep's steepest is 1.5 times the mean; visibility ranges over a factor
+        // 1000.
         let ratio = (now.extinction_per_m / before.extinction_per_m).ln().abs();
         assert!(ratio < 2.0 * 7.0 * 1.5 / 20.0 / steps as f64, "extinction jumps at {t}: {ratio}");
         for (a, b) in before.clouds.iter().zip(&now.clouds) {
@@ -369,8 +373,9 @@ fn any_sequence_of_presets_flows_without_a_jump() {
 
 #[test]
 fn the_same_weather_gives_the_same_bits_on_every_machine() {
-    // FNV-1a over the shortest text of every figure, which names its bits. The constant was made on x86-64 Linux; a machine that differs
-    // fails here. It changes whenever a law, a preset or the name of a type or field does: look at why, then renew it.
+    // FNV-1a over the shortest text of every figure, which names its bits. The constant was made on x86-64 Linux; a
+    // machine that differs fails here. It changes whenever a law, a preset or the name of a type or field does: look at
+    // why, then renew it.
     let mut hash = 0xcbf2_9ce4_8422_2325u64;
     let mut take = |c: &Conditions| {
         for byte in format!("{c:?}").bytes() {

@@ -1,5 +1,5 @@
-//! One weather becomes another without a jump: over a microsecond of a change of an hour nothing that a host can ask for moves by
-//! more than a millionth of itself.
+//! One weather becomes another without a jump: over a microsecond of a change of an hour nothing that a host can ask
+//! for moves by more than a millionth of itself.
 
 use glam::DVec3;
 use welkin::{
@@ -21,8 +21,8 @@ const MOST: f64 = 1e-6;
 /// Places in a change that are looked at for the largest changes between them.
 const PLACES: usize = 48;
 
-/// Distances from a seam at which it is also looked how large a number becomes, s: the sun through the first of a thin cloud, before
-/// that thickens, is there for seconds.
+/// Distances from a seam at which it is also looked how large a number becomes, s: the sun through the first of a thin
+/// cloud, before that thickens, is there for seconds.
 const NEAR_S: [f64; 3] = [1.0, 6.0, 36.0];
 
 /// Every number of some conditions. No field can be forgotten: the patterns name all.
@@ -173,8 +173,9 @@ struct Steepest {
     at_s: f64,
 }
 
-/// The steepest change of `f` that is found between the first and the last of `seams`: of all numbers round each of them, and of the
-/// first `followed` where between [`PLACES`] moments they change most, followed by halves down to the microsecond.
+/// The steepest change of `f` that is found between the first and the last of `seams`: of all numbers round each of
+/// them, and of the first `followed` where between [`PLACES`] moments they change most, followed by halves down to the
+/// microsecond.
 fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Steepest {
     let ends: Vec<_> = seams.iter().map(|t| f(*t)).collect();
     let (from_s, to_s) = (seams[0], seams[seams.len() - 1]);
@@ -227,8 +228,8 @@ fn lit(host: &Host, n: usize) -> (Context, f64) {
     (context, [2.0, 700.0, 2600.0][n / 4 % 3])
 }
 
-/// What of a context jumps at the `seams` of its weather's changes, or, if asked, between them, where so many changes go on at a time:
-/// each may move as fast as alone.
+/// What of a context jumps at the `seams` of its weather's changes, or, if asked, between them, where so many changes
+/// go on at a time: each may move as fast as alone.
 fn jumps(context: &Context, up_m: f64, seams: &[f64], between: bool, changes: f64) -> Vec<String> {
     let conditions = |t: f64| {
         let mut out = Vec::with_capacity(192);
@@ -247,7 +248,8 @@ fn jumps(context: &Context, up_m: f64, seams: &[f64], between: bool, changes: f6
         .collect()
 }
 
-/// A layer that the picture shows as a deck once it is closed, and as a volume before, hides as much on either side of that moment.
+/// A layer that the picture shows as a deck once it is closed, and as a volume before, hides as much on either side of
+/// that moment.
 #[test]
 fn a_layer_that_closes_hides_no_more_at_once() {
     let host = Host::new();

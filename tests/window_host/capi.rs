@@ -1,4 +1,5 @@
-//! A window through the C functions: what befalls it is answered, and the same device, context and view draw on afterwards.
+//! A window through the C functions: what befalls it is answered, and the same device, context and view draw on
+//! afterwards.
 
 use std::ptr::{null, null_mut};
 use std::sync::atomic::Ordering;

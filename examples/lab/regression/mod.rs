@@ -1,8 +1,8 @@
 //! Pictures of many scenes, kept to see that a change of the program changes none of them.
 //!
-//! `lab scenes DIR` draws every scene of [`list`] by the public API and writes a PNG each; `lab scenes OLD NEW` compares two such
-//! folders. Both need the same machine and driver: another driver rounds in another way. No plan chooses by measured time here, so
-//! that two runs give the same bytes.
+//! `lab scenes DIR` draws every scene of [`list`] by the public API and writes a PNG each; `lab scenes OLD NEW`
+//! compares two such folders. Both need the same machine and driver: another driver rounds in another way. No plan
+//! chooses by measured time here, so that two runs give the same bytes.
 
 mod host;
 mod list;
@@ -76,8 +76,8 @@ fn open(path: &Path) -> Result<RgbImage> {
     Ok(image::open(path).map_err(|e| fault(path, e))?.to_rgb8())
 }
 
-/// Compares two folders and prints each scene that differs. Answers whether all are alike: in both folders, of one size, and no
-/// pixel more than one step apart.
+/// Compares two folders and prints each scene that differs. Answers whether all are alike: in both folders, of one
+/// size, and no pixel more than one step apart.
 ///
 /// # Errors
 /// Files that cannot be read, folders without pictures.

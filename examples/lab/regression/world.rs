@@ -158,8 +158,8 @@ pub fn albedo(hit: &Hit) -> [f64; 3] {
     base.map(|a| a * spot)
 }
 
-/// Illuminance of a surface in a host's own plain terms, lux: sun on the slope and an even sky, or a night's; `deck` is the largest
-/// cover of a layer of cloud.
+/// Illuminance of a surface in a host's own plain terms, lux: sun on the slope and an even sky, or a night's; `deck` is
+/// the largest cover of a layer of cloud.
 pub fn illuminance(normal: DVec3, to_light: DVec3, night: bool, deck: f64) -> f64 {
     let open = 0.5 + 0.5 * normal.z;
     let clear = 1.0 - 0.9 * deck.powi(2);

@@ -1,10 +1,11 @@
-//! Elek's table of 2008 as its description says: light scattered once over (altitude, view zenith angle, sun zenith angle)
-//! on equal axes in half floats, integrals by the trapezoid rule with equal steps, the phase functions put on per pixel.
+//! Elek's table of 2008 as its description says: light scattered once over (altitude, view zenith angle, sun zenith
+//! angle) on equal axes in half floats, integrals by the trapezoid rule with equal steps, the phase functions put on
+//! per pixel.
 //!
 //! Mended is only what cannot be computed as printed: haze takes the planet's coefficient (the printed one has no
-//! unit), its phase function peaks towards the sun, a point whose sun is hidden by the planet gets none. Kept is what is
-//! the method's own: the azimuth is always the sun's, the phase function of gas imitates multiple scattering, haze is one
-//! channel and each medium is dimmed by itself alone, there is no ozone, and the axes are equal.
+//! unit), its phase function peaks towards the sun, a point whose sun is hidden by the planet gets none. Kept is what
+//! is the method's own: the azimuth is always the sun's, the phase function of gas imitates multiple scattering, haze
+//! is one channel and each medium is dimmed by itself alone, there is no ozone, and the axes are equal.
 
 use std::sync::Arc;
 
@@ -23,8 +24,9 @@ use crate::timing::{target, timed};
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const WIDTH: u32 = 256;
 
-/// A table of light scattered once over (altitude, view zenith angle, sun zenith angle) as of Elek 2008, with equal axes,
-/// half floats, equal steps and the trapezoid rule, and with his phase function that imitates multiple scattering.
+/// A table of light scattered once over (altitude, view zenith angle, sun zenith angle) as of Elek 2008, with equal
+/// axes, half floats, equal steps and the trapezoid rule, and with his phase function that imitates multiple
+/// scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElekTable {
     /// Texels along each axis; 128 and 256 were delivered.

@@ -1,4 +1,5 @@
-// Elek 2008: equations 3.3 (optical depth), 3.4 (light scattered once), 3.2 (phase function of gas), 3.5 (of haze), 3.9.
+// Elek 2008: equations 3.3 (optical depth), 3.4 (light scattered once), 3.2 (phase function of gas), 3.5 (of haze),
+// 3.9.
 struct Uniform {
     beta: vec3f,
     bottom_m: f32,
@@ -41,8 +42,8 @@ fn vertex(@builtin(vertex_index) i: u32) -> Varying {
     return Varying(vec4f(corner * 2.0 - 1.0, 0.0, 1.0), vec2f(corner.x, 1.0 - corner.y));
 }
 
-// Length of a ray to the ground, or to the top of the air; x: length, y: 1 if it meets the ground. Altitudes in place of
-// differences of squared radii, which f32 could not hold.
+// Length of a ray to the ground, or to the top of the air; x: length, y: 1 if it meets the ground. Altitudes in place
+// of differences of squared radii, which f32 could not hold.
 fn reach(u: Uniform, h: f32, mu: f32) -> vec2f {
     let b = (u.bottom_m + h) * mu;
     let down = h * (2.0 * u.bottom_m + h);
@@ -74,8 +75,8 @@ fn columns(u: Uniform, h: f32, mu: f32, end: f32) -> vec2f {
     return sum * ds;
 }
 
-// One texel: light scattered once without phase functions, gas in rgb and haze in a. x: view zenith angle, y: sun zenith
-// angle, z: altitude.
+// One texel: light scattered once without phase functions, gas in rgb and haze in a. x: view zenith angle, y: sun
+// zenith angle, z: altitude.
 @fragment
 fn build(@builtin(position) p: vec4f) -> @location(0) vec4f {
     let u = made;

@@ -53,8 +53,8 @@ fn true_way(pull: fn(DVec3, DVec3, f64) -> DVec3, terminal: f64, time: f64) -> D
     way + settled * left
 }
 
-/// What a way of stepping does to a drop of `diameter_mm` in the gust: it swings if the drop is ever blown faster than the
-/// wind is that blows it.
+/// What a way of stepping does to a drop of `diameter_mm` in the gust: it swings if the drop is ever blown faster than
+/// the wind is that blows it.
 pub fn gust_cell(step: Step, square: bool, diameter_mm: f64, dt: f64) -> Cell {
     let terminal = terminal_speed_m_s(diameter_mm);
     let (mut v, mut way, mut swings) = (-DVec3::Z * terminal, DVec3::ZERO, false);
@@ -91,9 +91,9 @@ pub fn drag() -> Map {
     }
 }
 
-/// How far places of drops are off that of air carried by a gust in one frame of 1/60 s, over that way; the gust raises the
-/// wind from 3 m/s by `by` within half a second, and the frame is amid of it. `place` answers from the velocity's and
-/// the displacement's values at a time (m/s, m, s).
+/// How far places of drops are off that of air carried by a gust in one frame of 1/60 s, over that way; the gust raises
+/// the wind from 3 m/s by `by` within half a second, and the frame is amid of it. `place` answers from the velocity's
+/// and the displacement's values at a time (m/s, m, s).
 pub fn thrown_cell(late: f64, by: f64, place: fn(DVec2, DVec2, f64) -> DVec2) -> Result<Cell> {
     let of = |speed: f64| derive(&Weather { wind: Wind::of(speed, 270.0), ..Weather::default() });
     let mut timeline = Timeline::new(of(3.0)?);

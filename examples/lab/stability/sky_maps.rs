@@ -1,4 +1,5 @@
-//! Maps of the sky: transmittance by rule, radiance about the horizon and through twilight, odd media, stored radiances.
+//! Maps of the sky: transmittance by rule, radiance about the horizon and through twilight, odd media, stored
+//! radiances.
 
 use half::f16;
 use welkin::Result;
@@ -12,7 +13,8 @@ use super::{Axis, Cell, Map, Panel};
 use crate::chart::Lab;
 use crate::command::Options;
 
-/// Transmittance to space by the rule of much public code: samples at 0.3 of a step, steps counted from the last sample.
+/// Transmittance to space by the rule of much public code: samples at 0.3 of a step, steps counted from the last
+/// sample.
 pub fn offset_transmittance(medium: &Medium, altitude_m: f64, mu: f64, n: u32) -> f64 {
     by_rule(
         medium,
@@ -243,8 +245,8 @@ pub fn usual_march(factor: f32, scale_m: f32) -> f32 {
     light / (1.0 - again)
 }
 
-/// The integrals of [`usual_march`] in f64 with steps a hundred times finer, each solved without cancellation: what the method
-/// would answer if its arithmetic did not err. Nothing where no light is, and where its series has no sum.
+/// The integrals of [`usual_march`] in f64 with steps a hundred times finer, each solved without cancellation: what the
+/// method would answer if its arithmetic did not err. Nothing where no light is, and where its series has no sum.
 fn usual_march_truth(factor: f64, scale_m: f64) -> Option<f64> {
     let (n, top, beta) = (4000, 60_000.0, 1.149e-5);
     let dh = top / f64::from(n);

@@ -17,7 +17,7 @@ use crate::{
     frame::Stages,
 };
 
-/// What the boundary keeps of a device's owner.
+/// Owner of a device, as the boundary keeps it.
 pub(super) enum Host {
     /// Welkin's own device.
     Own,
@@ -42,7 +42,8 @@ impl Host {
     }
 
     /// # Errors
-    /// [`Status::Unsupported`] about `param`, for `what` is made for a host's own shaders, of which this device has none.
+    /// [`Status::Unsupported`] about `param`, for `what` is made for a host's own shaders, of which this device has
+    /// none.
     pub(super) fn check_own_shaders(&self, param: &str, what: &str) -> Result<()> {
         match self {
             Self::Own => {

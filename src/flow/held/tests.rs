@@ -330,7 +330,8 @@ fn upward_m_s(mode: WindFieldMode) -> f64 {
 fn whirls_come_in_with_gusts_and_none_with_the_mean_wind() {
     let [running, steady] = [WindFieldMode::Running, WindFieldMode::Steady].map(upward_m_s);
     println!("upward {running:.3} m/s with gusts, {steady:.4} without");
-    // Whirls of all lengths have 1.25 u* = 0.69 m/s; the field shows those of 16 to 64 m, which have a part of their energy.
+    // Whirls of all lengths have 1.25 u* = 0.69 m/s; the field shows those of 16 to 64 m, which have a part of their
+    // energy.
     assert!((0.2..0.5).contains(&running) && steady < 0.02, "{running} {steady}");
 }
 

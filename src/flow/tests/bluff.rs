@@ -1,4 +1,5 @@
-//! Air round blocks with sharp edges, by the default scheme with whirls below a cell: against what wind tunnels measured.
+//! Air round blocks with sharp edges, by the default scheme with whirls below a cell: against what wind tunnels
+//! measured.
 
 use glam::{DVec3, dvec3};
 
@@ -46,8 +47,9 @@ fn a_cube_has_the_drag_that_was_measured() {
     assert!((found / 1.05 - 1.0).abs() < 0.2, "{found}");
 }
 
-/// Standard deviations of the air in a turbulent channel along it, across it and upward, in friction velocities, about as Moser, Kim and Mansour (1999,
-/// Phys. Fluids 11, 943) have them; first the distance from the nearer wall over half the channel's height.
+/// Standard deviations of the air in a turbulent channel along it, across it and upward, in friction velocities, about
+/// as Moser, Kim and Mansour (1999, Phys. Fluids 11, 943) have them; first the distance from the nearer wall over half
+/// the channel's height.
 const CHANNEL: [(f64, DVec3); 6] = [
     (0.0, DVec3::ZERO),
     (0.05, dvec3(2.4, 1.4, 0.85)),
@@ -57,15 +59,15 @@ const CHANNEL: [(f64, DVec3); 6] = [
     (1.0, dvec3(0.8, 0.62, 0.6)),
 ];
 
-/// The same at any distance from a wall.
+/// Returns the standard deviations of [`CHANNEL`] at any distance from a wall, in the same units.
 fn deviation(y: f64) -> DVec3 {
     let i = CHANNEL.iter().rposition(|(at, _)| *at <= y).unwrap_or(0).min(CHANNEL.len() - 2);
     let [(low, a), (high, b)] = [CHANNEL[i], CHANNEL[i + 1]];
     a.lerp(b, ((y - low) / (high - low)).clamp(0.0, 1.0))
 }
 
-/// Edges behind a cube on the floor of a turbulent channel two edges high at which the flow along the floor comes back, in the mean of 30 edges
-/// over the wind's speed, with `N` cells an edge.
+/// Edges behind a cube on the floor of a turbulent channel two edges high at which the flow along the floor comes back,
+/// in the mean of 30 edges over the wind's speed, with `N` cells an edge.
 fn reattachment<const N: u32>() -> f64 {
     const ROUGHNESS: f64 = 1e-4;
     let profile = |z: f64| (1.0 + z.min(2.0 - z).max(0.0) / ROUGHNESS).ln() / (1.0 + 1.0 / ROUGHNESS).ln();

@@ -11,7 +11,8 @@ fn a_noop_device_exists_everywhere() {
     assert_eq!(device.caps().backend, wgpu::Backend::Noop);
 }
 
-/// Submits a draw of so many texels along a side that goes round a long loop in each; answers how long the wait for it lasted, s.
+/// Submits a draw of so many texels along a side that goes round a long loop in each; answers how long the wait for it
+/// lasted, s.
 fn busy(device: &Device, side: u32) -> Result<f64> {
     let text = "@vertex fn v(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
             return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);

@@ -39,7 +39,8 @@ impl Device {
             let rest = limit.saturating_sub(begun.elapsed());
             match self.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(rest) }) {
                 Ok(_) => return self.check(),
-                // wgpu's OpenGL backend waits for i32::MAX ns at most: after 2.1 s it answers with a timeout, though the GPU still works.
+                // wgpu's OpenGL backend waits for i32::MAX ns at most: after 2.1 s it answers with a timeout, though
+                // the GPU still works.
                 Err(wgpu::PollError::Timeout) if begun.elapsed() < limit => self.check()?,
                 Err(e) => {
                     if matches!(e, wgpu::PollError::Timeout) {
@@ -51,7 +52,8 @@ impl Device {
         }
     }
 
-    /// Counts the device as lost, and keeps wgpu's objects for ever: to release them wgpu waits for the GPU without a limit.
+    /// Counts the device as lost, and keeps wgpu's objects for ever: to release them wgpu waits for the GPU without a
+    /// limit.
     pub(crate) fn give_up(&self) {
         self.faults.lost.store(true, Ordering::Release);
         self.faults.hung.store(true, Ordering::Release);

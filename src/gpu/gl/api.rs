@@ -67,7 +67,7 @@ macro_rules! gl_functions {
     (@zero $t:ty) => { <$t as Zero>::ZERO };
 }
 
-/// What a missing function answers.
+/// Return value of a missing function.
 trait Zero {
     const ZERO: Self;
 }

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::error::{Error, Result, Status};
 
-/// What building needs.
+/// Context and device with which targets are built.
 pub(super) struct Workshop<'a> {
     pub(super) ask: Ask<'a>,
     pub(super) device: &'a wgpu::Device,
@@ -63,7 +63,7 @@ impl Part {
         formats::format(self.facts.internal, self.side)
     }
 
-    /// What is drawn to.
+    /// Returns the object that is drawn to.
     fn attached(&self, samples: u32) -> Object {
         match (self.image, &self.copy) {
             (_, Some(copy)) if copy.drawn_to => Object::Texture(copy.texture, target_of(samples)),
@@ -73,7 +73,7 @@ impl Part {
         }
     }
 
-    /// What is read, if anything can be.
+    /// Returns the object that is read, if any can be.
     fn readable(&self, samples: u32) -> Option<Object> {
         match (self.image, &self.copy) {
             (_, Some(copy)) => Some(Object::Texture(copy.texture, target_of(samples))),
@@ -351,7 +351,8 @@ impl Workshop<'_> {
         Ok((color, Some(read)))
     }
 
-    /// Depth as wgpu textures: to attach, and to read. Two of one object: wgpu would refuse to read what it has attached.
+    /// Depth as wgpu textures: to attach, and to read. Two of one object: wgpu would refuse to read what it has
+    /// attached.
     fn depth(
         &self,
         part: &Part,
@@ -458,7 +459,7 @@ fn check_written_back(parts: &[Part], resolve: bool) -> Result<()> {
     }
 }
 
-/// What this context cannot do with an image, with a format that always serves.
+/// Returns the error for an image that this context refuses, with a format that always serves.
 fn refused(side: Side, internal: u32, verb: &str, answer: u32) -> Error {
     let parameter = side.parameter();
     let (internal, answer_text) = (spell(internal), spell(answer));

@@ -76,8 +76,8 @@ impl Inner {
         self.targets.iter().find(is_it)
     }
 
-    /// Makes sure that the host's window, if it is the target, has the size that the host says: at once where it is `new`, else
-    /// as it was some frames ago.
+    /// Makes sure that the host's window, if it is the target, has the size that the host says: at once where it is
+    /// `new`, else as it was some frames ago.
     fn check_window(&mut self, info: &GlInfo, desc: &GlTargetDesc, new: bool) -> Result<()> {
         if desc.color != (GlImage::Framebuffer { name: 0 }) || desc.width == 0 || desc.height == 0 {
             return Ok(());

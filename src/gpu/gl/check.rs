@@ -1,5 +1,5 @@
-//! What the host's context is, found out before wgpu touches it: wgpu and its loader panic where these checks
-//! answer by name.
+//! Checks of the host's context, made before wgpu touches it: wgpu and its loader panic where these checks return an
+//! error by name.
 
 use std::{
     collections::HashSet,
@@ -9,7 +9,7 @@ use std::{
 use super::{api::Api, names::*};
 use crate::error::{Error, Result, Status};
 
-/// What kind of OpenGL a context speaks.
+/// Kind of OpenGL that a context provides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GlProfile {
     /// Desktop OpenGL, core profile.
@@ -20,7 +20,7 @@ pub enum GlProfile {
     Es,
 }
 
-/// What a context said about itself.
+/// Properties that a context reported about itself.
 #[derive(Clone, Debug)]
 pub struct GlInfo {
     /// Core, compatibility or ES.

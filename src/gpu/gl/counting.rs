@@ -1,9 +1,9 @@
 //! The host's conditional rendering and its queries that count, in the context in which Welkin draws.
 //!
-//! Both reach into what Welkin draws: under a conditional render whose query counted nothing no draw is made, so tables that are drawn
-//! once would stay empty; and a query counts Welkin's samples. Neither can be put aside and taken up again. OpenGL tells whether a query is
-//! active (`GL_CURRENT_QUERY`). It does not tell whether rendering is conditional, but refuses to begin that twice (OpenGL 4.6 core
-//! specification, section 10.9), so a trial tells.
+//! Both reach into what Welkin draws: under a conditional render whose query counted nothing no draw is made, so tables
+//! that are drawn once would stay empty; and a query counts Welkin's samples. Neither can be put aside and taken up
+//! again. OpenGL tells whether a query is active (`GL_CURRENT_QUERY`). It does not tell whether rendering is
+//! conditional, but refuses to begin that twice (OpenGL 4.6 core specification, section 10.9), so a trial tells.
 
 use super::{
     api::Api,
@@ -20,7 +20,7 @@ const COUNTING: [(u32, &str); 4] = [
     (PRIMITIVES_GENERATED, "GL_PRIMITIVES_GENERATED"),
 ];
 
-/// What is asked before Welkin draws in a host's own context.
+/// Checks that are made before Welkin draws in a host's own context.
 pub(super) struct Counting {
     /// Targets that this context knows.
     targets: Vec<(u32, &'static str)>,
@@ -66,8 +66,9 @@ impl Counting {
         is_conditional
     }
 
-    /// Opens a device, unless the host counts. Where rendering is conditional nothing is drawn, and opening fails; where it is said to be and
-    /// opening succeeds all the same, this driver's trials tell nothing and no more are made.
+    /// Opens a device, unless the host counts. Where rendering is conditional nothing is drawn, and opening fails;
+    /// where it is said to be and opening succeeds all the same, this driver's trials tell nothing and no more are
+    /// made.
     ///
     /// # Errors
     /// As [`Counting::allows`], and as `open`.

@@ -14,7 +14,7 @@ use super::{api::Api, check::GlInfo, names::*};
 
 type GetString = unsafe extern "system" fn(u32) -> *const u8;
 
-/// What is newer than OpenGL 3.3 and OpenGL ES 3.0, of the names that wgpu asks for.
+/// Names newer than OpenGL 3.3 and OpenGL ES 3.0, of those that wgpu asks for.
 const NEWER: &[&str] = &[
     "GL_ARB_compute_shader",
     "GL_ARB_shader_storage_buffer_object",
@@ -48,12 +48,13 @@ const UNASKED: &[&str] = &[
     "GL_ARB_sampler_objects",
 ];
 
-/// With one of these wgpu writes buffers through memory that stays mapped and a copy on the GPU, else by `glBufferSubData`.
+/// With one of these wgpu writes buffers through memory that stays mapped and a copy on the GPU, else by
+/// `glBufferSubData`.
 pub(super) const STORAGE: [&str; 2] = ["GL_ARB_buffer_storage", "GL_EXT_buffer_storage"];
 
 const FLOATS: &str = "GL_ARB_color_buffer_float";
 
-/// What the two functions answer on this thread.
+/// Answers of the two functions on this thread.
 struct Face {
     real: GetString,
     version: Option<CString>,
@@ -95,7 +96,8 @@ extern "system" fn get_string_i(name: u32, index: u32) -> *const u8 {
 pub(super) struct FaceGuard(());
 
 impl FaceGuard {
-    /// Shows the current context; `force_tier0` hides what OpenGL 3.3 or OpenGL ES 3.0 lacks, `no_storage` what [`STORAGE`] names.
+    /// Shows the current context; `force_tier0` hides what OpenGL 3.3 or OpenGL ES 3.0 lacks, `no_storage` what
+    /// [`STORAGE`] names.
     pub(super) fn show(api: &Api, info: &GlInfo, force_tier0: bool, no_storage: bool) -> Option<Self> {
         let real = api.GetString?;
         let text = |t: String| CString::new(t).ok();
@@ -120,7 +122,8 @@ impl FaceGuard {
         Some(Self(()))
     }
 
-    /// What wgpu's loader gets for `name`: the two functions of this room, and the host's for all others.
+    /// Returns the function that wgpu's loader gets for `name`: one of the two of this room, or the host's for all
+    /// others.
     pub(super) fn resolve(name: &CStr, hosts: *const c_void) -> *const c_void {
         match name.to_bytes() {
             b"glGetString" => get_string as extern "system" fn(u32) -> *const u8 as *const c_void,

@@ -1,4 +1,4 @@
-//! Which internal formats of OpenGL a host's picture and depth may have, and what they are called by wgpu.
+//! Internal formats of OpenGL that a host's picture and depth may have, and wgpu's names for them.
 
 use wgpu::TextureFormat as Format;
 
@@ -44,7 +44,7 @@ const NORMALS: &[(u32, &str, Format)] = &[
     (RGBA32F, "GL_RGBA32F", Format::Rgba32Float),
 ];
 
-/// What an attachment is asked for when its internal format is not known by a sized name.
+/// Properties that an attachment is asked for when its internal format is not known by a sized name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Bits {
     pub(super) red: i32,
@@ -107,8 +107,8 @@ pub(super) fn format(internal: u32, side: Side) -> Result<Format> {
     Err(Error::about(Status::Unsupported, side.parameter(), rest))
 }
 
-/// The client format and type with which `internal` can be allocated without data. OpenGL ES takes those of its table alone
-/// (OpenGL ES 3.0 specification, table 3.2): an image without alpha is allocated without it.
+/// The client format and type with which `internal` can be allocated without data. OpenGL ES takes those of its table
+/// alone (OpenGL ES 3.0 specification, table 3.2): an image without alpha is allocated without it.
 pub(super) fn allocation(internal: u32) -> (u32, u32) {
     match internal {
         R8 => (RED, UNSIGNED_BYTE),

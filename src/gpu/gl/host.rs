@@ -64,7 +64,7 @@ pub(super) enum Sharing {
     HostContext { state: Box<HostState>, counting: Counting, switch: Option<Switch> },
 }
 
-/// What changes while drawing.
+/// State that changes while drawing.
 pub(super) struct Inner {
     pub(super) api: Api,
     pub(super) sharing: Sharing,
@@ -80,7 +80,7 @@ pub(super) struct Inner {
     /// Targets in use since the last enter, by id.
     pub(super) active: Vec<u64>,
     pub(super) next_id: u64,
-    /// What went wrong where nothing could be answered.
+    /// Error that occurred where none could be returned.
     pub(super) fault: Option<Error>,
     pub(super) closed: bool,
 }
@@ -88,8 +88,8 @@ pub(super) struct Inner {
 /// An OpenGL host: the way into its context and its images as wgpu textures.
 ///
 /// Every call of wgpu on the device that came with it must happen between [`GlHost::enter`] (or
-/// [`Device::enter`](crate::gpu::Device::enter), which is the same) and the drop of its answer, and so must the dropping
-/// of its objects; the device itself enters when it goes. Any thread may enter; others wait.
+/// [`Device::enter`](crate::gpu::Device::enter), which is the same) and the drop of its answer, and so must the
+/// dropping of its objects; the device itself enters when it goes. Any thread may enter; others wait.
 pub struct GlHost {
     info: GlInfo,
     gate: Gate,
@@ -111,7 +111,7 @@ impl GlHost {
         Arc::new(Self { info, gate: Gate::default(), inner: Mutex::new(inner) })
     }
 
-    /// What the context in which Welkin draws said about itself.
+    /// Returns the properties that the context in which Welkin draws reported about itself.
     pub fn info(&self) -> &GlInfo {
         &self.info
     }
@@ -120,13 +120,13 @@ impl GlHost {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Enters the host: in shared mode the host's context must be current on this thread (or none), and Welkin's is when
-    /// this returns; in the host's own context that one must be current, and its state is saved. Entering again on the
-    /// same thread costs nothing.
+    /// Enters the host: in shared mode the host's context must be current on this thread (or none), and Welkin's is
+    /// when this returns; in the host's own context that one must be current, and its state is saved. Entering again on
+    /// the same thread costs nothing.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] if the right context cannot be made current or cannot be drawn in now, and what went wrong
-    /// when the host was last left.
+    /// [`Status::WrongOrder`] if the right context cannot be made current or cannot be drawn in now, and what went
+    /// wrong when the host was last left.
     pub fn enter(&self) -> Result<Current<'_>> {
         self.begin()?;
         Ok(Current(self))
@@ -147,16 +147,16 @@ impl GlHost {
         outcome
     }
 
-    /// What went wrong when the host was last left, where nothing could be answered; told once.
+    /// Returns the error that occurred when the host was last left, where none could be returned; told once.
     ///
     /// # Errors
-    /// That.
+    /// That error.
     pub fn check(&self) -> Result<()> {
         self.inner().fault.take().map_or(Ok(()), Err)
     }
 
-    /// Undoes one [`GlHost::begin`]; the last one copies pictures back, puts the host's state back, and makes the host's
-    /// context wait for Welkin's.
+    /// Undoes one [`GlHost::begin`]; the last one copies pictures back, puts the host's state back, and makes the
+    /// host's context wait for Welkin's.
     pub fn leave(&self) {
         match self.gate.depth() {
             0 => return,
@@ -166,8 +166,8 @@ impl GlHost {
         self.gate.leave();
     }
 
-    /// The host's colour and depth as wgpu textures, valid until the host is left. The same answer comes back as long as
-    /// the host's objects stay what they are; nothing is allocated then.
+    /// The host's colour and depth as wgpu textures, valid until the host is left. The same answer comes back as long
+    /// as the host's objects stay what they are; nothing is allocated then.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] outside of enter and leave; whatever of the host's images cannot be served, named.
@@ -180,7 +180,8 @@ impl GlHost {
 }
 
 impl GlHost {
-    /// A depth texture or renderbuffer of the host's by itself, to read, as [`GlHost::target`] would give it; one sample.
+    /// A depth texture or renderbuffer of the host's by itself, to read, as [`GlHost::target`] would give it; one
+    /// sample.
     ///
     /// # Errors
     /// As [`GlHost::target`].

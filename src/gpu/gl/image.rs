@@ -23,15 +23,15 @@ pub enum GlImage {
         /// Name from `glGenRenderbuffers`.
         name: u32,
     },
-    /// What framebuffer `name` draws to; 0 is the window's. Framebuffers are not shared between contexts, so this one
-    /// works only in the host's own context; it is served by copies in and out.
+    /// Image that framebuffer `name` draws to; 0 is the window's. Framebuffers are not shared between contexts, so this
+    /// one works only in the host's own context; it is served by copies in and out.
     Framebuffer {
         /// Name from `glGenFramebuffers`, or 0.
         name: u32,
     },
 }
 
-/// Which side of a target an image serves.
+/// Side of a target that an image serves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     Color,
@@ -42,7 +42,7 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// What the image holds, in messages.
+    /// Returns the noun for the image's contents, in messages.
     pub(super) fn noun(self) -> &'static str {
         &self.parameter()["target.".len()..]
     }
@@ -64,7 +64,8 @@ pub(super) fn target_of(samples: u32) -> u32 {
     if samples > 1 { TEXTURE_2D_MULTISAMPLE } else { TEXTURE_2D }
 }
 
-/// What OpenGL says about an image. Asked at every use: a host may allocate an object anew under its old name.
+/// Properties that OpenGL reports of an image. Asked at every use: a host may allocate an object anew under its old
+/// name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Facts {
     pub(super) width: u32,
@@ -75,7 +76,7 @@ pub(super) struct Facts {
     pub(super) samples: u32,
 }
 
-/// What asking needs.
+/// Inputs of queries about images.
 #[derive(Clone, Copy)]
 pub(super) struct Ask<'a> {
     pub(super) api: &'a Api,

@@ -1,7 +1,7 @@
 //! Functions of OpenGL ES 3.2 in contexts of ES 3.0 and 3.1, which have them as extensions and by other names.
 //!
-//! wgpu asks for the names of ES 3.2. A strict driver answers those with an error in a context before that (ANGLE: GL_INVALID_OPERATION),
-//! though the same function is there with a suffix.
+//! wgpu asks for the names of ES 3.2. A strict driver answers those with an error in a context before that (ANGLE:
+//! GL_INVALID_OPERATION), though the same function is there with a suffix.
 
 use std::ffi::{CStr, CString, c_void};
 

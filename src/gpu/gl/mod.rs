@@ -1,26 +1,27 @@
 //! Hosts that draw with OpenGL: a wgpu device round the host's context, and the host's images as wgpu textures.
 //!
 //! # Two modes
-//! [`GlMode::Shared`]: the host makes a second context that shares objects with its own, and a callback that makes one or
-//! the other current. Welkin draws in the second one, so none of the host's state can change. Fences order the two: the
-//! host's commands end before Welkin's begin, and the other way round. Framebuffers are not shared, so targets are
+//! [`GlMode::Shared`]: the host makes a second context that shares objects with its own, and a callback that makes one
+//! or the other current. Welkin draws in the second one, so none of the host's state can change. Fences order the two:
+//! the host's commands end before Welkin's begin, and the other way round. Framebuffers are not shared, so targets are
 //! textures and renderbuffers.
 //!
-//! [`GlMode::HostContext`]: Welkin draws in the host's own context. Its state is saved, set to what wgpu takes for granted,
-//! and put back (see the `state` room). Any framebuffer can be a target, the window's too, by copies in and out.
+//! [`GlMode::HostContext`]: Welkin draws in the host's own context. Its state is saved, set to what wgpu takes for
+//! granted, and put back (see the `state` room). Any framebuffer can be a target, the window's too, by copies in and
+//! out.
 //!
 //! # What is upside down
 //! OpenGL counts rows from the bottom, wgpu from the top. wgpu's backend turns every vertex shader's y round
-//! (`gl_Position.y` is negated), so wgpu's top row lies in memory where OpenGL has its bottom row. A host's image is the
-//! other way round, and rows are never copied to mend that. Instead:
+//! (`gl_Position.y` is negated), so wgpu's top row lies in memory where OpenGL has its bottom row. A host's image is
+//! the other way round, and rows are never copied to mend that. Instead:
 //! - Geometry: multiply wgpu's clip-space y by -1 ([`CLIP_Y_SIGN`]). The two turns cancel, and wgpu's
 //!   front faces are clockwise then (`wgpu::FrontFace::Cw`), because it does not know of this turn.
 //! - Full-screen passes: `@builtin(position).xy` is the host's texel, counted from its first row, in colour and depth
 //!   alike: `textureLoad` needs no turn. Only the way from texel to ray does: y in clip space is `2 (y + 0.5) / h - 1`
 //!   for a host's image, and not `1 - 2 (y + 0.5) / h`.
 //!
-//! Both are the sign [`CLIP_Y_SIGN`] on clip-space y. A host whose clip control has its origin at the upper left while it
-//! draws stores its rows from the top as wgpu does; it says so with its projection, whose y is then negated.
+//! Both are the sign [`CLIP_Y_SIGN`] on clip-space y. A host whose clip control has its origin at the upper left while
+//! it draws stores its rows from the top as wgpu does; it says so with its projection, whose y is then negated.
 //!
 //! # Depth
 //! What comes to wgpu is the depth as stored, the window's from 0 to 1. Bind it as a `texture_2d<f32>` with an
@@ -65,7 +66,7 @@ pub type GetProc = unsafe extern "C" fn(user: *mut c_void, name: *const c_char) 
 /// when it is current, anything else when it could not be made so. Must not call back into Welkin.
 pub type MakeCurrent = unsafe extern "C" fn(user: *mut c_void, which: u32) -> i32;
 
-/// Which context [`MakeCurrent`] is asked for.
+/// Context that [`MakeCurrent`] is asked for.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhichContext {
@@ -107,7 +108,7 @@ pub enum Handover {
     Flush,
 }
 
-/// What a host hands over to be drawn into.
+/// Description of the OpenGL host that is drawn into.
 #[derive(Clone, Copy, Debug)]
 pub struct GlHostDesc {
     /// Finds OpenGL functions. Required.
@@ -117,7 +118,7 @@ pub struct GlHostDesc {
     pub make_current: Option<MakeCurrent>,
     /// Passed to both. They may be called on any thread that calls Welkin, one at a time.
     pub user: *mut c_void,
-    /// Which way of living together.
+    /// Mode in which Welkin lives beside the host's OpenGL.
     pub mode: GlMode,
     /// How contexts wait for each other in shared mode.
     pub handover: Handover,

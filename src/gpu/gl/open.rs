@@ -51,14 +51,14 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 /// The host's context is current before and after. Its state is put back in either mode.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] for missing or NULL-answering callbacks; [`Status::WrongOrder`] if no context is current or
-/// the wrong one; [`Status::Unsupported`] if it is older than OpenGL 3.3 or OpenGL ES 3.0;
-/// [`Status::AlreadyWrapped`] if it has a device already; [`Status::NoAdapter`] if wgpu cannot use it, or its driver draws what is known
-/// wrong or not within 6 s.
+/// [`Status::InvalidArgument`] for missing or NULL-answering callbacks; [`Status::WrongOrder`] if no context is current
+/// or the wrong one; [`Status::Unsupported`] if it is older than OpenGL 3.3 or OpenGL ES 3.0;
+/// [`Status::AlreadyWrapped`] if it has a device already; [`Status::NoAdapter`] if wgpu cannot use it, or its driver
+/// draws what is known wrong or not within 6 s.
 ///
 /// # Safety
-/// The callbacks are what they are declared to be, and stay so until the device is gone; the contexts outlive that, or are
-/// destroyed as a whole.
+/// The callbacks are what they are declared to be, and stay so until the device is gone; the contexts outlive that, or
+/// are destroyed as a whole.
 pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
     let Some(get_proc) = desc.get_proc else {
         return Err(Error::invalid("get_proc", "must not be NULL"));
@@ -218,8 +218,8 @@ struct Parts {
     scratch: u32,
 }
 
-/// Opens wgpu on the current context and has the driver draw what is known. Where shaders find other bytes in blocks than were written, wgpu
-/// is opened once more so that it writes them by `glBufferSubData`.
+/// Opens wgpu on the current context and has the driver draw what is known. Where shaders find other bytes in blocks
+/// than were written, wgpu is opened once more so that it writes them by `glBufferSubData`.
 fn open_known(
     api: &Api,
     info: &GlInfo,
@@ -377,7 +377,8 @@ fn finishes(api: &Api, limit: Duration) -> bool {
         answer = api.ClientWaitSync(fence, SYNC_FLUSH_COMMANDS_BIT, step.as_nanos() as u64);
     }
     api.DeleteSync(fence);
-    // A context without the function, or one that refuses the wait, has nothing to wait by: reading the texel then tells.
+    // A context without the function, or one that refuses the wait, has nothing to wait by: reading the texel then
+    // tells.
     answer != TIMEOUT_EXPIRED
 }
 

@@ -7,11 +7,11 @@
 //! | renderbuffer                      | drawn to directly                               | attached directly           |
 //! | framebuffer (the window's or any) | copied in, drawn to, copied back                | copied in (back, if asked)  |
 //!
-//! wgpu can neither read renderbuffers nor copy multisampled images on OpenGL: there we copy. Depth each time the target is
-//! asked for, so that it can be read as it is at that moment; colour before each draw that reads it.
+//! wgpu can neither read renderbuffers nor copy multisampled images on OpenGL: there we copy. Depth each time the
+//! target is asked for, so that it can be read as it is at that moment; colour before each draw that reads it.
 //!
-//! No name of the host is ever deleted: each wgpu texture carries a drop callback, which tells wgpu that it does not own
-//! the object.
+//! No name of the host is ever deleted: each wgpu texture carries a drop callback, which tells wgpu that it does not
+//! own the object.
 
 use std::sync::Arc;
 
@@ -25,19 +25,19 @@ use super::{
 };
 use crate::error::Result;
 
-/// What is done about multisampled images.
+/// Treatment of multisampled images.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Multisample {
     /// The wgpu textures have the host's samples: Welkin draws and reads depth per sample. From OpenGL 4.0 on; not on
     /// OpenGL ES nor on a forced tier 0.
     #[default]
     Each,
-    /// The wgpu textures have one sample: colour comes in averaged and goes back to every sample alike, depth is that of
-    /// one sample. Not on OpenGL ES.
+    /// The wgpu textures have one sample: colour comes in averaged and goes back to every sample alike, depth is that
+    /// of one sample. Not on OpenGL ES.
     Resolve,
 }
 
-/// What a host asks Welkin to draw into.
+/// Images that a host asks Welkin to draw into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct GlTargetDesc {
     /// The picture.
@@ -46,7 +46,7 @@ pub struct GlTargetDesc {
     pub depth: Option<GlImage>,
     /// Where red is 1 the host's pixel stays: a texture of one sample, if there is one.
     pub mask: Option<GlImage>,
-    /// What each pixel shows is made of: a texture of one sample, if there is one.
+    /// Material of what each pixel shows: a texture of one sample, if there is one.
     pub surface_classes: Option<GlImage>,
     /// Normals of what each pixel shows: a texture of one sample, if there is one.
     pub normals: Option<GlImage>,
@@ -56,7 +56,7 @@ pub struct GlTargetDesc {
     pub height: u32,
     /// A number the host raises when it makes an object anew under an old name.
     pub generation: u64,
-    /// What is done about multisampled images.
+    /// Treatment of multisampled images.
     pub multisample: Multisample,
     /// Whether depth may be written: what was copied in is copied back then.
     pub write_depth: bool,
@@ -64,16 +64,17 @@ pub struct GlTargetDesc {
 
 /// A target as wgpu textures, valid while the host is entered.
 ///
-/// Row 0 is the host's bottom row, as everywhere in OpenGL, and wgpu counts it as the top: see the room's page on what is
-/// upside down.
+/// Row 0 is the host's bottom row, as everywhere in OpenGL, and wgpu counts it as the top: see the room's page on what
+/// is upside down.
 #[derive(Debug)]
 pub struct GlTarget {
     /// Changes whenever the textures do; for caches of views and bind groups.
     pub id: u64,
-    /// What to draw to (`RENDER_ATTACHMENT`; `COPY_SRC` and `TEXTURE_BINDING` as well where `color_read` is `None`).
+    /// Colour to draw to (`RENDER_ATTACHMENT`; `COPY_SRC` and `TEXTURE_BINDING` as well where `color_read` is `None`).
     pub color: wgpu::Texture,
     /// The picture to read (`TEXTURE_BINDING`), where wgpu cannot copy `color` itself;
-    /// [`HostBinding::refresh`](crate::gpu::HostBinding::refresh) fills it, and [`View::record`](crate::frame::View::record) does.
+    /// [`HostBinding::refresh`](crate::gpu::HostBinding::refresh) fills it, and
+    /// [`View::record`](crate::frame::View::record) does.
     pub color_read: Option<wgpu::Texture>,
     /// Depth to attach.
     pub depth: Option<wgpu::Texture>,
@@ -95,9 +96,9 @@ pub(super) struct Part {
     pub(super) image: GlImage,
     pub(super) facts: Facts,
     pub(super) parameters: Option<Parameters>,
-    /// What wgpu uses instead of the host's image.
+    /// Copy that wgpu uses instead of the host's image.
     pub(super) copy: Option<Copied>,
-    /// What wgpu reads while it draws to colour that it cannot copy.
+    /// Copy that wgpu reads while it draws to colour that it cannot copy.
     pub(super) reading: Option<Copied>,
 }
 
@@ -127,7 +128,7 @@ pub(super) struct Entry {
 pub(super) struct Made {
     pub(super) framebuffers: Vec<u32>,
     pub(super) textures: Vec<u32>,
-    /// What is attached where: framebuffer, attachment, image.
+    /// Attachments that were made: framebuffer, attachment, image.
     pub(super) attached: Vec<(u32, u32, Object)>,
 }
 
@@ -160,8 +161,8 @@ impl Entry {
     /// A refused copy.
     pub(super) fn begin(&mut self, api: &Api) -> Result<()> {
         let size = (self.desc.width, self.desc.height);
-        // Anew, or a framebuffer would hold on to an object that the host has deleted and made again under its name; another
-        // context's changes are promised only then, too (OpenGL 4.6 core specification, section 5.3.3, rule 4).
+        // Anew, or a framebuffer would hold on to an object that the host has deleted and made again under its name;
+        // another context's changes are promised only then, too (OpenGL 4.6 core specification, section 5.3.3, rule 4).
         for (framebuffer, attachment, object) in &self.made.attached {
             api.BindFramebuffer(FRAMEBUFFER, *framebuffer);
             object.attach(api, *attachment);
@@ -237,7 +238,7 @@ impl Entry {
     }
 }
 
-/// What a copy of an image carries.
+/// Returns the buffer bits that a copy of an image carries.
 pub(super) fn mask(side: Side, internal: u32) -> u32 {
     match side {
         Side::Color | Side::Mask | Side::Classes | Side::Normals => COLOR_BUFFER_BIT,

@@ -1,8 +1,8 @@
-//! Whether the window is as large as the host says. OpenGL does not tell its size, but which samples of a draw pass: none of those
-//! outside it.
+//! Whether the window is as large as the host says. OpenGL does not tell its size, but which samples of a draw pass:
+//! none of those outside it.
 //!
-//! Asked in every frame by some lines of pixels that change nothing, and answered in a later one, since waiting would stall; only a
-//! window that is new is waited for.
+//! Asked in every frame by some lines of pixels that change nothing, and answered in a later one, since waiting would
+//! stall; only a window that is new is waited for.
 
 use std::ffi::c_char;
 
@@ -51,8 +51,8 @@ impl WindowSize {
         unsafe { api.DeleteQueries(LINES as i32, self.queries.as_ptr()) };
     }
 
-    /// Asks about a window said to be of `size`, unless an answer is out or the host counts samples itself. In the state that wgpu
-    /// takes for granted, which stays, with a vertex array bound.
+    /// Asks about a window said to be of `size`, unless an answer is out or the host counts samples itself. In the
+    /// state that wgpu takes for granted, which stays, with a vertex array bound.
     pub(super) fn ask(&mut self, api: &Api, (width, height): (u32, u32)) {
         let busy = [ANY_SAMPLES_PASSED, ANY_SAMPLES_PASSED_CONSERVATIVE].iter().any(|target| {
             let mut current = 0;

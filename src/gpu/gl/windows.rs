@@ -1,7 +1,8 @@
 //! The host's contexts in shared mode: one a window, all sharing objects with Welkin's one.
 //!
-//! A call comes from the window whose context is current, and must go back to it; only the host's callback can make that so. A host
-//! whose callback knows one window only would find itself drawing into that one after a call from another.
+//! A call comes from the window whose context is current, and must go back to it; only the host's callback can make
+//! that so. A host whose callback knows one window only would find itself drawing into that one after a call from
+//! another.
 
 use super::{WhichContext, api::Api, host::Switch, mark::Mark, names::VERSION};
 use crate::error::Result;

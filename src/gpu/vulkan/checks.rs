@@ -156,7 +156,8 @@ pub(super) unsafe fn queue_family(desc: &VulkanHostDesc<'_>, loaded: &LoadedInst
     Ok(())
 }
 
-/// What the backend needs beyond Vulkan 1.0, and features that the host claims but cannot have: all of it at once.
+/// Checks for what the backend needs beyond Vulkan 1.0, and for features that the host claims but cannot have: all of
+/// it at once.
 pub(super) fn extensions(
     told: u32,
     api_version: u32,

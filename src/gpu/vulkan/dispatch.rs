@@ -1,5 +1,6 @@
-//! The few Vulkan functions that stand between wgpu and a host's device: capability queries answered with what
-//! the host enabled, and queue calls made under the host's queue lock. One creation call loses a structure that old hosts do not know.
+//! The few Vulkan functions that stand between wgpu and a host's device: capability queries answered with what the host
+//! enabled, and queue calls made under the host's queue lock. One creation call loses a structure that old hosts do not
+//! know.
 //!
 //! Vulkan entry points carry no user pointer, so the record behind each is found by the handle in its first
 //! argument. Every other function goes straight to the driver.

@@ -1,4 +1,5 @@
-//! What a host enabled on its Vulkan device, and how that narrows what wgpu is told the device can do.
+//! Features and extensions that a host enabled on its Vulkan device, and how they narrow what wgpu is told the device
+//! can do.
 //!
 //! wgpu's Vulkan backend derives its behaviour from what the *physical* device supports, because it normally
 //! creates the logical device itself. On a host's device that would use features that the host never switched

@@ -18,7 +18,7 @@ pub struct HostSemaphore {
     pub value: Option<u64>,
 }
 
-/// What the host lends for one submission.
+/// Images and semaphores that the host lends for one submission.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HandOver<'a> {
     /// Images that the commands use, each at most once, with the texture that [`VulkanHost::import`] gave for it.

@@ -18,7 +18,7 @@ pub(super) const FORMAT_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUE
 /// Imports kept at once; a host with more images than this pays for a new import now and then.
 const MAX_IMPORTS: usize = 64;
 
-/// What Welkin does with a host's image.
+/// Use that Welkin makes of a host's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageRole {
     /// Drawn into, and copied to be read: needs `VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT` and `TRANSFER_SRC_BIT`, and with
@@ -190,8 +190,8 @@ impl VulkanHost {
     }
 
     /// Waits until the GPU no longer uses `image` and forgets it. To be called before or after the host destroys an
-    /// image that it handed over, but before it hands over another: Vulkan may give a new image the old one's handle. What
-    /// is left to do is destroying views, for which the image need not live. Not a frame's call.
+    /// image that it handed over, but before it hands over another: Vulkan may give a new image the old one's handle.
+    /// What is left to do is destroying views, for which the image need not live. Not a frame's call.
     ///
     /// # Errors
     /// [`Status::DeviceLost`].

@@ -1,4 +1,4 @@
-//! Which layouts a host's image can be in, and what is missing where it cannot: a usage, a feature or an extension.
+//! Layouts that a host's image can be in, and what is missing where it cannot: a usage, a feature or an extension.
 
 use ash::vk;
 
@@ -8,8 +8,8 @@ use super::image::HostImage;
 const SWAPCHAIN: &str = "needs VK_KHR_swapchain enabled on the device and listed in enabled_device_extensions of the \
                          wk_vulkan_host_desc";
 
-/// What keeps `image` from being in `layout`, as the end of a sentence about the layout; `None` if nothing does.
-/// The rules are those for image barriers (Vulkan specification, VkImageMemoryBarrier, valid usage). `presents`:
+/// Returns what keeps `image` from being in `layout`, as the end of a sentence about the layout; `None` if nothing
+/// does. The rules are those for image barriers (Vulkan specification, VkImageMemoryBarrier, valid usage). `presents`:
 /// `VK_KHR_swapchain` is enabled.
 pub(super) fn obstacle(
     layout: vk::ImageLayout,

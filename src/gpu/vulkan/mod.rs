@@ -8,16 +8,16 @@
 //! Inside the callbacks no Welkin function may be called.
 //!
 //! # Images and order
-//! An image, or one layer of an array, is handed over for one submission ([`VulkanHost::submit`]) in the layout that the host left it in
-//! and comes back in the layout that it asks for. Work that the host submitted to the *same queue* before is
-//! waited for without a semaphore, and so is Welkin's by what the host submits to that queue afterwards: no
+//! An image, or one layer of an array, is handed over for one submission ([`VulkanHost::submit`]) in the layout that
+//! the host left it in and comes back in the layout that it asks for. Work that the host submitted to the *same queue*
+//! before is waited for without a semaphore, and so is Welkin's by what the host submits to that queue afterwards: no
 //! barrier of the host's own is needed. Semaphores order work with other queues.
 //!
 //! # What the host must have enabled
-//! Nothing beyond Vulkan 1.1 and a queue that draws and computes, except `VK_KHR_swapchain` for images in `PRESENT_SRC_KHR`
-//! and `sampleRateShading` for colour of several samples. Timeline semaphores, robust access, 16-bit
-//! storage and the like are used where the host says that it enabled them ([`EnabledFeatures`]), and otherwise
-//! not: wgpu is shown only what is enabled. On Vulkan 1.0 the device needs `VK_KHR_maintenance1` and
+//! Nothing beyond Vulkan 1.1 and a queue that draws and computes, except `VK_KHR_swapchain` for images in
+//! `PRESENT_SRC_KHR` and `sampleRateShading` for colour of several samples. Timeline semaphores, robust access, 16-bit
+//! storage and the like are used where the host says that it enabled them ([`EnabledFeatures`]), and otherwise not:
+//! wgpu is shown only what is enabled. On Vulkan 1.0 the device needs `VK_KHR_maintenance1` and
 //! `VK_KHR_storage_buffer_storage_class`.
 
 mod bracket;
@@ -44,7 +44,7 @@ use super::Device;
 use crate::error::{Error, Result, Status};
 use dispatch::HostRecord;
 
-/// What a host says of its Vulkan device. All handles stay the host's and must outlive the [`VulkanHost`].
+/// Description of a host's Vulkan device. All handles stay the host's and must outlive the [`VulkanHost`].
 #[derive(Clone, Copy, Debug)]
 pub struct VulkanHostDesc<'a> {
     /// The host's `vkGetInstanceProcAddr` (from its loader, GLFW, SDL, volk, ...).
@@ -65,7 +65,7 @@ pub struct VulkanHostDesc<'a> {
     pub enabled_features: EnabledFeatures,
     /// Family of the queue to submit on; it must draw and compute.
     pub queue_family_index: u32,
-    /// Which queue of that family, as created without flags.
+    /// Index of the queue in that family, as created without flags.
     pub queue_index: u32,
     /// Takes the host's queue lock; given together with `unlock_queue` or not at all.
     pub lock_queue: Option<unsafe extern "C" fn(user: *mut c_void)>,
@@ -98,12 +98,13 @@ impl std::fmt::Debug for VulkanHost {
 }
 
 impl VulkanHost {
-    /// What the host enabled on its device.
+    /// Returns the features that the host enabled on its device.
     pub fn enabled_features(&self) -> &EnabledFeatures {
         &self.record.enabled
     }
 
-    /// Waits for the GPU (and so for every semaphore that was to be waited for), gives everything back and says whether the host may now destroy its device.
+    /// Waits for the GPU (and so for every semaphore that was to be waited for), gives everything back and says whether
+    /// the host may now destroy its device.
     ///
     /// # Errors
     /// [`Status::InUse`] if contexts, views or textures made from this device are still alive: they keep it open,

@@ -1,13 +1,13 @@
 //! Where the run-off of each cell of a tile ends: in a pit, or over the border of its block in the next one.
 //!
-//! Run-off takes the steepest of the eight ways down, as on a single grid. Its way is looked up within blocks of 32 x 32 cells: a change of
-//! the ground is followed by the blocks that it touches, however far the water from them runs.
+//! Run-off takes the steepest of the eight ways down, as on a single grid. Its way is looked up within blocks of 32 x
+//! 32 cells: a change of the ground is followed by the blocks that it touches, however far the water from them runs.
 
 use crate::terrain::{AROUND, CellId, CellRect, Terrain, TileKey};
 
 /// Cells along a side of a block; tiles are multiples of it.
 const BLOCK: usize = 32;
-/// Of a cell whose way is not known yet.
+/// Sink number of a cell whose way is not known yet.
 const UNKNOWN: u16 = u16::MAX;
 
 /// Where run-off ends.
@@ -21,7 +21,7 @@ pub(super) enum Sink {
     Out,
 }
 
-/// What a block's cells drain to, and what has come there in this step, mm times cells.
+/// Sinks of a block's cells, and the water that has come to each in this step, mm times cells.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     pub sinks: Vec<Sink>,
@@ -65,7 +65,7 @@ fn below(terrain: &Terrain, cell: CellId) -> Sink {
 }
 
 impl Drains {
-    /// Of a tile, still unknown.
+    /// Creates the drains of a tile, all still unknown.
     pub fn new(terrain: &Terrain) -> Self {
         let side = terrain.side();
         let blocks = (side / BLOCK) * (side / BLOCK);

@@ -1,13 +1,14 @@
 //! Standing water on tiles: hollows that are found as water rises in them, wherever tiles end.
 //!
-//! The water of a pit rises over its neighbours from the lowest up (the priority-flood of Barnes, Lehman and Mulla 2014, of one hollow
-//! alone and no further than its water reaches) until the next cell has a lower neighbour on its other side: a saddle. What comes then
-//! spills over it into the pit beyond. Where two full waters spill into each other they become one, which rises from the saddle on; where
-//! it sinks below, they part (the hierarchy of hollows of Barnes, Callaghan and Wickert 2020 and 2021, found from below). So ground is
-//! looked at where water stands, and nowhere else: a change of the ground forgets the waters that it touches, and pours them anew.
+//! The water of a pit rises over its neighbours from the lowest up (the priority-flood of Barnes, Lehman and Mulla
+//! 2014, of one hollow alone and no further than its water reaches) until the next cell has a lower neighbour on its
+//! other side: a saddle. What comes then spills over it into the pit beyond. Where two full waters spill into each
+//! other they become one, which rises from the saddle on; where it sinks below, they part (the hierarchy of hollows of
+//! Barnes, Callaghan and Wickert 2020 and 2021, found from below). So ground is looked at where water stands, and
+//! nowhere else: a change of the ground forgets the waters that it touches, and pours them anew.
 //!
-//! Water is counted in millimetres times cells. Cells of one height follow each other by their place, so that what is found is
-//! the same for the same ground and water, however these came to be.
+//! Water is counted in millimetres times cells. Cells of one height follow each other by their place, so that what is
+//! found is the same for the same ground and water, however these came to be.
 
 mod parting;
 mod saved;
@@ -56,7 +57,8 @@ struct Close {
 struct Hollow {
     /// The two that it became one of.
     parts: Option<[u32; 2]>,
-    /// Cells of its own in the order in which water covers them, their heights, mm, and what it holds when it stands that high.
+    /// Cells of its own in the order in which water covers them, their heights, mm, and what it holds when it stands
+    /// that high.
     cells: Vec<CellId>,
     levels_mm: Vec<f64>,
     held_at: Vec<f64>,
@@ -84,7 +86,8 @@ pub(super) struct Lakes {
     free_hollows: Vec<u32>,
     lakes: Vec<Option<Lake>>,
     free_lakes: Vec<u32>,
-    /// Of each tile by its number, for each cell one more than the number of its lake, or 0; empty without any.
+    /// Numbers of lakes, by the number of the tile and then by cell: one more than the number of the cell's lake, or 0;
+    /// empty for a tile without any.
     owners: Vec<Vec<u32>>,
     /// How many there are.
     pub count: usize,
@@ -122,7 +125,7 @@ impl Hollow {
         (self.levels_mm[own - 1] + (held - self.held_at[own - 1]) / under, under)
     }
 
-    /// What it holds when the water stands at a height above all known cells.
+    /// Returns the water that it holds when the water stands at a height above all known cells.
     fn held_to(&self, level_mm: f64) -> f64 {
         let (held, from) = match (self.held_at.last(), self.levels_mm.last()) {
             (Some(held), Some(from)) => (*held, *from),

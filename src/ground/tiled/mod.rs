@@ -1,13 +1,14 @@
-//! Water on the tiles of the host's terrain: of every cell film and pores by the laws of [`super::water`], and in the hollows what
-//! runs off, wherever one tile ends and the next begins.
+//! Water on the tiles of the host's terrain: of every cell film and pores by the laws of [`super::water`], and in the
+//! hollows what runs off, wherever one tile ends and the next begins.
 //!
-//! In a step each cell that is awake sheds water ([`drains`]), which is in its pit at the end of the step; pits fill, spill and join
-//! ([`lakes`]). Beside a hole and at the end of the terrain water leaves; nothing runs in. Runs of cells on which nothing falls, flows or dries
-//! are passed over, and so are tiles of which all runs rest. So rain = change of film, pores and standing water + evaporated + leaked +
-//! drained, where drained is also what went with cells that were taken away.
+//! In a step each cell that is awake sheds water ([`drains`]), which is in its pit at the end of the step; pits fill,
+//! spill and join ([`lakes`]). Beside a hole and at the end of the terrain water leaves; nothing runs in. Runs of cells
+//! on which nothing falls, flows or dries are passed over, and so are tiles of which all runs rest. So rain = change of
+//! film, pores and standing water + evaporated + leaked + drained, where drained is also what went with cells that were
+//! taken away.
 //!
-//! A change of the ground is followed by the blocks and the waters that it touches. Water that stood there is poured anew where it
-//! stood: off a floor that was raised, into a pit that was dug.
+//! A change of the ground is followed by the blocks and the waters that it touches. Water that stood there is poured
+//! anew where it stood: off a floor that was raised, into a pit that was dug.
 //!
 //! Film and pores are kept in single precision, rounded down; what that takes off runs off.
 
@@ -33,8 +34,8 @@ use crate::terrain::{CellId, CellRect, Terrain, TileKey};
 
 /// Depth of water where none stands, mm.
 const BARE_MM: f64 = -50.0;
-/// How far around a change of heights lie the cells by which a water is found: its own cell, the saddle beside it, and what is
-/// beyond that.
+/// How far around a change of heights lie the cells by which a water is found: its own cell, the saddle beside it, and
+/// what is beyond that.
 const AROUND_LAKES: i32 = 2;
 
 /// A part of the terrain that is other than before.
@@ -49,7 +50,7 @@ pub(super) struct Changed {
 
 /// The water on a terrain of tiles.
 pub(super) struct TiledWater {
-    /// Of which terrain.
+    /// Number of the terrain that it lies on.
     id: u64,
     /// By the numbers of the terrain's tiles.
     tiles: Vec<Option<Box<TileWater>>>,

@@ -1,4 +1,5 @@
-//! The water of a terrain of tiles as it is saved, and back. Heights are the host's: a state names them by their hashes.
+//! The water of a terrain of tiles as it is saved, and back. Heights are the host's: a state names them by their
+//! hashes.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +19,7 @@ const JOINED: u64 = u64::MAX;
 #[serde(deny_unknown_fields)]
 struct SavedTile {
     tile: [i32; 2],
-    /// Of heights and classes.
+    /// Hash of the heights and classes.
     cells: String,
     /// Left out before it has water of its own: runs of equal film and pores, in base 64; for a hash, theirs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -139,7 +140,8 @@ impl SavedTiles {
     /// The water that was saved, on the terrain that the host has set.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if that is another terrain, [`crate::Status::Parse`] for what can be no water on it.
+    /// [`crate::Status::InvalidArgument`] if that is another terrain, [`crate::Status::Parse`] for what can be no water
+    /// on it.
     pub fn water(&self, terrain: Option<&Terrain>) -> Result<TiledWater> {
         self.check(terrain)?;
         let unfit = || parse_error("terrain_tiles must be the water that these tiles can hold");

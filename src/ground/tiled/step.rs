@@ -13,7 +13,7 @@ use crate::{
     world::{Within, World},
 };
 
-/// What acts on the ground in a step.
+/// Forcing of the ground in a step.
 #[derive(Clone, Copy)]
 pub(in super::super) struct TiledStep<'a> {
     pub world: &'a World,
@@ -24,7 +24,7 @@ pub(in super::super) struct TiledStep<'a> {
     /// The weather in its middle, and what it does to the ground.
     pub conditions: &'a Conditions,
     pub forcing: &'a Forcing,
-    /// Of level, open ground at its beginning.
+    /// Water of level, open ground at the step's beginning.
     pub water: &'a GroundWater,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct StepInParts {
     changes: bool,
 }
 
-/// What a step brought and took, and whether any water is other than before.
+/// Water that a step brought and took, and whether any water changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in super::super) struct Stepped {
     pub flows: Flows,
@@ -45,7 +45,8 @@ pub(in super::super) struct Stepped {
 }
 
 impl TiledWater {
-    /// Leads the water through a step, or a part of it until the time is over: one tile at least. None while tiles remain.
+    /// Leads the water through a step, or a part of it until the time is over: one tile at least. None while tiles
+    /// remain.
     pub fn step(&mut self, now: &TiledStep<'_>, within: Option<Within>) -> Result<Option<Stepped>> {
         let mut part = self.part.take().unwrap_or_default();
         let step = Step::new(now.forcing, now.seconds);
@@ -118,7 +119,7 @@ impl TiledWater {
             (self.lakes.covered(), (terrain.all().len() * terrain.side() * terrain.side()) as f64);
     }
 
-    /// What ran off in this step by the pits that it comes to.
+    /// Collects the water that ran off in this step, by the pits that it comes to.
     fn gather(&mut self, terrain: &Terrain, flows: &mut Flows) -> Vec<(CellId, f64)> {
         let mut ends: Vec<(Sink, f64)> = Vec::new();
         for slot in self.keys.values() {

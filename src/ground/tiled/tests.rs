@@ -266,7 +266,7 @@ fn no_water_is_lost_where_the_ground_changes() {
     );
 }
 
-/// What a changed terrain comes to is what the same terrain set anew comes to: nothing of before is left over.
+/// A changed terrain ends with the same state as the same terrain set anew: nothing of the earlier one is left over.
 #[test]
 fn changes_leave_the_same_ground_as_setting_it_anew() {
     let size = 2 * SIDE as usize;
@@ -291,7 +291,8 @@ fn changes_leave_the_same_ground_as_setting_it_anew() {
 
 #[test]
 fn a_raised_floor_lifts_its_water_over_the_rim() {
-    // A trench of 8 x 3 cells over the border of two tiles, half a metre deep, in a plain that falls gently to the east.
+    // A trench of 8 x 3 cells over the border of two tiles, half a metre deep, in a plain that falls gently to the
+    // east.
     let trench = CellRect { low: [28, 10], high: [36, 13] };
     let plain = |p: [i32; 2]| -0.002 * p[0] as f32;
     let ground = |p: [i32; 2]| if trench.cells().any(|c| c == p) { -0.5 } else { plain(p) };

@@ -26,7 +26,7 @@ pub(super) struct TileWater {
     /// By runs of cells: whether anything on them flows or dries.
     awake: Vec<bool>,
     any_awake: bool,
-    /// Of film and pores, until they change.
+    /// Hash of film and pores, until they change.
     hash: OnceLock<u64>,
 }
 
@@ -71,7 +71,7 @@ impl TileWater {
         &self.top
     }
 
-    /// What lies on the cells and in their pores, mm times cells.
+    /// Returns the water on the cells and in their pores, mm times cells.
     pub fn on_cells(&self) -> f64 {
         self.top.iter().flatten().map(|v| f64::from(*v)).sum()
     }
@@ -91,7 +91,7 @@ impl TileWater {
         }
     }
 
-    /// The same for the same film and pores.
+    /// Returns a hash that is equal for equal film and pores.
     pub fn hash(&self) -> u64 {
         *self.hash.get_or_init(|| {
             let fold = |hash: u64, top: &[f32; 2]| {
@@ -156,8 +156,8 @@ impl TileWater {
         on_cells
     }
 
-    /// Leads film and pores through a step; what runs off is counted where it ends. Passes over runs that rest. `rains`: whether
-    /// anything falls on the tile.
+    /// Leads film and pores through a step; what runs off is counted where it ends. Passes over runs that rest.
+    /// `rains`: whether anything falls on the tile.
     pub fn step(&mut self, tile: &Tile, (slot, lakes): (usize, &Lakes), step: &Step, rains: bool) -> Flows {
         let mut flows = Flows::default();
         if !rains && !self.any_awake {

@@ -1,5 +1,6 @@
-//! DirectDraw surfaces (Microsoft, *Programming Guide for DDS*): a header of 128 bytes, 20 more where its pixel format is "DX10", then
-//! the mip levels from the largest on. Many programs read the shorter header alone, so that is the one that is written.
+//! DirectDraw surfaces (Microsoft, *Programming Guide for DDS*): a header of 128 bytes, 20 more where its pixel format
+//! is "DX10", then the mip levels from the largest on. Many programs read the shorter header alone, so that is the one
+//! that is written.
 
 use super::{NoiseImage, bytes_of_level, check_levels, check_size, copy, cut_short, foreign, word};
 use crate::error::{Error, Result, Status};
@@ -91,8 +92,8 @@ pub fn read(bytes: &[u8]) -> Result<NoiseImage> {
     Ok(NoiseImage::of_levels(size, levels))
 }
 
-/// The dimension that the longer header gives, of which NVIDIA's exporter writes none; nothing where there is no longer header. Refuses
-/// texels other than one byte.
+/// The dimension that the longer header gives, of which NVIDIA's exporter writes none; nothing where there is no longer
+/// header. Refuses texels other than one byte.
 fn longer_header(bytes: &[u8]) -> Result<Option<Option<u32>>> {
     let flags = word(bytes, AT_PIXEL_FLAGS)?;
     if flags & FOUR_CC == 0 {

@@ -1,5 +1,5 @@
-//! Khronos textures (Khronos 2020, *KTX File Format Specification*, version 2.0): header, index of the mip levels, data format
-//! descriptor, then the levels from the smallest on.
+//! Khronos textures (Khronos 2020, *KTX File Format Specification*, version 2.0): header, index of the mip levels, data
+//! format descriptor, then the levels from the smallest on.
 
 use super::{NoiseImage, bytes_of_level, check_levels, check_size, copy, cut_short, foreign, long, word};
 use crate::error::{Error, Result, Status};
@@ -22,8 +22,9 @@ const LEVEL: usize = 24;
 /// VK_FORMAT_R8_UNORM.
 const R8_UNORM: u32 = 9;
 
-/// Data format descriptor of it (Khronos, *Data Format Specification* 1.3, section 5): its length; a basic block of version 2 with 40
-/// bytes; colours by red, green and blue, primaries of BT.709, linear; one byte a texel; one sample of 8 bits, red, from 0 to 255.
+/// Data format descriptor of it (Khronos, *Data Format Specification* 1.3, section 5): its length; a basic block of
+/// version 2 with 40 bytes; colours by red, green and blue, primaries of BT.709, linear; one byte a texel; one sample
+/// of 8 bits, red, from 0 to 255.
 const DESCRIPTOR: [u32; 11] = [44, 0, 2 | 40 << 16, 1 | 1 << 8 | 1 << 16, 0, 1, 0, 7 << 16, 0, 0, 255];
 /// The key that names the writer with its value: their length, they themselves, and zeros up to a multiple of 4 bytes.
 const WRITER: &[u8] = b"\x11\0\0\0KTXwriter\0Welkin\0\0\0\0";

@@ -32,13 +32,14 @@ impl NoiseImage {
         Self::from_bytes(&bytes).map_err(|e| e.found_in(&name))
     }
 
-    /// Reads a texture of one channel of 8 bits, a plane or a volume: DDS with the pixel format A8, L8, R8_UNORM or A8_UNORM, or KTX2
-    /// with VK_FORMAT_R8_UNORM and without supercompression. Mip levels that it has are kept; none are made.
+    /// Reads a texture of one channel of 8 bits, a plane or a volume: DDS with the pixel format A8, L8, R8_UNORM or
+    /// A8_UNORM, or KTX2 with VK_FORMAT_R8_UNORM and without supercompression. Mip levels that it has are kept; none
+    /// are made.
     ///
     /// # Errors
     /// [`Status::Unsupported`] for other files, formats, cube maps, arrays and textures of more than 2^27 texels;
-    /// [`Status::Parse`] for bytes cut short or that contradict themselves; [`Status::OutOfMemory`]. The message names the field
-    /// of the file.
+    /// [`Status::Parse`] for bytes cut short or that contradict themselves; [`Status::OutOfMemory`]. The message names
+    /// the field of the file.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         check_length(bytes.len() as u64)?;
         if bytes.starts_with(&dds::MAGIC) {
@@ -50,13 +51,14 @@ impl NoiseImage {
         }
     }
 
-    /// The image as a DDS file with its mip levels, as luminance of 8 bits (L8): the form of it that most programs read.
+    /// The image as a DDS file with its mip levels, as luminance of 8 bits (L8): the form of it that most programs
+    /// read.
     pub fn to_dds(&self) -> Vec<u8> {
         dds::write(self, dds::Texels::Luminance)
     }
 
-    /// The image as a DDS file with its mip levels and the longer header, called DX10, with the format R8_UNORM: for programs that want
-    /// the format by its name. Fewer read it.
+    /// The image as a DDS file with its mip levels and the longer header, called DX10, with the format R8_UNORM: for
+    /// programs that want the format by its name. Fewer read it.
     pub fn to_dds_dx10(&self) -> Vec<u8> {
         dds::write(self, dds::Texels::Red)
     }

@@ -1,4 +1,4 @@
-//! What is found of a lattice, against its twin in f64.
+//! Tests of what is found of a lattice, against its twin in f64.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ struct Bench {
     surroundings: surroundings::SurroundingsBlock,
     classes: Classes,
     clip: DMat4,
-    /// Of the camera.
+    /// Velocity of the camera.
     velocity_m_s: DVec3,
 }
 
@@ -53,7 +53,8 @@ impl Bench {
         Self { device, blocks, block, pass, surroundings, classes, clip: DMat4::IDENTITY, velocity_m_s: DVec3::ZERO }
     }
 
-    /// Finds what a camera at [`EYE`] sees; answers (vertices, drops, ...) of the draw, and middles and widths of the streaks.
+    /// Finds what a camera at [`EYE`] sees; answers (vertices, drops, ...) of the draw, and middles and widths of the
+    /// streaks.
     fn find(&mut self, fov_rad: f64) -> ([u32; 4], Vec<([f32; 3], f32)>) {
         let camera = Camera::look_to(EYE, DVec3::Y, DVec3::Z, fov_rad, 1.5, 0.1);
         let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..DepthMapping::default() }).unwrap();

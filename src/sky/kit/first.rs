@@ -11,12 +11,13 @@ use crate::gpu::readback;
 const LIMIT: Duration = Duration::from_secs(20);
 
 impl Kit {
-    /// On OpenGL, the first time: draws one texel of the first strip, which the strip then draws over, and waits for it. NVIDIA's 580.159
-    /// never finishes it, and whoever waits for a frame after it would wait for ever. Inside a host's conditional render nothing is
-    /// drawn: tables that are then taken for built would stay empty.
+    /// On OpenGL, the first time: draws one texel of the first strip, which the strip then draws over, and waits for
+    /// it. NVIDIA's 580.159 never finishes it, and whoever waits for a frame after it would wait for ever. Inside a
+    /// host's conditional render nothing is drawn: tables that are then taken for built would stay empty.
     ///
     /// # Errors
-    /// [`Status::DeviceLost`] if the GPU does not finish; [`Status::WrongOrder`] if nothing was drawn, and the next call tries again.
+    /// [`Status::DeviceLost`] if the GPU does not finish; [`Status::WrongOrder`] if nothing was drawn, and the next
+    /// call tries again.
     pub(super) fn begin(&self, build: &Build) -> Result<()> {
         let caps = self.device.caps();
         if caps.backend != wgpu::Backend::Gl || self.begun.load(Ordering::Acquire) {

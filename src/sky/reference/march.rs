@@ -15,7 +15,7 @@ pub struct Sample {
     pub mu: f64,
     /// Per wavelength: path length x gas scattering x transmittance back to the start, 1.
     pub gas: [f64; 3],
-    /// The same for haze.
+    /// Per wavelength: path length x haze scattering x transmittance back to the start, 1.
     pub haze: [f64; 3],
 }
 

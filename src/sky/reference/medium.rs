@@ -1,4 +1,4 @@
-//! What the air does to light at one altitude: densities, coefficients and phase functions.
+//! Optics of the air at one altitude: densities, coefficients and phase functions.
 
 use std::f64::consts::PI;
 

@@ -67,8 +67,8 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// For everyday tests: a second or two. Against [`Resolution::FINE`] 95 % of all views from the ground to space, sun
-    /// down to 96 degrees, are within 0.3 % in clear air and 0.6 % in haze (visibility 12 km).
+    /// For everyday tests: a second or two. Against [`Resolution::FINE`] 95 % of all views from the ground to space,
+    /// sun down to 96 degrees, are within 0.3 % in clear air and 0.6 % in haze (visibility 12 km).
     pub const QUICK: Self =
         Self { altitudes: 12, sun_angles: 30, zeniths: 14, azimuths: 8, panel_points: 3, haze_directions: (25, 13) };
     /// For truths: half a minute to minutes. Against twice this resolution 95 % of the same views are within 0.1 %.
@@ -276,7 +276,8 @@ impl Reference {
         Ok(along)
     }
 
-    /// Light scattered into a piece of a ray and its transmittance. A ray that meets the ground's sphere before ends there.
+    /// Light scattered into a piece of a ray and its transmittance. A ray that meets the ground's sphere before ends
+    /// there.
     ///
     /// # Errors
     /// As [`Reference::radiance`]; `distance_m` must be in `[0, 1e12]` m.

@@ -190,8 +190,8 @@ impl Ray {
         density * sum
     }
 
-    /// Integral of the ozone tent over u in [a, b], in closed form: with t the distance from the perigee, the integral of
-    /// r dt is (t r + r_p^2 asinh(t / r_p)) / 2.
+    /// Integral of the ozone tent over u in [a, b], in closed form: with t the distance from the perigee, the integral
+    /// of r dt is (t r + r_p^2 asinh(t / r_p)) / 2.
     fn ozone_leg(&self, medium: &Medium, a: f64, b: f64) -> f64 {
         let (center, half_width) = medium.ozone_m;
         if half_width <= 0.0 {

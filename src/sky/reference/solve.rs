@@ -36,7 +36,7 @@ pub struct Solver<'a> {
 /// Light below this share of the brightest is not followed: it is a millionth of what the stars give.
 const DARK: f64 = 1e-12;
 
-/// What one altitude's sweep yields: source [sun] and [sun][zenith][azimuth], and the ground's irradiance [sun].
+/// Result of one altitude's sweep: source [sun] and [sun][zenith][azimuth], and the ground's irradiance [sun].
 struct Row {
     gas: Vec<Moments>,
     haze: Vec<[f64; 3]>,
@@ -53,7 +53,7 @@ struct Prepared {
     ground: Option<(f64, [f64; 3])>,
 }
 
-/// What lights the air in a sweep.
+/// Light that falls on the air in a sweep.
 enum Light<'a> {
     /// The sun itself, and the ground in direct sunlight.
     Sun,

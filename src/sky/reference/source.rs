@@ -65,7 +65,8 @@ pub struct Source {
     /// Moments on a grid `REFINE` times finer, linear between nodes.
     gas: Vec<Moments>,
     gas_size: (usize, usize),
-    /// Haze source, laid out alike, `REFINE_HAZE` times finer in altitude and sun; single precision, because it is large.
+    /// Haze source, laid out alike, `REFINE_HAZE` times finer in altitude and sun; single precision, because it is
+    /// large.
     haze: Vec<[f32; 3]>,
     haze_size: (usize, usize),
     haze_directions: (usize, usize),
@@ -111,8 +112,8 @@ impl Source {
         Place { altitude: self.altitudes.coordinate(altitude_m), mu, sine, zenith: mu.clamp(-1.0, 1.0).acos() }
     }
 
-    /// Light scattered into the ray by gas and by haze per unit of their scattering coefficients. `mu_s` is the cosine of
-    /// the sun's zenith angle at the place, `nu` of the angle between ray and sun; haze only if asked for.
+    /// Light scattered into the ray by gas and by haze per unit of their scattering coefficients. `mu_s` is the cosine
+    /// of the sun's zenith angle at the place, `nu` of the angle between ray and sun; haze only if asked for.
     pub fn at(&self, place: &Place, mu_s: f64, nu: f64, with_haze: bool) -> ([f64; 3], [f64; 3]) {
         let mu_s = mu_s.clamp(-1.0, 1.0);
         let sun_sine = ((1.0 - mu_s) * (1.0 + mu_s)).sqrt();
@@ -175,8 +176,8 @@ impl Source {
     }
 }
 
-/// Logarithm above a floor. Light falls by e for each 0.7 degrees of the sun in twilight: its logarithm is what a grid of
-/// that width can hold.
+/// Logarithm above a floor. Light falls by e for each 0.7 degrees of the sun in twilight: its logarithm is what a grid
+/// of that width can hold.
 fn to_log(v: f64, floor: f64) -> f64 {
     v.max(floor).max(f64::MIN_POSITIVE).ln()
 }

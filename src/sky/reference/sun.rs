@@ -26,8 +26,8 @@ pub fn disc_strips(sun_zenith: f64, angular_radius: f64, strips: usize) -> Vec<(
         .collect()
 }
 
-/// Columns towards the sun for the many look-ups of multiple scattering: logarithms of the exponential media's tabulated,
-/// linear between nodes; ozone's in closed form. Its error is held against quadrature in the tests.
+/// Columns towards the sun for the many look-ups of multiple scattering: logarithms of the exponential media's
+/// tabulated, linear between nodes; ozone's in closed form. Its error is held against quadrature in the tests.
 pub struct SunTable {
     medium: Medium,
     altitudes: usize,

@@ -33,7 +33,8 @@ impl Night {
         Self { pass: StarPass::new(&device), device, settings, heavens }
     }
 
-    /// Draws the stars and reads them back; `depth` is written over the left half of the picture, beyond it is the far end.
+    /// Draws the stars and reads them back; `depth` is written over the left half of the picture, beyond it is the far
+    /// end.
     fn draw(&mut self, view: &StarView<'_>, depth: Option<StarDepth<'_>>) -> Vec<[f64; 3]> {
         let device = self.device.clone();
         let target = texture(&device, view.size.into(), FORMAT, 1);
@@ -128,7 +129,7 @@ fn light_of(picture: &[[f64; 3]], view: &StarView<'_>, camera: &Camera) -> f64 {
     (0..picture.len()).map(texel).sum()
 }
 
-/// What the reference makes of the same stars, and all their light.
+/// Returns the picture that the reference makes of the same stars, and all their light.
 fn expected(view: &StarView<'_>, stars: &[Star]) -> (Vec<[f64; 3]>, f64) {
     let mut picture = vec![[0.0; 3]; (view.size[0] * view.size[1]) as usize];
     let mut light = 0.0;

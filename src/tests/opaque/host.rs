@@ -98,7 +98,8 @@ pub fn pixels() -> std::ops::Range<usize> {
     0..(SIZE.0 * SIZE.1) as usize
 }
 
-/// Metres along the pixel's ray to the host's wall: 60 m north of the camera, 24 m wide, from the world's floor to 15 m.
+/// Metres along the pixel's ray to the host's wall: 60 m north of the camera, 24 m wide, from the world's floor to 15
+/// m.
 pub fn to_wall(rays: &ViewRays, at: DVec2) -> f64 {
     let ray = rays.view_ray(at);
     let range = (60.0 - ray.origin.y) / ray.direction.y;
@@ -107,7 +108,7 @@ pub fn to_wall(rays: &ViewRays, at: DVec2) -> f64 {
     if hit { range } else { RANGE_SKY_M }
 }
 
-/// The same to Welkin's plane, and the square that is met.
+/// Metres along the pixel's ray to Welkin's plane, and the luminance of the square that is met.
 pub fn to_plane(rays: &ViewRays, at: DVec2) -> (f64, f64) {
     let ray = rays.view_ray(at);
     let range = (PLANE_M - EYE.z - ray.origin.z) / ray.direction.z;
@@ -250,7 +251,7 @@ impl Host {
         Self { device, context, view, color, depth, frame_id: 0 }
     }
 
-    /// What the host draws: its wall, and far depth round it; the first row the picture's bottom if `bottom`.
+    /// Draws the host's picture: its wall, and far depth around it; the first row is the picture's bottom if `bottom`.
     pub fn draw_own(&self, case: &Mapped, bottom: bool) {
         let rays = case.rays();
         let far = case.mapping.far_depth() as f32;

@@ -1,4 +1,4 @@
-//! What the amounts of a report's cloud groups mean: which rule a station follows, and the cover of each layer by it.
+//! Amounts of a report's cloud groups: which rule a station follows, and the cover of each layer by it.
 
 use super::super::kinds::CloudAmountRule;
 

@@ -1,4 +1,4 @@
-//! What stands in for what a report does not say.
+//! Values that stand in for what a report does not say.
 
 use super::parse::Parsed;
 use super::phenomena::{Descriptor, Intensity, Phenomenon, WeatherGroup};

@@ -1,4 +1,4 @@
-//! What a report means: words of intensity become rates, classes become figures.
+//! Meaning of a report: words of intensity become rates, classes become figures.
 
 use super::amounts;
 use super::assumed;

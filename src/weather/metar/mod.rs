@@ -51,7 +51,7 @@ pub struct MetarPlaces {
     pub unread: Range<usize>,
 }
 
-/// What a report says: the weather, and what surrounds it.
+/// Content of a report: the weather, and what surrounds it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MetarReport {
     /// The weather. `station_altitude_m` is 0, because reports do not carry it: look `station` up in a list of airports

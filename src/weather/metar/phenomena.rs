@@ -1,6 +1,6 @@
 //! The groups of present weather: `+TSRA`, `FZFG`, `BLSN` (WMO code table 4678).
 
-/// What stands before a group.
+/// Prefix of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Intensity {
     /// `-`
@@ -26,7 +26,7 @@ pub(super) enum Descriptor {
     Freezing,
 }
 
-/// What is there.
+/// Phenomenon that a group reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Phenomenon {
     Drizzle,

@@ -1,4 +1,4 @@
-//! What is bound in the host's context: programs, vertex arrays, buffers, textures, samplers, images, framebuffers,
+//! Bindings in the host's context: programs, vertex arrays, buffers, textures, samplers, images, framebuffers,
 //! transform feedback.
 
 use super::super::{api::Api, check::GlInfo, names::*};

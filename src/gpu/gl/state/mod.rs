@@ -6,7 +6,8 @@
 //! the default clip control, packed pixels, no logic operation, every sample covered, nothing clamped. `normalise` sets
 //! that. *Leaks out*: everything it sets. One list serves both: what is saved is the union.
 //!
-//! Not in the list because they cannot be put aside: conditional rendering and queries that count (the `counting` room refuses them).
+//! Not in the list because they cannot be put aside: conditional rendering and queries that count (the `counting` room
+//! refuses them).
 
 mod bind;
 mod pixel;

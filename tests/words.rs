@@ -1,0 +1,87 @@
+//! How comments read: a doc block begins with a noun or a verb, and no line of a comment is wider than 120 columns.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Most columns of a line of a comment. Tables are as wide as they are.
+const COLUMNS: usize = 120;
+/// Openings that say neither what a thing is nor what it does.
+const OPENINGS: [&str; 6] = ["Of", "The same", "Likewise", "Those", "Which", "What"];
+
+fn files(folders: &[&str]) -> Vec<(PathBuf, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut left: Vec<PathBuf> = folders.iter().map(|folder| root.join(folder)).collect();
+    let mut found = Vec::new();
+    while let Some(path) = left.pop() {
+        if path.is_dir() {
+            left.extend(fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()));
+        } else if path.extension().is_some_and(|e| e == "rs" || e == "wgsl" || e == "glsl") {
+            let text = fs::read_to_string(&path).unwrap();
+            found.push((path, text));
+        }
+    }
+    found
+}
+
+/// Text of a comment line, if it is one.
+fn comment(line: &str) -> Option<&str> {
+    line.trim_start().strip_prefix("//")
+}
+
+/// Text of a doc line, if it is one.
+fn doc(line: &str) -> Option<&str> {
+    comment(line).and_then(|c| c.strip_prefix(['/', '!'])).map(str::trim_start)
+}
+
+/// First lines of doc blocks with one of the openings.
+fn without_a_noun(text: &str) -> Vec<(usize, &str)> {
+    let opens = |first: &str| {
+        OPENINGS.iter().any(|o| first.strip_prefix(o).is_some_and(|rest| rest.starts_with([' ', ',', ':', '.'])))
+    };
+    let mut before = None;
+    let mut found = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let here = doc(line);
+        if let (None, Some(first)) = (before, here) {
+            if opens(first) {
+                found.push((i + 1, first));
+            }
+        }
+        before = here;
+    }
+    found
+}
+
+/// Lines of comments that are too wide, other than rows of tables and examples of code, which are indented.
+fn too_wide(text: &str) -> Vec<(usize, &str)> {
+    let is_prose = |c: &str| !c.trim_start_matches(['/', '!']).trim_start().starts_with('|') && !c.contains("   ");
+    let wide = |line: &&str| line.chars().count() > COLUMNS && comment(line).is_some_and(is_prose);
+    text.lines().enumerate().filter(|(_, line)| wide(line)).map(|(i, line)| (i + 1, line)).collect()
+}
+
+#[test]
+fn doc_blocks_begin_with_a_noun_or_a_verb() {
+    let text = "/// Of the camera.\nfn a() {}\n/// Velocity.\n/// Of it.\nfn b() {}\n//! What it is.\n/// Offset.\n";
+    let found: Vec<usize> = without_a_noun(text).into_iter().map(|(line, _)| line).collect();
+    assert_eq!(found, [1, 6], "the rule itself");
+    let all: Vec<String> = files(&["src"])
+        .iter()
+        .flat_map(|(path, text)| without_a_noun(text).into_iter().map(|(i, l)| format!("{}:{i}: {l}", path.display())))
+        .collect();
+    assert!(all.is_empty(), "{} doc blocks:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn comments_are_at_most_120_columns_wide() {
+    let wide = "x".repeat(120);
+    let text = format!("// {wide}\n/// | {wide}\n//   {wide}\nlet a = \"{wide}\";\n// short\n    /// {wide}\n");
+    let found: Vec<usize> = too_wide(&text).into_iter().map(|(line, _)| line).collect();
+    assert_eq!(found, [1, 6], "the rule itself");
+    let all: Vec<String> = files(&["src", "shaders", "tests", "examples", "benches"])
+        .iter()
+        .flat_map(|(path, text)| too_wide(text).into_iter().map(|(i, _)| format!("{}:{i}", path.display())))
+        .collect();
+    assert!(all.is_empty(), "{} lines:\n{}", all.len(), all.join("\n"));
+}
