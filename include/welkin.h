@@ -66,8 +66,8 @@
  *
  * WHAT COMES LATER, AND HOW
  *
- * Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a major
- * version, and later versions add new ones. Settled for what is planned, so that a host can prepare:
+ * Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a
+ * major version, and later versions add new ones. Settled for what is planned, so that a host can prepare:
  * - The sea is drawn by new functions of the context. It tests and writes the host's depth, which a frame lends with
  *   wk_frame.depth_access.
  * - Soil materials of the terrain's tiles are new functions of the context.
@@ -111,7 +111,7 @@
  *   [view]            Views
  *   [veil]            Textures for the host's transparent things
  *   [environment]     A cube map of what stands around the camera
- *   [plan]            What a picture needs, and no more
+ *   [plan]            Plan and budget of a view
  *
  * What falls
  *   [rain]            Rain
@@ -403,10 +403,10 @@ WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_leve
  * host's wgpu device. All later calls are the same for all four.
  *
  * Make one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
- * (driver reset, unplugged) every call that needs it answers WK_ERROR_DEVICE_LOST: those that create, build, draw, read
- * or write what lies on it, and wk_context_get_ambient. A context's weather, time, settings, other queries and state need
- * no GPU and go on: save the state with wk_context_save, destroy the views, contexts and the device, create them again,
- * and load the state.
+ * (driver reset, unplugged) every call that needs it answers WK_ERROR_DEVICE_LOST: those that create, build, draw,
+ * read or write what lies on it, and wk_context_get_ambient. A context's weather, time, settings, other queries and
+ * state need no GPU and go on: save the state with wk_context_save, destroy the views, contexts and the device, create
+ * them again, and load the state.
  * ====================================================================================================
  */
 
@@ -506,14 +506,11 @@ typedef struct wk_caps {
 
 /**
  * Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle,
- * which you destroy with `wk_device_destroy`; else it stays untouched.
- * Thread: any.
- * Errors: WK_ERROR_NO_ADAPTER if no driver fits the request, or an OpenGL driver draws a few known texels wrong or does
- * not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT by name.
+ * which you destroy with `wk_device_destroy`; else it stays untouched. Thread: any. Errors: WK_ERROR_NO_ADAPTER if no
+ * driver fits the request, or an OpenGL driver draws a few known texels wrong or does not finish them within 6 s;
+ * WK_ERROR_INVALID_ARGUMENT by name.
  */
-WK_API
-wk_status wk_device_create(const wk_device_desc *desc,
-                           wk_device **out_device);
+WK_API wk_status wk_device_create(const wk_device_desc *desc, wk_device **out_device);
 
 /**
  * Destroys a device. NULL does nothing.
@@ -944,7 +941,7 @@ typedef struct wk_opengl_image {
     wk_opengl_image_kind kind;
     /** Its OpenGL name. Default 0. */
     uint32_t name;
-    /** Of a texture: GL_TEXTURE_2D (0x0DE1, the default) or GL_TEXTURE_2D_MULTISAMPLE (0x9100). */
+    /** Target of a texture: GL_TEXTURE_2D (0x0DE1, the default) or GL_TEXTURE_2D_MULTISAMPLE (0x9100). */
     uint32_t target;
     /** Must be 0. */
     uint32_t reserved0;
@@ -1198,8 +1195,8 @@ typedef struct wk_vulkan_image {
      */
     uint32_t samples;
     /**
-     * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is read,
-     * DEPTH_STENCIL_ATTACHMENT too for depth with WK_DEPTH_ACCESS_READ_WRITE.
+     * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is
+     * read, DEPTH_STENCIL_ATTACHMENT too for depth with WK_DEPTH_ACCESS_READ_WRITE.
      */
     uint32_t usage;
     /** Array layers that it was created with. Default 1. For an occluder map it must be 1. */
@@ -1549,7 +1546,7 @@ typedef uint32_t wk_surface_state;
  * ====================================================================================================
  */
 
-/** Which optional fields of a wk_cloud_layer are set. */
+/** Flags of the optional fields of a wk_cloud_layer that are set. */
 typedef uint32_t wk_cloud_layer_has_flags;
 
 /** thickness_m */
@@ -1569,7 +1566,7 @@ typedef struct wk_cloud_layer {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Which optional fields are set. Default 0. */
+    /** Flags of the optional fields that are set. Default 0. */
     wk_cloud_layer_has_flags has;
     /** Kind of cloud. Default WK_CLOUD_UNKNOWN. */
     wk_cloud_kind kind;
@@ -1616,7 +1613,7 @@ typedef struct wk_cloud_layer {
     /* life_s */ 0.0 \
 }
 
-/** Which optional fields of a wk_weather are set. */
+/** Flags of the optional fields of a wk_weather that are set. */
 typedef uint64_t wk_weather_has_flags;
 
 /** vertical_visibility_m */
@@ -1678,7 +1675,7 @@ typedef struct wk_weather {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Which optional fields are set. Default 0. */
+    /** Flags of the optional fields that are set. Default 0. */
     wk_weather_has_flags has;
     /**
      * Meteorological optical range at the station, m: where 550 nm light falls to 5 % (the reported visibility). It is
@@ -1834,7 +1831,7 @@ typedef struct wk_weather {
     /* reserved0 */ 0 \
 }
 
-/** Which fields of a wk_weather_overrides are set. */
+/** Flags of the fields of a wk_weather_overrides that are set. */
 typedef uint32_t wk_override_flags;
 
 /** aerosol_extinction_per_m */
@@ -1871,7 +1868,7 @@ typedef struct wk_weather_overrides {
     wk_struct_type struct_type;
     /** The next extension. Default NULL. */
     const void *next;
-    /** Which fields are set; laws give the others. Default 0. */
+    /** Flags of the fields that are set; laws give the others. Default 0. */
     wk_override_flags set;
     /** Must be 0. */
     uint32_t reserved0;
@@ -2295,10 +2292,10 @@ typedef struct wk_context_desc {
      */
     const char *cache_dir;
     /**
-     * Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation), m:
-     * 47.8 at Frankfurt, -30 at New York. One number for the context; it varies by some metres over 100 km. For WK_WORLD_ECEF,
-     * whose coordinates know the ellipsoid alone: altitudes, the tops of fog and the bases of clouds among them, count from
-     * mean sea level. Without effect in other worlds. Range [-120, 120], default 0.
+     * Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation),
+     * m: 47.8 at Frankfurt, -30 at New York. One number for the context; it varies by some metres over 100 km. For
+     * WK_WORLD_ECEF, whose coordinates know the ellipsoid alone: altitudes, the tops of fog and the bases of clouds
+     * among them, count from mean sea level. Without effect in other worlds. Range [-120, 120], default 0.
      */
     double geoid_height_m;
 } wk_context_desc;
@@ -2369,15 +2366,10 @@ WK_API wk_status wk_context_set_tone_curve(wk_context *context, wk_tone_curve cu
  * draft of the sky, within 3 of 255 of the whole one, and 120 frames refine it without a visible step.
  * WK_FRAME_NO_HISTORY in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else
  * it is called about sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no
- * file.
- * Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's own again
- * while `progress` runs.
- * Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
+ * file. Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's
+ * own again while `progress` runs. Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
  */
-WK_API
-wk_status wk_context_build_sky(wk_context *context,
-                               wk_progress_fn progress,
-                               void *user);
+WK_API wk_status wk_context_build_sky(wk_context *context, wk_progress_fn progress, void *user);
 
 /**
  * Destroys a context. NULL does nothing.
@@ -2482,15 +2474,12 @@ typedef struct wk_sky_settings {
 
 /**
  * Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
- * WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on, and that frame shows a draft of the sky as a
- * first frame does; wk_context_build_sky after this call makes the final picture ready. Pipelines of another model are
- * compiled in that frame. The same settings again change nothing.
- * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. The settings stay as they were.
+ * WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on, and that frame shows a draft of the sky as
+ * a first frame does; wk_context_build_sky after this call makes the final picture ready. Pipelines of another model
+ * are compiled in that frame. The same settings again change nothing. Thread: exclusive. Errors:
+ * WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. The settings stay as they were.
  */
-WK_API
-wk_status wk_context_set_sky_settings(wk_context *context,
-                                      const wk_sky_settings *settings);
+WK_API wk_status wk_context_set_sky_settings(wk_context *context, const wk_sky_settings *settings);
 
 /**
  * Writes the default of every field: the same bytes as `WK_SKY_SETTINGS_INIT`. `struct_size` is `sizeof(wk_sky_settings)`
@@ -2581,9 +2570,9 @@ WK_API wk_status wk_context_get_state_time(const wk_context *context, double *ou
 WK_API wk_status wk_context_set_clock(wk_context *context, double utc_s, double time_s);
 
 /**
- * Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in [0, 60), in the
- * last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as Unix time has it.
- * Thread: any.
+ * Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in
+ * [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as
+ * Unix time has it. Thread: any.
  */
 WK_API
 wk_status wk_utc_from_calendar(int32_t year,
@@ -2628,15 +2617,13 @@ WK_API wk_status wk_context_save(const wk_context *context, void *buffer, size_t
 
 /**
  * Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
- * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF instead of these
- * two geoid_height_m), seed and ground_model. A state of an earlier version that holds no planet and tone curve needs the
- * same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state, as they
- * were when it was saved, before.
- * Thread: exclusive.
- * Errors: WK_ERROR_PARSE for bytes that are no saved state, are cut short, have even one byte changed, or have another
- * format, which the message names (this version reads format 2; save states of format 1 again, because they did not
- * say what place they were of); WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context
- * stays as it was.
+ * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF instead of
+ * these two geoid_height_m), seed and ground_model. A state of an earlier version that holds no planet and tone curve
+ * needs the same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state,
+ * as they were when it was saved, before. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that are no saved state,
+ * are cut short, have even one byte changed, or have another format, which the message names (this version reads
+ * format 2; save states of format 1 again, because they did not say what place they were of);
+ * WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
  */
 WK_API
 wk_status wk_context_load(wk_context *context,
@@ -2688,7 +2675,7 @@ typedef uint32_t wk_fog_distance;
 /** From the camera's plane, as in the oldest systems. */
 #define WK_FOG_DISTANCE_PLANE 1
 
-/** Which optional fields of a wk_fog_law are set. */
+/** Flags of the optional fields of a wk_fog_law that are set. */
 typedef uint32_t wk_fog_law_has_flags;
 
 /** color */
@@ -2706,7 +2693,7 @@ typedef struct wk_fog_law {
     wk_fog_curve curve;
     /** Default WK_FOG_DISTANCE_RANGE. */
     wk_fog_distance distance;
-    /** Which optional fields are set. Default 0. */
+    /** Flags of the optional fields that are set. Default 0. */
     wk_fog_law_has_flags has;
     /** Must be 0. */
     uint32_t reserved0;
@@ -2866,13 +2853,13 @@ typedef struct wk_conditions {
     double wind_turbulence_intensity;
     /** Half the range over which the direction wanders, degrees: 0 steady, 180 all round. */
     double wind_wander_deg;
-    /** Of the land, m. */
+    /** Roughness length of the land, m. */
     double roughness_length_m;
-    /** Of the sea, m. */
+    /** Roughness length of the sea, m. */
     double sea_roughness_length_m;
-    /** Of the wind sea, m. */
+    /** Significant wave height of the wind sea, m. */
     double significant_wave_height_m;
-    /** Of the swell, m; 0 without swell. */
+    /** Height of the swell, m; 0 without swell. */
     double swell_height_m;
     /** Its peak period, s. */
     double swell_period_s;
@@ -2882,7 +2869,7 @@ typedef struct wk_conditions {
     double swell_north;
     /** Water, degrees Celsius. */
     double sea_temperature_c;
-    /** Of the ground: 0 dry, 0.3 damp, 1 under a closed film. */
+    /** Wetness of the ground: 0 dry, 0.3 damp, 1 under a closed film. */
     double wetness;
     /** Fraction of the ground under standing water. */
     double puddles;
@@ -2892,11 +2879,11 @@ typedef struct wk_conditions {
     double snow_depth_m;
     /** Ozone column, Dobson units. */
     double ozone_du;
-    /** Of snow_mm_h, what falls as flakes, mm/h of melted water; 0 where none falls. */
+    /** Part of snow_mm_h that falls as flakes, mm/h of melted water; 0 where none falls. */
     double snow_flakes_mm_h;
-    /** Of snow_mm_h, what falls as snow grains, likewise. */
+    /** Part of snow_mm_h that falls as snow grains, mm/h of melted water; 0 where none falls. */
     double snow_grains_mm_h;
-    /** Of snow_mm_h, what falls as ice crystals, likewise. */
+    /** Part of snow_mm_h that falls as ice crystals, mm/h of melted water; 0 where none falls. */
     double ice_crystals_mm_h;
 } wk_conditions;
 
@@ -3021,10 +3008,9 @@ WK_API wk_status wk_conditions_init(wk_conditions *out, uint32_t struct_size);
  *
  * These answer at any place of the host's world, for the present or (functions that end in _at) for any past or future
  * simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or moon that
- * the host has placed stands there at all times. Only wk_context_get_ambient and wk_context_get_ambient_at read the sky's
- * tables. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and
- * cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric
- * value.
+ * the host has placed stands there at all times. Only wk_context_get_ambient and wk_context_get_ambient_at read the
+ * sky's tables. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and cd/m^2,
+ * three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric value.
  *
  * Lists are (pointer, count, size of an element in your header). Welkin checks everything before it writes anything.
  * ====================================================================================================
@@ -3081,8 +3067,8 @@ typedef struct wk_celestial {
 }
 
 /**
- * Light that arrives at a place, after air, clouds and fog; plain values of a list. Light scattered forward once by fog
- * counts as the sun's or the moon's.
+ * Light that arrives at a place, after air, clouds and fog; plain values of a list. Light scattered forward once by
+ * fog counts as the sun's or the moon's.
  */
 typedef struct wk_ground_light {
     /** Direct sun on a surface facing it, lux a channel. */
@@ -3103,9 +3089,11 @@ typedef struct wk_segment {
     double to_m[3];
 } wk_segment;
 
-/** What lies between two points; plain values of a list. */
+/** Transmittance and visibility between two points; plain values of a list. */
 typedef struct wk_between {
-    /** Share of light that gets through, per channel (680, 550, 440 nm of the Earth's planet file). */
+    /**
+     * Share of light that gets through, per channel (wavelengths of the planet, 620, 550 and 450 nm for the Earth).
+     */
     double transmittance[3];
     /**
      * Meteorological optical range along the segment, m: the distance at which 550 nm light would fall to 5 % if the
@@ -3179,10 +3167,9 @@ wk_status wk_context_get_moon_at(const wk_context *context,
                                  wk_celestial *out_moon);
 
 /**
- * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Clouds count by what of
- * them lies above a place, as the mean over places at its height. `position_size` and `light_size` are the bytes from one
- * element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
- * Thread: concurrent.
+ * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Clouds count by
+ * what of them lies above a place, as the mean over places at its height. `position_size` and `light_size` are the
+ * bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header. Thread: concurrent.
  */
 WK_API
 wk_status wk_context_get_light(const wk_context *context,
@@ -3208,9 +3195,8 @@ wk_status wk_context_get_light_at(const wk_context *context,
 
 /**
  * Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog,
- * precipitation and clouds drawn as a volume count, a deck and the host's objects do not. `segment_size` and `between_size` are the sizes of an element in
- * your header.
- * Thread: concurrent.
+ * precipitation and clouds drawn as a volume count, a deck and the host's objects do not. `segment_size` and
+ * `between_size` are the sizes of an element in your header. Thread: concurrent.
  */
 WK_API
 wk_status wk_context_get_between(const wk_context *context,
@@ -3235,11 +3221,11 @@ wk_status wk_context_get_between_at(const wk_context *context,
                                     uint32_t between_size);
 
 /**
- * Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction, a vector (east,
- * north, up) at the place, of length 1 within 0.001. There the air, fog, rain, snow and clouds drawn as a volume before it leave 5 % of the
- * light of 550 nm, and so 5 % of its contrast. Infinite where more is left at the end of the air or on the planet's ground.
- * Thread: concurrent.
- * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
+ * Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction,
+ * a vector (east, north, up) at the place, of length 1 within 0.001. There the air, fog, rain, snow and clouds drawn
+ * as a volume before it leave 5 % of the light of 550 nm, and so 5 % of its contrast. Infinite where more is left at
+ * the end of the air or on the planet's ground. Thread: concurrent. Errors: as wk_context_get_conditions;
+ * WK_ERROR_INVALID_ARGUMENT naming the direction.
  */
 WK_API
 wk_status wk_context_get_visibility_at(const wk_context *context,
@@ -3260,10 +3246,9 @@ wk_status wk_context_get_ambient(wk_context *context,
                                  wk_ambient *out_ambient);
 
 /**
- * As wk_context_get_ambient, at a simulation time. The clear sky's pattern is that of the air that the tables show; how bright all
- * of it is, and clouds and fog, are those of `time_s`.
- * Thread: as wk_view_record.
- * Errors: as wk_context_get_ambient and wk_context_get_conditions.
+ * As wk_context_get_ambient, at a simulation time. The clear sky's pattern is that of the air that the tables show;
+ * how bright all of it is, and clouds and fog, are those of `time_s`. Thread: as wk_view_record. Errors: as
+ * wk_context_get_ambient and wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_ambient_at(wk_context *context,
@@ -3287,13 +3272,13 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
  * ====================================================================================================
  * [radiance] Queries: the sky's light by direction
  *
- * For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as the
- * picture shows it where the host drew nothing. It has the clear air, clouds as the model draws them, fog with what
- * falls in it, the night's glow, and below the horizon the planet's own ground. It has no discs of sun and moon
+ * For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as
+ * the picture shows it where the host drew nothing. It has the clear air, clouds as the model draws them, fog with
+ * what falls in it, the night's glow, and below the horizon the planet's own ground. It has no discs of sun and moon
  * (wk_context_get_light has their light), no stars and planets, no rain areas, and nothing that the host drew.
  *
- * The double-precision reference of the sky answers on the calling thread; no device is asked. The first question in
- * a new air solves the reference (a second or two; weather in transition is a new air at every time), and other threads
+ * The double-precision reference of the sky answers on the calling thread; no device is asked. The first question in a
+ * new air solves the reference (a second or two; weather in transition is a new air at every time), and other threads
  * that ask meanwhile wait. The last four airs are kept for all contexts of a device. docs/reflections.md has what a
  * direction costs and how far pictures may be off.
  * ====================================================================================================
@@ -3307,10 +3292,9 @@ typedef struct wk_sky_radiance {
 
 /**
  * Gets the sky's radiance at a place towards directions now, at most wk_caps.max_batch of them. A direction is a
- * vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the bytes from
- * one element to the next: 24 or more, and sizeof(wk_sky_radiance) of your header.
- * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
+ * vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the bytes
+ * from one element to the next: 24 or more, and sizeof(wk_sky_radiance) of your header. Thread: concurrent. Errors:
+ * WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
  */
 WK_API
 wk_status wk_context_get_sky_radiance(const wk_context *context,
@@ -3413,7 +3397,8 @@ typedef struct wk_rainfall {
     /** Hail, small hail and ice pellets on level ground, mm/h of melted water. */
     double ice_mm_h;
     /**
-     * Stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), pellets of 0.5 to 5 mm, which are frozen raindrops.
+     * Stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), pellets of 0.5 to 5 mm, which are frozen
+     * raindrops.
      */
     double stones_per_m3;
     /** Extinction by the stones, 1/m. */
@@ -3466,13 +3451,11 @@ typedef struct wk_rain_on {
 
 /**
  * Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
- * the ground's roughness up to 100 m, and above grows and veers to the geostrophic wind (docs/clouds.md).
- * Gusts have Kaimal's spectrum (1972, as in IEC 61400-1)
- * and are the same all over the world. Heights count from the station's altitude above mean sea level, and reported wind holds 10 m above
- * it. A host with terrain asks at the station's altitude plus the height above its own ground. At and below the
- * roughness length there is no wind.
- * Thread: concurrent.
- * Errors: as wk_context_get_conditions.
+ * the ground's roughness up to 100 m, and above grows and veers to the geostrophic wind (docs/clouds.md). Gusts have
+ * Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the station's
+ * altitude above mean sea level, and reported wind holds 10 m above it. A host with terrain asks at the station's
+ * altitude plus the height above its own ground. At and below the roughness length there is no wind. Thread:
+ * concurrent. Errors: as wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_wind_at(const wk_context *context,
@@ -3481,10 +3464,9 @@ wk_status wk_context_get_wind_at(const wk_context *context,
                                  wk_wind *out_wind);
 
 /**
- * Gets what falls at a place of the host's world and a simulation time. What falls begins in the lower half of the clouds,
- * at most 500 m above their bases, averaged over what covers the sky; above that nothing falls.
- * Thread: concurrent.
- * Errors: as wk_context_get_conditions.
+ * Gets what falls at a place of the host's world and a simulation time. What falls begins in the lower half of the
+ * clouds, at most 500 m above their bases, averaged over what covers the sky; above that nothing falls. Thread:
+ * concurrent. Errors: as wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_rainfall_at(const wk_context *context,
@@ -3573,8 +3555,8 @@ typedef uint32_t wk_frame_flags;
 /** Depth is reversed: 1 is near, 0 is far. */
 #define WK_FRAME_DEPTH_REVERSED 4
 /**
- * The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with a
- * viewport of positive height. Without it the first row lies at clip y = +1.
+ * The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with
+ * a viewport of positive height. Without it the first row lies at clip y = +1.
  */
 #define WK_FRAME_FIRST_ROW_AT_MINUS_Y 8
 /**
@@ -3602,25 +3584,25 @@ typedef uint32_t wk_color_space;
 #define WK_COLOR_DISPLAY_SRGB 2
 
 /**
- * What Welkin may do with the target's depth. Nothing that this version draws is opaque, so both give the same picture; sea
- * and terrain will be.
+ * Access of Welkin to the target's depth. Nothing that this version draws is opaque, so both give the same picture;
+ * sea and terrain will be.
  */
 typedef uint32_t wk_depth_access;
 
 /** Read it: not a bit of it changes, and Welkin draws nothing opaque of its own. */
 #define WK_DEPTH_ACCESS_READ 0
 /**
- * Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays. Needs
- * depth that can be attached: a depth format, as many samples as the colour, and in Vulkan DEPTH_STENCIL_ATTACHMENT among
- * its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an own device, whose depth is
- * WK_FORMAT_R32_FLOAT.
+ * Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays.
+ * Needs depth that can be attached: a depth format, as many samples as the colour, and in Vulkan
+ * DEPTH_STENCIL_ATTACHMENT among its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an
+ * own device, whose depth is WK_FORMAT_R32_FLOAT.
  */
 #define WK_DEPTH_ACCESS_READ_WRITE 1
 
 /**
- * A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over blue,
- * green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw nothing. Masked
- * pixels stay yours. Where nothing of what it shows is in the frame, all is black.
+ * A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over
+ * blue, green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw
+ * nothing. Masked pixels stay yours. Where nothing of what it shows is in the frame, all is black.
  */
 typedef uint32_t wk_diagnostic;
 
@@ -3636,8 +3618,8 @@ typedef uint32_t wk_diagnostic;
 /** Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE. */
 #define WK_DIAGNOSTIC_WETNESS 3
 /**
- * What the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white, by decades:
- * black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
+ * Error by what the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white,
+ * by decades: black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
  */
 #define WK_DIAGNOSTIC_PLAN_ERROR 4
 /**
@@ -3645,8 +3627,9 @@ typedef uint32_t wk_diagnostic;
  */
 #define WK_DIAGNOSTIC_OVERDRAW 5
 /**
- * The wind that carries what falls, 2 m over what you drew: black a calm, 4 m/s a step, white 20 m/s and more. Each square
- * of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The sky is black. Stage MEDIUM.
+ * The wind that carries what falls, 2 m over what you drew: black a calm, 4 m/s a step, white 20 m/s and more. Each
+ * square of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The sky is black. Stage
+ * MEDIUM.
  */
 #define WK_DIAGNOSTIC_WIND 6
 
@@ -3897,7 +3880,7 @@ typedef uint32_t wk_stage_flags;
 #define WK_STAGE_SURFACE 4
 /** Fog and aerial perspective on everything that the host has drawn. */
 #define WK_STAGE_MEDIUM 8
-/** What falls and flies. */
+/** Particles that fall and fly. */
 #define WK_STAGE_PARTICLES 16
 /** Water on the windscreen. */
 #define WK_STAGE_LENS 32
@@ -3910,7 +3893,7 @@ typedef uint32_t wk_stage_flags;
 /** Everything in one call. */
 #define WK_STAGE_ALL 127
 
-/** Which of a report's optional fields are set. */
+/** Flags of a report's optional fields that are set. */
 typedef uint32_t wk_report_flags;
 
 /** wk_report.ms. */
@@ -3937,14 +3920,15 @@ typedef struct wk_report {
     /** Full-screen draws recorded for this frame so far. */
     uint32_t passes;
     /**
-     * Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final quality.
+     * Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final
+     * quality.
      */
     uint32_t tables_rebuilt;
     /** Display units per cd/m^2 that were applied; 0 if nothing was drawn. */
     double exposure;
     /** Bytes of GPU memory that the view holds for itself. */
     uint64_t bytes;
-    /** Which of the following are set. */
+    /** Flags of the following fields that are set. */
     wk_report_flags has;
     /** 0. */
     uint32_t reserved0;
@@ -4042,7 +4026,7 @@ typedef uint32_t wk_effect;
 
 /** Cost of one effect in a frame; plain values of a list. */
 typedef struct wk_effect_cost {
-    /** Which effect. */
+    /** Effect whose cost this is. */
     wk_effect effect;
     /** 0. */
     uint32_t reserved0;
@@ -4186,14 +4170,15 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
  * ====================================================================================================
  * [environment] A cube map of what stands around the camera
  *
- * For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its clouds, fog and
- * rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the host lights by those
- * itself), stars and the host's objects; the night's glow is even. Its axes are those of the host's world: a shader looks
- * it up by the reflected direction as it is. Level m of the 7 is what a mirror of roughness m/6 shows (the distribution of Trowbridge
- * and Reitz, alpha = roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness)
- * is the specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and
- * set their filters by a sampler object. Welkin draws one face a frame, in turn; all six in the first frame, in frames with
- * WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather leap. Views whose hosts do not ask have none of it.
+ * For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its
+ * clouds, fog and rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the
+ * host lights by those itself), stars and the host's objects; the night's glow is even. Its axes are those of the
+ * host's world: a shader looks it up by the reflected direction as it is. Level m of the 7 is what a mirror of
+ * roughness m/6 shows (the distribution of Trowbridge and Reitz, alpha = roughness^2; Karis 2013, Real Shading in
+ * Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the specular light before the surface's
+ * reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their filters by a sampler object. Welkin
+ * draws one face a frame, in turn; all six in the first frame, in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and
+ * where light or weather leap. Views whose hosts do not ask have none of it.
  * ====================================================================================================
  */
 
@@ -4239,11 +4224,10 @@ typedef struct wk_environment {
 
 /**
  * Gets the native texture of the cube map. From the first call on, the first call of each frame with
- * WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws what is due of it. It belongs to the view and stays the same until that is
- * destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such wk_view_record call. Call this
- * after each frame for its scales.
- * Thread: exclusive on the view.
- * Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ * WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws what is due of it. It belongs to the view and stays the same until that
+ * is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such wk_view_record call. Call
+ * this after each frame for its scales. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own device,
+ * which has no shaders of the host's.
  */
 WK_API
 wk_status wk_view_get_environment(wk_view *view,
@@ -4259,7 +4243,7 @@ wk_status wk_environment_init(wk_environment *out,
 
 /*
  * ====================================================================================================
- * [plan] What a picture needs, and no more
+ * [plan] Plan and budget of a view
  *
  * With a tolerance, a view gauges its own pictures. In every eighth frame it composes a grid of 64 x 36 of its pixels
  * with everything and without each part of the weather, and reads the differences back some frames later without
@@ -4268,9 +4252,9 @@ wk_status wk_environment_init(wk_environment *out,
  * perceived least for the time that they save. They come back when there is time again. After a jump of camera, sun or
  * weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
  *
- * A part has a number (WK_PART_), a name and rungs. Rung 0 is all of it; the last is nothing of it, or the cheapest that
- * stands for it. Later versions have more parts, at the end: wk_plan.part_count says how many, wk_view_get_part_plan what
- * they are called.
+ * A part has a number (WK_PART_), a name and rungs. Rung 0 is all of it; the last is nothing of it, or the cheapest
+ * that stands for it. Later versions have more parts, at the end: wk_plan.part_count says how many,
+ * wk_view_get_part_plan what they are called.
  *
  * Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
  * percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
@@ -4281,7 +4265,7 @@ wk_status wk_environment_init(wk_environment *out,
  * ====================================================================================================
  */
 
-/** Which optional fields of a wk_budget are set. */
+/** Flags of the optional fields of a wk_budget that are set. */
 typedef uint32_t wk_budget_has_flags;
 
 /** tolerance */
@@ -4289,7 +4273,7 @@ typedef uint32_t wk_budget_has_flags;
 /** milliseconds */
 #define WK_BUDGET_HAS_MILLISECONDS 2
 
-/** Which optional fields of a wk_part_wish are set. */
+/** Flags of the optional fields of a wk_part_wish that are set. */
 typedef uint32_t wk_part_wish_has_flags;
 
 /** importance */
@@ -4307,8 +4291,9 @@ typedef uint32_t wk_part;
 /** The clear sky above the horizon, behind clouds. Rungs: all, none. */
 #define WK_PART_SKY 2
 /**
- * Streaks and splashes of rain, where the view has no rain model of the host's choice. Rungs: drops (each near the camera by itself),
- * cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it is drawn).
+ * Streaks and splashes of rain, where the view has no rain model of the host's choice. Rungs: drops (each near the
+ * camera by itself), cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it
+ * is drawn).
  */
 #define WK_PART_RAIN 3
 /** Stars, planets and the glow of the night between them. Rungs: all, none (an even sky of the same light). */
@@ -4316,12 +4301,12 @@ typedef uint32_t wk_part;
 /** Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK). */
 #define WK_PART_CLOUDS 5
 /**
- * Flakes of falling snow, where the view has no snow model of the host's choice. Rungs: flakes, none (all snow is a veil, and without
- * WK_PART_FOG too nothing of it is drawn).
+ * Flakes of falling snow, where the view has no snow model of the host's choice. Rungs: flakes, none (all snow is a
+ * veil, and without WK_PART_FOG too nothing of it is drawn).
  */
 #define WK_PART_SNOW 6
 
-/** What a host wants of one part. */
+/** Wish of a host for one part. */
 typedef struct wk_part_wish {
     /** sizeof(wk_part_wish) of your header. */
     uint32_t struct_size;
@@ -4329,20 +4314,21 @@ typedef struct wk_part_wish {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Which optional fields are set. */
+    /** Flags of the optional fields that are set. */
     wk_part_wish_has_flags has;
-    /** Of which part. */
+    /** Part that the wish is about. */
     wk_part part;
     /**
-     * Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the same.
-     * Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says what of a tolerance and a time is not kept.
+     * Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the
+     * same. Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says what of a tolerance and a
+     * time is not kept.
      */
     uint32_t rung;
     /** 0. */
     uint32_t reserved;
     /**
-     * Optional: how much the part matters to those who look, which says what is left out first under a budget of time. Range [0, 1],
-     * default wk_part_plan.importance.
+     * Optional: how much the part matters to those who look, which says what is left out first under a budget of time.
+     * Range [0, 1], default wk_part_plan.importance.
      */
     double importance;
 } wk_part_wish;
@@ -4367,7 +4353,7 @@ typedef struct wk_budget {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Which optional fields are set. Default 0: everything is drawn. */
+    /** Flags of the optional fields that are set. Default 0: everything is drawn. */
     wk_budget_has_flags has;
     /** Length of `wishes`. Default 0: parts that are not in it are planned, and matter as by default. */
     uint32_t wish_count;
@@ -4375,7 +4361,7 @@ typedef struct wk_budget {
     uint32_t wish_stride;
     /** 0. */
     uint32_t reserved;
-    /** What is wanted of single parts, each of them once. */
+    /** Wishes for single parts, each of them once. */
     const wk_part_wish *wishes;
     /** Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen. */
     double tolerance;
@@ -4408,8 +4394,8 @@ typedef uint32_t wk_gave_way;
 /** The tolerance: the time allows no better picture. */
 #define WK_GAVE_WAY_TOLERANCE 1
 /**
- * Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes longer than
- * the budget.
+ * Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes longer
+ * than the budget.
  */
 #define WK_GAVE_WAY_TIME 2
 
@@ -4423,7 +4409,7 @@ typedef struct wk_plan {
     const void *next;
     /** How many parts there are: their numbers are below it. */
     uint32_t part_count;
-    /** What of the budget could not be kept. */
+    /** Limit of the budget that could not be kept. */
     wk_gave_way gave_way;
     /** Error of everything left out together: 95th percentile over the gauged pixels. */
     double error;
@@ -4500,10 +4486,11 @@ typedef struct wk_part_plan {
     double share;
     /** Error of the picture with this part alone at its last rung, as last gauged. */
     double error;
-    /** The same at the worst gauged pixel. */
+    /** Error of the worst gauged pixel with this part alone at its last rung, as last gauged. */
     double worst;
     /**
-     * What all of it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
+     * Work that all of it adds to this picture with everything, or would add, in units of a pixel with none of the
+     * parts.
      */
     double work;
 } wk_part_plan;
@@ -4549,14 +4536,10 @@ WK_API wk_status wk_view_report_time(wk_view *view, double milliseconds);
 WK_API wk_status wk_view_get_plan(wk_view *view, wk_plan *out_plan);
 
 /**
- * Says of one part how much of it the view's last frame drew, and why; and what the part is called, before any frame too.
- * Thread: exclusive on the view.
- * Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
+ * Says of one part how much of it the view's last frame drew, and why; and what the part is called, before any frame
+ * too. Thread: exclusive on the view. Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
  */
-WK_API
-wk_status wk_view_get_part_plan(wk_view *view,
-                                wk_part part,
-                                wk_part_plan *out_part);
+WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part part, wk_part_plan *out_part);
 
 /**
  * Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
@@ -4573,17 +4556,12 @@ wk_status wk_view_save_plan(wk_view *view,
                             size_t *out_size);
 
 /**
- * Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part; the rest of the view's budget stays, and
- * wk_view_set_budget ends it.
- * Thread: exclusive on the view.
- * Errors: WK_ERROR_PARSE for bytes that are no such plan or of another version, naming line and column or the field;
- * WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. After an error the
- * view's plan stays as it was.
+ * Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part; the rest of the view's
+ * budget stays, and wk_view_set_budget ends it. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes that
+ * are no such plan or of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT naming the
+ * setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
  */
-WK_API
-wk_status wk_view_load_plan(wk_view *view,
-                            const void *plan,
-                            size_t size);
+WK_API wk_status wk_view_load_plan(wk_view *view, const void *plan, size_t size);
 
 /**
  * Writes the default of every field: the same bytes as `WK_PART_WISH_INIT`. `struct_size` is `sizeof(wk_part_wish)`
@@ -4760,10 +4738,9 @@ typedef struct wk_shelter_shape {
 }
 
 /**
- * Sets how the view draws rain; NULL returns to the default. Unchanged after an error.
- * Thread: exclusive on the view.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model, or more drops of it,
- * than the device can draw.
+ * Sets how the view draws rain; NULL returns to the default. Unchanged after an error. Thread: exclusive on the view.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model, or more drops of
+ * it, than the device can draw.
  */
 WK_API
 wk_status wk_view_set_rain(wk_view *view,
@@ -4805,10 +4782,10 @@ wk_status wk_shelter_shape_init(wk_shelter_shape *out,
  * ====================================================================================================
  * [snow] Snow
  *
- * WK_STAGE_PARTICLES draws falling snow wherever the weather has it: flakes of the sizes and speeds that rate, kind and
- * temperature give, each at a place that follows from seed and time alone, so all channels of a simulator draw the same
- * flakes. The wind carries them, the host's depth hides them, shelters and occluder maps keep them off, sky, ground, sun
- * and lamps light them. What is farther than the flakes is extinction in the air.
+ * WK_STAGE_PARTICLES draws falling snow wherever the weather has it: flakes of the sizes and speeds that rate, kind
+ * and temperature give, each at a place that follows from seed and time alone, so all channels of a simulator draw the
+ * same flakes. The wind carries them, the host's depth hides them, shelters and occluder maps keep them off, sky,
+ * ground, sun and lamps light them. What is farther than the flakes is extinction in the air.
  * ====================================================================================================
  */
 
@@ -4878,9 +4855,8 @@ WK_API wk_status wk_snow_init(wk_snow *out, uint32_t struct_size);
  * weather's rain and drizzle give way to the area's, smoothly over the rim inside its border. Where areas overlap, a
  * later one in the list lies over the earlier ones. A camera inside sees drops of the rate at each drop's own place.
  * From outside the rain is a shaft with falling curtains, which leans as the drops fall behind their cloud. All
- * queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas. Where clouds are
- * a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud over it.
- * wk_context_save keeps them.
+ * queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas. Where
+ * clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud over it. wk_context_save keeps them.
  * ====================================================================================================
  */
 
@@ -4944,15 +4920,15 @@ typedef struct wk_rain_area {
     /** Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0. */
     double heading_deg;
     /**
-     * Width inside of the border over which the rain fades, m. Range [1, 1e6], at most an ellipse's smaller half extent, or the radius
-     * of the largest circle in a polygon. Default 500.
+     * Width inside of the border over which the rain fades, m. Range [1, 1e6], at most an ellipse's smaller half
+     * extent, or the radius of the largest circle in a polygon. Default 500.
      */
     double rim_m;
     /** Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10. */
     double rate_mm_h;
     /**
-     * Altitude of the cloud base above mean sea level (not above the ground), m: above it falls neither the area's rain nor
-     * the weather's. Range [-1000, 20 000], default 1500.
+     * Altitude of the cloud base above mean sea level (not above the ground), m: above it falls neither the area's
+     * rain nor the weather's. Range [-1000, 20 000], default 1500.
      */
     double top_m;
     /** Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN. */
@@ -4964,7 +4940,7 @@ typedef struct wk_rain_area {
     double at_s;
     /** Default WK_AREA_MOTION_WITH_WIND. */
     wk_area_motion motion;
-    /** What falls in place of the rain. Default WK_AREA_SNOW_NONE, the only one in this version. */
+    /** Snow that falls in place of the rain. Default WK_AREA_SNOW_NONE, the only one in this version. */
     wk_area_snow snow;
 } wk_rain_area;
 
@@ -5011,8 +4987,9 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * [wind_grid] Wind that varies in space
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
- * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, on patches of fog and dust, and on drops and
- * flakes near a camera, in place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's wind.
+ * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, on patches of fog and dust, and on
+ * drops and flakes near a camera, in place of a wind field's (wk_context_set_wind_field). Everything else follows the
+ * weather's wind.
  * ====================================================================================================
  */
 
@@ -5037,7 +5014,8 @@ typedef struct wk_wind_grid {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * The lowest node farthest to the south-west, in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0.
+     * The lowest node farthest to the south-west, in the host's world, m, within 1e12 m of the origin. Default 0, 0,
+     * 0.
      */
     double origin_m[3];
     /** Distance between nodes east, north and up, m. Range [0.01, 10 000], default 1, 1, 1. */
@@ -5089,9 +5067,10 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * [wind_field] Wind round terrain and buildings
  *
  * A context can solve for the wind in a box of air about a place: it goes round the terrain of
- * wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
- * leaves behind. It acts where a wind grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in what
- * lands on surfaces and windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
+ * wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too,
+ * comes in as the weather's wind and leaves behind. It acts where a wind grid of your own would
+ * (wk_context_set_wind_grid): in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on drops and
+ * flakes near a camera. Nothing is solved unless you ask for it.
  * ====================================================================================================
  */
 
@@ -5099,17 +5078,17 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
 typedef uint32_t wk_wind_field_mode;
 
 /**
- * The mean wind: solved for over the first moments after the wind or an obstacle has changed, then it rests at no cost.
- * Gusts are as strong, against the weather's, as the mean is there.
+ * The mean wind: solved for over the first moments after the wind or an obstacle has changed, then it rests at no
+ * cost. Gusts are as strong, against the weather's, as the mean is there.
  */
 #define WK_WIND_FIELD_STEADY 0
 /**
- * The wind with gusts, the whirls that come in with it and those that obstacles shed, stepped all the time. docs/wind-field.md says what sizes a core
- * keeps up with.
+ * The wind with gusts, the whirls that come in with it and those that obstacles shed, stepped all the time.
+ * docs/wind-field.md says what sizes a core keeps up with.
  */
 #define WK_WIND_FIELD_RUNNING 1
 
-/** What terrain and boxes do to air that passes along them. */
+/** Effect of terrain and boxes on air that passes along them. */
 typedef uint32_t wk_wind_walls;
 
 /** They slow it, by the weather's roughness length. */
@@ -5118,8 +5097,8 @@ typedef uint32_t wk_wind_walls;
 #define WK_WIND_WALLS_SMOOTH 1
 
 /**
- * A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and top
- * it goes over into the weather's wind.
+ * A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and
+ * top it goes over into the weather's wind.
  */
 typedef struct wk_wind_field {
     /** sizeof(wk_wind_field) of your header. */
@@ -5129,12 +5108,13 @@ typedef struct wk_wind_field {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Middle of the field's floor, in the host's world, m, within 1e12 m of the origin: no higher than the lowest ground
-     * that matters. Where it moves the field follows by whole cells. Default 0, 0, 0.
+     * Middle of the field's floor, in the host's world, m, within 1e12 m of the origin: no higher than the lowest
+     * ground that matters. Where it moves the field follows by whole cells. Default 0, 0, 0.
      */
     double floor_center_m[3];
     /**
-     * Size of a cell east, north and up, m, the longest at most 8 times the shortest. Range [0.05, 1000], default 4, 4, 4.
+     * Size of a cell east, north and up, m, the longest at most 8 times the shortest. Range [0.05, 1000], default 4,
+     * 4, 4.
      */
     double cell_m[3];
     /** Number of cells east, north and up. Range [8, 4096] each, default 128, 128, 32. */
@@ -5175,8 +5155,8 @@ typedef struct wk_wind_field_report {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * 1: there is a field. 0: none is set, its time has not come, or its first steady state is still being solved for; all
-     * else is 0 then.
+     * 1: there is a field. 0: none is set, its time has not come, or its first steady state is still being solved for;
+     * all else is 0 then.
      */
     uint32_t present;
     /** 1: it is steady and rests; nothing is stepped. */
@@ -5184,8 +5164,8 @@ typedef struct wk_wind_field_report {
     /** Simulation time of the field, s: the present, or up to one step before it. */
     double time_s;
     /**
-     * Simulation time at which it last began from a steady field, s: when it was first set, after a leap of more than 60 s,
-     * or far off.
+     * Simulation time at which it last began from a steady field, s: when it was first set, after a leap of more than
+     * 60 s, or far off.
      */
     double begun_s;
     /** Length of its steps, s. */
@@ -5214,12 +5194,11 @@ typedef struct wk_wind_field_report {
 }
 
 /**
- * Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. The same
- * size, mode and walls at another place move it by whole cells; anything else begins it anew. wk_context_update leads it in
- * steps on a grid anchored at time 0, whatever is drawn: the same on every channel. It begins with the steady field of its
- * first moment. Part of the saved state. Unchanged after an error.
- * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
+ * Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. The
+ * same size, mode and walls at another place move it by whole cells; anything else begins it anew. wk_context_update
+ * leads it in steps on a grid anchored at time 0, whatever is drawn: the same on every channel. It begins with the
+ * steady field of its first moment. Part of the saved state. Unchanged after an error. Thread: exclusive. Errors:
+ * WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
  */
 WK_API
 wk_status wk_context_set_wind_field(wk_context *context,
@@ -5415,13 +5394,13 @@ WK_API wk_status wk_light_init(wk_light *out, uint32_t struct_size);
  * ====================================================================================================
  * [stars] Stars
  *
- * At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the zodiacal light and
- * the Milky Way behind its sky, where they stand over the context's place by its clock; by day, in fog and under closed clouds there
- * is nothing of it. A budget may leave them out (WK_PART_STARS).
+ * At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the
+ * zodiacal light and the Milky Way behind its sky, where they stand over the context's place by its clock; by day, in
+ * fog and under closed clouds there is nothing of it. A budget may leave them out (WK_PART_STARS).
  * ====================================================================================================
  */
 
-/** What a wk_stars sets. */
+/** Flags of the settings in a wk_stars. */
 typedef uint32_t wk_stars_flags;
 
 /** stars and star_count: the host's own stars in place of the catalogue's. */
@@ -5450,8 +5429,8 @@ typedef struct wk_stars {
      */
     const double *stars;
     /**
-     * With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole) to
-     * (east, north, up), column after column. Default the identity.
+     * With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole)
+     * to (east, north, up), column after column. Default the identity.
      */
     double celestial_to_world[9];
     /** Strength of the airglow. Range [0, 10], default 1: near the sun's least activity; 1.7 at the greatest. */
@@ -5471,20 +5450,16 @@ typedef struct wk_stars {
 }
 
 /**
- * Sets how the night sky is drawn; NULL returns to the default. All but the list of stars is part of the saved state: a context that
- * loads one keeps its own list. Unchanged after an error.
- * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ * Sets how the night sky is drawn; NULL returns to the default. All but the list of stars is part of the saved state:
+ * a context that loads one keeps its own list. Unchanged after an error. Thread: exclusive. Errors:
+ * WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API
-wk_status wk_context_set_stars(wk_context *context,
-                               const wk_stars *stars);
+WK_API wk_status wk_context_set_stars(wk_context *context, const wk_stars *stars);
 
 /**
- * Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at a simulation time.
- * It falls with the sky's light, and with what air, fog and clouds take of the star's. Minus infinity where nothing comes through.
- * Thread: concurrent.
- * Errors: as wk_context_get_conditions.
+ * Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at
+ * a simulation time. It falls with the sky's light, and with what air, fog and clouds take of the star's. Minus
+ * infinity where nothing comes through. Thread: concurrent. Errors: as wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_limiting_magnitude_at(const wk_context *context,
@@ -5502,16 +5477,16 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
  * ====================================================================================================
  * [cloud_map] Cloud map
  *
- * Where over the ground layers of cloud stand: a storm ahead of the runway, a clearing over the harbour. The map holds in
- * pictures, shadows, the light of a place and all questions about clouds. docs/clouds.md has an example.
+ * Where over the ground layers of cloud stand: a storm ahead of the runway, a clearing over the harbour. The map holds
+ * in pictures, shadows, the light of a place and all questions about clouds. docs/clouds.md has an example.
  * ====================================================================================================
  */
 
 /**
- * How much of the cover that layers have in the weather they have over each part of the ground. Give a layer cover 1, and
- * the map says its cover. The map is level, aligned to true north and stands still over the ground; clouds go through it
- * with their wind, and grow and dissolve as it says. Linear between the middles of cells; beyond the outermost middles
- * theirs hold on.
+ * How much of the cover that layers have in the weather they have over each part of the ground. Give a layer cover 1,
+ * and the map says its cover. The map is level, aligned to true north and stands still over the ground; clouds go
+ * through it with their wind, and grow and dissolve as it says. Linear between the middles of cells; beyond the
+ * outermost middles theirs hold on.
  */
 typedef struct wk_cloud_map {
     /** sizeof(wk_cloud_map) of your header. */
@@ -5521,8 +5496,8 @@ typedef struct wk_cloud_map {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Middle of the cell farthest to the south-west, east and north of the world's origin, m. Range [-1e7, 1e7], default
-     * 0, 0.
+     * Middle of the cell farthest to the south-west, east and north of the world's origin, m. Range [-1e7, 1e7],
+     * default 0, 0.
      */
     double first_m[2];
     /** Side of a cell, m. Range [100, 50 000], default 1000. */
@@ -5530,13 +5505,13 @@ typedef struct wk_cloud_map {
     /** Number of cells east and north. Range [1, 128], default 1, 1. */
     uint32_t cells[2];
     /**
-     * Layers whose base above the station lies between these follow the map, m. Range [-1000, 20 000], the lower one first,
-     * default -1000, 20 000: all layers.
+     * Layers whose base above the station lies between these follow the map, m. Range [-1000, 20 000], the lower one
+     * first, default -1000, 20 000: all layers.
      */
     double base_m[2];
     /**
-     * A number for each cell in [0, 1]: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows from
-     * south to north. Copied by the call.
+     * A number for each cell in [0, 1]: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows
+     * from south to north. Copied by the call.
      */
     const float *cover;
     /** Number of cells in `cover`: the product of `cells`. */
@@ -5560,10 +5535,9 @@ typedef struct wk_cloud_map {
 }
 
 /**
- * Lays a map on layers of cloud, in place of the one before; NULL takes it off. Clouds change at once. Part of the saved
- * state. With WK_CLOUD_MODEL_DECK it holds for light alone. Unchanged after an error.
- * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ * Lays a map on layers of cloud, in place of the one before; NULL takes it off. Clouds change at once. Part of the
+ * saved state. With WK_CLOUD_MODEL_DECK it holds for light alone. Unchanged after an error. Thread: exclusive. Errors:
+ * WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API
 wk_status wk_context_set_cloud_map(wk_context *context,
@@ -5580,7 +5554,8 @@ WK_API wk_status wk_cloud_map_init(wk_cloud_map *out, uint32_t struct_size);
  * [clouds] Clouds
  *
  * Layers of cloud come with the weather: wk_cloud_layer, a report, a preset. wk_context_set_cloud_model says how views
- * draw them. Conditions, what falls and light on the mean are the same either way. docs/clouds.md has costs and errors.
+ * draw them. Conditions, what falls and light on the mean are the same either way. docs/clouds.md has costs and
+ * errors.
  *
  * Volumes cast shadows: the stage SURFACE darkens and brightens what the host drew from its depth, in the ratio of the
  * light at each pixel's place to the light on the mean, in which the host lit it (wk_context_get_light). A host that
@@ -5602,14 +5577,14 @@ typedef uint32_t wk_cloud_model;
  */
 #define WK_CLOUD_MODEL_VOLUME 1
 
-/** What a view draws of clouds beside themselves. */
+/** Effects of clouds that a view draws beside the clouds. */
 typedef uint32_t wk_clouds_flags;
 
 /**
- * Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows. Drawn
- * with WK_STAGE_SURFACE where the host gives depth and does not read the map of shadows itself
- * (wk_view_get_cloud_shadows), up to 10 km away; 24 look-ups a pixel. Without it the air is as bright as on the mean over
- * places.
+ * Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows.
+ * Drawn with WK_STAGE_SURFACE where the host gives depth and does not read the map of shadows itself
+ * (wk_view_get_cloud_shadows), up to 10 km away; 24 look-ups a pixel. Without it the air is as bright as on the mean
+ * over places.
  */
 #define WK_CLOUDS_SHAFTS 1
 
@@ -5624,8 +5599,8 @@ typedef struct wk_clouds {
     /** How many steps a ray takes: twice the value, twice as many. Range [0.125, 32], default 2. */
     double fineness;
     /**
-     * One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier frames:
-     * 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
+     * One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier
+     * frames: 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
      */
     uint32_t square_side;
     /** WK_CLOUDS_* flags. Default 0. */
@@ -5643,10 +5618,8 @@ typedef struct wk_clouds {
 }
 
 /**
- * Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS). Part of the
- * saved state.
- * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
+ * Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS).
+ * Part of the saved state. Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
  */
 WK_API
 wk_status wk_context_set_cloud_model(wk_context *context,
@@ -5686,14 +5659,14 @@ WK_API wk_status wk_clouds_init(wk_clouds *out, uint32_t struct_size);
  * ====================================================================================================
  * [cloud_shadow] Shadows of clouds as a texture
  *
- * For the host's own materials: the share of the direct light of sun or moon that broken clouds let through, as one native
- * texture for all places about the camera. The published sampling function, GLSL and WGSL, looks it up.
+ * For the host's own materials: the share of the direct light of sun or moon that broken clouds let through, as one
+ * native texture for all places about the camera. The published sampling function, GLSL and WGSL, looks it up.
  * ====================================================================================================
  */
 
 /**
- * The map of the clouds' shadows, and how it lay in the view's last frame: a plane at the station's height, fixed to the
- * air that carries the clouds, which repeats every 20 km.
+ * The map of the clouds' shadows, and how it lay in the view's last frame: a plane at the station's height, fixed to
+ * the air that carries the clouds, which repeats every 20 km.
  */
 typedef struct wk_cloud_shadows {
     /** sizeof(wk_cloud_shadows) of your header. */
@@ -5703,9 +5676,9 @@ typedef struct wk_cloud_shadows {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Share of the direct light of sun or moon, whichever is brighter, that clouds let through: one channel of 8 bits, an
-     * OpenGL texture name (GL_TEXTURE_2D, GL_R8) or a VkImage (VK_FORMAT_R8_UNORM). Sample it with a linear filter that
-     * repeats.
+     * Share of the direct light of sun or moon, whichever is brighter, that clouds let through: one channel of 8 bits,
+     * an OpenGL texture name (GL_TEXTURE_2D, GL_R8) or a VkImage (VK_FORMAT_R8_UNORM). Sample it with a linear filter
+     * that repeats.
      */
     uint64_t texture;
     /** Texels of both sides. */
@@ -5713,19 +5686,19 @@ typedef struct wk_cloud_shadows {
     /** Texels of both sides. */
     uint32_t height;
     /**
-     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. Single
-     * precision is enough once the fourth column includes the camera's position.
+     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
+     * Single precision is enough once the fourth column includes the camera's position.
      */
     double uv_from_world[2][4];
-    /** Likewise: the height of a place over the plane, m. */
+    /** Row of a matrix, used as uv_from_world: it gives the height of a place over the plane, m. */
     double height_from_world[4];
     /** u and v of the place in the plane that the camera of the last frame stood over. */
     double camera_uv[2];
     /** Share of the direct light on the mean over places: wk_context_get_light has that light. */
     double mean_share;
     /**
-     * How far shadows are told apart, 0 to 1: 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and under a light near the
-     * horizon. The texture means nothing then.
+     * How far shadows are told apart, 0 to 1: 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and under a light
+     * near the horizon. The texture means nothing then.
      */
     double told;
     /**
@@ -5751,13 +5724,12 @@ typedef struct wk_cloud_shadows {
 }
 
 /**
- * Gets the native texture of the clouds' shadows. From the first call on, the first wk_view_record of each frame brings it
- * up to date, and WK_STAGE_SURFACE lays no shadows of clouds any more: your materials do. It belongs to the view and stays
- * the same until that is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls. Call this
- * after each frame for how the map lies. If you draw before Welkin, use that of the last frame, or record WK_STAGE_PREPARE
- * first.
- * Thread: exclusive on the view.
- * Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ * Gets the native texture of the clouds' shadows. From the first call on, the first wk_view_record of each frame
+ * brings it up to date, and WK_STAGE_SURFACE lays no shadows of clouds any more: your materials do. It belongs to the
+ * view and stays the same until that is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
+ * calls. Call this after each frame for how the map lies. If you draw before Welkin, use that of the last frame, or
+ * record WK_STAGE_PREPARE first. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own device, which
+ * has no shaders of the host's.
  */
 WK_API
 wk_status wk_view_get_cloud_shadows(wk_view *view,
@@ -5781,11 +5753,11 @@ wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
  * ====================================================================================================
  * [lightning] Lightning
  *
- * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20 km, or
- * as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the storm
- * cells: all channels see the same ones, and any time can be shown again. Views draw channels, the glow of clouds and
- * air, and light rain and wet ground by them. The host asks for events to play thunder, and for light to light its own
- * scene:
+ * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20
+ * km, or as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the
+ * storm cells: all channels see the same ones, and any time can be shown again. Views draw channels, the glow of
+ * clouds and air, and light rain and wet ground by them. The host asks for events to play thunder, and for light to
+ * light its own scene:
  *
  * wk_flash flashes[16];
  * uint32_t count = 0;
@@ -5798,7 +5770,7 @@ wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
  * ====================================================================================================
  */
 
-/** What a wk_lightning sets. */
+/** Flags of the settings in a wk_lightning. */
 typedef uint32_t wk_lightning_flags;
 
 /** flashes_per_minute: the host's rate in place of the weather's. */
@@ -5828,7 +5800,8 @@ typedef struct wk_lightning {
     /** Default WK_FLICKER_AS_IN_NATURE. */
     wk_flicker flicker;
     /**
-     * With WK_LIGHTNING_RATE: flashes a minute of each square of 20 km, whatever the weather. Range [0, 60], default 0.
+     * With WK_LIGHTNING_RATE: flashes a minute of each square of 20 km, whatever the weather. Range [0, 60], default
+     * 0.
      */
     double flashes_per_minute;
     /** Storm cells in `cells`, at most 16, in place of the weather's. Default 0. */
@@ -5841,8 +5814,8 @@ typedef struct wk_lightning {
      */
     const double *cells;
     /**
-     * Three numbers each: the tip in the host's world, m. Masts draw ground flashes; so do the tops of shelters. Copied.
-     * Default NULL.
+     * Three numbers each: the tip in the host's world, m. Masts draw ground flashes; so do the tops of shelters.
+     * Copied. Default NULL.
      */
     const double *masts;
 } wk_lightning;
@@ -5916,15 +5889,15 @@ typedef struct wk_flash {
     uint32_t strokes;
     /** Largest peak current of its strokes, kA. */
     double peak_ka;
-    /** What it struck, or the middle of its way in the cloud, in the host's world, m. */
+    /** Position of what it struck, or of the middle of its way in the cloud, in the host's world, m. */
     double position_m[3];
     /** Distance of the nearest point of its channel, m. */
     double distance_m;
     /** Direction to position_m. */
     double direction[3];
     /**
-     * Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, 331.3 m/s and 0.606 m/s
-     * for each degree Celsius.
+     * Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, 331.3 m/s and 0.606
+     * m/s for each degree Celsius.
      */
     double thunder_delay_s;
 } wk_flash;
@@ -5964,22 +5937,18 @@ typedef struct wk_flash_light {
 WK_API wk_status wk_context_set_lightning(wk_context *context, const wk_lightning *lightning);
 
 /**
- * Triggers a flash, whatever the weather. Part of the saved state until 120 s after it; at most 64 at a time. Unchanged
- * after an error.
- * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time before the present.
+ * Triggers a flash, whatever the weather. Part of the saved state until 120 s after it; at most 64 at a time.
+ * Unchanged after an error. Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range;
+ * WK_ERROR_WRONG_ORDER for a time before the present.
  */
-WK_API
-wk_status wk_context_trigger_flash(wk_context *context,
-                                   const wk_flash_trigger *flash);
+WK_API wk_status wk_context_trigger_flash(wk_context *context, const wk_flash_trigger *flash);
 
 /**
- * Gets the flashes that begin from `from_s` on until `until_s`, 3600 s at most, within `most_distance_m` of a place of the
- * host's world (on the map; at most 50000 m), in order of time: past or to come. `*out_count` gets their number even if
- * `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `flash_size` is
- * sizeof(wk_flash) of your header. Where the timeline has forgotten the weather of then, the first that it knows counts.
- * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ * Gets the flashes that begin from `from_s` on until `until_s`, 3600 s at most, within `most_distance_m` of a place of
+ * the host's world (on the map; at most 50000 m), in order of time: past or to come. `*out_count` gets their number
+ * even if `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds).
+ * `flash_size` is sizeof(wk_flash) of your header. Where the timeline has forgotten the weather of then, the first
+ * that it knows counts. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
 WK_API
 wk_status wk_context_get_flashes(const wk_context *context,
@@ -5993,10 +5962,9 @@ wk_status wk_context_get_flashes(const wk_context *context,
                                  uint32_t *out_count);
 
 /**
- * Gets the light of flashes at a place of the host's world, on the mean of `exposure_s`, [0, 1], before `time_s`; with 0
- * that of the very moment. A host lights its own scene by it, with the time from its last frame as exposure.
- * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ * Gets the light of flashes at a place of the host's world, on the mean of `exposure_s`, [0, 1], before `time_s`; with
+ * 0 that of the very moment. A host lights its own scene by it, with the time from its last frame as exposure. Thread:
+ * concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
 WK_API
 wk_status wk_context_get_flash_light(const wk_context *context,
@@ -6033,8 +6001,9 @@ wk_status wk_flash_light_init(wk_flash_light *out,
  *
  * A view may look through a window. Rain lands on it at the rate and speed at which the window meets it. Beads merge,
  * run down by gravity or up by the air, are wiped, and bend the picture behind them. Mist on the inside blurs the
- * picture. Snow lies on it until wipers take it or heat melts it. The stage LENS draws this over everything drawn so far, inside the window only; pixels of the mask stay. In
- * a call with TONE the glass lies before the tone curve if the target is a float one, else after it.
+ * picture. Snow lies on it until wipers take it or heat melts it. The stage LENS draws this over everything drawn so
+ * far, inside the window only; pixels of the mask stay. In a call with TONE the glass lies before the tone curve if
+ * the target is a float one, else after it.
  *
  * The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
  * WK_STAGE_PREPARE or the first stage after it. The frame rate changes nothing, and views of one seed and history
@@ -6062,8 +6031,8 @@ typedef struct wk_wiper_arm {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Pivot, m right of and above the pane's lower left corner (that of its bounds), along the glass. Range [-4, 12] each.
-     * Default 0, 0.
+     * Pivot, m right of and above the pane's lower left corner (that of its bounds), along the glass. Range [-4, 12]
+     * each. Default 0, 0.
      */
     double pivot_m[2];
     /** Distance from the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6. */
@@ -6071,8 +6040,8 @@ typedef struct wk_wiper_arm {
     /** Distance from the pivot to the blade's inner end, m. Range [0, length_m), default 0.1. */
     double inner_radius_m;
     /**
-     * Angle of the parked blade, degrees anticlockwise from the glass's right as seen from the camera. Range [-360, 360],
-     * default 0.
+     * Angle of the parked blade, degrees anticlockwise from the glass's right as seen from the camera. Range
+     * [-360, 360], default 0.
      */
     double parked_deg;
     /** Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90. */
@@ -6112,10 +6081,10 @@ typedef struct wk_windscreen {
     /** Number of wipers in `arms`, at most 2. Default 0. */
     uint32_t arm_count;
     /**
-     * Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower left,
-     * lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex, edges in
-     * [0.05, 8] m, within 20 m. Its slope against gravity follows from the frame's view matrix. Default 1 m x 0.6 m across
-     * the view, 0.7 m away.
+     * Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower
+     * left, lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex,
+     * edges in [0.05, 8] m, within 20 m. Its slope against gravity follows from the frame's view matrix. Default 1 m x
+     * 0.6 m across the view, 0.7 m away.
      */
     double corners_m[12];
     /** Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6. */
@@ -6126,8 +6095,8 @@ typedef struct wk_windscreen {
      */
     double velocity_m_s[3];
     /**
-     * Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the vehicle's speed
-     * on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
+     * Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the
+     * vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
      */
     double airflow_m_s;
     /**
@@ -6147,8 +6116,8 @@ typedef struct wk_windscreen {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Heat that the glass gets from wires in it or from a blower, W/m^2: melts snow, once it outweighs what cold air takes. A heated
-     * windscreen has some 600. Range [0, 3000], default 0.
+     * Heat that the glass gets from wires in it or from a blower, W/m^2: melts snow, once it outweighs what cold air
+     * takes. A heated windscreen has some 600. Range [0, 3000], default 0.
      */
     double heat_w_m2;
 } wk_windscreen;
@@ -6264,8 +6233,8 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  */
 
 /**
- * What the ground is made of. An image of the target (the byte of red) counts first, then the wk_ground_grid or the
- * tiles of the wk_terrain, then the context's default.
+ * Material of the ground. An image of the target (the byte of red) counts first, then the wk_ground_grid or the tiles
+ * of the wk_terrain, then the context's default.
  */
 typedef uint32_t wk_surface_class;
 
@@ -6307,7 +6276,7 @@ typedef struct wk_ground {
     uint32_t in_puddle;
     /** 0. */
     uint32_t reserved0;
-    /** What the ground is made of there, by the host's terrain, else by the context's default. */
+    /** Material of the ground there, by the host's terrain, else by the context's default. */
     wk_surface_class surface_class;
     /** 0. */
     uint32_t reserved1;
@@ -6446,8 +6415,8 @@ typedef struct wk_ground_grid {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * The node farthest to the south-west, in the host's world, m, within 1e12 m of the origin; heights count from its own.
-     * Default 0, 0, 0.
+     * The node farthest to the south-west, in the host's world, m, within 1e12 m of the origin; heights count from its
+     * own. Default 0, 0, 0.
      */
     double origin_m[3];
     /** Distance between nodes, m. Range [0.01, 10 000], default 1. Puddles need several cells. */
@@ -6518,9 +6487,8 @@ WK_API wk_status wk_context_set_ground_grid(wk_context *context, const wk_ground
  * Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights; `cell_size` is
  * sizeof(wk_ground_cell) of your header. `out_revision` gets a number that changes whenever the cells change, at most
  * once every 10 s of simulation time. With capacity 0 the call returns only this number, so you can skip uploads when
- * nothing has changed.
- * Thread: concurrent.
- * Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
+ * nothing has changed. Thread: concurrent. Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT
+ * for a capacity other than 0 that is too small.
  */
 WK_API
 wk_status wk_context_get_ground_cells(const wk_context *context,
@@ -6542,8 +6510,9 @@ wk_status wk_ground_grid_init(wk_ground_grid *out,
  * [ground_texture] Water on the host's terrain as a texture
  *
  * For the host's own materials: the water of the terrain's cells as one native texture, of a grid
- * (wk_context_set_ground_grid) uploaded once for the host and for the stage SURFACE, of tiles (wk_context_set_terrain) those
- * about a place. One texel for each cell, the first one south-west, rows to the north, in every graphics interface. Published functions, GLSL and WGSL, compute how it looks.
+ * (wk_context_set_ground_grid) uploaded once for the host and for the stage SURFACE, of tiles (wk_context_set_terrain)
+ * those about a place. One texel for each cell, the first one south-west, rows to the north, in every graphics
+ * interface. Published functions, GLSL and WGSL, compute how it looks.
  * ====================================================================================================
  */
 
@@ -6579,8 +6548,8 @@ typedef struct wk_ground_texture {
      */
     double uv_from_world[2][4];
     /**
-     * The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of wk_lying_snow.
-     * 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.
+     * The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of
+     * wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.
      */
     uint64_t snow_texture;
 } wk_ground_texture;
@@ -6605,23 +6574,21 @@ typedef struct wk_ground_texture {
  * SURFACE, uploads them in order with the host's work on the device's queue or context. The texture belongs to the
  * context and stays the same until another grid, or none, is set or loaded: wait for the GPU's work that samples it
  * before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It
- * has no mipmaps; choose filter and wrap yourself.
- * Thread: exclusive.
- * Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ * has no mipmaps; choose filter and wrap yourself. Thread: exclusive. Errors: WK_ERROR_WRONG_ORDER without a terrain;
+ * WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
  */
 WK_API
 wk_status wk_context_get_ground_texture(wk_context *context,
                                         wk_ground_texture *out_texture);
 
 /**
- * Gets the native textures of the tiles about a place, up to date, as wk_context_get_ground_texture does those of a grid:
- * a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at a time.
+ * Gets the native textures of the tiles about a place, up to date, as wk_context_get_ground_texture does those of a
+ * grid: a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at a time.
  * `uv_from_world` is where it is now; where no tile has ground there is neither water nor snow. Call it after each
- * wk_context_update, and for several cameras before you draw each. It costs nothing if nothing has changed; all of it is
- * uploaded where the window has moved. Both textures stay the same as long as the context lives.
- * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT for a place that is none; WK_ERROR_WRONG_ORDER where no tile reaches into the window;
- * WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ * wk_context_update, and for several cameras before you draw each. It costs nothing if nothing has changed; all of it
+ * is uploaded where the window has moved. Both textures stay the same as long as the context lives. Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a place that is none; WK_ERROR_WRONG_ORDER where no tile reaches into the
+ * window; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
  */
 WK_API
 wk_status wk_context_get_terrain_texture(wk_context *context,
@@ -6784,12 +6751,12 @@ WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
  *
  * The host's terrain as a lattice of equal cells, level and aligned to true north at its origin, cut into square tiles
  * with keys. Each cell has a height and a class of surface, or is a hole. Tiles are added, removed, and changed by
- * rectangles, in time that grows with the rectangle: a bucket may dig in every frame. Water, the wind field and queries
- * read the tiles. With WK_GROUND_SIMULATED each cell has water of its own, and hollows join across the borders of
- * tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has tiles or one wk_ground_grid.
+ * rectangles, in time that grows with the rectangle: a bucket may dig in every frame. Water, the wind field and
+ * queries read the tiles. With WK_GROUND_SIMULATED each cell has water of its own, and hollows join across the borders
+ * of tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has tiles or one wk_ground_grid.
  *
- * Heights belong to the host: wk_context_save keeps the water of the tiles, and wk_context_load wants the same tiles set
- * before. wk_context_set_terrain and the functions of tiles may be called between updates at any time; while steps
+ * Heights belong to the host: wk_context_save keeps the water of the tiles, and wk_context_load wants the same tiles
+ * set before. wk_context_set_terrain and the functions of tiles may be called between updates at any time; while steps
  * remain (WK_PENDING) they act after these.
  * ====================================================================================================
  */
@@ -6806,8 +6773,8 @@ typedef struct wk_terrain {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * The south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin; heights count from its
-     * own. Default 0, 0, 0.
+     * The south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin; heights count from
+     * its own. Default 0, 0, 0.
      */
     double origin_m[3];
     /** Distance between cells, m. Range [0.01, 10 000], default 1. Puddles need several cells. */
@@ -6833,7 +6800,8 @@ typedef struct wk_terrain {
 }
 
 /**
- * Heights and classes of a tile, or of a rectangle of its cells. Cells run from west to east, rows from south to north.
+ * Heights and classes of a tile, or of a rectangle of its cells. Cells run from west to east, rows from south to
+ * north.
  */
 typedef struct wk_terrain_cells {
     /** sizeof(wk_terrain_cells) of your header. */
@@ -6870,16 +6838,17 @@ typedef struct wk_terrain_cells {
     /** Numbers in surface_classes, at least as many as the rectangle reaches over. */
     uint32_t surface_class_count;
     /**
-     * Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a gap.
+     * Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a
+     * gap.
      */
     uint32_t surface_class_stride;
     /** 1 where no_data_m counts, else 0, the default: every number in heights_m is a height. */
     uint32_t has_no_data;
     /**
-     * Stands in heights_m for cells of which there are no data, and NaN then does too: -9999, -32768, or what your source has.
-     * These cells become holes, whatever surface_classes says of them but a class of ground; a hole becomes ground again
-     * by its class. Must be no height in use: of no cell to which surface_classes gives a class other than 0, and of no
-     * cell with ground beside the rectangle in its tile. Default 0.
+     * Stands in heights_m for cells of which there are no data, and NaN then does too: -9999, -32768, or what your
+     * source has. These cells become holes, whatever surface_classes says of them but a class of ground; a hole
+     * becomes ground again by its class. Must be no height in use: of no cell to which surface_classes gives a class
+     * other than 0, and of no cell with ground beside the rectangle in its tile. Default 0.
      */
     float no_data_m;
 } wk_terrain_cells;
@@ -6910,7 +6879,7 @@ typedef struct wk_terrain_point {
     uint64_t revision;
     /** Key of that tile. */
     int32_t tile[2];
-    /** What the nearest cell is made of; WK_SURFACE_CLASS_UNSPECIFIED where nothing is said. */
+    /** Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED where none is given. */
     wk_surface_class surface_class;
     /** 1 on the ground of a tile, else 0. */
     uint32_t has_ground;
@@ -6935,14 +6904,11 @@ WK_API wk_status wk_context_set_terrain_tile(wk_context *context, const wk_terra
 
 /**
  * Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the
- * ground lets it: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water that
- * it touches, not with the tile or the terrain. Unchanged after an error.
- * Thread: exclusive.
- * Errors: as wk_context_set_terrain_tile, and for the key of no tile.
+ * ground lets it: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water
+ * that it touches, not with the tile or the terrain. Unchanged after an error. Thread: exclusive. Errors: as
+ * wk_context_set_terrain_tile, and for the key of no tile.
  */
-WK_API
-wk_status wk_context_update_terrain(wk_context *context,
-                                    const wk_terrain_cells *terrain_cells);
+WK_API wk_status wk_context_update_terrain(wk_context *context, const wk_terrain_cells *terrain_cells);
 
 /**
  * Takes a tile away with the water on it. Where it was, water of the other tiles runs off.
@@ -6958,9 +6924,9 @@ WK_API wk_status wk_context_remove_terrain_tile(wk_context *context, int32_t til
 WK_API wk_status wk_context_get_terrain_revision(const wk_context *context, uint64_t *out_revision);
 
 /**
- * Gets the terrain's tiles under or above places of the host's world, at most wk_caps.max_batch of them. `position_size`
- * and `point_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_terrain_point) of your header.
- * Thread: concurrent.
+ * Gets the terrain's tiles under or above places of the host's world, at most wk_caps.max_batch of them.
+ * `position_size` and `point_size` are the bytes from one element to the next: 24 or more, and
+ * sizeof(wk_terrain_point) of your header. Thread: concurrent.
  */
 WK_API
 wk_status wk_context_get_terrain_points(const wk_context *context,
@@ -6972,10 +6938,9 @@ wk_status wk_context_get_terrain_points(const wk_context *context,
 
 /**
  * Copies the water of a tile's cells as of wk_context_get_state_time, by rows from the south-west; `cell_size` is
- * sizeof(wk_ground_cell) of your header. Holes are dry. `out_revision` gets a number that changes whenever water on the
- * terrain changes; with capacity 0 the call returns only this number.
- * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
+ * sizeof(wk_ground_cell) of your header. Holes are dry. `out_revision` gets a number that changes whenever water on
+ * the terrain changes; with capacity 0 the call returns only this number. Thread: concurrent. Errors:
+ * WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
  */
 WK_API
 wk_status wk_context_get_terrain_water(const wk_context *context,

@@ -370,10 +370,7 @@ fn threads_that_want_one_planet_build_it_once() {
 #[test]
 fn opengl_draws_the_same() {
     let options = DeviceOptions { backends: wgpu::Backends::GL, force_tier0: true, ..Default::default() };
-    let Ok(gl) = Device::headless(&options) else {
-        eprintln!("no OpenGL here");
-        return;
-    };
+    let gl = Device::headless(&options).expect("an OpenGL driver: make setup installs one");
     let planet = Planet::earth();
     let settings = coarse(SkyModel::Directional);
     let mut probes = [gl, device()].map(|d| Probe::new(&d, &settings, &planet).unwrap());

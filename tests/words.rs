@@ -44,10 +44,10 @@ fn without_a_noun(text: &str) -> Vec<(usize, &str)> {
     let mut found = Vec::new();
     for (i, line) in text.lines().enumerate() {
         let here = doc(line);
-        if let (None, Some(first)) = (before, here) {
-            if opens(first) {
-                found.push((i + 1, first));
-            }
+        if let (None, Some(first)) = (before, here)
+            && opens(first)
+        {
+            found.push((i + 1, first));
         }
         before = here;
     }

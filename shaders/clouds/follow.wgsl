@@ -26,7 +26,7 @@ fn smoothness(center: vec2f, near: array<vec2f, 4>, rounding: vec2f) -> f32 {
     let range = max(max(near[0], near[1]), max(near[2], near[3])) - min(min(near[0], near[1]), min(near[2], near[3]));
     let diagonals = 0.25 * (near[0] - near[1] - near[2] + near[3]);
     let left = max(abs(center - mean), abs(1.25 * mean - 0.25 * center - mean) + abs(diagonals));
-    let each = 1.0 - smoothstep(vec2f(SMOOTH), vec2f(SHAPED), left / (range + rounding));
+    let each = 1.0 - smoothstep(vec2f(SMOOTH), vec2f(SHAPED), left / max(range + rounding, vec2f(1e-6)));
     return min(each.x, each.y);
 }
 
@@ -71,6 +71,6 @@ fn follow(in: FullscreenVarying) -> FollowedSquare {
         most = max(most, seen);
         near[k] = light_and_open(seen);
     }
-    let rounding = vec2f(2e-3 * light_and_open(most).x + 1e-6, 0.02);
+    let rounding = vec2f(2e-3 * light_and_open(most).x, 0.02);
     return FollowedSquare(least, most, vec4f(back, smoothness(light_and_open(center), near, rounding), 0.0));
 }

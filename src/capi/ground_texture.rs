@@ -53,9 +53,9 @@ pub struct wk_ground_texture {
     pub width: u32,
     /// Texels: the grid's nodes east and north.
     pub height: u32,
-    /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. (0,
-    /// 0) is the south-western corner of the first texel. Single precision is enough once the fourth column includes
-    /// the camera's position.
+    /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
+    /// (0, 0) is the south-western corner of the first texel. Single precision is enough once the fourth column
+    /// includes the camera's position.
     pub uv_from_world: [[f64; 4]; 2],
     /// The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of
     /// wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.

@@ -57,8 +57,8 @@ impl wk_light {
     };
 }
 
-/// Sets the host's lamps, in place of those before; set moving ones again in every frame. count 0 removes all. At most
-/// 64. Unchanged after an error.
+/// Sets the host's lamps, in place of those before; set moving ones again in every frame. count 0 removes all. At
+/// most 64. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
 #[unsafe(no_mangle)]

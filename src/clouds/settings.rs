@@ -9,8 +9,7 @@ pub struct CloudSettings {
     /// `lab chart clouds` says that they err more than twice as much and cost hardly less.
     pub fineness: f64,
     /// One pixel of a square of so many on a side is marched in a frame, the others are taken over from earlier frames:
-    /// 1, 2 or 4, default
-    /// 4. Frames without history march all.
+    /// 1, 2 or 4, default 4. Frames without history march all.
     pub square_side: u32,
     /// Whether the air between clouds and ground is drawn brighter where the sun shines through and darker in their
     /// shadows: shafts of light. Default false: on the mean over places. It takes 24 look-ups a pixel, and is drawn

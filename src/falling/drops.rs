@@ -62,10 +62,9 @@ fn slope(i: usize) -> f64 {
 /// Coefficients of [`closed_form_speed_m_s`]: least squares on Gunn and Kinzer's table.
 pub const CLOSED_FORM: [f64; 5] = [9.198_902, 0.053_827_5, 0.572_275_3, 0.008_907_134, 0.012_283_48];
 
-/// Terminal speed at sea level, m/s, in a form that a shader takes: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4 D^2))), not
-/// below
-/// 0. RMS error over the table 0.031 m/s, at most 0.078; 2 % from 0.6 mm on (tested). Monotone, and 9.2 m/s for any
-///   size.
+/// Terminal speed at sea level, m/s, in a form that a shader takes: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4 D^2))), never
+/// negative. RMS error over the table 0.031 m/s, at most 0.078; 2 % from 0.6 mm on (tested). Monotone, and at most
+/// 9.2 m/s for any size.
 pub fn closed_form_speed_m_s(diameter_mm: f64) -> f64 {
     let [c0, c1, c2, c3, c4] = CLOSED_FORM;
     let d = (diameter_mm - c1).max(0.0);

@@ -95,8 +95,8 @@ pub fn threshold_m_s(wet: bool, density_kg_m3: f64) -> f64 {
     loose * libm::exp(0.013 * (density_kg_m3 - 300.0).max(0.0))
 }
 
-/// Returns the flux of snow that hops along the ground, kg/(m s): Pomeroy and Gray (1990), 0.68 rho / (u* g) u*t (u*^2
-/// - u*t^2), for winds at 10 m.
+/// Returns the flux of snow that hops along the ground, kg/(m s): Pomeroy and Gray (1990), 0.68 rho / (u* g) u*t
+/// (u*^2 - u*t^2), for winds at 10 m.
 pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;

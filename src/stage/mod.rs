@@ -107,9 +107,9 @@ pub struct Frame<'a> {
     /// Material of what each pixel shows: red is the number of a [`SurfaceClass`](crate::ground::SurfaceClass) over
     /// 255, 0 where the host's terrain or the context's default gives it. Of one sample; needs TEXTURE_BINDING.
     pub surface_classes: Option<&'a wgpu::Texture>,
-    /// Unit normals of the surfaces, in the host's world or in eye space ([`FrameFlags::NORMALS_IN_EYE_SPACE`]): (n +
-    /// 1) / 2 in normalised formats, n in float formats. What is no unit vector, as zeros and ones are, leaves it to
-    /// the host's terrain and depth. Of one sample; needs TEXTURE_BINDING.
+    /// Unit normals of the surfaces, in the host's world or in eye space ([`FrameFlags::NORMALS_IN_EYE_SPACE`]):
+    /// (n + 1) / 2 in normalised formats, n in float formats. What is no unit vector, as zeros and ones are, leaves it
+    /// to the host's terrain and depth. Of one sample; needs TEXTURE_BINDING.
     pub normals: Option<&'a wgpu::Texture>,
     /// Layers of array textures that the images are, as for the eyes of a stereo pair. Default: the first of each.
     pub layers: ImageLayers,

@@ -73,8 +73,8 @@ impl Blowing {
 
     /// The wind at `height_m` above ground under a `profile`.
     ///
-    /// The mean follows [`WindProfile::mean_at_height_m_s`]; gusts are as strong at all heights (Panofsky and Dutton
-    /// 1984) but where the mean falls below half of that at 10 m: there they die away with it.
+    /// The mean follows [`WindProfile::mean_at_height_m_s`]; gusts are as strong at all heights (Panofsky and
+    /// Dutton 1984) but where the mean falls below half of that at 10 m: there they die away with it.
     pub fn at_height(&self, profile: &WindProfile, height_m: f64) -> WindAt {
         let speed = profile.speed_m_s();
         let share = DVec2::from_array(profile.relative_at_height(height_m));

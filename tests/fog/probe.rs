@@ -21,10 +21,7 @@ fn the_probe_draws_koschmieder() {
 #[test]
 fn opengl_draws_the_same() {
     let options = DeviceOptions { backends: wgpu::Backends::GL, force_tier0: true, ..Default::default() };
-    let Ok(gl) = Device::headless(&options) else {
-        eprintln!("no OpenGL here");
-        return;
-    };
+    let gl = Device::headless(&options).expect("an OpenGL driver: make setup installs one");
     for v in [50.0, 50_000.0] {
         for (i, [contrast, transmittance]) in probe(&gl, v, &[0.0, v / 2.0, v]).unwrap().into_iter().enumerate() {
             let want = 0.05f64.powf(i as f64 / 2.0);

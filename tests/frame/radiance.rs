@@ -106,19 +106,24 @@ impl Errors {
         }
     }
 
-    /// Holds median, 95th percentile and worst against what the query's documentation says.
-    fn hold(mut self, name: &str, documented: [f64; 3]) {
+    /// Holds median, 95th percentile and worst against what docs/reflections.md says: what does not agree.
+    fn hold(mut self, name: &str, documented: [f64; 3]) -> Vec<String> {
         self.0.sort_by(|a, b| a.0.total_cmp(&b.0));
         let found = [0.5, 0.95, 1.0].map(|share| self.0[((self.0.len() - 1) as f64 * share) as usize].clone());
         println!(
             "{name}: median {:.4}, 95th percentile {:.4}, worst {:.4} at {}",
             found[0].0, found[1].0, found[2].0, found[2].1
         );
+        let mut faults = Vec::new();
         for ((found, place), documented) in found.iter().zip(documented) {
-            assert!(*found < documented, "{name}: {found} is above the documented {documented}: {place}");
-            let far_below = is_whole() && *found < 0.6 * documented;
-            assert!(!far_below, "{name}: {found} is far below the documented {documented}");
+            if *found >= documented {
+                faults.push(format!("{name}: {found} is above the documented {documented}: {place}"));
+            }
+            if is_whole() && *found < 0.6 * documented {
+                faults.push(format!("{name}: {found} is far below the documented {documented}"));
+            }
         }
+        faults
     }
 }
 
@@ -154,10 +159,13 @@ fn radiance_asked_for_is_the_radiance_drawn() {
             }
         }
     }
-    cube.hold("cube map", [0.002, 0.018, 0.08]);
-    day.hold("sun to -5 degrees", [0.0035, 0.025, 0.085]);
-    dusk.hold("sun at -12 degrees", [0.025, 0.09, 0.18]);
-    night.hold("night", [0.006, 0.14, 0.18]);
+    let faults = [
+        cube.hold("cube map", [0.0015, 0.018, 0.08]),
+        day.hold("sun to -5 degrees", [0.0035, 0.025, 0.085]),
+        dusk.hold("sun at -12 degrees", [0.025, 0.09, 0.18]),
+        night.hold("night", [0.006, 0.14, 0.18]),
+    ];
+    assert!(faults.iter().all(Vec::is_empty), "{faults:#?}");
 }
 
 /// How far the light that is told is from what is seen of skies of these visibilities over ground under so much snow,
