@@ -238,7 +238,7 @@ pub fn write_table(model: &Model) -> String {
                 let (kind, count) = kind(model, ty);
                 let _ = writeln!(
                     out,
-                    "    Field {{ name: \"{field}\", offset: std::mem::offset_of!({path}, {field}), kind: {kind}, count: {count}, range: \"{range}\" }},"
+                    "    LayoutField {{ name: \"{field}\", offset: std::mem::offset_of!({path}, {field}), kind: {kind}, count: {count}, range: \"{range}\" }},"
                 );
             }
             out.push_str("] };\n");

@@ -5373,8 +5373,8 @@ typedef struct wk_light {
 }
 
 /**
- * Sets the host's lamps, in place of those before; set moving ones again in every frame. count 0 removes all. At most
- * 64. Unchanged after an error.
+ * Sets the host's lamps, in place of those before; set moving ones again in every frame. count 0 removes all. At
+ * most 64. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
  */
@@ -6542,9 +6542,9 @@ typedef struct wk_ground_texture {
     /** Texels: the grid's nodes east and north. */
     uint32_t height;
     /**
-     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. (0,
-     * 0) is the south-western corner of the first texel. Single precision is enough once the fourth column includes
-     * the camera's position.
+     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
+     * (0, 0) is the south-western corner of the first texel. Single precision is enough once the fourth column
+     * includes the camera's position.
      */
     double uv_from_world[2][4];
     /**

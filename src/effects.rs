@@ -218,12 +218,12 @@ pub(crate) fn tables_layout(device: &Device) -> wgpu::BindGroupLayout {
 
 /// Changes that the planner compares by closed forms, since its gauge cannot see them.
 #[derive(Clone, Copy)]
-pub(crate) struct Unseen {
+pub(crate) struct UnseenChanges {
     rain: Option<Streaks>,
     snow: Option<FlakeContrast>,
 }
 
-impl plan::Unseen for Unseen {
+impl plan::Unseen for UnseenChanges {
     fn change(&self, part: &Part, pixel: usize, ndc: DVec2, picture: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let found = match (&self.rain, &self.snow) {
             (Some(rain), _) if part.name == rain::candidates::RAIN.name => Some(rain.change(pixel, ndc, picture)),
@@ -365,8 +365,8 @@ impl Effects {
     }
 
     /// Returns what streaks and flakes are worth in a picture, if the plan decides about them.
-    pub fn unseen(&mut self, at: &DrawContext<'_>) -> Option<Unseen> {
-        let unseen = Unseen { rain: self.rain.streaks(at), snow: self.snow.contrast(at) };
+    pub fn unseen(&mut self, at: &DrawContext<'_>) -> Option<UnseenChanges> {
+        let unseen = UnseenChanges { rain: self.rain.streaks(at), snow: self.snow.contrast(at) };
         (unseen.rain.is_some() || unseen.snow.is_some()).then_some(unseen)
     }
 
@@ -381,9 +381,9 @@ impl Effects {
     }
 
     /// Returns the settings that a plan is saved with.
-    pub fn saved_with(&self) -> plan::Settings<'_> {
+    pub fn saved_with(&self) -> plan::PlanSettings<'_> {
         let settings = self.sky.next_settings();
-        plan::Settings {
+        plan::PlanSettings {
             model: settings.model.name(),
             check_model: |name| sky::SkyModel::from_name(name).map(|_| ()),
             numbers: settings.numbers().to_vec(),

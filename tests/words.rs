@@ -1,6 +1,8 @@
-//! How comments read: a doc block begins with a noun or a verb, and no line of a comment is wider than 120 columns.
+//! How the code reads: a doc block begins with a noun or a verb, no line of a comment is wider than 120 columns, one
+//! name of a type has one meaning, and what sets something is not named as a question.
 
 use std::{
+    collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
 };
@@ -84,4 +86,64 @@ fn comments_are_at_most_120_columns_wide() {
         .flat_map(|(path, text)| too_wide(text).into_iter().map(|(i, _)| format!("{}:{i}", path.display())))
         .collect();
     assert!(all.is_empty(), "{} lines:\n{}", all.len(), all.join("\n"));
+}
+
+/// Types of users' own whose names two public modules share.
+const SHARED_NAMES: [&str; 7] = ["Moment", "Place", "Ray", "Span", "Surface", "Table", "View"];
+
+/// Names of the types that a file defines outside of its tests and of text in quotes.
+fn types(text: &str) -> Vec<&str> {
+    let text = text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or(text);
+    let mut in_quotes = false;
+    let mut found = Vec::new();
+    for line in text.lines() {
+        let was_in_quotes = in_quotes;
+        in_quotes ^= line.matches('"').count() % 2 == 1;
+        let line = line.strip_prefix("pub").map_or(line, |rest| {
+            rest.strip_prefix('(').and_then(|r| r.split_once(')')).map_or(rest, |(_, rest)| rest).trim_start()
+        });
+        let kinds = ["struct ", "enum ", "union ", "trait ", "type "];
+        let name = kinds.iter().find_map(|kind| line.strip_prefix(kind));
+        if let (Some(rest), false) = (name, was_in_quotes) {
+            let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+            found.push(&rest[..end]);
+        }
+    }
+    found
+}
+
+#[test]
+fn one_name_of_a_type_has_one_meaning() {
+    let text = "pub struct A;\nenum B {}\npub(crate) trait C<T> {}\nconst T: &str = \"\nstruct D {\n\";\n    type E = u8;\n\
+                \n#[cfg(test)]\nmod tests {\nstruct F;\n";
+    assert_eq!(types(text), ["A", "B", "C"], "the rule itself");
+    let mut files_of: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (path, text) in files(&["src"]) {
+        let path = path.display().to_string();
+        if path.contains("/tests") || path.ends_with("tests.rs") || path.ends_with(".wgsl") {
+            continue;
+        }
+        types(&text).into_iter().for_each(|name| files_of.entry(name.to_owned()).or_default().push(path.clone()));
+    }
+    files_of.retain(|_, files| files.len() > 1);
+    let names: Vec<&str> = files_of.keys().map(String::as_str).collect();
+    assert_eq!(names, SHARED_NAMES, "{files_of:#?}");
+}
+
+#[test]
+fn a_question_changes_nothing() {
+    let asks = |line: &&str| {
+        let Some(rest) =
+            line.trim_start().trim_start_matches("pub ").trim_start_matches("pub(crate) ").strip_prefix("fn ")
+        else {
+            return false;
+        };
+        (rest.starts_with("is_") || rest.starts_with("has_")) && rest.contains("(&mut self")
+    };
+    assert!(asks(&"    pub fn is_fine(&mut self) {") && !asks(&"    fn is_fine(&self) -> bool {"), "the rule itself");
+    let all: Vec<String> = files(&["src"])
+        .iter()
+        .flat_map(|(path, text)| text.lines().filter(asks).map(move |line| format!("{}: {line}", path.display())))
+        .collect();
+    assert!(all.is_empty(), "{all:#?}");
 }

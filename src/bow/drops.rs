@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::table::{CLASSES, RAIN_EDGES_MM, Table, mixed};
 use crate::{
     falling::{FallingLayer, drops::factor_in, sizes::DropSizes},
-    moment::{GroundLight, Light, Moment, Scene},
+    moment::{GroundLight, Light, Scene, SceneMoment},
     weather::{Conditions, Falling, GroundLayer, smoothstep},
 };
 
@@ -54,7 +54,10 @@ pub(super) fn low_air(c: &Conditions, rain: impl FnOnce(&Falling, f64) -> [f64; 
 }
 
 /// Returns the share of each class in the mean extinction of the rain areas' drops; `None` without any.
-pub(super) fn areas(now: &Moment<'_>, mut rain: impl FnMut(&Falling, f64) -> [f64; CLASSES]) -> Option<[f64; CLASSES]> {
+pub(super) fn areas(
+    now: &SceneMoment<'_>,
+    mut rain: impl FnMut(&Falling, f64) -> [f64; CLASSES],
+) -> Option<[f64; CLASSES]> {
     let mut classes = [0.0; CLASSES];
     let factor = factor_in(&now.here.air, now.here.air.station_altitude_m);
     for region in now.weather.regions {

@@ -31,7 +31,7 @@ impl Call {
     ///
     /// # Errors
     /// [`Status::BadHandle`] by the parameter's name, [`Status::Poisoned`].
-    pub(super) fn get<T: handles::Object>(&mut self, param: &str, handle: *const T::C) -> Result<Arc<T>> {
+    pub(super) fn get<T: handles::HandleObject>(&mut self, param: &str, handle: *const T::C) -> Result<Arc<T>> {
         let object = handles::get::<T>(param, handle)?;
         if let Some(device) = object.device() {
             device.check_alive()?;

@@ -23,7 +23,7 @@ use super::{
     device::{DeviceObject, wk_device},
     device_cell::DeviceCell,
     ground::wk_simulation_desc,
-    handles::{self, Object},
+    handles::{self, HandleObject},
     input::{self, out},
     layout::{self, init_struct, struct_size},
     sky::wk_sky_settings,
@@ -172,7 +172,7 @@ impl ContextObject {
     }
 }
 
-impl Object for ContextObject {
+impl HandleObject for ContextObject {
     type C = wk_context;
     const KIND: u8 = 2;
     const NAME: &'static str = "wk_context";

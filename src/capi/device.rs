@@ -19,7 +19,7 @@ use std::{
 use super::{
     boundary::guard,
     device_cell::DeviceCell,
-    handles::{self, Object},
+    handles::{self, HandleObject},
     host::Host,
     input::out,
     layout::{self, init_struct, struct_size},
@@ -137,7 +137,7 @@ pub(super) struct DeviceObject {
     driver: CString,
 }
 
-impl Object for DeviceObject {
+impl HandleObject for DeviceObject {
     type C = wk_device;
     const KIND: u8 = 1;
     const NAME: &'static str = "wk_device";

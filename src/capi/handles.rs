@@ -10,7 +10,7 @@ use super::device_cell::DeviceCell;
 use crate::error::{Error, Result, Status};
 
 /// Object that a C handle type stands for.
-pub(super) trait Object: Any + Send + Sync {
+pub(super) trait HandleObject: Any + Send + Sync {
     /// The opaque type in the header.
     type C;
     /// 1 to 15, different for every kind.
@@ -21,7 +21,7 @@ pub(super) trait Object: Any + Send + Sync {
     fn device(&self) -> Option<&Arc<DeviceCell>>;
 }
 
-struct Slot {
+struct HandleSlot {
     generation: u32,
     kind: u8,
     name: &'static str,
@@ -31,12 +31,12 @@ struct Slot {
 }
 
 #[derive(Default)]
-struct Table {
-    slots: Vec<Slot>,
+struct HandleTable {
+    slots: Vec<HandleSlot>,
     free: Vec<usize>,
 }
 
-static TABLE: RwLock<Table> = RwLock::new(Table { slots: Vec::new(), free: Vec::new() });
+static TABLE: RwLock<HandleTable> = RwLock::new(HandleTable { slots: Vec::new(), free: Vec::new() });
 
 /// Bit layout of a handle, from the lowest: one set bit (so it is never NULL and never an aligned address), slot,
 /// generation, kind. A slot whose generations are used up is never used again, so no handle is ever issued twice.
@@ -57,17 +57,17 @@ fn slot_of(handle: usize) -> usize {
     (handle >> 1) & mask(SLOT_BITS)
 }
 
-fn read() -> RwLockReadGuard<'static, Table> {
+fn read() -> RwLockReadGuard<'static, HandleTable> {
     // Nothing panics while it holds the table, so a poisoned lock still guards a whole table.
     TABLE.read().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn write() -> RwLockWriteGuard<'static, Table> {
+fn write() -> RwLockWriteGuard<'static, HandleTable> {
     TABLE.write().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Why a handle is none of ours, or `Ok` with its slot.
-fn locate<T: Object>(table: &Table, param: &str, handle: usize) -> Result<usize> {
+fn locate<T: HandleObject>(table: &HandleTable, param: &str, handle: usize) -> Result<usize> {
     let bad = |got: &str| Err(Error::about(Status::BadHandle, param, format!("must be a live {}, got {got}", T::NAME)));
     if handle == 0 {
         return bad("NULL");
@@ -85,13 +85,16 @@ fn locate<T: Object>(table: &Table, param: &str, handle: usize) -> Result<usize>
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] when the table is full, [`Status::BadHandle`] if the parent died meanwhile.
-pub(super) fn insert<T: Object, P: Object>(object: Arc<T>, parent: Option<*const P::C>) -> Result<*mut T::C> {
+pub(super) fn insert<T: HandleObject, P: HandleObject>(
+    object: Arc<T>,
+    parent: Option<*const P::C>,
+) -> Result<*mut T::C> {
     let mut table = write();
     let parent = parent.map(|p| locate::<P>(&table, "parent", p as usize)).transpose()?;
     let index = match table.free.pop() {
         Some(index) => index,
         None if table.slots.len() <= mask(SLOT_BITS) => {
-            table.slots.push(Slot { generation: 0, kind: 0, name: "", children: 0, parent: None, object: None });
+            table.slots.push(HandleSlot { generation: 0, kind: 0, name: "", children: 0, parent: None, object: None });
             table.slots.len() - 1
         }
         None => return Err(Error::new(Status::OutOfMemory, "no more handles can be issued in this process")),
@@ -100,8 +103,14 @@ pub(super) fn insert<T: Object, P: Object>(object: Arc<T>, parent: Option<*const
         table.slots[parent].children += 1;
     }
     let slot = &mut table.slots[index];
-    *slot =
-        Slot { generation: slot.generation, kind: T::KIND, name: T::NAME, children: 0, parent, object: Some(object) };
+    *slot = HandleSlot {
+        generation: slot.generation,
+        kind: T::KIND,
+        name: T::NAME,
+        children: 0,
+        parent,
+        object: Some(object),
+    };
     Ok(encode(T::KIND, slot.generation, index) as *mut T::C)
 }
 
@@ -109,7 +118,7 @@ pub(super) fn insert<T: Object, P: Object>(object: Arc<T>, parent: Option<*const
 ///
 /// # Errors
 /// [`Status::BadHandle`] naming the parameter and what was found instead.
-pub(super) fn get<T: Object>(param: &str, handle: *const T::C) -> Result<Arc<T>> {
+pub(super) fn get<T: HandleObject>(param: &str, handle: *const T::C) -> Result<Arc<T>> {
     let table = read();
     let slot = locate::<T>(&table, param, handle as usize)?;
     let object = table.slots[slot].object.clone().map(|o| o.downcast::<T>());
@@ -124,7 +133,7 @@ pub(super) fn get<T: Object>(param: &str, handle: *const T::C) -> Result<Arc<T>>
 ///
 /// # Errors
 /// [`Status::BadHandle`]; [`Status::InUse`] while it has children.
-pub(super) fn remove<T: Object>(param: &str, handle: *const T::C) -> Result<Arc<T>> {
+pub(super) fn remove<T: HandleObject>(param: &str, handle: *const T::C) -> Result<Arc<T>> {
     let mut table = write();
     let index = locate::<T>(&table, param, handle as usize)?;
     let children = table.slots[index].children;
@@ -159,7 +168,7 @@ mod tests {
     struct CShip;
     struct CBoat;
 
-    impl Object for Ship {
+    impl HandleObject for Ship {
         type C = CShip;
         const KIND: u8 = 14;
         const NAME: &'static str = "wk_ship";
@@ -168,7 +177,7 @@ mod tests {
         }
     }
 
-    impl Object for Boat {
+    impl HandleObject for Boat {
         type C = CBoat;
         const KIND: u8 = 15;
         const NAME: &'static str = "wk_boat";

@@ -28,7 +28,7 @@ pub(crate) enum FieldKind {
 
 /// A field as the header declares it; `count` elements of `kind`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Field {
+pub(crate) struct LayoutField {
     pub name: &'static str,
     pub offset: usize,
     pub kind: FieldKind,
@@ -45,7 +45,7 @@ pub(crate) struct StructInfo {
     pub align: usize,
     /// Whether there is a `WK_X_INIT`: the plain values of lists have none.
     pub has_init: bool,
-    pub fields: &'static [Field],
+    pub fields: &'static [LayoutField],
 }
 
 /// An integer type with named values; for `flags` any union of them is accepted.
@@ -135,7 +135,7 @@ unsafe fn check_fields(param: &dyn Display, base: *const u8, info: &'static Stru
         for i in 0..field.count {
             // SAFETY: the table's offsets lie inside the struct.
             let at = unsafe { base.add(field.offset + i * field.kind.size()) };
-            let name = Named { param, field: field.name, index: (field.count > 1).then_some(i) };
+            let name = FieldPath { param, field: field.name, index: (field.count > 1).then_some(i) };
             // SAFETY: as above, and reads are unaligned.
             unsafe { check_element(&name, at, field)? };
         }
@@ -145,7 +145,7 @@ unsafe fn check_fields(param: &dyn Display, base: *const u8, info: &'static Stru
 
 /// # Safety
 /// `at` points to an element of `field`'s kind.
-unsafe fn check_element(name: &Named<'_>, at: *const u8, field: &Field) -> Result<()> {
+unsafe fn check_element(name: &FieldPath<'_>, at: *const u8, field: &LayoutField) -> Result<()> {
     let float = match field.kind {
         // SAFETY: the caller's promise.
         FieldKind::F32 => f64::from(unsafe { at.cast::<f32>().read_unaligned() }),
@@ -172,13 +172,13 @@ unsafe fn check_element(name: &Named<'_>, at: *const u8, field: &Field) -> Resul
 }
 
 /// `frame.camera.position_m[2]`, written only when an error needs it.
-struct Named<'a> {
+struct FieldPath<'a> {
     param: &'a dyn Display,
     field: &'static str,
     index: Option<usize>,
 }
 
-impl Display for Named<'_> {
+impl Display for FieldPath<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}.{}", self.param, self.field)?;
         self.index.map_or(Ok(()), |i| write!(f, "[{i}]"))
@@ -246,7 +246,7 @@ fn expected_type<T: Layout>() -> u32 {
 /// # Safety
 /// `p` points to `size` readable bytes.
 unsafe fn check_size(param: &dyn Display, p: *const u8, size: usize, info: &StructInfo) -> Result<()> {
-    let ends = |f: &Field| f.offset + f.count * f.kind.size();
+    let ends = |f: &LayoutField| f.offset + f.count * f.kind.size();
     let refuse = |got: usize| {
         let accepted =
             format!("sizeof({}), which is {} (start from {}_INIT)", info.name, info.size, info.name.to_uppercase());

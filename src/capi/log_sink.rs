@@ -24,9 +24,9 @@ unsafe impl Sync for Receiver {}
 
 static RECEIVER: RwLock<Option<Receiver>> = RwLock::new(None);
 
-struct Sink;
+struct LogSink;
 
-impl log::Log for Sink {
+impl log::Log for LogSink {
     fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
         // The graphics layer reports its daily life as information: only its warnings concern a host.
         metadata.target().starts_with("welkin") || metadata.level() <= log::Level::Warn
@@ -58,7 +58,7 @@ impl log::Log for Sink {
 pub(super) fn set(callback: wk_log_fn, user: *mut c_void, max_level: wk_log_level) -> Result<()> {
     static INSTALLED: OnceLock<bool> = OnceLock::new();
     let receiver = callback.map(|callback| Receiver { callback, user });
-    if receiver.is_some() && !*INSTALLED.get_or_init(|| log::set_logger(&Sink).is_ok()) {
+    if receiver.is_some() && !*INSTALLED.get_or_init(|| log::set_logger(&LogSink).is_ok()) {
         let text = "this Rust program has its own logger, which gets Welkin's messages already";
         return Err(Error::new(Status::InUse, text));
     }

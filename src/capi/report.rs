@@ -270,7 +270,7 @@ pub unsafe extern "C" fn wk_weather_from_metar_with(
 }
 
 /// The caller's room for a report.
-type Places = (WeatherOut, Option<layout::OutStruct<wk_metar>>);
+type ReportRoom = (WeatherOut, Option<layout::OutStruct<wk_metar>>);
 
 /// Checks the caller's room for a report.
 ///
@@ -285,7 +285,7 @@ unsafe fn places(
     layer_size: u32,
     out_weather: *mut wk_weather,
     out_metar: *mut wk_metar,
-) -> Result<Places> {
+) -> Result<ReportRoom> {
     // SAFETY: the caller's promises.
     let weather = unsafe { weather_out(layers, layer_capacity, layer_size, out_weather)? };
     if out_metar.is_null() {
@@ -299,7 +299,7 @@ unsafe fn places(
 ///
 /// # Errors
 /// As [`Weather::from_metar`], about the parameter `report`; too little room for the layers.
-fn answer(text: &str, options: &MetarOptions, (weather, metar): Places) -> Result<Status> {
+fn answer(text: &str, options: &MetarOptions, (weather, metar): ReportRoom) -> Result<Status> {
     let report = Weather::from_metar_with(text, options).map_err(|e| e.in_text("report"))?;
     weather.set(&report.weather)?;
     if let Some(metar) = metar {

@@ -19,7 +19,7 @@ use super::{
     boundary::guard,
     device::{self, DeviceObject, wk_device, wk_device_desc},
     device_cell::DeviceCell,
-    handles::{self, Object},
+    handles::{self, HandleObject},
     host::Host,
     input::out,
     layout::{self, init_struct, struct_size},
@@ -145,7 +145,7 @@ impl SurfaceObject {
     }
 }
 
-impl Object for SurfaceObject {
+impl HandleObject for SurfaceObject {
     type C = wk_surface;
     const KIND: u8 = 4;
     const NAME: &'static str = "wk_surface";

@@ -13,7 +13,7 @@ use super::{
     boundary::guard,
     device::{DeviceObject, wk_device},
     device_cell::DeviceCell,
-    handles::{self, Object},
+    handles::{self, HandleObject},
     input::{self, Named, out},
     layout::{self, init_struct, struct_size},
     status::*,
@@ -90,7 +90,7 @@ pub(super) struct TextureObject {
     transfer: Mutex<()>,
 }
 
-impl Object for TextureObject {
+impl HandleObject for TextureObject {
     type C = wk_texture;
     const KIND: u8 = 5;
     const NAME: &'static str = "wk_texture";

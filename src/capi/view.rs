@@ -30,7 +30,7 @@ use super::{
     context::{ContextObject, wk_context},
     device_cell::DeviceCell,
     frame::{WK_FRAME_MEASURE, wk_frame},
-    handles::{self, Object},
+    handles::{self, HandleObject},
     host,
     input::{Room, out},
     layout::{self, init_struct, struct_size},
@@ -274,7 +274,7 @@ impl ViewObject {
     }
 }
 
-impl Object for ViewObject {
+impl HandleObject for ViewObject {
     type C = wk_view;
     const KIND: u8 = 3;
     const NAME: &'static str = "wk_view";

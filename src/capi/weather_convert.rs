@@ -188,16 +188,16 @@ fn cloud(c: &wk_cloud_layer) -> Result<CloudLayer> {
 }
 
 /// Collects `has` bits while it unwraps options.
-struct Bits<T>(T);
+struct HasBits<T>(T);
 
-impl Bits<u64> {
+impl HasBits<u64> {
     fn put(&mut self, bit: u64, value: Option<f64>) -> f64 {
         self.0 |= if value.is_some() { bit } else { 0 };
         value.unwrap_or(0.0)
     }
 }
 
-impl Bits<u32> {
+impl HasBits<u32> {
     fn put(&mut self, bit: u32, value: Option<f64>) -> f64 {
         self.0 |= if value.is_some() { bit } else { 0 };
         value.unwrap_or(0.0)
@@ -206,7 +206,7 @@ impl Bits<u32> {
 
 /// The flat struct of a weather, without its clouds.
 pub(super) fn to_c(w: &Weather) -> wk_weather {
-    let mut has = Bits(0_u64);
+    let mut has = HasBits(0_u64);
     let variable = w.wind.variable_deg;
     let swell = w.sea.swell;
     let flags = [
@@ -318,7 +318,7 @@ impl WeatherOut {
 }
 
 fn cloud_to_c(layer: &CloudLayer) -> wk_cloud_layer {
-    let mut has = Bits(0_u32);
+    let mut has = HasBits(0_u32);
     let mut c = wk_cloud_layer {
         kind: layer.kind as u32,
         cover: layer.cover,

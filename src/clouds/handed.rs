@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use super::shadow_map::ShadowProjection;
-use crate::moment::Moment;
+use crate::moment::SceneMoment;
 
 /// Map of the clouds' shadows for a host's own materials. The texture is valid until the view is destroyed; ask for all
 /// else after each frame.
@@ -58,7 +58,7 @@ impl HostShadowTexture {
     }
 
     /// Takes over how the map lies in a frame; `None` where no clouds cast shadows that are told apart.
-    pub fn lay(&mut self, now: &Moment<'_>, lie: Option<&ShadowProjection>) {
+    pub fn lay(&mut self, now: &SceneMoment<'_>, lie: Option<&ShadowProjection>) {
         let shadows = &mut self.shadows;
         shadows.mean_share = now.scene.brighter().direct_share;
         let Some(lie) = lie else {

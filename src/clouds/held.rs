@@ -34,12 +34,12 @@ pub(super) struct CloudNoise {
     pub map: Map,
     pub solid: Solid,
     /// By medium.
-    lit: [Mutex<Option<Lit>>; 2],
+    lit: [Mutex<Option<LitMedium>>; 2],
     maps: Mutex<LayerMaps>,
 }
 
 /// Light in a medium under a sun.
-struct Lit {
+struct LitMedium {
     medium: Arc<Transport>,
     sources: Arc<Sources>,
 }
@@ -59,12 +59,12 @@ impl CloudNoise {
     pub fn sources(&self, which: usize, medium: &Arc<Transport>, to_sun: DVec3) -> Arc<Sources> {
         // After a panic elsewhere the light is made anew.
         let mut lit = self.lit[which].lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        let holds = |of: &&Lit| Arc::ptr_eq(&of.medium, medium) && of.sources.to_sun.distance(to_sun) < SUN_MOVED;
+        let holds = |of: &&LitMedium| Arc::ptr_eq(&of.medium, medium) && of.sources.to_sun.distance(to_sun) < SUN_MOVED;
         if let Some(of) = lit.as_ref().filter(holds) {
             return of.sources.clone();
         }
         let sources = Arc::new(Sources::new(medium, to_sun));
-        *lit = Some(Lit { medium: medium.clone(), sources: sources.clone() });
+        *lit = Some(LitMedium { medium: medium.clone(), sources: sources.clone() });
         sources
     }
 }

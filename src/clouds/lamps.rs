@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::overhead::CloudLayers;
 use crate::{
-    moment::Moment,
+    moment::SceneMoment,
     scene::{FlashLamp, HostLight, LightUniform},
 };
 
@@ -25,7 +25,7 @@ const NEAREST_M: f64 = 5.0;
 /// One of them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(super) struct LampUniform {
+pub(super) struct CloudLampUniform {
     pub light: LightUniform,
     pub radius: f32,
     pub even: f32,
@@ -40,7 +40,7 @@ pub(super) struct LampsUniform {
     pub count: u32,
     pub row: f32,
     pub size: [f32; 2],
-    pub lamps: [LampUniform; LAMPS],
+    pub lamps: [CloudLampUniform; LAMPS],
 }
 
 /// Width and height of the glow's picture, texels, for a picture of so many pixels: `glow_size` of
@@ -65,7 +65,7 @@ fn most_on(overhead: &CloudLayers, lamp: &HostLight, up: f64, height_m: f64) -> 
         let angle = up.clamp(-1.0, 1.0).asin() + lamp.outer_deg.to_radians();
         angle.min(0.5 * PI).sin()
     };
-    let one = |layer: &super::overhead::Layer| {
+    let one = |layer: &super::overhead::OverheadLayer| {
         let (base_m, top_m) = (layer.shape.base_m, layer.shape.base_m + layer.shape.thickness_m);
         let (gap_m, sine) = if height_m < base_m {
             (base_m - height_m, steepest(up))
@@ -78,8 +78,8 @@ fn most_on(overhead: &CloudLayers, lamp: &HostLight, up: f64, height_m: f64) -> 
     overhead.layers().iter().map(one).fold(0.0, f64::max)
 }
 
-impl LampUniform {
-    fn host(lamp: &HostLight, now: &Moment<'_>, exposure: f64) -> Self {
+impl CloudLampUniform {
+    fn host(lamp: &HostLight, now: &SceneMoment<'_>, exposure: f64) -> Self {
         let light = lamp.uniform(now.eye, now.scene.world_to_enu, exposure);
         Self { light, radius: 0.1, even: even_share(lamp) as f32, buried: 0.0, pad: 0.0 }
     }
@@ -100,7 +100,7 @@ impl LampUniform {
 impl LampsUniform {
     /// Finds the lamps and flashes of a moment, for a picture of these pixels; none where nothing of their glow would
     /// show.
-    pub fn of(overhead: &CloudLayers, now: &Moment<'_>, exposure: f64, picture: (u32, u32)) -> Option<Self> {
+    pub fn of(overhead: &CloudLayers, now: &SceneMoment<'_>, exposure: f64, picture: (u32, u32)) -> Option<Self> {
         let (lights, flashes) = (now.lamps, now.flash_lamps());
         if lights.is_empty() && flashes.is_empty() {
             return None;
@@ -116,8 +116,8 @@ impl LampsUniform {
         host.sort_by(|a, b| b.0.total_cmp(&a.0));
         let (width, height) = glow_size(picture);
         let mut out = Self { row: picture.1 as f32, size: [width as f32, height as f32], ..Self::zeroed() };
-        let flashes = flashes.iter().map(|flash| LampUniform::flash(flash, exposure));
-        let host = host.iter().map(|(_, lamp)| LampUniform::host(lamp, now, exposure));
+        let flashes = flashes.iter().map(|flash| CloudLampUniform::flash(flash, exposure));
+        let host = host.iter().map(|(_, lamp)| CloudLampUniform::host(lamp, now, exposure));
         for (to, lamp) in out.lamps.iter_mut().zip(flashes.chain(host)) {
             *to = lamp;
             out.count += 1;
@@ -133,7 +133,12 @@ mod tests {
 
     #[test]
     fn offsets_agree_with_the_shader() {
-        shader::assert_layout!("clouds/glow_view.wgsl:lamps", "CloudLamp", LampUniform, [light, radius, even, buried]);
+        shader::assert_layout!(
+            "clouds/glow_view.wgsl:lamps",
+            "CloudLamp",
+            CloudLampUniform,
+            [light, radius, even, buried]
+        );
         shader::assert_layout!("clouds/glow_view.wgsl:lamps", "CloudLamps", LampsUniform, [count, row, size, lamps]);
     }
 

@@ -55,7 +55,7 @@ pub(crate) struct CloudsSeen {
 }
 
 /// A layer in its light.
-struct Lit<'a> {
+struct MarchedLayer<'a> {
     field: Field<'a>,
     share: f64,
     light: LayerLight,
@@ -66,7 +66,7 @@ struct Lit<'a> {
 
 /// Clouds about a place that is asked about.
 pub(crate) struct CloudRays<'a> {
-    layers: Vec<Lit<'a>>,
+    layers: Vec<MarchedLayer<'a>>,
     light: LightWithin<'a>,
     /// Position of the place, east and north of the world's origin, m, and above the sea.
     place_m: DVec3,
@@ -102,7 +102,7 @@ impl LightWithin<'_> {
 
 /// State of a march: what the ray has seen so far.
 #[derive(Clone, Copy)]
-struct March {
+struct MarchState {
     light: DVec3,
     transmittance: f64,
     distance: f64,
@@ -110,7 +110,7 @@ struct March {
 
 /// A place inside of a layer's cloud.
 struct AtPlace<'a> {
-    of: &'a Lit<'a>,
+    of: &'a MarchedLayer<'a>,
     /// The layer's clouds as they are here.
     field: Field<'a>,
     position_m: DVec3,
@@ -123,7 +123,7 @@ impl<'a> CloudRays<'a> {
     pub(super) fn new(overhead: &CloudLayers, grown: &'a CloudNoise, scene: &Scene, radius_m: f64) -> Self {
         let to_sun = scene.brighter().direction;
         let media = media(overhead.liquid_um);
-        let lit = |(i, layer): (usize, &super::overhead::Layer)| Lit {
+        let lit = |(i, layer): (usize, &super::overhead::OverheadLayer)| MarchedLayer {
             field: grown.field(overhead, i),
             share: layer.share,
             light: light_on(scene, (&layer.shape, overhead.is_placed()), 1.0),
@@ -151,7 +151,7 @@ impl<'a> CloudRays<'a> {
     ) -> Self {
         let scale = sources.scattering.scale();
         Self {
-            layers: vec![Lit { field, share: 1.0, light, medium: 0, scale }],
+            layers: vec![MarchedLayer { field, share: 1.0, light, medium: 0, scale }],
             light: LightWithin::Given(sources.clone()),
             place_m,
             radius_m: 1e9,
@@ -210,7 +210,7 @@ impl<'a> CloudRays<'a> {
 
     /// Returns the clouds that are seen in a direction up to a range, m.
     pub fn seen(&self, d: DVec3, range_m: f64) -> CloudsSeen {
-        let mut seen = March { light: DVec3::ZERO, transmittance: 1.0, distance: 0.0 };
+        let mut seen = MarchState { light: DVec3::ZERO, transmittance: 1.0, distance: 0.0 };
         for (k, stretch) in self.stretches(d, range_m) {
             let share = self.layers[k].share;
             if seen.transmittance > LEAST && share > 0.0 {
@@ -228,7 +228,7 @@ impl<'a> CloudRays<'a> {
         }
     }
 
-    fn layer(&self, of: &Lit<'_>, d: DVec3, [first, last]: [f64; 2], mut seen: March) -> March {
+    fn layer(&self, of: &MarchedLayer<'_>, d: DVec3, [first, last]: [f64; 2], mut seen: MarchState) -> MarchState {
         let s = &of.field.shape;
         let scaled = s.extinction_per_m * of.scale;
         let fine = self.longer[0] * (STEP_DEPTH / scaled).clamp(s.thickness_m / 128.0, s.thickness_m / 24.0);

@@ -31,7 +31,7 @@ const DISC_PALES: [f64; 2] = [12.0, 14.0];
 
 /// A layer of cloud, and how much of it is drawn as a volume: the rest is drawn as a deck.
 #[derive(Clone, Copy)]
-pub(super) struct Layer {
+pub(super) struct OverheadLayer {
     pub shape: Shape,
     pub slab: CloudSlab,
     /// Its slot among those of the conditions.
@@ -41,7 +41,7 @@ pub(super) struct Layer {
 
 /// Layers of cloud over a place.
 pub(super) struct CloudLayers {
-    layers: [Layer; LAYERS],
+    layers: [OverheadLayer; LAYERS],
     count: usize,
     /// Number of layers of which something is drawn as a volume: the first ones, since only the uppermost are decks.
     drawn: usize,
@@ -93,7 +93,7 @@ impl CloudLayers {
     /// Says whether one pixel spans several clouds of a layer below the camera, as far as its horizon; `pixel` in
     /// radians.
     pub fn is_coarse(&self, scene: &Scene, radius_m: f64, pixel: f64) -> bool {
-        let coarse = |layer: &Layer| {
+        let coarse = |layer: &OverheadLayer| {
             let over_m = (scene.place.altitude_m - layer.shape.base_m).max(0.0);
             let farthest_m = (over_m * (2.0 * radius_m + over_m)).sqrt();
             PIXEL_BLUR * pixel * farthest_m > BLUR_FROM * layer.shape.scale_m
@@ -118,7 +118,7 @@ impl CloudLayers {
         let is_above = |s: &CloudSlab| station_m + s.base_m > above_m;
         // What is above a deck is hidden by it.
         let share = slabs().find(|s| is_above(s)).map_or(1.0, |lowest| volume_share(scene, lowest));
-        let mut layer = |(slot, slab): (usize, &CloudSlab)| Layer {
+        let mut layer = |(slot, slab): (usize, &CloudSlab)| OverheadLayer {
             shape: still(slab).carried(&scene.conditions, slab, &drifts.slots[slot]),
             slab: *slab,
             slot,
@@ -144,18 +144,18 @@ impl CloudLayers {
     }
 
     /// Its layers of which something is drawn as a volume, from below.
-    pub fn layers(&self) -> &[Layer] {
+    pub fn layers(&self) -> &[OverheadLayer] {
         &self.layers[..self.drawn]
     }
 
     /// All of them: what is drawn as a deck is cloud all the same.
-    pub fn all(&self) -> &[Layer] {
+    pub fn all(&self) -> &[OverheadLayer] {
         &self.layers[..self.count]
     }
 
     /// How far the wind has carried the lowest layer since these were the drifts, m east and north.
     pub fn carried_since(&self, before: &LayerDrifts) -> DVec2 {
-        let Layer { slot, shape, .. } = &self.layers[0];
+        let OverheadLayer { slot, shape, .. } = &self.layers[0];
         shape.stretch.inverse() * (self.drifts.slots[*slot].way - before.slots[*slot].way) * shape.scale_m
     }
 
@@ -171,7 +171,7 @@ impl CloudLayers {
     }
 
     /// Puts a layer among the others by its base; answers its place, or none where there is no room.
-    pub fn insert(&mut self, layer: Layer) -> Option<usize> {
+    pub fn insert(&mut self, layer: OverheadLayer) -> Option<usize> {
         if self.count == LAYERS {
             return None;
         }
@@ -224,7 +224,7 @@ impl CloudLayers {
     }
 }
 
-impl Layer {
+impl OverheadLayer {
     /// Returns the index of its medium: droplets, or ice.
     pub fn medium(&self) -> usize {
         if self.slab.ice_fraction > 0.5 { ICE } else { 0 }

@@ -7,7 +7,7 @@ use super::{
     lamps::{LampsUniform, glow_size},
     overhead::CloudLayers,
     picture::{BEHIND, Picture, marched},
-    pipelines::{March, Part, Pipelines, Resolve, run, run_each},
+    pipelines::{March, Pipelines, Resolve, TargetPart, run, run_each},
     round::{CloudPanorama, PanoramaInputs},
     shadow_map::{HistoryUse, ShadowMap, ShadowProjection},
     tables::CloudTables,
@@ -384,11 +384,11 @@ impl CloudPasses {
         let made = picture.to_make(of.wanted.is_begun);
         let [seen, reach] = &picture.whole[made].written;
         let past = picture.begun.as_ref().map_or(&groups[1 + (1 - made)], |(_, group)| group);
-        let whole = Some(Part { first_row: 0, size: picture.of.0 });
+        let whole = Some(TargetPart { first_row: 0, size: picture.of.0 });
         run_each(encoder, (&[seen, reach], kinds, whole), pipelines.resolve(device, resolve)?, &[past, &shaded]);
         if let Some(lamps) = &of.lamps {
             self.lamps_block.write(bytemuck::bytes_of(lamps));
-            let below = Part { first_row: picture.of.0.1, size: glow_size(picture.of.0) };
+            let below = TargetPart { first_row: picture.of.0.1, size: glow_size(picture.of.0) };
             run(encoder, (&[reach], Some(below)), &pipelines.glow(device, march)?, &[group, of.sky.1]);
             passes += 1;
         }

@@ -208,7 +208,7 @@ fn attachment(
 
 /// A part of a pass's targets.
 #[derive(Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct TargetPart {
     pub first_row: u32,
     pub size: (u32, u32),
 }
@@ -216,7 +216,7 @@ pub(super) struct Part {
 /// Runs one pass over its targets, which are empty before, or over a part of them. What lies elsewhere stays.
 pub(super) fn run(
     encoder: &mut wgpu::CommandEncoder,
-    (targets, part): (&[&wgpu::TextureView], Option<Part>),
+    (targets, part): (&[&wgpu::TextureView], Option<TargetPart>),
     pipeline: &wgpu::RenderPipeline,
     groups: &[&wgpu::BindGroup],
 ) {
@@ -226,7 +226,7 @@ pub(super) fn run(
 /// As [`run`], with several draws. A depth attachment may tell which pixels each of them draws.
 pub(super) fn run_each(
     encoder: &mut wgpu::CommandEncoder,
-    (targets, kinds, part): (&[&wgpu::TextureView], Option<&wgpu::TextureView>, Option<Part>),
+    (targets, kinds, part): (&[&wgpu::TextureView], Option<&wgpu::TextureView>, Option<TargetPart>),
     pipelines: &[wgpu::RenderPipeline],
     groups: &[&wgpu::BindGroup],
 ) {
@@ -242,7 +242,7 @@ pub(super) fn run_each(
         }),
         ..Default::default()
     });
-    if let Some(Part { first_row, size: (width, height) }) = part {
+    if let Some(TargetPart { first_row, size: (width, height) }) = part {
         pass.set_viewport(0.0, first_row as f32, width as f32, height as f32, 0.0, 1.0);
     }
     for (i, group) in groups.iter().enumerate() {

@@ -18,7 +18,7 @@ use super::{
     cover::threshold,
     field::Shape,
     layer_map::{LayerMap, LayerMaps},
-    overhead::{CloudLayers, Layer},
+    overhead::{CloudLayers, OverheadLayer},
     uniforms::{AreaUniform, LAYERS, LayerUniform},
 };
 use crate::{
@@ -199,7 +199,7 @@ impl CloudLayers {
         let solid_m = larger * filled.solid_m;
         let shape = Shape { base_m, threshold: CLEAR, anvil, rough, solid_m, ..filled };
         let slot = scene.conditions.clouds.iter().position(|s| s.cover <= 0.0)?;
-        self.insert(Layer { shape, slab, slot, share: 1.0 })
+        self.insert(OverheadLayer { shape, slab, slot, share: 1.0 })
     }
 
     /// Where the clouds of one of [`CloudLayers::all`] are other than its cover says.

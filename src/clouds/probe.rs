@@ -9,7 +9,7 @@ use bytemuck::Zeroable as _;
 use glam::DVec3;
 
 use super::{
-    lamps::{LampUniform, LampsUniform},
+    lamps::{CloudLampUniform, LampsUniform},
     tables::{LightTables, sampler},
     transport::{Scattering, Transport},
     uniforms::{CloudsUniform, LayerUniform, MediumUniform},
@@ -135,7 +135,7 @@ pub fn lamp_fluxes(device: &Device, cloud: &EvenCloud, position: DVec3) -> Resul
     let of = Scattering::new(lobes, cloud.albedo);
     let unit_m = THICKNESS_M / cloud.depths[2];
     let mut lamps = LampsUniform { count: 1, ..LampsUniform::zeroed() };
-    lamps.lamps[0] = LampUniform {
+    lamps.lamps[0] = CloudLampUniform {
         light: LightUniform {
             position: (position * unit_m).as_vec3().to_array(),
             direction: [0.0, 0.0, 1.0],
@@ -146,7 +146,7 @@ pub fn lamp_fluxes(device: &Device, cloud: &EvenCloud, position: DVec3) -> Resul
             pad: 0.0,
         },
         even: 1.0,
-        ..LampUniform::zeroed()
+        ..CloudLampUniform::zeroed()
     };
     draw(device, cloud, &of, Some(&lamps))
 }

@@ -4,7 +4,7 @@
 
 use super::{
     picture::SEEN,
-    rows::{self, Rows, Turn},
+    rows::{self, MapRows, Turn},
     shadow_map::{HistoryUse, ShadowInputs},
 };
 use crate::{
@@ -40,7 +40,7 @@ pub(super) struct CloudPanorama {
     view: wgpu::TextureView,
     pipeline: wgpu::RenderPipeline,
     around: Option<PanoramaInputs>,
-    rows: Rows,
+    rows: MapRows,
 }
 
 impl CloudPanorama {
@@ -66,7 +66,7 @@ impl CloudPanorama {
             pipeline: pass::fullscreen(device, &desc)?,
             texture,
             around: None,
-            rows: Rows::default(),
+            rows: MapRows::default(),
         })
     }
 

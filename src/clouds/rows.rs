@@ -3,7 +3,7 @@
 
 /// How far a map has come.
 #[derive(Default)]
-pub(super) struct Rows {
+pub(super) struct MapRows {
     next: u32,
     /// Rows made since what the map is made of last changed: with all of them there is nothing left to do.
     made: u32,
@@ -28,7 +28,7 @@ pub(super) struct Turn {
     pub is_coarse: bool,
 }
 
-impl Rows {
+impl MapRows {
     /// The rows of `all` to make in a frame that makes `most`: the first of them and their number.
     pub fn due(&mut self, (all, most): (u32, u32), turn: &Turn) -> Option<(u32, u32)> {
         let first_again = std::mem::take(&mut self.made_some);
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn a_map_is_made_at_once_then_as_it_grows_old_and_rests_when_all_is_made() {
-        let mut rows = Rows::default();
+        let mut rows = MapRows::default();
         assert_eq!(rows.due((8, 3), &LEAP), Some((0, 8)), "nothing holds");
         assert_eq!(rows.due((8, 3), &RESTS), None, "all made, and nothing changed");
         let moves: Vec<_> = (0..10).filter_map(|i| rows.due((8, 3), &MOVES).map(|rows| (i, rows))).collect();
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn a_map_waits_for_another_and_forgets_no_change_meanwhile() {
-        let mut rows = Rows::default();
+        let mut rows = MapRows::default();
         let waits = |turn: Turn, waits| Turn { waits, ..turn };
         assert_eq!(rows.due((8, 4), &waits(LEAP, true)), Some((0, 8)), "what does not hold does not wait");
         let old = Turn { aged: 0.5, ..MOVES };
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_coarse_map_does_not_wait_to_grow_old() {
-        let mut rows = Rows::default();
+        let mut rows = MapRows::default();
         let coarse = Turn { aged: 0.0, is_coarse: true, ..MOVES };
         assert_eq!([(); 2].map(|()| rows.due((8, 4), &coarse)), [Some((0, 4)), Some((4, 4))]);
     }

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     overhead::CloudLayers,
-    rows::{self, Rows, Turn},
+    rows::{self, MapRows, Turn},
     shadow::LOWEST,
     tables::CloudTables,
     uniforms::ShadowUniform,
@@ -20,7 +20,7 @@ use crate::{
         flat_texture,
         pass::{self, FullscreenDesc},
     },
-    moment::{Moment, Scene},
+    moment::{Scene, SceneMoment},
     stage::{Frame, FrameFlags, flag},
     weather::smoothstep,
 };
@@ -114,7 +114,7 @@ pub(super) struct ShadowMap {
     clouds: wgpu::BindGroup,
     coarse: Coarse,
     standing: Option<ShadowInputs>,
-    rows: Rows,
+    rows: MapRows,
     /// Rows that are still those of the coarse map.
     coarse_rows: u32,
 }
@@ -141,7 +141,7 @@ fn haze(scene: &Scene) -> [f64; 2] {
 
 impl ShadowProjection {
     /// Creates the projection of a moment's clouds.
-    pub fn new(now: &Moment<'_>, overhead: &CloudLayers) -> Self {
+    pub fn new(now: &SceneMoment<'_>, overhead: &CloudLayers) -> Self {
         let shapes = overhead.layers().iter().map(|layer| &layer.shape);
         let scene = &now.scene;
         let plane_m = scene.conditions.air.station_altitude_m;
@@ -289,7 +289,7 @@ impl ShadowMap {
             clouds: group,
             block,
             standing: None,
-            rows: Rows::default(),
+            rows: MapRows::default(),
             coarse_rows: 0,
         })
     }

@@ -157,7 +157,7 @@ pub fn leak_rate(widths: [f64; 2], turning: f64) -> f64 {
 
 /// A slab as all light sees it: what it reflects and what it lets through, from direction to direction.
 #[derive(Clone, Copy)]
-struct Slab {
+struct ScatterSlab {
     depth: f64,
     reflects: DMat4,
     passes: DMat4,
@@ -176,11 +176,11 @@ fn back_and_forth(a: DMat4, b: DMat4) -> DMat4 {
     (DMat4::IDENTITY - a * b).inverse()
 }
 
-impl Slab {
+impl ScatterSlab {
     const NONE: Self = Self { depth: 0.0, reflects: DMat4::ZERO, passes: DMat4::IDENTITY };
 
     /// So thin that nothing is scattered twice.
-    fn thin(turned: &Turned, albedo: f64, depth: f64) -> Self {
+    fn thin(turned: &ScatterMatrices, albedo: f64, depth: f64) -> Self {
         let straight = DMat4::from_diagonal(DVec4::ONE - depth / NODES);
         let scattered = albedo * depth;
         Self { depth, reflects: turned.up * scattered, passes: straight + turned.down * scattered }
@@ -205,12 +205,12 @@ impl Slab {
 
 /// Light that a layer of depth 1 would scatter from each direction into each, down and up, over all that it scatters:
 /// once, and as if it took nothing away.
-struct Turned {
+struct ScatterMatrices {
     down: DMat4,
     up: DMat4,
 }
 
-impl Turned {
+impl ScatterMatrices {
     fn new(of: &Scattering) -> Self {
         let between = |sign: f64| {
             let column = |j: usize| DVec4::from_array([0, 1, 2, 3].map(|i| of.mean_phase(NODES[i], sign * NODES[j])));
@@ -227,11 +227,11 @@ impl Turned {
 }
 
 /// Slabs of doubled depths of one medium that loses light at one rate.
-struct Ladder {
+struct SlabLadder {
     /// From each of two thinnest slabs on, the doublings up to the deepest of the ladder, with light thrown back and
     /// forth between two of each.
-    doublings: [Vec<(Slab, DMat4)>; 2],
-    slabs: Vec<Slab>,
+    doublings: [Vec<(ScatterSlab, DMat4)>; 2],
+    slabs: Vec<ScatterSlab>,
     /// By depth above and below: light thrown back and forth between the two.
     between: Vec<DMat4>,
     leak: f64,
@@ -240,11 +240,11 @@ struct Ladder {
 /// Doublings from a slab so thin that nothing is scattered twice to the thinnest of the ladder.
 const DOUBLINGS: i32 = 10;
 
-impl Ladder {
-    fn new(of: &Scattering, turned: &Turned, leak: f64) -> Self {
+impl SlabLadder {
+    fn new(of: &Scattering, turned: &ScatterMatrices, leak: f64) -> Self {
         let albedo = of.scaled_albedo() / (1.0 + leak);
         let doublings = [1.0, 2f64.sqrt()].map(|step| {
-            let mut slab = Slab::thin(turned, albedo, THINNEST * step / 2f64.powi(DOUBLINGS));
+            let mut slab = ScatterSlab::thin(turned, albedo, THINNEST * step / 2f64.powi(DOUBLINGS));
             let all = (0..DOUBLINGS as usize + DEPTHS.div_ceil(2)).map(|_| {
                 let this = slab;
                 slab = slab.doubled();
@@ -252,8 +252,8 @@ impl Ladder {
             });
             all.collect::<Vec<_>>()
         });
-        let slabs: Vec<Slab> =
-            in_turn(Slab::NONE, doublings.each_ref().map(|chain| chain.iter().map(|(slab, _)| *slab)));
+        let slabs: Vec<ScatterSlab> =
+            in_turn(ScatterSlab::NONE, doublings.each_ref().map(|chain| chain.iter().map(|(slab, _)| *slab)));
         let pairs = (0..DEPTHS * DEPTHS).map(|i| (&slabs[i % DEPTHS], &slabs[i / DEPTHS]));
         let between = pairs.map(|(above, below)| back_and_forth(above.reflects, below.reflects)).collect();
         Self { doublings, slabs, between, leak }
@@ -295,7 +295,7 @@ pub type Table = Vec<[f32; 4]>;
 pub struct Transport {
     /// The medium.
     pub scattering: Scattering,
-    ladders: Vec<Ladder>,
+    ladders: Vec<SlabLadder>,
     /// See [`Transport::conserving`].
     conserved: f64,
     /// See [`Transport::under_sky`].
@@ -305,8 +305,8 @@ pub struct Transport {
 impl Transport {
     /// Creates the transport of a medium: some milliseconds of work.
     pub fn new(scattering: Scattering) -> Self {
-        let turned = Turned::new(&scattering);
-        let ladders = (0..LEAKS).map(|k| Ladder::new(&scattering, &turned, leak_of(k))).collect();
+        let turned = ScatterMatrices::new(&scattering);
+        let ladders = (0..LEAKS).map(|k| SlabLadder::new(&scattering, &turned, leak_of(k))).collect();
         let mut made = Self { scattering, ladders, conserved: 1.0, sky: OnceLock::new() };
         made.conserved = made.conserving();
         made
@@ -316,7 +316,7 @@ impl Transport {
     /// absorbed: what leaves in eight directions and what leaves in all of them differ by a hundredth.
     fn conserving(&self) -> f64 {
         let of = Scattering { albedo: 1.0, ..self.scattering };
-        let ladders = vec![Ladder::new(&of, &Turned::new(&of), 0.0)];
+        let ladders = vec![SlabLadder::new(&of, &ScatterMatrices::new(&of), 0.0)];
         let whole = Self { scattering: of, ladders, conserved: 1.0, sky: OnceLock::new() };
         let (depth, cosine) = (6.0, 0.6);
         let table = whole.under_beam(cosine);
@@ -376,7 +376,7 @@ impl Transport {
     /// Under a sky of radiance 1 all over the upper side. All that it sends is in it. Kept: it is the same under any
     /// sun.
     pub fn under_sky(&self) -> Arc<Table> {
-        let one = |ladder: &Ladder, i: usize| {
+        let one = |ladder: &SlabLadder, i: usize| {
             let (above, below) = (i % DEPTHS, i / DEPTHS);
             let down = ladder.between[i] * (ladder.slabs[above].passes * DVec4::ONE);
             self.source(down, ladder.slabs[below].reflects * down)

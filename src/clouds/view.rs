@@ -21,7 +21,7 @@ use super::{
 use crate::{
     error::Result,
     gpu::{Device, recent::LruCache},
-    moment::{Moment, Scene},
+    moment::{Scene, SceneMoment},
     stage::{
         Contribution, DrawContext, DrawnEffect, Exchange, Frame, FrameBlock, FrameContext, MergedFrame, Output,
         Outputs, PutPart, Recording, Sampling, Stages, Texture, Traits, flag,
@@ -46,7 +46,7 @@ struct Before {
 
 /// Parts of a frame that its calls have made so far.
 #[derive(Clone, Copy)]
-struct Made {
+struct FrameProgress {
     frame_id: u64,
     is_marched: bool,
     is_shaded: bool,
@@ -66,7 +66,7 @@ pub(crate) struct CloudsView {
     maps: LayerMaps,
     passes: Option<Box<CloudPasses>>,
     before: Option<Before>,
-    made: Option<Made>,
+    made: Option<FrameProgress>,
     /// Passes that the draw being composed is to make.
     wanted: Option<Wanted>,
     /// Lamps and flashes that light the clouds of it.
@@ -104,7 +104,7 @@ impl CloudsView {
     }
 
     /// Returns the parts that earlier calls of a frame have made.
-    fn made_of(&self, frame: &Frame<'_>) -> Option<Made> {
+    fn made_of(&self, frame: &Frame<'_>) -> Option<FrameProgress> {
         self.made.filter(|made| made.frame_id == frame.frame_id)
     }
 
@@ -141,7 +141,7 @@ fn shadow_strength(scene: &Scene) -> [f32; 4] {
 }
 
 impl CloudLayers {
-    fn uniform(&self, now: &Moment<'_>, exposure: f64, passes: &CloudPasses) -> CloudsUniform {
+    fn uniform(&self, now: &SceneMoment<'_>, exposure: f64, passes: &CloudPasses) -> CloudsUniform {
         let scene = &now.scene;
         let light = scene.brighter();
         let mut layers = [bytemuck::Zeroable::zeroed(); LAYERS];
@@ -176,7 +176,7 @@ impl CloudsView {
         handed.shadows.clone()
     }
 
-    fn lay(&mut self, now: &Moment<'_>, lie: Option<&ShadowProjection>) {
+    fn lay(&mut self, now: &SceneMoment<'_>, lie: Option<&ShadowProjection>) {
         if let Some(handed) = &mut self.handed {
             handed.lay(now, lie);
         }
@@ -355,7 +355,7 @@ impl DrawnEffect for CloudsView {
         };
         to.passes += passes.draw(to.device, to.encoder, &of)?;
         self.before = here.or(self.before);
-        self.made = Some(Made {
+        self.made = Some(FrameProgress {
             frame_id: at.frame.frame_id,
             is_marched: wanted.march || earlier.is_some_and(|m| m.is_marched),
             is_shaded: casts_shadows || earlier.is_some_and(|m| m.is_shaded),

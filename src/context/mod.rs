@@ -23,11 +23,11 @@ use crate::{
     error::{Error, Result},
     gpu::{Device, Shared},
     light::{Exposure, ToneCurve},
-    moment::Moment,
+    moment::SceneMoment,
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     surroundings::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
     weather::{Conditions, Overrides, Weather, derive, derive_with},
-    world::{KeptScene, Made, Settings, World},
+    world::{KeptScene, Settings, World, WorldDesc},
 };
 
 /// Light at a place.
@@ -59,7 +59,7 @@ impl Context {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field of `desc`.
     pub fn new(device: Arc<Device>, shared: Arc<Shared>, desc: ContextDesc) -> Result<Self> {
-        let made = Made {
+        let made = WorldDesc {
             frame: desc.world,
             planet: desc.planet,
             seed: desc.seed,
@@ -296,7 +296,7 @@ impl Context {
     ///
     /// # Errors
     /// As [`Context::scene_at`].
-    pub(crate) fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<Moment<'_>> {
+    pub(crate) fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<SceneMoment<'_>> {
         self.world.moment(name, eye, kept)
     }
 

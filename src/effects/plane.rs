@@ -79,10 +79,10 @@ pub(crate) struct PlaneView {
     /// Height of the plane over the world's origin, m.
     pub height_m: Option<f64>,
     eye: DVec3,
-    made: Option<Made>,
+    made: Option<PlaneResources>,
 }
 
-struct Made {
+struct PlaneResources {
     target: OpaqueTarget,
     pipeline: wgpu::RenderPipeline,
     buffer: wgpu::Buffer,
@@ -101,7 +101,7 @@ impl PlaneView {
     }
 }
 
-impl Made {
+impl PlaneResources {
     fn new(device: &Arc<Device>, with: &OpaqueDraw<'_>) -> Result<Self> {
         let constants = [("SQUARE", SQUARE_M), ("BRIGHT", CD_M2[0]), ("DARK", CD_M2[1])];
         let constants: String = constants.iter().map(|(name, v)| format!("const {name}: f32 = {v:?};\n")).collect();
@@ -172,7 +172,7 @@ impl DrawnEffect for PlaneView {
         let block = self.uniform(height_m, with.clip);
         let made = match self.made.take() {
             Some(made) if made.target == with.target => made,
-            _ => Made::new(at.device, with)?,
+            _ => PlaneResources::new(at.device, with)?,
         };
         at.device.queue.write_buffer(&made.buffer, 0, bytemuck::bytes_of(&block));
         pass.set_pipeline(&made.pipeline);

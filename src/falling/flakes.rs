@@ -141,7 +141,7 @@ impl Swirl {
 
 /// Flakes of one way to fall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Part {
+struct FlakeMode {
     /// Extinction, 1/m.
     extinction_per_m: f64,
     /// Slope of the exponential of melted diameters, 1/mm, as flakes of Holroyd's density have them; 0: evenly in the
@@ -156,7 +156,7 @@ fn gamma4(x: f64) -> f64 {
     1.0 - libm::exp(-x) * (1.0 + x * (1.0 + x * (0.5 + x / 6.0)))
 }
 
-impl Part {
+impl FlakeMode {
     /// Share of the area that flakes up to a diameter hide.
     fn area_below(&self, diameter_mm: f64) -> f64 {
         let (low, high) = self.range_mm;
@@ -173,7 +173,7 @@ impl Part {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlakeSizes {
     /// Aggregates, grains, crystals.
-    parts: [Part; 3],
+    parts: [FlakeMode; 3],
     rate_mm_h: f64,
     temperature_c: f64,
     factor: f64,
@@ -195,7 +195,8 @@ impl FlakeSizes {
         let colder = libm::exp10(0.0245 * (temperature_c - GUNN_MARSHALL_C).clamp(-40.0, 0.0));
         // D goes with the power 3/2 of the melted diameter.
         let lambda = 2.55 * libm::pow(kinds[0].max(LEAST_MM_H), -0.48) / libm::pow(colder, 2.0 / 3.0);
-        let part = |i: usize, lambda: f64, range_mm| Part { extinction_per_m: extinction * share(i), lambda, range_mm };
+        let part =
+            |i: usize, lambda: f64, range_mm| FlakeMode { extinction_per_m: extinction * share(i), lambda, range_mm };
         Self {
             parts: [part(0, lambda, (0.1, LARGEST_MM)), part(1, 0.0, GRAINS_MM), part(2, 0.0, CRYSTALS_MM)],
             rate_mm_h: falling.snow_mm_h,

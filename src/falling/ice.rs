@@ -79,7 +79,7 @@ fn sphere_speed_m_s(diameter_mm: f64, density: f64) -> f64 {
 
 /// N0 exp(-lambda D) of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Part {
+struct StoneMode {
     stone: Stone,
     /// 1/(m^3 mm).
     n0: f64,
@@ -87,7 +87,7 @@ struct Part {
     lambda: f64,
 }
 
-impl Part {
+impl StoneMode {
     /// Integral of `f` times N over the kind's sizes.
     fn integral(&self, f: impl Fn(f64) -> f64) -> f64 {
         if self.n0 <= 0.0 {
@@ -134,7 +134,7 @@ impl Part {
 /// The stones in a cubic metre. Plain data, any thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoneSizes {
-    parts: [Part; 2],
+    parts: [StoneMode; 2],
     factor: f64,
 }
 
@@ -147,11 +147,11 @@ impl StoneSizes {
 
     /// Creates the sizes from rates of pellets and hail, mm/h of melted water.
     pub fn of_rates(pellets_mm_h: f64, hail_mm_h: f64, speed_factor: f64) -> Self {
-        let parts = [Part::pellets(pellets_mm_h, speed_factor), Part::hail(hail_mm_h, speed_factor)];
+        let parts = [StoneMode::pellets(pellets_mm_h, speed_factor), StoneMode::hail(hail_mm_h, speed_factor)];
         Self { parts, factor: speed_factor }
     }
 
-    fn sum(&self, f: impl Fn(&Part) -> f64) -> f64 {
+    fn sum(&self, f: impl Fn(&StoneMode) -> f64) -> f64 {
         self.parts.iter().map(f).sum()
     }
 
@@ -200,7 +200,7 @@ impl StoneSizes {
     /// As [`StoneSizes::on_surface`] of the stones whose fall speed, m/s, `comes` lets through.
     pub(crate) fn on_surface_of(&self, normal: DVec3, air_m_s: DVec3, comes: impl Fn(f64) -> bool) -> SurfaceFlux {
         let carried = air_m_s.dot(normal);
-        let towards = |p: &Part, d: f64| {
+        let towards = |p: &StoneMode, d: f64| {
             let falls = p.stone.speed_m_s(d, self.factor);
             if comes(falls) { (falls * normal.z - carried).max(0.0) } else { 0.0 }
         };

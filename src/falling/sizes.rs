@@ -29,7 +29,7 @@ const SLOPES_PER_MM: [f64; 3] = [4.1, 3.0, 5.7];
 
 /// One exponential distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Part {
+struct SizeMode {
     /// At diameter 0, 1/(m^3 mm).
     n0: f64,
     /// 1/mm.
@@ -39,7 +39,7 @@ struct Part {
 /// The drops in a cubic metre of rain and drizzle. Plain data, any thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropSizes {
-    parts: [Part; PARTS],
+    parts: [SizeMode; PARTS],
     factor: f64,
 }
 
@@ -84,7 +84,7 @@ static NODES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
 /// mm/h of drops of diameter 1 mm, one per m^3, falling at 1 m/s.
 const RATE: f64 = PI / 6.0 * 3.6e-3;
 
-impl Part {
+impl SizeMode {
     /// Creates the part of `rate_mm_h` where speeds are `factor` times those at sea level.
     fn new(slope_per_mm: f64, rate_mm_h: f64, factor: f64) -> Self {
         let lambda = slope_per_mm * libm::pow(rate_mm_h.max(LEAST_RATE_MM_H), -0.21);
@@ -111,8 +111,8 @@ impl Part {
     }
 }
 
-fn filled(parts: [Part; 3]) -> [Part; PARTS] {
-    let none = Part { n0: 0.0, lambda: 1.0 };
+fn filled(parts: [SizeMode; 3]) -> [SizeMode; PARTS] {
+    let none = SizeMode { n0: 0.0, lambda: 1.0 };
     std::array::from_fn(|i| parts.get(i).copied().unwrap_or(none))
 }
 
@@ -126,16 +126,16 @@ impl DropSizes {
         // What blends into another kind of rain keeps the sizes of the whole.
         let whole = [falling.rain_mm_h, falling.rain_mm_h, falling.drizzle_mm_h];
         let part = |i: usize| {
-            let whole_part = Part::new(SLOPES_PER_MM[i], whole[i], speed_factor);
+            let whole_part = SizeMode::new(SLOPES_PER_MM[i], whole[i], speed_factor);
             let share = if whole[i] > 0.0 { rates[i] / whole[i] } else { 0.0 };
-            Part { n0: whole_part.n0 * share, ..whole_part }
+            SizeMode { n0: whole_part.n0 * share, ..whole_part }
         };
         Self { parts: filled([part(0), part(1), part(2)]), factor: speed_factor }
     }
 
     /// Creates the sizes of steady rain of a rate, mm/h.
     pub fn of_rain(rate_mm_h: f64, speed_factor: f64) -> Self {
-        let part = |i, rate| Part::new(SLOPES_PER_MM[i], rate, speed_factor);
+        let part = |i, rate| SizeMode::new(SLOPES_PER_MM[i], rate, speed_factor);
         Self { parts: filled([part(0, rate_mm_h), part(1, 0.0), part(2, 0.0)]), factor: speed_factor }
     }
 
@@ -146,7 +146,7 @@ impl DropSizes {
             part.n0 *= 1.0 - share;
         }
         for part in over.parts.iter().filter(|p| p.n0 > 0.0) {
-            let part = Part { n0: part.n0 * share * begun, ..*part };
+            let part = SizeMode { n0: part.n0 * share * begun, ..*part };
             if let Some(free) = self.parts.iter_mut().find(|p| p.n0 <= 0.0) {
                 *free = part;
             }
@@ -154,7 +154,7 @@ impl DropSizes {
         self
     }
 
-    fn sum(&self, f: impl Fn(&Part) -> f64) -> f64 {
+    fn sum(&self, f: impl Fn(&SizeMode) -> f64) -> f64 {
         self.parts.iter().map(f).sum()
     }
 

@@ -40,12 +40,12 @@ struct Taps {
 
 /// A place among the values of all components: offset and part along each axis, between faces and between middles of
 /// cells.
-struct Between {
+struct StaggeredPlace {
     faces: [(usize, f32); 3],
     middles: [(usize, f32); 3],
 }
 
-impl Between {
+impl StaggeredPlace {
     #[inline]
     fn taps(&self, component: usize) -> Taps {
         let mut taps = Taps { low: 0, part: [0.0; 3] };
@@ -102,8 +102,8 @@ impl<'a> Carrier<'a> {
     }
 
     #[inline]
-    fn between(&self, place: [f32; 3]) -> Between {
-        let mut between = Between { faces: [(0, 0.0); 3], middles: [(0, 0.0); 3] };
+    fn between(&self, place: [f32; 3]) -> StaggeredPlace {
+        let mut between = StaggeredPlace { faces: [(0, 0.0); 3], middles: [(0, 0.0); 3] };
         for (a, along) in place.into_iter().enumerate() {
             if self.is_flat[a] {
                 continue;

@@ -22,7 +22,7 @@ const KEY: &str = "wind_field";
 
 /// From when on there is a field, or none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Change {
+pub(super) struct FieldChange {
     pub start_s: f64,
     pub desc: Option<WindFieldDesc>,
 }
@@ -31,7 +31,7 @@ pub(super) struct Change {
 #[derive(Default)]
 pub(crate) struct HeldFlow {
     /// In order of time; the first is the one that holds, if its time has come.
-    pub(super) changes: Vec<Change>,
+    pub(super) changes: Vec<FieldChange>,
     pub(super) live: Option<Box<Live>>,
     /// The world has what the field is now.
     is_shown: bool,
@@ -40,7 +40,7 @@ pub(crate) struct HeldFlow {
 /// All of a state that is the field's.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Saved {
+struct SavedFlow {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     changes: Vec<SavedChange>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -70,7 +70,7 @@ impl HeldFlow {
             let wanted = format!("one of at most {MAX_CHANGES} changes to come");
             return Err(Error::range("wind_field", &wanted, "one more"));
         }
-        self.changes.push(Change { start_s, desc });
+        self.changes.push(FieldChange { start_s, desc });
         Ok(())
     }
 
@@ -89,7 +89,7 @@ impl HeldFlow {
         if let Some(last) = self.changes.iter().rposition(|c| c.start_s <= time_s) {
             self.changes.drain(..last);
         }
-        if let [Change { start_s, desc: None }] = self.changes[..]
+        if let [FieldChange { start_s, desc: None }] = self.changes[..]
             && start_s <= time_s
         {
             self.changes.clear();
@@ -101,7 +101,7 @@ impl HeldFlow {
         let now = world.time_s;
         let come = self.changes.iter().filter(|c| c.start_s <= now);
         let last = come.clone().next_back().map(|c| c.start_s);
-        let wanted = |c: &&Change| now - c.start_s <= LEAP_S || Some(c.start_s) == last;
+        let wanted = |c: &&FieldChange| now - c.start_s <= LEAP_S || Some(c.start_s) == last;
         let Some((desc, start_s)) = come.filter(wanted).find_map(|c| Some((c.desc?, c.start_s))) else {
             return Ok(false);
         };
@@ -118,59 +118,59 @@ impl HeldFlow {
     fn go_on(&mut self, world: &World) -> Result<bool> {
         let Some(mut live) = self.live.take() else { return self.begin_field(world) };
         let outcome = self.lead_live(&mut live, world);
-        if matches!(outcome, Ok(Next::Changed)) {
+        if matches!(outcome, Ok(StepOutcome::Changed)) {
             live.shown_over = live.wind_over(world);
         }
-        if !matches!(outcome, Ok(Next::Gone)) {
+        if !matches!(outcome, Ok(StepOutcome::Gone)) {
             self.live = Some(live);
         }
         match outcome? {
-            Next::Rests => Ok(false),
-            Next::Unchanged => Ok(true),
-            Next::Changed | Next::Gone => {
+            StepOutcome::Rests => Ok(false),
+            StepOutcome::Unchanged => Ok(true),
+            StepOutcome::Changed | StepOutcome::Gone => {
                 self.is_shown = false;
                 Ok(true)
             }
         }
     }
 
-    fn lead_live(&mut self, live: &mut Live, world: &World) -> Result<Next> {
-        let changed = |is_over: bool| if is_over { Next::Changed } else { Next::Unchanged };
+    fn lead_live(&mut self, live: &mut Live, world: &World) -> Result<StepOutcome> {
+        let changed = |is_over: bool| if is_over { StepOutcome::Changed } else { StepOutcome::Unchanged };
         if live.start.is_some() {
             return live.go_on_with_start(world).map(changed);
         }
         if world.time_s - live.time_s > LEAP_S {
-            let Some(desc) = self.at(world.time_s) else { return Ok(Next::Gone) };
+            let Some(desc) = self.at(world.time_s) else { return Ok(StepOutcome::Gone) };
             let step_s = step_s(desc.mode);
             *live = Live::new(world, desc, world.time_s.div_euclid(step_s) * step_s)?;
-            return Ok(Next::Unchanged);
+            return Ok(StepOutcome::Unchanged);
         }
         if live.parts.0 > 0 {
             return live.step_part().map(changed);
         }
         if live.next_s() > world.time_s {
-            return Ok(Next::Rests);
+            return Ok(StepOutcome::Rests);
         }
         let Some(desc) = self.at(live.time_s) else {
             self.forget(live.time_s);
-            return Ok(Next::Gone);
+            return Ok(StepOutcome::Gone);
         };
         self.forget(live.time_s);
         if !desc.is_like(&live.desc) {
             let step_s = step_s(desc.mode);
             let first_s = (live.time_s / step_s).ceil() * step_s;
             if first_s > world.time_s {
-                return Ok(Next::Rests);
+                return Ok(StepOutcome::Rests);
             }
             *live = Live::new(world, desc, first_s)?;
-            return Ok(Next::Unchanged);
+            return Ok(StepOutcome::Unchanged);
         }
         if live.follow(world, &desc)? {
             live.restart(world, live.time_s)?;
-            return Ok(Next::Unchanged);
+            return Ok(StepOutcome::Unchanged);
         }
         live.begin_step(world)?;
-        Ok(Next::Unchanged)
+        Ok(StepOutcome::Unchanged)
     }
 
     /// Takes its part out of a saved state.
@@ -179,7 +179,7 @@ impl HeldFlow {
     /// [`Status::Parse`] for what can be no field of this context.
     pub fn read(world: &World, state: &mut toml::Table) -> Result<Self> {
         let Some(value) = state.remove(KEY) else { return Ok(Self::default()) };
-        let saved: Saved = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
+        let saved: SavedFlow = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
         let of_state = |e: Error| e.with_status(Status::Parse).found_in("saved state");
         let changes = saved.changes.iter().map(|c| c.change().map_err(of_state)).collect::<Result<Vec<_>>>()?;
         if !changes.iter().is_sorted_by(|a, b| a.start_s < b.start_s) || changes.len() > MAX_CHANGES {
@@ -198,7 +198,7 @@ impl HeldFlow {
 }
 
 /// Outcome of a part of the way to the present.
-enum Next {
+enum StepOutcome {
     /// There is nothing to do.
     Rests,
     /// The field that others read is unchanged.
@@ -254,7 +254,7 @@ impl HeldEffect for HeldFlow {
         if self.changes.is_empty() && self.live.is_none() {
             return Ok(());
         }
-        let saved = Saved {
+        let saved = SavedFlow {
             changes: self.changes.iter().map(SavedChange::of).collect(),
             field: self.live.as_deref().map(SavedField::of),
         };

@@ -6,7 +6,7 @@ use super::{
     FlowField, FlowObstacles,
     field::{check_wind, place_m},
     lattice::Faces,
-    obstacles::{Columns, Shares, columns_of},
+    obstacles::{ColumnRange, Shares, columns_of},
     sides::roles,
 };
 use crate::error::{Result, check_range};
@@ -15,7 +15,7 @@ use crate::error::{Result, check_range};
 pub(super) struct SolidBodies {
     shares: Shares,
     /// Columns in which something moves.
-    moving: Option<Columns>,
+    moving: Option<ColumnRange>,
 }
 
 impl FlowField {

@@ -18,7 +18,7 @@ const LONGER: f32 = 1.5;
 /// One grid of the equation: for each cell, the sum over its faces of coefficient times (neighbour - own) is the
 /// right-hand side.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Level {
+pub(super) struct GridLevel {
     pub n: [usize; 3],
     h: [f32; 3],
     /// Coefficient of the lower face of each cell along each axis: open share / h^2. The first one of a row joins its
@@ -31,20 +31,20 @@ pub(super) struct Level {
     r: Vec<f32>,
     /// Cells that a cell of the next level joins along each axis, 1 or 2.
     join: [usize; 3],
-    /// Room for [`Level::add_correction`].
-    taps: Vec<Taps>,
+    /// Room for [`GridLevel::add_correction`].
+    taps: Vec<CoarseTaps>,
 }
 
 /// Coarse cells that a correction comes from along an axis, with their weights.
-type Taps = [(usize, f32); 2];
+type CoarseTaps = [(usize, f32); 2];
 
 /// Neighbours of a row of cells: starts of the four rows beside it, and of itself.
-struct Row {
+struct RowNeighbours {
     own: usize,
     beside: [usize; 4],
 }
 
-impl Level {
+impl GridLevel {
     pub(super) fn new(n: [usize; 3], h: [f32; 3], lower: [Vec<f32>; 3]) -> Self {
         let count = n.iter().product();
         let mut level = Self { n, h, lower, join: [1; 3], ..Self::default() };
@@ -65,27 +65,27 @@ impl Level {
         level
     }
 
-    fn each_row(&self, mut f: impl FnMut(&Row, usize)) {
+    fn each_row(&self, mut f: impl FnMut(&RowNeighbours, usize)) {
         let [nx, ny, nz] = self.n;
         for k in 0..nz {
             for j in 0..ny {
                 let start = |j: usize, k: usize| (k * ny + j) * nx;
                 let (before, after) = (start((j + ny - 1) % ny, k), start((j + 1) % ny, k));
                 let (below, above) = (start(j, (k + nz - 1) % nz), start(j, (k + 1) % nz));
-                f(&Row { own: start(j, k), beside: [before, after, below, above] }, j + k);
+                f(&RowNeighbours { own: start(j, k), beside: [before, after, below, above] }, j + k);
             }
         }
     }
 
     /// The neighbours of the cell `i` of a row, before and after it.
-    fn across(&self, row: &Row, i: usize) -> [usize; 2] {
+    fn across(&self, row: &RowNeighbours, i: usize) -> [usize; 2] {
         let last = self.n[0] - 1;
         [row.own + if i == 0 { last } else { i - 1 }, row.own + if i == last { 0 } else { i + 1 }]
     }
 
     /// The sum over a cell's faces of coefficient times neighbour.
     #[inline]
-    fn neighbours(&self, x: &[f32], row: &Row, i: usize) -> f32 {
+    fn neighbours(&self, x: &[f32], row: &RowNeighbours, i: usize) -> f32 {
         let [left, right] = self.across(row, i);
         let at = row.own + i;
         let [a, b, c, d] = row.beside.map(|start| start + i);
@@ -182,7 +182,7 @@ impl Level {
     /// axis; where there is no other, the own one stands for it.
     fn add_correction(&mut self, coarse: &Self) {
         let join = self.join;
-        let taps = |a: usize, i: usize| -> Taps {
+        let taps = |a: usize, i: usize| -> CoarseTaps {
             if join[a] == 1 {
                 return [(i, 1.0), (i, 0.0)];
             }
@@ -227,12 +227,12 @@ impl Level {
 
 /// The equation on all grids, finest first.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Levels(pub Vec<Level>);
+pub(super) struct Levels(pub Vec<GridLevel>);
 
 impl Levels {
-    pub(super) fn new(finest: Level) -> Self {
+    pub(super) fn new(finest: GridLevel) -> Self {
         let mut levels = vec![finest];
-        while let Some((join, next)) = levels.last().and_then(Level::coarser) {
+        while let Some((join, next)) = levels.last().and_then(GridLevel::coarser) {
             if let Some(last) = levels.last_mut() {
                 last.join = join;
             }
@@ -243,7 +243,7 @@ impl Levels {
 
     /// Returns the cost of one cycle in sweeps of the finest grid.
     pub(super) fn cycle_work(&self) -> f64 {
-        let cells = |l: &Level| l.sum.len() as f64;
+        let cells = |l: &GridLevel| l.sum.len() as f64;
         let all: f64 = self.0.iter().map(cells).sum();
         // Sweeps down and up, the residual, and the way up.
         all / self.0.first().map_or(1.0, cells) * (2 * SWEEPS + 2) as f64
@@ -261,7 +261,7 @@ impl Levels {
     }
 }
 
-fn v_cycle(levels: &mut [Level]) {
+fn v_cycle(levels: &mut [GridLevel]) {
     let Some((fine, coarser)) = levels.split_first_mut() else { return };
     let (mut x, b) = (take(&mut fine.x), take(&mut fine.b));
     x.fill(0.0);

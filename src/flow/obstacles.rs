@@ -71,10 +71,10 @@ pub(super) struct Shares {
 }
 
 /// First and last column of cells along east and north.
-pub(super) type Columns = [[usize; 2]; 2];
+pub(super) type ColumnRange = [[usize; 2]; 2];
 
 /// A box as a grid meets it: what lies within all of its planes.
-struct Solid {
+struct SolidBox {
     /// Unit vectors outward, and how far along them from the field's corner the plane lies, m.
     planes: Vec<(DVec3, f64)>,
     low: DVec2,
@@ -82,7 +82,7 @@ struct Solid {
     velocity: DVec3,
 }
 
-impl Solid {
+impl SolidBox {
     fn new(lattice: &Lattice, b: &FlowBox) -> Self {
         let h = DVec3::from(lattice.h.map(f64::from));
         let near = NEAR * h.min_element();
@@ -125,7 +125,7 @@ impl Solid {
     }
 
     /// Columns of cells that it may close faces of; none outside of the field.
-    fn columns(&self, lattice: &Lattice) -> Option<Columns> {
+    fn columns(&self, lattice: &Lattice) -> Option<ColumnRange> {
         let along = |a: usize| {
             let h = f64::from(lattice.h[a]);
             let (low, high) = ((self.low[a] / h).floor() - 1.0, (self.high[a] / h).ceil());
@@ -137,8 +137,8 @@ impl Solid {
 }
 
 /// The columns that boxes may close faces of.
-pub(super) fn columns_of(lattice: &Lattice, boxes: &[FlowBox]) -> Option<Columns> {
-    let all = boxes.iter().filter_map(|b| Solid::new(lattice, b).columns(lattice));
+pub(super) fn columns_of(lattice: &Lattice, boxes: &[FlowBox]) -> Option<ColumnRange> {
+    let all = boxes.iter().filter_map(|b| SolidBox::new(lattice, b).columns(lattice));
     all.reduce(|a, b| [0, 1].map(|i| [a[i][0].min(b[i][0]), a[i][1].max(b[i][1])]))
 }
 
@@ -181,14 +181,14 @@ impl FlowObstacles<'_> {
     }
 
     /// Finds the shares of the faces of some columns anew.
-    pub(super) fn find(&self, lattice: &Lattice, columns: Columns, shares: &mut Shares) -> Result<()> {
-        let solids: Vec<Solid> = self.boxes.iter().map(|b| Solid::new(lattice, b)).collect();
+    pub(super) fn find(&self, lattice: &Lattice, columns: ColumnRange, shares: &mut Shares) -> Result<()> {
+        let solids: Vec<SolidBox> = self.boxes.iter().map(|b| SolidBox::new(lattice, b)).collect();
         let moves = solids.iter().any(|s| s.velocity != DVec3::ZERO);
         if moves && shares.pushed[0].is_empty() {
             shares.pushed = lattice.zeros();
         }
         let h = lattice.h.map(f64::from);
-        let mut column = Column { h: h[2], spans: Vec::new(), moving: Vec::new() };
+        let mut column = SpanColumn { h: h[2], spans: Vec::new(), moving: Vec::new() };
         let nz = lattice.n[2] + 1;
         let (mut closed, mut pushed) = (vec![0.0; nz], vec![0.0; nz]);
         for c in lattice.axes() {
@@ -226,7 +226,7 @@ impl FlowObstacles<'_> {
 }
 
 /// Solid spans above a place.
-struct Column {
+struct SpanColumn {
     h: f64,
     /// From and to a height, lowest first, apart from each other.
     spans: Vec<[f64; 2]>,
@@ -234,8 +234,8 @@ struct Column {
     moving: Vec<([f64; 2], DVec3)>,
 }
 
-impl Column {
-    fn find(&mut self, terrain: Option<Heights>, solids: &[Solid], place: DVec2) -> Result<()> {
+impl SpanColumn {
+    fn find(&mut self, terrain: Option<Heights>, solids: &[SolidBox], place: DVec2) -> Result<()> {
         self.spans.clear();
         self.moving.clear();
         if let Some(heights) = terrain {

@@ -3,7 +3,7 @@
 
 use super::{
     lattice::{Faces, Lattice},
-    multigrid::Level,
+    multigrid::GridLevel,
     obstacles::Shares,
     sides::{Role, Roles},
 };
@@ -88,7 +88,7 @@ impl Openings {
     }
 
     /// The equation of the pressure.
-    pub(super) fn level(&self, lattice: &Lattice, roles: &Roles) -> Level {
+    pub(super) fn level(&self, lattice: &Lattice, roles: &Roles) -> GridLevel {
         let mut lower = [0, 1, 2].map(|_| vec![0.0; lattice.n.iter().product()]);
         for a in lattice.axes() {
             let share = 1.0 / (lattice.h[a] * lattice.h[a]);
@@ -98,7 +98,7 @@ impl Openings {
                 }
             });
         }
-        Level::new(lattice.n, lattice.h, lower)
+        GridLevel::new(lattice.n, lattice.h, lower)
     }
 
     /// Numbers bodies of air, by flood.

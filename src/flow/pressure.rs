@@ -8,7 +8,7 @@
 //!
 //! The residual of the equation is the divergence that stays. Both stop by it.
 
-use super::multigrid::{Level, Levels};
+use super::multigrid::{GridLevel, Levels};
 use crate::error::{Error, Result, check_range};
 
 /// How the pressure is solved for.
@@ -99,13 +99,13 @@ fn add(x: &mut [f32], a: f64, y: &[f32]) {
 }
 
 impl Pressure {
-    pub(super) fn new(finest: Level) -> Self {
+    pub(super) fn new(finest: GridLevel) -> Self {
         let count = finest.sum.len();
         let [r, before, z, p, q] = [0; 5].map(|_| vec![0.0; count]);
         Self { levels: Levels::new(finest), r, before, z, p, q }
     }
 
-    fn finest(&self) -> Option<&Level> {
+    fn finest(&self) -> Option<&GridLevel> {
         self.levels.0.first()
     }
 

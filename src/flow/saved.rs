@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     WindFieldDesc, WindFieldMode, WindWalls,
-    held::Change,
+    held::FieldChange,
     live::{Anchor, Live},
 };
 use crate::{
@@ -89,12 +89,12 @@ impl SavedDesc {
 }
 
 impl SavedChange {
-    pub fn of(c: &Change) -> Self {
+    pub fn of(c: &FieldChange) -> Self {
         Self { start_s: c.start_s, desc: c.desc.as_ref().map(SavedDesc::of) }
     }
 
-    pub fn change(&self) -> Result<Change> {
-        Ok(Change { start_s: self.start_s, desc: self.desc.map(|d| d.desc()).transpose()? })
+    pub fn change(&self) -> Result<FieldChange> {
+        Ok(FieldChange { start_s: self.start_s, desc: self.desc.map(|d| d.desc()).transpose()? })
     }
 }
 

@@ -5,7 +5,7 @@ mod bluff;
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
 use super::{
-    multigrid::Level,
+    multigrid::GridLevel,
     pressure::Pressure,
     probe::{cavity, taylor_green},
     *,
@@ -222,13 +222,13 @@ fn what_leaves_is_not_reflected() {
 }
 
 /// The Poisson equation on n by n points, zero round them, which the published rates hold for.
-fn dirichlet(n: usize) -> Level {
+fn dirichlet(n: usize) -> GridLevel {
     let mut lower = [0, 1, 2].map(|a| vec![if a < 2 { 1.0 } else { 0.0 }; n * n]);
     for i in 0..n {
         lower[0][i * n] = 0.0;
         lower[1][i] = 0.0;
     }
-    let mut level = Level::new([n, n, 1], [1.0; 3], lower);
+    let mut level = GridLevel::new([n, n, 1], [1.0; 3], lower);
     level.sum.fill(4.0);
     level
 }

@@ -30,13 +30,13 @@ const MARGIN_M: f64 = 2000.0;
 const LINEAR_DIFFUSION: f64 = 0.05;
 
 /// How a medium scatters; see [`FogLayer`] for the fields.
-struct Scattering {
+struct FogScattering {
     angstrom: f64,
     albedo: [f64; 3],
     phase: Phase,
 }
 
-impl Scattering {
+impl FogScattering {
     /// Under the deck that it falls from, light comes from all sides: where drops and flakes send it does not show.
     const OF_FALLING: Self = Self { angstrom: 0.0, albedo: [1.0; 3], phase: Phase::HenyeyGreenstein { g: 0.0 } };
 
@@ -165,9 +165,9 @@ impl FogModel {
         if let Some(layer) = layer {
             let whole = layer_depth_above(&m, view.ground_m);
             let share = if whole > 0.0 { falling_depth_above(&m, view.ground_m) / whole } else { 0.0 };
-            m.set_light(&Scattering::of(layer).with_falling(share), light, view);
+            m.set_light(&FogScattering::of(layer).with_falling(share), light, view);
         } else if m.falling.extinction > 0.0 {
-            m.set_light(&Scattering::OF_FALLING, light, view);
+            m.set_light(&FogScattering::OF_FALLING, light, view);
         }
         if let Some(patches) = layer.and_then(|l| l.patches.as_ref()) {
             m.set_patches(patches, view);
@@ -191,7 +191,7 @@ impl FogModel {
 
     fn set_layer(&mut self, layer: &FogLayer, light: &FogLight, view: &Viewpoint) {
         self.set_shape(layer);
-        self.set_light(&Scattering::of(layer), light, view);
+        self.set_light(&FogScattering::of(layer), light, view);
         if let Some(patches) = &layer.patches {
             self.set_patches(patches, view);
         }
@@ -215,7 +215,7 @@ impl FogModel {
         }
     }
 
-    fn set_light(&mut self, scattering: &Scattering, light: &FogLight, view: &Viewpoint) {
+    fn set_light(&mut self, scattering: &FogScattering, light: &FogLight, view: &Viewpoint) {
         self.depth_total = layer_depth_above(self, view.ground_m);
         self.lobes = PhaseLobes::new(&scattering.phase);
         (self.forward, _, self.smooth) = delta_scaling(1.0, self.lobes.moments());

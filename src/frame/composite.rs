@@ -17,7 +17,7 @@ use crate::{
         pass::{self, FullscreenDesc},
         recent::LruCache,
     },
-    moment::Moment,
+    moment::SceneMoment,
     stage::{Block, Composition, Constant, Constants, Frame, FrameUniform, Pipeline, Sampling, Stages, flag},
     surroundings::layout as around_layout,
 };
@@ -287,7 +287,7 @@ impl Composite {
         &mut self,
         device: &Arc<Device>,
         variant: Variant,
-        now: &Moment<'_>,
+        now: &SceneMoment<'_>,
     ) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup)> {
         let group = self.wind.bind(device, now)?;
         let layouts = [&self.layouts[variant.sampling as usize], &self.wind.layout];

@@ -23,11 +23,11 @@ pub(super) struct OpaqueStep {
     /// Stands for a mask where the host gives none.
     none: wgpu::TextureView,
     color: KeptView,
-    bound: Option<Bound>,
+    bound: Option<OpaqueImages>,
 }
 
 /// Depth and bind group of a frame's images: made anew only when the host hands over others.
-struct Bound {
+struct OpaqueImages {
     depth: KeptLayer,
     mask: Option<KeptLayer>,
     depth_view: wgpu::TextureView,
@@ -57,8 +57,8 @@ impl OpaqueStep {
         block: &BlockView,
         [color, depth]: [Layer<'_>; 2],
         mask: Option<Layer<'_>>,
-    ) -> (&Bound, &wgpu::TextureView) {
-        let same = |b: &Bound| depth == b.depth && is_kept(mask, b.mask.as_ref());
+    ) -> (&OpaqueImages, &wgpu::TextureView) {
+        let same = |b: &OpaqueImages| depth == b.depth && is_kept(mask, b.mask.as_ref());
         if self.bound.as_ref().is_some_and(|b| !same(b)) {
             self.bound = None;
         }
@@ -71,7 +71,7 @@ impl OpaqueStep {
                 entries: &[block.entry(0), wgpu::BindGroupEntry { binding: 1, resource }],
             });
             let depth_view = depth.attached_view();
-            Bound { depth: depth.kept(), mask: mask.map(Layer::kept), depth_view, group }
+            OpaqueImages { depth: depth.kept(), mask: mask.map(Layer::kept), depth_view, group }
         });
         (bound, self.color.of(color, Layer::attached_view))
     }

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     context::Context,
-    effects::{Effects, PARTS, Unseen},
+    effects::{Effects, PARTS, UnseenChanges},
     error::{Error, Result},
     gpu::{Device, KeptView, Layer},
     plan::Planner,
@@ -26,7 +26,7 @@ use crate::{
 pub struct View {
     pub(crate) device: Arc<Device>,
     pub(crate) effects: Effects,
-    pub(super) planner: Planner<Unseen>,
+    pub(super) planner: Planner<UnseenChanges>,
     pub(super) cache: DrawCache,
     pub(super) history: FrameHistory,
 }

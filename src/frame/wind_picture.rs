@@ -8,7 +8,7 @@ use crate::{
         Device,
         bind::{self, Slot},
     },
-    moment::Moment,
+    moment::SceneMoment,
     surroundings::WindMap,
 };
 
@@ -49,7 +49,7 @@ impl WindPicture {
     ///
     /// # Errors
     /// For a time that the weather does not know.
-    pub fn bind(&self, device: &Device, now: &Moment<'_>) -> Result<wgpu::BindGroup> {
+    pub fn bind(&self, device: &Device, now: &SceneMoment<'_>) -> Result<wgpu::BindGroup> {
         let (found, map) = now.wind_texture(device);
         let uniform = WindUniform {
             map: map.unwrap_or_default(),

@@ -50,7 +50,7 @@ impl Context {
         let night = NightBehind::new(&scene, self.world.utc_at(time_s), self.stars(), fog_depth)?;
         let clouds = self.cloud_rays((&scene, position), time_s)?;
         let bows = bow::in_low_air(&scene.conditions).filter(|_| bow::is_lit(&scene));
-        let seen = Seen { skies: &skies, solved: OnceCell::new(), scene: &scene, fog, bows, night, clouds };
+        let seen = DirectionLight { skies: &skies, solved: OnceCell::new(), scene: &scene, fog, bows, night, clouds };
         units.into_iter().map(|d| Ok(seen.with_fog(d)?.to_array())).collect()
     }
 }
@@ -61,7 +61,7 @@ fn overcast_gradation(sin_elevation: f64) -> f64 {
 }
 
 /// All that a direction's light is made of.
-struct Seen<'a> {
+struct DirectionLight<'a> {
     skies: &'a SolvedSkies,
     solved: OnceCell<Arc<SolvedSky>>,
     scene: &'a Scene,
@@ -73,7 +73,7 @@ struct Seen<'a> {
     clouds: Option<CloudRays<'a>>,
 }
 
-impl Seen<'_> {
+impl DirectionLight<'_> {
     /// The lamps that light the picture.
     fn lamps(&self) -> impl Iterator<Item = &Light> {
         [&self.scene.sun, &self.scene.moon].into_iter().filter(|light| light.matters)

@@ -76,7 +76,7 @@ impl Plane {
         match pane {
             Pane::Quad(corners) => Self::of(corners),
             Pane::WholeView(distance_m) => {
-                let rays = Rays::of(projection)?;
+                let rays = PictureRays::of(projection)?;
                 // A little more than the picture, so that its edge is glass.
                 let at = |x: f64, y: f64| {
                     let d = rays.direction + 1.02 * (x * rays.dx + y * rays.dy);
@@ -104,13 +104,13 @@ impl Plane {
 
 /// A perspective picture's rays: direction = `direction` + x `dx` + y `dy` over clip x and y, camera's axes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rays {
+pub(super) struct PictureRays {
     pub direction: DVec3,
     pub dx: DVec3,
     pub dy: DVec3,
 }
 
-impl Rays {
+impl PictureRays {
     /// # Errors
     /// [`crate::Status::Unsupported`] for parallel rays: there is no eye behind the glass.
     pub fn of(projection: &DMat4) -> Result<Self> {
@@ -178,7 +178,7 @@ mod tests {
         let camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 0.8, 1.6, 0.1);
         let shifted = DMat4::from_translation(DVec3::new(0.3, -0.2, 0.0)) * camera.projection;
         for projection in [camera.projection, shifted] {
-            let rays = Rays::of(&projection).unwrap();
+            let rays = PictureRays::of(&projection).unwrap();
             let d = rays.direction + 0.4 * rays.dx - 0.7 * rays.dy;
             let clip = projection * d.extend(0.0);
             assert!(clip.w > 0.0 && (clip.x / clip.w - 0.4).abs() < 1e-12 && (clip.y / clip.w + 0.7).abs() < 1e-12);
@@ -186,6 +186,6 @@ mod tests {
             assert!(back.z > 0.0 && (back.x / back.z - 0.4).abs() < 1e-12);
         }
         let parallel = DMat4::from_scale(DVec3::new(0.1, 0.1, 0.01));
-        assert_eq!(Rays::of(&parallel).unwrap_err().status, crate::Status::Unsupported);
+        assert_eq!(PictureRays::of(&parallel).unwrap_err().status, crate::Status::Unsupported);
     }
 }

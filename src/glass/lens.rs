@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{MAX_ARMS, Plane, Windscreen, geometry::Rays, laws, step::VOLUME_UNIT_M3};
+use super::{MAX_ARMS, Plane, Windscreen, geometry::PictureRays, laws, step::VOLUME_UNIT_M3};
 use crate::{error::Result, gpu::Layer, scene::Camera};
 
 /// Optical depth of snow over its water, 1/m: 3 / (2 r) over the density of ice, for grains of r = 0.1 mm (Wiscombe &
@@ -67,7 +67,7 @@ pub(super) struct LensLattice {
 
 impl LensUniform {
     pub fn of(screen: &Windscreen, plane: &Plane, frame: &LensFrame<'_>, shown: &LensLattice) -> Result<Self> {
-        let rays = Rays::of(&frame.camera.projection)?;
+        let rays = PictureRays::of(&frame.camera.projection)?;
         let to_glass = DMat3::from_cols(plane.u, plane.v, plane.out).transpose();
         let clip = rays.to_clip() * to_glass.transpose();
         let eye = to_glass * -plane.origin;

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use super::{PaneUniform, Plane, Reach, SIZES, Windscreen};
 use crate::{
     falling::sizes::{DropSizes, SMALLEST_MM, Weight},
-    moment::Moment,
+    moment::SceneMoment,
     scene::Camera,
     surroundings::{MAX_SHELTERS, Shelter, shelter::sheltered},
 };
@@ -58,7 +58,7 @@ impl PaneAt {
 
     /// Drops of `sizes` that stand for as much of the falling water each: their velocities in the host's world now, and
     /// the share of the water on the pane that they bring.
-    pub fn drops(&self, now: &Moment<'_>, sizes: &DropSizes) -> [(DVec3, f64); SIZES] {
+    pub fn drops(&self, now: &SceneMoment<'_>, sizes: &DropSizes) -> [(DVec3, f64); SIZES] {
         let over = &now.weather;
         let to_enu = over.world.frame_at(self.origin).world_to_enu;
         let (normal, air) = (to_enu * self.out, to_enu * self.air_m_s);

@@ -200,7 +200,7 @@ impl GlassKit {
 
 /// Work of a step on the lattice.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Work {
+pub(super) enum LatticeWork {
     /// Takes the declared state of the moment.
     Declare,
     /// Moves on by one step.
@@ -208,7 +208,7 @@ pub(super) enum Work {
 }
 
 /// A view's cells on the GPU.
-pub(super) struct Lattice {
+pub(super) struct PaneLattice {
     pub size: [u32; 2],
     cells: [wgpu::Texture; 2],
     views: [wgpu::TextureView; 2],
@@ -228,10 +228,10 @@ pub(super) struct Lattice {
     stride: usize,
     slots: Vec<u8>,
     /// Work that is due, and whether snow takes part in it.
-    due: Vec<(Work, bool)>,
+    due: Vec<(LatticeWork, bool)>,
 }
 
-impl Lattice {
+impl PaneLattice {
     pub fn new(device: &Device, kit: &GlassKit, size: [u32; 2], most_steps: usize) -> Self {
         let cells = ["glass 0", "glass 1"].map(|label| texture(device, label, CELLS, size));
         let views = [view(&cells[0]), view(&cells[1])];
@@ -288,9 +288,9 @@ impl Lattice {
         (3 * 16 + 2 * 4) * u64::from(self.size[0]) * u64::from(self.size[1]) + self.steps.size()
     }
 
-    /// Adds work to what [`Lattice::record`] will do; a declared state makes what was due before it needless.
-    pub fn add(&mut self, numbers: &StepUniform, (work, has_snow): (Work, bool)) {
-        if work == Work::Declare {
+    /// Adds work to what [`PaneLattice::record`] will do; a declared state makes what was due before it needless.
+    pub fn add(&mut self, numbers: &StepUniform, (work, has_snow): (LatticeWork, bool)) {
+        if work == LatticeWork::Declare {
             self.slots.clear();
             self.due.clear();
         }
@@ -334,7 +334,7 @@ impl Lattice {
             let offset = (i * self.stride) as u32;
             let (now, next) = (self.now, 1 - self.now);
             let groups = &self.groups[self.snow_now][now];
-            let moves = *work == Work::Move;
+            let moves = *work == LatticeWork::Move;
             if moves {
                 draw(encoder, &kit.decide, (&groups[0], offset), &self.moves);
                 passes += 1;
@@ -391,7 +391,7 @@ pub(super) struct LensPass {
 }
 
 impl LensPass {
-    pub fn new(device: &Device, kit: &GlassKit, frame: &LensFrame<'_>, lattice: Option<&Lattice>) -> Self {
+    pub fn new(device: &Device, kit: &GlassKit, frame: &LensFrame<'_>, lattice: Option<&PaneLattice>) -> Self {
         let (picture, mask) = (frame.picture, frame.mask);
         let size = [picture.width().div_ceil(SMALLER), picture.height().div_ceil(SMALLER)];
         let smallest = size.map(|n| n.div_ceil(SMALLEST));
@@ -430,7 +430,7 @@ impl LensPass {
     }
 
     /// Whether it was made for these.
-    pub fn serves(&self, frame: &LensFrame<'_>, lattice: Option<&Lattice>) -> bool {
+    pub fn serves(&self, frame: &LensFrame<'_>, lattice: Option<&PaneLattice>) -> bool {
         self.picture == *frame.picture
             && is_kept(frame.mask, self.mask.as_ref())
             && self.lattice == lattice.map(|l| l.size)
@@ -447,7 +447,7 @@ impl LensPass {
         kit: &mut GlassKit,
         encoder: &mut wgpu::CommandEncoder,
         (uniform, variant, target): (&LensUniform, LensVariant, &wgpu::TextureView),
-        lattice: Option<&Lattice>,
+        lattice: Option<&PaneLattice>,
     ) -> Result<u32> {
         device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
         let first = &kit.shrink[usize::from(variant.encoded)];

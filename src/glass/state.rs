@@ -8,7 +8,7 @@ use super::{
     LensFrame, MAX_ARMS, MAX_STEPS, Plane, Reach, STEPS_PER_S, Windscreen,
     frost::Snowing,
     lens::{LensLattice, LensUniform},
-    passes::{GlassKit, Lattice, LensPass, LensVariant, Work},
+    passes::{GlassKit, LatticeWork, LensPass, LensVariant, PaneLattice},
     reach_pass::{MapReach, Mapped},
     reference::{Cells, Snow},
     step::{StepConditions, Tables, seed_key},
@@ -68,7 +68,7 @@ pub(crate) struct Glass {
     acting: Option<StepConditions>,
     /// Share of the rain that boxes let through in the last frame, and whether there were maps.
     reach: (Reach, bool),
-    lattice: Option<Lattice>,
+    lattice: Option<PaneLattice>,
     below: Option<Box<MapReach>>,
     lens: Option<LensPass>,
     tables: Box<Tables>,
@@ -137,7 +137,7 @@ impl Glass {
 
     /// Bytes on the GPU.
     pub fn bytes(&self) -> u64 {
-        self.lattice.as_ref().map_or(0, Lattice::bytes) + self.lens.as_ref().map_or(0, LensPass::bytes)
+        self.lattice.as_ref().map_or(0, PaneLattice::bytes) + self.lens.as_ref().map_or(0, LensPass::bytes)
     }
 
     /// Brings the glass to a moment; says how many passes that took.
@@ -212,9 +212,10 @@ impl Glass {
         let had_snow = self.frost > 0.0;
         self.frost = if reached && self.tables.snows(acts).0 { self.tables.most_snow() } else { 0.0 };
         if self.moisture > 0.0 || self.frost > 0.0 {
-            let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
+            let lattice =
+                self.lattice.get_or_insert_with(|| PaneLattice::new(device, kit, size, MAX_STEPS as usize + 1));
             let numbers = self.tables.at((acts, &self.reach.0), moment.seed, now, lattice.size, &[None; 2]);
-            lattice.add(&numbers, (Work::Declare, had_snow || self.frost > 0.0));
+            lattice.add(&numbers, (LatticeWork::Declare, had_snow || self.frost > 0.0));
         }
     }
 
@@ -252,11 +253,11 @@ impl Glass {
         self.moisture = if wets { 1.0 } else { (self.moisture - 1.0 / (STEPS_PER_S * acts.drying_s())).max(0.0) };
         // Cells melt by chance around the mean.
         self.frost = if snows { self.tables.most_snow() } else { (self.frost - 0.99 * melts).max(0.0) };
-        let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
+        let lattice = self.lattice.get_or_insert_with(|| PaneLattice::new(device, kit, size, MAX_STEPS as usize + 1));
         if was_dry {
             let dry = StepConditions { exposed: 0.0, ..*acts };
             let numbers = self.tables.at((&dry, &self.reach.0), seed, step, lattice.size, &[None; 2]);
-            lattice.add(&numbers, (Work::Declare, has_snow));
+            lattice.add(&numbers, (LatticeWork::Declare, has_snow));
         }
         let arms = std::array::from_fn(|i| {
             let arm = screen.arms[i]?;
@@ -268,7 +269,7 @@ impl Glass {
             // Warm air has nothing to melt.
             numbers.snow = [0; 4];
         }
-        lattice.add(&numbers, (Work::Move, has_snow));
+        lattice.add(&numbers, (LatticeWork::Move, has_snow));
     }
 
     /// The windscreen at a time since the last frame.

@@ -13,7 +13,7 @@ use crate::{
     error::{Error, Result, Status},
     falling::{drops::factor_in, sizes::DropSizes},
     gpu::{Device, Shared},
-    moment::Moment,
+    moment::SceneMoment,
     stage::{
         ColorSpace, CostItem, DrawnEffect, Frame, FrameContext, LensPicture, Outputs, Recording, Stages, is_float,
     },
@@ -83,7 +83,7 @@ fn locked(kit: &Mutex<GlassKit>) -> Result<MutexGuard<'_, GlassKit>> {
 }
 
 /// Finds the share of the rain that boxes and maps let through to a pane now.
-fn reached<'a>(now: &'a Moment<'_>, frame: &Frame<'_>, plane: &Plane, screen: &Windscreen) -> Result<Reached<'a>> {
+fn reached<'a>(now: &'a SceneMoment<'_>, frame: &Frame<'_>, plane: &Plane, screen: &Windscreen) -> Result<Reached<'a>> {
     if !now.is_sheltered() {
         return Ok((Reach::ALL, None));
     }

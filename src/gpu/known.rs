@@ -106,7 +106,7 @@ pub(super) fn ask(device: &Arc<Device>) -> std::result::Result<(), Fault> {
         }
     }
     let all = contents();
-    let parts = Parts::new(device, &all);
+    let parts = BoundBlocks::new(device, &all);
     let blocks = parts.draw(device, "blocks", TEXELS, begun)?;
     let is_wrong = |i: &usize| blocks[*i] != all[*i];
     if let Some(i) = (0..TEXELS).find(is_wrong) {
@@ -129,13 +129,13 @@ pub(super) fn ask(device: &Arc<Device>) -> std::result::Result<(), Fault> {
 }
 
 /// The blocks, bound.
-struct Parts {
+struct BoundBlocks {
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
     job: u32,
 }
 
-impl Parts {
+impl BoundBlocks {
     /// Makes the blocks as the tables' are made, with contents, and one as a view's is written.
     fn new(device: &Device, all: &[[u32; 4]]) -> Self {
         let step = device.device.limits().min_uniform_buffer_offset_alignment.max(16) as usize;

@@ -5,11 +5,11 @@
 
 /// Values by their keys, at most `MOST` of them.
 pub(crate) struct LruCache<K, V, const MOST: usize> {
-    all: Vec<Held<K, V>>,
+    all: Vec<RecentEntry<K, V>>,
     uses: u64,
 }
 
-struct Held<K, V> {
+struct RecentEntry<K, V> {
     key: K,
     value: V,
     used: u64,
@@ -68,7 +68,7 @@ impl<K, V, const MOST: usize> LruCache<K, V, MOST> {
 
     /// Puts it into free room, or into that of what was not used for longest.
     fn put(&mut self, (key, value): (K, V)) -> usize {
-        let held = Held { key, value, used: 0 };
+        let held = RecentEntry { key, value, used: 0 };
         if self.all.len() < MOST {
             self.all.push(held);
             return self.all.len() - 1;

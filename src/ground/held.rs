@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
-    moment::Moment,
+    moment::SceneMoment,
     surroundings::{SnowHere, TerrainHeights},
     terrain::Terrain,
     weather::{Conditions, SurfaceCover, cover_under_rain},
@@ -284,7 +284,7 @@ impl HeldGround {
     }
 
     /// Returns the ground as a camera sees it.
-    pub fn seen(&self, world: &World, now: &Moment<'_>) -> GroundSeen<'_> {
+    pub fn seen(&self, world: &World, now: &SceneMoment<'_>) -> GroundSeen<'_> {
         let has_cells = self.host.is_some() || self.tiled.is_some();
         GroundSeen {
             cover: self.cover_at(world, now.eye, now.scene.conditions.surface),
@@ -499,7 +499,7 @@ fn forcing(world: &World, c: &Conditions, state: &GroundState) -> Forcing {
 }
 
 /// Snow on level, open ground: as it is led through time, else as deep as the weather reports it, some days old.
-fn snow_about(world: &World, now: &Moment<'_>) -> SnowHere {
+fn snow_about(world: &World, now: &SceneMoment<'_>) -> SnowHere {
     if let Some(snow) = &world.snow {
         return snow.country;
     }

@@ -7,8 +7,8 @@ use super::{
     GroundGrid, GroundModel, GroundWater,
     held::GroundState,
     host_rain::AreasOverGrid,
-    rain_on::RainOn,
-    terrain::{Terrain, TerrainWater},
+    rain_on::GridRain,
+    terrain::{GridTerrain, TerrainWater},
     water::{Forcing, STEP_S, Step},
 };
 use crate::{
@@ -35,10 +35,10 @@ pub struct GroundCell {
 
 /// The host's terrain and the water on it.
 pub(super) struct HostGround {
-    pub terrain: Terrain,
+    pub terrain: GridTerrain,
     /// Turns the host's axes at the grid's origin.
     pub to_enu: DMat3,
-    pub rain: RainOn,
+    pub rain: GridRain,
     pub water: TerrainWater,
     /// Whether `water` is a state of its own by now; else it is what `shown` makes of it.
     pub begun: bool,
@@ -59,9 +59,9 @@ struct CellInputs {
 impl HostGround {
     pub fn new(grid: GroundGrid, world: &WorldFrame) -> Self {
         let frame = world.frame_at(grid.origin);
-        let terrain = Terrain::new(grid);
+        let terrain = GridTerrain::new(grid);
         let water = TerrainWater::new(&terrain, |_| GroundWater::default());
-        let rain = RainOn::new(&terrain.grid.cells(), (frame.world_to_enu, frame.place.altitude_m));
+        let rain = GridRain::new(&terrain.grid.cells(), (frame.world_to_enu, frame.place.altitude_m));
         Self { to_enu: frame.world_to_enu, rain, terrain, water, begun: false, shown: None }
     }
 

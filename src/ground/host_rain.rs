@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::{grid::CellGrid, rain_on::RainOn, terrain::RUN, water::Forcing};
+use super::{grid::CellGrid, rain_on::GridRain, terrain::RUN, water::Forcing};
 use crate::{
     error::Result,
     falling::{MAX_AREAS, area::Shaft},
@@ -60,13 +60,13 @@ pub(super) fn liquid(f: &Falling) -> f64 {
 
 /// Where some cells of a grid lie: their middle in the host's world, how far they reach from it, lowest and highest
 /// altitude, m.
-pub(super) struct Part {
+pub(super) struct CellBounds {
     middle: DVec3,
     reach_m: f64,
     altitudes_m: [f64; 2],
 }
 
-impl Part {
+impl CellBounds {
     pub fn new(grid: &CellGrid<'_>, (to_enu, altitude_m): (&DMat3, f64), cells: Range<usize>) -> Self {
         let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let columns = grid.nodes[0] as usize;
@@ -115,7 +115,7 @@ impl Part {
     }
 }
 
-impl RainOn {
+impl GridRain {
     /// Rain and drizzle at a cell where the weather has `own`, mm/h.
     fn liquid_with(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, evens: &Evens, own: f64, cell: usize) -> f64 {
         overs.list.iter().zip(evens).fold(own, |sum, (over, even)| {
@@ -150,7 +150,7 @@ impl RainOn {
     }
 }
 
-impl RainOn {
+impl GridRain {
     /// The areas over the terrain at a time; `c` is the weather then.
     pub(super) fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<AreasOverGrid> {
         let mut overs = AreasOverGrid { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec2, DVec3};
 use super::{
     GroundWater,
     grid::CellGrid,
-    host_rain::{AreasOverGrid, Part, liquid},
+    host_rain::{AreasOverGrid, CellBounds, liquid},
     terrain::RUN,
     water::Forcing,
 };
@@ -40,13 +40,13 @@ struct Glaze {
 }
 
 /// Where a grid lies under the sky, and what falls on its cells.
-pub(super) struct RainOn {
+pub(super) struct GridRain {
     /// Turns the host's axes; the altitude of the height that the grid's heights count from, m.
     pub to_enu: DMat3,
     pub altitude_m: f64,
     /// Where the grid lies, and each run of its cells.
-    pub whole: Part,
-    pub runs: Vec<Part>,
+    pub whole: CellBounds,
+    pub runs: Vec<CellBounds>,
     /// Lowest and highest node.
     range_m: (f64, f64),
     shadow: Shadow,
@@ -56,9 +56,9 @@ pub(super) struct RainOn {
     rates: Vec<f64>,
 }
 
-impl RainOn {
+impl GridRain {
     pub fn new(grid: &CellGrid<'_>, (to_enu, altitude_m): (DMat3, f64)) -> Self {
-        let (whole, runs) = Part::whole_and_runs(grid, (&to_enu, altitude_m));
+        let (whole, runs) = CellBounds::whole_and_runs(grid, (&to_enu, altitude_m));
         Self {
             to_enu,
             altitude_m,
@@ -76,7 +76,7 @@ impl RainOn {
     pub fn heights_changed(&mut self, grid: &CellGrid<'_>, runs: impl Iterator<Item = usize>) {
         for run in runs {
             let cells = run * RUN..((run + 1) * RUN).min(grid.len());
-            let part = Part::new(grid, (&self.to_enu, self.altitude_m), cells.clone());
+            let part = CellBounds::new(grid, (&self.to_enu, self.altitude_m), cells.clone());
             for height in &grid.heights_m[cells] {
                 let height = f64::from(*height);
                 self.range_m = (self.range_m.0.min(height), self.range_m.1.max(height));

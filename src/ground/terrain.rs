@@ -12,7 +12,7 @@ use super::{
     GroundGrid, GroundWater,
     basins::{Basins, OUT},
     pools::Pools,
-    water::{PORES_MM, Step, Surface, wetness_of},
+    water::{PORES_MM, Step, SurfaceWater, wetness_of},
 };
 
 /// Cells that are gone through together, or passed over together where nothing falls, flows or dries.
@@ -23,12 +23,12 @@ const BARE_MM: f32 = -50.0;
 
 /// The host's terrain and its hollows.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Terrain {
+pub(crate) struct GridTerrain {
     pub grid: GroundGrid,
     basins: Basins,
 }
 
-impl Terrain {
+impl GridTerrain {
     pub fn new(grid: GroundGrid) -> Self {
         let basins = Basins::new(&grid.heights_m, grid.nodes[0] as usize);
         Self { grid, basins }
@@ -79,14 +79,14 @@ pub(crate) struct TerrainWater {
     /// pores above water.
     awake: Vec<bool>,
     /// Level of the water in each hollow, and what it held when that was found.
-    levels: Vec<Level>,
+    levels: Vec<WaterLevel>,
     /// Room for a step: what pits get.
     inflow: Vec<f64>,
 }
 
 /// Cached level of the water in a hollow, mm, and its volume then; none where the pool has merged into another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Level {
+struct WaterLevel {
     mm: f64,
     of: Option<f64>,
 }
@@ -94,7 +94,7 @@ struct Level {
 impl TerrainWater {
     /// On a terrain that is as wet as `water` says of open, level ground at each cell; what it says of hollows stands
     /// in the terrain's own, gathered from what drains there.
-    pub fn new(terrain: &Terrain, water: impl Fn(usize) -> GroundWater) -> Self {
+    pub fn new(terrain: &GridTerrain, water: impl Fn(usize) -> GroundWater) -> Self {
         let basins = &terrain.basins;
         let top: Vec<GroundWater> = (0..terrain.grid.len()).map(water).collect();
         let mut inflow = vec![0.0; basins.list.len()];
@@ -109,13 +109,13 @@ impl TerrainWater {
     }
 
     /// A saved one, if it can be of this terrain.
-    pub fn from_parts(terrain: &Terrain, top: Vec<[f64; 2]>, held: Vec<f64>) -> Option<Self> {
+    pub fn from_parts(terrain: &GridTerrain, top: Vec<[f64; 2]>, held: Vec<f64>) -> Option<Self> {
         let sound = |[film, soaked]: &[f64; 2]| (0.0..1e4).contains(film) && (0.0..=PORES_MM).contains(soaked);
         let pools = Pools::from_held(&terrain.basins, held)?;
         (top.len() == terrain.grid.len() && top.iter().all(sound)).then(|| Self::with(terrain, top, pools))
     }
 
-    fn with(terrain: &Terrain, top: Vec<[f64; 2]>, pools: Pools) -> Self {
+    fn with(terrain: &GridTerrain, top: Vec<[f64; 2]>, pools: Pools) -> Self {
         let hollows = terrain.basins.list.len();
         let mut new = Self {
             dry: top.iter().all(|t| *t == [0.0; 2]) && pools.are_dry(),
@@ -123,7 +123,7 @@ impl TerrainWater {
             top,
             pools,
             inflow: vec![0.0; hollows],
-            levels: vec![Level { mm: f64::INFINITY, of: None }; hollows],
+            levels: vec![WaterLevel { mm: f64::INFINITY, of: None }; hollows],
             awake: Vec::new(),
         };
         new.level(&terrain.basins);
@@ -148,7 +148,7 @@ impl TerrainWater {
     /// does not rain. Runs where nothing falls, flows or dries are passed over, which changes no bit.
     pub fn step(
         &mut self,
-        terrain: &Terrain,
+        terrain: &GridTerrain,
         step: &Step,
         rains: impl Fn(usize) -> bool,
         rain_mm: impl Fn(usize) -> f64,
@@ -157,7 +157,7 @@ impl TerrainWater {
         let mut flows = Flows::default();
         let mut wet = false;
         // Neighbours mostly have the same water and the same rain.
-        let mut last: Option<([f64; 2], f64, bool, Surface)> = None;
+        let mut last: Option<([f64; 2], f64, bool, SurfaceWater)> = None;
         for (run, tops) in self.top.chunks_mut(RUN).enumerate() {
             if !self.awake[run] && !rains(run) {
                 continue;
@@ -204,9 +204,9 @@ impl TerrainWater {
         for hollow in (0..self.levels.len()).rev() {
             let before = self.levels[hollow];
             let now = match self.pools.whole_of(basins, hollow) {
-                Some(whole) => Level { mm: self.levels[whole].mm, of: None },
+                Some(whole) => WaterLevel { mm: self.levels[whole].mm, of: None },
                 None if before.of == Some(self.pools.held[hollow]) => continue,
-                None => Level { mm: self.pools.level(basins, hollow), of: Some(self.pools.held[hollow]) },
+                None => WaterLevel { mm: self.pools.level(basins, hollow), of: Some(self.pools.held[hollow]) },
             };
             self.levels[hollow] = now;
             if now.mm == before.mm {
@@ -260,7 +260,7 @@ impl TerrainWater {
 
     /// All of it, mm times cells.
     #[cfg(test)]
-    fn total(&self, terrain: &Terrain) -> f64 {
+    fn total(&self, terrain: &GridTerrain) -> f64 {
         self.top.iter().map(|t| t[0] + t[1]).sum::<f64>() + self.pools.total(&terrain.basins)
     }
 }
@@ -275,11 +275,11 @@ mod tests {
         water::{Forcing, STEP_S},
     };
 
-    fn terrain(columns: u32, rows: u32, heights_m: Vec<f32>) -> Terrain {
+    fn terrain(columns: u32, rows: u32, heights_m: Vec<f32>) -> GridTerrain {
         let grid =
             GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [columns, rows], heights_m, classes: Vec::new() };
         grid.validate().unwrap();
-        Terrain::new(grid)
+        GridTerrain::new(grid)
     }
 
     fn rain(mm_h: f64, evaporation_mm_h: f64) -> (Step, f64) {

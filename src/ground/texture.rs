@@ -8,7 +8,7 @@
 
 use glam::DVec4;
 
-use super::{GroundGrid, terrain::Terrain, terrain::TerrainWater, window::DrawnTerrain};
+use super::{GroundGrid, terrain::GridTerrain, terrain::TerrainWater, window::DrawnTerrain};
 use crate::{gpu::Device, surroundings::LyingSnow};
 
 /// WGSL text of the functions that say how the water looks; see [`GroundTexture`].
@@ -83,7 +83,7 @@ impl TerrainTextures {
     pub fn upload(
         &mut self,
         device: &Device,
-        (terrain, water, ice): (&Terrain, &TerrainWater, impl Fn(usize) -> f32),
+        (terrain, water, ice): (&GridTerrain, &TerrainWater, impl Fn(usize) -> f32),
         [generation, revision, classes]: [u64; 3],
     ) {
         let filled = self.filled.take().filter(|f| f.generation == generation);

@@ -12,7 +12,7 @@ use crate::{
         Device,
         blocks::{Blocks, UniformBlock},
     },
-    moment::Moment,
+    moment::SceneMoment,
     scene::WorldKind,
     stage::{
         Block, Contribution, DrawContext, DrawnEffect, Exchange, Frame, FrameContext, FrameFlags, Output, Outputs,
@@ -121,7 +121,7 @@ impl DrawnEffect for GroundView {
 }
 
 /// Share of level ground under clear ice: as the freezing rain of the moment keeps it.
-fn glaze(now: &Moment<'_>) -> f64 {
+fn glaze(now: &SceneMoment<'_>) -> f64 {
     let falling = &now.here.precipitation;
     let falls = (falling.rain_mm_h + falling.drizzle_mm_h) * falling.freezing > 0.0;
     if falls { now.here.surface.ice } else { 0.0 }
@@ -129,7 +129,7 @@ fn glaze(now: &Moment<'_>) -> f64 {
 
 /// Rotation from the axes of the host's normals to east, north, up; and the scale and offset that decode its numbers:
 /// normalised formats hold (n + 1) / 2.
-fn normals(frame: &Frame<'_>, now: &Moment<'_>) -> (DMat3, [f32; 2]) {
+fn normals(frame: &Frame<'_>, now: &SceneMoment<'_>) -> (DMat3, [f32; 2]) {
     let from_eye = now.scene.world_to_enu * frame.camera.rotation().transpose();
     let turned = if frame.flags.has(FrameFlags::NORMALS_IN_EYE_SPACE) { from_eye } else { now.scene.world_to_enu };
     let signed = frame.normals.is_some_and(|n| is_float(n.format()));
@@ -138,7 +138,7 @@ fn normals(frame: &Frame<'_>, now: &Moment<'_>) -> (DMat3, [f32; 2]) {
 
 /// Collects the inputs of the block of `shaders/ground/uniform.wgsl`.
 fn wet_scene<'a>(
-    now: &'a Moment<'_>,
+    now: &'a SceneMoment<'_>,
     (frame, color): (&Frame<'_>, &wgpu::Texture),
     held: &'a GroundSeen<'_>,
     glaze: f64,

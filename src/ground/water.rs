@@ -179,7 +179,7 @@ pub(crate) struct Step {
 
 /// Film and pores after a step, and where the rest went.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Surface {
+pub(crate) struct SurfaceWater {
     pub film_mm: f64,
     pub soaked_mm: f64,
     pub ran_off_mm: f64,
@@ -203,7 +203,7 @@ impl Step {
     }
 
     /// Open ground on which `rain_mm` falls.
-    pub fn surface(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> Surface {
+    pub fn surface(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> SurfaceWater {
         // Half of the rain before the run-off, half after it: right to second order.
         let half = 0.5 * rain_mm;
         let up = self.soaked_up(film_mm + half, soaked_mm);
@@ -219,7 +219,7 @@ impl Step {
             more => soaked * libm::exp(-more / PORES_MM),
         };
         let kept = if kept < LEAST_MM { 0.0 } else { kept };
-        Surface {
+        SurfaceWater {
             film_mm: wet - from_film,
             soaked_mm: kept,
             ran_off_mm: film - left,
@@ -228,9 +228,9 @@ impl Step {
     }
 
     /// Ground under standing water, which takes all that its pores do not.
-    pub fn below_water(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> Surface {
+    pub fn below_water(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> SurfaceWater {
         let up = self.soaked_up(film_mm + rain_mm, soaked_mm);
-        Surface { film_mm: 0.0, soaked_mm: soaked_mm + up, ran_off_mm: film_mm + rain_mm - up, evaporated_mm: 0.0 }
+        SurfaceWater { film_mm: 0.0, soaked_mm: soaked_mm + up, ran_off_mm: film_mm + rain_mm - up, evaporated_mm: 0.0 }
     }
 }
 

@@ -102,7 +102,7 @@ pub(super) struct Shown<'a> {
 
 /// Identity of what the textures hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Filled {
+struct WindowContents {
     rect: CellRect,
     id: u64,
     revision: u64,
@@ -115,7 +115,7 @@ struct Filled {
 
 /// Part of its textures that a window fills.
 #[derive(Clone, Copy)]
-enum Part {
+enum WindowPart {
     Ground,
     Surface,
     Water,
@@ -129,7 +129,7 @@ pub(crate) struct TerrainWindow {
     /// How often anything was written.
     pub(super) writes: u64,
     textures: Option<([wgpu::Texture; 2], [wgpu::TextureView; 2])>,
-    filled: Option<Filled>,
+    filled: Option<WindowContents>,
     water: Vec<[u16; 4]>,
     /// Texels of the surface, or of the snow, which lies in as many rows below it.
     surface: Vec<[f32; 4]>,
@@ -150,7 +150,7 @@ impl TerrainWindow {
     pub(super) fn views(&mut self, device: &Device, eye: DVec3, shown: &Shown<'_>) -> [Option<wgpu::TextureView>; 2] {
         let Some(rect) = window(shown.terrain, eye) else { return [None, None] };
         let terrain = shown.terrain;
-        let now = Filled {
+        let now = WindowContents {
             rect,
             id: terrain.id,
             revision: terrain.revision,
@@ -164,28 +164,30 @@ impl TerrainWindow {
             before.and_then(|f| Some(shown.recent.since(f.revision, now.revision)?.collect()));
         let is_wet_anew = before.is_none_or(|f| (f.water, f.even, f.ice) != (now.water, now.even, now.ice));
         match changed {
-            Some(changed) => changed.iter().for_each(|c| self.fill(device, shown, (rect, c.grown(1)), Part::Ground)),
-            None => self.fill(device, shown, (rect, rect), Part::Surface),
+            Some(changed) => {
+                changed.iter().for_each(|c| self.fill(device, shown, (rect, c.grown(1)), WindowPart::Ground))
+            }
+            None => self.fill(device, shown, (rect, rect), WindowPart::Surface),
         }
         if is_wet_anew {
-            self.fill(device, shown, (rect, rect), Part::Water);
+            self.fill(device, shown, (rect, rect), WindowPart::Water);
         }
         // A new texture has none.
         if before.map_or(0, |f| f.snow) != now.snow {
-            self.fill(device, shown, (rect, rect), Part::Snow);
+            self.fill(device, shown, (rect, rect), WindowPart::Snow);
         }
         self.filled = Some(now);
         self.textures.as_ref().map_or([None, None], |t| t.1.clone().map(Some))
     }
 
     /// Fills and uploads a part of a window: the surface, the water, both, or the snow.
-    fn fill(&mut self, device: &Device, shown: &Shown<'_>, (window, part): (CellRect, CellRect), what: Part) {
+    fn fill(&mut self, device: &Device, shown: &Shown<'_>, (window, part): (CellRect, CellRect), what: WindowPart) {
         let Some(part) = window.meets(part) else { return };
-        let is_snow = matches!(what, Part::Snow);
+        let is_snow = matches!(what, WindowPart::Snow);
         match what {
-            Part::Snow => self.read_snow(shown, part),
-            Part::Surface if self.is_for_host => return,
-            Part::Ground if self.is_for_host => self.read(shown, part, Part::Water),
+            WindowPart::Snow => self.read_snow(shown, part),
+            WindowPart::Surface if self.is_for_host => return,
+            WindowPart::Ground if self.is_for_host => self.read(shown, part, WindowPart::Water),
             _ => self.read(shown, part, what),
         }
         self.writes += 1;
@@ -243,8 +245,8 @@ impl TerrainWindow {
     }
 
     /// Reads the texels of a part of the terrain, by rows.
-    fn read(&mut self, shown: &Shown<'_>, part: CellRect, what: Part) {
-        let [surface, water] = [!matches!(what, Part::Water), !matches!(what, Part::Surface)];
+    fn read(&mut self, shown: &Shown<'_>, part: CellRect, what: WindowPart) {
+        let [surface, water] = [!matches!(what, WindowPart::Water), !matches!(what, WindowPart::Surface)];
         let width = (part.high[0] - part.low[0]) as usize;
         let count = width * (part.high[1] - part.low[1]) as usize;
         self.surface.clear();

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 #[cfg(test)]
 use super::query::TAKES;
-use super::sources::Source;
+use super::sources::LightSource;
 
 /// Reflectance of the clouds' base for a flash below it.
 const BASE_REFLECTS: f64 = 0.8;
@@ -14,7 +14,7 @@ const ASYMMETRY: f64 = 0.75;
 
 /// Returns the intensity of the clouds' face in the light of a source, cd, `k` of the shader: seen from below, of the
 /// light that leaves through the base or is reflected by it.
-pub(super) fn from_clouds_cd(source: &Source, from_below: bool) -> f64 {
+pub(super) fn from_clouds_cd(source: &LightSource, from_below: bool) -> f64 {
     match (source.is_hidden(), from_below) {
         (true, true) => source.flux_lm * source.down_share / (2.0 * PI * PI),
         (true, false) => source.flux_lm * (1.0 - source.down_share) / (2.0 * PI * PI),
@@ -55,7 +55,7 @@ mod tests {
     /// The base sends what leaves by it, and no more.
     #[test]
     fn the_clouds_base_sends_the_light_that_leaves_by_it() {
-        let source = Source { flux_lm: 1e9, depth_m: 800.0, down_share: 0.9, ..Source::default() };
+        let source = LightSource { flux_lm: 1e9, depth_m: 800.0, down_share: 0.9, ..LightSource::default() };
         let k = from_clouds_cd(&source, true);
         let (step, mut sum) = (10.0, 0.0);
         for i in 0..200_000 {

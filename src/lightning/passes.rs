@@ -24,7 +24,7 @@ const MOST_PIPELINES: usize = 4;
 
 /// Key of a pipeline, beside the constants of the veil: whether the depth has several samples, and whether there is any
 /// depth.
-type DepthKind = (bool, bool);
+type DepthKey = (bool, bool);
 
 /// Made when there first is a channel to draw.
 pub(super) struct ChannelPass {
@@ -33,7 +33,7 @@ pub(super) struct ChannelPass {
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
     no_layers: wgpu::TextureView,
-    pipelines: LruCache<(DepthKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
+    pipelines: LruCache<(DepthKey, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
     bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, BlockView, wgpu::BindGroup)>,
 }
 
@@ -146,7 +146,7 @@ impl ChannelPass {
         &mut self,
         device: &Arc<Device>,
         tables: &wgpu::BindGroupLayout,
-        (multi, has_depth): DepthKind,
+        (multi, has_depth): DepthKey,
         constants: &[Constant],
     ) -> Result<wgpu::RenderPipeline> {
         let own = &self.layouts[usize::from(multi)];

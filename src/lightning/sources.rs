@@ -17,7 +17,7 @@ const HIDDEN_PARTS: usize = 2;
 
 /// A place that light comes from.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Source {
+pub(crate) struct LightSource {
     /// In the host's world, m.
     pub position: DVec3,
     /// Luminous flux, lm: of an open channel in all directions, of one in the cloud out of its base.
@@ -30,7 +30,7 @@ pub(crate) struct Source {
     pub down_share: f64,
 }
 
-impl Source {
+impl LightSource {
     /// Whether it glows in a cloud.
     pub fn is_hidden(&self) -> bool {
         self.depth_m > 0.0
@@ -47,13 +47,13 @@ impl Source {
 
 /// Light sources of a flash.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sources {
-    all: [Source; OPEN_PARTS + HIDDEN_PARTS],
+pub(crate) struct FlashSources {
+    all: [LightSource; OPEN_PARTS + HIDDEN_PARTS],
 }
 
-impl Sources {
+impl FlashSources {
     /// Returns the sources that give light.
-    pub fn iter(&self) -> impl Iterator<Item = &Source> {
+    pub fn iter(&self) -> impl Iterator<Item = &LightSource> {
         self.all.iter().filter(|s| s.flux_lm > 0.0)
     }
 }
@@ -62,8 +62,8 @@ impl Strike {
     /// Where its light comes from on the mean of a span. The base of a cloud of height H lets (1 - d/H) of the light of
     /// a source d above it through, and its top the rest: droplets absorb hardly any, so light wanders about until it
     /// gets out (gambler's ruin).
-    pub fn sources(&self, span: &Span, course: Course) -> Sources {
-        let mut sources = Sources::default();
+    pub fn sources(&self, span: &Span, course: Course) -> FlashSources {
+        let mut sources = FlashSources::default();
         let ends = [self.channel.points_m[0], self.channel.end_m()];
         let way = ends[1] - ends[0];
         let clouds = self.clouds;

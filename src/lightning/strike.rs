@@ -52,7 +52,7 @@ impl CloudSpan {
 
 /// A part of a channel and its light.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Part {
+pub(crate) struct ChannelPart {
     /// Its ends in the host's world, m.
     pub ends: [DVec3; 2],
     /// Altitude of its middle, m.
@@ -136,7 +136,7 @@ impl Strike {
     }
 
     /// Shows `to` its parts with their light on the mean of a span.
-    pub fn each_part(&self, span: &Span, course: Course, mut to: impl FnMut(&Part)) {
+    pub fn each_part(&self, span: &Span, course: Course, mut to: impl FnMut(&ChannelPart)) {
         let main = self.channel.points_m.as_slice();
         self.each_of(main, (0.0, 1.0), (1.0, false), (span, course), &mut to);
         for branch in &self.channel.branches {
@@ -158,7 +158,7 @@ impl Strike {
         (from, until): (f64, f64),
         (strength, is_branch): (f64, bool),
         (span, course): (&Span, Course),
-        to: &mut impl FnMut(&Part),
+        to: &mut impl FnMut(&ChannelPart),
     ) {
         let count = (points.len() - 1) as f64;
         for (i, ends) in points.windows(2).enumerate() {
@@ -173,7 +173,7 @@ impl Strike {
                 let depth_m = |c: CloudSpan| (altitude_m - c.base_m).min(c.top_m - altitude_m).max(0.0);
                 let open = self.clouds.map_or(1.0, |c| libm::exp(-depth_m(c) / FADES_M));
                 let flux_lm = lm_m * (ends[1] - ends[0]).length();
-                to(&Part { ends: [ends[0], ends[1]], altitude_m, flux_lm, open });
+                to(&ChannelPart { ends: [ends[0], ends[1]], altitude_m, flux_lm, open });
             }
         }
     }

@@ -11,7 +11,7 @@ use super::{
     limit,
     passes::{ChannelPass, FORMAT, MOST_PARTS},
     query::{LIGHT_REACH_M, TAKES},
-    sources::Source,
+    sources::LightSource,
     storms::{SQUARE_M, Storms},
     strike::{CloudSpan, Strike},
     uniforms::{ChannelUniform, PartInstance},
@@ -19,7 +19,7 @@ use super::{
 use crate::{
     error::Result,
     gpu::Device,
-    moment::{FlashLight, Moment},
+    moment::{FlashLight, SceneMoment},
     scene::{FlashLamp, MAX_FLASH_LAMPS},
     stage::{
         Contribution, DrawContext, DrawnEffect, Exchange, FlashBlock, FlashUniform, FrameBlock, FrameContext,
@@ -55,7 +55,7 @@ struct Shining {
 struct Lit {
     span: Span,
     course: Course,
-    sources: [(Source, DVec3); MAX_FLASH_LAMPS],
+    sources: [(LightSource, DVec3); MAX_FLASH_LAMPS],
     count: usize,
     eye: DVec3,
     eye_m: f64,
@@ -70,7 +70,7 @@ pub(crate) struct LightningView {
     storms: bool,
     frame: Option<FrameTime>,
     shining: Vec<Shining>,
-    found: Vec<(f64, Source)>,
+    found: Vec<(f64, LightSource)>,
     lit: Option<Lit>,
     passes: Option<Box<ChannelPass>>,
     parts: Vec<PartInstance>,
@@ -97,7 +97,7 @@ fn frame_time(before: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: boo
 
 impl LightningView {
     /// Keeps those that shine in a span.
-    fn find(&mut self, storms: &Storms<'_>, now: &Moment<'_>, span: &Span, course: Course) {
+    fn find(&mut self, storms: &Storms<'_>, now: &SceneMoment<'_>, span: &Span, course: Course) {
         let near = DVec2::from_array(now.scene.map_m);
         let revisions = [storms.held.revision, storms.world.surroundings_revision];
         self.shining.iter_mut().for_each(|s| s.is_used = false);
@@ -120,7 +120,7 @@ impl LightningView {
     }
 
     /// Finds the places that the light comes from, the brightest first, and makes lamps of them.
-    fn light(&mut self, now: &Moment<'_>, span: Span, course: Course) {
+    fn light(&mut self, now: &SceneMoment<'_>, span: Span, course: Course) {
         self.found.clear();
         let taken_per_m = TAKES * now.scene.conditions.extinction_per_m;
         let faintest_lux = FAINTEST_LUX.max(FAINTEST_SHARE * now.scene.ground.total_lux);
@@ -140,7 +140,7 @@ impl LightningView {
         let mut lit = Lit {
             span,
             course,
-            sources: [(Source::default(), DVec3::ZERO); MAX_FLASH_LAMPS],
+            sources: [(LightSource::default(), DVec3::ZERO); MAX_FLASH_LAMPS],
             count: self.found.len().min(MAX_FLASH_LAMPS),
             eye: now.eye,
             eye_m: now.scene.place.altitude_m,
@@ -272,7 +272,7 @@ impl DrawnEffect for LightningView {
         Exchange { needs: &[Output::Rain, Output::Snow], ..Exchange::NONE }
     }
 
-    /// Finds the flashes that shine in a frame, and says so to what they light ([`Moment::flash_lamps`]).
+    /// Finds the flashes that shine in a frame, and says so to what they light ([`SceneMoment::flash_lamps`]).
     fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
         let (now, held) = (at.now, at.held.of::<HeldLightning>()?);
         let time = frame_time(self.frame, at.frame.frame_id, now.time_s, at.frame.is_pure());

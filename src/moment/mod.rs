@@ -28,7 +28,7 @@ use crate::{
 pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
 
 /// State at a camera at a time: every effect draws from it. Its scene is worked out once for all calls of a frame.
-pub(crate) struct Moment<'a> {
+pub(crate) struct SceneMoment<'a> {
     /// Place, lights, air and the weather there.
     pub scene: Scene,
     /// The camera in the host's world, m.
@@ -71,7 +71,7 @@ pub(crate) struct FlashLight {
     pub count: usize,
 }
 
-impl<'a> Moment<'a> {
+impl<'a> SceneMoment<'a> {
     /// The wind that carries the air, up to now.
     ///
     /// # Errors
@@ -117,7 +117,7 @@ impl<'a> Moment<'a> {
     /// is drawn, m/s, and how far off any of it is, m; `exposure`: what it is exposed by.
     ///
     /// # Errors
-    /// As [`Moment::carrying`].
+    /// As [`SceneMoment::carrying`].
     pub fn host_surroundings(&self, near: ShelterReach, exposure: f64) -> Result<HostSurroundings<'_>> {
         Ok(HostSurroundings {
             shelters: self.shelters,

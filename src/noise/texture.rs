@@ -67,7 +67,7 @@ struct ShrinkUniform {
 pub struct NoiseTexture {
     texture: wgpu::Texture,
     /// Rest that is still to draw.
-    build: Option<Box<Build>>,
+    build: Option<Box<NoiseBuild>>,
 }
 
 impl NoiseTexture {
@@ -91,7 +91,7 @@ impl NoiseTexture {
         }
         let _entered = device.enter()?;
         let texture = texture(device, size, format, levels_of(size))?;
-        let build = Build::new(device, &texture, size, channels)?;
+        let build = NoiseBuild::new(device, &texture, size, channels)?;
         device.check_made()?;
         Ok(Self { texture, build: Some(Box::new(build)) })
     }
@@ -212,7 +212,7 @@ fn texture(device: &Device, size: [u32; 3], format: wgpu::TextureFormat, levels:
 }
 
 /// Rest of a texture that is still to draw.
-struct Build {
+struct NoiseBuild {
     size: [u32; 3],
     /// One view a mip level.
     levels: Vec<wgpu::TextureView>,
@@ -231,7 +231,7 @@ struct Build {
     shrunk: u32,
 }
 
-impl Build {
+impl NoiseBuild {
     fn new(device: &Device, texture: &wgpu::Texture, size: [u32; 3], channels: &[NoiseSettings]) -> Result<Self> {
         let format = texture.format();
         let is_plane = axes(size) == 2;

@@ -25,14 +25,14 @@ pub(crate) struct Listing {
     /// Layouts of group 1: as things are marked and ordered, and as what draws them is made.
     pub layouts: [wgpu::BindGroupLayout; 2],
     found: wgpu::Buffer,
-    held: Option<Held>,
+    held: Option<ListBuffers>,
     /// In place of what follows from the lattice.
     #[cfg(test)]
     pub room: Option<u64>,
 }
 
 /// Room for the things of a lattice.
-struct Held {
+struct ListBuffers {
     blocks: wgpu::Buffer,
     things: wgpu::Buffer,
     groups: [wgpu::BindGroup; 2],
@@ -86,7 +86,7 @@ impl Listing {
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("list"), layout, entries })
         };
         let groups = [group(&self.layouts[0], &entries), group(&self.layouts[1], &entries[..2])];
-        self.held = Some(Held { blocks, things, groups });
+        self.held = Some(ListBuffers { blocks, things, groups });
     }
 
     /// Marks the things of each row, orders them, and makes what draws them; the other groups are set.

@@ -26,7 +26,7 @@ use crate::{
         blocks::{Blocks, UniformBlock},
         pass::{self, ComputeDesc},
     },
-    moment::Moment,
+    moment::SceneMoment,
     surroundings::{WindMap, WindView},
 };
 
@@ -48,7 +48,7 @@ const GROWTH: f64 = 1.5;
 /// `StepUniform` of `shaders/falling/step.wgsl`, which explains the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct StepUniform {
+pub(crate) struct ParticleStepUniform {
     air: [f32; 3],
     dt: f32,
     wind: WindMap,
@@ -87,7 +87,7 @@ pub(crate) struct Stepped<'a> {
 
 /// Whether what falls up to `reach_m` from the camera is stepped: where the wind varies in space there, and then, so
 /// that nothing jumps, as long as the picture has a history. `was`: in the frame before.
-pub(crate) fn is_due(now: &Moment<'_>, device: &Device, reach_m: f64, was: bool, is_pure: bool) -> bool {
+pub(crate) fn is_due(now: &SceneMoment<'_>, device: &Device, reach_m: f64, was: bool, is_pure: bool) -> bool {
     let varies = || now.wind_volume.is_some_and(|volume| volume.distance_m(now.eye) <= reach_m);
     device.caps().tier > 0 && ((was && !is_pure) || varies())
 }
@@ -100,7 +100,7 @@ struct Left {
     counts: [u32; SHELLS],
 }
 
-impl StepUniform {
+impl ParticleStepUniform {
     /// From what was `left` to now; none where there is nothing to step.
     fn new(to: &Stepped<'_>, left: Option<Left>, rooms: &Rooms) -> Option<Self> {
         let v = |d: DVec3| d.as_vec3().to_array();
@@ -223,7 +223,7 @@ impl StepPass {
         let own = &device.device;
         let make = |label, slots: &[(u32, Slot)]| bind::layout(own, label, wgpu::ShaderStages::COMPUTE, slots);
         let step = [
-            (0, Slot::Uniform(size_of::<StepUniform>())),
+            (0, Slot::Uniform(size_of::<ParticleStepUniform>())),
             (1, Slot::Storage(STATE_BYTES)),
             (2, Slot::FilteredVolume),
             (3, Slot::Sampler),
@@ -273,9 +273,9 @@ impl StepPass {
         let left = self.left.filter(|_| !to.anew);
         let counts = rooms.within(to.counts);
         self.left = Some(Left { time_s: to.time_s, position_m: to.position_m, counts });
-        let Some(block) = StepUniform::new(to, left, rooms) else { return Ok(()) };
+        let Some(block) = ParticleStepUniform::new(to, left, rooms) else { return Ok(()) };
         let mut bytes = [0; EYES + 16 * SHELLS];
-        bytes[..size_of::<StepUniform>()].copy_from_slice(bytemuck::bytes_of(&block));
+        bytes[..size_of::<ParticleStepUniform>()].copy_from_slice(bytemuck::bytes_of(&block));
         bytes[EYES..].copy_from_slice(bytemuck::bytes_of(&block.eye));
         self.block.write(&bytes);
         let slot = &mut self.steps[usize::from(map.is_some())];
@@ -376,7 +376,7 @@ impl StepPass {
             group(
                 &self.layouts[1],
                 &[
-                    self.block.part(0, 0, size_of::<StepUniform>()),
+                    self.block.part(0, 0, size_of::<ParticleStepUniform>()),
                     entry(1, states.as_entire_binding()),
                     entry(2, wgpu::BindingResource::TextureView(&wind.view)),
                     entry(3, wgpu::BindingResource::Sampler(&self.sampler)),
@@ -398,7 +398,7 @@ mod tests {
             shader::assert_layout!(
                 file,
                 "StepUniform",
-                StepUniform,
+                ParticleStepUniform,
                 [air, dt, wind, moved, steps, counts, known, begins, sides, eye, before, seed]
             );
         }

@@ -3,7 +3,7 @@
 
 use super::{
     estimate::{Estimate, Estimator},
-    governor::{Amount, GaveWay, Governor},
+    governor::{GaveWay, Governor, WorkAmount},
     parts::{Ladder, MOST_PARTS, MOST_STEPS, Part, Set},
     search::{Free, Search, least_missed},
 };
@@ -28,7 +28,7 @@ pub(super) struct Choices {
     pub estimator: Estimator,
     search: Search,
     /// Work of the picture with everything.
-    pub all: Amount,
+    pub all: WorkAmount,
     /// Error of the picture after this step and those above it, and nothing else.
     pub worth: [Estimate; MOST_STEPS],
     /// Steps of the parts that are there.
@@ -43,7 +43,7 @@ impl Choices {
             ladder: Ladder::new(parts),
             estimator: Estimator::new(0),
             search: Search::default(),
-            all: Amount::default(),
+            all: WorkAmount::default(),
             worth: [Estimate::default(); MOST_STEPS],
             there: 0,
             cheapest: None,
@@ -52,7 +52,7 @@ impl Choices {
 
     /// Takes a picture that the estimator has seen: its work, the steps of what is there, what is asked, and what is
     /// left out now.
-    pub fn take(&mut self, all: Amount, there: Set, governor: &Governor, asked: &Asked, before: Set) {
+    pub fn take(&mut self, all: WorkAmount, there: Set, governor: &Governor, asked: &Asked, before: Set) {
         (self.all, self.there) = (all, there);
         let Self { ladder, estimator, search, worth, .. } = self;
         for part in 0..ladder.parts.len() {

@@ -32,14 +32,14 @@ const READY: u32 = 3;
 const FAILED: u32 = 4;
 
 /// Values of `override` constants.
-type Constants = Vec<(&'static str, f64)>;
+type OverrideValues = Vec<(&'static str, f64)>;
 
 /// Most channels whose worth the gauge finds.
 pub const CHANNELS: usize = 5;
 
 /// Finding of the gauge at one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Sample {
+pub(crate) struct GaugeSample {
     /// Change of luminance in each channel.
     pub composed: [f32; CHANNELS],
     /// Whether the host drew there (1), did not (-1), or keeps the pixel for itself (0).
@@ -57,8 +57,8 @@ pub(crate) struct Gauge {
     buffer: wgpu::Buffer,
     state: Arc<AtomicU32>,
     /// Made for a number of samples (one or several) and `override` constants.
-    pipeline: Option<(&'static str, Constants, wgpu::RenderPipeline)>,
-    samples: Vec<Sample>,
+    pipeline: Option<(&'static str, OverrideValues, wgpu::RenderPipeline)>,
+    samples: Vec<GaugeSample>,
 }
 
 impl Gauge {
@@ -128,7 +128,7 @@ impl Gauge {
 
     /// Goes on with a readback under way, without waiting: call once a frame, after the host has submitted what was
     /// recorded. The samples, when they have arrived.
-    pub fn advance(&mut self, device: &Device) -> Option<&[Sample]> {
+    pub fn advance(&mut self, device: &Device) -> Option<&[GaugeSample]> {
         if self.state.load(Ordering::Acquire) == RECORDED {
             self.state.store(MAPPING, Ordering::Release);
             let state = self.state.clone();
@@ -153,7 +153,7 @@ impl Gauge {
             let half = |b: &[u8], i: usize| half::bf16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32();
             self.samples.extend(bytes.chunks_exact(16).map(|b| {
                 let composed = [0, 1, 2, 3, 7].map(|i| half(b, i));
-                Sample { composed, kind: half(b, 4), luminance: half(b, 5), hidden: half(b, 6) }
+                GaugeSample { composed, kind: half(b, 4), luminance: half(b, 5), hidden: half(b, 6) }
             }));
         }
         self.buffer.unmap();

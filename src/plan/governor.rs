@@ -28,14 +28,14 @@ pub enum GaveWay {
 /// Work of a picture, in pixels with none of the parts: those pixels, what each step of a part saves that may be taken,
 /// and what two parts cost beside each other, beyond what each does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Amount {
+pub(super) struct WorkAmount {
     pub pixels: f64,
     pub steps: [f64; MOST_STEPS],
     /// The first steps of both, and the work, which costs what the first one's does.
     pub together: ([usize; 2], f64),
 }
 
-impl Amount {
+impl WorkAmount {
     /// After the steps of `set`.
     pub fn without(mut self, set: Set) -> Self {
         (0..MOST_STEPS).filter(|i| set & (1 << i) != 0).for_each(|i| self.steps[i] = 0.0);
@@ -88,7 +88,7 @@ impl Default for Governor {
 
 impl Governor {
     /// A frame took so long; everything in it would be `all`, and the parts of `absent` were left out.
-    pub fn report(&mut self, ms: f64, all: &Amount, absent: Set) {
+    pub fn report(&mut self, ms: f64, all: &WorkAmount, absent: Set) {
         if absent != self.absent {
             let from = self.before.map_or(self.absent, |b| b.0);
             self.before = self.ms_per_work().filter(|_| from != absent).map(|k| (from, k));
@@ -112,7 +112,7 @@ impl Governor {
 
     /// Parts came or went between two sets with these times a unit of work: were it not for them the times would be
     /// one.
-    fn learn(&mut self, all: &Amount, (from, k_from): (Set, f64), (to, k_to): (Set, f64)) {
+    fn learn(&mut self, all: &WorkAmount, (from, k_from): (Set, f64), (to, k_to): (Set, f64)) {
         let time = |set: Set, k: f64| k * all.without(set).weighed(&self.ratios);
         // With the parts and without; where some come while others go, neither is told apart.
         let (more, less, parts) = match (from & !to, to & !from) {
@@ -153,18 +153,18 @@ impl Governor {
     }
 
     /// Returns the time that a picture of so much work should take, ms; `None` before the first report.
-    pub fn ms(&self, amount: &Amount) -> Option<f64> {
+    pub fn ms(&self, amount: &WorkAmount) -> Option<f64> {
         self.ms_per_work().map(|k| k * amount.weighed(&self.ratios))
     }
 
     /// Work of a picture by what steps cost here.
-    pub fn work(&self, amount: &Amount) -> f64 {
+    pub fn work(&self, amount: &WorkAmount) -> f64 {
         amount.weighed(&self.ratios)
     }
 
     /// Whether a picture keeps a budget of time. One of more work than is drawn now leaves room to spare, so that a
     /// load at the border does not swing.
-    pub fn fits(&self, amount: &Amount, budget_ms: Option<f64>, now: &Amount) -> bool {
+    pub fn fits(&self, amount: &WorkAmount, budget_ms: Option<f64>, now: &WorkAmount) -> bool {
         match (budget_ms, self.ms(amount)) {
             (Some(budget), Some(ms)) => {
                 let more = self.work(amount) > self.work(now);
@@ -198,13 +198,13 @@ mod tests {
     struct Picture {
         choices: Choices,
         worth: [f64; 3],
-        all: Amount,
+        all: WorkAmount,
     }
 
     impl Picture {
         /// Parts worth so much, on a picture of work 1 + their work.
         fn new(worth: [f64; 3], parts: [f64; 3]) -> Self {
-            let all = Amount { pixels: 1.0, steps: steps(parts), ..Amount::default() };
+            let all = WorkAmount { pixels: 1.0, steps: steps(parts), ..WorkAmount::default() };
             Self { choices: Choices::new(&PARTS), worth, all }
         }
 
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn a_part_that_is_not_there_learns_nothing_from_another_that_comes_with_it() {
-        let clear = Amount { pixels: 1.0, steps: steps([0.4, 0.0, 0.05]), ..Amount::default() };
+        let clear = WorkAmount { pixels: 1.0, steps: steps([0.4, 0.0, 0.05]), ..WorkAmount::default() };
         let mut governor = Governor::default();
         (0..20).for_each(|_| governor.report(clear.without(0b011).total(), &clear, 0b011));
         (0..20).for_each(|_| governor.report(1.5 * clear.total(), &clear, 0));
@@ -309,7 +309,7 @@ mod tests {
     }
 
     impl Machine {
-        fn frame(&mut self, all: &Amount, absent: Set, random: &mut u64) -> Option<f64> {
+        fn frame(&mut self, all: &WorkAmount, absent: Set, random: &mut u64) -> Option<f64> {
             self.drawn.push(absent);
             let frame = self.drawn.len().checked_sub(1 + self.late)?;
             let noise = 1.0 + self.noise * (2.0 * chance(random) - 1.0);
@@ -350,7 +350,7 @@ mod tests {
             for step in 0..12 {
                 let objects = between(0.3, 0.9);
                 let steps = steps([0.4 * objects, 0.27, 0.07 * (1.0 - objects)]);
-                let all = Amount { pixels: 1.0, steps, together: ([0, 1], 0.4) };
+                let all = WorkAmount { pixels: 1.0, steps, together: ([0, 1], 0.4) };
                 let absent = [0, 1, 0, 2, 0, 5, 0, 3, 7, 0, 1, 3][step];
                 for frame in 0..24 {
                     let truth = ms * all.without(absent).weighed(&ratios);

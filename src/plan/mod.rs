@@ -25,5 +25,5 @@ pub use governor::GaveWay;
 pub use parts::{Part, Reason, StepWork};
 pub use planner::{PartPlan, Plan, Prediction};
 pub(crate) use planner::{Planner, Presence, Situation, Unseen};
-pub(crate) use saved::{Settings, read, write};
+pub(crate) use saved::{PlanSettings, read, write};
 pub use work::{Listed, Price, Units, Work};

@@ -6,8 +6,8 @@ use super::{
     budget::Budget,
     choice::{Asked, Choices},
     estimate::Estimate,
-    gauge::{EVERY, GRID, Gauge, Sample},
-    governor::{Amount, GaveWay, Governor},
+    gauge::{EVERY, GRID, Gauge, GaugeSample},
+    governor::{GaveWay, Governor, WorkAmount},
     parts::{MOST_PARTS, MOST_RUNGS, MOST_STEPS, Part, Reason, Set, StepWork, Worth},
 };
 use crate::{
@@ -413,7 +413,7 @@ impl<U: Unseen> Planner<U> {
     pub fn share_of_tables(&self) -> f32 {
         let frame = self.governor.ms(&self.choices.all.without(self.absent()));
         let spare = self.budget.milliseconds.zip(frame).map(|(budget, ms)| budget - ms);
-        let whole = self.governor.ms(&Amount { pixels: self.rebuild, ..Amount::default() });
+        let whole = self.governor.ms(&WorkAmount { pixels: self.rebuild, ..WorkAmount::default() });
         let most = (SLICE * self.work / self.rebuild).clamp(SHARE.1, 1.0);
         let share = spare.zip(whole).map_or(most, |(spare, whole)| (spare / whole).clamp(SHARE.0, most));
         share as f32
@@ -453,7 +453,7 @@ impl PartPlan {
 
 impl Choices {
     /// Takes what the gauge saw, and adds what it could not.
-    fn see(&mut self, samples: &[Sample], unseen: Option<&impl Unseen>) {
+    fn see(&mut self, samples: &[GaugeSample], unseen: Option<&impl Unseen>) {
         let half = |i: usize, n: u32| (i as f64 + 0.5) / f64::from(n) * 2.0 - 1.0;
         self.estimator.clear();
         for (i, sample) in samples.iter().enumerate().filter(|(_, s)| s.kind != 0.0) {
@@ -481,11 +481,11 @@ impl Choices {
     }
 
     /// Work of the picture with everything, and the steps of what is there; that of every part goes into the plan.
-    fn weigh(&self, samples: &[Sample], present: &Presence, plan: &mut Plan) -> (Amount, Set) {
+    fn weigh(&self, samples: &[GaugeSample], present: &Presence, plan: &mut Plan) -> (WorkAmount, Set) {
         let share = |kind: f32| samples.iter().filter(|s| s.kind == kind).count() as f64 / samples.len().max(1) as f64;
         let (objects, sky, pixels) = (share(1.0), share(-1.0), present.pixels as f64);
         let work = |step: &StepWork| (objects * step.object + sky * step.sky) * pixels + step.fixed;
-        let mut all = Amount { pixels, ..Amount::default() };
+        let mut all = WorkAmount { pixels, ..WorkAmount::default() };
         let mut there = 0;
         for (i, now) in present.parts[..self.ladder.parts.len()].iter().enumerate().filter(|(_, n)| n.is_there) {
             there |= self.ladder.whole(i);

@@ -14,7 +14,7 @@ const VERSION: u32 = 3;
 const MOST_BYTES: usize = 1 << 16;
 
 /// Settings of the context's sky: what a plan was made under.
-pub(crate) struct Settings<'a> {
+pub(crate) struct PlanSettings<'a> {
     /// Name of the model.
     pub model: &'a str,
     /// Refuses a name that no model has.
@@ -24,7 +24,7 @@ pub(crate) struct Settings<'a> {
 }
 
 /// The rungs that are drawn, under these settings.
-pub(crate) fn write(parts: &[Part], rungs: &[usize], sky: &Settings<'_>) -> String {
+pub(crate) fn write(parts: &[Part], rungs: &[usize], sky: &PlanSettings<'_>) -> String {
     let mut text = format!("version = {VERSION}\n\n[sky]\nmodel = \"{}\"\n", sky.model);
     for (name, value, ..) in &sky.numbers {
         text += &format!("{name} = {value}\n");
@@ -41,7 +41,7 @@ pub(crate) fn write(parts: &[Part], rungs: &[usize], sky: &Settings<'_>) -> Stri
 /// # Errors
 /// [`Status::Parse`] for what is no plan or of another version, by line and column or by the field's name;
 /// [`Status::InvalidArgument`] if the settings are others.
-pub(crate) fn read(bytes: &[u8], parts: &[Part], sky: &Settings<'_>) -> Result<Vec<usize>> {
+pub(crate) fn read(bytes: &[u8], parts: &[Part], sky: &PlanSettings<'_>) -> Result<Vec<usize>> {
     if bytes.len() > MOST_BYTES {
         return Err(fault("", format_args!("must have at most {MOST_BYTES} bytes, got {}", bytes.len())));
     }
@@ -139,12 +139,12 @@ mod tests {
     const PARTS: [Part; 3] =
         [part("air", &["all", "none"]), part("fog", &["all", "none"]), part("rain", &["drops", "cones", "none"])];
 
-    fn settings() -> Settings<'static> {
+    fn settings() -> PlanSettings<'static> {
         let check_model = |name: &str| match name {
             "directional" | "isotropic" => Ok(()),
             _ => Err(Error::range("model", "one of directional, isotropic", name)),
         };
-        Settings { model: "directional", check_model, numbers: vec![("suns", 64, 16, 128), ("orders", 5, 1, 16)] }
+        PlanSettings { model: "directional", check_model, numbers: vec![("suns", 64, 16, 128), ("orders", 5, 1, 16)] }
     }
 
     #[test]

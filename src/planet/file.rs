@@ -3,7 +3,7 @@
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::{FIELDS, Field, Mie, Planet, file_error};
+use super::{FIELDS, Mie, Planet, PlanetField, file_error};
 use crate::error::{Error, Result, Status, listed, shown, toml_message};
 
 /// The one section that a file may lack: the weather says the haze then.
@@ -52,7 +52,7 @@ fn refuse_unknown(text: &str, table: &DeTable<'_>, section: &str) -> Result<()> 
 }
 
 /// Reads one field into the planet and checks its range.
-fn read_field(text: &str, root: &DeTable<'_>, field: &Field, planet: &mut Planet) -> Result<()> {
+fn read_field(text: &str, root: &DeTable<'_>, field: &PlanetField, planet: &mut Planet) -> Result<()> {
     let table = match field.section {
         "" => Some(root),
         section => root.get(section).and_then(|v| v.get_ref().as_table()),

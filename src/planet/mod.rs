@@ -93,7 +93,7 @@ pub struct Planet {
 }
 
 /// One line of a planet file: where it stands, what it means, what it accepts, and where it lives in [`Planet`].
-pub(crate) struct Field {
+pub(crate) struct PlanetField {
     pub section: &'static str,
     pub key: &'static str,
     pub unit: &'static str,
@@ -104,17 +104,18 @@ pub(crate) struct Field {
 
 macro_rules! field {
     ($section:literal, $key:literal, $unit:literal, $range:expr, triple $($path:ident).+) => {
-        Field { section: $section, key: $key, unit: $unit, range: $range, get: |p| &p.$($path).+, set: |p| &mut p.$($path).+ }
+        PlanetField { section: $section, key: $key, unit: $unit, range: $range,
+            get: |p| &p.$($path).+, set: |p| &mut p.$($path).+ }
     };
     ($section:literal, $key:literal, $unit:literal, $range:expr, one $($path:ident).+) => {
-        Field { section: $section, key: $key, unit: $unit, range: $range,
+        PlanetField { section: $section, key: $key, unit: $unit, range: $range,
             get: |p| std::slice::from_ref(&p.$($path).+), set: |p| std::slice::from_mut(&mut p.$($path).+) }
     };
 }
 
 /// Every field of a planet, in the order of its file.
 #[rustfmt::skip]
-pub(crate) const FIELDS: [Field; 15] = [
+pub(crate) const FIELDS: [PlanetField; 15] = [
     field!("", "wavelengths_nm", "nm", (200.0, 4000.0), triple wavelengths_nm),
     field!("", "solar_irradiance", "W m^-2 nm^-1", (0.0, 1e6), triple solar_irradiance),
     field!("", "sun_angular_radius_deg", "deg", (0.0, 10.0), one sun_angular_radius_deg),
@@ -132,7 +133,7 @@ pub(crate) const FIELDS: [Field; 15] = [
     field!("absorption", "half_width_m", "m", (0.0, 1e6), one absorption.half_width_m),
 ];
 
-impl Field {
+impl PlanetField {
     /// Name as the planet file says it: `mie.asymmetry_g`.
     pub fn name(&self) -> String {
         if self.section.is_empty() { self.key.to_owned() } else { format!("{}.{}", self.section, self.key) }

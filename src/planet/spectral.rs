@@ -187,7 +187,7 @@ impl SpectralSet {
 
 /// A planet at three of a set's wavelengths, and what light there counts among the three that stand for all.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Part {
+pub(crate) struct SpectralTriple {
     /// The planet there; lights do not matter.
     pub planet: Planet,
     /// Columns: what a transfer at each wavelength adds to the three transfers at the whole planet's wavelengths that
@@ -201,14 +201,14 @@ pub(crate) struct Part {
 ///
 /// # Errors
 /// As [`SpectralSet::new`].
-pub(crate) fn parts(planet: &Planet, count: u32) -> Result<Vec<Part>> {
+pub(crate) fn parts(planet: &Planet, count: u32) -> Result<Vec<SpectralTriple>> {
     let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     if count <= 3 {
-        return Ok(vec![Part { planet: *planet, columns: unit }]);
+        return Ok(vec![SpectralTriple { planet: *planet, columns: unit }]);
     }
     let set = SpectralSet::new(count as usize)?;
     let back = inverse(&Conversion::of(planet).matrix);
-    let part = |(planet, weights): (Planet, &[[f64; 3]])| Part {
+    let part = |(planet, weights): (Planet, &[[f64; 3]])| SpectralTriple {
         planet,
         columns: std::array::from_fn(|i| weights.get(i).map_or([0.0; 3], |w| apply(&back, w))),
     };

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::{AreaField, BELOW_M, Column, ColumnUniform, DropLight, MAX_AREAS};
+use super::{AreaField, BELOW_M, ColumnUniform, DropLight, MAX_AREAS, RainColumn};
 use crate::{
     error::Result,
     falling::curtain::WAVES,
@@ -51,7 +51,7 @@ struct ShaftUniform {
 /// Both blocks, as one upload.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Blocks {
+struct AreaBlocks {
     columns: ColumnsUniform,
     pad: [u32; SHAFT_AT / 4 - size_of::<ColumnsUniform>() / 4],
     shaft: ShaftUniform,
@@ -97,7 +97,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
 
 /// The part of the picture that a column may be in, ndc; `None` if it is in none. `clip` takes camera-relative east,
 /// north, up.
-fn part_of_picture(column: &Column, own_top: f64, clip: &DMat4) -> Option<[f32; 4]> {
+fn part_of_picture(column: &RainColumn, own_top: f64, clip: &DMat4) -> Option<[f32; 4]> {
     let r = column.shaft().radius_m;
     let [mut low, mut high] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     for corner in 0..8u32 {
@@ -127,8 +127,8 @@ pub(super) struct Columns<'a> {
 
 impl Columns<'_> {
     /// The blocks, and how many columns are in the picture.
-    fn blocks(&self) -> (Blocks, u32) {
-        let mut blocks: Blocks = bytemuck::Zeroable::zeroed();
+    fn blocks(&self) -> (AreaBlocks, u32) {
+        let mut blocks: AreaBlocks = bytemuck::Zeroable::zeroed();
         let field = self.field;
         blocks.columns.count = field.columns.len() as u32;
         for (to, column) in blocks.columns.list.iter_mut().zip(&field.columns) {
@@ -167,7 +167,7 @@ impl AreaPass {
         let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Self {
             counts,
-            blocks: blocks.block(device, size_of::<Blocks>()),
+            blocks: blocks.block(device, size_of::<AreaBlocks>()),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             no_layers: bind::no_layers(&device.device),
             none,

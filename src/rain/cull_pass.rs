@@ -44,7 +44,7 @@ pub(super) struct CullPass {
 
 /// The drops of a frame.
 #[derive(Clone, Copy)]
-pub(super) struct Lattice<'a> {
+pub(super) struct DropLattice<'a> {
     pub shells: u32,
     pub per_shell: u32,
     /// Their states, if they are stepped: [`source_layout`].
@@ -112,7 +112,7 @@ impl CullPass {
         device: &Device,
         pass: &mut wgpu::ComputePass<'_>,
         (around_layout, around): (&wgpu::BindGroupLayout, &wgpu::BindGroup),
-        lattice: Lattice<'_>,
+        lattice: DropLattice<'_>,
     ) -> Result<()> {
         let drops = [lattice.per_shell, lattice.shells];
         self.listing.make_room(&device.device, drops);
@@ -153,8 +153,8 @@ impl CullPass {
         }
     }
 
-    fn prepare(&mut self, device: &Device, around: &wgpu::BindGroupLayout, lattice: Lattice<'_>) -> Result<()> {
-        let Lattice { states, areas, maps, .. } = lattice;
+    fn prepare(&mut self, device: &Device, around: &wgpu::BindGroupLayout, lattice: DropLattice<'_>) -> Result<()> {
+        let DropLattice { states, areas, maps, .. } = lattice;
         let ([frame, source], [found, streaks]) = (&self.layouts, &self.listing.layouts);
         let is_stepped = states.is_some();
         let flag = |name, on| (name, f64::from(u8::from(on)));

@@ -2,7 +2,7 @@
 
 use super::{RainModel, RainSettings, Stones, drops};
 use crate::{
-    moment::{Moment, Scene},
+    moment::{Scene, SceneMoment},
     weather::Falling,
 };
 
@@ -16,7 +16,7 @@ pub(super) struct Ice {
 
 impl Ice {
     /// Takes what falls at the camera.
-    pub fn gather(&mut self, now: &Moment<'_>) {
+    pub fn gather(&mut self, now: &SceneMoment<'_>) {
         let falling = now.weather.falling_at(now.eye, now.time_s, now.scene.conditions).precipitation;
         self.here = (falling.ice_pellets_mm_h + falling.hail_mm_h > 0.0).then_some(falling);
     }

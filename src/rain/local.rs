@@ -71,7 +71,7 @@ impl Local {
         match self {
             Self::Pure(f) => wet(f),
             Self::Mixed(f, bits) => {
-                let mixed = |(i, c): (usize, &super::Column)| bits & (1 << i) != 0 && wet(&c.shaft().falling);
+                let mixed = |(i, c): (usize, &super::RainColumn)| bits & (1 << i) != 0 && wet(&c.shaft().falling);
                 wet(f) || field.columns.iter().enumerate().any(mixed)
             }
         }

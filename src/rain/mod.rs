@@ -52,7 +52,7 @@ pub(crate) use cones::ConeUniform;
 pub(crate) use contrast::Streaks;
 pub(crate) use local::{Local, LocalUniform};
 pub(crate) use passes::{LayerDraw, RainLayer};
-pub(crate) use shaft::{AreaField, BELOW_M, Column, ColumnUniform};
+pub(crate) use shaft::{AreaField, BELOW_M, ColumnUniform, RainColumn};
 pub(crate) use splash::Splashes;
 pub(crate) use stone_pass::StoneDraw;
 pub use stones::Stones;

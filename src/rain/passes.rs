@@ -7,7 +7,7 @@ use super::{
     cone_pass::{ConeKind, ConePass},
     cones::{self, ConeUniform},
     crown_pass::{CrownKind, CrownPass},
-    cull_pass::{CullPass, Lattice},
+    cull_pass::{CullPass, DropLattice},
     integrated,
     splash::SplashUniform,
     stone_pass::{StoneKind, StonePass},
@@ -265,7 +265,7 @@ impl RainLayer {
         let states = self.stepped.as_ref().filter(|_| drawn.stepped.is_some()).and_then(|s| s.states());
         cull.prepare_draw(device, frame[0], depth)?;
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        let lattice = Lattice { shells: drawn.rain.shells, per_shell: drawn.rain.per_shell, states, areas, maps };
+        let lattice = DropLattice { shells: drawn.rain.shells, per_shell: drawn.rain.per_shell, states, areas, maps };
         cull.find(device, &mut pass, (frame[1], around), lattice)?;
         if let (Some((.., own)), 1..) = (&self.bound, splashes) {
             crowns.prepare(device, frame, kind)?;

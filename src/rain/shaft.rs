@@ -82,7 +82,7 @@ impl ColumnUniform {
 
 /// A column about a camera: east, north, up of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Column {
+pub(crate) struct RainColumn {
     pub center: DVec2,
     shaft: Shaft,
     /// Height of the level at which the plan holds, and of the cloud, m.
@@ -101,7 +101,7 @@ pub(crate) struct Column {
 /// All columns about a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AreaField {
-    pub columns: Vec<Column>,
+    pub columns: Vec<RainColumn>,
     pub own: FallingLayer,
     /// Upper end of what falls outside of them over the camera, m, and what its drops hide near it, 1/m.
     pub own_top: f64,
@@ -125,7 +125,7 @@ fn ramp_mean(top: f64, soft: f64, a: f64, b: f64) -> f64 {
     (below(a) - below(b)) / (b - a)
 }
 
-impl Column {
+impl RainColumn {
     fn new(
         shaft: Shaft,
         (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
@@ -305,7 +305,7 @@ impl AreaField {
     ) {
         self.columns.clear();
         self.columns.reserve_exact(MAX_AREAS);
-        self.columns.extend(shafts.filter_map(|s| Column::new(s, (eye, to_enu, altitude_m), own, time_s)));
+        self.columns.extend(shafts.filter_map(|s| RainColumn::new(s, (eye, to_enu, altitude_m), own, time_s)));
         (self.own, self.own_top, self.own_near) = (*own, own.top_m - altitude_m, 0.0);
         for i in 0..self.columns.len() {
             let later = (i + 1..self.columns.len()).filter(|j| self.columns[i].meets(&self.columns[*j]));
@@ -484,7 +484,7 @@ mod tests {
     fn the_pattern_is_even_on_the_mean_and_falls_with_the_drops() {
         let mut field = field(&areas()[..1], 0.0);
         let c = field.columns[0];
-        let at = |c: &Column, field: &AreaField, x: f64, z: f64| {
+        let at = |c: &RainColumn, field: &AreaField, x: f64, z: f64| {
             c.pattern(&field.waves, DVec2::new(x, 0.3 * x), DVec2::X, (z, 0.0), [1000.0, 1001.0])
         };
         let values: Vec<f64> = (0..4000).map(|i| at(&c, &field, f64::from(i) * 23.0, 700.0)).collect();

@@ -18,7 +18,7 @@ use crate::{
     error::Result,
     falling::{begun, curtain},
     gpu::{Device, blocks::Blocks},
-    moment::{Moment, Scene},
+    moment::{Scene, SceneMoment},
     particles::{
         FallingTexture,
         stepping::{self, Stepped},
@@ -148,7 +148,7 @@ impl RainView {
     }
 
     /// Whether drops are stepped: by choice, and near a wind that varies in space where no model was asked for.
-    fn steps(&self, now: &Moment<'_>, device: &Device, is_pure: bool) -> bool {
+    fn steps(&self, now: &SceneMoment<'_>, device: &Device, is_pure: bool) -> bool {
         match self.settings.model {
             RainModel::Integrated => true,
             RainModel::Automatic => stepping::is_due(now, device, REACH_M, self.is_stepped, is_pure),
@@ -178,7 +178,7 @@ impl RainView {
     /// Returns the extinction by which drops or cones of the weather's own rain hide where all are drawn (their discs:
     /// half of their extinction, the rest is diffraction; times the contrast's gain), the distance up to which they do,
     /// and the share of it that is drawn.
-    fn hidden(&mut self, device: &Device, now: &Moment<'_>) -> ([f32; 2], f32) {
+    fn hidden(&mut self, device: &Device, now: &SceneMoment<'_>) -> ([f32; 2], f32) {
         let scene = &now.scene;
         let falling = self.own;
         let reach = self.reach(now);
@@ -194,7 +194,7 @@ impl RainView {
 
     /// Whether there are cones: always, by choice, and beyond the drops where lamps light what the veil does not know
     /// of.
-    fn has_cones(&self, now: &Moment<'_>) -> bool {
+    fn has_cones(&self, now: &SceneMoment<'_>) -> bool {
         match self.settings.model {
             RainModel::Automatic | RainModel::Cones => true,
             RainModel::Drops | RainModel::Integrated => now.has_lamps(),
@@ -203,7 +203,7 @@ impl RainView {
     }
 
     /// Distance up to which what falls is drawn, m.
-    fn reach(&self, now: &Moment<'_>) -> f64 {
+    fn reach(&self, now: &SceneMoment<'_>) -> f64 {
         if self.has_cones(now) { BANDS_M[CONES] } else { HIDDEN_M }
     }
 
@@ -251,7 +251,7 @@ impl RainView {
     }
 
     /// Takes what is drawn as drops near the camera off the columns of rain areas, and gives them their pattern.
-    fn set_near(&mut self, device: &Device, now: &Moment<'_>) {
+    fn set_near(&mut self, device: &Device, now: &SceneMoment<'_>) {
         let scene = &now.scene;
         let falling = self.own;
         self.field.near_m = self.reach(now);
@@ -515,7 +515,7 @@ impl DrawnEffect for RainView {
 }
 
 /// The air that drops are drawn in.
-fn air(now: &Moment<'_>) -> Result<MovingAir> {
+fn air(now: &SceneMoment<'_>) -> Result<MovingAir> {
     let (wind, c) = (now.carrying()?, &now.scene.conditions);
     Ok(MovingAir {
         displacement_m: wind.displacement_m(),

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use super::Planet;
 use super::cache;
 use super::level::{Detail, Level, STRIP_SHARE, Strip, strips};
-use super::passes::{Builder, FadePasses, PartPass, Table};
+use super::passes::{Builder, FadePasses, PartPass, SkyTable};
 use super::recipe::{Name, passes};
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
@@ -53,7 +53,7 @@ const DRAFT_FROM: f64 = 4e6;
 const PACE: (f64, f64) = (0.5, 5.0);
 
 /// Tables that only a build under way needs.
-struct Scratch(Vec<(Name, Table)>);
+struct Scratch(Vec<(Name, SkyTable)>);
 
 /// A claim on a build: it goes on as long as someone holds one.
 pub(crate) struct Ticket {
@@ -91,7 +91,7 @@ struct Build {
 }
 
 #[derive(Default)]
-struct Work {
+struct BuildQueue {
     builds: Vec<Build>,
     finished: Vec<Weak<TableSet>>,
     spare: [Option<Scratch>; 2],
@@ -99,13 +99,13 @@ struct Work {
 }
 
 /// The table that passes draw and read under a name: that of one triple where there are several.
-fn table_named<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Option<&'a Table> {
+fn table_named<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Option<&'a SkyTable> {
     scratch.0.iter().chain(set.tables()).find(|(n, _)| *n == name).map(|(_, t)| t)
 }
 
 /// Result of one step of a build: its work as a share of a whole build, and the share of this one that is done.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Step {
+pub(crate) struct BuildStep {
     pub work: f64,
     pub done: f64,
 }
@@ -118,7 +118,7 @@ pub(crate) struct Kit {
     pub fades: FadePasses,
     pub observer_layouts: ObserverLayouts,
     /// Stands for tables that a model does not have.
-    pub nothing: Table,
+    pub nothing: SkyTable,
     observers: OnceLock<ObserverPasses>,
     /// Work of a whole build with the default settings over that of one here.
     pub pace: f64,
@@ -129,7 +129,7 @@ pub(crate) struct Kit {
     parts: Option<PartPass>,
     /// Whether the first texel was drawn.
     begun: AtomicBool,
-    work: Mutex<Work>,
+    work: Mutex<BuildQueue>,
 }
 
 impl Kit {
@@ -149,7 +149,7 @@ impl Kit {
             builder: Builder::new(device, settings, &whole.passes)?,
             fades: FadePasses::new(device, settings)?,
             observer_layouts: ObserverLayouts::new(device),
-            nothing: Table::new(device, "sky nothing", (1, 1)),
+            nothing: SkyTable::new(device, "sky nothing", (1, 1)),
             observers: OnceLock::new(),
             draft: drafts.then(|| Level::new(device, &draft, Some(strip_cost))),
             whole,
@@ -174,7 +174,7 @@ impl Kit {
         self.draft.is_some()
     }
 
-    fn lock(&self) -> MutexGuard<'_, Work> {
+    fn lock(&self) -> MutexGuard<'_, BuildQueue> {
         self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -220,7 +220,7 @@ impl Kit {
     }
 
     /// Takes back the scratch of builds that nobody wants any more.
-    fn sweep(&self, work: &mut Work) {
+    fn sweep(&self, work: &mut BuildQueue) {
         while let Some(i) = work.builds.iter().position(|b| b.ticket.strong_count() == 0) {
             let build = work.builds.swap_remove(i);
             work.spare[build.set.detail as usize] = Some(build.scratch);
@@ -229,7 +229,7 @@ impl Kit {
 
     fn scratch(&self, detail: Detail) -> Scratch {
         let settings = &self.level(detail).settings;
-        let make = |n: &Name| (*n, Table::new(&self.device, &format!("sky {n:?}"), n.size(settings)));
+        let make = |n: &Name| (*n, SkyTable::new(&self.device, &format!("sky {n:?}"), n.size(settings)));
         let of_a_triple = if self.parts.is_some() { &Name::OF_A_TRIPLE[..] } else { &[] };
         Scratch(Name::SCRATCH.iter().chain(of_a_triple).map(make).collect())
     }
@@ -247,12 +247,12 @@ impl Kit {
     }
 
     /// Submits strips up to `share` of a whole build; the tables when the last one is submitted.
-    pub fn advance(&self, ticket: &Arc<Ticket>, share: f64) -> Result<(Step, Option<Arc<TableSet>>)> {
+    pub fn advance(&self, ticket: &Arc<Ticket>, share: f64) -> Result<(BuildStep, Option<Arc<TableSet>>)> {
         let mut guard = self.lock();
         let work = &mut *guard;
         let Some(i) = work.builds.iter().position(|b| Arc::ptr_eq(&b.set, &ticket.set)) else {
             // Another who wanted it has finished it.
-            return Ok((Step { work: 0.0, done: 1.0 }, Some(ticket.set.clone())));
+            return Ok((BuildStep { work: 0.0, done: 1.0 }, Some(ticket.set.clone())));
         };
         self.begin(&work.builds[i])?;
         let level = self.level(ticket.set.detail);
@@ -269,7 +269,7 @@ impl Kit {
         }
         let next = work.builds[i].next;
         let (before, now) = (level.cost_of(first), level.cost_of(next));
-        let step = Step { work: (now - before) / self.whole.total_cost, done: now / level.total_cost };
+        let step = BuildStep { work: (now - before) / self.whole.total_cost, done: now / level.total_cost };
         if next < level.strip_count() {
             return Ok((step, None));
         }
@@ -278,7 +278,7 @@ impl Kit {
         work.count += u64::from(build.set.detail == Detail::Whole);
         work.finished.retain(|s| s.strong_count() > 0);
         work.finished.push(Arc::downgrade(&build.set));
-        Ok((Step { done: 1.0, ..step }, Some(build.set)))
+        Ok((BuildStep { done: 1.0, ..step }, Some(build.set)))
     }
 
     /// Share of a build that is done.

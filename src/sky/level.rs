@@ -1,6 +1,6 @@
 //! How the tables of one detail are built: passes, cut into strips of even work.
 
-use super::passes::Blocks;
+use super::passes::BuildBuffers;
 use super::recipe::{Pass, passes};
 use super::settings::SkySettings;
 use crate::gpu::Device;
@@ -28,7 +28,7 @@ pub(crate) enum Detail {
 /// How the tables of one detail are built.
 pub(crate) struct Level {
     pub settings: SkySettings,
-    pub blocks: Blocks,
+    pub blocks: BuildBuffers,
     pub passes: Vec<Pass>,
     /// Strips of one triple of wavelengths.
     pub strips: Vec<Strip>,
@@ -43,7 +43,7 @@ impl Level {
         let (strips, cost) = strips(settings, &passes, strip_cost);
         Self {
             settings: *settings,
-            blocks: Blocks::new(device, settings, &passes),
+            blocks: BuildBuffers::new(device, settings, &passes),
             passes,
             strips,
             total_cost: cost * f64::from(settings.layers()),

@@ -8,7 +8,7 @@ use half::f16;
 use super::settings::SkySettings;
 use super::uniforms::{AirUniform, LIGHT_SCALE, LIGHT_TILES};
 use crate::gpu::{Device, readback};
-use crate::{Result, sky::passes::Table};
+use crate::{Result, sky::passes::SkyTable};
 
 /// Nine coefficients of the sky's radiance in real spherical harmonics, per wavelength, in the order 00; 1y, 1z, 1x;
 /// 2xy, 2yz, 2zz, 2xz, 2xx-yy (as Ramamoorthi and Hanrahan 2001). The planet's lit ground is the lower half.
@@ -36,7 +36,7 @@ impl LightTable {
     }
 
     /// Reads a finished table; waits for the GPU.
-    pub(crate) fn read(device: &Device, table: &Table, air: AirUniform) -> Result<Self> {
+    pub(crate) fn read(device: &Device, table: &SkyTable, air: AirUniform) -> Result<Self> {
         let (width, height) = (table.texture.width() as usize, table.texture.height() as usize);
         let raw = readback::bytes(device, &table.texture, 0)?;
         let number = |b: &[u8], i: usize| f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32() / LIGHT_SCALE;

@@ -18,12 +18,12 @@ use crate::gpu::pass::{FullscreenDesc, fullscreen};
 pub(crate) const TABLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// A table: texture and its whole view.
-pub(crate) struct Table {
+pub(crate) struct SkyTable {
     pub texture: wgpu::Texture,
     pub view: wgpu::TextureView,
 }
 
-impl Table {
+impl SkyTable {
     pub fn new(device: &Device, label: &str, (width, height): (u32, u32)) -> Self {
         let texture = table_texture(device, label, (width, height), 1);
         let view = texture.create_view(&Default::default());
@@ -101,14 +101,14 @@ pub(crate) struct Builder {
 }
 
 /// Buffers that the builds of one detail share: sizes, directions to sum over, and what each pass is to do.
-pub(crate) struct Blocks {
+pub(crate) struct BuildBuffers {
     pub dims: wgpu::Buffer,
     rule: wgpu::Buffer,
     jobs: wgpu::Buffer,
     job_stride: u32,
 }
 
-impl Blocks {
+impl BuildBuffers {
     pub fn new(device: &Device, settings: &SkySettings, passes: &[Pass]) -> Self {
         let job_stride = device.device.limits().min_uniform_buffer_offset_alignment.max(16);
         let mut jobs = vec![0; job_stride as usize * passes.len()];
@@ -153,7 +153,7 @@ impl Builder {
     }
 
     /// Uniforms and sampler of a build, for an air.
-    pub fn shared_group(&self, device: &Device, blocks: &Blocks, air: &wgpu::Buffer) -> wgpu::BindGroup {
+    pub fn shared_group(&self, device: &Device, blocks: &BuildBuffers, air: &wgpu::Buffer) -> wgpu::BindGroup {
         let job = wgpu::BufferBinding { buffer: &blocks.jobs, offset: 0, size: wgpu::BufferSize::new(16) };
         let resources = [
             air.as_entire_binding(),
@@ -308,7 +308,7 @@ impl PartPass {
     }
 
     /// Adds a triple to `target`; the first one clears it.
-    pub fn add(&self, encoder: &mut wgpu::CommandEncoder, target: &Table, triple: &wgpu::BindGroup, first: bool) {
+    pub fn add(&self, encoder: &mut wgpu::CommandEncoder, target: &SkyTable, triple: &wgpu::BindGroup, first: bool) {
         let load = if first { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("sky part"),

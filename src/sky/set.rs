@@ -11,7 +11,7 @@ use super::Planet;
 use super::kit::Kit;
 use super::level::Detail;
 use super::light::LightTable;
-use super::passes::{Table, uniform_buffer};
+use super::passes::{SkyTable, uniform_buffer};
 use super::recipe::Name;
 use super::settings::{MOST_WAVELENGTHS, SkySettings};
 use super::uniforms::AirUniform;
@@ -31,7 +31,7 @@ pub(crate) struct TableSet {
     pub observer_group: wgpu::BindGroup,
     /// The light, for a fade.
     pub light_group: wgpu::BindGroup,
-    results: Vec<(Name, Table)>,
+    results: Vec<(Name, SkyTable)>,
     /// Its light on the CPU, once it was asked for.
     light: OnceLock<Arc<LightTable>>,
 }
@@ -45,7 +45,7 @@ impl TableSet {
         static SETS: AtomicU64 = AtomicU64::new(0);
         let device = &kit.device;
         let level = kit.level(detail);
-        let table = |n: &Name| (*n, Table::new(device, &format!("sky {n:?}"), n.result_size(&level.settings)));
+        let table = |n: &Name| (*n, SkyTable::new(device, &format!("sky {n:?}"), n.result_size(&level.settings)));
         let results: Vec<_> = Name::RESULTS.iter().map(table).collect();
         let air = uniform_buffer(device, "sky air", bytes_of(&AirUniform::of(planet)));
         let mut each = AirUniform::of_parts(&parts(planet, kit.settings.wavelengths)?);
@@ -75,12 +75,12 @@ impl TableSet {
     }
 
     /// One of [`Name::RESULTS`].
-    pub fn result(&self, name: Name) -> &Table {
+    pub fn result(&self, name: Name) -> &SkyTable {
         find(&self.results, name)
     }
 
     /// All of them.
-    pub fn tables(&self) -> std::slice::Iter<'_, (Name, Table)> {
+    pub fn tables(&self) -> std::slice::Iter<'_, (Name, SkyTable)> {
         self.results.iter()
     }
 
@@ -110,6 +110,6 @@ impl TableSet {
 }
 
 /// Made of exactly these names; the first stands in for one that cannot be asked for.
-fn find(results: &[(Name, Table)], name: Name) -> &Table {
+fn find(results: &[(Name, SkyTable)], name: Name) -> &SkyTable {
     &results.iter().find(|(n, _)| *n == name).unwrap_or(&results[0]).1
 }

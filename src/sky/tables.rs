@@ -8,7 +8,7 @@ use super::Planet;
 use super::kit::{Claim, Kit, SkyLibrary, Ticket};
 use super::level::Detail;
 use super::light::LightTable;
-use super::passes::Table;
+use super::passes::SkyTable;
 use super::recipe::Name;
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
@@ -56,7 +56,7 @@ pub struct SkyTables {
     kit: Arc<Kit>,
     /// The light as it is shown: that of one planet, or of two while one fades into the other. Where pixels march, the
     /// sources of the shown planet lie below it.
-    pub(crate) light: Table,
+    pub(crate) light: SkyTable,
     shown: Option<Arc<TableSet>>,
     state: State,
     revision: u64,
@@ -79,7 +79,7 @@ impl SkyTables {
     /// As [`SkyTables::new`].
     pub fn of_library(library: &SkyLibrary, device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
         let kit = library.kit(device, settings)?;
-        let light = Table::new(device, "sky light", Name::shown_size(settings));
+        let light = SkyTable::new(device, "sky light", Name::shown_size(settings));
         device.check_made()?;
         Ok(Self { device: device.clone(), kit, light, shown: None, state: State::Idle, revision: 0, busy: false })
     }

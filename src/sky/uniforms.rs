@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use super::Planet;
 use super::reference::medium::Medium;
 use super::settings::SkySettings;
-use crate::planet::spectral::Part;
+use crate::planet::spectral::SpectralTriple;
 
 /// Tiles of the table of light: irradiance and six moments.
 pub(crate) const LIGHT_TILES: u32 = 7;
@@ -91,8 +91,8 @@ impl AirUniform {
     }
 
     /// All triples of wavelengths of a set.
-    pub fn of_parts(parts: &[Part]) -> Vec<Self> {
-        let one = |(layer, part): (usize, &Part)| {
+    pub fn of_parts(parts: &[SpectralTriple]) -> Vec<Self> {
+        let one = |(layer, part): (usize, &SpectralTriple)| {
             let [part_a, part_b, part_c] = part.columns.map(|c| c.map(|v| v as f32));
             let (layer, layers) = (layer as f32, parts.len() as f32);
             Self { part_a, part_b, part_c, layer, layers, ..Self::of(&part.planet) }

@@ -15,8 +15,8 @@
 //! *Settings*: [`SnowSettings`]. *Cost*: linear in the flakes drawn, and nothing where no snow falls. *Error*:
 //! [`contrast`] says what all flakes together are worth in a picture; `docs/lab` what fewer of them cost in contrast.
 //!
-//! Near a wind that varies in space (`Moment::wind_volume`) flakes are stepped (`particles::stepping`), from where the
-//! lattice has them; on devices without compute shaders they go with the weather's wind.
+//! Near a wind that varies in space (`SceneMoment::wind_volume`) flakes are stepped (`particles::stepping`), from where
+//! the lattice has them; on devices without compute shaders they go with the weather's wind.
 //!
 //! No `held.rs`: flakes follow from seed and time, and those that are stepped belong to a view and are not saved.
 

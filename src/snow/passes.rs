@@ -46,7 +46,7 @@ pub(super) struct SnowPass {
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     surroundings: wgpu::BindGroupLayout,
-    pipelines: Made<FlakeKind, wgpu::RenderPipeline>,
+    pipelines: Made<FlakeVariant, wgpu::RenderPipeline>,
     /// List of the flakes that the picture shows, where there are compute shaders and no steps.
     listed: Option<Box<ListedFlakes>>,
     step: Option<Box<StepPass>>,
@@ -96,11 +96,11 @@ impl SnowPass {
         let depth = DepthRead::of(drawn.depth, drawn.rays);
         self.bind(device, drawn.depth, depth.multi);
         let source = match drawn.stepped {
-            Some(_) => Source::Stepped,
-            None if device.caps().tier > 0 => Source::Listed,
-            None => Source::All,
+            Some(_) => FlakeSource::Stepped,
+            None if device.caps().tier > 0 => FlakeSource::Listed,
+            None => FlakeSource::All,
         };
-        let kind = FlakeKind { depth, maps: drawn.maps, source };
+        let kind = FlakeVariant { depth, maps: drawn.maps, source };
         let layouts = [Some(&self.layouts[usize::from(depth.multi)]), None, Some(&self.surroundings)];
         let counts = self.counts;
         self.pipelines.prepare(kind, |_| pipeline(device, &layouts, kind, counts))?;
@@ -111,7 +111,7 @@ impl SnowPass {
             }
             None => self.step = None,
         }
-        if source == Source::Listed {
+        if source == FlakeSource::Listed {
             let list = || Box::new(ListedFlakes::new(&device.device, &self.block));
             let listed = self.listed.get_or_insert_with(list);
             listed.find(to, drawn, &self.surroundings)?;
@@ -160,7 +160,7 @@ impl SnowPass {
 
 /// Where flakes that are drawn come from: the lattice, the list of those that show, or their states.
 #[derive(Clone, Copy, PartialEq)]
-enum Source {
+enum FlakeSource {
     All,
     Listed,
     Stepped,
@@ -169,16 +169,16 @@ enum Source {
 /// Variant of the pipeline that draws: how it reads depth, whether there are occluder maps, and the source of the
 /// flakes.
 #[derive(Clone, Copy, PartialEq)]
-struct FlakeKind {
+struct FlakeVariant {
     depth: DepthRead,
     maps: bool,
-    source: Source,
+    source: FlakeSource,
 }
 
 fn pipeline(
     device: &Device,
     layouts: &[Option<&wgpu::BindGroupLayout>],
-    FlakeKind { depth, maps, source }: FlakeKind,
+    FlakeVariant { depth, maps, source }: FlakeVariant,
     counts: bool,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(&depth.shader("snow/flakes_view.wgsl"))?;
@@ -190,9 +190,9 @@ fn pipeline(
     };
     let (state, spot) = (each(STATE_BYTES, &STATE[..]), each(SPOT_BYTES, &SPOT[..]));
     let (vertex, buffers) = match source {
-        Source::All => ("flake_vertex", &[][..]),
-        Source::Listed => ("listed_vertex", &spot[..]),
-        Source::Stepped => ("stepped_vertex", &state[..]),
+        FlakeSource::All => ("flake_vertex", &[][..]),
+        FlakeSource::Listed => ("listed_vertex", &spot[..]),
+        FlakeSource::Stepped => ("stepped_vertex", &state[..]),
     };
     pass::quads(
         device,

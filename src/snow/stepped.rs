@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::{
     lattice::{Flakes, SALT, side_m},
-    uniforms::{FlakesUniform, MovingAir},
+    uniforms::{FlakeAir, FlakesUniform},
 };
 use crate::{
     falling::lattice::short_seed,
@@ -25,7 +25,7 @@ pub(super) fn pass(device: &Device, blocks: &Blocks) -> StepPass {
 /// Creates the inputs of a step of the flakes.
 pub(super) fn stepped<'a>(
     (seed, flakes): (u64, &Flakes),
-    (camera, air): (&StreakCamera<'_>, &MovingAir),
+    (camera, air): (&StreakCamera<'_>, &FlakeAir),
     carried: &'a dyn Fn(f64) -> DVec3,
     wind: (WindView, Option<WindMap>),
 ) -> Stepped<'a> {

@@ -42,7 +42,7 @@ pub(crate) struct FlakesUniform {
 
 /// The air that flakes fall in.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MovingAir {
+pub(crate) struct FlakeAir {
     pub displacement_m: DVec3,
     pub velocity_m_s: DVec3,
     pub time_s: f64,
@@ -52,7 +52,7 @@ pub(crate) struct MovingAir {
 
 impl FlakesUniform {
     /// Creates the block of flakes, for a camera in moving air; `light` is exposed.
-    pub fn new(seed: u64, flakes: &Flakes, light: &LightAround, shot: &StreakCamera<'_>, air: &MovingAir) -> Self {
+    pub fn new(seed: u64, flakes: &Flakes, light: &LightAround, shot: &StreakCamera<'_>, air: &FlakeAir) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let last = flakes.upto[CLASSES - 1];
         let eyes: [[u32; 3]; SHELLS] =

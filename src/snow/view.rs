@@ -7,7 +7,7 @@ use super::{
     passes::{FlakeDraw, SnowPass},
     settings::SnowModel,
     stepped,
-    uniforms::{FlakesUniform, MovingAir},
+    uniforms::{FlakeAir, FlakesUniform},
 };
 use crate::{
     error::Result,
@@ -178,7 +178,7 @@ impl DrawnEffect for SnowView {
         let Some(flakes) = self.flakes().copied() else { return Ok(()) };
         let (now, c) = (at.now, &at.now.scene.conditions);
         let wind = now.carrying()?;
-        let air = MovingAir {
+        let air = FlakeAir {
             displacement_m: wind.displacement_m(),
             velocity_m_s: wind.velocity_m_s(),
             time_s: now.time_s,

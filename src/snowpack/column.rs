@@ -26,13 +26,13 @@ pub(super) struct Column {
 
 /// Snow that moves from one column to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Part {
+pub(super) struct SnowParcel {
     pub ice: i64,
     pub water: i64,
     pub depth: i64,
 }
 
-impl Part {
+impl SnowParcel {
     pub fn mass(&self) -> i64 {
         self.ice + self.water
     }
@@ -40,7 +40,7 @@ impl Part {
 
 /// Mass that a step took and gave, in units of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Exchange {
+pub(super) struct MassExchange {
     pub fallen: i64,
     pub ran_off: i64,
     pub sublimated: i64,
@@ -48,7 +48,7 @@ pub(super) struct Exchange {
 
 /// Forcing of columns during a step: equal for all of a field but for what is kept off.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Forcing {
+pub(super) struct ColumnForcing {
     /// Units of ice that fall, their depth as they land, and the share of the albedo's way to that of new snow that
     /// they go.
     ice: i64,
@@ -91,7 +91,7 @@ fn share(number: i64, part: i64, whole: i64) -> i64 {
     (number as f64 * (part as f64 / whole as f64)) as i64
 }
 
-impl Forcing {
+impl ColumnForcing {
     /// Creates the forcing of a weather in which `falling` falls, under sunlight in W/m^2.
     pub fn new(c: &Conditions, falling: &Falling, sunlight_w_m2: f64, seconds: f64) -> Self {
         let hours = seconds / 3600.0;
@@ -161,8 +161,8 @@ impl Column {
     }
 
     /// Leads the column through a step in which `open` of what falls gets to it.
-    pub fn step(&mut self, f: &Forcing, settling: &Settling, open: f64) -> Exchange {
-        let mut gone = Exchange::default();
+    pub fn step(&mut self, f: &ColumnForcing, settling: &Settling, open: f64) -> MassExchange {
+        let mut gone = MassExchange::default();
         let ice = if open == 1.0 { f.ice } else { (f.ice as f64 * open) as i64 };
         if self.ice == 0 && ice == 0 {
             return gone;
@@ -184,7 +184,7 @@ impl Column {
     }
 
     /// The snow settles under half of its own load, and its albedo goes to that of old snow.
-    fn settle(&mut self, f: &Forcing, settling: &Settling) {
+    fn settle(&mut self, f: &ColumnForcing, settling: &Settling) {
         if self.depth == 0 {
             return;
         }
@@ -215,7 +215,7 @@ impl Column {
         lost
     }
 
-    fn thaw(&mut self, f: &Forcing) {
+    fn thaw(&mut self, f: &ColumnForcing) {
         let melt = f.melt + f.melt_by_sun * (1.0 - self.albedo());
         self.water += self.lose(melt as i64);
         let freezes = f.refreezing.min(self.water);
@@ -233,9 +233,9 @@ impl Column {
     }
 
     /// Takes `part` of `whole` of the column away.
-    pub fn take(&mut self, part: i64, whole: i64) -> Part {
+    pub fn take(&mut self, part: i64, whole: i64) -> SnowParcel {
         let exact = |v: i64| (i128::from(v) * i128::from(part) / i128::from(whole)) as i64;
-        let taken = Part { ice: exact(self.ice), water: exact(self.water), depth: exact(self.depth) };
+        let taken = SnowParcel { ice: exact(self.ice), water: exact(self.water), depth: exact(self.depth) };
         self.ice -= taken.ice;
         self.water -= taken.water;
         self.depth -= taken.depth;
@@ -251,7 +251,7 @@ impl Column {
     }
 
     /// Adds what comes from elsewhere; `albedo` is what it had there.
-    pub fn add(&mut self, part: Part, albedo: i64) {
+    pub fn add(&mut self, part: SnowParcel, albedo: i64) {
         let mass = self.mass() + part.mass();
         if mass > 0 && part.mass() > 0 {
             self.albedo += share(albedo - self.albedo, part.mass(), mass);

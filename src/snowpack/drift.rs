@@ -23,8 +23,8 @@
 use glam::DVec2;
 
 use super::{
-    column::{Column, Part, UNITS},
-    field::{Field, NONE, Patch, Step},
+    column::{Column, SnowParcel, UNITS},
+    field::{NONE, Patch, SnowField, SnowStep},
     laws::{DRY_THRESHOLD_M_S, new_density_kg_m3, saltation_kg_m_s, suspension_kg_m_s, threshold_m_s},
 };
 
@@ -46,7 +46,7 @@ const SHAPES_M: [f64; 3] = [6.0, 10.0, 15.0];
 
 /// Snow and lee that cross a cell's border with the wind.
 #[derive(Clone, Copy, Debug, Default)]
-struct Air {
+struct DriftFlux {
     /// Snow that hops and that is suspended, in units of mass.
     snow: [i64; 2],
     /// Height of the lee's line there, and of what casts it, m; none at the end of the ground.
@@ -57,7 +57,7 @@ struct Air {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Edges {
     /// Air that has left it down the wind: along each row to the east or west, along each column to the north or south.
-    left: [Vec<Air>; 2],
+    left: [Vec<DriftFlux>; 2],
     /// Wind over each cell: its parts along the sweep, m/s, or its speed over the mean wind's and nothing.
     wind: Vec<[f64; 2]>,
     /// The line of the calm before what stands to its lee, along each row and each column where the wind comes in: its
@@ -72,11 +72,11 @@ pub(super) struct Edges {
 
 /// Room for a sweep.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Drift {
+pub(super) struct DriftSweep {
     /// Numbers of the patches down the wind.
     order: Vec<u32>,
     /// Air that comes to a patch: along each row, and along each column.
-    coming: [Vec<Air>; 2],
+    coming: [Vec<DriftFlux>; 2],
     /// Fronts of the patches to the lee: see [`Edges`].
     fronts: [Vec<Option<[f64; 2]>>; 2],
     sweeps: u64,
@@ -158,7 +158,7 @@ fn smooth(x: f64) -> f64 {
 
 /// Height of ground and snow so many cells along an axis from a cell, m, and how many they were: fewer at the end of
 /// the ground, and none where something stands.
-fn along(field: &Field, (patch, place): (usize, [usize; 2]), axis: usize, up: bool, cells: usize) -> (f64, usize) {
+fn along(field: &SnowField, (patch, place): (usize, [usize; 2]), axis: usize, up: bool, cells: usize) -> (f64, usize) {
     let (mut at, mut patch, mut left) = (place, patch, cells);
     loop {
         let room = if up { field.size[axis] - 1 - at[axis] } else { at[axis] };
@@ -179,7 +179,7 @@ fn along(field: &Field, (patch, place): (usize, [usize; 2]), axis: usize, up: bo
 
 /// Factor on the wind at a cell by the surface's slope and curvature, in the mean of several distances: over a single
 /// one each drift would be repeated at that distance up the wind.
-fn shaped(field: &Field, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
+fn shaped(field: &SnowField, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
     let here = field.patches[patch].surface_m(place[1] * field.size[0] + place[0]);
     let (mut steep, mut crest) = (0.0, 0.0);
     for shape_m in SHAPES_M {
@@ -214,7 +214,7 @@ fn fallen(way: &Way, beside: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
 }
 
 /// Returns the share of the wind that a lee leaves at a cell, up to a factor, and the line over it.
-fn calmed(patch: &Patch, cell: usize, way: &Way, before: [Air; 2]) -> (f64, Option<[f64; 2]>) {
+fn calmed(patch: &Patch, cell: usize, way: &Way, before: [DriftFlux; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, before.map(|air| air.lee)).map(|[line, caster]| [line, caster.max(LEAST_M)]);
     if patch.is_hole(cell) {
         return (1.0, fallen);
@@ -245,9 +245,9 @@ fn dammed(patch: &Patch, cell: usize, way: &Way, behind: [Option<[f64; 2]>; 2]) 
     }
 }
 
-impl Drift {
+impl DriftSweep {
     /// Carries snow by the wind of a step, if that is strong enough anywhere.
-    pub fn blow(&mut self, field: &mut Field, step: &Step<'_>) {
+    pub fn blow(&mut self, field: &mut SnowField, step: &SnowStep<'_>) {
         let mean = step.wind.mean;
         let lies = field.patches.iter().any(|p| !p.is_bare());
         let too_calm = step.wind.local.is_none() && 1.7 * mean.length() <= DRY_THRESHOLD_M_S;
@@ -286,7 +286,7 @@ impl Drift {
 
     /// Puts the patches in the order of the wind, and finds which of them snow may reach and which have such in their
     /// lee.
-    fn choose(&mut self, field: &mut Field, way: &Way, comes_in: bool) {
+    fn choose(&mut self, field: &mut SnowField, way: &Way, comes_in: bool) {
         self.order.clear();
         self.order.extend(0..field.patches.len() as u32);
         let along = |v: i32, axis: usize| if way.back[axis] { -v } else { v };
@@ -295,7 +295,7 @@ impl Drift {
             [along(y, 1), along(x, 0)]
         };
         self.order.sort_unstable_by_key(keys);
-        let any = |field: &Field, patch: u32, down: bool| {
+        let any = |field: &SnowField, patch: u32, down: bool| {
             let near = [0, 1].map(|axis| way.beside(&field.patches[patch as usize], axis, down));
             near.into_iter().filter(|n| *n != NONE).any(|n| {
                 let edges = &field.patches[n as usize].edges;
@@ -312,7 +312,7 @@ impl Drift {
     }
 
     /// Finds the wind over the cells that snow may reach. Answers the strongest, m/s.
-    fn winds(&self, field: &mut Field, step: &Step<'_>, way: &Way) -> f64 {
+    fn winds(&self, field: &mut SnowField, step: &SnowStep<'_>, way: &Way) -> f64 {
         let mut strongest: f64 = if step.wind.local.is_some() { 0.0 } else { 1.7 * way.speed };
         let columns = field.size[0];
         for at in self.order.iter().map(|at| *at as usize) {
@@ -338,7 +338,7 @@ impl Drift {
     }
 
     /// Calms the wind before what stands up, from patch to patch against the wind.
-    fn dam(&mut self, field: &mut Field, way: &Way) {
+    fn dam(&mut self, field: &mut SnowField, way: &Way) {
         let [nx, ny] = field.size;
         for at in self.order.iter().rev().map(|at| *at as usize) {
             let mut any = field.patches[at].has_obstacles();
@@ -372,16 +372,16 @@ impl Drift {
     }
 
     /// Finds what comes to a patch: from those up the wind, or what the country about the field yields.
-    fn come(&mut self, field: &mut Field, at: usize, way: &Way, inflow: [[i64; 2]; 2]) {
+    fn come(&mut self, field: &mut SnowField, at: usize, way: &Way, inflow: [[i64; 2]; 2]) {
         for (axis, inflow) in inflow.into_iter().enumerate() {
             let before = way.beside(&field.patches[at], axis, false);
             let coming = &mut self.coming[axis];
             coming.clear();
             match field.patches.get(before as usize).map(|p| &p.edges) {
                 Some(edges) if edges.swept == self.sweeps => coming.extend_from_slice(&edges.left[axis]),
-                Some(_) => coming.resize(field.size[1 - axis], Air::default()),
+                Some(_) => coming.resize(field.size[1 - axis], DriftFlux::default()),
                 None => {
-                    coming.resize(field.size[1 - axis], Air { snow: inflow, lee: None });
+                    coming.resize(field.size[1 - axis], DriftFlux { snow: inflow, lee: None });
                     field.books.blown_in += inflow.iter().sum::<i64>() * field.size[1 - axis] as i64;
                 }
             }
@@ -389,7 +389,7 @@ impl Drift {
     }
 
     /// Sweeps over a patch: what comes to it becomes what leaves it.
-    fn sweep(&mut self, field: &mut Field, at: usize, sweep: &Sweep<'_>) {
+    fn sweep(&mut self, field: &mut SnowField, at: usize, sweep: &Sweep<'_>) {
         let way = sweep.way;
         let [nx, ny] = field.size;
         let [by_rows, by_columns] = &mut self.coming;
@@ -403,8 +403,8 @@ impl Drift {
                 let before = [by_rows[row], by_columns[column]];
                 let ([across, along], lee, changed) = sweep.cell(patch, row * nx + column, before);
                 changes |= changed;
-                by_rows[row] = Air { snow: across, lee };
-                by_columns[column] = Air { snow: along, lee };
+                by_rows[row] = DriftFlux { snow: across, lee };
+                by_columns[column] = DriftFlux { snow: along, lee };
             }
         }
         if changes {
@@ -422,7 +422,7 @@ impl Drift {
 impl Sweep<'_> {
     /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell along the row and along
     /// the column, hopping and suspended, the lee's line over it, and whether its column of snow has changed.
-    fn cell(&self, patch: &mut Patch, cell: usize, before: [Air; 2]) -> ([[i64; 2]; 2], Option<[f64; 2]>, bool) {
+    fn cell(&self, patch: &mut Patch, cell: usize, before: [DriftFlux; 2]) -> ([[i64; 2]; 2], Option<[f64; 2]>, bool) {
         let (calm, lee) = if self.is_local { (1.0, None) } else { calmed(patch, cell, self.way, before) };
         let mut leaving = [0, 1].map(|kind| before[0].snow[kind] + before[1].snow[kind]);
         if leaving == [0; 2] && patch.is_bare() {
@@ -459,7 +459,7 @@ impl Sweep<'_> {
 }
 
 /// Returns the snow that the country about a field yields to each row and each column of cells at its border.
-fn inflow(field: &Field, step: &Step<'_>, way: &Way) -> [[i64; 2]; 2] {
+fn inflow(field: &SnowField, step: &SnowStep<'_>, way: &Way) -> [[i64; 2]; 2] {
     let country = step.country;
     let threshold = threshold_m_s(country.is_wet(), country.density_kg_m3());
     if country.ice == 0 || way.speed <= threshold {
@@ -479,7 +479,7 @@ fn exchange(column: &mut Column, lacking: i64, speed: f64, [eroded, landed]: [f6
     let ice = (-lacking as f64 * landed) as i64;
     let depth = (ice as f64 / landing_kg_m3) as i64;
     if ice > 0 {
-        column.add(Part { ice, water: 0, depth: depth.max(1) }, Column::drifted_albedo());
+        column.add(SnowParcel { ice, water: 0, depth: depth.max(1) }, Column::drifted_albedo());
     }
     -ice
 }

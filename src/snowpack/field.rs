@@ -14,8 +14,8 @@ use std::sync::OnceLock;
 use glam::DVec2;
 
 use super::{
-    column::{Column, Forcing, Settling, UNITS},
-    drift::{Drift, Edges},
+    column::{Column, ColumnForcing, Settling, UNITS},
+    drift::{DriftSweep, Edges},
     slides,
 };
 use crate::weather::snow_cover;
@@ -157,7 +157,7 @@ impl Patch {
     }
 
     /// Leads its columns through a step, block by block.
-    fn step(&mut self, size: [usize; 2], step: &Step<'_>, sums: &mut Sums) {
+    fn step(&mut self, size: [usize; 2], step: &SnowStep<'_>, sums: &mut Sums) {
         let side = if step.falls.is_some() { [BLOCK; 2] } else { size };
         let (mut lies, was_bare) = (false, self.is_bare());
         for row in (0..size[1]).step_by(side[1]) {
@@ -205,7 +205,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, gone: super::column::Exchange, column: &Column) {
+    fn add(&mut self, gone: super::column::MassExchange, column: &Column) {
         self.fallen += gone.fallen;
         self.ran_off += gone.ran_off;
         self.sublimated += gone.sublimated;
@@ -242,26 +242,26 @@ impl Books {
 }
 
 /// Function that returns the forcing at a place of the lattice whose ground is so high, m.
-pub(super) type FallsAt<'a> = &'a dyn Fn([i32; 2], f64) -> Forcing;
+pub(super) type FallsAt<'a> = &'a dyn Fn([i32; 2], f64) -> ColumnForcing;
 /// The wind at 10 m over a place of the lattice whose snow reaches so high, m; m/s east and north.
 pub(super) type WindAt<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
 
 /// The wind over a field at 10 m, m/s east and north.
 #[derive(Clone, Copy)]
-pub(super) struct WindOver<'a> {
+pub(super) struct FieldWind<'a> {
     pub mean: DVec2,
     /// Where it varies in space; else the surface's shape decides.
     pub local: Option<WindAt<'a>>,
 }
 
 /// Inputs of a step.
-pub(super) struct Step<'a> {
+pub(super) struct SnowStep<'a> {
     pub seconds: f64,
     /// Forcing of all cells, and the function that replaces it where it varies from place to place.
-    pub even: &'a Forcing,
+    pub even: &'a ColumnForcing,
     pub falls: Option<FallsAt<'a>>,
     pub settling: &'a Settling,
-    pub wind: WindOver<'a>,
+    pub wind: FieldWind<'a>,
     /// The level, open country about the field, which drifting snow comes from.
     pub country: &'a Column,
     /// Steep snow slides in this step.
@@ -272,7 +272,7 @@ pub(super) struct Step<'a> {
 
 /// Lying snow on patches of ground.
 #[derive(Clone, Debug)]
-pub(super) struct Field {
+pub(super) struct SnowField {
     /// Cells of a patch, east and north.
     pub size: [usize; 2],
     pub cell_m: f64,
@@ -287,12 +287,12 @@ pub(super) struct Field {
     pub cover: f64,
     /// Whether all patches know their neighbours.
     joined: bool,
-    drift: Drift,
+    drift: DriftSweep,
     /// Room for what slides.
     moving: Vec<(u32, u32)>,
 }
 
-impl Field {
+impl SnowField {
     /// Without patches.
     pub fn new(size: [usize; 2], cell_m: f64) -> Self {
         Self {
@@ -304,7 +304,7 @@ impl Field {
             runoff_mm_h: 0.0,
             cover: 0.0,
             joined: true,
-            drift: Drift::default(),
+            drift: DriftSweep::default(),
             moving: Vec::new(),
         }
     }
@@ -372,7 +372,7 @@ impl Field {
     }
 
     /// Leads the snow through a step.
-    pub fn step(&mut self, step: &Step<'_>) {
+    pub fn step(&mut self, step: &SnowStep<'_>) {
         self.join();
         let mut sums = Sums::default();
         self.patches.iter_mut().for_each(|patch| patch.step(self.size, step, &mut sums));

@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use super::{
     COARSE_STEP_S, STEP_S,
-    column::{Column, Forcing, Settling},
-    field::{FallsAt, Field, Step, WindAt, WindOver},
+    column::{Column, ColumnForcing, Settling},
+    field::{FallsAt, FieldWind, SnowField, SnowStep, WindAt},
     laws, query,
     saved::SavedSnow,
     site::Site,
@@ -54,7 +54,7 @@ pub(super) struct SnowState {
     /// Time that was laid by fast-forward, s.
     pub coarse_s: f64,
     /// On the host's terrain, once it has any.
-    pub field: Option<Field>,
+    pub field: Option<SnowField>,
 }
 
 /// The lying snow of a context.
@@ -67,7 +67,7 @@ pub(crate) struct HeldSnow {
     /// Tiles that were changed while steps remained, on the terrain as it was then.
     waiting: Vec<(TileKey, Arc<Terrain>)>,
     /// Grounds that the host has set since the snow last settled, in order: one ground, or none and one.
-    grounds: Vec<HostGround>,
+    grounds: Vec<SnowGround>,
     settling: Settling,
     /// Steps that end up to here are coarse.
     coarse_until_s: f64,
@@ -81,12 +81,12 @@ pub(crate) struct HeldSnow {
 
 /// Ground that the host has set and snow lies on: a grid, tiles, or neither.
 #[derive(Clone)]
-struct HostGround {
+struct SnowGround {
     grid: Option<Arc<TerrainHeights>>,
     tiles: Option<Arc<Terrain>>,
 }
 
-impl HostGround {
+impl SnowGround {
     fn of(world: &World) -> Self {
         Self { grid: world.set.terrain.clone(), tiles: world.set.tiles.clone() }
     }
@@ -159,11 +159,11 @@ impl HeldSnow {
     }
 
     /// Returns site and snow field of the host's terrain, if there are any.
-    pub(super) fn field(&self) -> Option<(&Site, &Field)> {
+    pub(super) fn field(&self) -> Option<(&Site, &SnowField)> {
         Some((self.site.as_ref()?, self.state.as_ref()?.field.as_ref()?))
     }
 
-    pub(super) fn field_mut(&mut self) -> Option<(&Site, &mut Field)> {
+    pub(super) fn field_mut(&mut self) -> Option<(&Site, &mut SnowField)> {
         Some((self.site.as_ref()?, self.state.as_mut()?.field.as_mut()?))
     }
 
@@ -187,23 +187,23 @@ impl HeldSnow {
         if self.model == LyingSnowModel::Simulated && self.state.is_none() {
             self.state = Some(SnowState::first(world, world.time_s)?);
         }
-        self.settle_on(&HostGround::of(world));
+        self.settle_on(&SnowGround::of(world));
         Ok(())
     }
 
     /// Notes the ground that the host has set in place of another.
     pub fn ground_replaced(&mut self, world: &World) {
-        let ground = HostGround::of(world);
+        let ground = SnowGround::of(world);
         match self.grounds.last_mut() {
             Some(last) if ground.keeps_snow_of(last) => *last = ground,
-            Some(_) => self.grounds = vec![HostGround { grid: None, tiles: None }, ground],
+            Some(_) => self.grounds = vec![SnowGround { grid: None, tiles: None }, ground],
             None => self.grounds.push(ground),
         }
     }
 
     /// Takes the terrain as it is by now: the snow stays on cells that stay; on new ones it is as deep as on level
     /// ground.
-    fn settle_on(&mut self, ground: &HostGround) {
+    fn settle_on(&mut self, ground: &SnowGround) {
         match (&ground.grid, &ground.tiles) {
             (Some(grid), _) => {
                 let Some(state) = &mut self.state else { return };
@@ -254,7 +254,7 @@ impl HeldSnow {
         let Some(SnowState { field: Some(field), country, .. }) = &mut self.state else { return };
         let Some(site) = self.site.as_mut().filter(|site| site.seen(terrain).is_some()) else { return };
         site.follow(terrain, key, (field, *country, revision));
-        site.is_up_to(terrain);
+        site.mark_known(terrain);
         self.revision = revision;
     }
 
@@ -293,7 +293,7 @@ impl HeldSnow {
             self.melts.push((from_s, seconds, state.melted));
             return Ok(());
         }
-        let forcing = Forcing::new(&c, f, state.sunlight_w_m2, seconds);
+        let forcing = ColumnForcing::new(&c, f, state.sunlight_w_m2, seconds);
         self.settling.set(c.air.temperature_c, seconds);
         let ran_off = state.country.step(&forcing, &self.settling, 1.0).ran_off;
         state.melted = Meltwater {
@@ -313,15 +313,15 @@ impl HeldSnow {
             let sunlight_w_m2 = state.sunlight_w_m2;
             let falls = |place: [i32; 2], height_m: f64| {
                 let falling = world.over().falling_at(site.place(place, height_m), middle_s, c).precipitation;
-                Forcing::new(&c, &falling, sunlight_w_m2, seconds)
+                ColumnForcing::new(&c, &falling, sunlight_w_m2, seconds)
             };
             let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
-            field.step(&Step {
+            field.step(&SnowStep {
                 seconds,
                 even: &forcing,
                 falls: (!world.set.regions.is_empty()).then_some(&falls as FallsAt<'_>),
                 settling: &self.settling,
-                wind: WindOver { mean, local },
+                wind: FieldWind { mean, local },
                 country: &state.country,
                 slides: end_s.rem_euclid(COARSE_STEP_S) == 0.0,
                 revision,
@@ -352,7 +352,7 @@ impl HeldSnow {
         self.waiting.clear();
         self.grounds.clear();
         self.coarse_until_s = f64::NEG_INFINITY;
-        self.settle_on(&HostGround::of(world));
+        self.settle_on(&SnowGround::of(world));
         self.changed();
         self.forgets = true;
         self.melts.clear();
@@ -379,7 +379,7 @@ impl HeldEffect for HeldSnow {
         for ground in std::mem::take(&mut self.grounds) {
             self.settle_on(&ground);
         }
-        self.settle_on(&HostGround::of(world));
+        self.settle_on(&SnowGround::of(world));
     }
 
     fn lead(&mut self, world: &World, within: Within) -> Result<Status> {

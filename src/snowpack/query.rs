@@ -5,7 +5,7 @@ use half::f16;
 
 use super::{
     column::{Column, UNITS},
-    field::Field,
+    field::SnowField,
     held::HeldSnow,
     site::ground_m,
 };
@@ -116,7 +116,7 @@ fn texel(column: &Column) -> [f32; 4] {
 }
 
 /// Puts what lies on a field's cells where what draws it reads it.
-pub(super) fn publish(field: &Field, snow: &mut LyingSnow) {
+pub(super) fn publish(field: &SnowField, snow: &mut LyingSnow) {
     if field.lattice.is_none() {
         let cells = field.patches.first().map_or(0, |patch| patch.heights_m.len());
         snow.tiles.clear();

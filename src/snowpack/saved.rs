@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     column::Column,
-    field::{Books, Field, Patch},
+    field::{Books, Patch, SnowField},
     held::SnowState,
 };
 use crate::{
@@ -27,13 +27,13 @@ pub(super) struct SavedSnow {
     #[serde(default, skip_serializing_if = "is_zero")]
     coarse_s: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    field: Option<SavedField>,
+    field: Option<SavedCells>,
 }
 
 /// Cells of a grid, or of each tile.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SavedField {
+struct SavedCells {
     cells: usize,
     /// Columns of a grid: ice, water, depth and albedo.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -95,8 +95,8 @@ impl SavedTile {
     }
 }
 
-impl SavedField {
-    fn of(field: &Field, for_hash: bool) -> Self {
+impl SavedCells {
+    fn of(field: &SnowField, for_hash: bool) -> Self {
         let cells = field.size[0] * field.size[1];
         let is_grid = field.lattice.is_none();
         let tiles = field.patches.iter().filter(|_| !is_grid);
@@ -111,14 +111,14 @@ impl SavedField {
     }
 
     /// Returns the saved field, on ground that is still to be known.
-    fn field(&self) -> Option<Field> {
+    fn field(&self) -> Option<SnowField> {
         if self.cells.saturating_mul(self.tiles.len().max(1)) > MOST_CELLS
             || self.columns.is_some() == self.lattice.is_some()
         {
             return None;
         }
         let side = self.cells.isqrt();
-        let mut field = Field::new(if self.lattice.is_some() { [side; 2] } else { [self.cells, 1] }, 1.0);
+        let mut field = SnowField::new(if self.lattice.is_some() { [side; 2] } else { [self.cells, 1] }, 1.0);
         if let Some([x, y, z, cell_m]) = self.lattice.filter(|_| side * side == self.cells) {
             field.lattice = Some([x, y, z, cell_m]);
             field.cell_m = cell_m;
@@ -146,7 +146,7 @@ impl SavedSnow {
             country: numbers(&state.country),
             melted: [state.melted.covered, state.melted.runoff_mm_h],
             coarse_s: state.coarse_s,
-            field: state.field.as_ref().map(|field| SavedField::of(field, for_hash)),
+            field: state.field.as_ref().map(|field| SavedCells::of(field, for_hash)),
         }
     }
 

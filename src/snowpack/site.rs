@@ -9,7 +9,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::{
     column::Column,
-    field::{Field, Patch},
+    field::{Patch, SnowField},
 };
 use crate::{
     falling::flakes::aggregate_speed_m_s,
@@ -72,7 +72,7 @@ struct ShadedIn {
 }
 
 /// The four cells about a place, each by its patch, and their shares.
-pub(super) type About = [Option<((usize, usize), f64)>; 4];
+pub(super) type CornerShares = [Option<((usize, usize), f64)>; 4];
 
 impl Site {
     fn new(ground: Ground, (origin, to_enu): (DVec3, DMat3), cell_m: f64) -> Self {
@@ -84,7 +84,7 @@ impl Site {
     pub fn of_grid(
         terrain: &Arc<TerrainHeights>,
         old: Option<&Self>,
-        field: &mut Option<Field>,
+        field: &mut Option<SnowField>,
         country: Column,
     ) -> Self {
         let t = terrain;
@@ -94,14 +94,14 @@ impl Site {
             None => true,
         };
         let size = t.nodes.map(|n| n as usize);
-        let fits = |f: &Field| f.lattice.is_none() && f.patches.len() == 1 && f.len() == t.heights_m.len();
+        let fits = |f: &SnowField| f.lattice.is_none() && f.patches.len() == 1 && f.len() == t.heights_m.len();
         match field.as_mut().filter(|f| keeps && fits(f)) {
             Some(field) => {
                 (field.size, field.cell_m) = (size, t.cell_m);
                 field.patches[0].set_ground(t.heights_m.clone(), Vec::new());
             }
             None => {
-                let mut new = Field::new(size, t.cell_m);
+                let mut new = SnowField::new(size, t.cell_m);
                 new.add(Patch::new([0, 0], t.heights_m.clone(), Vec::new(), country));
                 *field = Some(new);
             }
@@ -110,11 +110,11 @@ impl Site {
     }
 
     /// Creates the site of tiles, none of which is known yet. The snow on tiles of the same lattice stays.
-    pub fn of_tiles(terrain: &Terrain, old: Option<&Self>, field: &mut Option<Field>) -> Self {
+    pub fn of_tiles(terrain: &Terrain, old: Option<&Self>, field: &mut Option<SnowField>) -> Self {
         let lattice = [terrain.desc.origin.x, terrain.desc.origin.y, terrain.desc.origin.z, terrain.desc.cell_m];
-        let fits = |f: &Field| f.lattice == Some(lattice) && f.size == [terrain.side(); 2];
+        let fits = |f: &SnowField| f.lattice == Some(lattice) && f.size == [terrain.side(); 2];
         if old.is_some() || !field.as_ref().is_some_and(fits) {
-            let mut new = Field::new([terrain.side(); 2], terrain.desc.cell_m);
+            let mut new = SnowField::new([terrain.side(); 2], terrain.desc.cell_m);
             new.lattice = Some(lattice);
             *field = Some(new);
         }
@@ -136,7 +136,7 @@ impl Site {
     }
 
     /// Takes all tiles as the terrain has them by now.
-    pub fn follow_all(&mut self, terrain: &Terrain, (field, country, revision): (&mut Field, Column, u64)) {
+    pub fn follow_all(&mut self, terrain: &Terrain, (field, country, revision): (&mut SnowField, Column, u64)) {
         for at in (0..field.patches.len()).rev() {
             let [east, north] = field.patches[at].key;
             if terrain.slot(TileKey::new(east, north)).is_none() {
@@ -146,12 +146,17 @@ impl Site {
         for (_, tile) in terrain.all() {
             self.follow(terrain, tile.key, (field, country, revision));
         }
-        self.is_up_to(terrain);
+        self.mark_known(terrain);
     }
 
     /// Synchronises one tile with the terrain: a removed one loses its snow, a new one starts with that of the country,
     /// a changed one keeps its own wherever there is ground.
-    pub fn follow(&mut self, terrain: &Terrain, key: TileKey, (field, country, revision): (&mut Field, Column, u64)) {
+    pub fn follow(
+        &mut self,
+        terrain: &Terrain,
+        key: TileKey,
+        (field, country, revision): (&mut SnowField, Column, u64),
+    ) {
         let at = field.find([key.east, key.north]);
         let tile = terrain.slot(key).map(|slot| terrain.tile(slot));
         let (tile, ground) = match (tile, at) {
@@ -188,8 +193,8 @@ impl Site {
         self.stale = true;
     }
 
-    /// Says that all of the terrain is known.
-    pub fn is_up_to(&mut self, terrain: &Terrain) {
+    /// Marks all of the terrain as known.
+    pub fn mark_known(&mut self, terrain: &Terrain) {
         if let Ground::Tiles { revision, .. } = &mut self.ground {
             *revision = terrain.revision;
         }
@@ -210,7 +215,7 @@ impl Site {
     }
 
     /// The cells about a position and their shares; `None` off the terrain and on what stands above it.
-    pub fn about(&self, field: &Field, position: DVec3) -> Option<About> {
+    pub fn about(&self, field: &SnowField, position: DVec3) -> Option<CornerShares> {
         let p = self.local(position);
         let c = p.truncate() / self.cell_m;
         if let Ground::Grid(t) = &self.ground {
@@ -238,7 +243,13 @@ impl Site {
 
     /// Finds the cells that standing boxes shelter from falling snow, and those that they stand on. Flakes go with
     /// `air` where the wind varies in space. Says whether the boxes or the ground have changed.
-    pub fn shade(&mut self, field: &mut Field, c: &Conditions, shelters: &[Shelter], air: Option<&Air<'_>>) -> bool {
+    pub fn shade(
+        &mut self,
+        field: &mut SnowField,
+        c: &Conditions,
+        shelters: &[Shelter],
+        air: Option<&SiteWind<'_>>,
+    ) -> bool {
         let fall = aggregate_speed_m_s(FLAKE_MM, c.air.temperature_c);
         let slant = slant(DVec2::new(c.wind.east_m_s, c.wind.north_m_s), fall);
         let shaded_in = air.map(|air| ShadedIn { revision: air.volume.revision(), weathers: c.wind, fall });
@@ -271,7 +282,7 @@ impl Site {
         (patch, size): (&mut Patch, [usize; 2]),
         shelter: &Shelter,
         stands_anew: bool,
-        air: Option<(&Air<'_>, f64)>,
+        air: Option<(&SiteWind<'_>, f64)>,
     ) {
         let corner = [0, 1].map(|i| f64::from(patch.key[i]) * size[i] as f64);
         let middle = self.local(shelter.center_m);
@@ -314,7 +325,7 @@ impl Site {
 
     /// Whether flakes on their way to a place of the host's world meet a box: the way is followed back until it is
     /// above the box.
-    fn meets(&self, shelter: &Shelter, landed: DVec3, air: &Air<'_>, fall: f64) -> bool {
+    fn meets(&self, shelter: &Shelter, landed: DVec3, air: &SiteWind<'_>, fall: f64) -> bool {
         let up = self.to_enu.row(2);
         let half_height = (shelter.axes.transpose() * up).abs().dot(shelter.half_size_m);
         let top = up.dot(shelter.center_m - landed) + half_height;
@@ -354,15 +365,15 @@ impl Site {
     }
 
     /// The wind where it varies in space; none where it does not at that time in the weather `c`.
-    pub fn air<'w>(&self, world: &'w World, time_s: f64, c: &'w Conditions) -> Option<Air<'w>> {
+    pub fn air<'w>(&self, world: &'w World, time_s: f64, c: &'w Conditions) -> Option<SiteWind<'w>> {
         let volume = world.wind_volume(time_s)?;
         let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
-        Some(Air { volume, mean, c, origin: self.origin, from_enu: self.to_enu.transpose(), cell_m: self.cell_m })
+        Some(SiteWind { volume, mean, c, origin: self.origin, from_enu: self.to_enu.transpose(), cell_m: self.cell_m })
     }
 }
 
 /// A wind that varies in space, over a site.
-pub(super) struct Air<'w> {
+pub(super) struct SiteWind<'w> {
     volume: &'w WindVolume,
     /// The weather's at 10 m, m/s.
     mean: DVec2,
@@ -372,7 +383,7 @@ pub(super) struct Air<'w> {
     cell_m: f64,
 }
 
-impl Air<'_> {
+impl SiteWind<'_> {
     /// The weather's wind so high over the ground, over that at 10 m.
     fn lower(&self, height_m: f64) -> f64 {
         let speed = self.c.wind.speed_m_s();
@@ -408,6 +419,6 @@ fn slant(wind: DVec2, fall: f64) -> DVec3 {
 }
 
 /// Height of the ground about a place, m.
-pub(super) fn ground_m(field: &Field, about: &About) -> f64 {
+pub(super) fn ground_m(field: &SnowField, about: &CornerShares) -> f64 {
     about.iter().flatten().map(|((patch, cell), share)| f64::from(field.patches[*patch].heights_m[*cell]) * share).sum()
 }

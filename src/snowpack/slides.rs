@@ -3,7 +3,7 @@
 
 use super::{
     column::UNITS,
-    field::{Field, NONE},
+    field::{NONE, SnowField},
     laws::REPOSE_DEG,
 };
 
@@ -25,7 +25,7 @@ const AROUND: [([i32; 2], f64); 8] = [
 ];
 
 /// The cell that lies so far from one, in whatever patch.
-fn beside(field: &Field, (patch, cell): (u32, u32), [dx, dy]: [i32; 2]) -> Option<(u32, u32)> {
+fn beside(field: &SnowField, (patch, cell): (u32, u32), [dx, dy]: [i32; 2]) -> Option<(u32, u32)> {
     let size = field.size.map(|n| n as i32);
     let (x, y) = (cell as i32 % size[0] + dx, cell as i32 / size[0] + dy);
     let out = [(x, 0), (y, 1)].map(|(v, i): (i32, usize)| v.div_euclid(size[i]));
@@ -42,19 +42,19 @@ fn beside(field: &Field, (patch, cell): (u32, u32), [dx, dy]: [i32; 2]) -> Optio
 }
 
 /// The neighbours of a cell on which snow can lie, and how far away they are, m.
-fn around(field: &Field, cell: (u32, u32)) -> impl Iterator<Item = ((u32, u32), f64)> + '_ {
+fn around(field: &SnowField, cell: (u32, u32)) -> impl Iterator<Item = ((u32, u32), f64)> + '_ {
     AROUND.iter().filter_map(move |(way, cells)| {
         let to = beside(field, cell, *way)?;
         (!field.patches[to.0 as usize].is_blocked(to.1 as usize)).then_some((to, cells * field.cell_m))
     })
 }
 
-fn surface_m(field: &Field, (patch, cell): (u32, u32)) -> f64 {
+fn surface_m(field: &SnowField, (patch, cell): (u32, u32)) -> f64 {
     field.patches[patch as usize].surface_m(cell as usize)
 }
 
 /// The neighbour to which the snow of a cell slides, and how much higher it is than it may be, m.
-fn steepest(field: &Field, cell: (u32, u32), rise: f64) -> Option<((u32, u32), f64)> {
+fn steepest(field: &SnowField, cell: (u32, u32), rise: f64) -> Option<((u32, u32), f64)> {
     let here = surface_m(field, cell);
     let over = |(to, way): ((u32, u32), f64)| (to, here - surface_m(field, to) - rise * way);
     let found = around(field, cell).map(over).filter(|(_, over)| *over > SLACK_M);
@@ -63,7 +63,7 @@ fn steepest(field: &Field, cell: (u32, u32), rise: f64) -> Option<((u32, u32), f
 
 /// Lets the snow of a cell slide, and what loses its hold by that. Answers whether it has come to rest before `left`
 /// moves are done.
-fn settle(field: &mut Field, moving: &mut Vec<(u32, u32)>, rise: f64, left: &mut usize, revision: u64) -> bool {
+fn settle(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, rise: f64, left: &mut usize, revision: u64) -> bool {
     while let Some(cell) = moving.pop() {
         let column = field.patches[cell.0 as usize].column(cell.1 as usize);
         if column.depth == 0 {
@@ -92,7 +92,7 @@ fn settle(field: &mut Field, moving: &mut Vec<(u32, u32)>, rise: f64, left: &mut
 }
 
 /// Lets all snow slide that lies too steep. `moving`: room for it. Answers whether all of it has come to rest.
-pub(super) fn relax(field: &mut Field, moving: &mut Vec<(u32, u32)>, revision: u64) -> bool {
+pub(super) fn relax(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, revision: u64) -> bool {
     let rise = libm::tan(REPOSE_DEG.to_radians());
     let mut left = MOST_MOVES * field.len();
     let [columns, rows] = field.size;

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     column::{Column, UNITS},
-    field::Field,
+    field::SnowField,
     held::{HeldSnow, LyingSnowModel},
     site::Site,
 };
@@ -60,7 +60,7 @@ fn lies_on(path: &[DVec2], half_m: f64, p: DVec2) -> bool {
 /// Does `act` to the columns under a strip, with the share of each that it covers, and counts what it says. Patches on
 /// which it has acted are of this revision then.
 fn each_under(
-    (site, field): (&Site, &mut Field),
+    (site, field): (&Site, &mut SnowField),
     strip: &SnowStrip,
     revision: u64,
     mut act: impl FnMut(&mut Column, f64) -> i64,
@@ -101,7 +101,7 @@ fn each_under(
 
 impl HeldSnow {
     /// The terrain's snow, to be changed now.
-    fn field_for_change(&mut self, world: &World, strip: &SnowStrip) -> Result<(&Site, &mut Field)> {
+    fn field_for_change(&mut self, world: &World, strip: &SnowStrip) -> Result<(&Site, &mut SnowField)> {
         strip.validate()?;
         let wanted = "lying snow is changed on the host's terrain, where WK_LYING_SNOW_SIMULATED leads it";
         let has_terrain = world.set.terrain.is_some() || world.set.tiles.is_some();

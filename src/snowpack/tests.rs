@@ -1,8 +1,8 @@
 use glam::DVec2;
 
 use super::{
-    column::{Column, Forcing, Settling, UNITS},
-    field::{Field, Patch, Step, WindAt, WindOver},
+    column::{Column, ColumnForcing, Settling, UNITS},
+    field::{FieldWind, Patch, SnowField, SnowStep, WindAt},
     laws, slides,
 };
 use crate::weather::{Conditions, Falling, Weather, Wind, derive};
@@ -24,13 +24,13 @@ impl Land {
     }
 
     /// In one patch.
-    fn field(&self, column: Column) -> Field {
+    fn field(&self, column: Column) -> SnowField {
         self.cut(self.nodes, column)
     }
 
     /// In patches of this size, which counts from patch (-1, -1).
-    fn cut(&self, size: [usize; 2], column: Column) -> Field {
-        let mut field = Field::new(size, self.cell_m);
+    fn cut(&self, size: [usize; 2], column: Column) -> SnowField {
+        let mut field = SnowField::new(size, self.cell_m);
         let off = if size == self.nodes { 0 } else { 1 };
         for key in (0..self.nodes[1] / size[1]).flat_map(|y| (0..self.nodes[0] / size[0]).map(move |x| [x, y])) {
             let cells: Vec<usize> = (0..size[0] * size[1])
@@ -48,7 +48,7 @@ impl Land {
 }
 
 /// The columns of all cells, by the rows of the lattice.
-fn columns(field: &Field) -> Vec<Column> {
+fn columns(field: &SnowField) -> Vec<Column> {
     let (low, size) = (field.patches[0].key, field.size);
     let top = field.patches.last().unwrap().key;
     let [nx, ny] = [0, 1].map(|i| (top[i] - low[i] + 1) * size[i] as i32);
@@ -75,33 +75,33 @@ fn snow(rate_mm_h: f64) -> Falling {
 }
 
 /// A forcing and how snow settles under it.
-struct Acts(Forcing, Settling);
+struct Acts(ColumnForcing, Settling);
 
 fn acts(c: &Conditions, falling: &Falling, sunlight_w_m2: f64) -> Acts {
     let mut settling = Settling::new();
     settling.set(c.air.temperature_c, STEP_S);
-    Acts(Forcing::new(c, falling, sunlight_w_m2, STEP_S), settling)
+    Acts(ColumnForcing::new(c, falling, sunlight_w_m2, STEP_S), settling)
 }
 
 /// Leads a field by steps with the same weather, amid bare country.
-fn lead(field: &mut Field, acts: &Acts, wind: DVec2, steps: usize) {
+fn lead(field: &mut SnowField, acts: &Acts, wind: DVec2, steps: usize) {
     lead_amid(&Column::default(), field, acts, (wind, None), steps);
 }
 
 fn lead_amid(
     country: &Column,
-    field: &mut Field,
+    field: &mut SnowField,
     Acts(even, settling): &Acts,
     (mean, local): (DVec2, Option<WindAt<'_>>),
     steps: usize,
 ) {
     for i in 0..steps {
-        field.step(&Step {
+        field.step(&SnowStep {
             seconds: STEP_S,
             even,
             falls: None,
             settling,
-            wind: WindOver { mean, local },
+            wind: FieldWind { mean, local },
             country,
             slides: i % 10 == 9,
             revision: i as u64 + 1,

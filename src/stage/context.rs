@@ -9,7 +9,7 @@ use super::{ColorSpace, Frame, FrameFlags, Stages};
 use crate::{
     gpu::{Device, Layer},
     light::ToneCurve,
-    moment::Moment,
+    moment::SceneMoment,
     plan::parts::{MOST_PARTS, MOST_RUNGS, Part},
     scene::ViewRays,
     world::{HeldEffects, World},
@@ -20,7 +20,7 @@ pub(crate) struct FrameContext<'a> {
     pub device: &'a Arc<Device>,
     /// Camera, flags and images of the host.
     pub frame: &'a Frame<'a>,
-    pub now: &'a Moment<'a>,
+    pub now: &'a SceneMoment<'a>,
     pub world: &'a World,
     /// Simulation state of the effects.
     pub held: HeldEffects<'a>,
@@ -83,7 +83,7 @@ pub(crate) struct DrawContext<'a> {
     pub device: &'a Arc<Device>,
     /// Camera, flags and images of the host.
     pub frame: &'a Frame<'a>,
-    pub now: &'a Moment<'a>,
+    pub now: &'a SceneMoment<'a>,
     pub target: DrawTarget<'a>,
     /// Stages of the draw.
     pub stages: Stages,

@@ -3,7 +3,7 @@
 use super::{ColorSpace, Frame};
 use crate::{
     light::Exposure,
-    moment::Moment,
+    moment::SceneMoment,
     scene::{DepthUniform, MAX_FLASH_LAMPS, ViewRays},
 };
 
@@ -174,7 +174,7 @@ fn even_scale(adaptation_cd_m2: f64, display_exposure: f64) -> f32 {
 /// is tone-mapped.
 pub(crate) fn uniform(
     frame: &Frame<'_>,
-    now: &Moment<'_>,
+    now: &SceneMoment<'_>,
     rays: &ViewRays,
     color: &wgpu::Texture,
     exposure: f64,

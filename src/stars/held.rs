@@ -23,7 +23,7 @@ pub(crate) struct HeldStars {
 /// The settings as a saved state has them.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Saved {
+struct SavedStars {
     planets: bool,
     airglow: f64,
     /// Columns.
@@ -44,7 +44,7 @@ impl HeldStars {
         let Some(value) = settings.and_then(|s| s.remove(KEY)) else {
             return Ok(Self { settings: StarSettings { stars, ..StarSettings::default() } });
         };
-        let saved: Saved = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
+        let saved: SavedStars = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
         let celestial_to_world = saved.celestial_to_world.map(|m| DMat3::from_cols_array_2d(&m));
         let settings = StarSettings { stars, planets: saved.planets, celestial_to_world, airglow: saved.airglow };
         settings.validate().map_err(|e| e.found_in("saved state"))?;
@@ -63,7 +63,8 @@ impl HeldEffect for HeldStars {
         if self.night() == NightSettings::default() && planets {
             return Ok(());
         }
-        let saved = Saved { planets, airglow, celestial_to_world: celestial_to_world.map(|m| m.to_cols_array_2d()) };
+        let saved =
+            SavedStars { planets, airglow, celestial_to_world: celestial_to_world.map(|m| m.to_cols_array_2d()) };
         let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
         let value = toml::Value::try_from(saved).map_err(written)?;
         let settings = state.entry(TABLE).or_insert_with(|| toml::Table::new().into());

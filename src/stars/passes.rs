@@ -32,7 +32,7 @@ pub struct StarDepth<'a> {
 type PointsKind = (wgpu::TextureFormat, bool, bool);
 
 /// The stars that the buffer holds.
-struct Loaded {
+struct LoadedStars {
     /// The host's own; none for the catalogue's.
     stars: Option<Arc<[Star]>>,
     /// Whole years since J2000.0 for which proper motion is applied.
@@ -53,7 +53,7 @@ pub struct StarPass {
     /// For depths of one and of several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
-    loaded: Option<Loaded>,
+    loaded: Option<LoadedStars>,
     bound: Option<(Option<wgpu::TextureView>, wgpu::BindGroup)>,
     pipelines: Vec<(PointsKind, wgpu::RenderPipeline)>,
     /// The pipeline's kind and the instances of the next draw.
@@ -176,7 +176,8 @@ impl StarPass {
         let lux = stars.iter().map(brightness).collect();
         let (shown, written) = (Vec::with_capacity(most), Vec::with_capacity(most));
         self.written = None;
-        self.loaded = Some(Loaded { stars: settings.stars.clone(), year, all: stars, lux, shown, written, buffer });
+        self.loaded =
+            Some(LoadedStars { stars: settings.stars.clone(), year, all: stars, lux, shown, written, buffer });
         Ok(())
     }
 

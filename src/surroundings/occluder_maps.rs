@@ -35,7 +35,7 @@ struct MapUniform {
 const BLOCK: u64 = 256;
 
 /// The table, and finer to coarser what it is made of.
-struct Table {
+struct OccluderTable {
     /// Texels and cells.
     ranges: wgpu::Texture,
     /// Texels without their cells: (width, height), multiples of 64.
@@ -57,7 +57,7 @@ pub(crate) struct OccluderMaps {
     layouts: [wgpu::BindGroupLayout; 2],
     pipelines: [wgpu::RenderPipeline; 2],
     blocks: wgpu::Buffer,
-    table: Option<Table>,
+    table: Option<OccluderTable>,
     list: Vec<Placed>,
 }
 
@@ -92,7 +92,7 @@ fn placed(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, [u32; 2]) {
     (places, [wide + most(0, column, 1), high + most(1, row, 1)])
 }
 
-impl Table {
+impl OccluderTable {
     fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
         use wgpu::TextureUsages as U;
         let make =
@@ -189,7 +189,7 @@ impl OccluderMaps {
         }
         let table = match self.table.take() {
             Some(table) if table.size == size => table,
-            _ => Table::new(&device.device, size),
+            _ => OccluderTable::new(&device.device, size),
         };
         self.draw_texels(device, encoder, &table, maps);
         for (from, to) in [(&table.fine, &table.cells[0]), (&table.cells[0], &table.cells[1])] {
@@ -204,7 +204,7 @@ impl OccluderMaps {
         &self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
-        table: &Table,
+        table: &OccluderTable,
         maps: &[OccluderMap<'_>],
     ) {
         let view = table.fine.create_view(&Default::default());
@@ -263,7 +263,7 @@ impl OccluderMaps {
 
     /// Where the cells of 64 and of 8 texels begin in it.
     pub fn cells_at(&self) -> [u32; 2] {
-        self.table.as_ref().map_or([0; 2], Table::cells_at)
+        self.table.as_ref().map_or([0; 2], OccluderTable::cells_at)
     }
 
     /// The maps as shaders read them, for a camera at `eye` whose axes `to_enu` turns.

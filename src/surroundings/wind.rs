@@ -42,7 +42,7 @@ pub(crate) struct WindView {
     pub generation: u64,
 }
 
-struct Texture {
+struct NodeTexture {
     texture: wgpu::Texture,
     nodes: [u32; 3],
     /// Revision of the values that were uploaded last.
@@ -53,12 +53,12 @@ struct Texture {
 /// The texture of a context, made when a view first needs it and uploaded again when the wind has changed.
 #[derive(Default)]
 pub(crate) struct WindTexture {
-    held: Mutex<State>,
+    held: Mutex<WindState>,
 }
 
 #[derive(Default)]
-struct State {
-    texture: Option<Texture>,
+struct WindState {
+    texture: Option<NodeTexture>,
     generation: u64,
     /// Room for an upload.
     texels: Vec<u16>,
@@ -103,7 +103,7 @@ fn extent(nodes: [u32; 3]) -> wgpu::Extent3d {
     wgpu::Extent3d { width: nodes[0], height: nodes[1], depth_or_array_layers: nodes[2] }
 }
 
-fn new_texture(device: &Device, nodes: [u32; 3], generation: u64) -> Texture {
+fn new_texture(device: &Device, nodes: [u32; 3], generation: u64) -> NodeTexture {
     let texture = device.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("wind"),
         size: extent(nodes),
@@ -115,5 +115,5 @@ fn new_texture(device: &Device, nodes: [u32; 3], generation: u64) -> Texture {
         view_formats: &[],
     });
     let view = texture.create_view(&Default::default());
-    Texture { texture, nodes, revision: 0, shown: WindView { view, generation } }
+    NodeTexture { texture, nodes, revision: 0, shown: WindView { view, generation } }
 }

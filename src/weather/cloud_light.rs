@@ -11,7 +11,7 @@
 //! Of the direct light, against the mean over places of the clouds that are drawn:
 //! `cargo test --lib clouds::mean_light -- --nocapture`.
 
-use super::cloud_part::{LOWEST, Part};
+use super::cloud_part::{LOWEST, SlabPart};
 use super::conditions::{CloudSlab, Conditions};
 
 /// Part of the optical depth by which a layer hides what is behind it from the eye, which light that is scattered
@@ -71,7 +71,7 @@ impl Conditions {
     }
 
     /// Returns the parts of the layers that lie above a place at `altitude_m` above the sea, from the top.
-    fn layers_above(&self, altitude_m: f64) -> impl Iterator<Item = Part<'_>> {
+    fn layers_above(&self, altitude_m: f64) -> impl Iterator<Item = SlabPart<'_>> {
         let height_m = altitude_m - self.air.station_altitude_m;
         self.clouds.iter().rev().filter(|s| s.cover > 0.0).map(move |s| s.above(height_m))
     }
@@ -108,7 +108,7 @@ impl Conditions {
     /// Part of the sky over a place hidden by cloud that one cannot see through: a thin layer, or what is left of one
     /// above the place, counts for what it takes of the light.
     pub(crate) fn opaque_cover(&self, altitude_m: f64) -> f64 {
-        let hidden = |part: Part<'_>| -part.cover * libm::expm1(-HIDING * part.depth);
+        let hidden = |part: SlabPart<'_>| -part.cover * libm::expm1(-HIDING * part.depth);
         let clear = self.layers_above(altitude_m).map(hidden).fold(1.0, |clear, hidden| clear * (1.0 - hidden));
         (self.gathered() * (1.0 - clear)).min(1.0)
     }
@@ -198,7 +198,7 @@ struct FromAbove {
 
 impl FromAbove {
     /// Through `parts` from the top, of a beam from a sine of elevation.
-    fn new<'a>(parts: impl Iterator<Item = Part<'a>>, mu: f64) -> Self {
+    fn new<'a>(parts: impl Iterator<Item = SlabPart<'a>>, mu: f64) -> Self {
         let mut to = Self {
             through: 0.0,
             beam_through: 0.0,
@@ -240,7 +240,7 @@ struct FromBelow {
 
 impl FromBelow {
     /// Creates the shares of ground under `parts`, lowest first.
-    fn new<'a>(parts: impl Iterator<Item = Part<'a>>, ground_albedo: f64, mu: f64) -> Self {
+    fn new<'a>(parts: impl Iterator<Item = SlabPart<'a>>, ground_albedo: f64, mu: f64) -> Self {
         let albedo = ground_albedo.clamp(0.0, 1.0);
         let ground = Self { beam: albedo, even: albedo };
         parts.filter(|part| part.depth > 0.0).fold(ground, |below, part| {

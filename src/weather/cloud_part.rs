@@ -4,7 +4,7 @@
 //! How much of its cover and of its optical depth a layer has above a height follows from how it is shaped: laws fitted
 //! to means over the clouds that are drawn (`clouds::field`), for all kinds between sheets, cells, heaps, towers and
 //! fibres. A beam that comes slantwise meets more of broken clouds than one that comes straight down, since it meets
-//! their sides too ([`Part::meet`]); some of what it meets is thin.
+//! their sides too ([`SlabPart::meet`]); some of what it meets is thin.
 //!
 //! # Error
 //! `cargo test --lib clouds::mean_light -- --nocapture` prints it, kind by kind, against the clouds that are drawn.
@@ -20,7 +20,7 @@ const MOST_SPREAD: f64 = 2.6;
 const CLOSES: [f64; 2] = [0.99, 1.0];
 
 /// Part of a layer that lies on one side of a height.
-pub(super) struct Part<'a> {
+pub(super) struct SlabPart<'a> {
     pub slab: &'a CloudSlab,
     /// Part of the sky that its clouds cover, 0 to 1.
     pub cover: f64,
@@ -89,20 +89,25 @@ impl CloudSlab {
     }
 
     /// Returns the part of the layer above a height over the station.
-    pub(super) fn above(&self, height_m: f64) -> Part<'_> {
+    pub(super) fn above(&self, height_m: f64) -> SlabPart<'_> {
         let [cover, depth] = self.shares_above_m(height_m);
         let depth = if cover > 0.0 { self.optical_depth * (depth / cover) } else { 0.0 };
-        Part { slab: self, cover: self.cover * cover, depth, share: 1.0 - self.height(height_m) }
+        SlabPart { slab: self, cover: self.cover * cover, depth, share: 1.0 - self.height(height_m) }
     }
 
     /// Returns the part of the layer below a height over the station.
-    pub(super) fn below(&self, height_m: f64) -> Part<'_> {
+    pub(super) fn below(&self, height_m: f64) -> SlabPart<'_> {
         let [_, above] = self.shares_above_m(height_m);
-        Part { slab: self, cover: self.cover, depth: self.optical_depth * (1.0 - above), share: self.height(height_m) }
+        SlabPart {
+            slab: self,
+            cover: self.cover,
+            depth: self.optical_depth * (1.0 - above),
+            share: self.height(height_m),
+        }
     }
 }
 
-impl Part<'_> {
+impl SlabPart<'_> {
     /// Share of a beam from a sine of elevation that meets its clouds.
     ///
     /// Of gaps between clouds that lie at random, (1 - cover) is raised to a power that grows with the tangent of the

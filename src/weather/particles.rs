@@ -119,7 +119,7 @@ pub(super) fn aerosol_layer(w: &Weather, extinction_per_m: f64, swelling: Option
 }
 
 /// Extinction that the reported visibility leaves for particles, shared out.
-pub(super) struct Shares {
+pub(super) struct ExtinctionShares {
     /// To the mixed layer, 1/m.
     pub aerosol_per_m: f64,
     /// To the layer at the ground, 1/m, inside it.
@@ -164,7 +164,7 @@ fn sky_depth(depth: f64) -> f64 {
 /// Haze, dust, sand, smoke and ash take all of it, as far as [`sky_depth`] lets them; other air takes no more than
 /// leaves [`visibility_above_m`] and the rest is mist or fog, named or not, since dry background air never gets thicker
 /// than that.
-pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &Overrides) -> Shares {
+pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &Overrides) -> ExtinctionShares {
     let rayleigh = air.rayleigh_extinction_per_m;
     let rest = (LN_20 / w.visibility_m - rayleigh - falling_per_m).max(0.0);
     let beside = visibility_inside_m(w);
@@ -183,7 +183,7 @@ pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &O
         Some(inside) => (LN_20 / inside - rayleigh - aerosol - falling_per_m).max(0.0),
         None => rest - tall,
     };
-    Shares {
+    ExtinctionShares {
         aerosol_per_m: aerosol,
         ground_per_m: o.fog_extinction_per_m.unwrap_or(ground),
         ground_counts: beside.is_none(),

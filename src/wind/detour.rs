@@ -59,14 +59,14 @@ pub(crate) struct Detour {
 }
 
 /// The level wind of a grid so high over the ground.
-struct Level<'a> {
+struct LevelWind<'a> {
     volume: &'a WindVolume,
     ground_m: &'a dyn Fn(DVec2) -> f64,
     weathers_m_s: DVec2,
     height_m: f64,
 }
 
-impl Level<'_> {
+impl LevelWind<'_> {
     /// At a place so many metres east and north of the grid's origin, m/s.
     fn at(&self, place: DVec2) -> Option<DVec2> {
         let up = (self.ground_m)(place) + self.height_m;
@@ -111,7 +111,7 @@ impl DetourMap {
     ) -> Option<Self> {
         let size = (DVec3::from(volume.nodes.map(|n| f64::from(n.max(1) - 1))) * volume.cell_m).truncate();
         let cell_m = size / (DETOUR_SIDE - 1) as f64;
-        let level = |height_m: f64| Level { volume, ground_m, weathers_m_s: weathers_m_s(height_m), height_m };
+        let level = |height_m: f64| LevelWind { volume, ground_m, weathers_m_s: weathers_m_s(height_m), height_m };
         let places = || (0..DETOUR_SIDE * DETOUR_SIDE).map(|i| [i % DETOUR_SIDE, i / DETOUR_SIDE]);
         let place = |[i, j]: [usize; 2]| DVec2::new(i as f64, j as f64) * cell_m;
         let life_m = life_m.min(size.min_element() / 6.0);
@@ -154,7 +154,7 @@ impl DetourMap {
 }
 
 /// How far the air at a place of an area of this size is behind; `entering` is the wind of free air.
-fn followed(level: &Level<'_>, (entering, size): (DVec2, DVec2), mut place: DVec2, life_m: f64) -> DVec2 {
+fn followed(level: &LevelWind<'_>, (entering, size): (DVec2, DVec2), mut place: DVec2, life_m: f64) -> DVec2 {
     let (free, speed) = (entering.normalize_or_zero(), entering.length());
     let step = 3.0 * life_m / STEPS as f64;
     let (mut behind, mut was_within) = (DVec2::ZERO, false);

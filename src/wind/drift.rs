@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use super::{
     Wind,
-    gusts::{Gusts, Stir, Stretch},
+    gusts::{GustStretch, Gusts, Stir},
 };
 use crate::weather::{Conditions, Timeline, WindProfile, timeline::Change};
 
@@ -140,7 +140,7 @@ impl<'a> Walk<'a> {
     /// The wind at `t` if nothing changes between now and then.
     fn steady(&self, t: f64) -> (Blowing, Stir) {
         let (time, speed) = (t - self.at.time_s, self.base.speed_m_s());
-        let stretch = Stretch { start_m: self.at.path_m, length_m: 0.0, from: self.stir, to: self.stir };
+        let stretch = GustStretch { start_m: self.at.path_m, length_m: 0.0, from: self.stir, to: self.stir };
         self.blown((mean(&self.base) * time, speed * time), (mean(&self.base), speed), &stretch, t)
     }
 
@@ -150,7 +150,7 @@ impl<'a> Walk<'a> {
     /// before it: they may not have been told yet.
     fn changing(&self, active: &[Change], end_s: f64, t: f64) -> (Blowing, Stir) {
         let from = self.at.time_s;
-        let stretch = Stretch {
+        let stretch = GustStretch {
             start_m: self.at.path_m,
             length_m: self.integrals(active, from, end_s).1,
             from: self.stir,
@@ -164,7 +164,7 @@ impl<'a> Walk<'a> {
         &self,
         (way, path): (DVec2, f64),
         (wind, speed): (DVec2, f64),
-        stretch: &Stretch,
+        stretch: &GustStretch,
         t: f64,
     ) -> (Blowing, Stir) {
         let stirred = self.gusts.over(stretch, path);

@@ -24,7 +24,7 @@ const ORDERS: usize = 12;
 
 /// One wave: amplitude x cos(wavenumber s + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Tone {
+struct GustWave {
     wavenumber: f64,
     amplitude: f64,
     phase: f64,
@@ -34,9 +34,9 @@ struct Tone {
 /// found it, and the wave that turns the wind.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Gusts {
-    along: [Tone; TONES],
-    across: [Tone; TONES],
-    wander: Tone,
+    along: [GustWave; TONES],
+    across: [GustWave; TONES],
+    wander: GustWave,
 }
 
 /// How the air stirs about the mean wind, per m/s of mean speed, in quantities that can be mixed. Vectors (east,
@@ -77,7 +77,7 @@ impl Stir {
 /// A stretch of path on which the stirring goes evenly from one state to another: `from` at `start_m`, `to` after
 /// `length_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stretch {
+pub(super) struct GustStretch {
     pub start_m: f64,
     pub length_m: f64,
     pub from: Stir,
@@ -133,13 +133,13 @@ impl Gusts {
     pub fn new(seed: u64) -> Self {
         // A word of its own, so that nothing else that the seed decides goes with the gusts.
         let mut random = randoms(seed ^ 0x7769_6e64_2067_7573);
-        let mut tones = |scale_m: f64| -> [Tone; TONES] {
+        let mut tones = |scale_m: f64| -> [GustWave; TONES] {
             let (low, high) = (scale_m / WAVES_M.0, scale_m / WAVES_M.1);
             let edge = |i: f64| low * libm::pow(high / low, i / TONES as f64);
             let whole = share_below(high) - share_below(low);
             std::array::from_fn(|i| {
                 let variance = (share_below(edge(i as f64 + 1.0)) - share_below(edge(i as f64))) / whole;
-                Tone {
+                GustWave {
                     wavenumber: TAU / scale_m * edge(i as f64 + random()),
                     amplitude: (2.0 * variance).sqrt(),
                     phase: TAU * random(),
@@ -147,12 +147,12 @@ impl Gusts {
             })
         };
         let (along, across) = (tones(LENGTHS_M[0]), tones(LENGTHS_M[1]));
-        let wander = Tone { wavenumber: TAU / WANDER_M, amplitude: 1.0, phase: TAU * random() };
+        let wander = GustWave { wavenumber: TAU / WANDER_M, amplitude: 1.0, phase: TAU * random() };
         Self { along, across, wander }
     }
 
     /// Returns what the stirring adds over the first `y_m` of a stretch.
-    pub fn over(&self, stretch: &Stretch, y_m: f64) -> Stirred {
+    pub fn over(&self, stretch: &GustStretch, y_m: f64) -> Stirred {
         let (from, rise, there) = (&stretch.from, &stretch.rise_per_m(), &stretch.stir_after(y_m));
         // In standard deviations: now, and the integrals of it and of it times the way.
         let [along, across] = [&self.along, &self.across].map(|tones| {
@@ -184,7 +184,7 @@ fn orders(series: &[DVec2; 2 * ORDERS + 1]) -> impl Iterator<Item = (f64, DVec2)
     series[..count].iter().enumerate().map(|(i, c)| (i as f64 - ORDERS as f64, *c))
 }
 
-impl Stretch {
+impl GustStretch {
     /// The stirring after `y_m` of it.
     pub fn stir_after(&self, y_m: f64) -> Stir {
         let part = if self.length_m > 0.0 { y_m / self.length_m } else { 0.0 };

@@ -44,7 +44,7 @@ use crate::{
     error::{Result, check_range},
     falling::FallingLayer,
     light::{Exposure, ToneCurve},
-    moment::{Moment, Region, Scene, WeatherOver},
+    moment::{Region, Scene, SceneMoment, WeatherOver},
     planet::Planet,
     scene::{HostLight, LocalFrame, Place, WorldFrame},
     surroundings::{LyingSnow, OccluderMaps, Shelter, TerrainHeights, WindTexture},
@@ -179,7 +179,7 @@ fn next_revision() -> u64 {
 }
 
 /// Description that a world is made from.
-pub(crate) struct Made {
+pub(crate) struct WorldDesc {
     pub frame: WorldFrame,
     pub planet: Planet,
     pub seed: u64,
@@ -193,8 +193,8 @@ impl World {
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
-    pub fn new(made: Made, weather: Conditions, couplings: Couplings) -> Result<Self> {
-        let Made { frame, planet, seed, exposure, tone, utc_at_zero } = made;
+    pub fn new(made: WorldDesc, weather: Conditions, couplings: Couplings) -> Result<Self> {
+        let WorldDesc { frame, planet, seed, exposure, tone, utc_at_zero } = made;
         frame.validate()?;
         planet.check()?;
         exposure.validate()?;
@@ -334,11 +334,11 @@ impl World {
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.
-    pub fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<Moment<'_>> {
+    pub fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<SceneMoment<'_>> {
         let KeptScene { scene, here, wind, .. } = self.scene_kept(name, eye, kept)?;
         let weather = self.over();
         let carried = wind.map(|now| weather.wind.carrying_as(self.time_s, now));
-        Ok(Moment {
+        Ok(SceneMoment {
             eye,
             time_s: self.time_s,
             seed: self.seed,

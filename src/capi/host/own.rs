@@ -9,7 +9,7 @@ use crate::{
         context::ContextObject,
         device_cell::DeviceCell,
         frame::{self, Images, in_frame, wk_frame, wk_own_target},
-        handles::Object,
+        handles::HandleObject,
         occluder::wk_occluder_map,
         surface::SurfaceObject,
         texture::*,
@@ -87,7 +87,7 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
 }
 
 /// An object of this device, or nothing for NULL.
-fn of_device<T: Object>(
+fn of_device<T: HandleObject>(
     call: &mut Call,
     here: &Arc<DeviceCell>,
     param: &str,

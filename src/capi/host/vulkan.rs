@@ -28,7 +28,7 @@ const MAX_NAMES: usize = 4096;
 /// Most semaphores in a list.
 const MAX_SEMAPHORES: usize = 16;
 
-type GetProc = unsafe extern "system" fn(*mut c_void, *const c_char) -> *mut c_void;
+type VulkanGetProc = unsafe extern "system" fn(*mut c_void, *const c_char) -> *mut c_void;
 
 /// # Safety
 /// The header's promises about `wk_vulkan_host_desc`.
@@ -44,7 +44,7 @@ pub(in crate::capi) unsafe fn open(c: &wk_vulkan_host_desc) -> Result<*mut wk_de
         )
     };
     // SAFETY: both types take (instance or NULL, name) and answer a function pointer or NULL.
-    let get_proc = |f: GetProc| unsafe { std::mem::transmute::<GetProc, vk::PFN_vkGetInstanceProcAddr>(f) };
+    let get_proc = |f: VulkanGetProc| unsafe { std::mem::transmute::<VulkanGetProc, vk::PFN_vkGetInstanceProcAddr>(f) };
     let desc = VulkanHostDesc {
         get_instance_proc_addr: c.get_instance_proc_addr.map(get_proc),
         instance: vk::Instance::from_raw(raw(c.instance)),

@@ -13,7 +13,7 @@ use crate::{
     scene::WorldFrame,
     surroundings::{Planes, Shelter},
     weather::{Weather, Wind, derive},
-    world::{Couplings, Made},
+    world::{Couplings, WorldDesc},
 };
 
 /// A world with a field, led as a context leads it.
@@ -37,7 +37,7 @@ fn small(mode: WindFieldMode) -> WindFieldDesc {
 
 impl Bench {
     fn new(mode: WindFieldMode) -> Self {
-        let made = Made {
+        let made = WorldDesc {
             frame: WorldFrame::default(),
             planet: Planet::earth(),
             seed: 3,

@@ -6,7 +6,7 @@ use crate::error::{Error, Result, Status};
 
 /// A framebuffer at one end of a copy.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct End {
+pub(super) struct BlitEnd {
     pub(super) framebuffer: u32,
     /// The host's own, whose choice of buffers is put back after the copy.
     pub(super) hosts: bool,
@@ -17,7 +17,7 @@ pub(super) struct End {
 ///
 /// # Errors
 /// What OpenGL refuses, named.
-pub(super) fn copy(api: &Api, from: End, to: End, mask: u32, (width, height): (u32, u32)) -> Result<()> {
+pub(super) fn copy(api: &Api, from: BlitEnd, to: BlitEnd, mask: u32, (width, height): (u32, u32)) -> Result<()> {
     api.BindFramebuffer(READ_FRAMEBUFFER, from.framebuffer);
     api.BindFramebuffer(DRAW_FRAMEBUFFER, to.framebuffer);
     // Both ends have one encoding; desktop OpenGL decodes and encodes only where this is on.
@@ -59,7 +59,7 @@ pub(super) fn copy(api: &Api, from: End, to: End, mask: u32, (width, height): (u
 }
 
 /// Makes the bound read framebuffer read what it draws to; answers what it read before.
-fn read_what_is_drawn(api: &Api, from: End) -> u32 {
+fn read_what_is_drawn(api: &Api, from: BlitEnd) -> u32 {
     let was = api.uint(READ_BUFFER);
     let drawn_before = api.uint(DRAW_FRAMEBUFFER_BINDING);
     api.BindFramebuffer(DRAW_FRAMEBUFFER, from.framebuffer);

@@ -7,11 +7,11 @@ use wgpu::hal::{MemoryFlags, api::Gles, gles};
 
 use super::{
     api::Api,
-    blit::{self, End},
+    blit::{self, BlitEnd},
     formats,
-    image::{self, Ask, Facts, GlImage, Parameters, Side, target_of},
+    image::{self, Ask, Facts, GlImage, Parameters, TargetSide, target_of},
     names::*,
-    target::{Copied, Entry, GlTarget, GlTargetDesc, Made, Multisample, Part, mask},
+    target::{Copied, Entry, GlTarget, GlTargetDesc, Multisample, TargetImage, TargetObjects, mask},
 };
 use crate::error::{Error, Result, Status};
 
@@ -25,7 +25,7 @@ pub(super) struct Workshop<'a> {
 
 /// An OpenGL object that a wgpu texture stands for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Object {
+pub(super) enum GlObject {
     /// Name and target.
     Texture(u32, u32),
     Renderbuffer(u32),
@@ -33,7 +33,7 @@ pub(super) enum Object {
     Framebuffer(u32),
 }
 
-impl Object {
+impl GlObject {
     fn name(self) -> u32 {
         let (Self::Texture(name, _) | Self::Renderbuffer(name) | Self::Framebuffer(name)) = self;
         name
@@ -57,27 +57,27 @@ const ATTACH: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT;
 const READ: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING;
 const COPIES: wgpu::TextureUsages = wgpu::TextureUsages::COPY_SRC.union(wgpu::TextureUsages::COPY_DST);
 
-impl Part {
+impl TargetImage {
     /// wgpu's name of the format.
     fn format(&self) -> Result<wgpu::TextureFormat> {
         formats::format(self.facts.internal, self.side)
     }
 
     /// Returns the object that is drawn to.
-    fn attached(&self, samples: u32) -> Object {
+    fn attached(&self, samples: u32) -> GlObject {
         match (self.image, &self.copy) {
-            (_, Some(copy)) if copy.drawn_to => Object::Texture(copy.texture, target_of(samples)),
-            (GlImage::Texture { name, target }, _) => Object::Texture(name, target),
-            (GlImage::Renderbuffer { name }, _) => Object::Renderbuffer(name),
-            (GlImage::Framebuffer { name }, _) => Object::Framebuffer(name),
+            (_, Some(copy)) if copy.drawn_to => GlObject::Texture(copy.texture, target_of(samples)),
+            (GlImage::Texture { name, target }, _) => GlObject::Texture(name, target),
+            (GlImage::Renderbuffer { name }, _) => GlObject::Renderbuffer(name),
+            (GlImage::Framebuffer { name }, _) => GlObject::Framebuffer(name),
         }
     }
 
     /// Returns the object that is read, if any can be.
-    fn readable(&self, samples: u32) -> Option<Object> {
+    fn readable(&self, samples: u32) -> Option<GlObject> {
         match (self.image, &self.copy) {
-            (_, Some(copy)) => Some(Object::Texture(copy.texture, target_of(samples))),
-            (GlImage::Texture { name, target }, None) => Some(Object::Texture(name, target)),
+            (_, Some(copy)) => Some(GlObject::Texture(copy.texture, target_of(samples))),
+            (GlImage::Texture { name, target }, None) => Some(GlObject::Texture(name, target)),
             _ => None,
         }
     }
@@ -89,7 +89,7 @@ impl Workshop<'_> {
     /// # Errors
     /// Whatever of the host's images cannot be served, named with the parameter.
     pub(super) fn build(&self, desc: GlTargetDesc, id: u64) -> Result<Entry> {
-        let mut made = Made::default();
+        let mut made = TargetObjects::default();
         match self.assemble(desc, id, &mut made) {
             Ok((target, parts)) => Ok(Entry { desc, target: Arc::new(target), used: id, parts, made }),
             Err(e) => {
@@ -99,13 +99,13 @@ impl Workshop<'_> {
         }
     }
 
-    fn assemble(&self, desc: GlTargetDesc, id: u64, made: &mut Made) -> Result<(GlTarget, Vec<Part>)> {
+    fn assemble(&self, desc: GlTargetDesc, id: u64, made: &mut TargetObjects) -> Result<(GlTarget, Vec<TargetImage>)> {
         if desc.depth == Some(desc.color) && !matches!(desc.color, GlImage::Framebuffer { .. }) {
             return self.only_depth(desc, id, made);
         }
-        let mut parts = vec![self.part(desc, desc.color, Side::Color)?];
+        let mut parts = vec![self.part(desc, desc.color, TargetSide::Color)?];
         if let Some(image) = desc.depth {
-            parts.push(self.part(desc, image, Side::Depth)?);
+            parts.push(self.part(desc, image, TargetSide::Depth)?);
         }
         let samples = parts[0].facts.samples;
         // Depth of several samples beside a resolved picture is copied to depth of one; OpenGL ES cannot do that.
@@ -119,9 +119,9 @@ impl Workshop<'_> {
             check_written_back(&parts, resolve)?;
         }
         let read = |image: Option<GlImage>, side| image.map(|image| self.read_part(desc, image, side)).transpose();
-        let mask_part = read(desc.mask, Side::Mask)?;
-        let classes_part = read(desc.surface_classes, Side::Classes)?;
-        let normals_part = read(desc.normals, Side::Normals)?;
+        let mask_part = read(desc.mask, TargetSide::Mask)?;
+        let classes_part = read(desc.surface_classes, TargetSide::Classes)?;
+        let normals_part = read(desc.normals, TargetSide::Normals)?;
         let samples = if resolve { 1 } else { samples };
         for part in &mut parts {
             self.provide_copy(part, part.facts.samples > samples, samples, made)?;
@@ -129,7 +129,7 @@ impl Workshop<'_> {
         // wgpu cannot attach multisampled textures: they need a framebuffer of ours, colour and depth together.
         let attached = || parts.iter().map(|p| (p.side, p.attached(samples), p.facts.internal));
         let through = if attached().any(|(_, object, _)| object.is_multisampled_texture()) {
-            Some(Object::Framebuffer(self.framebuffer(&attached().collect::<Vec<_>>(), made)?))
+            Some(GlObject::Framebuffer(self.framebuffer(&attached().collect::<Vec<_>>(), made)?))
         } else {
             None
         };
@@ -138,7 +138,7 @@ impl Workshop<'_> {
             Some(part) => self.depth(part, samples, through)?,
             None => (None, None),
         };
-        let mut wrap = |part: Option<Part>| {
+        let mut wrap = |part: Option<TargetImage>| {
             let Some(part) = part else { return Ok(None) };
             let texture = self.wrap(part.attached(1), part.format()?, part.facts, 1, READ)?;
             parts.push(part);
@@ -150,8 +150,13 @@ impl Workshop<'_> {
     }
 
     /// A target that is only read: its depth stands for its colour too.
-    fn only_depth(&self, desc: GlTargetDesc, id: u64, made: &mut Made) -> Result<(GlTarget, Vec<Part>)> {
-        let mut part = self.part(desc, desc.color, Side::Depth)?;
+    fn only_depth(
+        &self,
+        desc: GlTargetDesc,
+        id: u64,
+        made: &mut TargetObjects,
+    ) -> Result<(GlTarget, Vec<TargetImage>)> {
+        let mut part = self.part(desc, desc.color, TargetSide::Depth)?;
         if part.facts.samples != 1 {
             return Err(Error::range("target.depth", "an image of one sample", part.facts.samples));
         }
@@ -175,7 +180,7 @@ impl Workshop<'_> {
     }
 
     /// Asks about what is only read beside colour and depth.
-    fn read_part(&self, desc: GlTargetDesc, image: GlImage, side: Side) -> Result<Part> {
+    fn read_part(&self, desc: GlTargetDesc, image: GlImage, side: TargetSide) -> Result<TargetImage> {
         if !matches!(image, GlImage::Texture { target: TEXTURE_2D, .. }) {
             let rest = "must be a texture of target GL_TEXTURE_2D";
             return Err(Error::about(Status::Unsupported, side.parameter(), rest));
@@ -210,9 +215,9 @@ impl Workshop<'_> {
     }
 
     /// Asks about one image and checks its size and format.
-    fn part(&self, desc: GlTargetDesc, image: GlImage, side: Side) -> Result<Part> {
+    fn part(&self, desc: GlTargetDesc, image: GlImage, side: TargetSide) -> Result<TargetImage> {
         let size = (desc.width, desc.height);
-        if let (Side::Depth, GlImage::Framebuffer { .. }) = (side, image)
+        if let (TargetSide::Depth, GlImage::Framebuffer { .. }) = (side, image)
             && image != desc.color
         {
             return Err(Error::invalid("target.depth", "must be the same framebuffer as color where it is one"));
@@ -237,29 +242,35 @@ impl Workshop<'_> {
             GlImage::Texture { name, target } => Some(Parameters::new(self.ask.info, name, target, side)),
             _ => None,
         };
-        Ok(Part { side, image, facts, parameters, copy: None, reading: None })
+        Ok(TargetImage { side, image, facts, parameters, copy: None, reading: None })
     }
 
     /// Makes the copy that an image needs, and the framebuffers at its two ends.
-    fn provide_copy(&self, part: &mut Part, resolve: bool, samples: u32, made: &mut Made) -> Result<()> {
+    fn provide_copy(
+        &self,
+        part: &mut TargetImage,
+        resolve: bool,
+        samples: u32,
+        made: &mut TargetObjects,
+    ) -> Result<()> {
         let drawn_to = resolve || matches!(part.image, GlImage::Framebuffer { .. });
         // wgpu reads only textures, and depth is always read.
-        let read = part.side == Side::Depth && matches!(part.image, GlImage::Renderbuffer { .. });
+        let read = part.side == TargetSide::Depth && matches!(part.image, GlImage::Renderbuffer { .. });
         if !drawn_to && !read {
             return Ok(());
         }
         let from = match part.image {
-            GlImage::Framebuffer { name } => End { framebuffer: name, hosts: true },
+            GlImage::Framebuffer { name } => BlitEnd { framebuffer: name, hosts: true },
             GlImage::Texture { name, target } => {
-                self.end(&[(part.side, Object::Texture(name, target), part.facts.internal)], made)?
+                self.end(&[(part.side, GlObject::Texture(name, target), part.facts.internal)], made)?
             }
             GlImage::Renderbuffer { name } => {
-                self.end(&[(part.side, Object::Renderbuffer(name), part.facts.internal)], made)?
+                self.end(&[(part.side, GlObject::Renderbuffer(name), part.facts.internal)], made)?
             }
         };
         // A window's depth is known only by its bits, and drivers differ in what they copy it to; colours convert.
         let others: &[u32] = match (part.image, part.side) {
-            (GlImage::Framebuffer { .. }, Side::Depth) => {
+            (GlImage::Framebuffer { .. }, TargetSide::Depth) => {
                 &[DEPTH24_STENCIL8, DEPTH_COMPONENT24, DEPTH_COMPONENT32F, DEPTH32F_STENCIL8, DEPTH_COMPONENT16]
             }
             _ => &[],
@@ -268,7 +279,7 @@ impl Workshop<'_> {
         let mut outcome = Ok(());
         for internal in std::iter::once(part.facts.internal).chain(others.iter().copied()) {
             let texture = self.storage(part.side, internal, size, samples, made)?;
-            let to = self.end(&[(part.side, Object::Texture(texture, target_of(samples)), internal)], made)?;
+            let to = self.end(&[(part.side, GlObject::Texture(texture, target_of(samples)), internal)], made)?;
             outcome = blit::copy(self.ask.api, from, to, mask(part.side, internal), size);
             if outcome.is_ok() {
                 part.copy = Some(Copied { from, to, texture, drawn_to });
@@ -279,7 +290,14 @@ impl Workshop<'_> {
     }
 
     /// A texture of ours like one of the host's images.
-    fn storage(&self, side: Side, internal: u32, size: (u32, u32), samples: u32, made: &mut Made) -> Result<u32> {
+    fn storage(
+        &self,
+        side: TargetSide,
+        internal: u32,
+        size: (u32, u32),
+        samples: u32,
+        made: &mut TargetObjects,
+    ) -> Result<u32> {
         let api = self.ask.api;
         api.take_error();
         let texture = image::make_texture(api, internal, size, samples);
@@ -288,26 +306,26 @@ impl Workshop<'_> {
         if error == NO_ERROR { Ok(texture) } else { Err(refused(side, internal, "copy", error)) }
     }
 
-    fn end(&self, images: &[(Side, Object, u32)], made: &mut Made) -> Result<End> {
-        Ok(End { framebuffer: self.framebuffer(images, made)?, hosts: false })
+    fn end(&self, images: &[(TargetSide, GlObject, u32)], made: &mut TargetObjects) -> Result<BlitEnd> {
+        Ok(BlitEnd { framebuffer: self.framebuffer(images, made)?, hosts: false })
     }
 
     /// A framebuffer of ours with the given images and their internal formats.
-    fn framebuffer(&self, images: &[(Side, Object, u32)], made: &mut Made) -> Result<u32> {
+    fn framebuffer(&self, images: &[(TargetSide, GlObject, u32)], made: &mut TargetObjects) -> Result<u32> {
         let api = self.ask.api;
         let framebuffer = api.one(Api::GenFramebuffers);
         made.framebuffers.push(framebuffer);
         api.BindFramebuffer(FRAMEBUFFER, framebuffer);
         for (side, image, internal) in images {
             let attachment = match side {
-                Side::Color | Side::Mask | Side::Classes | Side::Normals => COLOR_ATTACHMENT0,
-                Side::Depth if formats::has_stencil(*internal) => DEPTH_STENCIL_ATTACHMENT,
-                Side::Depth => DEPTH_ATTACHMENT,
+                TargetSide::Color | TargetSide::Mask | TargetSide::Classes | TargetSide::Normals => COLOR_ATTACHMENT0,
+                TargetSide::Depth if formats::has_stencil(*internal) => DEPTH_STENCIL_ATTACHMENT,
+                TargetSide::Depth => DEPTH_ATTACHMENT,
             };
             image.attach(api, attachment);
             made.attached.push((framebuffer, attachment, *image));
         }
-        if images.iter().all(|(side, ..)| *side == Side::Depth) {
+        if images.iter().all(|(side, ..)| *side == TargetSide::Depth) {
             let none = NONE;
             // SAFETY: one value is passed.
             unsafe { api.DrawBuffers(1, &none) };
@@ -326,25 +344,25 @@ impl Workshop<'_> {
     /// The picture as wgpu textures: to draw to, and to read where wgpu cannot copy that.
     fn color(
         &self,
-        part: &mut Part,
+        part: &mut TargetImage,
         samples: u32,
-        through: Option<Object>,
-        made: &mut Made,
+        through: Option<GlObject>,
+        made: &mut TargetObjects,
     ) -> Result<(wgpu::Texture, Option<wgpu::Texture>)> {
         let format = part.format()?;
         let object = part.attached(samples);
         if through.is_none() {
             self.check_attachable(part, object)?;
         }
-        if let (Object::Texture(..), None) = (object, through) {
+        if let (GlObject::Texture(..), None) = (object, through) {
             return Ok((self.wrap(object, format, part.facts, samples, ATTACH | READ | COPIES)?, None));
         }
         let internal = part.facts.internal;
-        let from = self.end(&[(Side::Color, object, internal)], made)?;
+        let from = self.end(&[(TargetSide::Color, object, internal)], made)?;
         let size = (part.facts.width, part.facts.height);
-        let texture = self.storage(Side::Color, internal, size, samples, made)?;
-        let ours = Object::Texture(texture, target_of(samples));
-        let to = self.end(&[(Side::Color, ours, internal)], made)?;
+        let texture = self.storage(TargetSide::Color, internal, size, samples, made)?;
+        let ours = GlObject::Texture(texture, target_of(samples));
+        let to = self.end(&[(TargetSide::Color, ours, internal)], made)?;
         part.reading = Some(Copied { from, to, texture, drawn_to: false });
         let read = self.wrap(ours, format, part.facts, samples, READ)?;
         let color = self.wrap(through.unwrap_or(object), format, part.facts, samples, ATTACH)?;
@@ -355,9 +373,9 @@ impl Workshop<'_> {
     /// attached.
     fn depth(
         &self,
-        part: &Part,
+        part: &TargetImage,
         samples: u32,
-        through: Option<Object>,
+        through: Option<GlObject>,
     ) -> Result<(Option<wgpu::Texture>, Option<wgpu::Texture>)> {
         let format = part.format()?;
         let object = part.attached(samples);
@@ -370,8 +388,8 @@ impl Workshop<'_> {
     }
 
     /// Makes sure that the driver can draw to what wgpu is going to attach.
-    fn check_attachable(&self, part: &Part, object: Object) -> Result<()> {
-        let mut probe = Made::default();
+    fn check_attachable(&self, part: &TargetImage, object: GlObject) -> Result<()> {
+        let mut probe = TargetObjects::default();
         let outcome = self.framebuffer(&[(part.side, object, part.facts.internal)], &mut probe);
         probe.delete(self.ask.api);
         outcome.map(|_| ())
@@ -380,7 +398,7 @@ impl Workshop<'_> {
     /// Makes a wgpu texture of an OpenGL object without owning it.
     fn wrap(
         &self,
-        object: Object,
+        object: GlObject,
         format: wgpu::TextureFormat,
         facts: Facts,
         samples: u32,
@@ -411,15 +429,15 @@ impl Workshop<'_> {
         // for multisampled textures, which the backend does not know.
         let texture = unsafe {
             match object {
-                Object::Renderbuffer(_) => hal_device.texture_from_raw_renderbuffer(name, &desc, keep),
-                Object::Texture(_, target) => {
+                GlObject::Renderbuffer(_) => hal_device.texture_from_raw_renderbuffer(name, &desc, keep),
+                GlObject::Texture(_, target) => {
                     let mut texture = hal_device.texture_from_raw(name, &desc, keep);
                     if let gles::TextureInner::Texture { target: t, .. } = &mut texture.inner {
                         *t = target;
                     }
                     texture
                 }
-                Object::Framebuffer(_) => {
+                GlObject::Framebuffer(_) => {
                     let mut texture = hal_device.texture_from_raw(name, &desc, keep);
                     let inner = glow::NativeFramebuffer(name);
                     texture.inner = gles::TextureInner::ExternalNativeFramebuffer { inner };
@@ -444,7 +462,7 @@ impl Workshop<'_> {
 }
 
 /// Refuses depth that is drawn to with fewer samples than it has: the samples' own depths would be lost.
-fn check_written_back(parts: &[Part], resolve: bool) -> Result<()> {
+fn check_written_back(parts: &[TargetImage], resolve: bool) -> Result<()> {
     if resolve {
         let rest = "must be each where depth is written: of the depths of a pixel's samples only one would be left";
         return Err(Error::about(Status::Unsupported, "target.multisample", rest));
@@ -460,14 +478,14 @@ fn check_written_back(parts: &[Part], resolve: bool) -> Result<()> {
 }
 
 /// Returns the error for an image that this context refuses, with a format that always serves.
-fn refused(side: Side, internal: u32, verb: &str, answer: u32) -> Error {
+fn refused(side: TargetSide, internal: u32, verb: &str, answer: u32) -> Error {
     let parameter = side.parameter();
     let (internal, answer_text) = (spell(internal), spell(answer));
     if answer == OUT_OF_MEMORY {
         let text = format!("there is no memory to {verb} {parameter}, an image of {internal}");
         return Error::new(Status::OutOfMemory, text);
     }
-    let serves = if side == Side::Depth { "GL_DEPTH_COMPONENT24" } else { "GL_RGBA8" };
+    let serves = if side == TargetSide::Depth { "GL_DEPTH_COMPONENT24" } else { "GL_RGBA8" };
     let rest = format!(
         "must be an image that this context can {verb} ({serves} always is one), {internal} gives {answer_text}"
     );

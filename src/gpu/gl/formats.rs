@@ -2,7 +2,7 @@
 
 use wgpu::TextureFormat as Format;
 
-use super::{image::Side, names::*};
+use super::{image::TargetSide, names::*};
 use crate::error::{Error, Result, Status};
 
 /// The colour formats a host may hand over.
@@ -91,12 +91,12 @@ impl Bits {
 ///
 /// # Errors
 /// [`crate::Status::Unsupported`] naming the parameter, the format and the accepted ones.
-pub(super) fn format(internal: u32, side: Side) -> Result<Format> {
+pub(super) fn format(internal: u32, side: TargetSide) -> Result<Format> {
     let table = match side {
-        Side::Color => COLOR,
-        Side::Depth => DEPTH,
-        Side::Mask | Side::Classes => MASK,
-        Side::Normals => NORMALS,
+        TargetSide::Color => COLOR,
+        TargetSide::Depth => DEPTH,
+        TargetSide::Mask | TargetSide::Classes => MASK,
+        TargetSide::Normals => NORMALS,
     };
     if let Some((_, _, format)) = table.iter().find(|(name, ..)| *name == internal) {
         return Ok(*format);
@@ -138,20 +138,20 @@ mod tests {
 
     #[test]
     fn a_refused_format_is_named_with_the_accepted_ones() {
-        let error = format(0x8057, Side::Color).unwrap_err();
+        let error = format(0x8057, TargetSide::Color).unwrap_err();
         assert_eq!(error.status, crate::Status::Unsupported);
         for part in ["target.color", "GL_RGB5_A1 (0x8057)", "GL_RGBA8", "GL_RGBA16F"] {
             assert!(error.to_string().contains(part), "{}", error);
         }
-        assert!(format(RGBA8, Side::Depth).is_err() && format(DEPTH_COMPONENT16, Side::Mask).is_err());
+        assert!(format(RGBA8, TargetSide::Depth).is_err() && format(DEPTH_COMPONENT16, TargetSide::Mask).is_err());
         // Signs need two halves or a float's; a class is a byte.
         for (bad, side, name) in
-            [(R8, Side::Normals, "target.normals"), (RGBA16F, Side::Classes, "target.surface_classes")]
+            [(R8, TargetSide::Normals, "target.normals"), (RGBA16F, TargetSide::Classes, "target.surface_classes")]
         {
             let error = format(bad, side).unwrap_err();
             assert!(error.to_string().starts_with(name) && error.to_string().contains("GL_RGBA8"), "{}", error);
         }
-        assert!(format(RGB16F, Side::Normals).is_ok() && format(R8, Side::Classes).is_ok());
+        assert!(format(RGB16F, TargetSide::Normals).is_ok() && format(R8, TargetSide::Classes).is_ok());
     }
 
     #[test]

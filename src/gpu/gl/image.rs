@@ -33,7 +33,7 @@ pub enum GlImage {
 
 /// Side of a target that an image serves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum TargetSide {
     Color,
     Depth,
     Mask,
@@ -41,7 +41,7 @@ pub(super) enum Side {
     Normals,
 }
 
-impl Side {
+impl TargetSide {
     /// Returns the noun for the image's contents, in messages.
     pub(super) fn noun(self) -> &'static str {
         &self.parameter()["target.".len()..]
@@ -91,7 +91,7 @@ pub(super) struct Ask<'a> {
 ///
 /// # Errors
 /// No such object, a target or format that cannot be served, named.
-pub(super) fn facts(ask: Ask<'_>, image: GlImage, side: Side, size: (u32, u32)) -> Result<Facts> {
+pub(super) fn facts(ask: Ask<'_>, image: GlImage, side: TargetSide, size: (u32, u32)) -> Result<Facts> {
     ask.api.take_error(); // only what the next calls raise counts
     match image {
         GlImage::Texture { name, target } => texture_facts(ask, name, target, side, size),
@@ -100,12 +100,12 @@ pub(super) fn facts(ask: Ask<'_>, image: GlImage, side: Side, size: (u32, u32)) 
     }
 }
 
-fn dead(side: Side, kind: &str, name: u32) -> Error {
+fn dead(side: TargetSide, kind: &str, name: u32) -> Error {
     let accepted = format!("the name of a {kind} of the host's context or its share group");
     Error::range(side.parameter(), &accepted, name)
 }
 
-fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: Side, size: (u32, u32)) -> Result<Facts> {
+fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: TargetSide, size: (u32, u32)) -> Result<Facts> {
     let Ask { api, info, scratch, .. } = ask;
     let multisample = target == TEXTURE_2D_MULTISAMPLE;
     if target != TEXTURE_2D && !(multisample && info.at_least((3, 2), (3, 1))) {
@@ -147,8 +147,8 @@ fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: Side, size: (u32, u
 }
 
 /// Attaches the texture to `scratch` and counts its bits.
-fn attached_bits(api: &Api, name: u32, target: u32, side: Side, scratch: u32) -> Bits {
-    let attachment = if side == Side::Depth { DEPTH_ATTACHMENT } else { COLOR_ATTACHMENT0 };
+fn attached_bits(api: &Api, name: u32, target: u32, side: TargetSide, scratch: u32) -> Bits {
+    let attachment = if side == TargetSide::Depth { DEPTH_ATTACHMENT } else { COLOR_ATTACHMENT0 };
     api.BindFramebuffer(READ_FRAMEBUFFER, scratch);
     api.FramebufferTexture2D(READ_FRAMEBUFFER, attachment, target, name, 0);
     let bits = count_bits(api, READ_FRAMEBUFFER, attachment, side);
@@ -158,7 +158,7 @@ fn attached_bits(api: &Api, name: u32, target: u32, side: Side, scratch: u32) ->
     bits
 }
 
-fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: Side) -> Bits {
+fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: TargetSide) -> Bits {
     let get = |pname| {
         let mut value = 0;
         // SAFETY: attachment parameters are one integer each.
@@ -170,7 +170,7 @@ fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: Side) -> Bits 
     }
     let component = get(FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE) as u32;
     match side {
-        Side::Color | Side::Mask | Side::Classes | Side::Normals => Bits {
+        TargetSide::Color | TargetSide::Mask | TargetSide::Classes | TargetSide::Normals => Bits {
             red: get(FRAMEBUFFER_ATTACHMENT_RED_SIZE),
             green: get(FRAMEBUFFER_ATTACHMENT_GREEN_SIZE),
             alpha: get(FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE),
@@ -178,7 +178,7 @@ fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: Side) -> Bits 
             component,
             ..Bits::default()
         },
-        Side::Depth => Bits {
+        TargetSide::Depth => Bits {
             depth: get(FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE),
             stencil: stencil_bits(api, framebuffer, attachment),
             component,
@@ -207,8 +207,8 @@ fn stencil_bits(api: &Api, framebuffer: u32, depth_attachment: u32) -> i32 {
     found[1]
 }
 
-fn sized(bits: Bits, side: Side) -> Result<u32> {
-    let found = if side == Side::Depth { bits.depth() } else { bits.color() };
+fn sized(bits: Bits, side: TargetSide) -> Result<u32> {
+    let found = if side == TargetSide::Depth { bits.depth() } else { bits.color() };
     found.ok_or_else(|| {
         let rest = format!(
             "must have a format that can be drawn to and has a name, got {} red, {} alpha, {} depth and {} stencil bits",
@@ -218,7 +218,7 @@ fn sized(bits: Bits, side: Side) -> Result<u32> {
     })
 }
 
-fn renderbuffer_facts(api: &Api, name: u32, side: Side) -> Result<Facts> {
+fn renderbuffer_facts(api: &Api, name: u32, side: TargetSide) -> Result<Facts> {
     if api.IsRenderbuffer(name) == 0 {
         return Err(dead(side, "renderbuffer", name));
     }
@@ -243,7 +243,7 @@ fn renderbuffer_facts(api: &Api, name: u32, side: Side) -> Result<Facts> {
     Ok(facts)
 }
 
-fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> Result<Facts> {
+fn framebuffer_facts(ask: Ask<'_>, name: u32, side: TargetSide, size: (u32, u32)) -> Result<Facts> {
     let Ask { api, info, .. } = ask;
     api.BindFramebuffer(FRAMEBUFFER, name);
     if api.take_error() != NO_ERROR {
@@ -255,18 +255,20 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> R
         return Err(Error::invalid(side.parameter(), rest));
     }
     let attachment = match (side, name) {
-        (Side::Color | Side::Mask | Side::Classes | Side::Normals, _) => match api.uint(DRAW_BUFFER0) {
-            NONE => {
-                let rest = format!("must draw to a colour buffer, framebuffer {name} has GL_NONE");
-                return Err(Error::invalid(side.parameter(), rest));
+        (TargetSide::Color | TargetSide::Mask | TargetSide::Classes | TargetSide::Normals, _) => {
+            match api.uint(DRAW_BUFFER0) {
+                NONE => {
+                    let rest = format!("must draw to a colour buffer, framebuffer {name} has GL_NONE");
+                    return Err(Error::invalid(side.parameter(), rest));
+                }
+                // The window's buffers are asked for one by one on desktop OpenGL, as GL_BACK on OpenGL ES.
+                BACK if !info.is_es() => BACK_LEFT,
+                FRONT | 0x0406 if !info.is_es() => FRONT_LEFT,
+                other => other,
             }
-            // The window's buffers are asked for one by one on desktop OpenGL, as GL_BACK on OpenGL ES.
-            BACK if !info.is_es() => BACK_LEFT,
-            FRONT | 0x0406 if !info.is_es() => FRONT_LEFT,
-            other => other,
-        },
-        (Side::Depth, 0) => DEPTH,
-        (Side::Depth, _) => DEPTH_ATTACHMENT,
+        }
+        (TargetSide::Depth, 0) => DEPTH,
+        (TargetSide::Depth, _) => DEPTH_ATTACHMENT,
     };
     let mut bits = count_bits(api, DRAW_FRAMEBUFFER, attachment, side);
     // A window may be able to encode and yet get what the host encoded itself.
@@ -275,7 +277,7 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> R
     let attached_size = if name == 0 { None } else { attached_size(ask, attachment, samples) };
     api.BindFramebuffer(FRAMEBUFFER, 0);
     api.take_error();
-    if side == Side::Depth && bits.depth == 0 {
+    if side == TargetSide::Depth && bits.depth == 0 {
         let rest = format!("must name a framebuffer that has depth, framebuffer {name} has none");
         return Err(Error::invalid(side.parameter(), rest));
     }
@@ -294,7 +296,7 @@ fn attached_size(ask: Ask<'_>, attachment: u32, samples: u32) -> Option<(u32, u3
     };
     let name = get(FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) as u32;
     if get(FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) as u32 == RENDERBUFFER {
-        return renderbuffer_facts(api, name, Side::Color).ok().map(|f| (f.width, f.height));
+        return renderbuffer_facts(api, name, TargetSide::Color).ok().map(|f| (f.width, f.height));
     }
     if !ask.info.at_least((1, 0), (3, 1)) {
         return None;
@@ -326,7 +328,7 @@ pub(super) struct Parameters {
 }
 
 impl Parameters {
-    pub(super) fn new(info: &GlInfo, name: u32, target: u32, side: Side) -> Self {
+    pub(super) fn new(info: &GlInfo, name: u32, target: u32, side: TargetSide) -> Self {
         let mut list = vec![(TEXTURE_BASE_LEVEL, 0), (TEXTURE_MAX_LEVEL, 0)];
         let swizzles = [TEXTURE_SWIZZLE_R, TEXTURE_SWIZZLE_G, TEXTURE_SWIZZLE_B, TEXTURE_SWIZZLE_A];
         list.extend(swizzles.into_iter().zip([RED, GREEN, BLUE, ALPHA].map(|v| v as i32)));
@@ -338,10 +340,10 @@ impl Parameters {
                 list.push((TEXTURE_SRGB_DECODE_EXT, DECODE_EXT as i32));
             }
         }
-        if side == Side::Depth && info.knows((4, 3), (3, 1), &["GL_ARB_stencil_texturing"]) {
+        if side == TargetSide::Depth && info.knows((4, 3), (3, 1), &["GL_ARB_stencil_texturing"]) {
             list.push((DEPTH_STENCIL_TEXTURE_MODE, DEPTH_COMPONENT as i32));
         }
-        if side == Side::Depth && info.profile == GlProfile::Compatibility {
+        if side == TargetSide::Depth && info.profile == GlProfile::Compatibility {
             list.push((DEPTH_TEXTURE_MODE, RED as i32));
         }
         Self { name, target, list: list.into_iter().map(|(p, fresh)| (p, fresh, fresh)).collect() }

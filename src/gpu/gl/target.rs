@@ -17,10 +17,10 @@ use std::sync::Arc;
 
 use super::{
     api::Api,
-    blit::{self, End},
-    build::Object,
+    blit::{self, BlitEnd},
+    build::GlObject,
     formats,
-    image::{self, Ask, Facts, GlImage, Parameters, Side},
+    image::{self, Ask, Facts, GlImage, Parameters, TargetSide},
     names::*,
 };
 use crate::error::Result;
@@ -91,8 +91,8 @@ pub struct GlTarget {
 }
 
 /// One side of a target, with what it takes to use it.
-pub(super) struct Part {
-    pub(super) side: Side,
+pub(super) struct TargetImage {
+    pub(super) side: TargetSide,
     pub(super) image: GlImage,
     pub(super) facts: Facts,
     pub(super) parameters: Option<Parameters>,
@@ -105,9 +105,9 @@ pub(super) struct Part {
 /// Our copy of an image.
 pub(super) struct Copied {
     /// Framebuffer with the image: the host's own for [`GlImage::Framebuffer`].
-    pub(super) from: End,
+    pub(super) from: BlitEnd,
     /// Framebuffer with our texture.
-    pub(super) to: End,
+    pub(super) to: BlitEnd,
     /// Our texture.
     pub(super) texture: u32,
     /// Whether our texture is drawn to, and not the host's image: then it goes back.
@@ -119,20 +119,20 @@ pub(super) struct Entry {
     pub(super) desc: GlTargetDesc,
     pub(super) target: Arc<GlTarget>,
     pub(super) used: u64,
-    pub(super) parts: Vec<Part>,
-    pub(super) made: Made,
+    pub(super) parts: Vec<TargetImage>,
+    pub(super) made: TargetObjects,
 }
 
 /// Objects of ours that serve a target.
 #[derive(Default)]
-pub(super) struct Made {
+pub(super) struct TargetObjects {
     pub(super) framebuffers: Vec<u32>,
     pub(super) textures: Vec<u32>,
     /// Attachments that were made: framebuffer, attachment, image.
-    pub(super) attached: Vec<(u32, u32, Object)>,
+    pub(super) attached: Vec<(u32, u32, GlObject)>,
 }
 
-impl Made {
+impl TargetObjects {
     /// Deletes them.
     pub(super) fn delete(&mut self, api: &Api) {
         self.framebuffers.drain(..).for_each(|name| api.delete(Api::DeleteFramebuffers, name));
@@ -206,8 +206,8 @@ impl Entry {
 
     /// Whether depth is read from a copy of what is attached.
     pub(super) fn reads_copied_depth(&self) -> bool {
-        let is_copied = |part: &Part| part.copy.as_ref().is_some_and(|copy| !copy.drawn_to);
-        self.parts.iter().any(|part| part.side == Side::Depth && is_copied(part))
+        let is_copied = |part: &TargetImage| part.copy.as_ref().is_some_and(|copy| !copy.drawn_to);
+        self.parts.iter().any(|part| part.side == TargetSide::Depth && is_copied(part))
     }
 
     /// Copies back what was drawn into copies and gives the host's objects back as they were.
@@ -220,7 +220,7 @@ impl Entry {
         for part in &self.parts {
             if let Some(copy) = &part.copy
                 && copy.drawn_to
-                && (part.side == Side::Color || self.desc.write_depth)
+                && (part.side == TargetSide::Color || self.desc.write_depth)
             {
                 let back = blit::copy(api, copy.to, copy.from, mask(part.side, part.facts.internal), size);
                 outcome = outcome.and(back);
@@ -239,10 +239,10 @@ impl Entry {
 }
 
 /// Returns the buffer bits that a copy of an image carries.
-pub(super) fn mask(side: Side, internal: u32) -> u32 {
+pub(super) fn mask(side: TargetSide, internal: u32) -> u32 {
     match side {
-        Side::Color | Side::Mask | Side::Classes | Side::Normals => COLOR_BUFFER_BIT,
-        Side::Depth if formats::has_stencil(internal) => DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT,
-        Side::Depth => DEPTH_BUFFER_BIT,
+        TargetSide::Color | TargetSide::Mask | TargetSide::Classes | TargetSide::Normals => COLOR_BUFFER_BIT,
+        TargetSide::Depth if formats::has_stencil(internal) => DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT,
+        TargetSide::Depth => DEPTH_BUFFER_BIT,
     }
 }

@@ -274,9 +274,9 @@ unsafe extern "system" fn get_queue_families(
 }
 
 /// Holds the host's queue lock.
-struct Held<'a>(Option<&'a QueueLock>);
+struct QueueGuard<'a>(Option<&'a QueueLock>);
 
-impl<'a> Held<'a> {
+impl<'a> QueueGuard<'a> {
     fn new(host: &'a HostRecord) -> Self {
         let lock = host.lock.as_ref();
         if let Some(l) = lock {
@@ -287,7 +287,7 @@ impl<'a> Held<'a> {
     }
 }
 
-impl Drop for Held<'_> {
+impl Drop for QueueGuard<'_> {
     fn drop(&mut self) {
         if let Some(l) = self.0 {
             // SAFETY: as in `new`.
@@ -303,7 +303,7 @@ unsafe extern "system" fn queue_submit(
     fence: vk::Fence,
 ) -> vk::Result {
     let Some(host) = find(|h| h.queue == queue) else { return vk::Result::ERROR_DEVICE_LOST };
-    let _held = Held::new(&host);
+    let _held = QueueGuard::new(&host);
     let real = host.real.queue_submit;
     let bracket = BRACKET.get().filter(|b| b.0 == queue && count == 1);
     if bracket.is_some() {
@@ -333,7 +333,7 @@ unsafe extern "system" fn queue_submit(
 
 unsafe extern "system" fn queue_wait_idle(queue: vk::Queue) -> vk::Result {
     let Some(host) = find(|h| h.queue == queue) else { return vk::Result::ERROR_DEVICE_LOST };
-    let _held = Held::new(&host);
+    let _held = QueueGuard::new(&host);
     // SAFETY: as above.
     unsafe { (host.real.queue_wait_idle)(queue) }
 }

@@ -23,7 +23,7 @@ pub(super) enum Sink {
 
 /// Sinks of a block's cells, and the water that has come to each in this step, mm times cells.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Block {
+pub(super) struct DrainBlock {
     pub sinks: Vec<Sink>,
     pub inflow: Vec<f64>,
     pub gets: bool,
@@ -34,7 +34,7 @@ pub(super) struct Block {
 pub(super) struct Drains {
     bits: u32,
     of_cell: Vec<u16>,
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<DrainBlock>,
 }
 
 /// Heights go first, then places from the south-west: no two cells are equally high.
@@ -72,7 +72,7 @@ impl Drains {
         Self {
             bits: side.trailing_zeros(),
             of_cell: vec![UNKNOWN; side * side],
-            blocks: vec![Block::default(); blocks],
+            blocks: vec![DrainBlock::default(); blocks],
         }
     }
 
@@ -129,7 +129,7 @@ impl Drains {
             way.iter().for_each(|cell| self.of_cell[*cell] = found);
         }
         let inflow = vec![0.0; sinks.len()];
-        self.blocks[number] = Block { sinks, inflow, gets: false };
+        self.blocks[number] = DrainBlock { sinks, inflow, gets: false };
     }
 
     /// Where the run-off of a cell ends.

@@ -17,7 +17,7 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 
 use super::drains::is_lower;
 use crate::terrain::{CellId, Terrain};
-pub(super) use saved::Branch;
+pub(super) use saved::LakeBranch;
 
 /// No hollow.
 const NONE: u32 = u32::MAX;

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{TiledWater, lakes::Branch, pit_below};
+use super::{TiledWater, lakes::LakeBranch, pit_below};
 use crate::{
     error::{Error, Result},
     ground::water::PORES_MM,
@@ -17,7 +17,7 @@ const JOINED: u64 = u64::MAX;
 /// The water of a tile as it is saved.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SavedTile {
+struct SavedWaterTile {
     tile: [i32; 2],
     /// Hash of the heights and classes.
     cells: String,
@@ -33,7 +33,7 @@ pub(in super::super) struct SavedTiles {
     origin_m: [f64; 3],
     cell_m: f64,
     tile_cells: u32,
-    tiles: Vec<SavedTile>,
+    tiles: Vec<SavedWaterTile>,
     /// Standing waters: pits of each with how they join, words of bits; and what each holds.
     lakes: String,
     held: String,
@@ -80,7 +80,7 @@ impl SavedTiles {
         let tiles = water.keys.iter().filter_map(|(key, slot)| {
             let tile = water.tiles[*slot as usize].as_ref()?;
             let text = |_: &()| if for_hash { format!("{:x}", tile.hash()) } else { binary_text(&runs(tile.tops())) };
-            Some(SavedTile {
+            Some(SavedWaterTile {
                 tile: [key.east, key.north],
                 cells: format!("{:016x}", terrain.tile(*slot).hash),
                 water: tile.begun.then_some(()).as_ref().map(text),
@@ -91,9 +91,9 @@ impl SavedTiles {
             .lakes
             .saved()
             .map(|(branches, held)| {
-                let number = |b: &Branch| match b {
-                    Branch::Pit(pit) => word(terrain.place(*pit)),
-                    Branch::Joined => JOINED,
+                let number = |b: &LakeBranch| match b {
+                    LakeBranch::Pit(pit) => word(terrain.place(*pit)),
+                    LakeBranch::Joined => JOINED,
                 };
                 (branches.iter().map(number).collect(), held.to_bits())
             })
@@ -172,13 +172,13 @@ impl SavedTiles {
         for held in held {
             let length = numbers.next()?;
             let branch = |n: u64| match n {
-                JOINED => Some(Branch::Joined),
+                JOINED => Some(LakeBranch::Joined),
                 n => {
                     let place = [(n >> 32) as u32, n as u32].map(|v| (v as i32).wrapping_sub(MIDDLE));
-                    terrain.cell_at(place).map(Branch::Pit)
+                    terrain.cell_at(place).map(LakeBranch::Pit)
                 }
             };
-            let branches: Vec<Branch> =
+            let branches: Vec<LakeBranch> =
                 numbers.by_ref().take(usize::try_from(length).ok()?).map(branch).collect::<Option<_>>()?;
             lakes.restore(terrain, &below, &branches, f64::from_bits(held)).then_some(())?;
         }

@@ -39,7 +39,7 @@ pub(super) struct StepInParts {
 
 /// Water that a step brought and took, and whether any water changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) struct Stepped {
+pub(in super::super) struct SteppedTiles {
     pub flows: Flows,
     pub changes: bool,
 }
@@ -47,7 +47,7 @@ pub(in super::super) struct Stepped {
 impl TiledWater {
     /// Leads the water through a step, or a part of it until the time is over: one tile at least. None while tiles
     /// remain.
-    pub fn step(&mut self, now: &TiledStep<'_>, within: Option<Within>) -> Result<Option<Stepped>> {
+    pub fn step(&mut self, now: &TiledStep<'_>, within: Option<Within>) -> Result<Option<SteppedTiles>> {
         let mut part = self.part.take().unwrap_or_default();
         let step = Step::new(now.forcing, now.seconds);
         let keys = std::mem::take(&mut self.keys);
@@ -73,7 +73,7 @@ impl TiledWater {
         let dry = self.lakes.count == 0;
         self.finish(now.terrain, &step, &mut part.flows);
         self.version.1 += 1;
-        Ok(Some(Stepped { flows: part.flows, changes: part.changes || !dry || self.lakes.count > 0 }))
+        Ok(Some(SteppedTiles { flows: part.flows, changes: part.changes || !dry || self.lakes.count > 0 }))
     }
 
     fn step_tile(&mut self, slot: u32, now: &TiledStep<'_>, step: &Step, part: &mut StepInParts) -> Result<()> {

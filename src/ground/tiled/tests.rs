@@ -4,13 +4,13 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::{lakes::Branch, step::Stepped, *};
+use super::{lakes::LakeBranch, step::SteppedTiles, *};
 use crate::{
     almanac::sun::Utc,
     ground::{
         GroundGrid,
         basins::tests::{flooded, rough},
-        terrain::{Terrain as GridTerrain, TerrainWater},
+        terrain::{GridTerrain, TerrainWater},
         water::{Forcing, STEP_S, Step},
     },
     light::{Exposure, ToneCurve},
@@ -18,7 +18,7 @@ use crate::{
     scene::WorldFrame,
     terrain::{Rows, SurfaceClass, TerrainCells, TerrainDesc},
     weather::{Conditions, Weather, derive},
-    world::{Couplings, Made, World},
+    world::{Couplings, World, WorldDesc},
 };
 
 const SIDE: i32 = 32;
@@ -33,7 +33,7 @@ struct Bench {
 }
 
 fn world() -> World {
-    let made = Made {
+    let made = WorldDesc {
         frame: WorldFrame::default(),
         planet: Planet::earth(),
         seed: 3,
@@ -74,7 +74,7 @@ impl Bench {
         Self { world, terrain, water, fallen: 0.0, gone: 0.0 }
     }
 
-    fn step(&mut self, rain_mm_h: f64, evaporation_mm_h: f64) -> Stepped {
+    fn step(&mut self, rain_mm_h: f64, evaporation_mm_h: f64) -> SteppedTiles {
         let (c, f) = (conditions(rain_mm_h), forcing(rain_mm_h, evaporation_mm_h));
         let now = TiledStep {
             world: &self.world,
@@ -136,7 +136,7 @@ impl Bench {
     /// That every water lies level and no deeper than its saddle, by the cells alone.
     fn lies_level(&self) {
         for (branches, _) in self.water.lakes.saved() {
-            let pits = branches.iter().filter_map(|b| if let Branch::Pit(pit) = b { Some(*pit) } else { None });
+            let pits = branches.iter().filter_map(|b| if let LakeBranch::Pit(pit) = b { Some(*pit) } else { None });
             let level = |pit: CellId| {
                 let (slot, at) = self.terrain.split(pit);
                 let lake = self.water.lakes.lake_of(slot, at).expect("a lake");

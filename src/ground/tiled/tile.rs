@@ -7,9 +7,9 @@ use crate::{
     ground::{
         GroundWater,
         grid::CellGrid,
-        rain_on::RainOn,
+        rain_on::GridRain,
         terrain::{Flows, RUN},
-        water::{Step, Surface},
+        water::{Step, SurfaceWater},
     },
     terrain::{CellRect, Terrain, Tile, TileKey},
 };
@@ -18,7 +18,7 @@ use crate::{
 pub(super) struct TileWater {
     pub key: TileKey,
     pub drains: Drains,
-    pub rain: RainOn,
+    pub rain: GridRain,
     /// Whether it has water of its own by now; else that of level ground lies on it.
     pub begun: bool,
     /// Film and pores, mm; empty while all of it is dry.
@@ -53,7 +53,7 @@ impl TileWater {
         Self {
             key: tile.key,
             drains: Drains::new(terrain),
-            rain: RainOn::new(&cells_of(terrain, tile), (terrain.to_enu, terrain.altitude_m)),
+            rain: GridRain::new(&cells_of(terrain, tile), (terrain.to_enu, terrain.altitude_m)),
             begun: false,
             top: Vec::new(),
             awake: vec![false; runs],
@@ -169,7 +169,7 @@ impl TileWater {
         }
         let has_lakes = lakes.has_any(slot);
         self.any_awake = false;
-        let mut last: Option<([f32; 2], f64, bool, Surface)> = None;
+        let mut last: Option<([f32; 2], f64, bool, SurfaceWater)> = None;
         for run in 0..self.awake.len() {
             let rained_on = rains && self.rain.rains_on(run);
             if !self.awake[run] && !rained_on {

@@ -77,7 +77,8 @@ impl Bench {
         self.blocks.upload(&self.device.queue);
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         let layout = surroundings::layout(&self.device.device);
-        let lattice = Lattice { shells: 4, per_shell: self.classes.per_shell, states: None, areas: false, maps: false };
+        let lattice =
+            DropLattice { shells: 4, per_shell: self.classes.per_shell, states: None, areas: false, maps: false };
         let mut pass = encoder.begin_compute_pass(&Default::default());
         self.pass.find(&self.device, &mut pass, (&layout, self.surroundings.bind_group()), lattice).unwrap();
         drop(pass);

@@ -46,7 +46,7 @@ pub fn march(
     out: &mut Vec<Sample>,
 ) -> [f64; MEDIA] {
     out.clear();
-    let mut walk = Walk { ray, medium, cutting, columns: [0.0; MEDIA], out };
+    let mut walk = RayWalk { ray, medium, cutting, columns: [0.0; MEDIA], out };
     let mut marks = vec![span.0, span.1];
     marks.extend_from_slice(cuts);
     let to_perigee = -ray.radius_m() * ray.mu;
@@ -69,7 +69,7 @@ pub fn march(
     walk.columns
 }
 
-struct Walk<'a> {
+struct RayWalk<'a> {
     ray: &'a Ray,
     medium: &'a Medium,
     cutting: &'a Cutting<'a>,
@@ -77,7 +77,7 @@ struct Walk<'a> {
     out: &'a mut Vec<Sample>,
 }
 
-impl Walk<'_> {
+impl RayWalk<'_> {
     /// One panel from u = `a` to u = `b` (descending before the perigee), halved while it is optically thick.
     fn panel(&mut self, side: f64, a: f64, b: f64, halvings: u32) {
         let rule = self.cutting.rule;

@@ -54,7 +54,7 @@ struct Prepared {
 }
 
 /// Light that falls on the air in a sweep.
-enum Light<'a> {
+enum SweepLight<'a> {
     /// The sun itself, and the ground in direct sunlight.
     Sun,
     /// Light scattered before.
@@ -82,7 +82,7 @@ impl<'a> Solver<'a> {
 
     /// Source of order 2: single scattering and the sunlit ground.
     pub fn first(&mut self, threads: usize) -> Nodes {
-        let nodes = self.sweep(&Light::Sun, threads);
+        let nodes = self.sweep(&SweepLight::Sun, threads);
         let suns = self.dark.len();
         let total = |node: usize| nodes.total(node).into_iter().fold(0.0, f64::max);
         let brightest = (0..nodes.gas.len()).map(total).fold(0.0, f64::max);
@@ -95,7 +95,7 @@ impl<'a> Solver<'a> {
     /// Source of the next order from the `nodes` of this one.
     pub fn next(&self, nodes: &Nodes, threads: usize) -> Nodes {
         let source = self.source(nodes);
-        self.sweep(&Light::Scattered(&source, &nodes.ground), threads)
+        self.sweep(&SweepLight::Scattered(&source, &nodes.ground), threads)
     }
 
     /// Look-up tables of `nodes`.
@@ -103,7 +103,7 @@ impl<'a> Solver<'a> {
         Source::new(&self.altitudes, &self.suns, nodes, self.resolution.haze_directions)
     }
 
-    fn sweep(&self, light: &Light<'_>, threads: usize) -> Nodes {
+    fn sweep(&self, light: &SweepLight<'_>, threads: usize) -> Nodes {
         let count = self.altitudes.nodes_m.len();
         let threads = threads.clamp(1, count);
         let mut rows: Vec<Option<Row>> = (0..count).map(|_| None).collect();
@@ -136,7 +136,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The sweep at one altitude: all directions, all sun angles.
-    fn row(&self, index: usize, light: &Light<'_>) -> Row {
+    fn row(&self, index: usize, light: &SweepLight<'_>) -> Row {
         let altitude = self.altitudes.nodes_m[index];
         let rule = zenith_rule(self.medium, altitude, &self.below, &self.above);
         let rays: Vec<Prepared> = rule.iter().map(|(mu, w)| self.prepare(altitude, *mu, *w, light)).collect();
@@ -173,7 +173,7 @@ impl<'a> Solver<'a> {
         Cutting { altitudes_m: &self.panel_altitudes, rule: &self.panel_rule, panel_depth: 1.5 }
     }
 
-    fn prepare(&self, altitude: f64, mu: f64, weight: f64, light: &Light<'_>) -> Prepared {
+    fn prepare(&self, altitude: f64, mu: f64, weight: f64, light: &SweepLight<'_>) -> Prepared {
         let ray = Ray::new(self.medium, altitude, mu);
         let mut samples = Vec::new();
         let mut prepared = Prepared { ray, weight, samples: Vec::new(), span: (0.0, 0.0), ground: None };
@@ -184,19 +184,26 @@ impl<'a> Solver<'a> {
             prepared.ground = Some((end, self.medium.transmittance(&columns)));
         }
         let place = |s: &Sample| match light {
-            Light::Sun => Place { altitude: 0.0, mu: s.mu, sine: 0.0, zenith: 0.0 },
-            Light::Scattered(source, _) => source.place(s.altitude_m, s.mu),
+            SweepLight::Sun => Place { altitude: 0.0, mu: s.mu, sine: 0.0, zenith: 0.0 },
+            SweepLight::Scattered(source, _) => source.place(s.altitude_m, s.mu),
         };
         prepared.samples = samples.into_iter().map(|s| (s, place(&s))).collect();
         prepared
     }
 
     /// Radiance of the order along one ray.
-    fn radiance(&self, p: &Prepared, mu_s: f64, nu: f64, light: &Light<'_>, scratch: &mut Vec<Sample>) -> [f64; 3] {
+    fn radiance(
+        &self,
+        p: &Prepared,
+        mu_s: f64,
+        nu: f64,
+        light: &SweepLight<'_>,
+        scratch: &mut Vec<Sample>,
+    ) -> [f64; 3] {
         let r = p.ray.radius_m();
         let mut out = match light {
-            Light::Sun => self.sunlit(p, mu_s, nu, scratch),
-            Light::Scattered(source, _) => {
+            SweepLight::Sun => self.sunlit(p, mu_s, nu, scratch),
+            SweepLight::Scattered(source, _) => {
                 let mut sum = [0.0; 3];
                 for (s, place) in &p.samples {
                     let mu_s_there = (r * mu_s + s.distance_m * nu) / (p.ray.bottom_m + s.altitude_m);
@@ -231,13 +238,13 @@ impl<'a> Solver<'a> {
     }
 
     /// Radiance that the ground reflects under a sun at `mu_s`.
-    fn ground(&self, mu_s: f64, light: &Light<'_>) -> [f64; 3] {
+    fn ground(&self, mu_s: f64, light: &SweepLight<'_>) -> [f64; 3] {
         match light {
-            Light::Sun => {
+            SweepLight::Sun => {
                 let t = self.sun_table.transmittance(0.0, mu_s);
                 std::array::from_fn(|c| self.albedo[c] / PI * mu_s.max(0.0) * t[c])
             }
-            Light::Scattered(_, ground) => {
+            SweepLight::Scattered(_, ground) => {
                 let (first, w) = cubic(self.suns.coordinate(mu_s.acos()), ground.len());
                 std::array::from_fn(|c| (0..4).map(|k| w[k] * ground[first + k][c]).sum::<f64>().max(0.0))
             }

@@ -9,7 +9,7 @@ const SLOTS: u32 = 16;
 const IMAGES: u32 = 8;
 
 #[derive(Clone, Copy, Default)]
-struct Slot {
+struct BufferRange {
     buffer: u32,
     start: i64,
     size: i64,
@@ -26,18 +26,18 @@ struct Image {
 }
 
 /// The indexed bindings of one kind of buffer.
-struct Indexed {
+struct IndexedBuffers {
     target: u32,
     binding: u32,
     start: u32,
     size: u32,
     generic: u32,
-    slots: Vec<Slot>,
+    slots: Vec<BufferRange>,
 }
 
-impl Indexed {
+impl IndexedBuffers {
     fn new(target: u32, [binding, start, size]: [u32; 3], count: u32) -> Self {
-        Self { target, binding, start, size, generic: 0, slots: vec![Slot::default(); count as usize] }
+        Self { target, binding, start, size, generic: 0, slots: vec![BufferRange::default(); count as usize] }
     }
 
     fn save(&mut self, api: &Api) {
@@ -72,7 +72,7 @@ impl Indexed {
 pub(super) struct Bindings {
     /// (target, binding query, saved name)
     buffers: Vec<(u32, u32, u32)>,
-    indexed: Vec<Indexed>,
+    indexed: Vec<IndexedBuffers>,
     /// (target, binding query)
     textures: Vec<(u32, u32)>,
     /// Saved texture names, `textures.len()` a unit.
@@ -124,12 +124,13 @@ impl Bindings {
             buffers.push((QUERY_BUFFER, QUERY_BUFFER_BINDING, 0));
         }
         let uniform = [UNIFORM_BUFFER_BINDING, UNIFORM_BUFFER_START, UNIFORM_BUFFER_SIZE];
-        let mut indexed = vec![Indexed::new(UNIFORM_BUFFER, uniform, api.uint(MAX_UNIFORM_BUFFER_BINDINGS).min(SLOTS))];
+        let mut indexed =
+            vec![IndexedBuffers::new(UNIFORM_BUFFER, uniform, api.uint(MAX_UNIFORM_BUFFER_BINDINGS).min(SLOTS))];
         let mut images = 0;
         if info.knows((4, 3), (3, 1), &["GL_ARB_shader_storage_buffer_object"]) {
             let storage = [SHADER_STORAGE_BUFFER_BINDING, SHADER_STORAGE_BUFFER_START, SHADER_STORAGE_BUFFER_SIZE];
             let count = api.uint(MAX_SHADER_STORAGE_BUFFER_BINDINGS).min(SLOTS);
-            indexed.push(Indexed::new(SHADER_STORAGE_BUFFER, storage, count));
+            indexed.push(IndexedBuffers::new(SHADER_STORAGE_BUFFER, storage, count));
         }
         if info.knows((4, 2), (3, 1), &["GL_ARB_shader_image_load_store"]) {
             images = api.uint(MAX_IMAGE_UNITS).min(IMAGES);

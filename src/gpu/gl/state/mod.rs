@@ -30,7 +30,7 @@ struct Toggle {
 pub(super) struct HostState {
     toggles: Vec<Toggle>,
     raster: raster::Raster,
-    pixels: pixel::Pixels,
+    pixels: pixel::PixelState,
     bindings: bind::Bindings,
     pending_error: u32,
 }
@@ -40,7 +40,7 @@ impl HostState {
         Self {
             toggles: toggles(api, info),
             raster: raster::Raster::new(api, info),
-            pixels: pixel::Pixels::new(info),
+            pixels: pixel::PixelState::new(info),
             bindings: bind::Bindings::new(api, info),
             pending_error: NO_ERROR,
         }

@@ -54,12 +54,12 @@ const TRANSFER: &[(u32, f32)] = &[
 ];
 
 #[derive(Default)]
-pub(super) struct Pixels {
+pub(super) struct PixelState {
     store: Vec<(u32, i32, i32)>,
     transfer: Vec<(u32, f32, f32)>,
 }
 
-impl Pixels {
+impl PixelState {
     pub(super) fn new(info: &GlInfo) -> Self {
         let desktop = if info.is_es() { &[] } else { DESKTOP };
         let compressed =

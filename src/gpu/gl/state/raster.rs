@@ -8,7 +8,7 @@ use super::super::{
 
 /// One viewport with its scissor and depth range.
 #[derive(Clone, Copy, Default)]
-struct View {
+struct GlViewport {
     rect: [f32; 4],
     scissor: [i32; 4],
     scissor_test: bool,
@@ -57,7 +57,7 @@ const BACK_NAMES: [u32; 7] = [
 
 #[derive(Default)]
 pub(super) struct Raster {
-    views: Vec<View>,
+    views: Vec<GlViewport>,
     targets: Vec<Target>,
     /// Viewports of their own state (OpenGL 4.1).
     many_views: bool,
@@ -99,7 +99,7 @@ impl Raster {
         let views = if many_views { api.uint(MAX_VIEWPORTS).clamp(1, 64) } else { 1 };
         let targets = if many_masks { api.uint(MAX_DRAW_BUFFERS).clamp(1, 32) } else { 1 };
         Self {
-            views: vec![View::default(); views as usize],
+            views: vec![GlViewport::default(); views as usize],
             targets: vec![Target::default(); targets as usize],
             many_views,
             many_masks,
@@ -159,7 +159,7 @@ impl Raster {
         if !self.many_views {
             let rect = api.ints::<4>(VIEWPORT).map(|v| v as f32);
             let scissor_test = api.IsEnabled(SCISSOR_TEST) != 0;
-            self.views[0] = View {
+            self.views[0] = GlViewport {
                 rect,
                 scissor: api.ints(SCISSOR_BOX),
                 scissor_test,

@@ -5,23 +5,23 @@ use crate::terrain::{CellId, Terrain};
 
 /// A hollow's tree, to be saved: pits, and after every two trees that they are one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) enum Branch {
+pub(in super::super) enum LakeBranch {
     Pit(CellId),
     Joined,
 }
 
 impl Lakes {
     /// Each water as it is saved: its tree and what it holds.
-    pub fn saved(&self) -> impl Iterator<Item = (Vec<Branch>, f64)> {
+    pub fn saved(&self) -> impl Iterator<Item = (Vec<LakeBranch>, f64)> {
         self.lakes.iter().flatten().map(|l| {
             let mut branches = Vec::new();
             let mut next = vec![(l.hollow, false)];
             while let Some((hollow, is_done)) = next.pop() {
                 let Some(h) = self.hollows[hollow as usize].as_ref() else { continue };
                 match h.parts {
-                    Some(_) if is_done => branches.push(Branch::Joined),
+                    Some(_) if is_done => branches.push(LakeBranch::Joined),
                     Some([a, b]) => next.extend([(hollow, true), (b, false), (a, false)]),
-                    None => branches.extend(h.cells.first().map(|pit| Branch::Pit(*pit))),
+                    None => branches.extend(h.cells.first().map(|pit| LakeBranch::Pit(*pit))),
                 }
             }
             (branches, l.held)
@@ -29,18 +29,18 @@ impl Lakes {
     }
 
     /// Restores a water that was saved. Says whether it can be one of this terrain.
-    pub fn restore(&mut self, terrain: &Terrain, below: PitBelow<'_>, branches: &[Branch], held: f64) -> bool {
+    pub fn restore(&mut self, terrain: &Terrain, below: PitBelow<'_>, branches: &[LakeBranch], held: f64) -> bool {
         let mut stack: Vec<u32> = Vec::new();
         for branch in branches {
             match branch {
-                Branch::Pit(pit) => {
+                LakeBranch::Pit(pit) => {
                     let (slot, at) = terrain.split(*pit);
                     if below(*pit) != Some(*pit) || self.lake_of(slot, at).is_some() {
                         return false;
                     }
                     stack.push(self.lake_at(terrain, *pit));
                 }
-                Branch::Joined => {
+                LakeBranch::Joined => {
                     let (Some(b), Some(a)) = (stack.pop(), stack.pop()) else { return false };
                     let brim = [a, b].map(|lake| self.fill(terrain, lake, f64::MAX));
                     let to = |s: &Self, lake: u32| {
