@@ -1,4 +1,4 @@
-//! What a frame takes on a software driver, in copies: a copy is a full-screen pass of the same size that loads one
+//! Cost of a frame on a software driver, in copies: a copy is a full-screen pass of the same size that loads one
 //! texel a pixel. Pictures are of 640x360; `SIZE="1280x720"` measures others.
 //!
 //! Counted is the processor time of all of the process's threads, so that what else the machine does falls on neither.

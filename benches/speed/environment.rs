@@ -1,4 +1,4 @@
-//! What the cube map of what stands around the camera adds to a frame: one face, and all six, interleaved with frames
+//! Cost to a frame of the cube map of what stands around the camera: one face, and all six, interleaved with frames
 //! without it.
 
 use std::{sync::Arc, time::Instant};

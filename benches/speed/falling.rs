@@ -1,4 +1,4 @@
-//! What rain, snow and what they leave on the ground cost a frame on a software driver, in copies (see
+//! Cost to a frame of rain, snow and what they leave on the ground, on a software driver, in copies (see
 //! [`crate::copies`]), beside the same frame in dry weather and without each of the stages that draw them.
 
 use std::sync::Arc;

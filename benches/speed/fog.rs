@@ -1,4 +1,4 @@
-//! What fog costs a pixel: a full-screen pass that reads colour and depth and applies the fog, against one that only
+//! Cost of fog to a pixel: a full-screen pass that reads colour and depth and applies the fog, against one that only
 //! copies the colour.
 
 use std::time::Instant;

@@ -1,4 +1,4 @@
-//! What each effect takes on a GPU at 1920x1080 and 3840x2160, by the GPU's own timestamps, as the Markdown page
+//! Time of each effect on a GPU at 1920x1080 and 3840x2160, by the GPU's own timestamps, as the Markdown page
 //! `docs/lab/gpu.md`: `cargo bench --bench speed -- gpu`. `SIZES="320x180"` measures other pictures.
 //!
 //! Frames are handed over while the GPU is still busy with other work, so that it never waits for the CPU between two

@@ -1,4 +1,4 @@
-//! What wet ground costs a picture: the stage SURFACE over a picture of which half is ground, against the same picture
+//! Cost of wet ground to a picture: the stage SURFACE over a picture of which half is ground, against the same picture
 //! dry.
 
 use std::time::Instant;

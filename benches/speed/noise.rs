@@ -1,4 +1,4 @@
-//! What textures of noise cost to build, at once and in steps that frames have room for.
+//! Cost of building textures of noise, at once and in steps that frames have room for.
 
 use std::time::{Duration, Instant};
 

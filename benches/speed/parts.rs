@@ -1,4 +1,4 @@
-//! What the parts that a plan may leave out cost a picture, and what the gauge costs: the constants of the rooms'
+//! Costs to a picture of the parts that a plan may leave out, and of the gauge: the constants of the rooms'
 //! `candidates`, in units of a pixel with none of them. And how far times predicted from them are from measured ones.
 
 use std::{sync::Arc, time::Instant};

@@ -1,4 +1,4 @@
-//! What the sky's radiance costs as a query: a new air, and each direction after that, on one thread.
+//! Cost of the sky's radiance as a query: a new air, and each direction after that, on one thread.
 
 use std::{sync::Arc, time::Instant};
 

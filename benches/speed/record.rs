@@ -1,4 +1,4 @@
-//! What the CPU pays for `View::record`: against an empty wgpu pass with its submit, interleaved in one run.
+//! CPU time of `View::record`: against an empty wgpu pass with its submit, interleaved in one run.
 
 use std::{
     sync::Arc,

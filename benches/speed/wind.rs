@@ -1,4 +1,4 @@
-//! What a step of a wind field costs: per cell, and against the time that it leads over.
+//! Cost of a step of a wind field: per cell, and against the time that it leads over.
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! What the lab is asked for: commands, options, and the refusal of everything else.
+//! Command line of the lab: commands, options, and the refusal of everything else.
 
 use std::path::PathBuf;
 

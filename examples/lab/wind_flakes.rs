@@ -1,4 +1,4 @@
-//! What flakes in a solved wind cost, beside the snow simulator of the sources: by their number and by the cells of the
+//! Cost of flakes in a solved wind, beside the snow simulator of the sources: by their number and by the cells of the
 //! wind.
 
 use std::{fmt::Write as _, time::Instant};

@@ -25,7 +25,8 @@ fn smoothness(center: vec2f, near: array<vec2f, 4>, rounding: vec2f) -> f32 {
     let mean = 0.2 * (center + near[0] + near[1] + near[2] + near[3]);
     let range = max(max(near[0], near[1]), max(near[2], near[3])) - min(min(near[0], near[1]), min(near[2], near[3]));
     let diagonals = 0.25 * (near[0] - near[1] - near[2] + near[3]);
-    let left = max(abs(center - mean), abs(1.25 * mean - 0.25 * center - mean) + abs(diagonals));
+    let off = abs(center - mean);
+    let left = max(off, 0.25 * off + abs(diagonals));
     let each = 1.0 - smoothstep(vec2f(SMOOTH), vec2f(SHAPED), left / max(range + rounding, vec2f(1e-6)));
     return min(each.x, each.y);
 }

@@ -12,7 +12,7 @@ pub mod ice;
 pub mod lattice;
 pub mod sizes;
 
-use crate::weather::Conditions;
+use crate::weather::{Conditions, ONSET_M};
 
 /// Most rain areas at a time, and so most rains that fall at one place.
 pub const MAX_AREAS: usize = 16;
@@ -28,16 +28,6 @@ pub fn random3(key: [u32; 3]) -> [u32; 3] {
     y = y.wrapping_add(z.wrapping_mul(x));
     z = z.wrapping_add(x.wrapping_mul(y));
     [x, y, z]
-}
-
-/// Depth over which what falls sets in, m: half of it above the height where it begins, half below; as a medium, about
-/// the cloud's base.
-pub(crate) const ONSET_M: f64 = 100.0;
-
-/// Part of what falls that has begun to fall at an altitude: all below the height where it begins in its cloud, none
-/// above.
-pub(crate) fn begun(c: &Conditions, altitude_m: f64) -> f64 {
-    ((c.falling_top_m() + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0)
 }
 
 /// Extinction of what falls outside of all rain areas, by species: the same everywhere below the cloud that it falls

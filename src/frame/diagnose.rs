@@ -4,10 +4,7 @@ use super::View;
 use crate::{
     error::Result,
     gpu::{Layer, pass},
-    stage::{
-        ColorSpace, Composition, CostItem, Diagnostic, DrawTarget, FrameContext, Recording, Stages, flag, is_float,
-        uniform,
-    },
+    stage::{ColorSpace, CostItem, Diagnostic, DrawTarget, FrameContext, Recording, Stages, flag, is_float},
 };
 
 impl View {
@@ -31,10 +28,7 @@ impl View {
         let behind = if frame.diagnostic == Diagnostic::PlanError { asked.0 & Stages::BACKGROUND.0 } else { 0 };
         at.stages = stage.with(Stages(behind));
         let color = target.color.texture;
-        let block = uniform(frame, of.now, target.rays, color, target.exposure, false);
-        let mut composition = Composition::new(at.stages, block);
-        self.effects.compose(&at, &mut composition)?;
-        composition.finish(false);
+        let mut composition = self.composed(&at, false, false)?;
         let is_there = there.has(stage) && composition.stages().has(stage);
         if !is_there {
             composition.leave_out(stage);

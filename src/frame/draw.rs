@@ -37,10 +37,7 @@ impl View {
         }
         self.history.report.exposure = target.exposure;
         let at = self.planned(of, target, drawn);
-        let block = uniform(frame, of.now, target.rays, at.picture(), target.exposure, tone);
-        let mut composition = Composition::new(drawn, block);
-        self.effects.compose(&at, &mut composition)?;
-        composition.finish(self.cache.environment.is_some());
+        let mut composition = self.composed(&at, tone, self.cache.environment.is_some())?;
         let variant = self.variant(&at, &mut composition)?;
         composition.set_compositions(self.planner.compositions(self.effects.weighs_unseen()));
         self.draw_effects(&at, &composition, to)?;
@@ -64,6 +61,17 @@ impl View {
             self.fill_veil(&at, &composition, to)?;
         }
         Ok(())
+    }
+
+    /// Merges what all effects add to a draw. `tone` says that the whole picture is tone-mapped, `has_cube_map` that the
+    /// host has asked for the cube map.
+    pub(super) fn composed(&mut self, at: &DrawContext<'_>, tone: bool, has_cube_map: bool) -> Result<Composition> {
+        let target = &at.target;
+        let block = uniform(at.frame, at.now, target.rays, at.picture(), target.exposure, tone);
+        let mut composition = Composition::new(at.stages, block);
+        self.effects.compose(at, &mut composition)?;
+        composition.finish(has_cube_map);
+        Ok(composition)
     }
 
     /// Draws the passes of the effects, and copies the picture that the composition reads.

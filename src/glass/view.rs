@@ -14,9 +14,7 @@ use crate::{
     falling::{drops::factor_in, sizes::DropSizes},
     gpu::{Device, Shared},
     moment::SceneMoment,
-    stage::{
-        ColorSpace, CostItem, DrawnEffect, Frame, FrameContext, LensPicture, Outputs, Recording, Stages, is_float,
-    },
+    stage::{ColorSpace, CostItem, DrawnEffect, Frame, FrameContext, LensPicture, Recording, Stages, is_float},
     surroundings::{HostSurroundings, ShelterReach},
 };
 
@@ -99,10 +97,6 @@ fn reached<'a>(now: &'a SceneMoment<'_>, frame: &Frame<'_>, plane: &Plane, scree
 }
 
 impl DrawnEffect for GlassView {
-    fn gather(&mut self, _at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
-        Ok(())
-    }
-
     fn stages(&self) -> Stages {
         if self.glass.is_some() { Stages::LENS } else { Stages(0) }
     }

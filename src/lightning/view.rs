@@ -215,9 +215,6 @@ fn kept(storms: &Storms<'_>, near_m: DVec2, time_s: f64) -> bool {
     limit::is_drawn(time_s, &times)
 }
 
-/// Depth over which what falls sets in below its cloud, m: `ONSET_M` of [`crate::falling`].
-const ONSET_M: f64 = 100.0;
-
 /// Returns the scattering coefficient of the air about a camera, 1/m: air and haze, fog inside of it, and what falls
 /// below the clouds.
 fn scattering_per_m(c: &Conditions, altitude_m: f64) -> f64 {
@@ -227,8 +224,7 @@ fn scattering_per_m(c: &Conditions, altitude_m: f64) -> f64 {
     let haze = c.aerosol.extinction_per_m * thin(c.aerosol.scale_height_m);
     let thinned = ((c.fog.top_m - height.max(0.0)) / c.fog.softness_m.max(1.0)).clamp(0.0, 1.0);
     let fog = if height.max(0.0) >= c.fog.base_m { c.fog.extinction_per_m * c.fog.coverage * thinned } else { 0.0 };
-    let falls = ((c.falling_base_m() + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0);
-    air + haze + fog + c.precipitation.extinction_per_m() * falls
+    air + haze + fog + c.precipitation.extinction_per_m() * c.below_cloud(altitude_m)
 }
 
 impl Lit {

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    falling::{begun, curtain},
+    falling::curtain,
     gpu::{Device, blocks::Blocks},
     moment::{Scene, SceneMoment},
     particles::{
@@ -67,7 +67,7 @@ const ONSET_STEPS: f64 = 32.0;
 
 /// Returns what falls in a weather without rain areas, as much of it as has left its cloud at an altitude.
 fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
-    let share = (begun(c, altitude_m) * ONSET_STEPS).ceil() / ONSET_STEPS;
+    let share = (c.begun(altitude_m) * ONSET_STEPS).ceil() / ONSET_STEPS;
     let f = c.precipitation;
     Falling {
         rain_mm_h: f.rain_mm_h * share,

@@ -63,10 +63,6 @@ impl DrawnEffect for SkyView {
         Stages::BACKGROUND.with(Stages::MEDIUM)
     }
 
-    fn gather(&mut self, _at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
-        Ok(())
-    }
-
     /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
     fn prepare(&mut self, at: &FrameContext<'_>, to: &mut Recording<'_>) -> Result<()> {
         let mut tables = self.tables.lock().map_err(|_| poisoned())?;

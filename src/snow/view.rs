@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    falling::{begun, drops, flakes::FlakeSizes},
+    falling::{drops, flakes::FlakeSizes},
     gpu::Device,
     moment::LightAround,
     particles::{
@@ -113,7 +113,7 @@ impl DrawnEffect for SnowView {
         let scene = &at.now.scene;
         let c = &scene.conditions;
         let falling = c.precipitation;
-        let begun = begun(c, scene.place.altitude_m);
+        let begun = c.begun(scene.place.altitude_m);
         self.is_there = falling.snow_mm_h > 0.0 && begun > 0.0 && self.settings.model != SnowModel::Veil;
         if !self.is_there {
             return Ok(());

@@ -157,7 +157,7 @@ struct ScopedConstant {
 }
 
 /// Most constants of one effect.
-const MOST_OF_ONE: usize = 24;
+const MOST_OF_ONE: usize = 12;
 
 /// Contribution of one effect to a draw. The effect returns it; the frame merges those of all effects
 /// ([`Composition::merge`]).

@@ -37,7 +37,9 @@ pub(crate) trait DrawnEffect {
     }
 
     /// Finds what there is of it at a camera, and writes what it gives.
-    fn gather(&mut self, at: &FrameContext<'_>, given: &mut Outputs) -> Result<()>;
+    fn gather(&mut self, _at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        Ok(())
+    }
 
     /// Stages in which there is something of it in the moment that was gathered. In others it is not run.
     fn stages(&self) -> Stages;

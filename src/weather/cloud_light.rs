@@ -21,6 +21,14 @@ const HIDING: f64 = 0.25;
 const LEAST_COVER: f64 = 1e-6;
 /// Most height above its cloud's base at which what falls begins, m.
 const MOST_GROWTH_M: f64 = 500.0;
+/// Depth over which what falls sets in, m: half of it above the height where it begins, half below; as a medium, about
+/// the cloud's base.
+pub(crate) const ONSET_M: f64 = 100.0;
+
+/// Share at an altitude of what begins at another: all below the depth over which it sets in, nothing above.
+fn onset(begins_m: f64, altitude_m: f64) -> f64 {
+    ((begins_m + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0)
+}
 
 /// Mean of `f` over layers by the part of the sky in which each is the first to be met, in the order of `layers`
 /// (cover, layer); `without` where there are none. Continuous where a layer comes or goes.
@@ -97,6 +105,17 @@ impl Conditions {
     /// bases.
     pub(crate) fn falling_base_m(&self) -> f64 {
         self.over_first_clouds(|s| s.base_m.max(100.0))
+    }
+
+    /// Part of what falls that has begun to fall at an altitude: all below the height where it begins in its cloud, none
+    /// above.
+    pub(crate) fn begun(&self, altitude_m: f64) -> f64 {
+        onset(self.falling_top_m(), altitude_m)
+    }
+
+    /// Part of what falls that is seen at an altitude: all below its cloud; inside, the cloud's own water hides it.
+    pub(crate) fn below_cloud(&self, altitude_m: f64) -> f64 {
+        onset(self.falling_base_m(), altitude_m)
     }
 
     /// Mean height above the sea of the layers that one meets first from below; `height_m` is above the station.

@@ -1,4 +1,4 @@
-//! What the host of a scene shows: a yard or hills, met by the ray of each pixel, and their light.
+//! World that the host of a scene shows: a yard or hills, met by the ray of each pixel, and their light.
 
 use glam::{DMat3, DVec2, DVec3};
 use welkin::{
