@@ -1,5 +1,5 @@
-//! Cost of clouds to a frame on a software driver, in copies (see [`crate::copies`]) and of a clear sky's frame: the eye
-//! looks 15 degrees up.
+//! Cost of clouds to a frame on a software driver, in copies (see [`crate::copies`]) and of a clear sky's frame: the
+//! eye looks 15 degrees up.
 
 use std::sync::Arc;
 

@@ -63,8 +63,8 @@ impl View {
         Ok(())
     }
 
-    /// Merges what all effects add to a draw. `tone` says that the whole picture is tone-mapped, `has_cube_map` that the
-    /// host has asked for the cube map.
+    /// Merges what all effects add to a draw. `tone` says that the whole picture is tone-mapped, `has_cube_map` that
+    /// the host has asked for the cube map.
     pub(super) fn composed(&mut self, at: &DrawContext<'_>, tone: bool, has_cube_map: bool) -> Result<Composition> {
         let target = &at.target;
         let block = uniform(at.frame, at.now, target.rays, at.picture(), target.exposure, tone);

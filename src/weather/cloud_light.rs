@@ -107,8 +107,8 @@ impl Conditions {
         self.over_first_clouds(|s| s.base_m.max(100.0))
     }
 
-    /// Part of what falls that has begun to fall at an altitude: all below the height where it begins in its cloud, none
-    /// above.
+    /// Part of what falls that has begun to fall at an altitude: all below the height where it begins in its cloud,
+    /// none above.
     pub(crate) fn begun(&self, altitude_m: f64) -> f64 {
         onset(self.falling_top_m(), altitude_m)
     }
