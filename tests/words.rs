@@ -1,5 +1,5 @@
 //! How the code reads: a doc block begins with a noun or a verb, no line of a comment is wider than 120 columns, one
-//! name of a type has one meaning, and what sets something is not named as a question.
+//! name of a type has one meaning, what sets something is not named as a question, and the glossary is short.
 
 use std::{
     collections::BTreeMap,
@@ -146,4 +146,31 @@ fn a_question_changes_nothing() {
         .flat_map(|(path, text)| text.lines().filter(asks).map(move |line| format!("{}: {line}", path.display())))
         .collect();
     assert!(all.is_empty(), "{all:#?}");
+}
+
+/// Most rows of the glossary.
+const GLOSSARY_WORDS: usize = 50;
+
+/// Rows of a Markdown table whose first cell is a word in lower case, cell by cell.
+fn glossary_rows(text: &str) -> Vec<Vec<&str>> {
+    let rows =
+        text.lines().filter_map(|line| line.strip_prefix("| ")).map(|row| row.split('|').map(str::trim).collect());
+    rows.skip(1).filter(|cells: &Vec<&str>| cells[0].starts_with(char::is_lowercase)).collect()
+}
+
+#[test]
+fn the_glossary_has_a_sentence_for_each_of_few_words() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("docs/glossary.md")).unwrap();
+    let rows = glossary_rows(&text);
+    assert!((30..=GLOSSARY_WORDS).contains(&rows.len()), "{} words", rows.len());
+    assert!(rows.is_sorted_by(|a, b| a[0] < b[0]), "a word stands twice or out of order");
+    for cells in rows {
+        let [word, meaning, _, room, _] = cells[..] else { panic!("{cells:?}") };
+        assert!(meaning.starts_with(char::is_uppercase) && meaning.ends_with('.'), "{word}: {meaning}");
+        assert!(!meaning.trim_end_matches('.').contains(". "), "{word} has more than one sentence");
+        for room in room.split('`').skip(1).step_by(2) {
+            assert!(room == "reference.rs" || root.join(room).exists(), "{word}: {room}");
+        }
+    }
 }

@@ -1,0 +1,81 @@
+//! Functions whose last bits are the platform's: rooms that step states have none.
+
+use crate::{files, read, root};
+
+/// Rooms in which states are stepped and what they are stepped by is found.
+const SAME_BITS: [&str; 14] = [
+    "almanac",
+    "chance",
+    "context",
+    "falling",
+    "flow",
+    "ground",
+    "planet",
+    "snowpack",
+    "surroundings",
+    "terrain",
+    "weather",
+    "wind",
+    "world",
+    "scene",
+];
+
+/// Files of them that only draw or measure light, which is rounded before it decides a state.
+const LIGHT_ALONE: [&str; 5] =
+    ["scene/camera.rs", "scene/depth.rs", "scene/light.rs", "planet/spectral.rs", "planet/mod.rs"];
+
+/// Functions of the standard library and of glam whose last bits are the platform's.
+const PLATFORMS: [&str; 30] = [
+    "sin(",
+    "cos(",
+    "tan(",
+    "asin(",
+    "acos(",
+    "atan(",
+    "atan2(",
+    "sin_cos(",
+    "exp(",
+    "exp2(",
+    "exp_m1(",
+    "ln(",
+    "ln_1p(",
+    "log10(",
+    "log2(",
+    "log(",
+    "powf(",
+    "cbrt(",
+    "hypot(",
+    "sinh(",
+    "cosh(",
+    "tanh(",
+    "mul_add(",
+    "from_rotation_x(",
+    "from_rotation_y(",
+    "from_rotation_z(",
+    "from_axis_angle(",
+    "from_angle(",
+    "angle_between(",
+    "angle_to(",
+];
+
+#[test]
+fn what_decides_a_state_takes_its_functions_from_libm() {
+    let mut found = Vec::new();
+    for (room, path) in files("src", "rs") {
+        let name = path.strip_prefix(root().join("src")).expect("below it").to_string_lossy().replace('\\', "/");
+        let tests = name.ends_with("tests.rs") || name.contains("/tests/");
+        if !SAME_BITS.contains(&room.as_str()) || LIGHT_ALONE.contains(&name.as_str()) || tests {
+            continue;
+        }
+        let text = read(&path);
+        let code = text.split("mod tests {").next().unwrap_or_default();
+        for (number, line) in code.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//")) {
+            let line = line.replace("libm::", "libm ");
+            let calls = |call: &&&str| line.contains(&format!(".{call}")) || line.contains(&format!("::{call}"));
+            if let Some(call) = PLATFORMS.iter().find(calls) {
+                found.push(format!("src/{name}:{}: {call}", number + 1));
+            }
+        }
+    }
+    assert!(found.is_empty(), "other machines find other bits; use libm:\n{}", found.join("\n"));
+}

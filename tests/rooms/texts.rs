@@ -1,0 +1,70 @@
+//! Files and functions that texts name, and what a fragment shader writes first.
+
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
+
+use crate::{files, read, root};
+
+/// Every `` `file` `function` `` of a numbered line of ARCHITECTURE.md.
+fn hops() -> Vec<(String, String)> {
+    let text = read(&root().join("ARCHITECTURE.md"));
+    let is_numbered = |l: &&str| l.split_once(". `").is_some_and(|(n, _)| n.parse::<u32>().is_ok());
+    let pairs = |line: &str| {
+        let marked: Vec<String> = line.split('`').skip(1).step_by(2).map(str::to_string).collect();
+        marked.chunks_exact(2).map(|p| (p[0].clone(), p[1].clone())).collect::<Vec<_>>()
+    };
+    text.lines().filter(is_numbered).filter(|l| l.contains("` `")).flat_map(pairs).collect()
+}
+
+#[test]
+fn the_ways_through_the_code_lead_past_functions_that_stand_there() {
+    let hops = hops();
+    assert!(hops.len() > 15, "{hops:?}");
+    for (file, function) in hops {
+        let text = read(&root().join(&file));
+        let stands = ['(', '<'].iter().any(|next| text.contains(&format!("fn {function}{next}")));
+        assert!(stands, "{file} has no function {function}");
+    }
+}
+
+/// The files of this repository that a text names with their folder, in the form `src/room/file.rs`.
+fn files_named_in(text: &str) -> BTreeSet<String> {
+    const FOLDERS: [&str; 9] =
+        ["src/", "shaders/", "docs/", "tests/", "examples/", "benches/", "include/", "scripts/", "packaging/"];
+    let is_path = |c: char| c.is_alphanumeric() || "_-./".contains(c);
+    let words = text.split(|c: char| !is_path(c)).map(|word| word.trim_end_matches('.'));
+    let named = words.filter(|word| FOLDERS.iter().any(|folder| word.starts_with(folder)));
+    named.filter(|word| Path::new(word).extension().is_some_and(|e| e != "so")).map(str::to_string).collect()
+}
+
+#[test]
+fn files_that_texts_name_stand_where_they_say() {
+    let some =
+        "as in `src/rain/gone.rs`, (docs/lab/README.md). A crate's own: ../src/lib.rs, other/src/x.rs, src/rain.";
+    assert!(files_named_in(some).into_iter().eq(["docs/lab/README.md", "src/rain/gone.rs"]));
+    let own = ["src", "shaders", "docs", "tests", "examples", "benches", "include"];
+    let kinds = ["rs", "wgsl", "md", "c", "h", "hpp", "toml"];
+    let below = own.iter().flat_map(|top| kinds.iter().flat_map(|kind| files(top, kind)));
+    let all = below.map(|(_, path)| path).chain(["README.md", "ARCHITECTURE.md"].map(|name| root().join(name)));
+    let texts = all.filter(|path| !path.ends_with("tests/rooms/texts.rs"));
+    let missing = |path: &PathBuf| {
+        let named = files_named_in(&read(path)).into_iter().filter(|name| !root().join(name).exists());
+        named.map(|name| format!("{} names {name}", path.display())).collect::<Vec<_>>()
+    };
+    let missing: Vec<String> = texts.flat_map(|path| missing(&path)).collect();
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+/// virgl sends the output of a fragment shader that has none at location 0 to the first image (docs/drivers.md).
+#[test]
+fn a_fragment_shader_names_the_first_output() {
+    let at_fault = files("shaders", "wgsl").into_iter().flat_map(|(_, path)| {
+        let text = read(&path);
+        let alone = |line: &str| line.split_once("-> @location(").is_some_and(|(_, rest)| !rest.starts_with('0'));
+        let lines: Vec<_> = text.lines().filter(|line| alone(line)).map(str::to_string).collect();
+        lines.into_iter().map(move |line| format!("{}: {line}", path.display()))
+    });
+    assert_eq!(at_fault.collect::<Vec<_>>(), Vec::<String>::new());
+}
