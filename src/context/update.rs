@@ -39,7 +39,7 @@ impl Context {
     /// # Errors
     /// As [`Context::update`].
     pub fn update_within(&mut self, time_s: f64, most: Duration) -> Result<Status> {
-        let within = Within { begun: Instant::now(), most };
+        let begun = Instant::now();
         check_range("time_s", time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
         let now = self.world.time_s;
         if time_s < now {
@@ -48,14 +48,14 @@ impl Context {
                 format!("time_s must be at least {} s, got {}", number(now), number(time_s)),
             ));
         }
-        if self.behind.is_some() && self.lead(within)? == Status::Pending {
+        if self.behind.is_some() && self.lead(Within { until_s: now, begun, most })? == Status::Pending {
             return Ok(Status::Pending);
         }
         self.world.keep_carried(time_s)?;
         let world = &self.world;
         self.held.each().into_iter().try_for_each(|effect| effect.begin(world, time_s))?;
         self.world.time_s = time_s;
-        self.lead(within)
+        self.lead(Within { until_s: time_s, begun, most })
     }
 
     /// Whether an update has left steps for another call.
@@ -81,19 +81,11 @@ impl Context {
         if let Some(then) = &mut behind {
             std::mem::swap(&mut self.world.set, then);
         }
-        let mut led = Ok(Status::Ok);
-        for effect in self.held.each() {
-            let led_to = effect.lead(&self.world, within);
-            effect.publish(&mut self.world);
-            match led_to {
-                Ok(Status::Ok) => {}
-                // Those after it read what it publishes: how far it gets in a call must not show in them.
-                Ok(status) => {
-                    led = Ok(status);
-                    break;
-                }
-                fault => led = fault,
-            }
+        let mut until_s = self.next_stop_s(f64::NEG_INFINITY, within.until_s);
+        let mut led = self.lead_each(Within { until_s, ..within });
+        while led == Ok(Status::Ok) && until_s < within.until_s {
+            until_s = self.next_stop_s(until_s, within.until_s);
+            led = self.lead_each(Within { until_s, ..within });
         }
         match (&mut behind, &led) {
             (Some(then), _) => std::mem::swap(&mut self.world.set, then),
@@ -104,6 +96,33 @@ impl Context {
             self.settle();
         } else {
             self.behind = behind;
+        }
+        led
+    }
+
+    /// Simulation time, s, until which the effects are led together: the end of the next step that reads what another
+    /// publishes, while that changes. Where it does not, `last_s`.
+    fn next_stop_s(&self, before_s: f64, last_s: f64) -> f64 {
+        let held = self.held.all();
+        if !held.iter().any(|effect| effect.changes_until(&self.world)) {
+            return last_s;
+        }
+        let ends = held.iter().filter_map(|effect| effect.reads_next_s()).filter(|end_s| *end_s > before_s);
+        ends.fold(last_s, f64::min)
+    }
+
+    /// Leads each effect on in turn, as far as the time allows.
+    fn lead_each(&mut self, within: Within) -> Result<Status> {
+        let mut led = Ok(Status::Ok);
+        for effect in self.held.each() {
+            let led_to = effect.lead(&self.world, within);
+            effect.publish(&mut self.world);
+            match led_to {
+                Ok(Status::Ok) => {}
+                // Those after it read what it publishes: how far it gets in a call must not show in them.
+                Ok(status) => return Ok(status),
+                fault => led = fault,
+            }
         }
         led
     }

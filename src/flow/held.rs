@@ -114,10 +114,10 @@ impl HeldFlow {
         Ok(true)
     }
 
-    /// Does the next thing that is to be done until the present. Says whether there was anything.
-    fn go_on(&mut self, world: &World) -> Result<bool> {
+    /// Does the next thing that is to be done until `until_s`. Says whether there was anything.
+    fn go_on(&mut self, world: &World, until_s: f64) -> Result<bool> {
         let Some(mut live) = self.live.take() else { return self.begin_field(world) };
-        let outcome = self.lead_live(&mut live, world);
+        let outcome = self.lead_live(&mut live, world, until_s);
         if matches!(outcome, Ok(StepOutcome::Changed)) {
             live.shown_over = live.wind_over(world);
         }
@@ -134,12 +134,12 @@ impl HeldFlow {
         }
     }
 
-    fn lead_live(&mut self, live: &mut Live, world: &World) -> Result<StepOutcome> {
+    fn lead_live(&mut self, live: &mut Live, world: &World, until_s: f64) -> Result<StepOutcome> {
         let changed = |is_over: bool| if is_over { StepOutcome::Changed } else { StepOutcome::Unchanged };
         if live.start.is_some() {
             return live.go_on_with_start(world).map(changed);
         }
-        if world.time_s - live.time_s > LEAP_S {
+        if live.is_left_behind(world.time_s) {
             let Some(desc) = self.at(world.time_s) else { return Ok(StepOutcome::Gone) };
             let step_s = step_s(desc.mode);
             *live = Live::new(world, desc, world.time_s.div_euclid(step_s) * step_s)?;
@@ -148,7 +148,7 @@ impl HeldFlow {
         if live.parts.0 > 0 {
             return live.step_part().map(changed);
         }
-        if live.next_s() > world.time_s {
+        if live.next_s() > until_s {
             return Ok(StepOutcome::Rests);
         }
         let Some(desc) = self.at(live.time_s) else {
@@ -159,7 +159,7 @@ impl HeldFlow {
         if !desc.is_like(&live.desc) {
             let step_s = step_s(desc.mode);
             let first_s = (live.time_s / step_s).ceil() * step_s;
-            if first_s > world.time_s {
+            if first_s > until_s {
                 return Ok(StepOutcome::Rests);
             }
             *live = Live::new(world, desc, first_s)?;
@@ -211,12 +211,16 @@ enum StepOutcome {
 
 impl HeldEffect for HeldFlow {
     fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
-        while self.go_on(world)? {
+        while self.go_on(world, within.until_s)? {
             if within.begun.elapsed() >= within.most {
                 return Ok(Status::Pending);
             }
         }
         Ok(Status::Ok)
+    }
+
+    fn changes_until(&self, world: &World) -> bool {
+        self.live.as_ref().is_some_and(|live| !live.is_left_behind(world.time_s))
     }
 
     fn publish(&mut self, world: &mut World) {

@@ -429,7 +429,7 @@ impl HeldEffect for HeldGround {
         let Some(mut state) = self.state else { return Ok(Status::Ok) };
         for steps in 0.. {
             let end_s = state.next_s();
-            if end_s > world.time_s {
+            if end_s > within.until_s {
                 break;
             }
             if steps > 0 && within.begun.elapsed() >= within.most {

@@ -385,7 +385,7 @@ impl HeldEffect for HeldSnow {
     fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
         for steps in 0.. {
             let Some(end_s) = self.state.as_ref().map(|s| s.next_s(self.coarse_until_s)) else { break };
-            if end_s > world.time_s {
+            if end_s > within.until_s {
                 break;
             }
             if steps > 0 && within.begun.elapsed() >= within.most {
@@ -394,6 +394,10 @@ impl HeldEffect for HeldSnow {
             self.step(world, end_s)?;
         }
         Ok(Status::Ok)
+    }
+
+    fn reads_next_s(&self) -> Option<f64> {
+        self.state.as_ref().map(|state| state.next_s(self.coarse_until_s))
     }
 
     fn publish(&mut self, world: &mut World) {

@@ -5,9 +5,11 @@ use std::time::Instant;
 use super::World;
 use crate::error::{Error, Result, Status};
 
-/// When an update began, and how long it may go on.
+/// Simulation time to which states are led, the present at the latest, and how long the update that leads them may go
+/// on since it began.
 #[derive(Clone, Copy)]
 pub(crate) struct Within {
+    pub until_s: f64,
     pub begun: Instant,
     pub most: std::time::Duration,
 }
@@ -20,7 +22,7 @@ pub(crate) trait HeldEffect: std::any::Any {
         Ok(())
     }
 
-    /// Leads the state on until the present, by steps of a grid that is anchored at time 0, or until the time is over:
+    /// Leads the state on to `within.until_s`, by steps of a grid that is anchored at time 0, or until the time is over:
     /// one step at least. Says whether it got there.
     fn lead(&mut self, _world: &World, _within: Within) -> Result<Status> {
         Ok(Status::Ok)
@@ -32,6 +34,17 @@ pub(crate) trait HeldEffect: std::any::Any {
 
     /// Puts what others read of its state where they read it. Called when the state may have changed.
     fn publish(&mut self, _world: &mut World) {}
+
+    /// Whether what it publishes changes between its state's time and the present, so that effects behind it in the
+    /// list must read it as of their own steps.
+    fn changes_until(&self, _world: &World) -> bool {
+        false
+    }
+
+    /// Simulation time, s, at which the next step that reads what others publish ends; none without such steps.
+    fn reads_next_s(&self) -> Option<f64> {
+        None
+    }
 
     /// Simulation time of the state, if there is one.
     fn stepped_to_s(&self) -> Option<f64> {

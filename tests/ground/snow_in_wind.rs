@@ -106,3 +106,43 @@ fn flakes_blow_under_a_windward_porch_and_leave_that_to_the_lee_bare() {
     let behind: Vec<_> = (7..40).map(|x| lies(&context, f64::from(x), 0.0)).collect();
     println!("behind it: {behind:.1?}");
 }
+
+#[test]
+fn snow_in_a_solved_field_does_not_depend_on_how_time_is_cut() {
+    let hash = |updates_s: f64| {
+        let host = Host::new();
+        let desc = ContextDesc { lying_snow: LyingSnowModel::Simulated, seed: 3, ..ContextDesc::default() };
+        let mut context = Context::new(host.device.clone(), host.context.shared().clone(), desc).unwrap();
+        // A wind that grows, so that the field of a minute is not that of the next.
+        let weather = |wind_m_s: f64| Weather {
+            temperature_c: -6.0,
+            surface: Surface { snow_depth_m: 0.3, ..Surface::default() },
+            wind: Wind { gust_m_s: Some(wind_m_s), ..Wind::of(wind_m_s, 270.0) },
+            ..Weather::default()
+        };
+        context.set_weather(&weather(9.0), 0.0, 0.0).unwrap();
+        context.set_weather(&weather(16.0), 0.0, 400.0).unwrap();
+        let (origin, heights_m) = (DVec3::new(CORNER[0], CORNER[1], 0.0), vec![0.0; 90 * 60]);
+        context
+            .set_ground_grid(Some(GroundGrid { origin, cell_m: 1.0, nodes: NODES, heights_m, classes: Vec::new() }))
+            .unwrap();
+        context.set_shelters(&[roof([0.0, 0.0, 2.0], [1.0, 12.0, 2.0])]).unwrap();
+        let field = WindFieldDesc {
+            floor_center: DVec3::new(10.0, 0.0, 0.0),
+            cell_m: DVec3::splat(4.0),
+            cells: [24, 16, 8],
+            ..WindFieldDesc::default()
+        };
+        context.set_wind_field(Some(&field), 0.0).unwrap();
+        let mut time_s = 0.0;
+        while time_s < 420.0 {
+            time_s = f64::min(time_s + updates_s, 420.0);
+            context.update(time_s).unwrap();
+        }
+        context.state_hash().unwrap()
+    };
+    let by_minutes = hash(60.0);
+    for updates_s in [7.0, 45.0, 59.5] {
+        assert_eq!(hash(updates_s), by_minutes, "updates of {updates_s} s");
+    }
+}

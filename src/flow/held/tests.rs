@@ -67,7 +67,10 @@ impl Bench {
     }
 
     fn lead(&mut self, most: Duration) -> Status {
-        let led = self.flow.lead(&self.world, Within { begun: Instant::now(), most }).expect("led");
+        let led = self
+            .flow
+            .lead(&self.world, Within { until_s: self.world.time_s, begun: Instant::now(), most })
+            .expect("led");
         self.flow.publish(&mut self.world);
         led
     }
