@@ -93,8 +93,9 @@ lint: ## formatting and clippy, warnings are errors
 # A check that cannot be made is said, and fails where nobody reads along.
 no_tool = echo "lint: $(1) is not installed (rustup component add $(1))" >&2; [ -z "$${CI:-}" ]
 
-header: setup-build ## write include/welkin.h and the ABI lists anew from the sources
+header: setup-build ## write include/welkin.h, the ABI lists and the list of the Rust API anew from the sources
 	WELKIN_BLESS=1 cargo test --locked --quiet --test abi_header
+	WELKIN_BLESS=1 cargo test --locked --quiet --test rooms the_rust_api
 
 .PHONY: windows windows-accept
 windows: setup-build ## welkin.dll by MinGW, packed for Windows projects and checked, at most 12 minutes on two cores

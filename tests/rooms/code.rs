@@ -12,8 +12,8 @@ use syn::visit::{self, Visit};
 pub type ModulePath = Vec<String>;
 
 /// Parsed source file.
-#[derive(Default)]
 pub struct SourceFile {
+    pub tree: syn::File,
     /// Paths that its code names, `use` lines among them, as far as they may lead to another file.
     pub used: Vec<Vec<String>>,
     /// Names that `use` lines give to paths.
@@ -77,7 +77,16 @@ impl Sources {
         self.0[module].used.iter().filter_map(room).collect()
     }
 
+    /// The file of a module.
+    pub fn file(&self, module: &[String]) -> Option<&SourceFile> {
+        self.0.get(module)
+    }
+
     /// The file that defines what a path leads to from a module; none outside of the crate.
+    pub fn defining(&self, module: &[String], path: &[String]) -> Option<&ModulePath> {
+        self.resolved(module, path, 0)
+    }
+
     fn resolved(&self, module: &[String], path: &[String], depth: usize) -> Option<&ModulePath> {
         // Names that lead round in a circle of `use` lines end here.
         if depth > 16 {
@@ -90,7 +99,10 @@ impl Sources {
             "self" => rest = &path[1..],
             "super" => {}
             first => {
-                let file = self.0.get(module)?;
+                let (key, file) = self.0.get_key_value(module)?;
+                if file.defined.contains(first) {
+                    return Some(key);
+                }
                 let child = [module, &[first.to_string()]].concat();
                 if !self.0.contains_key(&child) {
                     let named = file.named.get(first).filter(|named| *named != path)?;
@@ -132,11 +144,12 @@ fn parsed(text: &str, path: &std::path::Path) -> SourceFile {
     let tree = syn::parse_file(text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let mut reader = Reader::default();
     reader.visit_file(&tree);
-    reader.file.defined = tree.items.iter().filter_map(item_name).collect();
-    reader.file
+    let Reader { used, named, globs, functions, .. } = reader;
+    let defined = tree.items.iter().filter_map(item_name).collect();
+    SourceFile { tree, used, named, globs, defined, functions }
 }
 
-fn item_name(item: &syn::Item) -> Option<String> {
+pub fn item_name(item: &syn::Item) -> Option<String> {
     let name = match item {
         syn::Item::Const(i) => &i.ident,
         syn::Item::Enum(i) => &i.ident,
@@ -157,10 +170,13 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|a| a.path().is_ident("cfg") && is_test(a))
 }
 
-/// Walk over a file's tree.
+/// Walk over a file's tree, and what it has found.
 #[derive(Default)]
 struct Reader {
-    file: SourceFile,
+    used: Vec<Vec<String>>,
+    named: BTreeMap<String, Vec<String>>,
+    globs: Vec<Vec<String>>,
+    functions: Vec<Function>,
     /// Modules written within the file that are open.
     depth: usize,
 }
@@ -171,7 +187,7 @@ impl Reader {
         let within = path.iter().take_while(|name| *name == "super").count().min(self.depth);
         path.drain(..within);
         if path.len() > 1 || within == 0 {
-            self.file.used.push(path);
+            self.used.push(path);
         }
     }
 
@@ -182,7 +198,7 @@ impl Reader {
         match tree {
             syn::UseTree::Path(p) => self.take_use(&with(&p.ident), &p.tree),
             syn::UseTree::Group(g) => g.items.iter().for_each(|item| self.take_use(before, item)),
-            syn::UseTree::Glob(_) => self.file.globs.push(before.to_vec()),
+            syn::UseTree::Glob(_) => self.globs.push(before.to_vec()),
             syn::UseTree::Name(n) => self.take_name(path(&n.ident), None),
             syn::UseTree::Rename(r) => self.take_name(path(&r.ident), Some(r.rename.to_string())),
         }
@@ -191,7 +207,7 @@ impl Reader {
     fn take_name(&mut self, path: Vec<String>, alias: Option<String>) {
         let name = alias.or_else(|| path.last().cloned()).expect("a name");
         if self.depth == 0 {
-            self.file.named.insert(name, path.clone());
+            self.named.insert(name, path.clone());
         }
         self.keep(path);
     }
@@ -242,7 +258,7 @@ impl<'a> Visit<'a> for Reader {
                 syn::FnArg::Receiver(_) => None,
             });
             let parameters = typed.map(parameter).collect();
-            self.file.functions.push(Function { name: signature.ident.to_string(), parameters });
+            self.functions.push(Function { name: signature.ident.to_string(), parameters });
         }
         visit::visit_signature(self, signature);
     }

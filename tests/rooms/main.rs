@@ -2,6 +2,7 @@
 //! ARCHITECTURE.md, and no circle, neither of rooms nor of files. How long functions are and how their parameters are
 //! named, and what else holds for the text of the sources.
 
+mod api;
 mod bits;
 mod circles;
 mod code;
