@@ -1,6 +1,9 @@
 //! The one full-screen draw of a call: what each effect contributes to it, and what the frame merges of that.
 
-use super::{FrameBlock, FrameUniform, Stages};
+use super::{
+    stages::Stages,
+    uniform::{FrameBlock, FrameUniform},
+};
 use crate::{
     gpu::blocks::BlockView,
     surroundings::{ShelterReach, SurroundingsBlock},

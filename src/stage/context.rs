@@ -5,7 +5,10 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
-use super::{ColorSpace, Frame, FrameFlags, Stages};
+use super::{
+    frame::{ColorSpace, Frame},
+    stages::Stages,
+};
 use crate::{
     gpu::{Device, Layer},
     light::ToneCurve,
@@ -119,12 +122,5 @@ impl DrawContext<'_> {
     pub fn clip(&self) -> DMat4 {
         let camera = &self.frame.camera;
         camera.projection * DMat4::from_mat3(camera.rotation() * self.now.scene.world_to_enu.transpose())
-    }
-}
-
-impl Frame<'_> {
-    /// Whether nothing of earlier frames may show.
-    pub(crate) fn is_pure(&self) -> bool {
-        self.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0))
     }
 }

@@ -1,6 +1,6 @@
 //! Pictures of a frame's numbers in place of the frame itself, for developers.
 
-use super::Stages;
+use super::stages::Stages;
 
 /// A false-colour picture in place of a frame's: one number of each pixel on a scale from black over blue, green,
 /// yellow and red to white.

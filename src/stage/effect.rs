@@ -1,8 +1,13 @@
 //! The shape that every effect of a frame has.
 
 use super::{
-    Contribution, DrawContext, Exchange, Frame, FrameContext, MergedFrame, OpaqueDraw, Outputs, Recording, Report,
-    Stages,
+    composition::{Contribution, MergedFrame},
+    context::{DrawContext, FrameContext},
+    frame::Frame,
+    opaque::OpaqueDraw,
+    outputs::{Exchange, Outputs},
+    recording::{Recording, Report},
+    stages::Stages,
 };
 use crate::{
     error::Result,

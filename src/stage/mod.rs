@@ -10,9 +10,11 @@ mod composition;
 mod context;
 mod diagnostic;
 mod effect;
+mod frame;
 mod opaque;
 mod outputs;
 mod recording;
+mod stages;
 mod target;
 mod uniform;
 
@@ -22,12 +24,12 @@ pub(crate) use composition::{
 pub(crate) use context::{DrawContext, DrawTarget, FrameContext, PlannedShares, Tone};
 pub use diagnostic::Diagnostic;
 pub(crate) use effect::{DrawnEffect, LensPicture, PutPart};
-pub use opaque::DepthAccess;
+pub use frame::{ColorSpace, DepthAccess, Frame, FrameFlags, ImageLayers};
 pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
 pub(crate) use outputs::{Exchange, Output, Outputs, ordered};
 pub(crate) use recording::Recording;
 pub use recording::{CostItem, Costs, RainReport, Report, SnowReport};
-pub use target::{ColorSpace, Stages};
+pub use stages::Stages;
 pub(crate) use target::{
     Sampling, can_be_apart, can_copy, check_classes, check_color, check_depth, check_mask, check_normals,
     check_written, color_copy, is_copy_of, rounding,
@@ -35,173 +37,3 @@ pub(crate) use target::{
 pub(crate) use uniform::{
     BOW_ENTRIES, BowTable, FlashBlock, FlashUniform, FrameBlock, FrameUniform, is_float, uniform,
 };
-
-use glam::DVec3;
-
-use crate::{
-    error::{Error, Result},
-    gpu::Layer,
-    light::Exposure,
-    scene::{Camera, DepthMapping},
-};
-
-/// Flags of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct FrameFlags(pub u32);
-
-impl FrameFlags {
-    /// The camera jumped: nothing of earlier frames may show. Tables of the sky are whole, as without history.
-    pub const CUT: Self = Self(1);
-    /// Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame
-    /// if they are not yet.
-    pub const NO_HISTORY: Self = Self(2);
-    /// Measure what each effect costs ([`Report::costs`]). The stages are drawn one by one and each is waited for, so
-    /// such a frame is slower, and its picture may differ by rounding. For [`View::record`](crate::frame::View::record)
-    /// only.
-    pub const MEASURE: Self = Self(16);
-
-    /// [`Frame::normals`] are in the axes of the camera: x right, y up, z towards the viewer; without it in the host's
-    /// world.
-    pub const NORMALS_IN_EYE_SPACE: Self = Self(32);
-
-    /// Whether any flag of `other` is set.
-    pub fn has(self, other: Self) -> bool {
-        self.0 & other.0 != 0
-    }
-}
-
-/// The layer that each image of a frame is in its texture, from 0. The other layers stay untouched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct ImageLayers {
-    /// Layer of [`Frame::color`].
-    pub color: u32,
-    /// Layer of [`Frame::depth`].
-    pub depth: u32,
-    /// Layer of [`Frame::mask`].
-    pub mask: u32,
-    /// Layer of [`Frame::surface_classes`].
-    pub surface_classes: u32,
-    /// Layer of [`Frame::normals`].
-    pub normals: u32,
-}
-
-/// One frame of a host: where it looks from, what it drew, and what its numbers mean.
-#[derive(Clone, Copy)]
-pub struct Frame<'a> {
-    /// The host's frame number; the same on all channels of a simulator, for jitter and dither.
-    pub frame_id: u64,
-    /// The camera.
-    pub camera: Camera,
-    /// Meaning of the numbers in `depth`.
-    pub depth_mapping: DepthMapping,
-    /// Whether Welkin may write `depth`. Default: it only reads it.
-    pub depth_access: DepthAccess,
-    /// Colour to draw into; may be absent for [`Stages::PREPARE`] alone. Needs RENDER_ATTACHMENT and COPY_SRC.
-    pub color: Option<&'a wgpu::Texture>,
-    /// The host's depth; without it every pixel shows the sky. Needs TEXTURE_BINDING. It has as many samples as
-    /// `color`, or any number where `color` has one (resolved): then the first sample counts. With
-    /// [`DepthAccess::ReadWrite`] it needs RENDER_ATTACHMENT too.
-    pub depth: Option<&'a wgpu::Texture>,
-    /// Red channel 1 keeps the host's pixel (cab, HUD), 0 draws weather.
-    pub mask: Option<&'a wgpu::Texture>,
-    /// Material of what each pixel shows: red is the number of a [`SurfaceClass`](crate::ground::SurfaceClass) over
-    /// 255, 0 where the host's terrain or the context's default gives it. Of one sample; needs TEXTURE_BINDING.
-    pub surface_classes: Option<&'a wgpu::Texture>,
-    /// Unit normals of the surfaces, in the host's world or in eye space ([`FrameFlags::NORMALS_IN_EYE_SPACE`]):
-    /// (n + 1) / 2 in normalised formats, n in float formats. What is no unit vector, as zeros and ones are, leaves it
-    /// to the host's terrain and depth. Of one sample; needs TEXTURE_BINDING.
-    pub normals: Option<&'a wgpu::Texture>,
-    /// Layers of array textures that the images are, as for the eyes of a stereo pair. Default: the first of each.
-    pub layers: ImageLayers,
-    /// Meaning of the numbers in `color`.
-    pub color_space: ColorSpace,
-    /// Luminance of the value 1 in a scene-linear `color`, cd/m^2, [1e-9, 1e9], default 1.
-    pub cd_m2_per_unit: f64,
-    /// Exposure of this frame; `None` takes the context's.
-    pub exposure: Option<Exposure>,
-    /// Row 0 of the targets is the bottom of the picture, as OpenGL draws.
-    pub origin_bottom_left: bool,
-    /// Cut, no history.
-    pub flags: FrameFlags,
-    /// A false-colour picture for developers in place of the frame's. Default none.
-    pub diagnostic: Diagnostic,
-    /// Velocity of the camera in the host's axes, m/s: rain streaks lean against it. Default 0.
-    pub camera_velocity_m_s: DVec3,
-}
-
-impl<'a> Frame<'a> {
-    /// A frame of a scene-linear host with reversed infinite depth that draws into `color`.
-    pub fn new(frame_id: u64, camera: Camera, color: &'a wgpu::Texture, depth: Option<&'a wgpu::Texture>) -> Self {
-        Self {
-            frame_id,
-            camera,
-            depth_mapping: DepthMapping { reversed: true, ..Default::default() },
-            depth_access: DepthAccess::Read,
-            color: Some(color),
-            depth,
-            mask: None,
-            layers: ImageLayers::default(),
-            surface_classes: None,
-            normals: None,
-            color_space: ColorSpace::SceneLinear,
-            cd_m2_per_unit: 1.0,
-            exposure: None,
-            origin_bottom_left: false,
-            flags: FrameFlags(0),
-            diagnostic: Diagnostic::None,
-            camera_velocity_m_s: DVec3::ZERO,
-        }
-    }
-
-    pub(crate) fn color_layer(&self) -> Option<Layer<'a>> {
-        self.color.map(|texture| Layer { texture, index: self.layers.color })
-    }
-
-    pub(crate) fn depth_layer(&self) -> Option<Layer<'a>> {
-        self.depth.map(|texture| Layer { texture, index: self.layers.depth })
-    }
-
-    pub(crate) fn mask_layer(&self) -> Option<Layer<'a>> {
-        self.mask.map(|texture| Layer { texture, index: self.layers.mask })
-    }
-
-    pub(crate) fn classes_layer(&self) -> Option<Layer<'a>> {
-        self.surface_classes.map(|texture| Layer { texture, index: self.layers.surface_classes })
-    }
-
-    pub(crate) fn normals_layer(&self) -> Option<Layer<'a>> {
-        self.normals.map(|texture| Layer { texture, index: self.layers.normals })
-    }
-
-    /// All images by name.
-    pub(crate) fn image_layers(&self) -> [(&'static str, Option<Layer<'a>>); 5] {
-        [
-            ("color", self.color_layer()),
-            ("depth", self.depth_layer()),
-            ("mask", self.mask_layer()),
-            ("surface_classes", self.classes_layer()),
-            ("normals", self.normals_layer()),
-        ]
-    }
-
-    pub(crate) fn validate(&self) -> Result<()> {
-        for (name, layer) in self.image_layers() {
-            if let Some(l) = layer.filter(|l| l.index >= l.texture.depth_or_array_layers()) {
-                let accepted = format!("below its texture's {} layers", l.texture.depth_or_array_layers());
-                return Err(Error::range(&format!("{name}.layer"), &accepted, l.index));
-            }
-        }
-        // Below that the sun's own number is infinite.
-        if !(1e-9..=1e9).contains(&self.cd_m2_per_unit) {
-            return Err(Error::range("cd_m2_per_unit", "in [1e-9, 1e9] cd/m^2", self.cd_m2_per_unit));
-        }
-        let speed = self.camera_velocity_m_s.length();
-        if speed.is_nan() || speed > 2000.0 {
-            return Err(Error::range("camera_velocity_m_s", "a vector of at most 2000 m/s", self.camera_velocity_m_s));
-        }
-        if let Some(exposure) = &self.exposure {
-            exposure.validate()?;
-        }
-        Ok(())
-    }
-}

@@ -2,26 +2,11 @@
 
 use glam::DMat4;
 
-use super::{DrawContext, Frame};
+use super::{context::DrawContext, frame::Frame};
 use crate::{
     gpu::pass,
     scene::{ClipSpace, DepthKind},
 };
-
-/// Access that Welkin has to a host's depth.
-///
-/// Nothing that this version draws is opaque, so both give the same picture; sea and terrain will be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum DepthAccess {
-    /// Read it. Not a bit of it changes, and nothing opaque of Welkin's is drawn
-    /// ([`Report::opaque_left_out`](super::Report::opaque_left_out) counts that).
-    #[default]
-    Read,
-    /// Test and write it where Welkin draws opaque things: in [`Stages::SURFACE`](super::Stages::SURFACE), before the
-    /// water on surfaces. They hide, and are hidden by, what the host drew before. Stencil stays as it is. Needs a
-    /// depth format with RENDER_ATTACHMENT and as many samples as the colour.
-    ReadWrite,
-}
 
 /// Properties of the target that pipelines of opaque things are made for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Outputs that effects give each other in a frame, by name: the order in which they are run follows from it.
 
-use super::{Contribution, Texture};
+use super::composition::{Contribution, Texture};
 use crate::error::{Error, Result, Status};
 
 /// Output that one effect gives and others take. Each has one giver.

@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::Stages;
+use super::stages::Stages;
 use crate::{
     error::Result,
     gpu::{Device, blocks::Blocks},

@@ -1,6 +1,6 @@
 //! The frame's uniform block, as `shaders/common/frame.wgsl` reads it.
 
-use super::{ColorSpace, Frame};
+use super::frame::{ColorSpace, Frame};
 use crate::{
     light::Exposure,
     moment::SceneMoment,
