@@ -14,8 +14,8 @@ use std::{
 use wgpu::util::DeviceExt as _;
 
 use super::{
-    Device,
     bind::{self, Slot},
+    device::Device,
     pass, readback,
 };
 use crate::error::{Error, Status};

@@ -22,6 +22,7 @@ mod device;
 mod instance;
 mod known;
 mod layer;
+mod opening;
 mod shared;
 mod stand_in;
 mod texture;

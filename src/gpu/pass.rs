@@ -4,7 +4,7 @@
 //! Tables, sky, fog and composition are all built of it, so they run on tier 0 as well. The vertex stage is
 //! `common/fullscreen.wgsl`.
 
-use super::{Device, device::Shader};
+use super::device::{Device, Shader};
 use crate::error::Result;
 
 /// Pipelines of a pass that are made when first drawn with, each known by what it was made for.

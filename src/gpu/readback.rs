@@ -2,7 +2,7 @@
 
 use half::f16;
 
-use super::Device;
+use super::device::Device;
 use crate::error::{Error, Result, Status};
 
 /// Bytes of one texel of the formats that can be read back.

@@ -5,7 +5,7 @@ use std::{
     sync::{Arc, Mutex},
 };
 
-use super::Device;
+use super::device::Device;
 use crate::error::{Error, Result, Status};
 
 /// Pipelines and tables of one device, made once and used by all its contexts and views. Any thread.

@@ -6,6 +6,7 @@
 use std::ffi::{CStr, c_char, c_void};
 
 use super::names::*;
+use crate::error::{Error, Status};
 
 /// A `GLsync`.
 pub(crate) type Sync = *const c_void;
@@ -327,4 +328,15 @@ impl Api {
         }
         first
     }
+
+    /// Sets one switch.
+    pub(super) fn set_enabled(&self, cap: u32, is_on: bool) {
+        if is_on { self.Enable(cap) } else { self.Disable(cap) }
+    }
+}
+
+/// An error flag that Welkin's own calls left.
+pub(crate) fn raised_in_welkin(error: u32) -> Option<Error> {
+    let status = if error == OUT_OF_MEMORY { Status::OutOfMemory } else { Status::Internal };
+    (error != NO_ERROR).then(|| Error::new(status, format!("OpenGL answered {} to Welkin's calls", spell(error))))
 }

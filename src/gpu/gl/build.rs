@@ -9,8 +9,10 @@ use super::{
     api::Api,
     blit::{self, BlitEnd},
     formats,
-    image::{self, Ask, Facts, GlImage, Parameters, TargetSide, target_of},
+    image::{self, Ask, Facts, GlImage, Parameters, target_of},
     names::*,
+    object::GlObject,
+    side::TargetSide,
     target::{Copied, Entry, GlTarget, GlTargetDesc, Multisample, TargetImage, TargetObjects, mask},
 };
 use crate::error::{Error, Result, Status};
@@ -21,36 +23,6 @@ pub(super) struct Workshop<'a> {
     pub(super) device: &'a wgpu::Device,
     /// Whether the device draws as OpenGL 3.3 or OpenGL ES 3.0 would.
     pub(super) tier0: bool,
-}
-
-/// An OpenGL object that a wgpu texture stands for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum GlObject {
-    /// Name and target.
-    Texture(u32, u32),
-    Renderbuffer(u32),
-    /// A framebuffer of ours; how wgpu draws to what it cannot attach itself.
-    Framebuffer(u32),
-}
-
-impl GlObject {
-    fn name(self) -> u32 {
-        let (Self::Texture(name, _) | Self::Renderbuffer(name) | Self::Framebuffer(name)) = self;
-        name
-    }
-
-    /// Attaches it to the bound framebuffer.
-    pub(super) fn attach(self, api: &Api, attachment: u32) {
-        match self {
-            Self::Texture(name, target) => api.FramebufferTexture2D(FRAMEBUFFER, attachment, target, name, 0),
-            Self::Renderbuffer(name) => api.FramebufferRenderbuffer(FRAMEBUFFER, attachment, RENDERBUFFER, name),
-            Self::Framebuffer(_) => {}
-        }
-    }
-
-    fn is_multisampled_texture(self) -> bool {
-        matches!(self, Self::Texture(_, TEXTURE_2D_MULTISAMPLE))
-    }
 }
 
 const ATTACH: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT;

@@ -2,7 +2,7 @@
 
 use wgpu::TextureFormat as Format;
 
-use super::{image::TargetSide, names::*};
+use super::{names::*, side::TargetSide};
 use crate::error::{Error, Result, Status};
 
 /// The colour formats a host may hand over.

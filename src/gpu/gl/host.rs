@@ -1,52 +1,26 @@
 //! Entering and leaving a host's OpenGL: whose context is current, who waits for whom, and what is put back.
 
-use std::{
-    ffi::c_void,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
-};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::{
-    Handover, MakeCurrent, WhichContext,
-    api::{Api, Sync as Fence},
+    api::{Api, Sync as Fence, raised_in_welkin},
     check::{self, GlInfo},
     counting::Counting,
+    desc::Handover,
     gate::Gate,
     image::GlImage,
     mark::Mark,
     names::*,
     state::HostState,
+    switch::{Switch, WhichContext},
     target::{Entry, GlTarget, GlTargetDesc, Multisample},
     window::WindowSize,
     windows::Windows,
 };
 use crate::{
     error::{Error, Result, Status},
-    gpu::{AttachedDepth, HostBinding},
+    gpu::device::{AttachedDepth, HostBinding},
 };
-
-/// The host's callback with its argument.
-#[derive(Clone, Copy)]
-pub(super) struct Switch {
-    pub(super) call: MakeCurrent,
-    pub(super) user: *mut c_void,
-}
-
-// SAFETY: the contract of `GlHostDesc` says that the callback may be called on any thread that calls Welkin.
-unsafe impl Send for Switch {}
-// SAFETY: as above; calls never overlap, the gate sees to it.
-unsafe impl Sync for Switch {}
-
-impl Switch {
-    /// Asks the host to make a context current.
-    pub(super) fn to(self, which: WhichContext) -> Result<()> {
-        // SAFETY: the host vouches for its callback and argument when it makes the device.
-        let answer = unsafe { (self.call)(self.user, which as u32) };
-        if answer == 0 {
-            return Ok(());
-        }
-        Err(which.refuse(format_args!("make that context current and return 0, got {answer}")))
-    }
-}
 
 /// wgpu's own objects in the context, by the names OpenGL gave them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -445,10 +419,4 @@ fn bind_again(api: &Api, image: GlImage) {
         }
         GlImage::Framebuffer { .. } => {}
     }
-}
-
-/// An error flag that Welkin's own calls left.
-pub(in crate::gpu) fn raised_in_welkin(error: u32) -> Option<Error> {
-    let status = if error == OUT_OF_MEMORY { Status::OutOfMemory } else { Status::Internal };
-    (error != NO_ERROR).then(|| Error::new(status, format!("OpenGL answered {} to Welkin's calls", spell(error))))
 }

@@ -33,6 +33,7 @@ mod build;
 mod cache;
 mod check;
 mod counting;
+mod desc;
 mod face;
 mod formats;
 mod gate;
@@ -41,90 +42,23 @@ mod image;
 mod later;
 mod mark;
 pub(crate) mod names;
+mod object;
 mod open;
+mod side;
 mod state;
+mod switch;
 mod target;
 mod window;
 mod windows;
 
-use std::ffi::{c_char, c_void};
-
+pub(super) use api::raised_in_welkin;
 pub use check::{GlInfo, GlProfile};
-pub(super) use host::raised_in_welkin;
+pub use desc::{GetProc, GlHostDesc, GlMode, Handover};
 pub use host::{Current, GlHost};
 pub use image::GlImage;
 pub use open::{GlDevice, adopt};
+pub use switch::{MakeCurrent, WhichContext};
 pub use target::{GlTarget, GlTargetDesc, Multisample};
-
-use crate::error::{Error, Status};
-
-/// Answers the address of OpenGL function `name` (NUL-terminated), or NULL: `eglGetProcAddress`, `glXGetProcAddress`,
-/// `glfwGetProcAddress` in the host's words. Called with Welkin's or the host's context current.
-pub type GetProc = unsafe extern "C" fn(user: *mut c_void, name: *const c_char) -> *const c_void;
-
-/// Makes a context current on the calling thread: 0 ([`WhichContext::Host`]) or 1 ([`WhichContext::Welkin`]). Returns 0
-/// when it is current, anything else when it could not be made so. Must not call back into Welkin.
-pub type MakeCurrent = unsafe extern "C" fn(user: *mut c_void, which: u32) -> i32;
-
-/// Context that [`MakeCurrent`] is asked for.
-#[repr(u32)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WhichContext {
-    /// The one the host draws in.
-    Host = 0,
-    /// The one the host made for Welkin, sharing objects with its own.
-    Welkin = 1,
-}
-
-impl WhichContext {
-    /// Refuses what the host's callback made current when it was asked for this context; `accepted` ends
-    /// `make_current must, asked for WK_OPENGL_CONTEXT_HOST, `.
-    fn refuse(self, accepted: impl std::fmt::Display) -> Error {
-        let name = match self {
-            Self::Host => "WK_OPENGL_CONTEXT_HOST",
-            Self::Welkin => "WK_OPENGL_CONTEXT_WELKIN",
-        };
-        Error::about(Status::WrongOrder, "make_current", format_args!("must, asked for {name}, {accepted}"))
-    }
-}
-
-/// How Welkin lives beside the host's OpenGL.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum GlMode {
-    /// In a context of its own that shares objects with the host's.
-    #[default]
-    Shared,
-    /// In the host's context, whose state is put back.
-    HostContext,
-}
-
-/// How one context's commands are ordered after the other's in shared mode.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Handover {
-    /// `glFenceSync` and `glWaitSync`, as the standard asks.
-    #[default]
-    Fence,
-    /// `glFlush` alone: enough where one queue serves both contexts, and cheaper there; measure before you rely on it.
-    Flush,
-}
-
-/// Description of the OpenGL host that is drawn into.
-#[derive(Clone, Copy, Debug)]
-pub struct GlHostDesc {
-    /// Finds OpenGL functions. Required.
-    pub get_proc: Option<GetProc>,
-    /// Makes contexts current. Required in shared mode; in the host's context it is called with
-    /// [`WhichContext::Host`] before each batch, if given.
-    pub make_current: Option<MakeCurrent>,
-    /// Passed to both. They may be called on any thread that calls Welkin, one at a time.
-    pub user: *mut c_void,
-    /// Mode in which Welkin lives beside the host's OpenGL.
-    pub mode: GlMode,
-    /// How contexts wait for each other in shared mode.
-    pub handover: Handover,
-    /// Draw as a context of OpenGL 3.3 or OpenGL ES 3.0 would, without compute, whatever the driver can do.
-    pub force_tier0: bool,
-}
 
 /// Sign of clip-space y with which wgpu's picture comes out the right way up in a host's image.
 pub const CLIP_Y_SIGN: f32 = -1.0;

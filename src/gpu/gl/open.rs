@@ -10,22 +10,23 @@ use std::{
 use wgpu::hal::{api::Gles, gles};
 
 use super::{
-    GlHostDesc, GlMode, WhichContext,
     api::Api,
     check::{self, GlInfo},
     counting::Counting,
+    desc::{GlHostDesc, GlMode},
     face::{FaceGuard, STORAGE},
-    host::{Backend, GlHost, Inner, Sharing, Switch},
+    host::{Backend, GlHost, Inner, Sharing},
     image, later,
     mark::Mark,
     names::*,
     state::HostState,
+    switch::{Switch, WhichContext},
     windows::Windows,
 };
 use crate::{
     error::{Error, Result, Status},
     gpu::{
-        Device,
+        device::Device,
         known::{self, Fault},
     },
 };

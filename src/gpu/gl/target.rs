@@ -18,10 +18,11 @@ use std::sync::Arc;
 use super::{
     api::Api,
     blit::{self, BlitEnd},
-    build::GlObject,
     formats,
-    image::{self, Ask, Facts, GlImage, Parameters, TargetSide},
+    image::{self, Ask, Facts, GlImage, Parameters},
     names::*,
+    object::GlObject,
+    side::TargetSide,
 };
 use crate::error::Result;
 

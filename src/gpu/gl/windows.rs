@@ -4,7 +4,12 @@
 //! that so. A host whose callback knows one window only would find itself drawing into that one after a call from
 //! another.
 
-use super::{WhichContext, api::Api, host::Switch, mark::Mark, names::VERSION};
+use super::{
+    api::Api,
+    mark::Mark,
+    names::VERSION,
+    switch::{Switch, WhichContext},
+};
 use crate::error::Result;
 
 /// The contexts that calls came from so far.

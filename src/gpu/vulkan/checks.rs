@@ -4,7 +4,7 @@ use std::ffi::{CStr, c_void};
 
 use ash::vk;
 
-use super::VulkanHostDesc;
+use super::desc::VulkanHostDesc;
 use super::dispatch::{self, RealFunctions};
 use super::facts::EnabledFeatures;
 use crate::error::{Error, Result, Status};

@@ -5,8 +5,9 @@ use std::sync::PoisonError;
 use ash::vk;
 use wgpu::hal::vulkan::Api as Vulkan;
 
+use super::dispatch;
+use super::host::VulkanHost;
 use super::image::{self, HostImage, ImageRole};
-use super::{VulkanHost, dispatch};
 use crate::error::{Error, Result, Status};
 
 /// A semaphore of the host's.
@@ -43,10 +44,10 @@ impl VulkanHost {
     /// # Safety
     /// The images are described truly and the semaphores live, of the kind that `value` says; the queue is used
     /// by the contract in the [module's words](super).
-    pub unsafe fn submit(&self, mut encoder: wgpu::CommandEncoder, over: &HandOver<'_>) -> Result<()> {
-        self.check_semaphores("wait_semaphores", over.wait)?;
-        self.check_semaphores("signal_semaphores", over.signal)?;
-        let home = over.images.iter().map(|&(image, role, texture)| wgpu::TextureTransition {
+    pub unsafe fn submit(&self, mut encoder: wgpu::CommandEncoder, hand_over: &HandOver<'_>) -> Result<()> {
+        self.check_semaphores("wait_semaphores", hand_over.wait)?;
+        self.check_semaphores("signal_semaphores", hand_over.signal)?;
+        let home = hand_over.images.iter().map(|&(image, role, texture)| wgpu::TextureTransition {
             texture,
             selector: Some(wgpu::wgt::TextureSelector { mips: 0..1, layers: image.layer..image.layer + 1 }),
             state: image::home_state(role),
@@ -61,14 +62,14 @@ impl VulkanHost {
                 brackets.free(&self.raw, |_| true);
             }
             let family = self.record.queue_family_index;
-            brackets.of(&self.raw, family, over.images.iter().map(|&(image, role, _)| (image, role)))?
+            brackets.of(&self.raw, family, hand_over.images.iter().map(|&(image, role, _)| (image, role)))?
         };
         let turn = self.device.turn();
         // SAFETY: the caller vouches for the semaphores; they are staged for the submission right below.
-        unsafe { self.stage(over)? };
+        unsafe { self.stage(hand_over)? };
         let submitted = dispatch::with_bracket(self.record.queue, bracket, || self.device.queue.submit([commands]));
         // SAFETY: the queue is only asked what is left over.
-        unsafe { self.unstage(over)? };
+        unsafe { self.unstage(hand_over)? };
         drop(turn);
         if submitted { Ok(()) } else { Err(refused()) }
     }
@@ -91,15 +92,15 @@ impl VulkanHost {
     ///
     /// # Safety
     /// The semaphores are live and of the kind that their value says.
-    unsafe fn stage(&self, over: &HandOver<'_>) -> Result<()> {
+    unsafe fn stage(&self, hand_over: &HandOver<'_>) -> Result<()> {
         // SAFETY: the queue is not destroyed through the guard.
         let Some(queue) = (unsafe { self.device.queue.as_hal::<Vulkan>() }) else {
             return Err(lost());
         };
-        for s in over.wait {
+        for s in hand_over.wait {
             queue.add_wait_semaphore(s.semaphore, s.value, vk::PipelineStageFlags::ALL_COMMANDS);
         }
-        for s in over.signal {
+        for s in hand_over.signal {
             queue.add_signal_semaphore(s.semaphore, s.value);
         }
         Ok(())
@@ -109,13 +110,13 @@ impl VulkanHost {
     ///
     /// # Safety
     /// As for [`Self::stage`].
-    unsafe fn unstage(&self, over: &HandOver<'_>) -> Result<()> {
+    unsafe fn unstage(&self, hand_over: &HandOver<'_>) -> Result<()> {
         // SAFETY: the queue is not destroyed through the guard.
         if let Some(queue) = unsafe { self.device.queue.as_hal::<Vulkan>() } {
-            for s in over.wait {
+            for s in hand_over.wait {
                 queue.remove_wait_semaphore(s.semaphore);
             }
-            for s in over.signal {
+            for s in hand_over.signal {
                 queue.remove_signal_semaphore(s.semaphore);
             }
         }

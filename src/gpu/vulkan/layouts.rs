@@ -4,6 +4,7 @@ use ash::vk;
 
 use super::facts::EnabledFeatures;
 use super::image::HostImage;
+use super::names::{feature_text, usage_names};
 
 const SWAPCHAIN: &str = "needs VK_KHR_swapchain enabled on the device and listed in enabled_device_extensions of the \
                          wk_vulkan_host_desc";
@@ -60,24 +61,6 @@ pub(super) fn obstacle(
         L::UNDEFINED | L::PREINITIALIZED => Some("would drop what the image holds".to_owned()),
         _ => Some("is none that Welkin knows".to_owned()),
     }
-}
-
-/// A feature with where the host says that it enabled it.
-pub(super) fn feature_text(name: &str) -> String {
-    format!("{name} enabled on the device and listed in enabled_features of the wk_vulkan_host_desc")
-}
-
-/// The layout's name in Vulkan's headers.
-pub(super) fn layout_name(layout: vk::ImageLayout) -> String {
-    let text = format!("{layout:?}");
-    if text.starts_with(|c: char| c.is_ascii_digit()) { text } else { format!("VK_IMAGE_LAYOUT_{text}") }
-}
-
-/// The bits' names in Vulkan's headers.
-pub(super) fn usage_names(usage: vk::ImageUsageFlags, between: &str) -> String {
-    let text = format!("{usage:?}");
-    let names = text.split(" | ").map(|n| format!("VK_IMAGE_USAGE_{n}_BIT"));
-    names.collect::<Vec<_>>().join(between)
 }
 
 #[cfg(test)]

@@ -68,7 +68,7 @@ impl HostState {
     pub(super) fn normalise(&self, api: &Api, vao: u32) {
         self.bindings.normalise(api, vao);
         for t in self.toggles.iter().filter(|t| t.was != t.fresh) {
-            switch(api, t.cap, t.fresh);
+            api.set_enabled(t.cap, t.fresh);
         }
         self.raster.normalise(api);
         self.pixels.normalise(api);
@@ -83,15 +83,10 @@ impl HostState {
         raise(api, self.pending_error, self.bindings.read_framebuffer());
         // Debug output is one of these: a host that listens hears nothing of what happened in between.
         for t in &self.toggles {
-            switch(api, t.cap, t.was);
+            api.set_enabled(t.cap, t.was);
         }
         raised
     }
-}
-
-/// Sets one switch.
-fn switch(api: &Api, cap: u32, on: bool) {
-    if on { api.Enable(cap) } else { api.Disable(cap) }
 }
 
 /// Raises the error that the host had not yet read when this call began, so that the host still finds it.

@@ -268,7 +268,7 @@ impl Raster {
                 } else {
                     api.DepthRangef(view.depth[0] as f32, view.depth[1] as f32);
                 }
-                super::switch(api, SCISSOR_TEST, view.scissor_test);
+                api.set_enabled(SCISSOR_TEST, view.scissor_test);
             }
         }
     }
@@ -282,7 +282,7 @@ impl Raster {
                 switch_at(api, BLEND, i, target.blend);
             } else {
                 api.ColorMask(r, g, b, a);
-                super::switch(api, BLEND, target.blend);
+                api.set_enabled(BLEND, target.blend);
             }
             let ([sc, dc, sa, da], [ec, ea]) = (target.func, target.equation);
             if self.many_blends {

@@ -1,0 +1,40 @@
+//! Description of a host's Vulkan device: its handles, and what the host enabled.
+
+use std::ffi::{CStr, c_void};
+
+use ash::vk;
+
+use super::facts::EnabledFeatures;
+
+/// Description of a host's Vulkan device. All handles stay the host's and must outlive the [`VulkanHost`](super::VulkanHost).
+#[derive(Clone, Copy, Debug)]
+pub struct VulkanHostDesc<'a> {
+    /// The host's `vkGetInstanceProcAddr` (from its loader, GLFW, SDL, volk, ...).
+    pub get_instance_proc_addr: Option<vk::PFN_vkGetInstanceProcAddr>,
+    /// Instance that `physical_device` came from.
+    pub instance: vk::Instance,
+    /// `VkApplicationInfo::apiVersion` that the instance was created with; 0 means 1.0, as in Vulkan.
+    pub instance_api_version: u32,
+    /// Instance extensions that the host enabled.
+    pub enabled_instance_extensions: &'a [&'a CStr],
+    /// Physical device behind `device`.
+    pub physical_device: vk::PhysicalDevice,
+    /// Device to draw on.
+    pub device: vk::Device,
+    /// Device extensions that the host enabled.
+    pub enabled_device_extensions: &'a [&'a CStr],
+    /// Device features that the host enabled; see [`EnabledFeatures::from_chain`].
+    pub enabled_features: EnabledFeatures,
+    /// Family of the queue to submit on; it must draw and compute.
+    pub queue_family_index: u32,
+    /// Index of the queue in that family, as created without flags.
+    pub queue_index: u32,
+    /// Takes the host's queue lock; given together with `unlock_queue` or not at all.
+    pub lock_queue: Option<unsafe extern "C" fn(user: *mut c_void)>,
+    /// Releases the host's queue lock.
+    pub unlock_queue: Option<unsafe extern "C" fn(user: *mut c_void)>,
+    /// Handed to both callbacks.
+    pub user: *mut c_void,
+    /// wgpu features to enable where the host's device allows them; the rest is dropped.
+    pub wanted_features: wgpu::Features,
+}
