@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use super::{
+    bound::Bound,
     composite::SharedComposite,
     draws::{DrawKey, Draws, MOST_DRAWS},
-    environment::EnvironmentMap,
+    environment_map::EnvironmentMap,
     even::CoarseWeather,
     froxels::Froxels,
     kinds::KindAttachment,
-    opaque::OpaqueStep,
-    picture::Bound,
+    opaque_step::OpaqueStep,
 };
 use crate::{
     context::Context,

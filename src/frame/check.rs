@@ -1,21 +1,10 @@
 //! Checks for which a call is refused before anything is done for it: a refusal costs nothing and changes nothing.
 
-use glam::{DMat4, DVec3};
-
-use super::View;
+use super::view::View;
 use crate::{
     error::{Error, Result, Status},
-    moment::Scene,
-    scene::{Camera, ViewRays},
     stage::{Frame, Stages, can_copy, check_classes, check_color, check_depth, check_mask, check_normals},
 };
-
-/// The camera's rays in the local east-north-up, in which the shaders work.
-pub(super) fn rays(frame: &Frame<'_>, scene: &Scene) -> Result<ViewRays> {
-    let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
-    let local = Camera { position: DVec3::ZERO, view, projection: frame.camera.projection };
-    ViewRays::new(&local, &frame.depth_mapping)
-}
 
 impl View {
     fn check_order(&self, frame_id: u64, stages: Stages) -> Result<()> {

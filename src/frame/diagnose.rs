@@ -1,6 +1,6 @@
 //! A diagnostic picture in place of a frame's: the composition's bindings and constants, another shader.
 
-use super::View;
+use super::view::View;
 use crate::{
     error::Result,
     gpu::{Layer, pass},

@@ -2,12 +2,12 @@
 //! of it.
 
 use super::{
-    View,
-    composite::Variant,
     draws::{DrawKey, Draws, PipelineNotReady},
     froxels::Froxels,
-    kinds::Pixels,
+    pixels::Pixels,
     planned::{present, situation},
+    variant::Variant,
+    view::View,
 };
 use crate::{
     effects::PARTS,

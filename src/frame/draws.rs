@@ -4,9 +4,11 @@
 use std::sync::Arc;
 
 use super::{
-    composite::{Composite, Variant},
+    composite::Composite,
     even::{self, CoarseWeather},
-    kinds::{self, KindAttachment, Pixels},
+    kinds::{self, KindAttachment},
+    pixels::Pixels,
+    variant::Variant,
 };
 use crate::{
     error::{Error, Result},

@@ -6,7 +6,7 @@
 //! shows is as far away as what they show. All others are drawn as ever: edges, thin things, the edge of fog, the
 //! neighbourhood of the sun's disc. The grid has no clouds: each pixel lays its own over what it looks up.
 
-use super::{composite::Variant, kinds::Pixels};
+use super::{pixels::Pixels, variant::Variant};
 use crate::{
     gpu::{
         Device,

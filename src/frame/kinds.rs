@@ -6,66 +6,11 @@
 //! both ways of every branch: a pixel of the sky would pay for the air before things, a thing for the sky behind it,
 //! and the sky for the planet's ground below it. A GPU branches, and draws them with one pipeline.
 
-use super::composite::Variant;
-use crate::{
-    gpu::{flat_texture, pass::depth_test},
-    stage::Stages,
+use super::{
+    pixels::{FORMAT, Pixels},
+    variant::Variant,
 };
-
-/// Format of the depth attachment: its values are exact.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-
-/// Pixels that a draw of the composition is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Pixels {
-    /// All of them.
-    All,
-    /// Pixels that are not interpolated from the coarse grid.
-    Uneven,
-    /// Pixels at the far depth, above the level of the eye: sky.
-    Above,
-    /// Pixels at the far depth, below the level of the eye: the planet's own ground, and from high up the sky over it.
-    Below,
-    /// Pixels on which the host drew.
-    Drawn,
-    /// Pixels interpolated from the coarse grid ([`super::even`]).
-    Even,
-    /// Pixels of [`Pixels::Even`] on which the host drew, where they have a draw of their own ([`draws_apart`]).
-    EvenDrawn,
-    /// No pixels of the picture, but the texels of the weather's grid.
-    Grid,
-}
-
-impl Pixels {
-    /// The depth that stands for them (`shaders/frame/kinds.wgsl`) and the test that lets only them pass; no test for
-    /// all.
-    pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
-        let depth = match self {
-            Self::All | Self::Grid => return None,
-            Self::Above => 0.0,
-            Self::Even => 0.25,
-            Self::Below => 0.5,
-            Self::EvenDrawn => 0.75,
-            Self::Drawn | Self::Uneven => 1.0,
-        };
-        Some((depth, depth_test(FORMAT, wgpu::CompareFunction::Equal, false)))
-    }
-
-    /// Whether they are of those between which the weather is even.
-    pub fn are_even(self) -> bool {
-        matches!(self, Self::Even | Self::EvenDrawn)
-    }
-
-    /// Whether they are drawn into the grid or by it.
-    pub fn uses_grid(self) -> bool {
-        self == Self::Grid || self.are_even()
-    }
-
-    /// The test of the draw that writes the kinds.
-    pub fn writes() -> (f64, wgpu::DepthStencilState) {
-        (0.0, depth_test(FORMAT, wgpu::CompareFunction::Always, true))
-    }
-}
+use crate::{gpu::flat_texture, stage::Stages};
 
 /// Whether pixels that look the weather up and on which the host drew have a draw of their own, which reads depth:
 /// water and snow lie on them, and clouds may stand before them.

@@ -4,6 +4,7 @@
 //! A host hands over a [`Frame`] (camera, colour, depth) and a set of [`Stages`]; a [`View`] records them. No effect is
 //! named here: `src/effects.rs` lists them.
 
+mod bound;
 mod cache;
 mod check;
 mod composite;
@@ -11,15 +12,19 @@ mod diagnose;
 mod draw;
 mod draws;
 mod environment;
+mod environment_map;
 mod even;
 mod froxels;
 mod history;
 mod kinds;
 mod light;
 mod opaque;
+mod opaque_step;
 mod picture;
+mod pixels;
 mod planned;
 mod unit;
+mod variant;
 mod view;
 mod wind_picture;
 

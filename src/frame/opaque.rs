@@ -1,81 +1,16 @@
 //! The opaque step: what effects draw into the host's colour and depth, in one pass before the composition. There is no
 //! pass where no effect has anything opaque.
 
-use super::View;
+use super::{opaque_step::OpaqueStep, view::View};
 use crate::{
     effects::PARTS,
     error::{Error, Result},
-    gpu::{
-        Device, KeptLayer, KeptView, Layer,
-        bind::{self, Slot},
-        blocks::BlockView,
-        is_kept,
-    },
+    gpu::Layer,
     stage::{
-        CostItem, DepthAccess, DrawContext, DrawTarget, Frame, FrameContext, FrameUniform, OpaqueDraw, OpaqueTarget,
-        PlannedShares, Recording, Stages, check_written, uniform,
+        CostItem, DepthAccess, DrawContext, DrawTarget, Frame, FrameContext, OpaqueDraw, OpaqueTarget, PlannedShares,
+        Recording, Stages, check_written, uniform,
     },
 };
-
-/// State that the step holds between frames.
-pub(super) struct OpaqueStep {
-    layout: wgpu::BindGroupLayout,
-    /// Stands for a mask where the host gives none.
-    none: wgpu::TextureView,
-    color: KeptView,
-    bound: Option<OpaqueImages>,
-}
-
-/// Depth and bind group of a frame's images: made anew only when the host hands over others.
-struct OpaqueImages {
-    depth: KeptLayer,
-    mask: Option<KeptLayer>,
-    depth_view: wgpu::TextureView,
-    group: wgpu::BindGroup,
-}
-
-impl OpaqueStep {
-    fn new(device: &wgpu::Device) -> Self {
-        let slots = [(0, Slot::Uniform(size_of::<FrameUniform>())), (1, Slot::Texels)];
-        let layout = bind::layout(device, "opaque", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots);
-        Self {
-            layout,
-            none: bind::nothing(device, wgpu::TextureFormat::R8Unorm),
-            color: KeptView::default(),
-            bound: None,
-        }
-    }
-
-    /// Lets go the picture.
-    pub(super) fn forget_color(&mut self) {
-        self.color = KeptView::default();
-    }
-
-    fn bind(
-        &mut self,
-        device: &Device,
-        block: &BlockView,
-        [color, depth]: [Layer<'_>; 2],
-        mask: Option<Layer<'_>>,
-    ) -> (&OpaqueImages, &wgpu::TextureView) {
-        let same = |b: &OpaqueImages| depth == b.depth && is_kept(mask, b.mask.as_ref());
-        if self.bound.as_ref().is_some_and(|b| !same(b)) {
-            self.bound = None;
-        }
-        let bound = self.bound.get_or_insert_with(|| {
-            let mask_view = mask.map(Layer::view);
-            let resource = wgpu::BindingResource::TextureView(mask_view.as_ref().unwrap_or(&self.none));
-            let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("opaque"),
-                layout: &self.layout,
-                entries: &[block.entry(0), wgpu::BindGroupEntry { binding: 1, resource }],
-            });
-            let depth_view = depth.attached_view();
-            OpaqueImages { depth: depth.kept(), mask: mask.map(Layer::kept), depth_view, group }
-        });
-        (bound, self.color.of(color, Layer::attached_view))
-    }
-}
 
 impl View {
     /// Whether an effect has anything opaque to draw in these stages.

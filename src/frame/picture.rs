@@ -1,25 +1,14 @@
 //! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
 
-use super::{View, environment::EnvironmentMap, even::CoarseWeather, froxels::Froxels, kinds::KindAttachment};
+use super::{
+    bound::Bound, environment_map::EnvironmentMap, even::CoarseWeather, froxels::Froxels, kinds::KindAttachment,
+    view::View,
+};
 use crate::{
     error::Result,
-    gpu::{KeptLayer, Layer, is_kept},
+    gpu::{Layer, is_kept},
     stage::{Composition, DrawContext, Recording, can_copy, color_copy, is_copy_of},
 };
-
-/// The textures of one bind group beside the copy of the picture: it is made anew only when the host hands over others.
-pub(super) struct Bound {
-    depth: Option<KeptLayer>,
-    mask: Option<KeptLayer>,
-    surface_classes: Option<KeptLayer>,
-    normals: Option<KeptLayer>,
-    own: Own,
-    /// The group of the effects' textures before these: an effect may draw into two in turns.
-    before: Option<(Own, wgpu::BindGroup)>,
-}
-
-/// Textures of the effects.
-type Own = [Option<wgpu::TextureView>; 4];
 
 impl View {
     /// Bytes of GPU memory the view holds for itself.

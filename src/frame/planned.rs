@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::View;
+use super::view::View;
 use crate::{
     effects::{Effects, PARTS, together},
     error::{Error, Result, Status},

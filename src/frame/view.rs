@@ -2,19 +2,22 @@
 
 use std::{sync::Arc, time::Instant};
 
+use glam::{DMat4, DVec3};
+
 use super::{
     cache::DrawCache,
-    check::rays,
     froxels::{FrameTextures, Froxels},
     history::FrameHistory,
-    opaque::OpaqueStep,
+    opaque_step::OpaqueStep,
 };
 use crate::{
     context::Context,
     effects::{Effects, PARTS, UnseenChanges},
     error::{Error, Result},
     gpu::{Device, KeptView, Layer},
+    moment::Scene,
     plan::Planner,
+    scene::{Camera, ViewRays},
     stage::{
         CostItem, Diagnostic, DrawTarget, Frame, FrameContext, FrameFlags, LensPicture, Recording, Report, Stages,
         can_be_apart, can_copy,
@@ -309,4 +312,11 @@ impl View {
             .into_iter()
             .try_for_each(|effect| effect.draw_lens(frame, LensPicture { copy, target }, toned, to))
     }
+}
+
+/// The camera's rays in the local east-north-up, in which the shaders work.
+fn rays(frame: &Frame<'_>, scene: &Scene) -> Result<ViewRays> {
+    let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
+    let local = Camera { position: DVec3::ZERO, view, projection: frame.camera.projection };
+    ViewRays::new(&local, &frame.depth_mapping)
 }

@@ -1,0 +1,59 @@
+//! Pixels that one draw of the composition is for, and the depth that stands for them.
+
+use crate::gpu::pass::depth_test;
+
+/// Format of the depth attachment: its values are exact.
+pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Pixels that a draw of the composition is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pixels {
+    /// All of them.
+    All,
+    /// Pixels that are not interpolated from the coarse grid.
+    Uneven,
+    /// Pixels at the far depth, above the level of the eye: sky.
+    Above,
+    /// Pixels at the far depth, below the level of the eye: the planet's own ground, and from high up the sky over it.
+    Below,
+    /// Pixels on which the host drew.
+    Drawn,
+    /// Pixels interpolated from the coarse grid ([`super::even`]).
+    Even,
+    /// Pixels of [`Pixels::Even`] on which the host drew, where they have a draw of their own
+    /// ([`draws_apart`](super::kinds::draws_apart)).
+    EvenDrawn,
+    /// No pixels of the picture, but the texels of the weather's grid.
+    Grid,
+}
+
+impl Pixels {
+    /// The depth that stands for them (`shaders/frame/kinds.wgsl`) and the test that lets only them pass; no test for
+    /// all.
+    pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
+        let depth = match self {
+            Self::All | Self::Grid => return None,
+            Self::Above => 0.0,
+            Self::Even => 0.25,
+            Self::Below => 0.5,
+            Self::EvenDrawn => 0.75,
+            Self::Drawn | Self::Uneven => 1.0,
+        };
+        Some((depth, depth_test(FORMAT, wgpu::CompareFunction::Equal, false)))
+    }
+
+    /// Whether they are of those between which the weather is even.
+    pub fn are_even(self) -> bool {
+        matches!(self, Self::Even | Self::EvenDrawn)
+    }
+
+    /// Whether they are drawn into the grid or by it.
+    pub fn uses_grid(self) -> bool {
+        self == Self::Grid || self.are_even()
+    }
+
+    /// The test of the draw that writes the kinds.
+    pub fn writes() -> (f64, wgpu::DepthStencilState) {
+        (0.0, depth_test(FORMAT, wgpu::CompareFunction::Always, true))
+    }
+}

@@ -1,0 +1,72 @@
+//! Variant of the composition: the properties that distinguish one compiled pipeline from another.
+
+use super::pixels::Pixels;
+use crate::stage::{Constants, Pipeline, Sampling, Stages, flag};
+
+/// Properties that distinguish one compiled variant from another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Variant {
+    pub stages: Stages,
+    pub format: wgpu::TextureFormat,
+    pub samples: u32,
+    pub sampling: Sampling,
+    /// Whether the host gives depth, mask, classes, normals.
+    pub images: [bool; 4],
+    /// Constants that effects and frame have added.
+    pub constants: Pipeline,
+    /// Kind of pixels that this variant draws.
+    pub pixels: Pixels,
+}
+
+impl Variant {
+    /// How it draws into the host's colour.
+    pub fn target(&self, write_mask: wgpu::ColorWrites) -> wgpu::ColorTargetState {
+        wgpu::ColorTargetState { format: self.format, blend: None, write_mask }
+    }
+
+    /// Shader and entry point, without what the variant does not draw.
+    pub fn program(&self) -> (String, &'static str) {
+        let [(composed, entry), _] = self.sampling.shaders();
+        let diagnoses = self.constants.composed.value("DIAGNOSTIC") > 0.0;
+        let (name, entry) = match self.pixels {
+            Pixels::Grid => ("frame/even_grid.wgsl", "even_grid"),
+            _ if diagnoses => (self.sampling.diagnostic(), "diagnose"),
+            _ => (composed, entry),
+        };
+        let clear = if self.constants.traits.veils_all { "" } else { ":clear" };
+        let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
+        // Pixels that are looked up hold the fog already.
+        let (clear, even) = if self.pixels.are_even() { ("", ":even") } else { (clear, "") };
+        (format!("{name}{clear}{dry}{even}"), entry)
+    }
+
+    /// Whether it is `other` with these constants, which need not be copied for it.
+    pub fn is_with(&self, other: &Self, constants: &Pipeline) -> bool {
+        let Self { stages, format, samples, sampling, images, constants: own, pixels } = self;
+        (*stages, *format, *samples, *sampling, *images, *pixels)
+            == (other.stages, other.format, other.samples, other.sampling, other.images, other.pixels)
+            && own == constants
+    }
+
+    /// Values of the shader's `override` constants.
+    pub fn constants(&self) -> Constants {
+        let mut all = Constants::NONE;
+        for (name, stage) in [
+            ("BACKGROUND", Stages::BACKGROUND),
+            ("SURFACE", Stages::SURFACE),
+            ("MEDIUM", Stages::MEDIUM),
+            ("TONE", Stages::TONE),
+            ("PARTICLES", Stages::PARTICLES),
+        ] {
+            all.push((name, flag(self.stages.has(stage))));
+        }
+        for (name, given) in ["HAS_DEPTH", "HAS_MASK", "HAS_CLASSES", "HAS_NORMALS"].into_iter().zip(self.images) {
+            all.push((name, flag(given)));
+        }
+        all.push(("FAR_ABOVE", flag(self.pixels != Pixels::Below)));
+        all.push(("FAR_BELOW", flag(self.pixels != Pixels::Above)));
+        all.extend(self.constants.between.all());
+        all.extend(self.constants.composed.all());
+        all
+    }
+}
