@@ -5,6 +5,7 @@
 //! part of a build is a submission of its own under the kit's lock, so that parts lie on the queue in their order
 //! whichever frames they belong to. Nothing here keeps tables alive: they go with the last who shows them.
 
+mod empty_set;
 mod first;
 
 use std::path::Path;
@@ -14,11 +15,11 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use super::Planet;
 use super::cache;
 use super::level::{Detail, Level, STRIP_SHARE, Strip, strips};
+use super::observer_passes::{ObserverLayouts, ObserverPasses};
 use super::passes::{Builder, FadePasses, PartPass, SkyTable};
 use super::recipe::{Name, passes};
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
-use super::volume::{ObserverLayouts, ObserverPasses};
 use crate::error::{Error, Result, Status};
 use crate::gpu::{Device, readback};
 
@@ -211,7 +212,7 @@ impl Kit {
         if let Some(ticket) = known {
             return Ok(Claim::Building(ticket));
         }
-        let set = Arc::new(TableSet::new(self, planet, detail)?);
+        let set = Arc::new(self.empty_set(planet, detail)?);
         let ticket = Arc::new(Ticket { set: set.clone() });
         let scratch = work.spare[detail as usize].take().unwrap_or_else(|| self.scratch(detail));
         let build = self.build_of(Arc::downgrade(&ticket), set, scratch);
@@ -458,7 +459,7 @@ impl Kit {
         let read = cache::key(planet, &self.settings).and_then(|key| cache::read(directory, key, &self.settings));
         match read {
             Ok(Some(tables)) => {
-                let set = Arc::new(TableSet::new(self, planet, Detail::Whole)?);
+                let set = Arc::new(self.empty_set(planet, Detail::Whole)?);
                 set.fill(&self.device, &tables);
                 self.lock().finished.push(Arc::downgrade(&set));
                 Ok(Some(set))

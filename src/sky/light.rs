@@ -5,8 +5,8 @@
 
 use half::f16;
 
-use super::settings::SkySettings;
-use super::uniforms::{AirUniform, LIGHT_SCALE, LIGHT_TILES};
+use super::settings::{LIGHT_TILES, SkySettings};
+use super::uniforms::{AirUniform, LIGHT_SCALE};
 use crate::gpu::{Device, readback};
 use crate::{Result, sky::passes::SkyTable};
 

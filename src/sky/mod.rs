@@ -61,6 +61,7 @@ mod kit;
 mod level;
 pub mod light;
 pub mod observer;
+mod observer_passes;
 mod passes;
 pub mod probe;
 mod recipe;

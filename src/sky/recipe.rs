@@ -1,7 +1,6 @@
 //! In which order a model's tables over the planet are built: a list of passes, each with what it reads and draws.
 
-use super::settings::{SkyModel, SkySettings};
-use super::uniforms::LIGHT_TILES;
+use super::settings::{LIGHT_TILES, SkyModel, SkySettings};
 
 /// Kind of a build pass; the names are the entry points of `sky/build.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -105,6 +105,9 @@ pub struct SkySettings {
 /// Most wavelengths of a set, as `sky/observer.wgsl` has room for.
 pub(crate) const MOST_WAVELENGTHS: u32 = 15;
 
+/// Tiles of the table of light: irradiance and six moments.
+pub(crate) const LIGHT_TILES: u32 = 7;
+
 /// Every device draws into so many texels; an atlas must not be wider.
 const WIDEST: u32 = 2048;
 
@@ -231,7 +234,7 @@ impl SkySettings {
         }
         for (name, times, (a, b)) in [
             ("suns", "rule_azimuths", (self.suns, self.rule_azimuths)),
-            ("suns", "azimuths", (self.suns, self.azimuths.max(super::uniforms::LIGHT_TILES))),
+            ("suns", "azimuths", (self.suns, self.azimuths.max(LIGHT_TILES))),
             ("altitudes", "2 rule_zeniths", (self.altitudes, 2 * self.rule_zeniths)),
             ("altitudes", "zeniths x wavelengths/3", (self.altitudes * self.layers(), self.zeniths)),
             ("air_azimuths", "air_slices", (self.air_azimuths, self.air_slices)),

@@ -6,9 +6,6 @@ use super::Planet;
 use super::reference::medium::Medium;
 use super::settings::SkySettings;
 use crate::planet::spectral::SpectralTriple;
-
-/// Tiles of the table of light: irradiance and six moments.
-pub(crate) const LIGHT_TILES: u32 = 7;
 /// Factor with which that table is kept.
 pub(crate) const LIGHT_SCALE: f32 = 4096.0;
 

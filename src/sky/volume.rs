@@ -7,14 +7,14 @@ use bytemuck::{Zeroable as _, bytes_of};
 use super::disc::DiscDepth;
 use super::kit::Kit;
 use super::observer::Observer;
-use super::passes::{TABLE_FORMAT, bind, layout, table_texture, tex, uniform_buffer};
+use super::observer_passes::view_layout;
+use super::passes::{bind, table_texture, tex, uniform_buffer};
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
 use super::tables::SkyTables;
 use super::uniforms::{DimsUniform, EdgesUniform, LampUniform, ObserverUniform, ViewUniform};
 use crate::error::Result;
-use crate::gpu::bind::{Slot, as_layers};
-use crate::gpu::pass::{FullscreenDesc, fullscreen};
+use crate::gpu::bind::as_layers;
 use crate::gpu::{Device, Layer};
 
 /// Layers of a lamp: what is complete, and light scattered once by haze without its phase function.
@@ -58,56 +58,6 @@ impl Apart {
     fn new(device: &Device, settings: &SkySettings) -> Self {
         let layer = |_| table_texture(device, "fading sky of an observer", settings.observer_size(), 1);
         Self { layers: (0..LAYERS * LAMPS as u32).map(layer).map(|t| t.create_view(&Default::default())).collect() }
-    }
-}
-
-/// Layouts of what observers bind.
-pub(crate) struct ObserverLayouts {
-    planet: wgpu::BindGroupLayout,
-    observer: wgpu::BindGroupLayout,
-    view: wgpu::BindGroupLayout,
-}
-
-impl ObserverLayouts {
-    pub fn new(device: &Device) -> Self {
-        use Slot::{Filtered, Sampler};
-        let block = Slot::Uniform(0);
-        Self {
-            planet: layout(device, "sky of a planet", &[block, block, Filtered, Sampler, Filtered, Filtered, block]),
-            observer: layout(device, "sky observer", &[block]),
-            view: SkyVolume::view_layout(device),
-        }
-    }
-
-    /// A planet's tables as observers read them: of light scattered more than once, and once by gas and by haze.
-    pub fn planet_group(
-        &self,
-        device: &Device,
-        blocks: [&wgpu::Buffer; 3],
-        sampler: &wgpu::Sampler,
-        [sources, gas, haze]: [&wgpu::TextureView; 3],
-    ) -> wgpu::BindGroup {
-        let [air, dims, airs] = blocks.map(wgpu::Buffer::as_entire_binding);
-        let sampler = wgpu::BindingResource::Sampler(sampler);
-        bind(device, &self.planet, &[air, dims, tex(sources), sampler, tex(gas), tex(haze), airs])
-    }
-}
-
-/// Pipelines that all observers share.
-pub(crate) struct ObserverPasses {
-    sky: wgpu::RenderPipeline,
-    air: wgpu::RenderPipeline,
-}
-
-impl ObserverPasses {
-    pub fn new(device: &Device, settings: &SkySettings, layouts: &ObserverLayouts) -> Result<Self> {
-        let layouts = [&layouts.planet, &layouts.observer];
-        let make = |entry| pipeline(device, settings, entry, &layouts);
-        if settings.model == SkyModel::Table3d {
-            return Ok(Self { sky: make("sky_from_table")?, air: make("volume_from_table")? });
-        }
-        let both = make("observed")?;
-        Ok(Self { sky: both.clone(), air: both })
     }
 }
 
@@ -222,8 +172,7 @@ impl SkyVolume {
 
     /// Layout of group 1 of every shader that includes `sky/lookup.wgsl`; equal for all volumes of a device.
     pub fn view_layout(device: &Device) -> wgpu::BindGroupLayout {
-        use Slot::{Filtered, FilteredArray, Sampler};
-        layout(device, "sky view", &[Slot::Uniform(0), FilteredArray, Filtered, Sampler])
+        view_layout(device)
     }
 
     /// The layout that this volume's group was made with.
@@ -425,22 +374,4 @@ impl SkyVolume {
 fn view_group(kit: &Kit, view: &wgpu::Buffer, [tables, light]: [&wgpu::TextureView; 2]) -> wgpu::BindGroup {
     let sampler = wgpu::BindingResource::Sampler(&kit.builder.sampler);
     bind(&kit.device, &kit.observer_layouts.view, &[view.as_entire_binding(), tex(tables), tex(light), sampler])
-}
-
-fn pipeline(
-    device: &Device,
-    s: &SkySettings,
-    entry: &str,
-    layouts: &[&wgpu::BindGroupLayout],
-) -> Result<wgpu::RenderPipeline> {
-    let target = wgpu::ColorTargetState::from(TABLE_FORMAT);
-    let desc = FullscreenDesc {
-        shader: "sky/observer.wgsl",
-        entry,
-        layouts,
-        targets: &[target.clone(), target],
-        constants: &[("DIRECTIONAL", crate::stage::flag(s.model.is_directional())), ("LAYERS", f64::from(s.layers()))],
-        samples: 1,
-    };
-    fullscreen(device, &desc)
 }

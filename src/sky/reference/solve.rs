@@ -6,12 +6,12 @@
 
 use std::f64::consts::PI;
 
-use super::Resolution;
 use super::grid::{Altitudes, SunAngles, azimuths, zenith_rule};
 use super::march::{Cutting, Sample, march};
 use super::medium::{Medium, mie_phase};
 use super::quadrature::{Gauss, cubic};
 use super::ray::{End, Ray, shadow};
+use super::resolution::Resolution;
 use super::source::{Moments, Nodes, Place, Source};
 use super::sun::{SunTable, scattered_once, with_phase};
 
