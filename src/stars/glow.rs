@@ -7,8 +7,8 @@ use glam::{DMat3, DVec3};
 use super::{
     galaxy::{equator_to_galactic, unresolved_s10},
     light::{MAGNITUDE_0_LUX, color_by_sunlight, transmittance},
+    orbits::ecliptic_to_equator,
     places::Heavens,
-    planets::ecliptic_to_equator,
 };
 
 /// Square degrees of a sphere's unit of solid angle.

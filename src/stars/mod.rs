@@ -62,6 +62,7 @@
 mod behind;
 pub mod candidates;
 pub mod catalogue;
+mod disc;
 pub mod galaxy;
 pub mod glow;
 mod glow_pass;

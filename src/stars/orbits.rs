@@ -5,7 +5,7 @@
 //! The authors give the greatest errors of the longitude over 1800 to 2050 as 4" for Mercury, 5" for Venus, 6" for the
 //! Earth, 17" for Mars, 71" for Jupiter, 81" for Saturn and 86" for Uranus, and half as much again over 1000 to 3000.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Rate of the arguments of the periodic terms, rad a millennium.
 const ARGUMENT_RATE: f64 = 0.359_536_20;
@@ -197,14 +197,19 @@ impl Orbit {
         let x = axis * (anomaly.cos() - eccentricity);
         let y = axis * (1.0 - eccentricity * eccentricity).sqrt() * anomaly.sin();
         let (inclination, node) = (angle(&self.inclination), angle(&self.node));
-        let to_ecliptic = glam::DMat3::from_rotation_z(node)
-            * glam::DMat3::from_rotation_x(inclination)
-            * glam::DMat3::from_rotation_z(perihelion - node);
-        super::planets::ecliptic_to_equator() * (to_ecliptic * DVec3::new(x, y, 0.0))
+        let to_ecliptic = DMat3::from_rotation_z(node)
+            * DMat3::from_rotation_x(inclination)
+            * DMat3::from_rotation_z(perihelion - node);
+        ecliptic_to_equator() * (to_ecliptic * DVec3::new(x, y, 0.0))
     }
 }
 
 /// Obliquity of the ecliptic of J2000.0, rad.
-pub(super) fn obliquity() -> f64 {
+fn obliquity() -> f64 {
     (OBLIQUITY_AS / 3600.0).to_radians()
+}
+
+/// From the mean ecliptic to the mean equator, both of J2000.0.
+pub(super) fn ecliptic_to_equator() -> DMat3 {
+    DMat3::from_rotation_x(obliquity())
 }

@@ -1,8 +1,8 @@
 //! The planets as they are seen from the Earth: direction, distance and magnitude.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
-use super::orbits::{EARTH, Orbit, PLANETS, obliquity};
+use super::orbits::{EARTH, Orbit, PLANETS};
 use crate::almanac::Utc;
 
 /// Days that light takes for an astronomical unit (IAU 2012).
@@ -42,11 +42,6 @@ pub struct PlanetPlace {
     pub distance_au: f64,
     /// Visual magnitude above the air.
     pub magnitude: f64,
-}
-
-/// From the mean ecliptic to the mean equator, both of J2000.0.
-pub(super) fn ecliptic_to_equator() -> DMat3 {
-    DMat3::from_rotation_x(obliquity())
 }
 
 /// Millennia of terrestrial time since J2000.0.
@@ -131,7 +126,7 @@ fn uranus_latitude_deg(from_sun: DVec3, from_earth: DVec3) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::orbits::ecliptic_to_equator, *};
     use crate::almanac::celestial::equatorial_direction;
 
     #[test]

@@ -9,7 +9,7 @@
 
 use glam::DVec3;
 
-use super::galaxy::{disc_s10, equator_to_galactic};
+use super::disc::{disc_s10, equator_to_galactic};
 use crate::almanac::celestial::equatorial_direction;
 
 /// Declinations of the tables' columns, degrees; their rows are 10 degrees of right ascension.
