@@ -2,7 +2,8 @@
 //! is "DX10", then the mip levels from the largest on. Many programs read the shorter header alone, so that is the one
 //! that is written.
 
-use super::{NoiseImage, bytes_of_level, check_levels, check_size, copy, cut_short, foreign, word};
+use super::super::image::NoiseImage;
+use super::bytes::{bytes_of_level, check_levels, check_size, copy, cut_short, foreign, word};
 use crate::error::{Error, Result, Status};
 
 pub const MAGIC: [u8; 4] = *b"DDS ";

@@ -1,7 +1,8 @@
 //! Khronos textures (Khronos 2020, *KTX File Format Specification*, version 2.0): header, index of the mip levels, data
 //! format descriptor, then the levels from the smallest on.
 
-use super::{NoiseImage, bytes_of_level, check_levels, check_size, copy, cut_short, foreign, long, word};
+use super::super::image::NoiseImage;
+use super::bytes::{bytes_of_level, check_levels, check_size, copy, cut_short, foreign, long, word};
 use crate::error::{Error, Result, Status};
 
 pub const MAGIC: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";

@@ -1,5 +1,6 @@
 //! Noise in files: DDS and KTX2 textures of one channel of 8 bits, planes and volumes, with mip levels.
 
+mod bytes;
 mod dds;
 mod ktx2;
 
@@ -8,7 +9,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use super::image::{NoiseImage, empty};
-use super::settings::{MOST_TEXELS, levels_of, size_of_level, texels};
+use super::settings::MOST_TEXELS;
 use crate::error::{Error, Result, Status, shown};
 
 /// Most bytes of a file: a texture of the most texels with its mip levels, and room for what else formats hold.
@@ -76,60 +77,4 @@ fn check_length(bytes: u64) -> Result<()> {
         )));
     }
     Ok(())
-}
-
-/// A number of 32 bits at a place of a file, the least byte first.
-fn word(bytes: &[u8], at: usize) -> Result<u32> {
-    let part = bytes.get(at..).and_then(|rest| rest.first_chunk());
-    part.map(|four| u32::from_le_bytes(*four)).ok_or_else(|| cut_short(at + 4, bytes.len()))
-}
-
-/// A number of 64 bits.
-fn long(bytes: &[u8], at: usize) -> Result<u64> {
-    Ok(u64::from(word(bytes, at)?) | u64::from(word(bytes, at + 4)?) << 32)
-}
-
-fn cut_short(needed: impl std::fmt::Display, there: usize) -> Error {
-    Error::new(Status::Parse, format!("is cut short: it needs {needed} bytes and has {there}"))
-}
-
-/// A field that says something else than a noise texture's.
-fn foreign(field: &str, accepted: &str, got: impl std::fmt::Display) -> Error {
-    Error::about(Status::Unsupported, field, format_args!("must be {accepted}, got {got}"))
-}
-
-/// Width, height and depth by their names, each from 1 on, together not too large.
-fn check_size(named: [(&str, u32); 3]) -> Result<[u32; 3]> {
-    if let Some((name, _)) = named.iter().find(|(_, texels)| *texels == 0) {
-        return Err(Error::about(Status::Parse, *name, "must be at least 1, got 0"));
-    }
-    let size = named.map(|(_, texels)| texels);
-    // Of three numbers of 32 bits.
-    let product: u128 = size.into_iter().map(u128::from).product();
-    if product > u128::from(MOST_TEXELS) {
-        let most = format!("such that there are at most {MOST_TEXELS} texels");
-        return Err(foreign(named[0].0, &most, format_args!("{} x {} x {}", size[0], size[1], size[2])));
-    }
-    Ok(size)
-}
-
-/// Number of mip levels of a texture of this size, of which 0 says one.
-fn check_levels(field: &str, levels: u32, size: [u32; 3]) -> Result<u32> {
-    let most = levels_of(size);
-    if levels > most {
-        return Err(Error::about(Status::Parse, field, format_args!("must be in [0, {most}], got {levels}")));
-    }
-    Ok(levels.max(1))
-}
-
-/// Bytes of a mip level.
-fn bytes_of_level(size: [u32; 3], level: u32) -> u64 {
-    texels(size_of_level(size, level))
-}
-
-/// A copy of bytes that are there.
-fn copy(bytes: &[u8]) -> Result<Vec<u8>> {
-    let mut room = empty(bytes.len() as u64)?;
-    room.extend_from_slice(bytes);
-    Ok(room)
 }
