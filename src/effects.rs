@@ -324,14 +324,14 @@ impl Effects {
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
-    pub fn gather(&mut self, at: &FrameContext<'_>) -> Result<()> {
+    pub fn gather(&mut self, context: &FrameContext<'_>) -> Result<()> {
         let (order, mut given) = (self.gathers, Outputs::default());
         let mut effects = self.each();
         for place in order {
             let effect = &mut effects[place];
             let exchange = effect.gathers();
             let mut own = given.only(exchange.needs);
-            effect.gather(at, &mut own)?;
+            effect.gather(context, &mut own)?;
             given.take(&own, exchange.gives);
         }
         Ok(())
@@ -341,13 +341,13 @@ impl Effects {
     ///
     /// # Errors
     /// A GPU fault.
-    pub fn compose(&mut self, at: &DrawContext<'_>, composition: &mut Composition) -> Result<()> {
+    pub fn compose(&mut self, context: &DrawContext<'_>, composition: &mut Composition) -> Result<()> {
         let (order, mut given) = (self.composes, Outputs::default());
         let mut effects = self.each();
         for place in order {
             let effect = &mut effects[place];
             let exchange = effect.composes();
-            let added = effect.compose(at, &given.only(exchange.needs))?;
+            let added = effect.compose(context, &given.only(exchange.needs))?;
             given.take_layers(&added, exchange.gives);
             composition.merge(added);
         }
@@ -358,15 +358,20 @@ impl Effects {
     ///
     /// # Errors
     /// A GPU fault.
-    pub fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+    pub fn draw(
+        &mut self,
+        context: &DrawContext<'_>,
+        merged: &MergedFrame<'_>,
+        recording: &mut Recording<'_>,
+    ) -> Result<()> {
         let order = self.composes;
         let mut effects = self.each();
-        order.into_iter().try_for_each(|place| effects[place].draw(at, merged, to))
+        order.into_iter().try_for_each(|place| effects[place].draw(context, merged, recording))
     }
 
     /// Returns what streaks and flakes are worth in a picture, if the plan decides about them.
-    pub fn unseen(&mut self, at: &DrawContext<'_>) -> Option<UnseenChanges> {
-        let unseen = UnseenChanges { rain: self.rain.streaks(at), snow: self.snow.contrast(at) };
+    pub fn unseen(&mut self, context: &DrawContext<'_>) -> Option<UnseenChanges> {
+        let unseen = UnseenChanges { rain: self.rain.streaks(context), snow: self.snow.contrast(context) };
         (unseen.rain.is_some() || unseen.snow.is_some()).then_some(unseen)
     }
 

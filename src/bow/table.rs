@@ -151,9 +151,9 @@ mod tests {
     use crate::light::luminance;
 
     /// Angle, degrees, of the largest entry of a channel between two angles, degrees.
-    fn peak(table: &Table, channel: usize, from: f64, to: f64) -> f64 {
+    fn peak(table: &Table, channel: usize, first: f64, last: f64) -> f64 {
         let degrees = |i: usize| (i as f64 * STEP_RAD).to_degrees();
-        let inside = (0..ENTRIES).filter(|i| (from..to).contains(&degrees(*i)));
+        let inside = (0..ENTRIES).filter(|i| (first..last).contains(&degrees(*i)));
         degrees(inside.max_by(|a, b| table[*a][channel].total_cmp(&table[*b][channel])).unwrap())
     }
 

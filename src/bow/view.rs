@@ -52,17 +52,17 @@ impl BowView {
 }
 
 /// Whether a picture looks at any place of a table.
-fn shows(at: &DrawContext<'_>) -> bool {
-    let ray = |x: f64, y: f64| at.target.rays.view_ray(DVec2::new(x, y)).direction;
+fn shows(context: &DrawContext<'_>) -> bool {
+    let ray = |x: f64, y: f64| context.target.rays.view_ray(DVec2::new(x, y)).direction;
     let middle = ray(0.0, 0.0);
     let corners = [ray(-1.0, -1.0), ray(1.0, -1.0), ray(-1.0, 1.0), ray(1.0, 1.0)];
     let half_angle = corners.map(|c| c.angle_between(middle)).into_iter().fold(0.0, f64::max);
-    is_within(middle, half_angle, at.now.scene.brighter().direction, STEP_RAD * ENTRIES as f64)
+    is_within(middle, half_angle, context.now.scene.brighter().direction, STEP_RAD * ENTRIES as f64)
 }
 
 impl DrawnEffect for BowView {
-    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
-        let now = at.now;
+    fn gather(&mut self, context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        let now = context.now;
         self.is_lit = is_lit(&now.scene);
         let mut rain =
             |falling: &Falling, factor| self.rains.get_or_put(&(*falling, factor), || in_rain(falling, factor));
@@ -74,13 +74,13 @@ impl DrawnEffect for BowView {
         if self.has_drops() && self.is_lit { Stages::MEDIUM } else { Stages(0) }
     }
 
-    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
         // Not by where the picture looks: a pipeline of its own would be made when the camera turns to a bow, and that
         // frame be late.
         let is_lit = self.has_drops() && self.is_lit;
         to.between_and_veil("BOW", flag(self.has_drops()), flag(is_lit));
-        if is_lit && shows(at) {
+        if is_lit && shows(context) {
             for (to, shares) in self.shown.iter_mut().zip(&self.drops) {
                 let Some(shares) = shares else {
                     *to = [[0.0; 4]; BOW_ENTRIES];

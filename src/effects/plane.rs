@@ -102,7 +102,7 @@ impl PlaneView {
 }
 
 impl PlaneResources {
-    fn new(device: &Arc<Device>, with: &OpaqueDraw<'_>) -> Result<Self> {
+    fn new(device: &Arc<Device>, opaque: &OpaqueDraw<'_>) -> Result<Self> {
         let constants = [("SQUARE", SQUARE_M), ("BRIGHT", CD_M2[0]), ("DARK", CD_M2[1])];
         let constants: String = constants.iter().map(|(name, v)| format!("const {name}: f32 = {v:?};\n")).collect();
         let text = format!("{}{constants}{SHADER}", shader::assemble("common/opaque.wgsl")?);
@@ -113,10 +113,10 @@ impl PlaneResources {
         let layout = bind::layout(device, "plane", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("plane"),
-            bind_group_layouts: &[Some(with.layout), Some(&layout)],
+            bind_group_layouts: &[Some(opaque.layout), Some(&layout)],
             immediate_size: 0,
         });
-        let target = with.target;
+        let target = opaque.target;
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("plane"),
             layout: Some(&pipeline_layout),
@@ -149,8 +149,8 @@ impl PlaneResources {
 }
 
 impl DrawnEffect for PlaneView {
-    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
-        self.eye = at.now.eye;
+    fn gather(&mut self, context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        self.eye = context.now.eye;
         Ok(())
     }
 
@@ -164,17 +164,17 @@ impl DrawnEffect for PlaneView {
 
     fn draw_opaque(
         &mut self,
-        at: &DrawContext<'_>,
-        with: &OpaqueDraw<'_>,
+        context: &DrawContext<'_>,
+        opaque: &OpaqueDraw<'_>,
         pass: &mut wgpu::RenderPass<'_>,
     ) -> Result<()> {
         let Some(height_m) = self.height_m else { return Ok(()) };
-        let block = self.uniform(height_m, with.clip);
+        let block = self.uniform(height_m, opaque.clip);
         let made = match self.made.take() {
-            Some(made) if made.target == with.target => made,
-            _ => PlaneResources::new(at.device, with)?,
+            Some(made) if made.target == opaque.target => made,
+            _ => PlaneResources::new(context.device, opaque)?,
         };
-        at.device.queue.write_buffer(&made.buffer, 0, bytemuck::bytes_of(&block));
+        context.device.queue.write_buffer(&made.buffer, 0, bytemuck::bytes_of(&block));
         pass.set_pipeline(&made.pipeline);
         pass.set_bind_group(1, &made.group, &[]);
         pass.draw(0..4, 0..1);

@@ -12,23 +12,24 @@ impl View {
     /// is anything.
     pub(super) fn draw_diagnostic<'a>(
         &mut self,
-        of: &FrameContext<'a>,
+        frame_context: &FrameContext<'a>,
         target: DrawTarget<'a>,
         [asked, there]: [Stages; 2],
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
     ) -> Result<()> {
-        let frame = of.frame;
+        let frame = frame_context.frame;
         let stage = frame.diagnostic.stage();
         if !asked.has(stage) {
             return Ok(());
         }
         self.history.report.exposure = target.exposure;
         // Planned as the picture itself would be.
-        let mut at = self.planned(of, target, Stages(asked.0 & there.0).without(Stages::PREPARE.with(Stages::LENS)));
+        let mut context =
+            self.planned(frame_context, target, Stages(asked.0 & there.0).without(Stages::PREPARE.with(Stages::LENS)));
         let behind = if frame.diagnostic == Diagnostic::PlanError { asked.0 & Stages::BACKGROUND.0 } else { 0 };
-        at.stages = stage.with(Stages(behind));
+        context.stages = stage.with(Stages(behind));
         let color = target.color.texture;
-        let mut composition = self.composed(&at, false, false)?;
+        let mut composition = self.composed(&context, false, false)?;
         let is_there = there.has(stage) && composition.stages().has(stage);
         if !is_there {
             composition.leave_out(stage);
@@ -41,20 +42,20 @@ impl View {
             ("ENCODED", flag(encoded)),
         ];
         own.into_iter().for_each(|(name, value)| composition.set_constant(name, value, value));
-        let variant = self.variant(&at, &mut composition)?;
-        self.draw_effects(&at, &composition, to)?;
+        let variant = self.variant(&context, &mut composition)?;
+        self.draw_effects(&context, &composition, recording)?;
         let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
         let target = self.cache.target.of(target.color, Layer::view);
         let mut composite = self.cache.composite.lock()?;
         if frame.diagnostic == Diagnostic::Wind {
-            let (pipeline, wind) = composite.wind(&self.device, variant, of.now)?;
-            pass::draw(to.encoder, "wind", &pipeline, &[group, &wind], target);
+            let (pipeline, wind) = composite.wind(&self.device, variant, frame_context.now)?;
+            pass::draw(recording.encoder, "wind", &pipeline, &[group, &wind], target);
         } else {
             let pipeline = composite.pipeline(&self.device, variant)?;
             let groups = [group, tables, self.cache.surroundings.bind_group()];
-            pass::draw(to.encoder, "diagnostic", pipeline, &groups, target);
+            pass::draw(recording.encoder, "diagnostic", pipeline, &groups, target);
         }
-        to.passes += 1;
-        to.ends(CostItem::Composition, true)
+        recording.passes += 1;
+        recording.ends(CostItem::Composition, true)
     }
 }

@@ -3,7 +3,7 @@
 
 use super::{
     draws::{DrawKey, Draws, PipelineNotReady},
-    froxels::Froxels,
+    froxels::{FroxelKind, Froxels},
     pixels::Pixels,
     planned::{present, situation},
     variant::Variant,
@@ -23,12 +23,12 @@ impl View {
     /// Draws stages that neighbour each other into the host's picture.
     pub(super) fn draw<'a>(
         &mut self,
-        of: &FrameContext<'a>,
+        frame_context: &FrameContext<'a>,
         target: DrawTarget<'a>,
         stages: Stages,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
     ) -> Result<()> {
-        let frame = of.frame;
+        let frame = frame_context.frame;
         let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
         let stages = if tone { stages } else { stages.without(Stages::TONE) };
         let drawn = stages.without(Stages::PREPARE.with(Stages::LENS));
@@ -36,40 +36,45 @@ impl View {
             return Ok(());
         }
         self.history.report.exposure = target.exposure;
-        let at = self.planned(of, target, drawn);
-        let mut composition = self.composed(&at, tone, self.cache.environment.is_some())?;
-        let variant = self.variant(&at, &mut composition)?;
+        let context = self.planned(frame_context, target, drawn);
+        let mut composition = self.composed(&context, tone, self.cache.environment.is_some())?;
+        let variant = self.variant(&context, &mut composition)?;
         composition.set_compositions(self.planner.compositions(self.effects.weighs_unseen()));
-        self.draw_effects(&at, &composition, to)?;
+        self.draw_effects(&context, &composition, recording)?;
         if composition.stages().has(Stages::MEDIUM) {
-            let white = of.now.scene.ground.total_lux / std::f64::consts::PI;
+            let white = frame_context.now.scene.ground.total_lux / std::f64::consts::PI;
             self.history.unit.watch(
                 &self.device,
-                to.encoder,
+                recording.encoder,
                 frame,
                 (white, self.history.recorded.has(Stages::BACKGROUND)),
             );
         }
-        self.compose(&at, &composition, &variant, to)?;
-        to.ends(CostItem::of(composition.stages()), true)?;
-        self.fill_environment(&at, &composition, to)?;
+        self.compose(&context, &composition, &variant, recording)?;
+        recording.ends(CostItem::of(composition.stages()), true)?;
+        self.fill_environment(&context, &composition, recording)?;
         self.history.light_scale = match frame.color_space {
             ColorSpace::SceneLinear => (1.0 / (target.exposure * frame.cd_m2_per_unit)) as f32,
             ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
         };
         if stages.has(Froxels::STAGE) {
-            self.fill_veil(&at, &composition, to)?;
+            self.fill_veil(&context, &composition, recording)?;
         }
         Ok(())
     }
 
     /// Merges what all effects add to a draw. `tone` says that the whole picture is tone-mapped, `has_cube_map` that
     /// the host has asked for the cube map.
-    pub(super) fn composed(&mut self, at: &DrawContext<'_>, tone: bool, has_cube_map: bool) -> Result<Composition> {
-        let target = &at.target;
-        let block = uniform(at.frame, at.now, target.rays, at.picture(), target.exposure, tone);
-        let mut composition = Composition::new(at.stages, block);
-        self.effects.compose(at, &mut composition)?;
+    pub(super) fn composed(
+        &mut self,
+        context: &DrawContext<'_>,
+        tone: bool,
+        has_cube_map: bool,
+    ) -> Result<Composition> {
+        let target = &context.target;
+        let block = uniform(context.frame, context.now, target.rays, context.picture(), target.exposure, tone);
+        let mut composition = Composition::new(context.stages, block);
+        self.effects.compose(context, &mut composition)?;
         composition.finish(has_cube_map);
         Ok(composition)
     }
@@ -77,46 +82,47 @@ impl View {
     /// Draws the passes of the effects, and copies the picture that the composition reads.
     pub(super) fn draw_effects(
         &mut self,
-        at: &DrawContext<'_>,
+        context: &DrawContext<'_>,
         composition: &Composition,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
     ) -> Result<()> {
-        self.hold_copy(at.picture())?;
-        self.bind(at, composition)?;
+        self.hold_copy(context.picture())?;
+        self.bind(context, composition)?;
         self.cache.uniform.write(bytemuck::bytes_of(composition.block()));
         let merged = MergedFrame { composition, block: &self.cache.uniform, surroundings: &self.cache.surroundings };
-        self.effects.draw(at, &merged, to)?;
-        self.take_picture(at.target.color, to)
+        self.effects.draw(context, &merged, recording)?;
+        self.take_picture(context.target.color, recording)
     }
 
     /// Plans the frame, once for all its draws, and gives a draw what the plan has chosen.
     pub(super) fn planned<'a>(
         &mut self,
-        of: &FrameContext<'a>,
+        frame_context: &FrameContext<'a>,
         target: DrawTarget<'a>,
         stages: Stages,
     ) -> DrawContext<'a> {
-        let (frame, now) = (of.frame, of.now);
-        let mut at = DrawContext { device: of.device, frame, now, target, stages, plan: PlannedShares::whole(PARTS) };
+        let (frame, now) = (frame_context.frame, frame_context.now);
+        let mut context =
+            DrawContext { device: frame_context.device, frame, now, target, stages, plan: PlannedShares::whole(PARTS) };
         if self.history.planned_for != Some(frame.frame_id) {
             self.history.planned_for = Some(frame.frame_id);
             self.planner.rebuild = self.effects.rebuild_work();
-            let present = present(&mut self.effects, &at, stages);
+            let present = present(&mut self.effects, &context, stages);
             let here = situation(frame, &now.scene);
             self.planner.begin(&self.device, &here, &present, frame.is_pure());
             self.history.report.prediction = self.planner.prediction();
         }
         let is_gauged = self.planner.budget().gauges();
-        at.plan = PlannedShares::new(PARTS, is_gauged, |part, step| self.planner.drawn_share(part, step));
-        at
+        context.plan = PlannedShares::new(PARTS, is_gauged, |part, step| self.planner.drawn_share(part, step));
+        context
     }
 
     /// Returns the variant that the composition must be able to draw, with the constants that are the frame's own; and
     /// brings the host's surroundings up to date.
-    pub(super) fn variant(&mut self, at: &DrawContext<'_>, composition: &mut Composition) -> Result<Variant> {
-        let (frame, color) = (at.frame, at.picture());
+    pub(super) fn variant(&mut self, context: &DrawContext<'_>, composition: &mut Composition) -> Result<Variant> {
+        let (frame, color) = (context.frame, context.picture());
         let stages = composition.stages();
-        composition.set_between("DEPTH_KINDS", f64::from(at.target.rays.depth_kinds()));
+        composition.set_between("DEPTH_KINDS", f64::from(context.target.rays.depth_kinds()));
         let block = composition.block();
         let target = [
             ("COLOR_SPACES", f64::from(1u32 << block.color_space)),
@@ -128,7 +134,7 @@ impl View {
         composition.set_constant("CURVES", 7.0, curve);
         let mut around = Default::default();
         if stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
-            let host = at.now.host_surroundings(composition.near(), at.target.exposure)?;
+            let host = context.now.host_surroundings(composition.near(), context.target.exposure)?;
             self.cache.surroundings.update(&self.device, &host);
             around = if stages.has(Stages::SURFACE) { host.present() } else { around };
         }
@@ -149,71 +155,78 @@ impl View {
     /// The pass over the picture; and the gauge of all of it, if one is due.
     fn compose(
         &mut self,
-        at: &DrawContext<'_>,
+        context: &DrawContext<'_>,
         composition: &Composition,
         whole: &Variant,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
     ) -> Result<()> {
         let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
-        let target = self.cache.target.of(at.target.color, Layer::view);
+        let target = self.cache.target.of(context.target.color, Layer::view);
         let groups = [group, tables, self.cache.surroundings.bind_group()];
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let splits = self.device.caps().software;
         let constants = if splits { composition.least() } else { composition.whole() };
         let has_grid = self.cache.even.is_some();
         // A pure picture does not depend on how many frames were drawn before it.
-        let how = (splits, splits || at.frame.is_pure());
+        let how = (splits, splits || context.frame.is_pure());
         let make = || {
             let drawn = DrawKey { of: Variant { constants: *constants, ..*whole }, has_grid };
             let draws = Draws::new(&self.device, &mut *self.cache.composite.lock()?, &drawn, how)?;
             Ok((drawn, draws))
         };
         let held = (self.cache.kinds.as_ref(), self.cache.even.as_ref());
-        to.passes += match self.cache.draws.get_or_make(|drawn| drawn.is(whole, constants, has_grid), make) {
-            Ok(draws) => draws.record(to.encoder, held, &groups, target),
-            Err(PipelineNotReady::Coming(draws)) => draws.record(to.encoder, held, &groups, target),
+        recording.passes += match self.cache.draws.get_or_make(|drawn| drawn.is(whole, constants, has_grid), make) {
+            Ok(draws) => draws.record(recording.encoder, held, &groups, target),
+            Err(PipelineNotReady::Coming(draws)) => draws.record(recording.encoder, held, &groups, target),
             Err(PipelineNotReady::Failed(error)) => return Err(error),
         };
         if !composition.stages().has(Stages::MEDIUM) {
             return Ok(());
         }
-        let here = situation(at.frame, &at.now.scene);
+        let here = situation(context.frame, &context.now.scene);
         let effects = &mut self.effects;
-        if let Some(gauge) = self.planner.due(&here, || effects.unseen(at)) {
+        if let Some(gauge) = self.planner.due(&here, || effects.unseen(context)) {
             let [_, (shader, _)] = whole.sampling.shaders();
             let composite = self.cache.composite.lock()?;
             let layouts = composite.layouts(whole.sampling);
-            gauge.record(&self.device, to.encoder, (shader, whole.constants().all()), &layouts, &groups)?;
-            to.passes += 1;
+            gauge.record(&self.device, recording.encoder, (shader, whole.constants().all()), &layouts, &groups)?;
+            recording.passes += 1;
         }
         Ok(())
     }
 
     /// Fills the textures of the veil for the host's own shaders, if it has asked for them.
-    fn fill_veil(&mut self, at: &DrawContext<'_>, composition: &Composition, to: &mut Recording<'_>) -> Result<()> {
+    fn fill_veil(
+        &mut self,
+        context: &DrawContext<'_>,
+        composition: &Composition,
+        recording: &mut Recording<'_>,
+    ) -> Result<()> {
         let (Some(froxels), Some((_, group)), Some((_, tables))) =
             (&mut self.cache.froxels, &self.cache.bound, &composition.tables())
         else {
             return Ok(());
         };
         let merged = MergedFrame { composition, block: &self.cache.uniform, surroundings: &self.cache.surroundings };
-        let own = self.effects.each().into_iter().find_map(|effect| effect.veil(at, &merged));
+        let own = self.effects.each().into_iter().find_map(|effect| effect.veil(context, &merged));
         let (composite, of_veil) = (self.cache.composite.lock()?, composition.whole().of_veil);
         match &own {
             Some((shader, layout, own)) => {
                 // That of an effect has no colour in it.
-                let several = at.frame.depth_layer().is_some_and(Layer::is_multisampled);
+                let several = context.frame.depth_layer().is_some_and(Layer::is_multisampled);
                 let sampling = if several { Sampling::Multi } else { Sampling::Single };
                 let layouts = [layout, composite.layouts(sampling)[1]];
-                froxels.draw(to, (shader, sampling, of_veil), &layouts, &[own, tables])?;
+                let kind = FroxelKind { shader, sampling, constants: of_veil };
+                froxels.draw(recording, kind, &layouts, &[own, tables])?;
             }
             None => {
-                let sampling = Sampling::of(at.picture(), at.frame.depth);
+                let sampling = Sampling::of(context.picture(), context.frame.depth);
                 let groups = [group, tables, self.cache.surroundings.bind_group()];
-                froxels.draw(to, (Froxels::SHADER, sampling, of_veil), &composite.layouts(sampling), &groups)?;
+                let kind = FroxelKind { shader: Froxels::SHADER, sampling, constants: of_veil };
+                froxels.draw(recording, kind, &composite.layouts(sampling), &groups)?;
             }
         }
-        to.passes += 1;
-        to.ends(CostItem::Veil, true)
+        recording.passes += 1;
+        recording.ends(CostItem::Veil, true)
     }
 }

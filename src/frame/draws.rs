@@ -56,8 +56,8 @@ pub(super) enum PipelineNotReady {
 }
 
 impl From<Error> for PipelineNotReady {
-    fn from(of: Error) -> Self {
-        Self::Failed(of)
+    fn from(error: Error) -> Self {
+        Self::Failed(error)
     }
 }
 
@@ -95,11 +95,11 @@ impl Draws {
     fn whole(
         device: &Arc<Device>,
         composite: &mut Composite,
-        of: &Variant,
+        all: &Variant,
         (draws, looks_up): ([Option<Variant>; kinds::DRAWS], bool),
     ) -> Result<Self> {
         let is_one = draws.iter().flatten().all(|variant| variant.pixels == Pixels::All);
-        let even = looks_up.then(|| composite.even(device, of)).transpose()?;
+        let even = looks_up.then(|| composite.even(device, all)).transpose()?;
         let mut pipelines = Vec::new();
         for variant in draws.into_iter().flatten() {
             pipelines.push(composite.pipeline(device, variant)?.clone());
@@ -107,7 +107,7 @@ impl Draws {
         if is_one {
             return Ok(Self { even, pixels: pipelines.pop().map_or(Kinds::None, Kinds::One) });
         }
-        pipelines.insert(0, composite.kinds(device, of, looks_up)?.clone());
+        pipelines.insert(0, composite.kinds(device, all, looks_up)?.clone());
         Ok(Self { even, pixels: Kinds::Several(pipelines) })
     }
 

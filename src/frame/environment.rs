@@ -44,9 +44,9 @@ impl View {
     /// Draws what is due of the cube map, if the host has asked for it.
     pub(super) fn fill_environment(
         &mut self,
-        at: &DrawContext<'_>,
+        context: &DrawContext<'_>,
         composition: &Composition,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
     ) -> Result<()> {
         let (Some(map), Some((_, group)), Some((_, tables))) =
             (&mut self.cache.environment, &self.cache.bound, &composition.tables())
@@ -54,14 +54,14 @@ impl View {
             return Ok(());
         };
         let is_seen = composition.stages().has(Stages::BACKGROUND.with(Stages::MEDIUM));
-        if !is_seen || map.frame_id == Some(at.frame.frame_id) {
+        if !is_seen || map.frame_id == Some(context.frame.frame_id) {
             return Ok(());
         }
-        let faces = map.faces_due(at);
-        let sampling = Sampling::of(at.picture(), at.frame.depth);
+        let faces = map.faces_due(context);
+        let sampling = Sampling::of(context.picture(), context.frame.depth);
         let composite = self.cache.composite.lock()?;
         let groups = [group, tables, self.cache.surroundings.bind_group()];
-        map.draw(to, faces, (sampling, composition.whole().between), &composite.layouts(sampling), &groups)?;
-        to.ends(CostItem::Veil, true)
+        map.draw(recording, faces, (sampling, composition.whole().between), &composite.layouts(sampling), &groups)?;
+        recording.ends(CostItem::Veil, true)
     }
 }

@@ -101,10 +101,10 @@ impl EnvironmentInputs {
         }
     }
 
-    fn leaps_from(&self, before: &Self) -> bool {
-        let turned = (0..3).any(|i| (self.world_to_enu.col(i) - before.world_to_enu.col(i)).length() > LEAP_RAD);
-        self.sizes.iter().zip(before.sizes).any(|(now, before)| (now - before).abs() > LEAP)
-            || (self.to_lamp - before.to_lamp).length() > LEAP_RAD
+    fn leaps_from(&self, earlier: &Self) -> bool {
+        let turned = (0..3).any(|i| (self.world_to_enu.col(i) - earlier.world_to_enu.col(i)).length() > LEAP_RAD);
+        self.sizes.iter().zip(earlier.sizes).any(|(now, earlier)| (now - earlier).abs() > LEAP)
+            || (self.to_lamp - earlier.to_lamp).length() > LEAP_RAD
             || turned
     }
 }
@@ -230,13 +230,13 @@ impl Filter {
     }
 
     /// Draws a level of a face from the source that a group shows; halved where `level` is 0.
-    fn draw(&self, to: &mut Recording<'_>, target: &wgpu::TextureView, group: usize, face: u32, level: u32) {
-        let mut pass = begin(to.encoder, "environment filter", &[target]);
+    fn draw(&self, recording: &mut Recording<'_>, target: &wgpu::TextureView, group: usize, face: u32, level: u32) {
+        let mut pass = begin(recording.encoder, "environment filter", &[target]);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.groups[group], &[(face * LEVELS + level) * STEP as u32]);
         pass.draw(0..3, 0..1);
         drop(pass);
-        to.passes += 1;
+        recording.passes += 1;
     }
 }
 
@@ -308,8 +308,8 @@ impl EnvironmentMap {
     }
 
     /// The faces to draw for a frame, and the scale of what is drawn.
-    pub fn faces_due(&mut self, at: &DrawContext<'_>) -> std::ops::Range<u32> {
-        let (frame, scene) = (at.frame, &at.now.scene);
+    pub fn faces_due(&mut self, context: &DrawContext<'_>) -> std::ops::Range<u32> {
+        let (frame, scene) = (context.frame, &context.now.scene);
         let (now, white) = (EnvironmentInputs::of(scene), scene.ground.adaptation_cd_m2.clamp(1e-6, 1e9));
         let follows = self.drawn.as_ref().is_some_and(|before| !now.leaps_from(before));
         let faces = if follows && !frame.is_pure() && SCALES.contains(&(white / self.cd_m2_per_unit)) {
@@ -322,11 +322,11 @@ impl EnvironmentMap {
         (self.drawn, self.frame_id) = (Some(now), Some(frame.frame_id));
         self.light_scale = match frame.color_space {
             ColorSpace::SceneLinear => self.cd_m2_per_unit / frame.cd_m2_per_unit,
-            ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => self.cd_m2_per_unit * at.target.exposure,
+            ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => self.cd_m2_per_unit * context.target.exposure,
         };
         let block = |face| FaceUniform::new(face, &scene.world_to_enu, 1.0 / self.cd_m2_per_unit);
         for face in 0..FACES as usize {
-            at.device.queue.write_buffer(&self.blocks, (face * STEP) as u64, bytemuck::bytes_of(&block(face)));
+            context.device.queue.write_buffer(&self.blocks, (face * STEP) as u64, bytemuck::bytes_of(&block(face)));
         }
         faces
     }
@@ -334,13 +334,13 @@ impl EnvironmentMap {
     /// Draws faces with the groups of the composition.
     pub fn draw(
         &mut self,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
         faces: std::ops::Range<u32>,
         (sampling, between): PipelineKind,
         layouts: &[&wgpu::BindGroupLayout; 3],
         groups: &[&wgpu::BindGroup; 3],
     ) -> Result<()> {
-        let (device, layout) = (to.device, &self.layout);
+        let (device, layout) = (recording.device, &self.layout);
         let make = || {
             let mut constants = between;
             constants.push(("DISCS", 0.0));
@@ -358,7 +358,7 @@ impl EnvironmentMap {
         let level = |face: u32, level: u32| &self.levels[(face * LEVELS + level) as usize];
         let source = |face: u32, level: u32| &self.source_levels[(face * SOURCE_LEVELS + level) as usize];
         for face in faces.clone() {
-            let mut pass = begin(to.encoder, "environment", &[level(face, 0), source(face, 0)]);
+            let mut pass = begin(recording.encoder, "environment", &[level(face, 0), source(face, 0)]);
             pass.set_pipeline(pipeline);
             for (i, group) in groups.iter().enumerate() {
                 pass.set_bind_group(i as u32, *group, &[]);
@@ -366,12 +366,12 @@ impl EnvironmentMap {
             pass.set_bind_group(3, &self.group, &[face * STEP as u32]);
             pass.draw(0..3, 0..1);
             drop(pass);
-            to.passes += 1;
-            (1..SOURCE_LEVELS).for_each(|l| self.filter.draw(to, source(face, l), l as usize - 1, face, 0));
+            recording.passes += 1;
+            (1..SOURCE_LEVELS).for_each(|l| self.filter.draw(recording, source(face, l), l as usize - 1, face, 0));
         }
         let whole = self.filter.groups.len() - 1;
         for face in faces {
-            (1..LEVELS).for_each(|l| self.filter.draw(to, level(face, l), whole, face, l));
+            (1..LEVELS).for_each(|l| self.filter.draw(recording, level(face, l), whole, face, l));
         }
         Ok(())
     }

@@ -34,8 +34,14 @@ pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_veil.
 /// GLSL 3.30 text of the sampling functions.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_veil.glsl");
 
-/// Shader, samples of the host's images, constants.
-pub(super) type FroxelKind = (&'static str, Sampling, Constants);
+/// Properties that a pipeline of the froxels is made for.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct FroxelKind {
+    pub shader: &'static str,
+    /// Samples of the host's images.
+    pub sampling: Sampling,
+    pub constants: Constants,
+}
 
 /// Pipelines held for a view: with and without fog, and an effect's own, over one host's images.
 const MOST_PIPELINES: usize = 8;
@@ -78,25 +84,25 @@ impl Froxels {
     /// Fills the textures by a shader for depth of so many samples, with constants of what lies between.
     pub fn draw(
         &mut self,
-        to: &mut Recording<'_>,
-        (shader, sampling, constants): FroxelKind,
+        recording: &mut Recording<'_>,
+        kind: FroxelKind,
         layouts: &[&wgpu::BindGroupLayout],
         groups: &[&wgpu::BindGroup],
     ) -> Result<()> {
-        let device = to.device;
+        let device = recording.device;
         let pipeline = self.pipelines.get_or_make(
-            |made| *made == (shader, sampling, constants),
+            |made| *made == kind,
             || {
                 let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
                 let desc = FullscreenDesc {
-                    shader,
+                    shader: kind.shader,
                     entry: "froxels",
                     layouts,
                     targets: &[target.clone(), target],
-                    constants: constants.all(),
+                    constants: kind.constants.all(),
                     samples: 1,
                 };
-                Ok(((shader, sampling, constants), pass::fullscreen(device, &desc)?))
+                Ok((kind, pass::fullscreen(device, &desc)?))
             },
         )?;
         let attach = |view| {
@@ -107,7 +113,7 @@ impl Froxels {
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
             })
         };
-        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        let mut pass = recording.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("froxels"),
             color_attachments: &[attach(&self.views[0]), attach(&self.views[1])],
             ..Default::default()

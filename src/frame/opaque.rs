@@ -43,24 +43,24 @@ impl View {
     /// Draws what effects have that is opaque, or counts them where the host's depth may only be read.
     pub(super) fn draw_opaque<'a>(
         &mut self,
-        of: &FrameContext<'a>,
+        frame_context: &FrameContext<'a>,
         target: DrawTarget<'a>,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
     ) -> Result<()> {
-        let (frame, color) = (of.frame, target.color);
+        let (frame, color) = (frame_context.frame, target.color);
         let (DepthAccess::ReadWrite, Some(read)) = (frame.depth_access, frame.depth) else {
             self.history.report.opaque_left_out = self.effects.all().iter().filter(|e| e.has_opaque()).count() as u32;
             return Ok(());
         };
         let attached = self.device.attached_depth(read);
         let depth = Layer { texture: &attached.texture, index: frame.layers.depth };
-        let block = uniform(frame, of.now, target.rays, color.texture, target.exposure, false);
+        let block = uniform(frame, frame_context.now, target.rays, color.texture, target.exposure, false);
         self.cache.uniform.write(bytemuck::bytes_of(&block));
         let step = self.cache.opaque.get_or_insert_with(|| OpaqueStep::new(&self.device.device));
         let layout = step.layout.clone();
         let (bound, color_view) = step.bind(&self.device, &self.cache.uniform, [color, depth], frame.mask_layer());
         let keep = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
-        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        let mut pass = recording.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("opaque"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: color_view,
@@ -77,18 +77,25 @@ impl View {
         });
         pass.set_bind_group(0, &bound.group, &[]);
         let plan = PlannedShares::whole(PARTS);
-        let at = DrawContext { device: of.device, frame, now: of.now, target, stages: Stages::SURFACE, plan };
+        let context = DrawContext {
+            device: frame_context.device,
+            frame,
+            now: frame_context.now,
+            target,
+            stages: Stages::SURFACE,
+            plan,
+        };
         let target = OpaqueTarget::of(frame, color.texture, depth.texture);
-        let with = OpaqueDraw { target, layout: &layout, clip: OpaqueDraw::clip_of(&at) };
+        let opaque = OpaqueDraw { target, layout: &layout, clip: OpaqueDraw::clip_of(&context) };
         for effect in self.effects.each().into_iter().filter(|effect| effect.has_opaque()) {
-            effect.draw_opaque(&at, &with, &mut pass)?;
+            effect.draw_opaque(&context, &opaque, &mut pass)?;
         }
         drop(pass);
-        to.passes += 1;
+        recording.passes += 1;
         if attached.is_copied {
-            to.flush();
+            recording.flush();
             self.device.refresh_depth(read)?;
         }
-        to.ends(CostItem::Surface, true)
+        recording.ends(CostItem::Surface, true)
     }
 }

@@ -61,21 +61,21 @@ impl View {
     }
 
     /// Brings the colour copy up to date with all that was recorded.
-    pub(super) fn take_picture(&mut self, color: Layer<'_>, to: &mut Recording<'_>) -> Result<()> {
+    pub(super) fn take_picture(&mut self, color: Layer<'_>, recording: &mut Recording<'_>) -> Result<()> {
         self.hold_copy(color.texture)?;
         if !can_copy(color.texture) {
-            to.flush();
+            recording.flush();
             return self.device.refresh(color.texture);
         }
         if let Some(copy) = &self.cache.copy {
-            color.copy(to.encoder, copy);
+            color.copy(recording.encoder, copy);
         }
         Ok(())
     }
 
     /// Makes the bind group anew if the host's textures are others than last time.
-    pub(super) fn bind(&mut self, at: &DrawContext<'_>, composition: &Composition) -> Result<()> {
-        let (frame, own) = (at.frame, composition.textures());
+    pub(super) fn bind(&mut self, context: &DrawContext<'_>, composition: &Composition) -> Result<()> {
+        let (frame, own) = (context.frame, composition.textures());
         let of_host = |b: &Bound| {
             is_kept(frame.depth_layer(), b.depth.as_ref())
                 && is_kept(frame.mask_layer(), b.mask.as_ref())

@@ -12,15 +12,15 @@ use crate::{
 };
 
 /// Returns which parts a picture of these stages has, and what each costs in it.
-pub(super) fn present(effects: &mut Effects, at: &DrawContext<'_>, stages: Stages) -> Presence {
+pub(super) fn present(effects: &mut Effects, context: &DrawContext<'_>, stages: Stages) -> Presence {
     let place = |part: &Part| PARTS.iter().position(|p| p.name == part.name);
-    let (pair, work) = together(&at.now.scene);
-    let mut present = Presence { pixels: at.pixels(), ..Presence::default() };
+    let (pair, work) = together(&context.now.scene);
+    let mut present = Presence { pixels: context.pixels(), ..Presence::default() };
     if let [Some(a), Some(b)] = pair.map(place) {
         present.together = ([a, b], work);
     }
     for effect in effects.each() {
-        effect.parts(at, stages, &mut |part, is_there, steps| {
+        effect.parts(context, stages, &mut |part, is_there, steps| {
             if let Some(place) = place(part) {
                 let now = &mut present.parts[place];
                 now.is_there = is_there;

@@ -158,13 +158,13 @@ impl View {
         let mut encoder =
             device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
         let blocks = self.cache.blocks.clone();
-        let mut to = Recording::new(device, &mut encoder, &blocks);
+        let mut recording = Recording::new(device, &mut encoder, &blocks);
         if frame.flags.has(FrameFlags::MEASURE) {
             let so_far = if frame.frame_id == self.history.report.frame_id { self.history.report.costs } else { None };
-            to.measure(so_far.unwrap_or_default())?;
+            recording.measure(so_far.unwrap_or_default())?;
         }
-        self.record_stages(context, frame, stages, &mut to)?;
-        if let Some((costs, inside)) = to.costs() {
+        self.record_stages(context, frame, stages, &mut recording)?;
+        if let Some((costs, inside)) = recording.costs() {
             self.history.report.costs = Some(costs);
             self.history.last_call = Some(inside);
         }
@@ -221,13 +221,13 @@ impl View {
         context: &Context,
         frame: &Frame<'_>,
         stages: Stages,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
     ) -> Result<()> {
         let now = context.moment("frame.camera.position", frame.camera.position, &mut self.history.scene)?;
         let rays = stages.draw().then(|| rays(frame, &now.scene)).transpose()?;
         // What is not there is not drawn.
         let asked = stages;
-        let of = FrameContext {
+        let frame_context = FrameContext {
             device: &self.device.clone(),
             frame,
             now: &now,
@@ -236,7 +236,7 @@ impl View {
             asked,
             table_share: if frame.is_pure() { 1.0 } else { self.planner.share_of_tables() },
         };
-        self.effects.gather(&of)?;
+        self.effects.gather(&frame_context)?;
         let there = self.effects.all().iter().fold(Stages::PREPARE.with(Stages::TONE), |s, e| s.with(e.stages()));
         let stages = Stages(stages.0 & there.0);
         let opaque = self.has_opaque(asked);
@@ -251,25 +251,25 @@ impl View {
             self.hold_images(frame, stages)?;
         }
         if self.history.recorded == Stages(0) {
-            self.effects.each().into_iter().try_for_each(|effect| effect.prepare(&of, to))?;
+            self.effects.each().into_iter().try_for_each(|effect| effect.prepare(&frame_context, recording))?;
         }
         if let (Some(rays), Some(color)) = (rays, frame.color_layer()) {
             let exposure = frame.exposure.unwrap_or(now.exposure).factor(now.scene.ground.adaptation_cd_m2);
             let is_veiled = self.history.recorded.with(asked).has(Stages::MEDIUM);
             let target = DrawTarget { color, rays: &rays, exposure, is_veiled };
             if opaque {
-                self.draw_opaque(&of, target, to)?;
+                self.draw_opaque(&frame_context, target, recording)?;
             }
             match diagnoses {
-                true => self.draw_diagnostic(&of, target, [asked, there], to)?,
-                false => self.draw_all(&of, target, stages, to)?,
+                true => self.draw_diagnostic(&frame_context, target, [asked, there], recording)?,
+                false => self.draw_all(&frame_context, target, stages, recording)?,
             }
         }
-        to.upload();
+        recording.upload();
         self.let_go_of_window(frame);
         self.history.recorded = self.history.recorded.with(asked);
-        self.history.report.passes += to.passes;
-        self.history.report.tables_rebuilt += to.tables_rebuilt;
+        self.history.report.passes += recording.passes;
+        self.history.report.tables_rebuilt += recording.tables_rebuilt;
         self.effects.all().iter().for_each(|effect| effect.report(&mut self.history.report));
         self.history.report.bytes = self.bytes();
         Ok(())
@@ -278,39 +278,45 @@ impl View {
     /// Draws the stages of a call in as few draws as give the picture.
     fn draw_all<'a>(
         &mut self,
-        of: &FrameContext<'a>,
+        context: &FrameContext<'a>,
         target: DrawTarget<'a>,
         stages: Stages,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
     ) -> Result<()> {
-        let frame = of.frame;
+        let frame = context.frame;
         // A lens lies before the tone curve, where the target can hold the picture between them.
         let mut lens = stages.has(Stages::LENS) && self.effects.all().iter().any(|effect| effect.has_lens());
         let two = |[a, b]: [Stages; 2]| [a, b, Stages(0), Stages(0), Stages(0)];
         let draws = match can_be_apart(frame, stages) {
-            true if to.is_measured() => stages.each(),
+            true if recording.is_measured() => stages.each(),
             true if lens => two([stages.without(Stages::TONE), Stages(stages.0 & Stages::TONE.0)]),
             _ => two([stages, Stages(0)]),
         };
         for part in draws.into_iter().filter(|s| s.0 != 0) {
             if lens && part == Stages::TONE {
-                self.draw_lens(frame, target.color, false, to)?;
+                self.draw_lens(frame, target.color, false, recording)?;
                 lens = false;
             }
-            self.draw(of, target, part, to)?;
+            self.draw(context, target, part, recording)?;
         }
-        if lens { self.draw_lens(frame, target.color, stages.has(Stages::TONE), to) } else { Ok(()) }
+        if lens { self.draw_lens(frame, target.color, stages.has(Stages::TONE), recording) } else { Ok(()) }
     }
 
     /// Draws what lies over the picture that the target holds; `toned` says that TONE has been over it in this call.
-    fn draw_lens(&mut self, frame: &Frame<'_>, color: Layer<'_>, toned: bool, to: &mut Recording<'_>) -> Result<()> {
-        self.take_picture(color, to)?;
+    fn draw_lens(
+        &mut self,
+        frame: &Frame<'_>,
+        color: Layer<'_>,
+        toned: bool,
+        recording: &mut Recording<'_>,
+    ) -> Result<()> {
+        self.take_picture(color, recording)?;
         let Some(copy) = &self.cache.copy else { return Ok(()) };
         let target = self.cache.target.of(color, Layer::view);
         self.effects
             .each()
             .into_iter()
-            .try_for_each(|effect| effect.draw_lens(frame, LensPicture { copy, target }, toned, to))
+            .try_for_each(|effect| effect.draw_lens(frame, LensPicture { copy, target }, toned, recording))
     }
 }
 

@@ -78,7 +78,7 @@ impl Context {
         &self,
         scene: &Scene,
         clouds: Option<&CloudRays<'_>>,
-        from: DVec3,
+        start: DVec3,
         offset: DVec3,
         time_s: f64,
     ) -> Result<[f64; 3]> {
@@ -86,7 +86,7 @@ impl Context {
         let medium = Medium::of(&scene.planet);
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
         let mut through = medium.transmittance(&ray.columns(&medium, 0.0, distance));
-        let detour = self.world.detour(from, &scene.conditions, time_s);
+        let detour = self.world.detour(start, &scene.conditions, time_s);
         let low = LowAir::new(&scene.conditions, self.world.seed, scene.drift_m).led_by(detour);
         if !low.is_clear() {
             let view = Viewpoint {
@@ -99,7 +99,7 @@ impl Context {
             through = [0, 1, 2].map(|i| through[i] * fog[i]);
         }
         let clouds = clouds.map_or(0.0, |clouds| clouds.depth(offset));
-        let left = (-clouds - self.areas_depth(from, offset, time_s, &scene.conditions)?).exp();
+        let left = (-clouds - self.areas_depth(start, offset, time_s, &scene.conditions)?).exp();
         Ok(through.map(|t| (t * left).min(1.0)))
     }
 

@@ -60,12 +60,12 @@ impl Page {
         Some(start..start + bytes)
     }
 
-    fn write(&mut self, at: usize, bytes: &[u8]) {
-        let staged = &mut self.staged[at..at + bytes.len()];
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        let staged = &mut self.staged[offset..offset + bytes.len()];
         let chunks = || staged.chunks(CHUNK).zip(bytes.chunks(CHUNK));
         let differs = |(old, new): (&[u8], &[u8])| old != new;
         let (Some(first), Some(last)) = (chunks().position(differs), chunks().rposition(differs)) else { return };
-        let range = at + first * CHUNK..at + ((last + 1) * CHUNK).min(bytes.len());
+        let range = offset + first * CHUNK..offset + ((last + 1) * CHUNK).min(bytes.len());
         staged.copy_from_slice(bytes);
         let changed = &mut self.changed;
         *changed = if changed.start == changed.end {
@@ -124,10 +124,10 @@ impl UniformBlock {
         self.write_at(0, bytes);
     }
 
-    /// Writes as [`Self::write`] does, from byte `at`.
-    pub fn write_at(&self, at: usize, bytes: &[u8]) {
-        debug_assert!(at + bytes.len() <= self.bytes(), "{} bytes at {at} of {}", bytes.len(), self.bytes());
-        self.pages.with(|pages| pages[self.page].write(self.at.start + at, bytes));
+    /// Writes as [`Self::write`] does, from byte `offset`.
+    pub fn write_at(&self, offset: usize, bytes: &[u8]) {
+        debug_assert!(offset + bytes.len() <= self.bytes(), "{} bytes at {offset} of {}", bytes.len(), self.bytes());
+        self.pages.with(|pages| pages[self.page].write(self.at.start + offset, bytes));
     }
 }
 
@@ -152,13 +152,13 @@ impl BlockView {
     }
 
     /// A part of it at a binding, from a multiple of 256 on.
-    pub fn part(&self, binding: u32, at: usize, bytes: usize) -> wgpu::BindGroupEntry<'_> {
-        wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Buffer(self.range(at, bytes)) }
+    pub fn part(&self, binding: u32, offset: usize, bytes: usize) -> wgpu::BindGroupEntry<'_> {
+        wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Buffer(self.range(offset, bytes)) }
     }
 
     /// A part of it.
-    pub fn range(&self, at: usize, bytes: usize) -> wgpu::BufferBinding<'_> {
-        let offset = (self.at.start + at) as u64;
+    pub fn range(&self, offset: usize, bytes: usize) -> wgpu::BufferBinding<'_> {
+        let offset = (self.at.start + offset) as u64;
         wgpu::BufferBinding { buffer: &self.buffer, offset, size: wgpu::BufferSize::new(bytes as u64) }
     }
 

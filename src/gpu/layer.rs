@@ -45,11 +45,11 @@ impl Layer<'_> {
         self.texture.sample_count() > 1
     }
 
-    /// Copies it to `to`, a plain texture of its size.
-    pub fn copy(self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Texture) {
+    /// Copies it to `destination`, a plain texture of its size.
+    pub fn copy(self, encoder: &mut wgpu::CommandEncoder, destination: &wgpu::Texture) {
         let mut from = self.texture.as_image_copy();
         from.origin.z = self.index;
-        encoder.copy_texture_to_texture(from, to.as_image_copy(), to.size());
+        encoder.copy_texture_to_texture(from, destination.as_image_copy(), destination.size());
     }
 
     /// To compare a later frame's with.

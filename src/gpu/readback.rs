@@ -39,8 +39,8 @@ pub(crate) fn level(device: &Device, texture: &wgpu::Texture, level: u32) -> Res
 }
 
 /// The raw bytes of a part of a texture as wide as its mip level, rows packed.
-fn copied(device: &Device, from: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::Extent3d) -> Result<Vec<u8>> {
-    let row = size.width * texel_bytes(from.texture.format())?;
+fn copied(device: &Device, source: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::Extent3d) -> Result<Vec<u8>> {
+    let row = size.width * texel_bytes(source.texture.format())?;
     let rows = u64::from(size.height) * u64::from(size.depth_or_array_layers);
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
@@ -52,7 +52,7 @@ fn copied(device: &Device, from: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::Ext
     device.check_made()?;
     let mut encoder = device.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
-        from,
+        source,
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
             layout: wgpu::TexelCopyBufferLayout {

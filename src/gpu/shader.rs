@@ -98,7 +98,7 @@ fn append(
     lookup: &dyn Fn(&str) -> Option<String>,
     chain: &mut Vec<String>,
     done: &mut Vec<String>,
-    out: &mut String,
+    assembled: &mut String,
 ) -> Result<()> {
     if done.iter().any(|d| d == name) {
         return Ok(());
@@ -113,14 +113,14 @@ fn append(
     chain.push(name.to_owned());
     for line in text.lines() {
         if let Some(rest) = line.strip_prefix("//!include ") {
-            append(rest.trim().trim_matches('"'), lookup, chain, done, out)?;
+            append(rest.trim().trim_matches('"'), lookup, chain, done, assembled)?;
         }
     }
     chain.pop();
-    out.push_str(&format!("// ---- {name}\n"));
+    assembled.push_str(&format!("// ---- {name}\n"));
     for line in text.lines().filter(|l| !l.starts_with("//!include ")) {
-        out.push_str(line);
-        out.push('\n');
+        assembled.push_str(line);
+        assembled.push('\n');
     }
     done.push(name.to_owned());
     Ok(())
@@ -228,9 +228,9 @@ mod tests {
     #[test]
     fn no_function_indexes_an_array_of_a_block_that_it_was_given() {
         use wgpu::naga::{Expression as E, Function, Handle, front::wgsl::parse_str};
-        fn is_given(of: &Function, at: Handle<E>) -> bool {
-            match of.expressions[at] {
-                E::Access { base, .. } | E::AccessIndex { base, .. } => is_given(of, base),
+        fn is_given(function: &Function, expression: Handle<E>) -> bool {
+            match function.expressions[expression] {
+                E::Access { base, .. } | E::AccessIndex { base, .. } => is_given(function, base),
                 E::FunctionArgument(_) => true,
                 _ => false,
             }

@@ -136,24 +136,24 @@ pub(super) fn empty(bytes: u64) -> Result<Vec<u8>> {
 }
 
 /// The mip level below one of `size` texels: means in whole bytes, a half rounded up (`shaders/noise/shrink.wgsl`).
-fn halved(above: &[u8], size: [u32; 3]) -> Result<Vec<u8>> {
+fn halved(finer: &[u8], size: [u32; 3]) -> Result<Vec<u8>> {
     let [width, height, depth] = size_of_level(size, 1);
     let texel = |x: u32, y: u32, z: u32| {
         let [x, y, z] = [x.min(size[0] - 1), y.min(size[1] - 1), z.min(size[2] - 1)].map(|i| i as usize);
-        u32::from(above[(z * size[1] as usize + y) * size[0] as usize + x])
+        u32::from(finer[(z * size[1] as usize + y) * size[0] as usize + x])
     };
     let corners = if axes(size) == 2 { 4 } else { 8 };
-    let mut below = empty(texels([width, height, depth]))?;
+    let mut coarser = empty(texels([width, height, depth]))?;
     for z in 0..depth {
         for y in 0..height {
             for x in 0..width {
                 let corner = |i: u32| texel(2 * x + (i & 1), 2 * y + (i >> 1 & 1), 2 * z + (i >> 2));
                 let sum: u32 = (0..corners).map(corner).sum();
-                below.push(((sum + corners / 2) / corners) as u8);
+                coarser.push(((sum + corners / 2) / corners) as u8);
             }
         }
     }
-    Ok(below)
+    Ok(coarser)
 }
 
 #[cfg(test)]

@@ -72,10 +72,10 @@ fn ring(cell: u32, step: i32, period: u32) -> u32 {
 }
 
 /// Gradient noise in the plane (Perlin 2002), of one octave: -0.85 to 0.85, 0 at the corners of cells, with continuous
-/// second derivatives. `at` is in cells; the pattern repeats after `period` cells, at least 1 along each axis. Another
-/// `key` is another pattern.
-pub fn gradient_2d(at: DVec2, period: UVec2, key: u32) -> f64 {
-    let ((i, u), (j, v)) = (cell_of(at.x, period.x), cell_of(at.y, period.y));
+/// second derivatives. `position` is in cells; the pattern repeats after `period` cells, at least 1 along each axis.
+/// Another `key` is another pattern.
+pub fn gradient_2d(position: DVec2, period: UVec2, key: u32) -> f64 {
+    let ((i, u), (j, v)) = (cell_of(position.x, period.x), cell_of(position.y, period.y));
     let corner = |a: i32, b: i32| {
         let column = scrambled(key, ring(i, a, period.x));
         let bits = scrambled(column, ring(j, b, period.y));
@@ -86,8 +86,9 @@ pub fn gradient_2d(at: DVec2, period: UVec2, key: u32) -> f64 {
 }
 
 /// As [`gradient_2d`], in space. Its extremes lie a few hundredths beyond -1 and 1.
-pub fn gradient_3d(at: DVec3, period: UVec3, key: u32) -> f64 {
-    let ((i, u), (j, v), (k, w)) = (cell_of(at.x, period.x), cell_of(at.y, period.y), cell_of(at.z, period.z));
+pub fn gradient_3d(position: DVec3, period: UVec3, key: u32) -> f64 {
+    let ((i, u), (j, v), (k, w)) =
+        (cell_of(position.x, period.x), cell_of(position.y, period.y), cell_of(position.z, period.z));
     let corner = |a: i32, b: i32, c: i32| {
         let column = scrambled(key, ring(i, a, period.x));
         let row = scrambled(column, ring(j, b, period.y));
@@ -109,8 +110,8 @@ fn point_of(bits: u32) -> DVec3 {
 /// one, and 0 beyond (Worley 1996, F1). Coordinates as [`gradient_2d`]'s.
 ///
 /// Points two cells away are farther than 1, so that the cells about this one are enough.
-pub fn cellular_2d(at: DVec2, period: UVec2, key: u32) -> f64 {
-    let ((i, u), (j, v)) = (cell_of(at.x, period.x), cell_of(at.y, period.y));
+pub fn cellular_2d(position: DVec2, period: UVec2, key: u32) -> f64 {
+    let ((i, u), (j, v)) = (cell_of(position.x, period.x), cell_of(position.y, period.y));
     let mut nearest = 1.0_f64;
     for a in -1..=1 {
         let column = scrambled(key, ring(i, a, period.x));
@@ -124,8 +125,9 @@ pub fn cellular_2d(at: DVec2, period: UVec2, key: u32) -> f64 {
 }
 
 /// As [`cellular_2d`], in space.
-pub fn cellular_3d(at: DVec3, period: UVec3, key: u32) -> f64 {
-    let ((i, u), (j, v), (k, w)) = (cell_of(at.x, period.x), cell_of(at.y, period.y), cell_of(at.z, period.z));
+pub fn cellular_3d(position: DVec3, period: UVec3, key: u32) -> f64 {
+    let ((i, u), (j, v), (k, w)) =
+        (cell_of(position.x, period.x), cell_of(position.y, period.y), cell_of(position.z, period.z));
     let mut nearest = 1.0_f64;
     for a in -1..=1 {
         let column = scrambled(key, ring(i, a, period.x));
@@ -155,25 +157,25 @@ fn amplitudes(settings: &NoiseSettings) -> impl Iterator<Item = f64> {
     std::iter::successors(Some(settings.amplitude), move |a| Some(a * persistence))
 }
 
-/// The noise at a point of a texture of `size` texels, 0 to 1, before it is rounded to a byte. `at` counts textures: 0
-/// to 1 is one of them, and beyond it repeats. Texel i of n has its middle at (i + 0.5) / n. A texture with a depth of
-/// 1 is a plane.
+/// The noise at a point of a texture of `size` texels, 0 to 1, before it is rounded to a byte. `position` counts
+/// textures: 0 to 1 is one of them, and beyond it repeats. Texel i of n has its middle at (i + 0.5) / n. A texture with
+/// a depth of 1 is a plane.
 ///
 /// Settings that [`NoiseSettings::check`] refuses give a number without meaning.
-pub fn noise_at(settings: &NoiseSettings, size: [u32; 3], at: DVec3) -> f64 {
+pub fn noise_at(settings: &NoiseSettings, size: [u32; 3], position: DVec3) -> f64 {
     let is_plane = axes(size) == 2;
     let [gradient_key, cellular_key] = keys_of(settings.seed);
     let [mut gradient, mut cellular] = rests(settings, size);
     let held = settings.octaves_in(size);
     for (octave, amplitude) in (0..held).zip(amplitudes(settings)) {
         let period = UVec3::from(settings.frequency).max(UVec3::ONE) << octave;
-        let at = at * period.as_dvec3();
+        let position = position * period.as_dvec3();
         if settings.kind != NoiseKind::Cellular {
             let key = scrambled(gradient_key, octave);
             let noise = if is_plane {
-                gradient_2d(at.truncate(), period.truncate(), key)
+                gradient_2d(position.truncate(), period.truncate(), key)
             } else {
-                gradient_3d(at, period, key)
+                gradient_3d(position, period, key)
             };
             gradient += amplitude * (0.5 + 0.5 * noise);
         }
@@ -181,9 +183,9 @@ pub fn noise_at(settings: &NoiseSettings, size: [u32; 3], at: DVec3) -> f64 {
             let key = scrambled(cellular_key, octave);
             cellular += amplitude
                 * if is_plane {
-                    cellular_2d(at.truncate(), period.truncate(), key)
+                    cellular_2d(position.truncate(), period.truncate(), key)
                 } else {
-                    cellular_3d(at, period, key)
+                    cellular_3d(position, period, key)
                 };
         }
     }
@@ -200,7 +202,7 @@ mod tests {
     use super::*;
 
     /// The distance to the nearest of all points of a period and of its images.
-    fn distance(at: DVec3, period: UVec3, key: u32, axes: usize) -> f64 {
+    fn distance(position: DVec3, period: UVec3, key: u32, axes: usize) -> f64 {
         let size = period.as_dvec3();
         let mut nearest = f64::MAX;
         for i in 0..period.x {
@@ -209,7 +211,7 @@ mod tests {
                     let row = scrambled(scrambled(key, i), j);
                     let bits = if axes == 3 { scrambled(row, k) } else { row };
                     let point = point_of(bits) + UVec3::new(i, j, k).as_dvec3();
-                    let mut way = (point - at + 0.5 * size).rem_euclid(size) - 0.5 * size;
+                    let mut way = (point - position + 0.5 * size).rem_euclid(size) - 0.5 * size;
                     if axes == 2 {
                         way.z = 0.0;
                     }

@@ -33,15 +33,15 @@ pub(crate) struct StreakCamera<'a> {
 
 impl<'a> StreakCamera<'a> {
     /// That of a shot whose shutter is open for `exposure_s`.
-    pub fn new(at: &DrawContext<'a>, exposure_s: f64, gain: f64) -> Self {
-        let scene = &at.now.scene;
+    pub fn new(context: &DrawContext<'a>, exposure_s: f64, gain: f64) -> Self {
+        let scene = &context.now.scene;
         Self {
-            clip: at.clip(),
-            rays: at.target.rays,
-            height: at.picture().height(),
-            y_sign: if at.frame.origin_bottom_left { -1.0 } else { 1.0 },
+            clip: context.clip(),
+            rays: context.target.rays,
+            height: context.picture().height(),
+            y_sign: if context.frame.origin_bottom_left { -1.0 } else { 1.0 },
             position_m: DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m),
-            velocity_m_s: scene.world_to_enu * at.frame.camera_velocity_m_s,
+            velocity_m_s: scene.world_to_enu * context.frame.camera_velocity_m_s,
             exposure_s,
             gain,
         }

@@ -52,7 +52,7 @@ impl Choices {
 
     /// Takes a picture that the estimator has seen: its work, the steps of what is there, what is asked, and what is
     /// left out now.
-    pub fn take(&mut self, all: WorkAmount, there: Set, governor: &Governor, asked: &Asked, before: Set) {
+    pub fn take(&mut self, all: WorkAmount, there: Set, governor: &Governor, asked: &Asked, previous: Set) {
         (self.all, self.there) = (all, there);
         let Self { ladder, estimator, search, worth, .. } = self;
         for part in 0..ladder.parts.len() {
@@ -67,16 +67,16 @@ impl Choices {
                 free,
                 |set| governor.work(&all.without(set)),
                 |set| {
-                    let certain = if set == before { 1.0 } else { CERTAINTY };
+                    let certain = if set == previous { 1.0 } else { CERTAINTY };
                     estimator.estimate(ladder, set).strain(certain * tolerance)
                 },
             ),
         };
     }
 
-    /// The steps to take, where those of `before` are taken now.
-    pub fn choose(&self, governor: &Governor, asked: &Asked, before: Set) -> (Set, GaveWay) {
-        let now = self.all.without(before);
+    /// The steps to take, where those of `previous` are taken now.
+    pub fn choose(&self, governor: &Governor, asked: &Asked, previous: Set) -> (Set, GaveWay) {
+        let now = self.all.without(previous);
         let fits = |set: Set| governor.fits(&self.all.without(set), asked.milliseconds, &now);
         if let Some(set) = self.cheapest.filter(|s| fits(*s)) {
             return (set, GaveWay::Nothing);

@@ -208,13 +208,13 @@ mod tests {
             Self { choices: Choices::new(&PARTS), worth, all }
         }
 
-        fn choose(&mut self, governor: &Governor, tolerance: Option<f64>, ms: f64, before: Set) -> (Set, GaveWay) {
+        fn choose(&mut self, governor: &Governor, tolerance: Option<f64>, ms: f64, previous: Set) -> (Set, GaveWay) {
             self.choices.estimator.clear();
             self.choices.estimator.see(steps(self.worth).map(|v| v as f32));
             let mut asked = Asked { tolerance, milliseconds: Some(ms), ..Asked::default() };
             asked.importance[..3].copy_from_slice(&PARTS.map(|p| p.importance));
-            self.choices.take(self.all, 0b111, governor, &asked, before);
-            self.choices.choose(governor, &asked, before)
+            self.choices.take(self.all, 0b111, governor, &asked, previous);
+            self.choices.choose(governor, &asked, previous)
         }
     }
 

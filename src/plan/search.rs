@@ -175,8 +175,8 @@ impl Search {
 }
 
 /// Takes one step after the other that keeps the tolerance and saves most.
-fn greedy(free: Free<'_>, from: Set, work: &impl Fn(Set) -> f64, strain: &mut impl FnMut(Set) -> f64) -> Set {
-    let mut set = from;
+fn greedy(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mut impl FnMut(Set) -> f64) -> Set {
+    let mut set = start;
     loop {
         let lower =
             free.parts().filter_map(|p| free.lower(set, p)).filter(|s| work(*s) < work(set) && strain(*s) <= 1.0);
@@ -188,8 +188,8 @@ fn greedy(free: Free<'_>, from: Set, work: &impl Fn(Set) -> f64, strain: &mut im
 }
 
 /// Gives one part back for others that then fit, while that saves more.
-fn exchanged(free: Free<'_>, from: Set, work: &impl Fn(Set) -> f64, strain: &mut impl FnMut(Set) -> f64) -> Set {
-    let mut best = from;
+fn exchanged(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mut impl FnMut(Set) -> f64) -> Set {
+    let mut best = start;
     for part in free.parts() {
         for rung in 0..free.ladder.rung(best, part) {
             let given_back = free.ladder.with(best, part, rung);

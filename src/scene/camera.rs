@@ -17,7 +17,14 @@ pub struct Camera {
 
 impl Camera {
     /// A perspective camera at `position` looking along `forward`, reversed infinite depth, zero-to-one clip space.
-    pub fn look_to(position: DVec3, forward: DVec3, up: DVec3, fov_y_rad: f64, aspect: f64, near_m: f64) -> Self {
+    pub fn look_to(
+        position: DVec3,
+        forward: DVec3,
+        up_direction: DVec3,
+        fov_y_rad: f64,
+        aspect: f64,
+        near_m: f64,
+    ) -> Self {
         let focal = 1.0 / (0.5 * fov_y_rad).tan();
         let projection = DMat4::from_cols(
             DVec4::new(focal / aspect, 0.0, 0.0, 0.0),
@@ -26,7 +33,7 @@ impl Camera {
             DVec4::new(0.0, 0.0, near_m, 0.0),
         );
         let f = forward.normalize();
-        let r = f.cross(up).normalize();
+        let r = f.cross(up_direction).normalize();
         let view = DMat4::from_mat3(DMat3::from_cols(r, r.cross(f), -f).transpose());
         Self { position, view, projection }
     }

@@ -68,9 +68,9 @@ impl DiscDepth {
             && (self.altitude_m - altitude_m).abs() <= CLIMB.0 * altitude_m + CLIMB.1
     }
 
-    pub fn write(&self, to: &mut LampUniform) {
-        (to.depth_from, to.depth_scale) = (self.from as f32, self.scale as f32);
-        to.depth = self.terms.map(|[a, b, c]| [a as f32, b as f32, c as f32, 0.0]);
+    pub fn write(&self, lamp: &mut LampUniform) {
+        (lamp.depth_from, lamp.depth_scale) = (self.from as f32, self.scale as f32);
+        lamp.depth = self.terms.map(|[a, b, c]| [a as f32, b as f32, c as f32, 0.0]);
     }
 }
 

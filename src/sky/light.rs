@@ -76,12 +76,12 @@ impl LightTable {
         self.tile(0, altitude_m, mu_s).map(|v| v.max(0.0))
     }
 
-    /// The sky's radiance in spherical harmonics in the frame in which `toward` (unit, z up) points at the lamp, per
+    /// The sky's radiance in spherical harmonics in the frame in which `direction` (unit, z up) points at the lamp, per
     /// unit irradiance of the lamp. Thread-safe.
-    pub fn sh9(&self, altitude_m: f64, toward: [f64; 3]) -> Sh9 {
-        let m: [[f32; 3]; 6] = std::array::from_fn(|i| self.tile(i + 1, altitude_m, toward[2]));
-        let level = toward[0].hypot(toward[1]);
-        let (c, s) = if level > 1e-9 { (toward[0] / level, toward[1] / level) } else { (1.0, 0.0) };
+    pub fn sh9(&self, altitude_m: f64, direction: [f64; 3]) -> Sh9 {
+        let m: [[f32; 3]; 6] = std::array::from_fn(|i| self.tile(i + 1, altitude_m, direction[2]));
+        let level = direction[0].hypot(direction[1]);
+        let (c, s) = if level > 1e-9 { (direction[0] / level, direction[1] / level) } else { (1.0, 0.0) };
         let (c, s) = (c as f32, s as f32);
         let times = |v: [f32; 3], k: f32| v.map(|x| x * k);
         let [l0, z, x, zz, xz, xx] = m;

@@ -35,9 +35,9 @@ pub struct Lamp {
 
 impl Lamp {
     /// The planet's sun at a direction.
-    pub fn sun(planet: &Planet, toward: [f64; 3]) -> Self {
+    pub fn sun(planet: &Planet, direction: [f64; 3]) -> Self {
         Self {
-            toward,
+            toward: direction,
             irradiance: planet.solar_irradiance,
             angular_radius: planet.sun_angular_radius_deg.to_radians(),
             disc: Disc::Sun,
@@ -108,8 +108,8 @@ fn limb_exponent(wavelength_nm: f64) -> f64 {
 
 /// Mean of Lommel and Seeliger's law over the moon's disc as seen, so that the disc sends the irradiance that was
 /// given.
-fn moon_mean(toward: &[f64; 3], lit_from: &[f64; 3]) -> f64 {
-    let cos_apart = toward.iter().zip(lit_from).map(|(a, b)| a * b).sum::<f64>().clamp(-1.0, 1.0);
+fn moon_mean(direction: &[f64; 3], lit_from: &[f64; 3]) -> f64 {
+    let cos_apart = direction.iter().zip(lit_from).map(|(a, b)| a * b).sum::<f64>().clamp(-1.0, 1.0);
     let sin_apart = (1.0 - cos_apart * cos_apart).sqrt();
     let n = 32;
     let mut sum = 0.0;

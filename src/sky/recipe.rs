@@ -139,15 +139,15 @@ fn gather(order: u32, source: Name, light: Name) -> Pass {
     Pass::new(PassKind::Gather, order, false, reads, &[Name::Radiances])
 }
 
-/// Adds the light of what was gathered last to the sum: `from` is read, `to` drawn.
-fn light(order: u32, last: bool, from: Name, to: Name) -> Pass {
+/// Adds the light of what was gathered last to that of table `sum`; the result is drawn into `target`.
+fn light(order: u32, last: bool, sum: Name, target: Name) -> Pass {
     let n = order as usize;
-    let (before, now) = (Name::OrderLight((n + 1) % 2), Name::OrderLight(n % 2));
-    let reads = [Name::Nothing, Name::Radiances, before, Name::Nothing, from, Name::Nothing];
-    Pass::new(PassKind::Light, order, last, reads, &[now, to])
+    let (previous, now) = (Name::OrderLight((n + 1) % 2), Name::OrderLight(n % 2));
+    let reads = [Name::Nothing, Name::Radiances, previous, Name::Nothing, sum, Name::Nothing];
+    Pass::new(PassKind::Light, order, last, reads, &[now, target])
 }
 
-fn directional(s: &SkySettings, out: &mut Vec<Pass>) {
+fn directional(s: &SkySettings, passes: &mut Vec<Pass>) {
     let count = s.orders - 1;
     for order in 1..=count {
         let last = order == count;
@@ -156,30 +156,30 @@ fn directional(s: &SkySettings, out: &mut Vec<Pass>) {
         let to_result = (count - order).is_multiple_of(2);
         let pick = |result, part| if to_result { (part, result) } else { (result, part) };
         let (before, now) = (Name::Order((n + 1) % 2), Name::Order(n % 2));
-        out.push(gather(order, before, Name::OrderLight((n + 1) % 2)));
-        let (from, to) = pick(Name::Lights, Name::PartLights);
-        out.push(light(order, last, from, to));
-        let (from, to) = pick(Name::Sources, Name::PartSources);
-        let reads = [before, Name::Radiances, Name::Nothing, from, Name::Nothing, Name::Nothing];
-        out.push(Pass::new(PassKind::Scatter, order, last, reads, &[now, to]));
+        passes.push(gather(order, before, Name::OrderLight((n + 1) % 2)));
+        let (sum, target) = pick(Name::Lights, Name::PartLights);
+        passes.push(light(order, last, sum, target));
+        let (sum, target) = pick(Name::Sources, Name::PartSources);
+        let reads = [before, Name::Radiances, Name::Nothing, sum, Name::Nothing, Name::Nothing];
+        passes.push(Pass::new(PassKind::Scatter, order, last, reads, &[now, target]));
     }
 }
 
-fn isotropic(out: &mut Vec<Pass>) {
-    out.push(Pass::new(PassKind::IsotropicGather, 1, false, [Name::Nothing; 6], &[Name::Radiances, Name::Transfer]));
+fn isotropic(passes: &mut Vec<Pass>) {
+    passes.push(Pass::new(PassKind::IsotropicGather, 1, false, [Name::Nothing; 6], &[Name::Radiances, Name::Transfer]));
     let reads = [Name::Transfer, Name::Radiances, Name::Nothing, Name::Nothing, Name::Nothing, Name::Nothing];
-    out.push(Pass::new(PassKind::IsotropicScatter, 1, false, reads, &[Name::Sources]));
-    out.push(gather(1, Name::Nothing, Name::Nothing));
-    out.push(light(1, false, Name::Lights, Name::PartLights));
+    passes.push(Pass::new(PassKind::IsotropicScatter, 1, false, reads, &[Name::Sources]));
+    passes.push(gather(1, Name::Nothing, Name::Nothing));
+    passes.push(light(1, false, Name::Lights, Name::PartLights));
     // All orders after the first at once.
-    out.push(gather(2, Name::Sources, Name::OrderLight(1)));
-    out.push(light(2, false, Name::PartLights, Name::Lights));
+    passes.push(gather(2, Name::Sources, Name::OrderLight(1)));
+    passes.push(light(2, false, Name::PartLights, Name::Lights));
 }
 
-fn table3d(out: &mut Vec<Pass>) {
-    out.push(Pass::new(PassKind::Once, 1, false, [Name::Nothing; 6], &[Name::OnceGas, Name::OnceHaze]));
-    out.push(gather(1, Name::Nothing, Name::Nothing));
-    out.push(light(1, false, Name::PartLights, Name::Lights));
+fn table3d(passes: &mut Vec<Pass>) {
+    passes.push(Pass::new(PassKind::Once, 1, false, [Name::Nothing; 6], &[Name::OnceGas, Name::OnceHaze]));
+    passes.push(gather(1, Name::Nothing, Name::Nothing));
+    passes.push(light(1, false, Name::PartLights, Name::Lights));
 }
 
 #[cfg(test)]

@@ -64,43 +64,52 @@ impl DrawnEffect for SkyView {
     }
 
     /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
-    fn prepare(&mut self, at: &FrameContext<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn prepare(&mut self, context: &FrameContext<'_>, recording: &mut Recording<'_>) -> Result<()> {
         let mut tables = self.tables.lock().map_err(|_| poisoned())?;
         if !self.volume.is_of(&tables) {
             self.volume = SkyVolume::new(&tables)?;
             self.rebuild_work = rebuild_work(self.volume.settings());
         }
-        let work =
-            tables.build_toward(to.device, to.encoder, &at.now.scene.planet, at.frame.frame_id, at.table_share)?;
-        to.ends(CostItem::SkyTables, work)?;
-        let drawn = self.volume.prepare(to.encoder, &tables, &Observer::of(&at.now.scene, at.frame.is_pure()))?;
-        to.ends(CostItem::SkyView, drawn)?;
-        to.tables_rebuilt += u32::from(work) + u32::from(drawn);
+        let work = tables.build_toward(
+            recording.device,
+            recording.encoder,
+            &context.now.scene.planet,
+            context.frame.frame_id,
+            context.table_share,
+        )?;
+        recording.ends(CostItem::SkyTables, work)?;
+        let drawn = self.volume.prepare(
+            recording.encoder,
+            &tables,
+            &Observer::of(&context.now.scene, context.frame.is_pure()),
+        )?;
+        recording.ends(CostItem::SkyView, drawn)?;
+        recording.tables_rebuilt += u32::from(work) + u32::from(drawn);
         Ok(())
     }
 
-    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        let lamps = at.now.scene.lamps();
-        let between = at.frame.depth.is_some() && stages.has(Stages::MEDIUM);
+    fn parts(&mut self, context: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        let lamps = context.now.scene.lamps();
+        let between = context.frame.depth.is_some() && stages.has(Stages::MEDIUM);
         put(&candidates::AIR, between, &[candidates::air_work(lamps)]);
         put(&candidates::SKY, stages.has(Stages::BACKGROUND), &[candidates::sky_work(lamps)]);
     }
 
-    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
-        let mut to = Contribution::none();
-        let [air, sky] = [&candidates::AIR, &candidates::SKY].map(|part| at.share(part, 0));
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+        let mut contribution = Contribution::none();
+        let [air, sky] = [&candidates::AIR, &candidates::SKY].map(|part| context.share(part, 0));
         let is_marched = self.settings().model == SkyModel::BruteForce;
-        to.between_and_veil("SKY_MARCH", flag(is_marched), flag(is_marched));
-        to.between("AIR", 1.0, flag(air > 0.0));
+        contribution.between_and_veil("SKY_MARCH", flag(is_marched), flag(is_marched));
+        contribution.between("AIR", 1.0, flag(air > 0.0));
         let traits = |veils_drawn| Traits { veils_drawn, is_marched, ..Traits::default() };
-        to.set_traits(traits(true), traits(air > 0.0));
-        to.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
-        to.constant("CLEAR_SKY", 1.0, flag(sky > 0.0));
-        to.constant("SKY_DISCS", 2.0, f64::from(self.volume.disc_count()));
-        to.constant("SUN_THEN_MOON", 1.0, 1.0);
-        to.set_frame_block(FrameBlock::Sky { air, sky });
-        to.set_tables(self.volume.layout(), self.volume.bind_group());
-        Ok(to)
+        contribution.set_traits(traits(true), traits(air > 0.0));
+        contribution.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
+        contribution.constant("CLEAR_SKY", 1.0, flag(sky > 0.0));
+        contribution.constant("SKY_DISCS", 2.0, f64::from(self.volume.disc_count()));
+        contribution.constant("SUN_THEN_MOON", 1.0, 1.0);
+        contribution.set_frame_block(FrameBlock::Sky { air, sky });
+        contribution.set_tables(self.volume.layout(), self.volume.bind_group());
+        Ok(contribution)
     }
 }
 

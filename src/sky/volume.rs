@@ -38,12 +38,12 @@ impl Layered {
     }
 
     /// Copies a lamp's layers to others of the same size.
-    fn copy(&self, encoder: &mut wgpu::CommandEncoder, lamp: usize, to: &Apart) {
+    fn copy(&self, encoder: &mut wgpu::CommandEncoder, lamp: usize, copies: &Apart) {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..self.texture.size() };
         for z in LAYERS * lamp as u32..LAYERS * (lamp as u32 + 1) {
             let origin = wgpu::Origin3d { z, ..wgpu::Origin3d::ZERO };
-            let from = wgpu::TexelCopyTextureInfo { origin, ..self.texture.as_image_copy() };
-            encoder.copy_texture_to_texture(from, to.layers[z as usize].texture().as_image_copy(), size);
+            let source = wgpu::TexelCopyTextureInfo { origin, ..self.texture.as_image_copy() };
+            encoder.copy_texture_to_texture(source, copies.layers[z as usize].texture().as_image_copy(), size);
         }
     }
 }
@@ -311,9 +311,9 @@ impl SkyVolume {
         self.fade.as_ref().is_some_and(|f| f.drawn[i] == Some(wanted))
     }
 
-    fn write_observer(&self, tables: &SkyTables, i: usize, of: &DrawnFor) {
-        let edges = EdgesUniform::of(&tables.air(), of.altitude_m);
-        let (altitude, mu_s) = (of.altitude_m.max(0.0) as f32, of.mu_s as f32);
+    fn write_observer(&self, tables: &SkyTables, i: usize, drawn_for: &DrawnFor) {
+        let edges = EdgesUniform::of(&tables.air(), drawn_for.altitude_m);
+        let (altitude, mu_s) = (drawn_for.altitude_m.max(0.0) as f32, drawn_for.mu_s as f32);
         for (is_air, buffer) in (0..).zip(&self.observers[i]) {
             let uniform = ObserverUniform { altitude, mu_s, is_air, unused: 0, edges };
             self.device.queue.write_buffer(buffer, 0, bytes_of(&uniform));

@@ -260,8 +260,8 @@ impl<'a> Contribution<'a> {
     }
 
     /// Says which drops or flakes are drawn near the camera.
-    pub fn set_near(&mut self, near: ShelterReach) {
-        self.near = Some(near);
+    pub fn set_near(&mut self, reach: ShelterReach) {
+        self.near = Some(reach);
     }
 }
 
@@ -295,8 +295,8 @@ impl Composition {
     }
 
     /// Takes what one effect adds.
-    pub fn merge(&mut self, of: Contribution<'_>) {
-        for c in &of.constants[..of.count] {
+    pub fn merge(&mut self, contribution: Contribution<'_>) {
+        for c in &contribution.constants[..contribution.count] {
             for (pipeline, value) in [(&mut self.whole, c.whole), (&mut self.least, c.least)] {
                 let constant = (c.name, value);
                 match c.scope {
@@ -309,21 +309,21 @@ impl Composition {
                 }
             }
         }
-        let [whole, least] = of.traits;
+        let [whole, least] = contribution.traits;
         self.whole.traits = self.whole.traits.or(whole);
         self.least.traits = self.least.traits.or(least);
-        if let Some(block) = &of.block {
+        if let Some(block) = &contribution.block {
             self.block.merge(block);
         }
-        if let Some((place, block)) = of.own_block {
+        if let Some((place, block)) = contribution.own_block {
             self.blocks[place as usize] = Some(block);
         }
-        for (to, texture) in self.textures.iter_mut().zip(of.textures) {
-            *to = texture.or(to.take());
+        for (place, texture) in self.textures.iter_mut().zip(contribution.textures) {
+            *place = texture.or(place.take());
         }
-        self.tables = of.tables.or(self.tables.take());
-        self.needs_panorama |= of.needs_panorama;
-        self.near = match (self.near, of.near) {
+        self.tables = contribution.tables.or(self.tables.take());
+        self.needs_panorama |= contribution.needs_panorama;
+        self.near = match (self.near, contribution.near) {
             (Some(all), Some(near)) => Some(all.with(near)),
             (all, near) => all.or(near),
         };

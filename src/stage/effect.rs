@@ -42,7 +42,7 @@ pub(crate) trait DrawnEffect {
     }
 
     /// Finds what there is of it at a camera, and writes what it gives.
-    fn gather(&mut self, _at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+    fn gather(&mut self, _context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
         Ok(())
     }
 
@@ -59,7 +59,7 @@ pub(crate) trait DrawnEffect {
     fn hold(&mut self, _device: &Device, _color: &wgpu::Texture, _stages: Stages) {}
 
     /// Brings what it keeps up to the moment.
-    fn prepare(&mut self, _at: &FrameContext<'_>, _to: &mut Recording<'_>) -> Result<()> {
+    fn prepare(&mut self, _context: &FrameContext<'_>, _recording: &mut Recording<'_>) -> Result<()> {
         Ok(())
     }
 
@@ -72,23 +72,28 @@ pub(crate) trait DrawnEffect {
     /// surfaces, air and what falls see its depth as they see the host's.
     fn draw_opaque(
         &mut self,
-        _at: &DrawContext<'_>,
-        _with: &OpaqueDraw<'_>,
+        _context: &DrawContext<'_>,
+        _opaque: &OpaqueDraw<'_>,
         _pass: &mut wgpu::RenderPass<'_>,
     ) -> Result<()> {
         Ok(())
     }
 
     /// Names its parts, whether a picture of these stages has them, and their work.
-    fn parts(&mut self, _at: &DrawContext<'_>, _stages: Stages, _put: &mut PutPart<'_>) {}
+    fn parts(&mut self, _context: &DrawContext<'_>, _stages: Stages, _put: &mut PutPart<'_>) {}
 
     /// Returns what it adds to the composition: constants, blocks, textures.
-    fn compose(&mut self, _at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+    fn compose(&mut self, _context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
         Ok(Contribution::none())
     }
 
     /// Draws in passes of its own, before the composition.
-    fn draw(&mut self, _at: &DrawContext<'_>, _merged: &MergedFrame<'_>, _to: &mut Recording<'_>) -> Result<()> {
+    fn draw(
+        &mut self,
+        _context: &DrawContext<'_>,
+        _merged: &MergedFrame<'_>,
+        _recording: &mut Recording<'_>,
+    ) -> Result<()> {
         Ok(())
     }
 
@@ -96,7 +101,7 @@ pub(crate) trait DrawnEffect {
     /// the composition's group 0, if there are any.
     fn veil(
         &mut self,
-        _at: &DrawContext<'_>,
+        _context: &DrawContext<'_>,
         _merged: &MergedFrame<'_>,
     ) -> Option<(&'static str, wgpu::BindGroupLayout, wgpu::BindGroup)> {
         None
@@ -113,7 +118,7 @@ pub(crate) trait DrawnEffect {
         _frame: &Frame<'_>,
         _picture: LensPicture<'_>,
         _toned: bool,
-        _to: &mut Recording<'_>,
+        _recording: &mut Recording<'_>,
     ) -> Result<()> {
         Ok(())
     }

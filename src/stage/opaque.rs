@@ -59,9 +59,9 @@ pub(crate) struct OpaqueDraw<'a> {
 
 impl OpaqueDraw<'_> {
     /// The clip space of `shot` as wgpu has it: z from 0 to 1, y by the first row's end.
-    pub fn clip_of(at: &DrawContext<'_>) -> DMat4 {
-        let rows = at.clip().transpose();
-        let (frame, w) = (at.frame, rows.w_axis);
+    pub fn clip_of(context: &DrawContext<'_>) -> DMat4 {
+        let rows = context.clip().transpose();
+        let (frame, w) = (context.frame, rows.w_axis);
         let z = match (frame.depth_mapping.kind, frame.depth_mapping.clip) {
             // The fragment shader says the depth; nothing before the eye may be clipped.
             (DepthKind::Logarithmic { .. }, _) => 0.5 * w,

@@ -43,19 +43,19 @@ impl Outputs {
     }
 
     /// Takes what an effect has gathered, as far as it says that it `gives` it.
-    pub fn take(&mut self, of: &Self, gives: &[Output]) {
+    pub fn take(&mut self, gathered: &Self, gives: &[Output]) {
         if gives.contains(&Output::FogDepth) {
-            self.fog_depth = of.fog_depth;
+            self.fog_depth = gathered.fog_depth;
         }
     }
 
     /// Takes the layers among what an effect composes, as far as it says that it `gives` them.
-    pub fn take_layers(&mut self, of: &Contribution<'_>, gives: &[Output]) {
+    pub fn take_layers(&mut self, contribution: &Contribution<'_>, gives: &[Output]) {
         let has = |output| gives.contains(&output);
-        if has(Output::Stars) && of.shows_stars() {
-            self.stars = of.texture(Texture::Behind).cloned();
+        if has(Output::Stars) && contribution.shows_stars() {
+            self.stars = contribution.texture(Texture::Behind).cloned();
         }
-        if let Some(before) = of.texture(Texture::Before).filter(|_| has(Output::Rain) || has(Output::Snow)) {
+        if let Some(before) = contribution.texture(Texture::Before).filter(|_| has(Output::Rain) || has(Output::Snow)) {
             self.before = Some(before.clone());
         }
     }

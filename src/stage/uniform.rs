@@ -116,8 +116,8 @@ pub(crate) type BowTable = [[f32; 4]; BOW_ENTRIES];
 
 impl FrameUniform {
     /// Takes the fields of one effect.
-    pub fn merge(&mut self, of: &FrameBlock<'_>) {
-        match *of {
+    pub fn merge(&mut self, fields: &FrameBlock<'_>) {
+        match *fields {
             FrameBlock::Sky { air, sky } => (self.drawn[0], self.drawn[2]) = (air, sky),
             FrameBlock::Fog { share } => self.drawn[1] = share,
             FrameBlock::Stars { behind } => self.behind = behind,

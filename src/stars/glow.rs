@@ -67,19 +67,19 @@ const ZODIACAL_S10: [[f64; 11]; 19] = [
 
 /// Cubic through values at ascending places, smooth in its slope, flat at both ends, where the table is mirrored.
 /// Slopes are those of parabolas through three neighbours (Catmull and Rom 1974, for uneven steps).
-fn smooth(at: &[f64], value: impl Fn(usize) -> f64, x: f64) -> f64 {
-    let last = at.len() - 1;
-    let i = at.partition_point(|a| *a <= x).clamp(1, last) - 1;
-    let rise = |i: usize| (value(i + 1) - value(i)) / (at[i + 1] - at[i]);
+fn smooth(places: &[f64], value: impl Fn(usize) -> f64, x: f64) -> f64 {
+    let last = places.len() - 1;
+    let i = places.partition_point(|a| *a <= x).clamp(1, last) - 1;
+    let rise = |i: usize| (value(i + 1) - value(i)) / (places[i + 1] - places[i]);
     let slope = |i: usize| {
         if i == 0 || i == last {
             return 0.0;
         }
-        let (before, after) = (at[i] - at[i - 1], at[i + 1] - at[i]);
+        let (before, after) = (places[i] - places[i - 1], places[i + 1] - places[i]);
         (rise(i - 1) * after + rise(i) * before) / (before + after)
     };
-    let h = at[i + 1] - at[i];
-    let t = ((x - at[i]) / h).clamp(0.0, 1.0);
+    let h = places[i + 1] - places[i];
+    let t = ((x - places[i]) / h).clamp(0.0, 1.0);
     let (t2, t3) = (t * t, t * t * t);
     (2.0 * t3 - 3.0 * t2 + 1.0) * value(i)
         + (t3 - 2.0 * t2 + t) * h * slope(i)

@@ -105,8 +105,8 @@ fn magnitude(body: Body, from_sun: DVec3, from_earth: DVec3) -> f64 {
 
 /// Latitude of a direction towards a planet as the planet's own equator has it: of the point that faces where one looks
 /// from.
-fn latitude_facing(pole: DVec3, toward: DVec3) -> f64 {
-    -toward.normalize().dot(pole).clamp(-1.0, 1.0).asin()
+fn latitude_facing(pole: DVec3, direction: DVec3) -> f64 {
+    -direction.normalize().dot(pole).clamp(-1.0, 1.0).asin()
 }
 
 /// Effective tilt of Saturn's rings, rad: the geometric mean of those to sun and Earth, 0 where these look on different

@@ -123,14 +123,14 @@ impl Tonight {
     }
 
     /// As the picture shows it, on a display of so large steps (0: as many as there are).
-    fn seen<'a>(&'a self, at: &'a DrawContext<'_>, step: f64) -> StarView<'a> {
-        let texture = at.picture();
+    fn seen<'a>(&'a self, context: &'a DrawContext<'_>, step: f64) -> StarView<'a> {
+        let texture = context.picture();
         let mut view = StarView {
             heavens: &self.heavens,
-            clip: at.clip(),
-            rays: at.target.rays,
+            clip: context.clip(),
+            rays: context.target.rays,
             size: [texture.width(), texture.height()],
-            y_sign: if at.frame.origin_bottom_left { -1.0 } else { 1.0 },
+            y_sign: if context.frame.origin_bottom_left { -1.0 } else { 1.0 },
             zenith_depth: self.zenith_depth,
             transmittance: self.through,
             air_density: self.air_density,
@@ -140,7 +140,7 @@ impl Tonight {
         };
         let pixel_sr = view.pixel_sr();
         view.scale = scale(pixel_sr);
-        let display = display_threshold_lux(SHARE_OF_STEP, step, at.target.exposure, pixel_sr);
+        let display = display_threshold_lux(SHARE_OF_STEP, step, context.target.exposure, pixel_sr);
         view.faintest_lux = view.faintest_lux.max(display).min(1e6);
         view
     }
@@ -161,15 +161,15 @@ impl DrawnEffect for StarsView {
         Exchange { gives: &[Output::Stars], ..Exchange::NONE }
     }
 
-    fn gather(&mut self, at: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
+    fn gather(&mut self, context: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
         self.tonight = None;
-        let scene = &at.now.scene;
+        let scene = &context.now.scene;
         let open = (1.0 - scene.deck_cover) * (-given.fog_depth).exp();
         let elevation = scene.sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
-        if elevation >= POINTS_BEGIN_DEG.0 || open < LEAST_THROUGH || at.frame.camera.is_orthographic() {
+        if elevation >= POINTS_BEGIN_DEG.0 || open < LEAST_THROUGH || context.frame.camera.is_orthographic() {
             return Ok(());
         }
-        let (settings, utc) = (&at.held.of::<HeldStars>()?.settings, at.world.utc_at(at.now.time_s));
+        let (settings, utc) = (&context.held.of::<HeldStars>()?.settings, context.world.utc_at(context.now.time_s));
         let tonight = Tonight::new(scene, utc, settings, elevation)?;
         if tonight.dusk.share > 0.0 || tonight.brightest_lux(settings) > tonight.threshold_lux {
             self.settings = settings.clone();
@@ -188,28 +188,33 @@ impl DrawnEffect for StarsView {
         }
     }
 
-    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        put(&STARS, self.is_there(stages), &[stars_work(at.pixels())]);
+    fn parts(&mut self, context: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        put(&STARS, self.is_there(stages), &[stars_work(context.pixels())]);
     }
 
-    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
-        let mut to = Contribution::none();
-        let (is_there, share) = (self.is_there(at.stages), at.share(&STARS, 0));
-        to.constant("STARS", flag(is_there), flag(is_there && share > 0.0));
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+        let mut contribution = Contribution::none();
+        let (is_there, share) = (self.is_there(context.stages), context.share(&STARS, 0));
+        contribution.constant("STARS", flag(is_there), flag(is_there && share > 0.0));
         if let Some(tonight) = self.tonight.as_ref().filter(|_| is_there) {
             let traits = Traits { is_fine: true, ..Traits::default() };
-            to.set_traits(traits, traits);
-            let behind = [(1.0 / tonight.seen(at, 0.0).scale) as f32, share];
-            to.set_frame_block(FrameBlock::Stars { behind });
-            let layer = self.layer(at.device, at.picture()).clone();
-            to.set_texture(Texture::Behind, Some(layer));
+            contribution.set_traits(traits, traits);
+            let behind = [(1.0 / tonight.seen(context, 0.0).scale) as f32, share];
+            contribution.set_frame_block(FrameBlock::Stars { behind });
+            let layer = self.layer(context.device, context.picture()).clone();
+            contribution.set_texture(Texture::Behind, Some(layer));
         }
-        Ok(to)
+        Ok(contribution)
     }
 
     /// Draws the layer behind the sky's own light: the glow, and the points before it. It rests while camera, heavens
     /// and air stay as they are.
-    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn draw(
+        &mut self,
+        context: &DrawContext<'_>,
+        merged: &MergedFrame<'_>,
+        recording: &mut Recording<'_>,
+    ) -> Result<()> {
         let block = merged.composition.block();
         if !self.is_there(merged.composition.stages()) || block.behind[1] == 0.0 {
             return Ok(());
@@ -217,18 +222,18 @@ impl DrawnEffect for StarsView {
         let (Some(tonight), Some((_, target, _))) = (&self.tonight, &self.layer) else { return Ok(()) };
         let passes = match &mut self.passes {
             Some(passes) => passes,
-            none => none.insert(Box::new((StarPass::new(to.device), GlowPass::new(to.device, FORMAT)?))),
+            none => none.insert(Box::new((StarPass::new(recording.device), GlowPass::new(recording.device, FORMAT)?))),
         };
         let (points, glow) = &mut **passes;
         // The dark end of the sRGB curve is straight, 12.92 times as steep as light.
-        let view = tonight.seen(at, f64::from(block.dither_step) / 12.92);
-        points.prepare(to.device, &self.settings, &view, FORMAT, None)?;
-        let has_changed = glow.prepare(to.device, &tonight.sky, &view, &tonight.dusk) || points.has_changed();
+        let view = tonight.seen(context, f64::from(block.dither_step) / 12.92);
+        points.prepare(recording.device, &self.settings, &view, FORMAT, None)?;
+        let has_changed = glow.prepare(recording.device, &tonight.sky, &view, &tonight.dusk) || points.has_changed();
         if self.is_layer_drawn && !has_changed {
             return Ok(());
         }
         self.is_layer_drawn = true;
-        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        let mut pass = recording.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("night sky"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: target,
@@ -245,7 +250,7 @@ impl DrawnEffect for StarsView {
         glow.draw(&mut pass);
         points.draw(&mut pass);
         drop(pass);
-        to.passes += 1;
+        recording.passes += 1;
         Ok(())
     }
 

@@ -12,26 +12,32 @@ pub(super) struct BlitEnd {
     pub(super) hosts: bool,
 }
 
-/// Copies `mask` of the whole image from `from` to `to`, texel by texel; resolves or replicates samples where the two
-/// differ. Encodings are carried over as they are.
+/// Copies `mask` of the whole image from `source` to `destination`, texel by texel; resolves or replicates samples
+/// where the two differ. Encodings are carried over as they are.
 ///
 /// # Errors
 /// What OpenGL refuses, named.
-pub(super) fn copy(api: &Api, from: BlitEnd, to: BlitEnd, mask: u32, (width, height): (u32, u32)) -> Result<()> {
-    api.BindFramebuffer(READ_FRAMEBUFFER, from.framebuffer);
-    api.BindFramebuffer(DRAW_FRAMEBUFFER, to.framebuffer);
+pub(super) fn copy(
+    api: &Api,
+    source: BlitEnd,
+    destination: BlitEnd,
+    mask: u32,
+    (width, height): (u32, u32),
+) -> Result<()> {
+    api.BindFramebuffer(READ_FRAMEBUFFER, source.framebuffer);
+    api.BindFramebuffer(DRAW_FRAMEBUFFER, destination.framebuffer);
     // Both ends have one encoding; desktop OpenGL decodes and encodes only where this is on.
     let encoding = api.IsEnabled(FRAMEBUFFER_SRGB) != 0;
     api.Disable(FRAMEBUFFER_SRGB);
     api.Disable(SCISSOR_TEST);
     api.take_error();
-    let reading = (from.hosts && mask & COLOR_BUFFER_BIT != 0).then(|| read_what_is_drawn(api, from));
-    let drawing = (to.hosts && mask & COLOR_BUFFER_BIT != 0).then(|| draw_to_one(api)).flatten();
+    let reading = (source.hosts && mask & COLOR_BUFFER_BIT != 0).then(|| read_what_is_drawn(api, source));
+    let drawing = (destination.hosts && mask & COLOR_BUFFER_BIT != 0).then(|| draw_to_one(api)).flatten();
     let (w, h) = (width as i32, height as i32);
     api.BlitFramebuffer(0, 0, w, h, 0, 0, w, h, mask, NEAREST);
     let error = api.take_error();
     if let Some(was) = reading {
-        api.BindFramebuffer(READ_FRAMEBUFFER, from.framebuffer);
+        api.BindFramebuffer(READ_FRAMEBUFFER, source.framebuffer);
         api.ReadBuffer(was);
     }
     if let Some(was) = drawing {
@@ -51,18 +57,18 @@ pub(super) fn copy(api: &Api, from: BlitEnd, to: BlitEnd, mask: u32, (width, hei
         Status::Unsupported,
         format!(
             "copying {what} from framebuffer {} to {} is refused by this context with {}",
-            from.framebuffer,
-            to.framebuffer,
+            source.framebuffer,
+            destination.framebuffer,
             spell(error)
         ),
     ))
 }
 
 /// Makes the bound read framebuffer read what it draws to; answers what it read before.
-fn read_what_is_drawn(api: &Api, from: BlitEnd) -> u32 {
+fn read_what_is_drawn(api: &Api, source: BlitEnd) -> u32 {
     let was = api.uint(READ_BUFFER);
     let drawn_before = api.uint(DRAW_FRAMEBUFFER_BINDING);
-    api.BindFramebuffer(DRAW_FRAMEBUFFER, from.framebuffer);
+    api.BindFramebuffer(DRAW_FRAMEBUFFER, source.framebuffer);
     let drawn = api.uint(DRAW_BUFFER0);
     api.BindFramebuffer(DRAW_FRAMEBUFFER, drawn_before);
     let drawn = if drawn == FRONT_AND_BACK { BACK } else { drawn };

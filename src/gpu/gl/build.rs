@@ -25,6 +25,15 @@ pub(super) struct Workshop<'a> {
     pub(super) tier0: bool,
 }
 
+/// An image as it is attached to a framebuffer of ours.
+#[derive(Clone, Copy)]
+struct Attachment {
+    side: TargetSide,
+    object: GlObject,
+    /// Internal format.
+    internal: u32,
+}
+
 const ATTACH: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT;
 const READ: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING;
 const COPIES: wgpu::TextureUsages = wgpu::TextureUsages::COPY_SRC.union(wgpu::TextureUsages::COPY_DST);
@@ -43,6 +52,11 @@ impl TargetImage {
             (GlImage::Renderbuffer { name }, _) => GlObject::Renderbuffer(name),
             (GlImage::Framebuffer { name }, _) => GlObject::Framebuffer(name),
         }
+    }
+
+    /// Returns how an object that stands for it is attached.
+    fn attachment(&self, object: GlObject) -> Attachment {
+        Attachment { side: self.side, object, internal: self.facts.internal }
     }
 
     /// Returns the object that is read, if any can be.
@@ -99,15 +113,15 @@ impl Workshop<'_> {
             self.provide_copy(part, part.facts.samples > samples, samples, made)?;
         }
         // wgpu cannot attach multisampled textures: they need a framebuffer of ours, colour and depth together.
-        let attached = || parts.iter().map(|p| (p.side, p.attached(samples), p.facts.internal));
-        let through = if attached().any(|(_, object, _)| object.is_multisampled_texture()) {
+        let attached = || parts.iter().map(|p| p.attachment(p.attached(samples)));
+        let framebuffer = if attached().any(|a| a.object.is_multisampled_texture()) {
             Some(GlObject::Framebuffer(self.framebuffer(&attached().collect::<Vec<_>>(), made)?))
         } else {
             None
         };
-        let (color, color_read) = self.color(&mut parts[0], samples, through, made)?;
+        let (color, color_read) = self.color(&mut parts[0], samples, framebuffer, made)?;
         let (depth, depth_read) = match parts.get(1) {
-            Some(part) => self.depth(part, samples, through)?,
+            Some(part) => self.depth(part, samples, framebuffer)?,
             None => (None, None),
         };
         let mut wrap = |part: Option<TargetImage>| {
@@ -231,14 +245,10 @@ impl Workshop<'_> {
         if !drawn_to && !read {
             return Ok(());
         }
-        let from = match part.image {
+        let source = match part.image {
             GlImage::Framebuffer { name } => BlitEnd { framebuffer: name, hosts: true },
-            GlImage::Texture { name, target } => {
-                self.end(&[(part.side, GlObject::Texture(name, target), part.facts.internal)], made)?
-            }
-            GlImage::Renderbuffer { name } => {
-                self.end(&[(part.side, GlObject::Renderbuffer(name), part.facts.internal)], made)?
-            }
+            GlImage::Texture { name, target } => self.end(part.attachment(GlObject::Texture(name, target)), made)?,
+            GlImage::Renderbuffer { name } => self.end(part.attachment(GlObject::Renderbuffer(name)), made)?,
         };
         // A window's depth is known only by its bits, and drivers differ in what they copy it to; colours convert.
         let others: &[u32] = match (part.image, part.side) {
@@ -251,10 +261,11 @@ impl Workshop<'_> {
         let mut outcome = Ok(());
         for internal in std::iter::once(part.facts.internal).chain(others.iter().copied()) {
             let texture = self.storage(part.side, internal, size, samples, made)?;
-            let to = self.end(&[(part.side, GlObject::Texture(texture, target_of(samples)), internal)], made)?;
-            outcome = blit::copy(self.ask.api, from, to, mask(part.side, internal), size);
+            let object = GlObject::Texture(texture, target_of(samples));
+            let destination = self.end(Attachment { side: part.side, object, internal }, made)?;
+            outcome = blit::copy(self.ask.api, source, destination, mask(part.side, internal), size);
             if outcome.is_ok() {
-                part.copy = Some(Copied { from, to, texture, drawn_to });
+                part.copy = Some(Copied { from: source, to: destination, texture, drawn_to });
                 break;
             }
         }
@@ -278,26 +289,26 @@ impl Workshop<'_> {
         if error == NO_ERROR { Ok(texture) } else { Err(refused(side, internal, "copy", error)) }
     }
 
-    fn end(&self, images: &[(TargetSide, GlObject, u32)], made: &mut TargetObjects) -> Result<BlitEnd> {
-        Ok(BlitEnd { framebuffer: self.framebuffer(images, made)?, hosts: false })
+    fn end(&self, attachment: Attachment, made: &mut TargetObjects) -> Result<BlitEnd> {
+        Ok(BlitEnd { framebuffer: self.framebuffer(&[attachment], made)?, hosts: false })
     }
 
-    /// A framebuffer of ours with the given images and their internal formats.
-    fn framebuffer(&self, images: &[(TargetSide, GlObject, u32)], made: &mut TargetObjects) -> Result<u32> {
+    /// A framebuffer of ours with the given images.
+    fn framebuffer(&self, attachments: &[Attachment], made: &mut TargetObjects) -> Result<u32> {
         let api = self.ask.api;
         let framebuffer = api.one(Api::GenFramebuffers);
         made.framebuffers.push(framebuffer);
         api.BindFramebuffer(FRAMEBUFFER, framebuffer);
-        for (side, image, internal) in images {
+        for Attachment { side, object, internal } in attachments {
             let attachment = match side {
                 TargetSide::Color | TargetSide::Mask | TargetSide::Classes | TargetSide::Normals => COLOR_ATTACHMENT0,
                 TargetSide::Depth if formats::has_stencil(*internal) => DEPTH_STENCIL_ATTACHMENT,
                 TargetSide::Depth => DEPTH_ATTACHMENT,
             };
-            image.attach(api, attachment);
-            made.attached.push((framebuffer, attachment, *image));
+            object.attach(api, attachment);
+            made.attached.push((framebuffer, attachment, *object));
         }
-        if images.iter().all(|(side, ..)| *side == TargetSide::Depth) {
+        if attachments.iter().all(|a| a.side == TargetSide::Depth) {
             let none = NONE;
             // SAFETY: one value is passed.
             unsafe { api.DrawBuffers(1, &none) };
@@ -309,7 +320,7 @@ impl Workshop<'_> {
         if status == FRAMEBUFFER_COMPLETE && error == NO_ERROR {
             return Ok(framebuffer);
         }
-        let (side, _, internal) = images[0];
+        let Attachment { side, internal, .. } = attachments[0];
         Err(refused(side, internal, "draw to", if error == NO_ERROR { status } else { error }))
     }
 
@@ -318,26 +329,26 @@ impl Workshop<'_> {
         &self,
         part: &mut TargetImage,
         samples: u32,
-        through: Option<GlObject>,
+        framebuffer: Option<GlObject>,
         made: &mut TargetObjects,
     ) -> Result<(wgpu::Texture, Option<wgpu::Texture>)> {
         let format = part.format()?;
         let object = part.attached(samples);
-        if through.is_none() {
+        if framebuffer.is_none() {
             self.check_attachable(part, object)?;
         }
-        if let (GlObject::Texture(..), None) = (object, through) {
+        if let (GlObject::Texture(..), None) = (object, framebuffer) {
             return Ok((self.wrap(object, format, part.facts, samples, ATTACH | READ | COPIES)?, None));
         }
         let internal = part.facts.internal;
-        let from = self.end(&[(TargetSide::Color, object, internal)], made)?;
+        let source = self.end(Attachment { side: TargetSide::Color, object, internal }, made)?;
         let size = (part.facts.width, part.facts.height);
         let texture = self.storage(TargetSide::Color, internal, size, samples, made)?;
         let ours = GlObject::Texture(texture, target_of(samples));
-        let to = self.end(&[(TargetSide::Color, ours, internal)], made)?;
-        part.reading = Some(Copied { from, to, texture, drawn_to: false });
+        let destination = self.end(Attachment { side: TargetSide::Color, object: ours, internal }, made)?;
+        part.reading = Some(Copied { from: source, to: destination, texture, drawn_to: false });
         let read = self.wrap(ours, format, part.facts, samples, READ)?;
-        let color = self.wrap(through.unwrap_or(object), format, part.facts, samples, ATTACH)?;
+        let color = self.wrap(framebuffer.unwrap_or(object), format, part.facts, samples, ATTACH)?;
         Ok((color, Some(read)))
     }
 
@@ -347,22 +358,22 @@ impl Workshop<'_> {
         &self,
         part: &TargetImage,
         samples: u32,
-        through: Option<GlObject>,
+        framebuffer: Option<GlObject>,
     ) -> Result<(Option<wgpu::Texture>, Option<wgpu::Texture>)> {
         let format = part.format()?;
         let object = part.attached(samples);
-        if through.is_none() {
+        if framebuffer.is_none() {
             self.check_attachable(part, object)?;
         }
         let read = part.readable(samples).map(|o| self.wrap(o, format, part.facts, samples, READ)).transpose()?;
-        let depth = self.wrap(through.unwrap_or(object), format, part.facts, samples, ATTACH)?;
+        let depth = self.wrap(framebuffer.unwrap_or(object), format, part.facts, samples, ATTACH)?;
         Ok((Some(depth), read))
     }
 
     /// Makes sure that the driver can draw to what wgpu is going to attach.
     fn check_attachable(&self, part: &TargetImage, object: GlObject) -> Result<()> {
         let mut probe = TargetObjects::default();
-        let outcome = self.framebuffer(&[(part.side, object, part.facts.internal)], &mut probe);
+        let outcome = self.framebuffer(&[part.attachment(object)], &mut probe);
         probe.delete(self.ask.api);
         outcome.map(|_| ())
     }

@@ -180,7 +180,7 @@ unsafe extern "system" fn enumerate_device_extensions(
     physical_device: vk::PhysicalDevice,
     layer: *const c_char,
     count: *mut u32,
-    out: *mut vk::ExtensionProperties,
+    properties: *mut vk::ExtensionProperties,
 ) -> vk::Result {
     let Some(host) = find(|h| h.physical_device == physical_device) else {
         return vk::Result::ERROR_INITIALIZATION_FAILED;
@@ -204,48 +204,51 @@ unsafe extern "system" fn enumerate_device_extensions(
     all.retain(|e| {
         e.extension_name_as_c_str().is_ok_and(|name| visible_extension(name, &host.extensions, host.api_version))
     });
-    // SAFETY: `count` is valid, and `out`, when not null, has room for `*count` elements, as Vulkan requires.
+    // SAFETY: `count` is valid, and `properties`, when not null, has room for `*count` elements, as Vulkan requires.
     unsafe {
         let visible = u32::try_from(all.len()).unwrap_or(u32::MAX);
-        if out.is_null() {
+        if properties.is_null() {
             *count = visible;
             return vk::Result::SUCCESS;
         }
         let written = visible.min(*count);
-        std::ptr::copy_nonoverlapping(all.as_ptr(), out, written as usize);
+        std::ptr::copy_nonoverlapping(all.as_ptr(), properties, written as usize);
         *count = written;
         if written < visible { vk::Result::INCOMPLETE } else { vk::Result::SUCCESS }
     }
 }
 
-unsafe extern "system" fn get_properties(physical_device: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceProperties) {
+unsafe extern "system" fn get_properties(
+    physical_device: vk::PhysicalDevice,
+    properties: *mut vk::PhysicalDeviceProperties,
+) {
     let Some(host) = find(|h| h.physical_device == physical_device) else { return };
-    // SAFETY: the arguments are passed on as they came; `out` is then filled and valid.
+    // SAFETY: the arguments are passed on as they came; `properties` is then filled and valid.
     unsafe {
-        (host.real.get_properties)(physical_device, out);
-        (*out).api_version = (*out).api_version.min(host.api_version);
+        (host.real.get_properties)(physical_device, properties);
+        (*properties).api_version = (*properties).api_version.min(host.api_version);
     }
 }
 
-unsafe extern "system" fn get_features(physical_device: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceFeatures) {
+unsafe extern "system" fn get_features(physical_device: vk::PhysicalDevice, features: *mut vk::PhysicalDeviceFeatures) {
     let Some(host) = find(|h| h.physical_device == physical_device) else { return };
-    // SAFETY: the arguments are passed on as they came; `out` is then filled and valid.
+    // SAFETY: the arguments are passed on as they came; `features` is then filled and valid.
     unsafe {
-        (host.real.get_features)(physical_device, out);
-        host.enabled.narrow_core(&mut *out);
+        (host.real.get_features)(physical_device, features);
+        host.enabled.narrow_core(&mut *features);
     }
 }
 
 unsafe extern "system" fn get_features2(
     physical_device: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceFeatures2<'_>,
+    features: *mut vk::PhysicalDeviceFeatures2<'_>,
 ) {
     let Some(host) = find(|h| h.physical_device == physical_device) else { return };
     let Some(real) = host.real.get_features2 else { return };
     // SAFETY: the arguments are passed on as they came; the chain is then filled and valid.
     unsafe {
-        real(physical_device, out);
-        host.enabled.narrow_chain(out);
+        real(physical_device, features);
+        host.enabled.narrow_chain(features);
     }
 }
 
@@ -253,13 +256,13 @@ unsafe extern "system" fn get_features2(
 unsafe extern "system" fn get_queue_families(
     physical_device: vk::PhysicalDevice,
     count: *mut u32,
-    out: *mut vk::QueueFamilyProperties,
+    families: *mut vk::QueueFamilyProperties,
 ) {
     let Some(host) = find(|h| h.physical_device == physical_device) else { return };
-    // SAFETY: the driver is asked by the Vulkan protocol; `count` is valid and `out`, when not null, has room
+    // SAFETY: the driver is asked by the Vulkan protocol; `count` is valid and `families`, when not null, has room
     // for `*count` elements.
     unsafe {
-        if out.is_null() {
+        if families.is_null() {
             *count = 1;
             return;
         }
@@ -267,7 +270,7 @@ unsafe extern "system" fn get_queue_families(
         let mut all = vec![vk::QueueFamilyProperties::default(); n as usize];
         (host.real.get_queue_families)(physical_device, &raw mut n, all.as_mut_ptr());
         if *count > 0 {
-            *out = all[host.queue_family_index as usize];
+            *families = all[host.queue_family_index as usize];
             *count = 1;
         }
     }
@@ -344,16 +347,16 @@ unsafe extern "system" fn create_descriptor_set_layout(
     device: vk::Device,
     info: *const vk::DescriptorSetLayoutCreateInfo<'_>,
     allocator: *const vk::AllocationCallbacks<'_>,
-    out: *mut vk::DescriptorSetLayout,
+    layout: *mut vk::DescriptorSetLayout,
 ) -> vk::Result {
     let Some(host) = find(|h| h.device == device) else { return vk::Result::ERROR_DEVICE_LOST };
     let real = host.real.create_descriptor_set_layout;
     // SAFETY: the arguments are passed on as they came, save for an optional structure left out; `info` is valid.
     unsafe {
         if host.api_version >= vk::API_VERSION_1_2 {
-            return real(device, info, allocator, out);
+            return real(device, info, allocator, layout);
         }
         let plain = vk::DescriptorSetLayoutCreateInfo { p_next: std::ptr::null(), ..*info };
-        real(device, &raw const plain, allocator, out)
+        real(device, &raw const plain, allocator, layout)
     }
 }

@@ -100,7 +100,7 @@ fn invert(value: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
 
 /// Directions over which radiance is integrated at one altitude: cosines of the zenith angle with weights, Gauss in
 /// sqrt of the distance to the horizon on both of its sides, where radiance has its steep gradient and its step.
-pub fn zenith_rule(medium: &Medium, altitude_m: f64, below: &Gauss, above: &Gauss) -> Vec<(f64, f64)> {
+pub fn zenith_rule(medium: &Medium, altitude_m: f64, rule_below: &Gauss, rule_above: &Gauss) -> Vec<(f64, f64)> {
     let horizon = horizon_mu(medium, altitude_m);
     let side = |rule: &Gauss, far: f64| -> Vec<(f64, f64)> {
         let range = far - horizon;
@@ -110,8 +110,8 @@ pub fn zenith_rule(medium: &Medium, altitude_m: f64, below: &Gauss, above: &Gaus
         };
         rule.nodes.iter().zip(&rule.weights).map(node).collect()
     };
-    let mut nodes = side(below, -1.0);
-    nodes.extend(side(above, 1.0));
+    let mut nodes = side(rule_below, -1.0);
+    nodes.extend(side(rule_above, 1.0));
     nodes
 }
 

@@ -35,18 +35,18 @@ const BLACK: f64 = 46.0;
 /// Halvings of a panel: 2^24 parts of the longest panel are below a metre on any planet that is accepted.
 const MAX_HALVINGS: u32 = 24;
 
-/// Samples of `ray` between two distances into `out` (cleared first), and the columns of the whole piece. `cuts` are
-/// further distances at which panels end (edges of the shadow). Samples stop where nothing can be seen any more.
+/// Samples of `ray` between two distances into `samples` (cleared first), and the columns of the whole piece. `cuts`
+/// are further distances at which panels end (edges of the shadow). Samples stop where nothing can be seen any more.
 pub fn march(
     ray: &Ray,
     medium: &Medium,
     cutting: &Cutting<'_>,
     span: (f64, f64),
     cuts: &[f64],
-    out: &mut Vec<Sample>,
+    samples: &mut Vec<Sample>,
 ) -> [f64; MEDIA] {
-    out.clear();
-    let mut walk = RayWalk { ray, medium, cutting, columns: [0.0; MEDIA], out };
+    samples.clear();
+    let mut walk = RayWalk { ray, medium, cutting, columns: [0.0; MEDIA], samples };
     let mut marks = vec![span.0, span.1];
     marks.extend_from_slice(cuts);
     let to_perigee = -ray.radius_m() * ray.mu;
@@ -74,7 +74,7 @@ struct RayWalk<'a> {
     medium: &'a Medium,
     cutting: &'a Cutting<'a>,
     columns: [f64; MEDIA],
-    out: &'a mut Vec<Sample>,
+    samples: &'a mut Vec<Sample>,
 }
 
 impl RayWalk<'_> {
@@ -127,7 +127,7 @@ impl RayWalk<'_> {
             let mu = (self.ray.radius_m() * self.ray.mu + distance_m) / (self.ray.bottom_m + altitude_m);
             debug_assert!(ds >= 0.0);
             let [beta_gas, beta_haze] = &self.medium.scattering;
-            self.out.push(Sample {
+            self.samples.push(Sample {
                 distance_m,
                 altitude_m,
                 mu: mu.clamp(-1.0, 1.0),

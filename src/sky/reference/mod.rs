@@ -331,8 +331,8 @@ impl Reference {
 }
 
 /// Factor on the last order that adds the orders after it as a geometric series, at one place of the grid.
-fn geometric_tail(before: &Nodes, last: &Nodes, node: usize) -> [f64; 3] {
-    let (a, b) = (before.total(node), last.total(node));
+fn geometric_tail(previous: &Nodes, last: &Nodes, node: usize) -> [f64; 3] {
+    let (a, b) = (previous.total(node), last.total(node));
     std::array::from_fn(|c| {
         // A ratio above .98 means a medium too thick for this to say anything.
         let q = if a[c] > 0.0 { (b[c] / a[c]).clamp(0.0, 0.98) } else { 0.0 };
@@ -341,10 +341,10 @@ fn geometric_tail(before: &Nodes, last: &Nodes, node: usize) -> [f64; 3] {
 }
 
 /// The tail's largest share of the light over the places that hold more than 1e-9 of the brightest one's.
-fn largest_tail(before: &Nodes, last: &Nodes, sum: &Nodes) -> f64 {
+fn largest_tail(previous: &Nodes, last: &Nodes, sum: &Nodes) -> f64 {
     let brightest = (0..sum.gas.len()).flat_map(|n| sum.total(n)).fold(0.0, f64::max);
     let share = |node: usize| {
-        let (f, l, s) = (geometric_tail(before, last, node), last.total(node), sum.total(node));
+        let (f, l, s) = (geometric_tail(previous, last, node), last.total(node), sum.total(node));
         (0..3).filter(|c| s[*c] > 1e-9 * brightest).map(|c| f[c] * l[c] / s[c]).fold(0.0, f64::max)
     };
     (0..sum.gas.len()).map(share).fold(0.0, f64::max)

@@ -312,7 +312,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Haze source at one node: the radiance as cosine series, scattered mode by mode, summed at the table's azimuths.
-    fn haze_source(&self, rays: &[Prepared], radiance: &[[f64; 3]], kernel: &[f64], out: &mut Vec<[f64; 3]>) {
+    fn haze_source(&self, rays: &[Prepared], radiance: &[[f64; 3]], kernel: &[f64], source: &mut Vec<[f64; 3]>) {
         let modes = self.azimuths.len();
         let mut series = vec![[0.0; 3]; rays.len() * modes];
         for (j, line) in radiance.chunks_exact(modes).enumerate() {
@@ -339,7 +339,7 @@ impl<'a> Solver<'a> {
                     (0..3).for_each(|c| sum[c] += cosine * v[c]);
                 }
                 // A cut series of a sharp peak swings below 0 beside it.
-                out.push(sum.map(|v| v.max(0.0)));
+                source.push(sum.map(|v| v.max(0.0)));
             }
         }
     }

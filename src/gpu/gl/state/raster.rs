@@ -297,6 +297,6 @@ impl Raster {
 }
 
 /// Sets one switch of one viewport or colour buffer.
-fn switch_at(api: &Api, cap: u32, index: u32, on: bool) {
-    if on { api.Enablei(cap, index) } else { api.Disablei(cap, index) }
+fn switch_at(api: &Api, cap: u32, index: u32, is_on: bool) {
+    if is_on { api.Enablei(cap, index) } else { api.Disablei(cap, index) }
 }
