@@ -15,7 +15,7 @@ use welkin::{
 const SEEDS: std::ops::Range<u64> = 100..106;
 const PLACES: usize = 48;
 
-/// Prints `src/clouds/thresholds.in`.
+/// Prints `src/clouds/field/thresholds.in`.
 pub fn print_thresholds() -> Result<()> {
     let seeds = SEEDS.map(|seed| Ok((Map::new(seed), Solid::new(seed)?))).collect::<Result<Vec<_>>>()?;
     println!("[");

@@ -1,5 +1,5 @@
 //! Draws and times every way to draw clouds. The truth is a march of every pixel in four times as many steps, through
-//! the same field and light: how far that light is from photons is held by tests (`src/clouds/probe.rs`).
+//! the same field and light: how far that light is from photons is held by tests (`src/clouds/drawn/probe.rs`).
 
 use std::{sync::Arc, time::Instant};
 

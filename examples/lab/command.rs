@@ -19,7 +19,7 @@ pub const USAGE: &str =
        lab scenes OLD NEW                 what differs between two such folders
        lab genera DIR [--scene PART]      a PNG of every kind of cloud, to be looked at
        lab painted DIR [--scene PART]     a PNG of every way to paint clouds, to be looked at
-       lab thresholds                     of the clouds' map, as src/clouds/thresholds.in has them
+       lab thresholds                     of the clouds' map, as src/clouds/field/thresholds.in has them
        lab photons                        how far the clouds' light is from photons
 options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)
          --help   --version";

@@ -1,4 +1,4 @@
-// What a frame knows of its clouds: CloudsUniform of src/clouds/uniforms.rs.
+// What a frame knows of its clouds: CloudsUniform of src/clouds/drawn/uniforms.rs.
 
 const CLOUD_LAYERS: u32 = 16u;
 

@@ -1,4 +1,4 @@
-// Where there is cloud. Twin of src/clouds/field.rs, where the model is described.
+// Where there is cloud. Twin of src/clouds/field/extinction.rs, where the model is described.
 //!include "clouds/block.wgsl"
 //!include "clouds/placed.wgsl"
 
@@ -49,7 +49,7 @@ const SOLID_TEXELS: f32 = 64.0;
 const SECOND_LEVEL: f32 = 0.694;
 // A mean over a width w takes the share 1 - exp(-(w / x)^y) of the variance: (x, y) of the even and of the cellular
 // sheets, w in cells, and of the solid noise, w in its sides; the standard deviation of that noise. Held by a test
-// (src/clouds/map.rs).
+// (src/clouds/field/map.rs).
 const EVEN_BLUR: vec2f = vec2f(2.12, 1.25);
 const CELLULAR_BLUR: vec2f = vec2f(0.84, 1.9);
 const SOLID_BLUR: vec2f = vec2f(0.14, 1.7);

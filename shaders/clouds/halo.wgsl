@@ -1,4 +1,4 @@
-// The halo of 22 degrees that ice makes about the lamp. Twin of src/clouds/halo.rs, where the model is described.
+// The halo of 22 degrees that ice makes about the lamp. Twin of src/clouds/light/halo.rs, where the model is described.
 //!include "clouds/light.wgsl"
 
 // Of red, green and blue: the least angle by which a prism turns light, rad, and the phase function there, 1/sr.

@@ -1,4 +1,4 @@
-// The lamps and flashes that light clouds: LampsUniform of src/clouds/lamps.rs.
+// The lamps and flashes that light clouds: LampsUniform of src/clouds/light/lamps.rs.
 //!include "common/light.wgsl"
 
 struct CloudLamp {

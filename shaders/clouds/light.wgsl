@@ -1,4 +1,4 @@
-// What a place in a cloud scatters towards an eye. Twin of src/clouds/light.rs, where the model is described.
+// What a place in a cloud scatters towards an eye. Twin of src/clouds/light/sources.rs, where the model is described.
 //!include "clouds/block.wgsl"
 
 // Tables side by side: under the beam on the top, under that on the side, under the sky; a medium below the other;

@@ -1,5 +1,5 @@
 // In place of lit.wgsl: what a place in a cloud sends to the eye of the light of the host's lamps and of flashes. Twin
-// of src/clouds/lamp_light.rs, where the model is described.
+// of src/clouds/light/lamp_light.rs, where the model is described.
 //!include "clouds/about.wgsl"
 //!include "clouds/lamps.wgsl"
 

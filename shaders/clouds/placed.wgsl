@@ -1,4 +1,4 @@
-// Local cloud cover that overrides a layer's own. Twin of src/clouds/placed.rs, where the model is described.
+// Local cloud cover that overrides a layer's own. Twin of src/clouds/field/placed.rs, where the model is described.
 //!include "clouds/block.wgsl"
 
 // Of layers that a host's map is laid on: threshold, dome, extinction, distance within which the threshold stays; one
@@ -9,7 +9,7 @@
 // There is a map, or a rain area.
 override CLOUD_PLACED: bool = false;
 
-// Threshold from which on there is no cloud: just below CLEAR of src/clouds/placed.rs.
+// Threshold from which on there is no cloud: just below CLEAR of src/clouds/field/thresholds.rs.
 const CLOUD_CLEAR_FROM: f32 = 6.95;
 
 // A layer as it is at a place.

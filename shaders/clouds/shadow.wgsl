@@ -1,6 +1,6 @@
 // A map of the shadows that clouds cast on a level plane: the share of the direct light that they let through. Twin of
-// src/clouds/shadow.rs. Its texels are fixed to the air that carries the clouds and repeat: each stands for the place
-// nearest to the camera.
+// src/clouds/light/shadow.rs. Its texels are fixed to the air that carries the clouds and repeat: each stands for the
+// place nearest to the camera.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/about.wgsl"
 //!include "clouds/shadow_map.wgsl"

@@ -1,4 +1,4 @@
-// Where a place lies in the map of the clouds' shadows: CloudShadows of src/clouds/uniforms.rs.
+// Where a place lies in the map of the clouds' shadows: CloudShadows of src/clouds/drawn/uniforms.rs.
 
 struct CloudShadows {
     // Unit, towards the light (east, north, up), never level.

@@ -1,6 +1,6 @@
 //! The ways to draw clouds that are charted against each other, with what they cost.
 
-use super::{CloudModel, CloudSettings};
+use super::{model::CloudModel, settings::CloudSettings};
 use crate::plan::{
     Listed, StepWork, Units, Work,
     parts::{Part, Worth},

@@ -1,19 +1,14 @@
 //! State of the clouds that a context holds: how they are drawn, and where they grow, for questions.
 
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
 use super::{
-    CloudModel,
-    field::{Field, Map, Shape, Solid},
-    layer_map::LayerMaps,
-    light::Sources,
-    march::CloudRays,
-    overhead::CloudLayers,
-    shadow::sun_share,
-    tables::SUN_MOVED,
-    transport::Transport,
+    drawn::{march::CloudRays, noise::CloudNoise},
+    field::{layers::CloudLayers, overhead::LayersQuery, shape::Shape},
+    light::shadow::sun_share,
+    model::CloudModel,
 };
 use crate::{
     error::Result,
@@ -27,46 +22,6 @@ pub(crate) struct HeldClouds {
     pub model: CloudModel,
     /// Noise that clouds are cut out of: made when it is first asked for.
     grown: Arc<OnceLock<CloudNoise>>,
-}
-
-/// Noise that clouds are cut out of, and the light in them that was asked for last.
-pub(super) struct CloudNoise {
-    pub map: Map,
-    pub solid: Solid,
-    /// By medium.
-    lit: [Mutex<Option<LitMedium>>; 2],
-    maps: Mutex<LayerMaps>,
-}
-
-/// Light in a medium under a sun.
-struct LitMedium {
-    medium: Arc<Transport>,
-    sources: Arc<Sources>,
-}
-
-impl CloudNoise {
-    fn new(seed: u64) -> Result<Self> {
-        Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Default::default(), maps: Mutex::default() })
-    }
-
-    /// The clouds of one of all layers over a place.
-    pub fn field(&self, overhead: &CloudLayers, layer: usize) -> Field<'_> {
-        let placed = overhead.placed(layer);
-        Field { shape: overhead.all()[layer].shape, map: &self.map, solid: &self.solid, placed }
-    }
-
-    /// Light in one of the two media, under a sun.
-    pub fn sources(&self, which: usize, medium: &Arc<Transport>, to_sun: DVec3) -> Arc<Sources> {
-        // After a panic elsewhere the light is made anew.
-        let mut lit = self.lit[which].lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        let holds = |of: &&LitMedium| Arc::ptr_eq(&of.medium, medium) && of.sources.to_sun.distance(to_sun) < SUN_MOVED;
-        if let Some(of) = lit.as_ref().filter(holds) {
-            return of.sources.clone();
-        }
-        let sources = Arc::new(Sources::new(medium, to_sun));
-        *lit = Some(LitMedium { medium: medium.clone(), sources: sources.clone() });
-        sources
-    }
 }
 
 /// Where they are in a saved state.
@@ -90,29 +45,26 @@ impl HeldClouds {
     /// host's world.
     ///
     /// # Errors
-    /// As [`Solid::new`], and for a time that the weather does not know.
-    pub fn sun_share(&self, seed: u64, (scene, eye): (&Scene, DVec3), at: (&WeatherOver<'_>, f64)) -> Result<f64> {
+    /// As [`super::field::Solid::new`], and for a time that the weather does not know.
+    pub fn sun_share(
+        &self,
+        seed: u64,
+        (scene, eye): (&Scene, DVec3),
+        (weather, time_s): (&WeatherOver<'_>, f64),
+    ) -> Result<f64> {
         if self.model == CloudModel::Deck {
             return Ok(scene.brighter().direct_share);
         }
         let grown = self.grown(seed)?;
-        let Some(overhead) = self.overhead(grown, (scene, eye), at)? else { return Ok(1.0) };
+        let query = LayersQuery { scene, eye, weather, time_s };
+        let Some(overhead) = self.overhead(grown, &query)? else { return Ok(1.0) };
         Ok(sun_share((0..overhead.all().len()).map(|i| grown.field(&overhead, i)), scene))
     }
 
     /// Finds the layers of cloud over a scene's place.
-    fn overhead(
-        &self,
-        grown: &CloudNoise,
-        (scene, eye): (&Scene, DVec3),
-        (over, time_s): (&WeatherOver<'_>, f64),
-    ) -> Result<Option<CloudLayers>> {
-        let drifts = over.layers_until(time_s)?;
-        let mut overhead = CloudLayers::new(self.model, scene, &drifts, Shape::of);
-        if let Some(overhead) = &mut overhead {
-            let mut maps = grown.maps.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-            overhead.place((scene, eye), (over, time_s), &mut maps)?;
-        }
+    fn overhead(&self, grown: &CloudNoise, query: &LayersQuery<'_>) -> Result<Option<CloudLayers>> {
+        let mut maps = grown.maps.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let overhead = query.layers(self.model, &mut maps, Shape::of)?;
         Ok(overhead.filter(|o| !o.all().is_empty()))
     }
 
@@ -133,15 +85,16 @@ impl HeldClouds {
         &self,
         seed: u64,
         (scene, eye): (&Scene, DVec3),
-        at: (&WeatherOver<'_>, f64),
+        (weather, time_s): (&WeatherOver<'_>, f64),
         radius_m: f64,
     ) -> Result<Option<CloudRays<'_>>> {
+        let query = LayersQuery { scene, eye, weather, time_s };
         // Nothing is made for a sky that has no clouds.
-        if scene.conditions.cloud_slabs().next().is_none() && at.0.regions.is_empty() {
+        if query.is_clear() {
             return Ok(None);
         }
         let grown = self.grown(seed)?;
-        let overhead = self.overhead(grown, (scene, eye), at)?;
+        let overhead = self.overhead(grown, &query)?;
         Ok(overhead.map(|overhead| CloudRays::new(&overhead, grown, scene, radius_m.min(1e9))))
     }
 }

@@ -8,80 +8,45 @@
 //!   through the field itself.
 //! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the
 //!   frame before.
-//! * What mirrors and cube maps show of it: `round`, a small map of all directions.
-//! * A host's map of where clouds stand, and cloud over rain areas: `placed`, `layer_map`, `cells`.
-//! * What lamps and flashes make of it: [`lamp_light`], a small picture of its own (`lamps`).
+//! * What mirrors and cube maps show of it: `maps::panorama`, a small map of all directions.
+//! * A host's map of where clouds stand, and cloud over rain areas: `field::placed`, `field::layer_map`,
+//!   `field::cells`.
+//! * What lamps and flashes make of it: [`lamp_light`], a small picture of its own (`light::lamps`).
 //! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures and for a host's own
-//!   materials (`handed`).
+//!   materials (`maps::handed`).
 //!
 //! The deck is drawn with the sky (`shaders/between/sky.wgsl`).
 //!
+//! # Folders
+//! Each uses those before it. [`field`] says where cloud is: shape, threshold, cells and maps of cover, and
+//! `field::overhead`, the one query of the layers over a place. [`light`] says how bright cloud is. `drawn` marches
+//! rays and holds what a picture is drawn with. `maps` has the map of shadows and that of all directions. `view` and
+//! `passes` put them together for a frame, `held` for a host's questions.
+//!
 //! # Error
 //! Of the drawn light: even slabs within 5 % or 0.01 of discrete ordinates, each face of a cube within 15 % or 0.03 of
-//! what falls on the cube (`cargo test --lib clouds::probe -- --nocapture`); along rays through the field, against
-//! photons, what `lab photons` prints, most under a low sun. Of the cover that is seen: 3 points (`clouds::cover`).
-//!
+//! what falls on the cube (`cargo test --lib clouds::drawn::probe -- --nocapture`); along rays through the field,
+//! against photons, what `lab photons` prints, most under a low sun. Of the cover that is seen: 3 points ([`cover`]).
+
 pub mod candidates;
-mod cells;
-pub mod cover;
+mod drawn;
 pub mod field;
-pub mod halo;
-mod handed;
 mod held;
-pub mod lamp_light;
-mod lamps;
-mod layer_map;
 pub mod light;
-pub mod map;
-mod march;
-#[cfg(test)]
-mod mean_light;
-mod overhead;
+mod maps;
+mod model;
 mod passes;
-mod picture;
-mod pipelines;
-mod placed;
-pub mod probe;
 pub mod reference;
-mod round;
-mod rows;
 pub mod settings;
-pub mod shadow;
-mod shadow_map;
-mod shape;
-mod tables;
-pub mod traced;
-pub mod transport;
-mod uniforms;
 mod view;
 
-use serde::{Deserialize, Serialize};
-
-pub(crate) use cells::over_place as cloud_over_areas;
-pub use handed::{CloudShadows, SHADOW_SNIPPET_GLSL, SHADOW_SNIPPET_WGSL};
+pub(crate) use drawn::march::CloudRays;
+pub use drawn::{probe, traced};
+pub(crate) use field::cells::over_place as cloud_over_areas;
+pub use field::{cover, map};
 pub(crate) use held::HeldClouds;
-pub(crate) use march::CloudRays;
+pub use light::{halo, lamp_light, shadow, transport};
+pub use maps::handed::{CloudShadows, SHADOW_SNIPPET_GLSL, SHADOW_SNIPPET_WGSL};
+pub use model::CloudModel;
 pub use settings::CloudSettings;
 pub(crate) use view::CloudsView;
-
-/// How clouds are drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CloudModel {
-    /// A grey deck in closed form where more than half of the sky is covered; broken clouds only dim the light. The
-    /// cheapest.
-    Deck,
-    /// Layers of a volume, marched ray by ray; a closed one seen from below is a deck. The default.
-    #[default]
-    Volume,
-}
-
-impl CloudModel {
-    /// Its name in saved states.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Deck => "deck",
-            Self::Volume => "volume",
-        }
-    }
-}

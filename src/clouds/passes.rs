@@ -4,14 +4,19 @@
 use std::sync::Arc;
 
 use super::{
-    lamps::{LampsUniform, glow_size},
-    overhead::CloudLayers,
-    picture::{BEHIND, Picture, marched},
-    pipelines::{March, Pipelines, Resolve, TargetPart, run, run_each},
-    round::{CloudPanorama, PanoramaInputs},
-    shadow_map::{HistoryUse, ShadowMap, ShadowProjection},
-    tables::CloudTables,
-    uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
+    drawn::{
+        picture::{BEHIND, Picture, marched},
+        pipelines::{March, Pipelines, Resolve, TargetPart, run, run_each},
+        tables::CloudTables,
+        uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
+    },
+    field::layers::CloudLayers,
+    light::lamps::{LampsUniform, glow_size},
+    maps::{
+        panorama::{CloudPanorama, PanoramaInputs},
+        shadow_map::ShadowMap,
+        shadow_projection::{HistoryUse, ShadowProjection},
+    },
 };
 use crate::{
     error::Result,
@@ -39,7 +44,7 @@ pub(super) struct CloudPasses {
     no_layers: wgpu::TextureView,
     no_block: UniformBlock,
     lamps_block: UniformBlock,
-    /// Some clouds are elsewhere than their layer's cover says ([`super::placed`]).
+    /// Some clouds are elsewhere than their layer's cover says ([`super::field::placed`]).
     is_placed: bool,
 }
 

@@ -4,19 +4,19 @@
 use glam::{DMat4, DVec2, DVec3};
 
 use super::{
-    CloudSettings, HeldClouds,
     candidates::{CLOUDS, clouds_work},
-    field::Shape,
-    handed::{CloudShadows, HostShadowTexture},
-    lamps::LampsUniform,
-    layer_map::LayerMaps,
-    overhead::{CloudLayers, light_on},
+    drawn::{picture::BEGUN_SIDE, uniforms::PictureUniform},
+    field::{layer_map::LayerMaps, layers::CloudLayers, overhead::LayersQuery, shape::Shape},
+    held::HeldClouds,
+    light::{lamps::LampsUniform, shadow::LOWEST},
+    maps::{
+        handed::{CloudShadows, HostShadowTexture},
+        panorama::PanoramaInputs,
+        shadow_map::ShadowMap,
+        shadow_projection::{HistoryUse, ShadowProjection},
+    },
     passes::{CloudFrame, CloudPasses, Shaded, Wanted},
-    picture::BEGUN_SIDE,
-    round::PanoramaInputs,
-    shadow::LOWEST,
-    shadow_map::{HistoryUse, ShadowMap, ShadowProjection},
-    uniforms::{CloudsUniform, LAYERS, LayerUniform, MediumUniform, PictureUniform},
+    settings::CloudSettings,
 };
 use crate::{
     error::Result,
@@ -26,7 +26,7 @@ use crate::{
         Contribution, DrawContext, DrawnEffect, Exchange, Frame, FrameBlock, FrameContext, MergedFrame, Output,
         Outputs, PutPart, Recording, Sampling, Stages, Texture, Traits, flag,
     },
-    weather::CloudSlab,
+    weather::{CloudSlab, MAX_CLOUD_LAYERS},
     wind::LayerDrifts,
 };
 
@@ -61,7 +61,7 @@ pub(crate) struct CloudsView {
     pub settings: CloudSettings,
     overhead: Option<CloudLayers>,
     /// Shapes of the layers, which most frames have in common with the last one.
-    shapes: LruCache<CloudSlab, Shape, LAYERS>,
+    shapes: LruCache<CloudSlab, Shape, MAX_CLOUD_LAYERS>,
     /// Maps of the layers that a host's map is laid on.
     maps: LayerMaps,
     passes: Option<Box<CloudPasses>>,
@@ -140,31 +140,6 @@ fn shadow_strength(scene: &Scene) -> [f32; 4] {
     [one(0), one(1), one(2), light.direct_share as f32]
 }
 
-impl CloudLayers {
-    fn uniform(&self, now: &SceneMoment<'_>, exposure: f64, passes: &CloudPasses) -> CloudsUniform {
-        let scene = &now.scene;
-        let light = scene.brighter();
-        let mut layers = [bytemuck::Zeroable::zeroed(); LAYERS];
-        for (to, layer) in layers.iter_mut().zip(self.layers()) {
-            let of = (layer.medium(), &passes.tables.light.media[layer.medium()].scattering);
-            let light = light_on(scene, (&layer.shape, self.is_placed()), exposure);
-            *to = LayerUniform::new(&layer.shape, layer.share, self.place_m, &light, of);
-        }
-        self.place_uniforms(&mut layers);
-        CloudsUniform {
-            to_sun: light.direction.as_vec3().to_array(),
-            layer_count: self.layers().len() as u32,
-            altitude: scene.place.altitude_m as f32,
-            radius: now.planet_radius_m.min(1e9) as f32,
-            jitter: 0.5,
-            unused: 0.0,
-            media: [0, 1].map(|i| MediumUniform::new(&passes.tables.light.media[i].scattering)),
-            layers,
-            areas: self.area_uniforms(),
-        }
-    }
-}
-
 impl CloudsView {
     /// The map of shadows for a host's own materials: from the first call on each frame's first call brings it up to
     /// date.
@@ -221,13 +196,9 @@ impl DrawnEffect for CloudsView {
 
     fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
         let (now, model) = (at.now, at.held.of::<HeldClouds>()?.model);
-        let is_clear = now.scene.conditions.cloud_slabs().next().is_none() && now.weather.regions.is_empty();
+        let query = LayersQuery { scene: &now.scene, eye: now.eye, weather: &now.weather, time_s: now.time_s };
         let still = |slab: &CloudSlab| self.shapes.get_or_put(slab, || Shape::of(slab));
-        let new = || Ok(CloudLayers::new(model, &now.scene, &now.weather.layers_until(now.time_s)?, still));
-        let mut overhead = if is_clear { None } else { new()? };
-        if let Some(overhead) = &mut overhead {
-            overhead.place((&now.scene, now.eye), (&now.weather, now.time_s), &mut self.maps)?;
-        }
+        let overhead = if query.is_clear() { None } else { query.layers(model, &mut self.maps, still)? };
         self.overhead = overhead.filter(|o| !o.layers().is_empty());
         if self.overhead.is_none() {
             self.before = None;
@@ -259,7 +230,7 @@ impl DrawnEffect for CloudsView {
         let lie = has_shadows.then(|| ShadowProjection::new(at.now, overhead));
         if let (Some(lie), Some(handed)) = (&lie, &self.handed) {
             // Shadows do not ask for the exposure.
-            let clouds = overhead.uniform(at.now, 1.0, passes);
+            let clouds = overhead.uniform(at.now, 1.0, &passes.tables.light.media);
             let of = (&clouds, lie, HistoryUse::of(at.frame));
             passes.draw_shadows(to.device, to.encoder, of, &handed.shadows.texture)?;
         }
@@ -338,7 +309,7 @@ impl DrawnEffect for CloudsView {
         let sampling = Sampling::of(at.picture(), at.frame.depth);
         let of = CloudFrame {
             wanted,
-            clouds: overhead.uniform(at.now, at.target.exposure, passes),
+            clouds: overhead.uniform(at.now, at.target.exposure, &passes.tables.light.media),
             picture,
             frame: merged.block,
             sky: (layout, group),

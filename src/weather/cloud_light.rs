@@ -9,7 +9,7 @@
 //!
 //! # Error
 //! Of the direct light, against the mean over places of the clouds that are drawn:
-//! `cargo test --lib clouds::mean_light -- --nocapture`.
+//! `cargo test --lib clouds::light::mean_light -- --nocapture`.
 
 use super::cloud_part::{LOWEST, SlabPart};
 use super::conditions::{CloudSlab, Conditions};

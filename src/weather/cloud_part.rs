@@ -7,7 +7,8 @@
 //! their sides too ([`SlabPart::meet`]); some of what it meets is thin.
 //!
 //! # Error
-//! `cargo test --lib clouds::mean_light -- --nocapture` prints it, kind by kind, against the clouds that are drawn.
+//! `cargo test --lib clouds::light::mean_light -- --nocapture` prints it, kind by kind, against the clouds that are
+//! drawn.
 
 use super::blend::{mix, smoothstep};
 use super::conditions::CloudSlab;
@@ -16,7 +17,7 @@ use super::conditions::CloudSlab;
 pub(super) const LOWEST: f64 = 0.03;
 /// Most that depths of broken clouds are spread: that of the deepest that the law was fitted to.
 const MOST_SPREAD: f64 = 2.6;
-/// Covers between which clouds go over from broken to closed (`CLOSES` of `clouds::cover`).
+/// Covers between which clouds go over from broken to closed (`CLOSES` of `clouds::field`).
 const CLOSES: [f64; 2] = [0.99, 1.0];
 
 /// Part of a layer that lies on one side of a height.

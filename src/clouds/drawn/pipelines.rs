@@ -1,0 +1,248 @@
+//! The pipelines of a picture's clouds, and how their passes are run.
+
+use super::{
+    picture::{KINDS, PAIR, SEEN},
+    uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
+};
+use crate::{
+    clouds::light::lamps::LampsUniform,
+    error::Result,
+    gpu::{
+        Device,
+        bind::{self, Slot},
+        pass::{self, FullscreenDesc},
+        recent::LruCache,
+    },
+    stage::{FrameUniform, flag},
+};
+
+/// Key of a pipeline that marches rays.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct March {
+    /// See [`crate::clouds::CloudSettings`].
+    pub fineness: f64,
+    /// Clouds are placed ([`crate::clouds::field::placed`]).
+    pub is_placed: bool,
+    /// There are shafts of light.
+    pub has_shafts: bool,
+    /// Some clouds are looked at coarsely ([`crate::clouds::field::layers::CloudLayers::is_coarse`]).
+    pub is_coarse: bool,
+}
+
+/// Key of a pipeline that makes a whole picture.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Resolve {
+    pub has_history: bool,
+    pub has_shadows: bool,
+    pub has_shafts: bool,
+    /// The host's depth has several samples a pixel.
+    pub is_multisampled: bool,
+    pub depth_kinds: f64,
+    /// Shadows have a draw of their own, for the pixels on which the host drew.
+    pub shades_apart: bool,
+}
+
+/// The pipelines, and the layouts of their groups: of the march, of the passes after it, and of what shadows fall on by
+/// whether that has several samples a pixel.
+pub(crate) struct Pipelines {
+    pub picture_layout: wgpu::BindGroupLayout,
+    pub shadow_layouts: [wgpu::BindGroupLayout; 2],
+    /// The two last ones: a view that climbs and sinks again changes between them.
+    march: LruCache<March, wgpu::RenderPipeline, 2>,
+    /// Pipeline of the light of lamps and flashes, once there is any.
+    glow: LruCache<March, wgpu::RenderPipeline, 1>,
+    pub follow: wgpu::RenderPipeline,
+    /// Layouts of the march and of the sky, which the clouds of all directions are marched with too.
+    pub march_layouts: [wgpu::BindGroupLayout; 2],
+    /// One, or two that are drawn one after the other.
+    resolve: Vec<(Resolve, Vec<wgpu::RenderPipeline>)>,
+}
+
+fn make(
+    device: &Device,
+    (shader, entry): (&str, &str),
+    layouts: &[&wgpu::BindGroupLayout],
+    formats: &[wgpu::TextureFormat],
+    constants: &[(&str, f64)],
+) -> Result<wgpu::RenderPipeline> {
+    let targets: Vec<_> = formats.iter().map(|f| (*f).into()).collect();
+    pass::fullscreen(device, &FullscreenDesc { shader, entry, layouts, targets: &targets, constants, samples: 1 })
+}
+
+impl Pipelines {
+    pub fn new(device: &Device, sky: &wgpu::BindGroupLayout) -> Result<Self> {
+        let layout =
+            |slots: &[(u32, Slot)]| bind::layout(&device.device, "clouds", wgpu::ShaderStages::FRAGMENT, slots);
+        let march_layout = layout(&[
+            (0, Slot::Uniform(size_of::<FrameUniform>())),
+            (1, Slot::Uniform(size_of::<CloudsUniform>())),
+            (2, Slot::FilteredArray),
+            (3, Slot::FilteredVolume),
+            (4, Slot::FilteredVolume),
+            (5, Slot::Sampler),
+            (6, Slot::Sampler),
+            (7, Slot::Uniform(size_of::<PictureUniform>())),
+            (8, Slot::Filtered),
+            (9, Slot::Uniform(size_of::<ShadowUniform>())),
+            (10, Slot::Filtered),
+            (11, Slot::Uniform(size_of::<LampsUniform>())),
+        ]);
+        let picture_layout = layout(&[
+            (0, Slot::Uniform(size_of::<FrameUniform>())),
+            (1, Slot::Uniform(size_of::<PictureUniform>())),
+            (2, Slot::Filtered),
+            (3, Slot::Filtered),
+            (4, Slot::FilteredArray),
+            (5, Slot::Sampler),
+            (6, Slot::Texels),
+            (7, Slot::Texels),
+            (8, Slot::Texels),
+        ]);
+        let shadow_layouts = [false, true].map(|multisampled| {
+            layout(&[
+                (0, Slot::texels(multisampled)),
+                (1, Slot::Uniform(size_of::<ShadowUniform>())),
+                (2, Slot::Filtered),
+                (3, Slot::Sampler),
+            ])
+        });
+        let march_layouts = [march_layout, sky.clone()];
+        let follow = ("clouds/follow.wgsl", "follow");
+        Ok(Self {
+            march: LruCache::new(),
+            march_layouts,
+            glow: LruCache::new(),
+            follow: make(device, follow, &[&picture_layout], &[SEEN; 3], &[])?,
+            resolve: Vec::new(),
+            picture_layout,
+            shadow_layouts,
+        })
+    }
+
+    /// The pipeline that marches rays.
+    pub fn march(&mut self, device: &Device, of: March) -> Result<wgpu::RenderPipeline> {
+        let make = || {
+            let march = ("clouds/march_view.wgsl", "march");
+            let constants = [
+                ("CLOUD_FINENESS", of.fineness),
+                ("CLOUD_PLACED", flag(of.is_placed)),
+                ("CLOUD_COARSE", flag(of.is_coarse)),
+                ("SHAFTS", flag(of.has_shafts)),
+            ];
+            Ok((of, make(device, march, &self.march_layouts.each_ref(), &[SEEN, PAIR], &constants)?))
+        };
+        self.march.get_or_make(|made| *made == of, make).cloned()
+    }
+
+    /// The pipeline that draws clouds in the light of lamps and flashes.
+    pub fn glow(&mut self, device: &Device, of: March) -> Result<wgpu::RenderPipeline> {
+        let of = March { has_shafts: false, is_coarse: false, ..of };
+        let make = || {
+            let glow = ("clouds/glow_view.wgsl:lamps", "glow");
+            let constants = [("CLOUD_FINENESS", of.fineness), ("CLOUD_PLACED", flag(of.is_placed))];
+            Ok((of, make(device, glow, &self.march_layouts.each_ref(), &[SEEN], &constants)?))
+        };
+        self.glow.get_or_make(|made| *made == of, make).cloned()
+    }
+
+    /// The draws that make the whole picture: one, or a second one for shadows ([`Resolve::shades_apart`]).
+    pub fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<&[wgpu::RenderPipeline]> {
+        let made = match self.resolve.iter().position(|(made, _)| *made == wanted) {
+            Some(made) => made,
+            None => {
+                let pipelines = self.make_resolve(device, wanted)?;
+                self.resolve.push((wanted, pipelines));
+                self.resolve.len() - 1
+            }
+        };
+        Ok(&self.resolve[made].1)
+    }
+
+    fn make_resolve(&self, device: &Device, wanted: Resolve) -> Result<Vec<wgpu::RenderPipeline>> {
+        let shader = if wanted.is_multisampled { "clouds/resolve.wgsl:multi" } else { "clouds/resolve.wgsl" };
+        let layouts = [&self.picture_layout, &self.shadow_layouts[usize::from(wanted.is_multisampled)]];
+        let make = |entry, shadows, masks: [wgpu::ColorWrites; 2], tested| {
+            let targets = masks.map(|write_mask| wgpu::ColorTargetState { write_mask, ..SEEN.into() });
+            let constants = [
+                ("HISTORY", flag(wanted.has_history)),
+                ("SHADOWS", flag(shadows)),
+                ("SHAFTS", flag(wanted.has_shafts)),
+                ("DEPTH_KINDS", wanted.depth_kinds),
+            ];
+            let (targets, constants) = (&targets[..], &constants[..]);
+            let desc = FullscreenDesc { shader, entry, layouts: &layouts, targets, constants, samples: 1 };
+            pass::fullscreen_at(device, &desc, tested)
+        };
+        let all = [wgpu::ColorWrites::ALL; 2];
+        if !wanted.shades_apart {
+            return Ok(vec![make("resolve", wanted.has_shadows, all, None)?]);
+        }
+        let shadow = [wgpu::ColorWrites::empty(), wgpu::ColorWrites::BLUE | wgpu::ColorWrites::ALPHA];
+        let kind = pass::depth_test(KINDS, wgpu::CompareFunction::Always, true);
+        let drawn = pass::depth_test(KINDS, wgpu::CompareFunction::Equal, false);
+        Ok(vec![
+            make("resolve_kind", false, all, Some((0.0, kind)))?,
+            make("resolve_shadow", true, shadow, Some((1.0, drawn)))?,
+        ])
+    }
+}
+
+fn attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+    })
+}
+
+/// A part of a pass's targets.
+#[derive(Clone, Copy)]
+pub(crate) struct TargetPart {
+    pub first_row: u32,
+    pub size: (u32, u32),
+}
+
+/// Runs one pass over its targets, which are empty before, or over a part of them. What lies elsewhere stays.
+pub(crate) fn run(
+    encoder: &mut wgpu::CommandEncoder,
+    (targets, part): (&[&wgpu::TextureView], Option<TargetPart>),
+    pipeline: &wgpu::RenderPipeline,
+    groups: &[&wgpu::BindGroup],
+) {
+    run_each(encoder, (targets, None, part), std::slice::from_ref(pipeline), groups);
+}
+
+/// As [`run`], with several draws. A depth attachment may tell which pixels each of them draws.
+pub(crate) fn run_each(
+    encoder: &mut wgpu::CommandEncoder,
+    (targets, kinds, part): (&[&wgpu::TextureView], Option<&wgpu::TextureView>, Option<TargetPart>),
+    pipelines: &[wgpu::RenderPipeline],
+    groups: &[&wgpu::BindGroup],
+) {
+    let load = if part.is_some() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+    let attachments: [_; 3] = std::array::from_fn(|i| targets.get(i).and_then(|t| attachment(t, load)));
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("clouds"),
+        color_attachments: &attachments[..targets.len()],
+        depth_stencil_attachment: kinds.map(|view| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    if let Some(TargetPart { first_row, size: (width, height) }) = part {
+        pass.set_viewport(0.0, first_row as f32, width as f32, height as f32, 0.0, 1.0);
+    }
+    for (i, group) in groups.iter().enumerate() {
+        pass.set_bind_group(i as u32, *group, &[]);
+    }
+    for pipeline in pipelines {
+        pass.set_pipeline(pipeline);
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,118 @@
+//! Maps about the camera of which a frame makes some rows anew, as many as have grown old, and all of them where
+//! nothing of the map holds any more.
+
+/// How far a map has come.
+#[derive(Default)]
+pub(crate) struct MapRows {
+    next: u32,
+    /// Rows made since what the map is made of last changed: with all of them there is nothing left to do.
+    made: u32,
+    /// Rows that stand for what was, in as much as it changed: below as many as a frame makes, the map waits for more.
+    owed: f64,
+    /// The last frame made some rows.
+    made_some: bool,
+}
+
+/// State of a map in a frame, from which the rows to make follow.
+#[derive(Clone, Copy)]
+pub(crate) struct Turn {
+    /// Inputs of the map are those of the last frame.
+    pub rests: bool,
+    /// The map is of something near enough.
+    pub holds: bool,
+    /// The share of the map that what changed since the last frame has made old.
+    pub aged: f64,
+    /// Another map has its turn in this frame, if nothing is lost by it.
+    pub waits: bool,
+    /// The map is a coarse one yet: its rows do not wait.
+    pub is_coarse: bool,
+}
+
+impl MapRows {
+    /// The rows of `all` to make in a frame that makes `most`: the first of them and their number.
+    pub fn due(&mut self, (all, most): (u32, u32), turn: &Turn) -> Option<(u32, u32)> {
+        let first_again = std::mem::take(&mut self.made_some);
+        if turn.rests && self.made >= all {
+            return None;
+        }
+        self.made = if turn.rests { self.made } else { 0 };
+        self.owed = (self.owed + f64::from(all) * turn.aged).min(f64::from(all));
+        // While nothing changes, every second frame makes some rows, until all are up to date.
+        let early = if turn.rests { first_again } else { self.owed < f64::from(most) };
+        if turn.holds && (turn.waits || early && !turn.is_coarse) {
+            return None;
+        }
+        let (first, rows) = if turn.holds { (self.next, most.min(all - self.next)) } else { (0, all) };
+        self.next = (first + rows) % all;
+        self.made += rows;
+        self.owed = (self.owed - f64::from(rows)).max(0.0);
+        self.made_some = true;
+        Some((first, rows))
+    }
+}
+
+/// Draws these rows of a map by a full-screen pipeline, and leaves the others.
+pub(crate) fn draw(
+    encoder: &mut wgpu::CommandEncoder,
+    map: &wgpu::TextureView,
+    (width, first, rows): (u32, u32, u32),
+    pipeline: &wgpu::RenderPipeline,
+    groups: &[&wgpu::BindGroup],
+) {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("rows of clouds"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: map,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    });
+    pass.set_scissor_rect(0, first, width, rows);
+    pass.set_pipeline(pipeline);
+    for (i, group) in groups.iter().enumerate() {
+        pass.set_bind_group(i as u32, *group, &[]);
+    }
+    pass.draw(0..3, 0..1);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEAP: Turn = Turn { rests: false, holds: false, aged: 0.0, waits: false, is_coarse: false };
+    const MOVES: Turn = Turn { holds: true, aged: 0.125, ..LEAP };
+    const RESTS: Turn = Turn { rests: true, holds: true, ..LEAP };
+
+    #[test]
+    fn a_map_is_made_at_once_then_as_it_grows_old_and_rests_when_all_is_made() {
+        let mut rows = MapRows::default();
+        assert_eq!(rows.due((8, 3), &LEAP), Some((0, 8)), "nothing holds");
+        assert_eq!(rows.due((8, 3), &RESTS), None, "all made, and nothing changed");
+        let moves: Vec<_> = (0..10).filter_map(|i| rows.due((8, 3), &MOVES).map(|rows| (i, rows))).collect();
+        assert_eq!(moves, [(2, (0, 3)), (5, (3, 3)), (8, (6, 2))], "a row a frame grows old");
+        let rests: Vec<_> = (0..7).map(|_| rows.due((8, 3), &RESTS)).collect();
+        let made = [Some((0, 3)), None, Some((3, 3)), None, Some((6, 2)), None, None];
+        assert_eq!(rests, made, "at rest each row is made once more, in every second frame");
+    }
+
+    #[test]
+    fn a_map_waits_for_another_and_forgets_no_change_meanwhile() {
+        let mut rows = MapRows::default();
+        let waits = |turn: Turn, waits| Turn { waits, ..turn };
+        assert_eq!(rows.due((8, 4), &waits(LEAP, true)), Some((0, 8)), "what does not hold does not wait");
+        let old = Turn { aged: 0.5, ..MOVES };
+        assert_eq!(rows.due((8, 4), &waits(old, true)), None, "it changes while it waits");
+        let turns = [false, true, false, true].map(|w| rows.due((8, 4), &waits(RESTS, w)));
+        assert_eq!(turns, [Some((0, 4)), None, Some((4, 4)), None], "every row is made after the change");
+        assert_eq!(rows.due((8, 4), &RESTS), None, "and then it rests");
+    }
+
+    #[test]
+    fn a_coarse_map_does_not_wait_to_grow_old() {
+        let mut rows = MapRows::default();
+        let coarse = Turn { aged: 0.0, is_coarse: true, ..MOVES };
+        assert_eq!([(); 2].map(|()| rows.due((8, 4), &coarse)), [Some((0, 4)), Some((4, 4))]);
+    }
+}

@@ -1,0 +1,213 @@
+//! Tables in which shaders look clouds up: the map, the solid noise, and light that is scattered more than once.
+
+use std::sync::Arc;
+
+use half::f16;
+
+use crate::{
+    clouds::{
+        field::{
+            layer_map::LayerMap,
+            map::{MAP_SIZE, Map},
+            solid::{SOLID_SIZE, solid_settings},
+        },
+        light::{
+            media::{SUN_MOVED, droplets, media},
+            transport::{DEPTHS, LEAKS, Table, Transport},
+        },
+    },
+    error::Result,
+    gpu::{Device, bind},
+    noise::NoiseTexture,
+};
+
+/// Format of the tables of light and of hosts' maps, and of the sheets of the map.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
+
+fn texture(
+    device: &Device,
+    label: &str,
+    dimension: wgpu::TextureDimension,
+    [width, height, depth_or_array_layers]: [u32; 3],
+    (format, mip_level_count): (wgpu::TextureFormat, u32),
+) -> wgpu::Texture {
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers },
+        mip_level_count,
+        sample_count: 1,
+        dimension,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// Writes numbers as half floats into one mip level of a texture, into the box that begins at `x` and `y`.
+fn write_halves(
+    device: &Device,
+    (texture, mip_level): (&wgpu::Texture, u32),
+    (x, y): (u32, u32),
+    [width, height, depth_or_array_layers]: [u32; 3],
+    numbers: impl Iterator<Item = f32>,
+) {
+    let halves: Vec<u16> = numbers.map(|v| f16::from_f32(v).to_bits()).collect();
+    let texel = 2 * u32::from(texture.format().components());
+    device.queue.write_texture(
+        wgpu::TexelCopyTextureInfo { mip_level, origin: wgpu::Origin3d { x, y, z: 0 }, ..texture.as_image_copy() },
+        bytemuck::cast_slice(&halves),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * width), rows_per_image: Some(height) },
+        wgpu::Extent3d { width, height, depth_or_array_layers },
+    );
+}
+
+/// The map as shaders look it up: a layer a sheet, each with its even and its cellular kind, since one look-up needs no
+/// more.
+fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
+    let levels = map.levels();
+    let size = |level: usize| [(MAP_SIZE >> level) as u32, (MAP_SIZE >> level) as u32, 2];
+    let made = texture(device, "cloud map", wgpu::TextureDimension::D2, size(0), (SHEET, levels.len() as u32));
+    for (level, texels) in levels.iter().enumerate() {
+        let sheet = |i: usize| texels.iter().flat_map(move |texel| [texel[i], texel[i + 2]]);
+        write_halves(device, (&made, level as u32), (0, 0), size(level), sheet(0).chain(sheet(1)));
+    }
+    bind::as_layers(&made)
+}
+
+/// Creates the texture of hosts' maps of layers, one below the other.
+fn placed(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::TextureView {
+    texture(device, label, wgpu::TextureDimension::D2, [width, height, 1], (FORMAT, 1)).create_view(&Default::default())
+}
+
+pub(crate) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Sampler {
+    device.device.create_sampler(&wgpu::SamplerDescriptor {
+        address_mode_u: address,
+        address_mode_v: address,
+        address_mode_w: address,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    })
+}
+
+/// Tables of light scattered more than once in two media, as shaders look them up: by depth above, depth below and
+/// leak, the tables side by side and the media one below the other.
+pub(crate) struct LightTables {
+    texture: wgpu::Texture,
+    pub media: [Arc<Transport>; 2],
+    /// Cosine of the sun under which they stand.
+    under: Option<f64>,
+}
+
+impl LightTables {
+    pub fn new(device: &Device, media: [Arc<Transport>; 2]) -> Self {
+        let size = [3 * DEPTHS as u32, 2 * DEPTHS as u32, LEAKS as u32];
+        let texture = texture(device, "light in clouds", wgpu::TextureDimension::D3, size, (FORMAT, 1));
+        Self { texture, media, under: None }
+    }
+
+    pub fn view(&self) -> wgpu::TextureView {
+        self.texture.create_view(&Default::default())
+    }
+
+    /// Exchanges a medium: all tables are made anew.
+    fn replace(&mut self, which: usize, medium: Arc<Transport>) {
+        self.media[which] = medium;
+        self.under = None;
+    }
+
+    /// Brings them up to a sun.
+    pub fn update(&mut self, device: &Device, cosine: f64) {
+        let cosine = cosine.clamp(-1.0, 1.0);
+        if self.under.is_some_and(|c| (c - cosine).abs() < SUN_MOVED) {
+            return;
+        }
+        let across = DEPTHS as u32;
+        for (i, medium) in self.media.iter().enumerate() {
+            let put = |column: u32, table: &Table| {
+                let (at, size) = ((column * across, i as u32 * across), [across, across, LEAKS as u32]);
+                write_halves(device, (&self.texture, 0), at, size, table.iter().flatten().copied());
+            };
+            put(0, &medium.under_beam(cosine.abs()));
+            put(1, &medium.under_beam((1.0 - cosine * cosine).sqrt()));
+            if self.under.is_none() {
+                put(2, &medium.under_sky());
+            }
+        }
+        self.under = Some(cosine);
+    }
+}
+
+/// Tables that shaders look up: map, solid noise, and light.
+pub(crate) struct CloudTables {
+    pub map: wgpu::TextureView,
+    pub solid: NoiseTexture,
+    pub light: LightTables,
+    pub repeating: wgpu::Sampler,
+    pub clamping: wgpu::Sampler,
+    liquid_um: f64,
+    /// The hosts' maps of layers as one texture, one below the other; and which maps it holds.
+    pub placed: wgpu::TextureView,
+    in_placed: Vec<Arc<LayerMap>>,
+}
+
+impl CloudTables {
+    pub fn new(device: &Arc<Device>, seed: u64) -> Result<Self> {
+        let liquid_um = 20.0;
+        let media = media(liquid_um);
+        Ok(Self {
+            map: sheets(device, &Map::new(seed)),
+            solid: NoiseTexture::new(device, [SOLID_SIZE; 3], &[solid_settings(seed)])?,
+            repeating: sampler(device, wgpu::AddressMode::Repeat),
+            clamping: sampler(device, wgpu::AddressMode::ClampToEdge),
+            liquid_um,
+            light: LightTables::new(device, media),
+            placed: placed(device, "no maps of layers of cloud", (1, 1)),
+            in_placed: Vec::new(),
+        })
+    }
+
+    /// Draws what is not drawn yet, and brings the tables up to the sun and to droplets of this diameter.
+    pub fn update(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, cosine: f64, liquid_um: f64) {
+        // At once: clouds that fray later would jump.
+        self.solid.step(encoder, u32::MAX);
+        if liquid_um != self.liquid_um {
+            self.liquid_um = liquid_um;
+            self.light.replace(0, droplets(liquid_um));
+        }
+        self.light.update(device, cosine);
+    }
+
+    /// Writes maps of layers into the texture where it does not hold them yet; answers whether it had to be made anew.
+    pub fn place<'a>(&mut self, device: &Device, maps: impl Iterator<Item = &'a Arc<LayerMap>> + Clone) -> bool {
+        let is_same = |(a, b): (&Arc<LayerMap>, &Arc<LayerMap>)| Arc::ptr_eq(a, b);
+        if maps.clone().count() == self.in_placed.len() && maps.clone().zip(&self.in_placed).all(is_same) {
+            return false;
+        }
+        let sizes = maps.clone().map(|made| made.map.cells);
+        let size = sizes.fold((1, 0), |(width, height): (u32, u32), [x, y]| (width.max(x), height + y));
+        let before = self.placed.texture().size();
+        let is_other = (before.width, before.height) != (size.0, size.1.max(1));
+        if is_other {
+            self.placed = placed(device, "maps of layers of cloud", (size.0, size.1.max(1)));
+        }
+        let mut row = 0;
+        for made in maps.clone() {
+            let ([width, height], numbers) = (made.map.cells, made.texels.iter().flatten().copied());
+            write_halves(device, (self.placed.texture(), 0), (0, row), [width, height, 1], numbers);
+            row += height;
+        }
+        self.in_placed.clear();
+        self.in_placed.extend(maps.cloned());
+        is_other
+    }
+
+    /// Bytes of GPU memory.
+    pub fn bytes(&self) -> u64 {
+        let (map, light) = (8 * MAP_SIZE * MAP_SIZE * 4 / 3, 8 * 6 * LEAKS * DEPTHS * DEPTHS);
+        let placed = self.placed.texture().size();
+        (map + light) as u64 + (SOLID_SIZE as u64).pow(3) + 8 * u64::from(placed.width) * u64::from(placed.height)
+    }
+}

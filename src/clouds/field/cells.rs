@@ -1,0 +1,255 @@
+//! Cells of cloud over rain areas ([`crate::falling::area::RainArea`]), without which rain would fall out of a clear
+//! sky: where they stand, what they are made of, and how much of the sky they cover over a place.
+//!
+//! # Model
+//! A cell is an ellipse; over a polygon it goes about the corners. Its base is that of the lowest layer of the weather
+//! from which rain may fall, if that lies no higher than the area's, and the area's otherwise. Under a closed layer
+//! there are no cells: it hides the sky.
+//!
+//! The light of a place is that under a layer of the cells' cloud that covers as much of the sky as they do. A cell
+//! covers what a level disc of its area covers for level ground (Hamilton and Morgan 1952), seen from as many half
+//! widths off its middle.
+
+use std::{f64::consts::SQRT_2, sync::LazyLock};
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::thresholds::{CLEAR, FILLED, typical};
+use crate::{
+    error::Result,
+    falling::{
+        MAX_AREAS,
+        area::{AreaRain, AreaShape, Shaft},
+    },
+    moment::WeatherOver,
+    scene::LocalFrame,
+    weather::{CloudKind, CloudSlab, Conditions},
+};
+
+/// Change of the threshold across the edge of a cell over a rain area, over the distance from cloud to cloud: less than
+/// the map's steepest slopes, so that the field shapes the cell's faces.
+const EDGE_SLOPE: f64 = 3.0;
+/// Part of the edge's width, from outside, at which the area's own border lies: one place of a hundred is open there.
+const BORDER: f64 = 0.85;
+/// Distance from cloud to cloud in such a cell, over the area's half width; and at least, m.
+const SPACING: f64 = 0.4;
+const LEAST_SPACING_M: f64 = 600.0;
+/// Thickness of such a cell, at most, over the area's half width.
+const DEEPEST: f64 = 2.0;
+/// Least thickness of such a cell, m, where its kind is as thick.
+const MOST_FLAT_M: f64 = 800.0;
+/// Height of a layer's base over that of a rain area up to which its rain may be the layer's, m.
+const SAME_BASE_M: f64 = 300.0;
+/// Rate from which on showers fall from cumulonimbus, mm/h.
+const HEAVY_MM_H: f64 = 10.0;
+/// Least rate that asks for a cloud, mm/h.
+const LEAST_MM_H: f64 = 0.05;
+
+/// A cell of cloud over a rain area: an ellipse.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AreaCell {
+    /// Its middle, m east and north of the world's origin.
+    pub(crate) center_m: DVec2,
+    /// The way to the right.
+    pub(crate) right: DVec2,
+    /// Half its extent to the right and ahead, m: outside there is nothing of it.
+    pub(crate) semi_m: DVec2,
+    /// Width inside of its border over which it sets in, m.
+    pub(crate) rim_m: f64,
+}
+
+impl AreaCell {
+    /// How far a place is filled, 0 to 1, and how far away all of it is, m.
+    pub(crate) fn at(&self, place_m: DVec2) -> (f64, f64) {
+        let away = place_m - self.center_m;
+        let p = DVec2::new(away.dot(self.right), away.dot(self.right.perp()));
+        let k = p / self.semi_m;
+        let [k1, k2] = [k.length(), (k / self.semi_m).length()];
+        // To first order, as the area's own border.
+        let depth = (1.0 - k1) * if k1 < 1e-4 { self.semi_m.min_element() } else { k1 / k2 };
+        ((depth / self.rim_m).clamp(0.0, 1.0), (k1 - 1.0).max(0.0) * self.semi_m.min_element())
+    }
+
+    /// Over an area whose column stands so at the base of a cloud; its edge is the area's own border.
+    fn over(shaft: &Shaft, shape: &AreaShape, center_m: DVec2) -> Self {
+        let (middle, semi) = match shape {
+            AreaShape::Ellipse(semi) => (DVec2::ZERO, DVec2::from(*semi)),
+            AreaShape::Polygon(corners, count) => {
+                let all = || corners[..*count].iter().map(|c| DVec2::from(*c));
+                let low = all().fold(DVec2::INFINITY, DVec2::min);
+                let high = all().fold(DVec2::NEG_INFINITY, DVec2::max);
+                // The ellipse about a rectangle.
+                (0.5 * (low + high), 0.5 * SQRT_2 * (high - low))
+            }
+        };
+        let middle = shaft.right * middle.x + shaft.right.perp() * middle.y;
+        Self { center_m: center_m + middle, right: shaft.right, semi_m: semi, rim_m: 0.0 }
+    }
+
+    /// Returns the cell with an edge `rim_m` wide; the share [`BORDER`] of that lies outside of the area.
+    pub(crate) fn with_edge(self, rim_m: f64) -> Self {
+        Self { semi_m: self.semi_m + BORDER * rim_m, rim_m, ..self }
+    }
+}
+
+/// The clouds of all rain areas at a moment.
+pub(crate) struct AreaClouds {
+    pub cells: [AreaCell; MAX_AREAS],
+    pub count: usize,
+    /// Lowest base of an area over the station, m, and half of the narrowest one's width, m.
+    lowest_m: f64,
+    half_m: f64,
+    /// Cloud that the strongest rain falls from.
+    brings: &'static CloudSlab,
+}
+
+impl AreaClouds {
+    /// About a place with these axes, at `eye` in the host's world and at `place_m` over the ground; none where no rain
+    /// falls in any area.
+    ///
+    /// # Errors
+    /// For a time that the weather does not know.
+    pub fn new(
+        over: &WeatherOver<'_>,
+        conditions: &Conditions,
+        (to_enu, eye, place_m): (DMat3, DVec3, DVec2),
+        time_s: f64,
+    ) -> Result<Option<Self>> {
+        let mut cells = [AreaCell::default(); MAX_AREAS];
+        let (mut count, mut lowest_m, mut half_m) = (0, f64::INFINITY, f64::INFINITY);
+        let mut strongest = None::<(f64, &CloudSlab)>;
+        for shaft in over.shafts_at(time_s, conditions)? {
+            let rate = shaft.falling.rain_mm_h + shaft.falling.drizzle_mm_h;
+            let area = &over.regions[shaft.index as usize].area;
+            if rate < LEAST_MM_H {
+                continue;
+            }
+            let leans = shaft.lean * (shaft.top_m - shaft.ground_m);
+            let center_m = place_m + (to_enu * (shaft.center - eye)).truncate() + leans;
+            cells[count] = AreaCell::over(&shaft, &area.shape, center_m);
+            lowest_m = lowest_m.min(shaft.top_m - conditions.air.station_altitude_m);
+            half_m = half_m.min(cells[count].semi_m.min_element());
+            count += 1;
+            if strongest.is_none_or(|(rate_before, _)| rate > rate_before) {
+                strongest = Some((rate, brought(&shaft, area.kind)));
+            }
+        }
+        Ok(strongest.map(|(_, brings)| Self { cells, count, lowest_m, half_m, brings }))
+    }
+
+    /// Returns the slab that the cells are made of, beside the `others` (slab, whether a map places it), of no cover
+    /// yet; none where one of these hides the sky.
+    pub fn slab<'a>(&self, others: impl Iterator<Item = (&'a CloudSlab, bool)> + Clone) -> Option<CloudSlab> {
+        let closes =
+            |(slab, is_placed): (&CloudSlab, bool)| slab.cover >= 1.0 && slab.optical_depth > 5.0 && !is_placed;
+        if others.clone().any(closes) {
+            return None;
+        }
+        let fits = |slab: &&CloudSlab| makes_rain(slab) && slab.base_m <= self.lowest_m + SAME_BASE_M;
+        let base_m = others.map(|(slab, _)| slab).find(fits).map_or(self.lowest_m, |slab| slab.base_m);
+        let brings = self.brings;
+        let thickness_m = brings.thickness_m.min(DEEPEST * self.half_m).max(MOST_FLAT_M.min(brings.thickness_m));
+        Some(CloudSlab {
+            base_m,
+            cover: 0.0,
+            thickness_m,
+            optical_depth: brings.optical_depth * thickness_m / brings.thickness_m,
+            scale_m: (SPACING * self.half_m).clamp(LEAST_SPACING_M, brings.scale_m),
+            ..*brings
+        })
+    }
+}
+
+/// Width of the edge of a cell of such clouds, m.
+pub(crate) fn edge_m(slab: &CloudSlab) -> f64 {
+    (CLEAR - FILLED) / EDGE_SLOPE * slab.scale_m
+}
+
+/// View factor of a level disc from level ground, `height_m` below it and `aside_m` from under its middle (Hamilton and
+/// Morgan 1952).
+fn view_factor(radius_m: f64, height_m: f64, aside_m: f64) -> f64 {
+    let [r2, h2, d2] = [radius_m, height_m, aside_m].map(|v| v * v);
+    let sum = h2 + d2 + r2;
+    0.5 * (1.0 - (h2 + d2 - r2) / (sum * sum - 4.0 * r2 * d2).max(f64::MIN_POSITIVE).sqrt())
+}
+
+/// The layer whose light a place has under the cells of rain areas, with the part of the sky that they cover there;
+/// none without any. The place is `eye` in the host's world.
+///
+/// # Errors
+/// For a time that the weather does not know.
+pub(crate) fn over_place(
+    over: &WeatherOver<'_>,
+    conditions: &Conditions,
+    (local, eye): (&LocalFrame, DVec3),
+    time_s: f64,
+) -> Result<Option<CloudSlab>> {
+    if over.regions.is_empty() {
+        return Ok(None);
+    }
+    let Some(clouds) = AreaClouds::new(over, conditions, (local.world_to_enu, eye, DVec2::ZERO), time_s)? else {
+        return Ok(None);
+    };
+    let is_placed = |slab: &CloudSlab| over.cloud_map.is_some_and(|map| map.is_of(slab.base_m));
+    let others = conditions.clouds.iter().filter(|slab| slab.cover > 0.0).map(|slab| (slab, is_placed(slab)));
+    let Some(slab) = clouds.slab(others) else { return Ok(None) };
+    let height_m = (slab.base_m + conditions.air.station_altitude_m - local.place.altitude_m).max(0.0);
+    let open = clouds.cells[..clouds.count].iter().fold(1.0, |open, cell| {
+        // Where half of a cell's edge is cloud.
+        let cell = cell.with_edge(edge_m(&slab));
+        let semi_m = cell.semi_m - cell.rim_m * CLEAR / (CLEAR - FILLED);
+        let away = DVec2::new(cell.center_m.dot(cell.right), cell.center_m.dot(cell.right.perp()));
+        let radius_m = (semi_m.x * semi_m.y).sqrt();
+        open * (1.0 - view_factor(radius_m, height_m, (away / semi_m).length() * radius_m))
+    });
+    // Where it is, it is whole: none of its cover is gaps between clouds.
+    Ok(Some(CloudSlab { cover: 1.0 - open, scale_m: f64::INFINITY, ..slab }))
+}
+
+/// The layer that a rain area brings where none is there that could make its rain, but for base and cover.
+fn brought(shaft: &Shaft, rain: AreaRain) -> &'static CloudSlab {
+    static KINDS: LazyLock<[CloudSlab; 4]> = LazyLock::new(|| {
+        let kinds = [CloudKind::Stratus, CloudKind::Nimbostratus, CloudKind::ToweringCumulus, CloudKind::Cumulonimbus];
+        kinds.map(|kind| typical(kind, 1.0).unwrap_or(CloudSlab::NONE))
+    });
+    let heavy = usize::from(shaft.falling.rain_mm_h >= HEAVY_MM_H);
+    match rain {
+        AreaRain::Drizzle => &KINDS[0],
+        AreaRain::Rain => &KINDS[1],
+        AreaRain::Showers => &KINDS[2 + heavy],
+    }
+}
+
+/// Whether rain may fall from a layer: it is nimbostratus, towering cumulus or cumulonimbus.
+fn makes_rain(slab: &CloudSlab) -> bool {
+    let deep_sheet = slab.convection < 0.1 && slab.thickness_m >= 1000.0 && slab.ice_fraction < 0.5;
+    slab.convection > 0.7 || deep_sheet
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_view_factor_is_that_of_a_sum_over_the_disc() {
+        for [r, h, d] in
+            [[3000.0, 1000.0, 0.0], [3000.0, 1000.0, 2500.0], [500.0, 1000.0, 4000.0], [800.0, 40.0, 801.0]]
+        {
+            let (rings, turns) = (2000, 400);
+            let mut sum = 0.0;
+            for i in 0..rings {
+                let s = r * (f64::from(i) + 0.5) / f64::from(rings);
+                for k in 0..turns {
+                    let angle = std::f64::consts::TAU * (f64::from(k) + 0.5) / f64::from(turns);
+                    let q = DVec2::from_angle(angle) * s - DVec2::X * d;
+                    let away2 = q.length_squared() + h * h;
+                    sum += h * h / (std::f64::consts::PI * away2 * away2) * s;
+                }
+            }
+            sum *= r / f64::from(rings) * std::f64::consts::TAU / f64::from(turns);
+            let closed = view_factor(r, h, d);
+            assert!((closed - sum).abs() < 2e-3, "{r} {h} {d}: {closed} against {sum}");
+        }
+        assert_eq!([view_factor(100.0, 0.0, 50.0), view_factor(100.0, 0.0, 150.0)], [1.0, 0.0]);
+    }
+}

@@ -1,0 +1,49 @@
+//! Threshold by which a part of a layer with a cover of its own is cut out of the field, with dome and extinction.
+
+use super::{
+    shape::Shape,
+    thresholds::{CLEAR, threshold},
+};
+use crate::weather::CloudSlab;
+
+/// Least cover that has clouds: below it the threshold rises to [`CLEAR`].
+const LEAST: f64 = 1e-3;
+/// Cover from which on dome and extinction follow it.
+const SHAPED_FROM: f64 = 0.02;
+/// Threshold by which one place of a layer is cut out, with its dome and extinction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CoverThreshold {
+    pub threshold: f64,
+    pub dome: f64,
+    pub extinction_per_m: f64,
+}
+
+impl CoverThreshold {
+    pub(super) fn of(shape: &Shape) -> Self {
+        Self { threshold: shape.threshold, dome: shape.dome, extinction_per_m: shape.extinction_per_m }
+    }
+
+    /// Creates the threshold of a layer of this cover.
+    pub(crate) fn with_cover(slab: &CloudSlab, cover: f64) -> Self {
+        let at = |cover: f64| threshold(&CloudSlab { cover, ..*slab });
+        let own = at(cover.max(LEAST));
+        let shaped = Shape::still(slab, at(cover.max(SHAPED_FROM)));
+        let threshold = CLEAR + (own - CLEAR) * (cover / LEAST).min(1.0);
+        Self { threshold, ..Self::of(&shaped) }
+    }
+
+    pub(crate) fn mix(self, to: &Self, t: f64) -> Self {
+        let between = |a: f64, b: f64| a + (b - a) * t;
+        Self {
+            threshold: between(self.threshold, to.threshold),
+            dome: between(self.dome, to.dome),
+            extinction_per_m: between(self.extinction_per_m, to.extinction_per_m),
+        }
+    }
+
+    pub(super) fn put(&self, shape: &mut Shape) {
+        let piled = shape.held * shape.dome * shape.dome;
+        (shape.threshold, shape.dome, shape.extinction_per_m) = (self.threshold, self.dome, self.extinction_per_m);
+        shape.held = piled / (self.dome * self.dome);
+    }
+}

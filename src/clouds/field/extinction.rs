@@ -1,0 +1,106 @@
+//! Where there is cloud: the extinction of a layer at a place. Twin of `shaders/clouds/field.wgsl`.
+//!
+//! # Model
+//! A map over the plane says how strongly cloud grows at a place, as a number z that is spread normally about 0: two
+//! sheets of noise, each made normal by ranks, whose periods have no common multiple, so that no tile shows. Cloud is
+//! where z exceeds a threshold that follows from the cover ([`super::cover`]); how far it exceeds it says how high the
+//! cloud grows there. Solid noise frays its edges. The two sheets glide against each other, which makes clouds form and
+//! dissolve, without end and as a function of time alone.
+//!
+//! Of a place with the excess e = z - threshold and the height h, 0 at the base to 1 at the top, the extinction is that
+//! of the layer times (e - dome(h) + rough (noise - 1/2)) / soft, held between 0 and 1. Over heaps the dome grows with
+//! e, so that no top is cut flat.
+//!
+//! Ice is drawn out along the wind that carries it, and leans with height: heads stand downwind of what falls from
+//! them. Cumulonimbus has an anvil, a sheet below the layer's top about its towers (`anvil_needs`).
+
+use glam::{DMat2, DVec2, DVec3};
+
+use super::{
+    map::{MAP_CELLS, Map, SECOND_OFFSET, SECOND_PERIOD, SECOND_TURN_RAD},
+    placed::LocalCover,
+    shape::{Shape, dome, smooth},
+    solid::Solid,
+};
+
+/// Mean of the solid noise, and one over the range of nearly all of it.
+const SOLID_MEAN: f64 = 0.47;
+const SOLID_GAIN: f64 = 2.2;
+
+/// Most that the solid noise adds to the excess, over how far it frays: nearly all of it.
+pub(crate) const MOST_FRAYED: f64 = 0.8;
+
+/// A layer's clouds.
+pub struct Field<'a> {
+    /// How they are made.
+    pub shape: Shape,
+    /// Where they grow.
+    pub map: &'a Map,
+    /// Solid noise that frays their edges.
+    pub solid: &'a Solid,
+    /// Where they are other than the layer's cover says.
+    pub(crate) placed: LocalCover,
+}
+
+impl Field<'_> {
+    /// The map's number at a place, m east and north of the world's origin.
+    pub fn strength(&self, place_m: DVec2) -> f64 {
+        let s = &self.shape;
+        let cell = s.stretch * (place_m - s.drift_m) / s.scale_m;
+        let first = self.map.at(cell / MAP_CELLS);
+        let turned = DMat2::from_angle(SECOND_TURN_RAD) * (cell - s.evolution);
+        let second = self.map.at(turned / (MAP_CELLS * SECOND_PERIOD) + SECOND_OFFSET);
+        let c = s.cellular;
+        let scale = 1.0 / (2.0 * (c * c + (1.0 - c) * (1.0 - c))).sqrt();
+        ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale
+    }
+
+    /// The clouds about a place as they are there, within which distance that holds, m, and how much the threshold
+    /// changes a metre beyond.
+    pub(crate) fn here(&self, position_m: DVec3) -> (Self, [f64; 2]) {
+        let mut shape = self.shape;
+        let steady = self.placed.shape_at(self.upright(position_m), &mut shape);
+        (Self { shape, placed: LocalCover::default(), ..*self }, steady)
+    }
+
+    /// A place of the layer as its pattern has it: what is above the base leans.
+    pub(crate) fn upright(&self, position_m: DVec3) -> DVec2 {
+        let s = &self.shape;
+        let height = (position_m.z - s.base_m) / s.thickness_m;
+        position_m.truncate() - s.lean_m * (height * height)
+    }
+
+    /// Excess over the threshold at a place, neither frayed nor under a dome.
+    pub(crate) fn over(&self, position_m: DVec3) -> f64 {
+        let s = &self.shape;
+        self.strength(self.upright(position_m)) - s.threshold
+    }
+
+    /// Returns what the solid noise adds to the excess at a place.
+    pub(crate) fn frays(&self, position_m: DVec3) -> f64 {
+        let s = &self.shape;
+        let level = s.stretch * (self.upright(position_m) - s.drift_m);
+        let at = level.extend(position_m.z - s.base_m) / s.solid_m;
+        s.rough * smooth(s, (position_m.z - s.base_m) / s.thickness_m) * SOLID_GAIN * (self.solid.at(at) - SOLID_MEAN)
+    }
+
+    /// Extinction, 1/m, of a frayed excess over threshold and dome.
+    pub(crate) fn dense(&self, excess: f64) -> f64 {
+        self.shape.extinction_per_m * (excess / self.shape.soft).clamp(0.0, 1.0)
+    }
+
+    /// Extinction, 1/m, at a place `position_m` (east and north of the world's origin, above the sea).
+    pub fn extinction_per_m(&self, position_m: DVec3) -> f64 {
+        let height = (position_m.z - self.shape.base_m) / self.shape.thickness_m;
+        if !(0.0..=1.0).contains(&height) {
+            return 0.0;
+        }
+        let (here, _) = self.here(position_m);
+        let over = here.over(position_m);
+        let excess = over - dome(&here.shape, over, height);
+        if excess < -MOST_FRAYED * here.shape.rough {
+            return 0.0;
+        }
+        here.dense(excess + here.frays(position_m))
+    }
+}

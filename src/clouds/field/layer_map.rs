@@ -1,0 +1,201 @@
+//! A layer of cloud under a host's map of cover ([`CloudMap`]), by the map's cells: how each is cut out of the field
+//! ([`super::placed`]).
+
+use std::{
+    f64::consts::{PI, SQRT_2},
+    sync::Arc,
+};
+
+use glam::DVec2;
+use half::f16;
+
+use super::cover_threshold::CoverThreshold;
+use crate::weather::{CloudMap, CloudSlab, MAX_CLOUD_LAYERS};
+
+/// Steps of the map's numbers for which cuts are found.
+const STEPS: usize = 64;
+
+/// A layer under a map, by its cells.
+#[derive(Debug)]
+pub struct LayerMap {
+    slab: CloudSlab,
+    pub(crate) map: Arc<CloudMap>,
+    /// Values of each cell: threshold, dome, extinction (1/m), and the distance within which the threshold stays, m; as
+    /// halves hold them.
+    pub(crate) texels: Vec<[f32; 4]>,
+    /// Most that the threshold changes a metre.
+    pub(crate) slope_per_m: f64,
+}
+
+impl LayerMap {
+    pub(crate) fn new(slab: &CloudSlab, map: &Arc<CloudMap>) -> Self {
+        // Nodes lie close where thresholds change fast: near none and all.
+        let node = |i: usize| (0.5 * PI * i as f64 / STEPS as f64).sin().powi(2);
+        let cuts: [CoverThreshold; STEPS + 1] =
+            std::array::from_fn(|i| CoverThreshold::with_cover(slab, slab.cover * node(i)));
+        let cut = |left: f32| {
+            let at = f64::from(left).sqrt().asin() * 2.0 / PI * STEPS as f64;
+            let i = (at as usize).min(STEPS - 1);
+            cuts[i].mix(&cuts[i + 1], at - i as f64)
+        };
+        let steady = steady_m(map);
+        let half = |v: f64| f16::from_f64(v).to_f32();
+        let texel = |(left, steady_m): (&f32, f64)| {
+            let c = cut(*left);
+            [c.threshold, c.dome, c.extinction_per_m, steady_m].map(half)
+        };
+        let texels: Vec<[f32; 4]> = map.cover.iter().zip(steady).map(texel).collect();
+        let slope_per_m = steepest(&texels, map);
+        Self { slab: *slab, map: map.clone(), texels, slope_per_m }
+    }
+
+    /// At a place, and how far the threshold stays there, m.
+    pub(crate) fn at(&self, place_m: DVec2) -> (CoverThreshold, f64) {
+        let map = &self.map;
+        let [columns, rows] = map.cells.map(|n| n as usize);
+        let last = DVec2::new((columns - 1) as f64, (rows - 1) as f64);
+        let cell = ((place_m - DVec2::from_array(map.first_m)) / map.cell_m).clamp(DVec2::ZERO, last);
+        let low = cell.floor();
+        let part = cell - low;
+        let [x, y] = [low.x as usize, low.y as usize];
+        let texel = |x: usize, y: usize| self.texels[y.min(rows - 1) * columns + x.min(columns - 1)];
+        let corners = [texel(x, y), texel(x + 1, y), texel(x, y + 1), texel(x + 1, y + 1)];
+        let [threshold, dome, extinction_per_m, steady_m] = [0, 1, 2, 3].map(|k| {
+            let [a, b, c, d] = corners.map(|t| f64::from(t[k]));
+            let (south, north) = (a + (b - a) * part.x, c + (d - c) * part.x);
+            south + (north - south) * part.y
+        });
+        (CoverThreshold { threshold, dome, extinction_per_m }, steady_m)
+    }
+
+    fn is_of(&self, slab: &CloudSlab, map: &Arc<CloudMap>) -> bool {
+        self.slab == *slab && Arc::ptr_eq(&self.map, map)
+    }
+}
+
+/// Most that thresholds change from cell to cell, a metre.
+fn steepest(texels: &[[f32; 4]], map: &CloudMap) -> f64 {
+    let columns = map.cells[0] as usize;
+    let change = |(i, t): (usize, &[f32; 4])| {
+        let east = texels.get(i + 1).filter(|_| (i + 1) % columns != 0);
+        let north = texels.get(i + columns);
+        let [east, north] = [east, north].map(|n| n.map_or(0.0, |n| f64::from(n[0] - t[0])));
+        DVec2::new(east, north).length()
+    };
+    // Along the diagonal of a cell both sides of it may count twice.
+    texels.iter().enumerate().map(change).fold(0.0, f64::max) * SQRT_2 / map.cell_m
+}
+
+/// Returns for each cell the distance within which a map stays as it is there, m: two cells less than to the next cell
+/// that differs, so that it holds between middles too.
+fn steady_m(map: &CloudMap) -> Vec<f64> {
+    let [columns, rows] = map.cells.map(|n| n as usize);
+    let most = (columns + rows) as u32;
+    let is_other = |i: usize, j: usize| map.cover[i] != map.cover[j];
+    let near = |i: usize| {
+        let (x, y) = ((i % columns) as i64, (i / columns) as i64);
+        let steps = (0..9).map(move |k| (x + k % 3 - 1, y + k / 3 - 1));
+        steps
+            .filter(move |(x, y)| (0..columns as i64).contains(x) && (0..rows as i64).contains(y))
+            .map(move |(x, y)| y as usize * columns + x as usize)
+    };
+    let mut away: Vec<u32> =
+        (0..map.cover.len()).map(|i| if near(i).any(|j| is_other(i, j)) { 1 } else { most }).collect();
+    // Chebyshev's distance, forth and back.
+    for i in (0..away.len()).chain((0..away.len()).rev()) {
+        away[i] = near(i).map(|j| away[j] + 1).min().unwrap_or(most).min(away[i]);
+    }
+    // As far as rays are followed, nothing is beyond.
+    away.into_iter().map(|n| (f64::from(n.saturating_sub(2)) * map.cell_m).min(60e3)).collect()
+}
+
+/// Maps of layers, made once for as long as neither layer nor map changes.
+#[derive(Default)]
+pub(crate) struct LayerMaps(Vec<Arc<LayerMap>>);
+
+impl LayerMaps {
+    pub(crate) fn get(&mut self, slab: &CloudSlab, map: &Arc<CloudMap>) -> Arc<LayerMap> {
+        if let Some(made) = self.0.iter().find(|made| made.is_of(slab, map)) {
+            return made.clone();
+        }
+        let new = Arc::new(LayerMap::new(slab, map));
+        if self.0.len() >= MAX_CLOUD_LAYERS {
+            self.0.remove(0);
+        }
+        self.0.push(new.clone());
+        new
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        clouds::field::{
+            Field, Map, Solid,
+            cover::{field, is_ice, seen, threshold, typical},
+            placed::LocalCover,
+        },
+        weather::CloudKind,
+    };
+
+    /// A map that is one number over the places from which cover is looked at, and another west of them.
+    fn map(over: f32, beyond: f32) -> Arc<CloudMap> {
+        let cover = vec![beyond, over];
+        Arc::new(CloudMap { first_m: [-2e5, 0.0], cell_m: 5e4, cells: [2, 1], base_m: [0.0, 2e4], cover })
+    }
+
+    fn under<'a>(slab: &CloudSlab, grown: &'a (Map, Solid), map: &Arc<CloudMap>) -> Field<'a> {
+        let placed = LocalCover::under(Arc::new(LayerMap::new(slab, map)));
+        Field { placed, ..field(slab, grown, threshold(slab)) }
+    }
+
+    const PLACES: usize = 48;
+
+    #[test]
+    fn a_layer_covers_what_its_map_says_where_it_says_so() {
+        let seeds: Vec<(Map, Solid)> = (0..4).map(|s| (Map::new(s), Solid::new(s).unwrap())).collect();
+        for kind in [CloudKind::Stratus, CloudKind::Stratocumulus, CloudKind::Cumulus, CloudKind::Cumulonimbus] {
+            for (cover, left) in [(1.0, 0.25), (1.0, 0.5), (1.0, 0.75), (0.5, 1.0), (0.5, 0.5)] {
+                let slab = typical(kind, cover).unwrap();
+                let mean = |map: &Arc<CloudMap>| {
+                    let one = |grown| seen(&under(&slab, grown, map), is_ice(&slab), PLACES);
+                    seeds.iter().map(one).sum::<f64>() / seeds.len() as f64
+                };
+                let (there, beside) = (mean(&map(left, 0.0)), mean(&map(0.0, left)));
+                println!(
+                    "{kind:?} of cover {cover} at {left} of the map: seen {there:.3}, where it says 0 {beside:.3}"
+                );
+                assert!((there - cover * f64::from(left)).abs() < 0.03, "{kind:?} {cover} {left}: {there}");
+                assert_eq!(beside, 0.0, "{kind:?}");
+            }
+            let closed = typical(kind, 1.0).unwrap();
+            assert_eq!(seen(&under(&closed, &seeds[0], &map(1.0, 0.0)), false, PLACES), 1.0, "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn how_far_a_map_stays_is_never_too_far() {
+        let cover: Vec<f32> = (0..30 * 20).map(|i| if (i % 30) < 7 || i / 30 > 16 { 1.0 } else { 0.0 }).collect();
+        let map = CloudMap { first_m: [0.0; 2], cell_m: 1000.0, cells: [30, 20], base_m: [0.0, 2e4], cover };
+        let layer = LayerMap::new(&typical(CloudKind::Cumulus, 1.0).unwrap(), &Arc::new(map));
+        let mut told = 0.0f64;
+        for i in 0..4000 {
+            let at = DVec2::new(
+                (f64::from(i) * 0.754_877).fract() * 34e3 - 2e3,
+                (f64::from(i) * 0.569_84).fract() * 24e3 - 2e3,
+            );
+            let (here, steady_m) = layer.at(at);
+            told = told.max(steady_m);
+            for k in 0..24 {
+                let away = DVec2::from_angle(f64::from(k)) * steady_m * f64::from(k % 3 + 1) / 3.0;
+                let there = layer.at(at + away).0.threshold;
+                assert!((there - here.threshold).abs() < 1e-2, "{at}: {steady_m} m, {away}");
+                let step = DVec2::from_angle(f64::from(k)) * 20.0;
+                let change = (layer.at(at + step).0.threshold - here.threshold).abs() / 20.0;
+                assert!(change < 1.01 * layer.slope_per_m, "{at}: {change} a metre, told {}", layer.slope_per_m);
+            }
+        }
+        assert!(told >= 4000.0, "{told}");
+    }
+}

@@ -1,0 +1,122 @@
+//! Query of the layers over a place: those of the weather, where the wind has carried them, with a host's map laid on
+//! them and the cells over rain areas among them. Pictures and questions ask here.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::{
+    cells::{AreaClouds, edge_m},
+    cover_threshold::CoverThreshold,
+    layer::OverheadLayer,
+    layer_map::LayerMaps,
+    layers::CloudLayers,
+    placed::AreaCells,
+    shape::Shape,
+    thresholds::{CLEAR, FILLED},
+};
+use crate::{
+    clouds::model::CloudModel,
+    error::Result,
+    moment::{Scene, WeatherOver},
+    weather::{CloudMap, CloudSlab},
+};
+
+/// How much less excess the anvil of such a cell needs than that of a layer: across its edge, by [`EDGE_SLOPE`], it
+/// reaches this much over that many distances from cloud to cloud farther than its towers.
+const ANVIL_WIDER: f64 = 2.2;
+/// Thickness of a cell over the distance from cloud to cloud from which on its heads grow with its height, and how
+/// rough they make it at most: by the map alone its sides would hang like curtains.
+const HEADS: f64 = 2.0;
+const MOST_ROUGH: f64 = 2.1;
+
+/// Place and time whose layers of cloud are asked for.
+pub(crate) struct LayersQuery<'a> {
+    pub scene: &'a Scene,
+    /// The scene's place in the host's world, m.
+    pub eye: DVec3,
+    pub weather: &'a WeatherOver<'a>,
+    /// Simulation time, s.
+    pub time_s: f64,
+}
+
+impl LayersQuery<'_> {
+    /// Whether there can be no cloud: the weather has none here, and no rain area brings any.
+    pub fn is_clear(&self) -> bool {
+        self.scene.conditions.cloud_slabs().next().is_none() && self.weather.regions.is_empty()
+    }
+
+    /// Finds the layers for a model; none where it draws no volume. `maps` keeps hosts' maps of layers from one query
+    /// to the next, `still` is [`Shape::of`] or a cache of it.
+    ///
+    /// # Errors
+    /// For a time that the weather does not know.
+    pub fn layers(
+        &self,
+        model: CloudModel,
+        maps: &mut LayerMaps,
+        still: impl FnMut(&CloudSlab) -> Shape,
+    ) -> Result<Option<CloudLayers>> {
+        let drifts = self.weather.layers_until(self.time_s)?;
+        let mut overhead = CloudLayers::new(model, self.scene, &drifts, still);
+        if let Some(overhead) = &mut overhead {
+            overhead.place(self, maps)?;
+        }
+        Ok(overhead)
+    }
+}
+
+impl CloudLayers {
+    /// Puts clouds where a host's map says, and over rain areas.
+    ///
+    /// # Errors
+    /// For a time that the weather does not know.
+    fn place(&mut self, query: &LayersQuery<'_>, maps: &mut LayerMaps) -> Result<()> {
+        let LayersQuery { scene, eye, weather, time_s } = *query;
+        if let Some(map) = weather.cloud_map {
+            self.follow(map, maps);
+        }
+        if weather.regions.is_empty() {
+            return Ok(());
+        }
+        let at = (scene.world_to_enu, eye, self.place_m);
+        let Some(clouds) = AreaClouds::new(weather, &scene.conditions, at, time_s)? else { return Ok(()) };
+        if let Some(layer) = self.bring(scene, &clouds) {
+            let slab = &self.all()[layer].slab;
+            let filled = CoverThreshold::of(&Shape::still(slab, FILLED));
+            let cells = clouds.cells.map(|cell| cell.with_edge(edge_m(slab)));
+            self.areas = Some(AreaCells { cells, count: clouds.count, layer, filled });
+        }
+        Ok(())
+    }
+
+    /// Lets layers follow a map.
+    fn follow(&mut self, map: &Arc<CloudMap>, made: &mut LayerMaps) {
+        let count = self.all().len();
+        for i in 0..count {
+            let slab = self.all()[i].slab;
+            if map.is_of(slab.base_m) {
+                self.maps[i] = Some(made.get(&slab, map));
+            }
+        }
+        if self.maps.iter().any(Option::is_some) {
+            // A deck would close what the map leaves open elsewhere.
+            self.show_all();
+        }
+    }
+
+    /// Puts the layer of cells over areas among the others. None where they need none.
+    fn bring(&mut self, scene: &Scene, clouds: &AreaClouds) -> Option<usize> {
+        let others = self.all().iter().zip(&self.maps).map(|(layer, map)| (&layer.slab, map.is_some()));
+        let slab = clouds.slab(others)?;
+        let filled = Shape::still(&slab, FILLED);
+        let anvil = if filled.anvil < 0.0 { filled.anvil - ANVIL_WIDER } else { filled.anvil };
+        let base_m = scene.conditions.air.station_altitude_m + slab.base_m;
+        let larger = (slab.thickness_m / (HEADS * slab.scale_m)).max(1.0);
+        let rough = (larger * larger * filled.rough).min(MOST_ROUGH.max(filled.rough));
+        let solid_m = larger * filled.solid_m;
+        let shape = Shape { base_m, threshold: CLEAR, anvil, rough, solid_m, ..filled };
+        let slot = scene.conditions.clouds.iter().position(|s| s.cover <= 0.0)?;
+        self.insert(OverheadLayer { shape, slab, slot, share: 1.0 })
+    }
+}

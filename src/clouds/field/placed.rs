@@ -1,0 +1,89 @@
+//! Local cloud cover that overrides a layer's own: a host's map of cover ([`CloudMap`]), and cells of cloud over rain
+//! areas, so that no rain falls out of a clear sky. Twin of `shaders/clouds/placed.wgsl`.
+//!
+//! # Model
+//! A part of a layer with a cover of its own is cut out of the field as all of a layer with this cover is: by
+//! threshold, dome and extinction of that cover. These are found for each cell of a map, and go over from middle to
+//! middle.
+//!
+//! Cells over rain areas ([`super::cells`]) are a layer of their own, which is nowhere else: over an area it is closed,
+//! and opens across an edge beyond the area's border, a little wider than its clouds are, so that the field shapes it.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::{
+    cells::AreaCell,
+    cover_threshold::CoverThreshold,
+    layer_map::LayerMap,
+    shape::Shape,
+    thresholds::{CLEAR, FILLED},
+};
+use crate::falling::MAX_AREAS;
+
+/// Cells of cloud over rain areas, and what fills them.
+#[derive(Clone, Copy, Debug)]
+pub struct AreaCells {
+    pub(crate) cells: [AreaCell; MAX_AREAS],
+    pub(crate) count: usize,
+    /// The layer that they are cells of.
+    pub(crate) layer: usize,
+    pub(crate) filled: CoverThreshold,
+}
+
+impl AreaCells {
+    pub(crate) fn all(&self) -> &[AreaCell] {
+        &self.cells[..self.count]
+    }
+
+    /// Most that thresholds change a metre.
+    pub(crate) fn slope_per_m(&self) -> f64 {
+        let rim_m = self.all().iter().map(|cell| cell.rim_m).fold(f64::INFINITY, f64::min);
+        (CLEAR - FILLED) / rim_m
+    }
+
+    /// Hash of the cells, to notice changes.
+    pub(super) fn fingerprint(&self) -> f64 {
+        self.all().iter().map(|c| c.center_m.dot(DVec2::new(1.0, 0.7)) + c.semi_m.x + c.semi_m.y + c.rim_m).sum()
+    }
+}
+
+/// Where a layer's clouds are other than its cover says.
+#[derive(Clone, Debug, Default)]
+pub struct LocalCover {
+    pub(super) map: Option<Arc<LayerMap>>,
+    pub(super) areas: Option<Arc<AreaCells>>,
+}
+
+impl LocalCover {
+    /// By a map alone.
+    #[cfg(test)]
+    pub(crate) fn under(map: Arc<LayerMap>) -> Self {
+        Self { map: Some(map), areas: None }
+    }
+
+    /// Makes a layer's shape that of a place, m east and north of the world's origin. Answers within which distance the
+    /// place's threshold stays, m, and how much it changes a metre beyond.
+    pub(crate) fn shape_at(&self, place_m: DVec2, shape: &mut Shape) -> [f64; 2] {
+        let (mut steady_m, mut slope_per_m) = (f64::INFINITY, 0.0);
+        let mut cut = CoverThreshold::of(shape);
+        if let Some(map) = &self.map {
+            (cut, steady_m) = map.at(place_m);
+            slope_per_m = map.slope_per_m;
+        }
+        if let Some(areas) = &self.areas {
+            let mut most = 0.0f64;
+            for cell in areas.all() {
+                let (share, away_m) = cell.at(place_m);
+                (most, steady_m) = (most.max(share), steady_m.min(away_m));
+            }
+            cut = cut.mix(&areas.filled, most);
+            slope_per_m += areas.slope_per_m();
+        }
+        if self.map.is_some() || self.areas.is_some() {
+            cut.put(shape);
+        }
+        [steady_m, slope_per_m]
+    }
+}

@@ -1,0 +1,354 @@
+//! Light of a lamp or a flash, in the cloud or outside, that a place in a cloud scatters. Twin of
+//! `shaders/clouds/lit_lamps.wgsl`.
+//!
+//! # Model
+//! A place stands in a box of cloud, as it does for the sun ([`super::Sources`]).
+//! * Of a source in the cloud: light that is scattered once, by the true phase function, and light that wanders.
+//!   Without faces its mean radiance at a scaled distance d from a source of intensity I would be 3 (1 - g') I / (4 pi
+//!   d) (diffusion; Ishimaru 1978, chapter 9). In front of a face, 0.71 / (1 - g') away, there is a plane in which it
+//!   is 0: an image of the source there, of the opposite sign, stands for that. With p and s the depths of place and
+//!   source behind that plane the nearest face leaves 1 - r of the light, r = d / sqrt(d^2 + 4 p s), the opposite face
+//!   1 - r^2, those across 1 - r^3. The slope of that is the flux, by which more light goes one way than the other.
+//! * Of a source outside: the face towards it is lit as by a sky of the same irradiance ([`super::transport`]).
+//!
+//! How much cloud lies on the way tells the two apart. A flash in a cloud is in it, even where the drawn cloud has a
+//! gap there.
+//!
+//! # Error
+//! Against photons from a source in a slab and a cube, and outside of a cube:
+//! `cargo test --lib clouds::light::lamp_light -- --nocapture`.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::{
+    sources::Depths,
+    transport::{Scattering, Table, table_at},
+};
+
+/// Extrapolation length of the diffusion approximation, over 1 / (1 - g') (Milne's problem).
+const DARK_AT: f64 = 0.71;
+/// Powers of the ratio of distances by which the faces other than the nearest one take light: the one opposite to it,
+/// and those across. The slope of the sum of all images at the nearest face has them.
+const FARTHER: [i32; 2] = [2, 3];
+/// Depth from which light comes back through the face that it fell on, over 1 / (1 - g').
+const RETURNS_FROM: f64 = 0.5;
+/// Shares of the way to a source that lie in cloud, between which it goes over from outside to inside.
+const INSIDE: [f64; 2] = [0.5, 1.0];
+
+/// A source as a place sees it. Distances are scaled depths of the cloud that the place is in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shine {
+    /// Unit, to the source.
+    pub toward: DVec3,
+    /// How far it is.
+    pub distance: f64,
+    /// Scaled depth of cloud on the way.
+    pub between: f64,
+    /// Scaled depths of the cloud's layer above and below the source.
+    pub within: [f64; 2],
+    /// It shines in a cloud, whatever lies on the way.
+    pub is_buried: bool,
+}
+
+/// Distance from a source over that from its image behind a face, and how fast that ratio grows along `direction`.
+/// `place` and `source` are how far these two stand from where the face lies dark, `grows` is how fast `place` grows
+/// along the direction.
+fn mirrored(shine: &Shine, direction: DVec3, [place, grows]: [f64; 2], source: f64) -> (f64, f64) {
+    let d = shine.distance;
+    let square = d * d + 4.0 * place * source;
+    let image = square.sqrt();
+    let toward = (d * d / square - 1.0) * shine.toward.dot(direction);
+    (d / image, (toward - 2.0 * d * source * grows / square) / image)
+}
+
+/// Returns the light that a place at these depths scatters into `direction` (the way light goes), through the scaled
+/// depth `to_eye` of more cloud, 1/sr, of a source of intensity 1 a unit of scaled depth squared. `sky`:
+/// [`super::transport::Transport::under_sky`].
+pub fn scattered(of: &Scattering, sky: &Table, at: &Depths, shine: &Shine, direction: DVec3, to_eye: f64) -> f64 {
+    let shine = &Shine { distance: shine.distance.max(1e-3), ..*shine };
+    let d = shine.distance;
+    let share = ((shine.between / d - INSIDE[0]) / (INSIDE[1] - INSIDE[0])).clamp(0.0, 1.0);
+    let share = if shine.is_buried { 1.0 } else { share * share * (3.0 - 2.0 * share) };
+    let inside = if share > 0.0 { from_inside(of, at, shine, direction, to_eye) } else { 0.0 };
+    let outside = if share < 1.0 { from_outside(of, sky, at, shine, direction) } else { 0.0 };
+    share * inside + (1.0 - share) * outside
+}
+
+fn from_inside(of: &Scattering, at: &Depths, shine: &Shine, direction: DVec3, to_eye: f64) -> f64 {
+    let d = shine.distance;
+    let (turning, albedo) = (of.turning(), of.scaled_albedo());
+    let versine = 1.0 + direction.dot(shine.toward);
+    let phase = of.smooth_phase(versine) + of.peak(versine, shine.between + to_eye);
+    let once = albedo * phase * (-shine.between).exp() / (d * d);
+    let dark = DARK_AT / turning;
+    let level = shine.toward.truncate().length() * d;
+    // Of the sides no more is known than that one looks at the nearer one, and that the source lies beyond it in the
+    // same cloud.
+    let out = direction.truncate().length();
+    let half = 0.5 * (at.left + at.right).max(d);
+    // Depths of place and source, and how fast the first grows along the direction.
+    let faces = [
+        (at.above, shine.within[0], -direction.z),
+        (at.below, shine.within[1], direction.z),
+        (at.left, at.left + level, -out),
+        (at.right.max(level + half), half, out),
+        (half, half, 0.0),
+        (half, half, 0.0),
+    ];
+    let mut mean = 1.0 / d;
+    let mut grows = shine.toward.dot(direction) / d;
+    let nearest = (0..3).min_by(|i, j| faces[*i].0.total_cmp(&faces[*j].0)).unwrap_or(0);
+    for (i, (place, source, grows_by)) in faces.into_iter().enumerate() {
+        let power = if i == nearest { 1 } else { FARTHER[usize::from(i != nearest ^ 1)] };
+        // A cloud is round: where one face is near, the others are not.
+        let place = if i == nearest { place } else { place.max(source) };
+        let (ratio, falling) = mirrored(shine, direction, [place + dark, grows_by], source.max(0.0) + dark);
+        let left = 1.0 - ratio.powi(power);
+        mean *= left;
+        grows -= f64::from(power) * ratio.powi(power - 1) * falling / left;
+    }
+    once + albedo * 3.0 / (4.0 * PI) * mean * (turning - (1.0 - turning) * grows).max(0.0)
+}
+
+fn from_outside(of: &Scattering, sky: &Table, at: &Depths, shine: &Shine, direction: DVec3) -> f64 {
+    let d = shine.distance;
+    let turning = of.turning();
+    // Where the light would leave the box behind the place.
+    let (sine, rise) = (shine.toward.truncate().length(), shine.toward.z);
+    let upright = if rise > 0.0 { at.below } else { at.above };
+    let behind = (upright / rise.abs().max(1e-6)).min(at.right / sine.max(1e-6));
+    // What leaves across the way.
+    let rate = |width: f64, across: f64| across * (PI / (width + 2.0 * DARK_AT / turning)).powi(2);
+    let squares = shine.toward * shine.toward;
+    let level = at.left + at.right;
+    let leak =
+        (rate(level, 1.0 - squares.x) + rate(level, 1.0 - squares.y) + rate(at.above + at.below, 1.0 - squares.z))
+            / (3.0 * turning);
+    let terms = table_at(sky, shine.between, behind, leak);
+    let x = -direction.dot(shine.toward);
+    let sum = terms[0] + x * terms[1] + (1.5 * x * x - 0.5) * terms[2] + (2.5 * x * x - 1.5) * x * terms[3];
+    let often = sum.max(0.0) / PI;
+    let momentum = (-turning * shine.between).exp() - (-shine.between).exp();
+    let kept = of.scaled_albedo() * 3.0 * of.moments[1] / (4.0 * PI) * momentum * x;
+    // What comes back to the face has been some way in.
+    let d = d - shine.between + shine.between.max(RETURNS_FROM / turning);
+    (often + kept.clamp(-often, often)) / (d * d)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::{
+        chance::Chance,
+        clouds::{
+            light::transport::{Scattering, Transport},
+            reference,
+        },
+        light::{Phase, PhaseLobes},
+    };
+
+    const G: f64 = 0.85;
+
+    /// A box of optical depth 1 a unit, and a source of 1 cd.
+    struct Case {
+        sides: DVec3,
+        source: DVec3,
+    }
+
+    fn spread(i: u32) -> [f64; 4] {
+        [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_721_281_458_4, 0.538_597_256_572_023_3]
+            .map(|a| (0.5 + f64::from(i) * a).fract())
+    }
+
+    impl Case {
+        fn is_in(&self) -> bool {
+            (0..3).all(|i| (0.0..self.sides[i]).contains(&self.source[i]))
+        }
+
+        /// To where a ray leaves the box.
+        fn exit(&self, at: DVec3, d: DVec3) -> f64 {
+            (0..3)
+                .map(|i| if d[i] > 0.0 { (self.sides[i] - at[i]) / d[i] } else { -at[i] / d[i].min(-1e-12) })
+                .fold(f64::INFINITY, f64::min)
+        }
+
+        fn depths(&self, at: DVec3, scale: f64) -> Depths {
+            let (low, high) = (at * scale, (self.sides - at) * scale);
+            let edge = low.x.min(high.x).min(low.y).min(high.y);
+            let other = (self.sides.x.min(self.sides.y) * scale - edge).max(edge);
+            Depths { above: high.z, below: low.z, to_sun: 0.0, near: edge, far: other, left: edge, right: other }
+        }
+
+        fn shine(&self, at: DVec3, scale: f64) -> Shine {
+            let to = self.source - at;
+            let distance = to.length();
+            let toward = to / distance;
+            let between = distance.min(self.exit(at, toward));
+            let within = [(self.sides.z - self.source.z) * scale, self.source.z * scale];
+            Shine { toward, distance: distance * scale, between: between * scale, within, is_buried: false }
+        }
+
+        /// Light out of a face about a place of it, lm a unit, as the model has it; without what comes straight from
+        /// the source.
+        fn modelled(&self, transport: &Transport, (axis, high): (usize, bool), on: impl Fn([f64; 2]) -> DVec3) -> f64 {
+            let (of, sky) = (&transport.scattering, transport.under_sky());
+            let scale = of.scale();
+            let rays = 2000;
+            let mut sum = 0.0;
+            for i in 0..rays {
+                let p = spread(i);
+                let (sine, azimuth) = (p[2].sqrt(), 2.0 * PI * p[3]);
+                let sign = if high { 1.0 } else { -1.0 };
+                let mut out = DVec3::ZERO;
+                out[axis] = sign * (1.0 - p[2]).sqrt();
+                out[(axis + 1) % 3] = sine * azimuth.cos();
+                out[(axis + 2) % 3] = sine * azimuth.sin();
+                let at = on([p[0], p[1]]) - out * 1e-6;
+                let length = self.exit(at, -out).min(40.0);
+                let (step, mut gone, mut light) = (0.2, 0.0, 0.0);
+                while gone < length {
+                    let here = at - out * (gone + 0.5 * step);
+                    let to_eye = gone * scale;
+                    let s = scattered(of, &sky, &self.depths(here, scale), &self.shine(here, scale), out, to_eye);
+                    light += s * scale * scale * (-to_eye).exp() * -(-step * scale).exp_m1();
+                    gone += step;
+                }
+                sum += light / f64::from(rays);
+            }
+            PI * sum
+        }
+
+        /// Computes the light out of a whole face, as [`Self::modelled`] does about a place of it.
+        fn modelled_face(&self, transport: &Transport, face: usize) -> f64 {
+            let (axis, high) = (face / 2, face % 2 == 1);
+            let on = |[u, v]: [f64; 2]| {
+                let mut at = DVec3::ZERO;
+                at[axis] = if high { self.sides[axis] } else { 0.0 };
+                at[(axis + 1) % 3] = self.sides[(axis + 1) % 3] * u;
+                at[(axis + 2) % 3] = self.sides[(axis + 2) % 3] * v;
+                at
+            };
+            self.modelled(transport, (axis, high), on)
+        }
+
+        /// By photons: `each` gets where one leaves and by which face.
+        fn photons(&self, count: u32, mut each: impl FnMut(DVec3, usize)) {
+            let mut chance = Chance::new(5, 0);
+            let lobes = PhaseLobes::new(&Phase::HenyeyGreenstein { g: G });
+            for _ in 0..count {
+                let z = 2.0 * chance.even() - 1.0;
+                let a = 2.0 * PI * chance.even();
+                let s = (1.0 - z * z).sqrt();
+                let (mut at, mut d) = (self.source, DVec3::new(s * a.cos(), s * a.sin(), z));
+                if !self.is_in() {
+                    let Some(t) = self.enters(at, d) else { continue };
+                    at += d * (t + 1e-9);
+                }
+                let mut turns = 0;
+                loop {
+                    let mut exit = (f64::INFINITY, 0);
+                    for axis in 0..3 {
+                        let to =
+                            if d[axis] > 0.0 { (self.sides[axis] - at[axis]) / d[axis] } else { -at[axis] / d[axis] };
+                        if d[axis] != 0.0 && to < exit.0 {
+                            exit = (to, 2 * axis + usize::from(d[axis] > 0.0));
+                        }
+                    }
+                    let free = -chance.even().ln();
+                    if free >= exit.0 {
+                        // What is hardly turned counts as straight on.
+                        if turns > 0 {
+                            each(at + d * exit.0, exit.1);
+                        }
+                        break;
+                    }
+                    at += d * free;
+                    d = reference::scattered(&lobes, d, &mut chance);
+                    turns += 1;
+                }
+            }
+        }
+
+        fn enters(&self, at: DVec3, d: DVec3) -> Option<f64> {
+            let (mut first, mut last) = (0.0f64, f64::INFINITY);
+            for i in 0..3 {
+                let (a, b) = (-at[i] / d[i], (self.sides[i] - at[i]) / d[i]);
+                (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+            }
+            (first < last).then_some(first)
+        }
+    }
+
+    /// Light out of a unit of each face of a cube.
+    pub fn modelled_faces(side: f64, source: DVec3) -> [f64; 6] {
+        let (case, transport) = (Case { sides: DVec3::splat(side), source }, transport());
+        std::array::from_fn(|face| case.modelled_face(&transport, face))
+    }
+
+    fn transport() -> Transport {
+        Transport::new(Scattering::new(PhaseLobes::new(&Phase::HenyeyGreenstein { g: G }), 1.0))
+    }
+
+    #[test]
+    fn a_source_in_a_slab_glows_through_its_face_as_photons_do() {
+        let transport = transport();
+        for (depth, at) in
+            [(16.0, 0.5), (16.0, 0.25), (32.0, 0.5), (64.0, 0.75), (16.0, 2.0), (32.0, 1.25), (16.0, 5.0)]
+        {
+            let wide = 4000.0;
+            let case =
+                Case { sides: DVec3::new(wide, wide, depth), source: DVec3::new(0.5 * wide, 0.5 * wide, at * depth) };
+            let rings: Vec<f64> = [0.0, 0.5, 1.0, 1.5, 2.0].map(|k| k * depth).to_vec();
+            let count = 60_000;
+            let mut out = vec![0.0; rings.len() - 1];
+            case.photons(count, |at, face| {
+                let r = (at - case.source).truncate().length();
+                if face == 5
+                    && let Some(i) = (0..out.len()).find(|i| r < rings[i + 1])
+                {
+                    let area = PI * (rings[i + 1].powi(2) - rings[i].powi(2));
+                    out[i] += 4.0 * PI / f64::from(count) / area;
+                }
+            });
+            for (i, out) in out.iter().enumerate() {
+                let on = |[u, v]: [f64; 2]| {
+                    let r = (rings[i].powi(2) + u * (rings[i + 1].powi(2) - rings[i].powi(2))).sqrt();
+                    let a = 2.0 * PI * v;
+                    DVec3::new(case.source.x + r * a.cos(), case.source.y + r * a.sin(), depth)
+                };
+                let ratio = case.modelled(&transport, (2, true), on) / out;
+                println!("slab of {depth}, source at {at} of it, ring {i}: {ratio:.2} of the photons' {out:.6}");
+                let bounds = if at < 1.0 { 0.9..1.35 } else { 0.75..1.45 };
+                assert!(i > 2 || bounds.contains(&ratio), "slab of {depth}, source at {at}, ring {i}: {ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_source_by_a_cube_lights_its_faces_as_photons_do() {
+        let transport = transport();
+        let side = 16.0;
+        for (name, source) in [
+            ("in its middle", DVec3::splat(8.0)),
+            ("in it, low", DVec3::new(8.0, 8.0, 4.0)),
+            ("by a side", DVec3::new(3.0, 8.0, 8.0)),
+            ("below", DVec3::new(8.0, 8.0, -8.0)),
+            ("far below", DVec3::new(8.0, 8.0, -64.0)),
+            ("beside", DVec3::new(-16.0, 8.0, 8.0)),
+        ] {
+            let case = Case { sides: DVec3::splat(side), source };
+            let count = 60_000;
+            let mut out = [0.0; 6];
+            case.photons(count, |_, face| out[face] += 4.0 * PI / f64::from(count) / (side * side));
+            let all: f64 = out.iter().sum();
+            for (face, out) in out.iter().enumerate() {
+                let model = case.modelled_face(&transport, face);
+                println!("{name}, face {face}: {model:.6}, photons {out:.6}, of all faces {all:.6}");
+                let most = if case.is_in() { 0.3 * out } else { 0.08 * all };
+                assert!((model - out).abs() < most, "{name}, face {face}: {model} not {out}");
+            }
+        }
+    }
+}

@@ -1,0 +1,427 @@
+//! Light that is scattered more than once inside a layer of cloud: adding and doubling (van de Hulst 1980) with four
+//! directions a hemisphere, for the depths above and below a place.
+//!
+//! # Model
+//! The forward peak of the phase function counts as not scattered (delta scaling, Wiscombe 1977): what is beyond a cap
+//! is cut off, so much of it that the share g^6 is gone, for asymmetry g. What is left is smooth enough for eight
+//! directions and four Legendre moments. Depths are scaled by 1 - albedo x share.
+//!
+//! A place knows the scaled depth `above` and `below` it. The layer above and the layer below are slabs of a ladder of
+//! doubled depths; between the two the radiance follows from their reflection and transmission. Its first four moments
+//! are what the place scatters: J = sum of (2 l + 1) chi_l m_l P_l / (4 pi).
+//!
+//! A cloud of finite width loses light through its sides. In the diffusion approximation the light of a box goes as a
+//! cosine from side to side, and leaves as if it were absorbed at the rate D b^2 for each of the two level axes, with b
+//! = pi / (width + 2 x 0.71 / (1 - g')) and D = 1 / (3 (1 - g')) (Duderstadt and Hamilton 1976, chapter 5):
+//! [`leak_rate`]. Ladders stand for some rates ([`LEAKS`]).
+//!
+//! # Error
+//! `cargo test --lib clouds::light::transport` prints reflectance and transmittance of slabs against discrete
+//! ordinates.
+
+use std::{
+    f64::consts::PI,
+    sync::{Arc, OnceLock},
+};
+
+use glam::{DMat4, DVec4};
+
+use crate::light::phase::{PhaseLobes, lobes_phase};
+
+/// Nodes and weights of Gauss over (0, 1): cosines of the directions of a hemisphere.
+const NODES: DVec4 =
+    DVec4::new(0.069_431_844_202_973_71, 0.330_009_478_207_571_9, 0.669_990_521_792_428_1, 0.930_568_155_797_026_3);
+const WEIGHTS: DVec4 =
+    DVec4::new(0.173_927_422_568_726_93, 0.326_072_577_431_273_07, 0.326_072_577_431_273_07, 0.173_927_422_568_726_93);
+
+/// Power of the asymmetry that is the share of scattering counted as straight on.
+const FORWARD_POWER: i32 = 6;
+/// Azimuths over which the phase function is averaged, in half a turn.
+const AZIMUTHS: usize = 64;
+
+/// Scaled depth of the thinnest slab of a ladder; those after it are each the square root of 2 times as deep.
+pub const THINNEST: f64 = 0.05;
+/// Slabs of a ladder, the one of no depth among them.
+pub const DEPTHS: usize = 28;
+/// Ladders, one a rate at which light leaves through the sides, per scaled depth. Light falls off with the root of the
+/// rate: the roots are 0.03 (e^(k/4) - 1).
+pub const LEAKS: usize = 16;
+const LEAK_ROOT: f64 = 0.03;
+
+fn leak_of(k: usize) -> f64 {
+    (LEAK_ROOT * (0.25 * k as f64).exp_m1()).powi(2)
+}
+
+/// Cosines of scattering angles over which a phase function is integrated: dense where 1 - cos is small.
+fn angles() -> impl Iterator<Item = (f64, f64)> {
+    let (n, least) = (4000, 1e-9f64.ln());
+    let step = (2f64.ln() - least) / f64::from(n);
+    (0..n).map(move |i| {
+        let versine = (least + step * (f64::from(i) + 0.5)).exp();
+        (versine, 2.0 * PI * versine * step)
+    })
+}
+
+fn legendre(l: usize, x: f64) -> f64 {
+    [1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x][l]
+}
+
+/// How the droplets of a cloud scatter, without the forward peak.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scattering {
+    /// The whole phase function.
+    pub lobes: PhaseLobes,
+    /// Part of what meets a droplet that is scattered, with the peak.
+    pub albedo: f64,
+    /// Share of scattering in the peak.
+    pub forward: f64,
+    /// Value above which the phase function is cut off, 1/sr.
+    pub cap: f64,
+    /// Legendre moments of what is left.
+    pub moments: [f64; 4],
+}
+
+impl Scattering {
+    /// Creates the scattering of a phase function, and of droplets that scatter the share `albedo`.
+    pub fn new(lobes: PhaseLobes, albedo: f64) -> Self {
+        let asymmetry = lobes.moments()[0].clamp(0.0, 0.999);
+        let forward = asymmetry.powi(FORWARD_POWER);
+        let values: Vec<[f64; 3]> =
+            angles().map(|(versine, weight)| [versine, weight, lobes_phase(&lobes, 1.0, versine)]).collect();
+        let whole: f64 = values.iter().map(|[_, w, p]| w * p).sum();
+        let kept = |cap: f64| values.iter().map(|[_, w, p]| w * p.min(cap)).sum::<f64>() / whole;
+        let (mut low, mut high) = (1e-6, values.iter().fold(0.0, |most: f64, v| most.max(v[2])));
+        for _ in 0..60 {
+            let middle = (low * high).sqrt();
+            if kept(middle) > 1.0 - forward { high = middle } else { low = middle }
+        }
+        let moment = |l| {
+            values.iter().map(|[v, w, p]| w * p.min(high) * legendre(l, 1.0 - v)).sum::<f64>() / (whole * kept(high))
+        };
+        Self { lobes, albedo, forward, cap: high, moments: [0, 1, 2, 3].map(moment) }
+    }
+
+    /// Scaled depth over depth.
+    pub fn scale(&self) -> f64 {
+        1.0 - self.albedo * self.forward
+    }
+
+    /// Albedo of what is left.
+    pub fn scaled_albedo(&self) -> f64 {
+        self.albedo * (1.0 - self.forward) / self.scale()
+    }
+
+    /// The phase function without its peak, 1/sr, at the angle whose 1 - cos is `versine`.
+    pub fn smooth_phase(&self, versine: f64) -> f64 {
+        lobes_phase(&self.lobes, 1.0, versine).min(self.cap) / (1.0 - self.forward)
+    }
+
+    /// The peak that was cut off, 1/sr, of light that has gone the scaled depth `gone` in all: of what the beam counts
+    /// as straight on, the part 1 - exp(-f gone / (1 - f)) was scattered so, evenly along the way.
+    pub fn peak(&self, versine: f64, gone: f64) -> f64 {
+        let x = self.forward * gone / (1.0 - self.forward);
+        let share = if x < 1e-3 { 1.0 - 0.5 * x } else { (1.0 - (-x).exp()) / x };
+        (lobes_phase(&self.lobes, 1.0, versine) - self.cap).max(0.0) / (1.0 - self.forward) * share
+    }
+
+    /// Share of the way in which light keeps its direction: 1 - g'.
+    pub fn turning(&self) -> f64 {
+        1.0 - self.moments[1]
+    }
+
+    /// Mean of the smooth phase function over azimuth between directions of these cosines.
+    fn mean_phase(&self, from: f64, to: f64) -> f64 {
+        let sines = ((1.0 - from * from) * (1.0 - to * to)).max(0.0).sqrt();
+        let at = |k: usize| {
+            let azimuth = PI * (k as f64 + 0.5) / AZIMUTHS as f64;
+            self.smooth_phase((1.0 - from * to - sines * azimuth.cos()).max(0.0))
+        };
+        (0..AZIMUTHS).map(at).sum::<f64>() / AZIMUTHS as f64
+    }
+
+    /// Returns the light that a beam of unit irradiance and this cosine sends into the directions down and up, a unit
+    /// of scaled depth; all of it is the albedo.
+    fn sent_by_beam(&self, cosine: f64) -> (DVec4, DVec4) {
+        let at = |sign: f64| DVec4::from_array(NODES.to_array().map(|mu| self.mean_phase(cosine, sign * mu)));
+        let (down, up) = (at(1.0), at(-1.0));
+        let whole = 2.0 * PI * WEIGHTS.dot(down + up) / self.scaled_albedo();
+        (down / whole, up / whole)
+    }
+}
+
+/// Rate at which light leaves a box of these scaled depths from side to side along its two level axes, per scaled
+/// depth, over the rate at which it is scattered; see the module. `turning`: [`Scattering::turning`].
+pub fn leak_rate(widths: [f64; 2], turning: f64) -> f64 {
+    let one = |width: f64| (PI / (width + 1.42 / turning)).powi(2);
+    (one(widths[0]) + one(widths[1])) / (3.0 * turning)
+}
+
+/// A slab as all light sees it: what it reflects and what it lets through, from direction to direction.
+#[derive(Clone, Copy)]
+struct ScatterSlab {
+    depth: f64,
+    reflects: DMat4,
+    passes: DMat4,
+}
+
+/// Light that leaves a slab under a beam: scattered down, scattered up, and what is left of the beam.
+#[derive(Clone, Copy)]
+struct UnderBeam {
+    down: DVec4,
+    up: DVec4,
+    left: f64,
+}
+
+/// 1 / (1 - a b): light thrown back and forth.
+fn back_and_forth(a: DMat4, b: DMat4) -> DMat4 {
+    (DMat4::IDENTITY - a * b).inverse()
+}
+
+impl ScatterSlab {
+    const NONE: Self = Self { depth: 0.0, reflects: DMat4::ZERO, passes: DMat4::IDENTITY };
+
+    /// So thin that nothing is scattered twice.
+    fn thin(turned: &ScatterMatrices, albedo: f64, depth: f64) -> Self {
+        let straight = DMat4::from_diagonal(DVec4::ONE - depth / NODES);
+        let scattered = albedo * depth;
+        Self { depth, reflects: turned.up * scattered, passes: straight + turned.down * scattered }
+    }
+
+    fn doubled(&self) -> Self {
+        let (r, t) = (self.reflects, self.passes);
+        let between = back_and_forth(r, r);
+        Self { depth: 2.0 * self.depth, reflects: r + t * between * r * t, passes: t * between * t }
+    }
+
+    /// Returns the light that leaves two such slabs under a beam, from that which leaves one. `between`: light thrown
+    /// back and forth between the two.
+    fn doubled_beam(&self, between: &DMat4, lit: &UnderBeam) -> UnderBeam {
+        let (r, t) = (self.reflects, self.passes);
+        let below = lit.up * lit.left;
+        let down = *between * (lit.down + r * below);
+        let up = r * down + below;
+        UnderBeam { down: lit.down * lit.left + t * down, up: lit.up + t * up, left: lit.left * lit.left }
+    }
+}
+
+/// Light that a layer of depth 1 would scatter from each direction into each, down and up, over all that it scatters:
+/// once, and as if it took nothing away.
+struct ScatterMatrices {
+    down: DMat4,
+    up: DMat4,
+}
+
+impl ScatterMatrices {
+    fn new(of: &Scattering) -> Self {
+        let between = |sign: f64| {
+            let column = |j: usize| DVec4::from_array([0, 1, 2, 3].map(|i| of.mean_phase(NODES[i], sign * NODES[j])));
+            DMat4::from_cols(column(0), column(1), column(2), column(3))
+        };
+        let (mut down, mut up) = (between(1.0), between(-1.0));
+        for j in 0..4 {
+            let share = WEIGHTS[j] / WEIGHTS.dot(down.col(j) + up.col(j));
+            *down.col_mut(j) *= share / NODES;
+            *up.col_mut(j) *= share / NODES;
+        }
+        Self { down, up }
+    }
+}
+
+/// Slabs of doubled depths of one medium that loses light at one rate.
+struct SlabLadder {
+    /// From each of two thinnest slabs on, the doublings up to the deepest of the ladder, with light thrown back and
+    /// forth between two of each.
+    doublings: [Vec<(ScatterSlab, DMat4)>; 2],
+    slabs: Vec<ScatterSlab>,
+    /// By depth above and below: light thrown back and forth between the two.
+    between: Vec<DMat4>,
+    leak: f64,
+}
+
+/// Doublings from a slab so thin that nothing is scattered twice to the thinnest of the ladder.
+const DOUBLINGS: i32 = 10;
+
+impl SlabLadder {
+    fn new(of: &Scattering, turned: &ScatterMatrices, leak: f64) -> Self {
+        let albedo = of.scaled_albedo() / (1.0 + leak);
+        let doublings = [1.0, 2f64.sqrt()].map(|step| {
+            let mut slab = ScatterSlab::thin(turned, albedo, THINNEST * step / 2f64.powi(DOUBLINGS));
+            let all = (0..DOUBLINGS as usize + DEPTHS.div_ceil(2)).map(|_| {
+                let this = slab;
+                slab = slab.doubled();
+                (this, back_and_forth(this.reflects, this.reflects))
+            });
+            all.collect::<Vec<_>>()
+        });
+        let slabs: Vec<ScatterSlab> =
+            in_turn(ScatterSlab::NONE, doublings.each_ref().map(|chain| chain.iter().map(|(slab, _)| *slab)));
+        let pairs = (0..DEPTHS * DEPTHS).map(|i| (&slabs[i % DEPTHS], &slabs[i / DEPTHS]));
+        let between = pairs.map(|(above, below)| back_and_forth(above.reflects, below.reflects)).collect();
+        Self { doublings, slabs, between, leak }
+    }
+
+    fn under_beam(&self, (down, up): (DVec4, DVec4), cosine: f64) -> Vec<UnderBeam> {
+        // Of what the beam scatters as much is lost at the sides as of the rest.
+        let kept = 1.0 / (1.0 + self.leak);
+        let chains = self.doublings.each_ref().map(|chain| {
+            let depth = chain[0].0.depth;
+            let mut lit = UnderBeam {
+                down: down * kept * depth / NODES,
+                up: up * kept * depth / NODES,
+                left: (-depth / cosine).exp(),
+            };
+            chain.iter().map(move |(slab, between)| {
+                let two = slab.doubled_beam(between, &lit);
+                std::mem::replace(&mut lit, two)
+            })
+        });
+        in_turn(UnderBeam { down: DVec4::ZERO, up: DVec4::ZERO, left: 1.0 }, chains)
+    }
+}
+
+/// Returns the value at no depth, and then at each depth of a ladder, out of the doublings of two thinnest slabs in
+/// turn.
+fn in_turn<T>(none: T, mut chains: [impl Iterator<Item = T>; 2]) -> Vec<T> {
+    chains.iter_mut().for_each(|chain| (0..DOUBLINGS).for_each(|_| drop(chain.next())));
+    let [even, odd] = chains;
+    let pairs = even.zip(odd).flat_map(|(a, b)| [a, b]);
+    std::iter::once(none).chain(pairs).take(DEPTHS).collect()
+}
+
+/// Source terms of light scattered more than once by depth above (columns), depth below (rows) and leak (blocks of
+/// rows): coefficients of Legendre's polynomials of the cosine between a direction and the way down, 1/sr.
+pub type Table = Vec<[f32; 4]>;
+
+/// Everything of a medium that does not depend on its light.
+pub struct Transport {
+    /// The medium.
+    pub scattering: Scattering,
+    ladders: Vec<SlabLadder>,
+    /// See [`Transport::conserving`].
+    conserved: f64,
+    /// See [`Transport::under_sky`].
+    sky: OnceLock<Arc<Table>>,
+}
+
+impl Transport {
+    /// Creates the transport of a medium: some milliseconds of work.
+    pub fn new(scattering: Scattering) -> Self {
+        let turned = ScatterMatrices::new(&scattering);
+        let ladders = (0..LEAKS).map(|k| SlabLadder::new(&scattering, &turned, leak_of(k))).collect();
+        let mut made = Self { scattering, ladders, conserved: 1.0, sky: OnceLock::new() };
+        made.conserved = made.conserving();
+        made
+    }
+
+    /// Factor with which rays through an even slab find as much light leave it as falls on it, where nothing is
+    /// absorbed: what leaves in eight directions and what leaves in all of them differ by a hundredth.
+    fn conserving(&self) -> f64 {
+        let of = Scattering { albedo: 1.0, ..self.scattering };
+        let ladders = vec![SlabLadder::new(&of, &ScatterMatrices::new(&of), 0.0)];
+        let whole = Self { scattering: of, ladders, conserved: 1.0, sky: OnceLock::new() };
+        let (depth, cosine) = (6.0, 0.6);
+        let table = whole.under_beam(cosine);
+        let (mut once, mut often) = (0.0, 0.0);
+        let (rays, steps) = (12, 40);
+        for ray in 0..rays {
+            let mu = (f64::from(ray) + 0.5) / f64::from(rays);
+            for side in [1.0, -1.0] {
+                let phase = of.mean_phase(cosine, side * mu);
+                for step in 0..steps {
+                    let seen = -(-depth / mu).exp_m1();
+                    let gone = -mu * (-(f64::from(step) + 0.5) / f64::from(steps) * seen).ln_1p();
+                    let above = if side > 0.0 { depth - gone } else { gone };
+                    let terms = first_leak_at(&table, above, depth - above);
+                    let share = seen * mu * 2.0 * PI / f64::from(rays * steps);
+                    once += share * phase * (-above / cosine).exp();
+                    often += share * (0..4).map(|l| terms[l] * legendre(l, side * mu)).sum::<f64>();
+                }
+            }
+        }
+        let falls = -cosine * (-depth / cosine).exp_m1();
+        ((falls - once) / often).clamp(0.9, 1.1)
+    }
+
+    /// The moments of light between a slab above and one below, times what a place scatters of them.
+    fn source(&self, down: DVec4, up: DVec4) -> [f32; 4] {
+        let of = &self.scattering;
+        [0usize, 1, 2, 3].map(|l| {
+            let nodes = NODES.to_array();
+            let sum: f64 =
+                (0..4).map(|i| WEIGHTS[i] * (down[i] * legendre(l, nodes[i]) + up[i] * legendre(l, -nodes[i]))).sum();
+            let scattered = of.scaled_albedo() * (2 * l + 1) as f64 * of.moments[l] / (4.0 * PI);
+            (2.0 * PI * sum * scattered * self.conserved) as f32
+        })
+    }
+
+    /// Under a beam of unit irradiance (facing it) that comes from above at this cosine. Light that it scatters once is
+    /// not in it.
+    pub fn under_beam(&self, cosine: f64) -> Table {
+        let cosine = cosine.clamp(0.01, 1.0);
+        let of = &self.scattering;
+        let sent = of.sent_by_beam(cosine);
+        let mut out = Vec::with_capacity(LEAKS * DEPTHS * DEPTHS);
+        for ladder in &self.ladders {
+            let lit = ladder.under_beam(sent, cosine);
+            for i in 0..DEPTHS * DEPTHS {
+                let (above, below) = (i % DEPTHS, i / DEPTHS);
+                let from_below = lit[below].up * lit[above].left;
+                let down = ladder.between[i] * (lit[above].down + ladder.slabs[above].reflects * from_below);
+                let up = ladder.slabs[below].reflects * down + from_below;
+                out.push(self.source(down, up));
+            }
+        }
+        out
+    }
+
+    /// Under a sky of radiance 1 all over the upper side. All that it sends is in it. Kept: it is the same under any
+    /// sun.
+    pub fn under_sky(&self) -> Arc<Table> {
+        let one = |ladder: &SlabLadder, i: usize| {
+            let (above, below) = (i % DEPTHS, i / DEPTHS);
+            let down = ladder.between[i] * (ladder.slabs[above].passes * DVec4::ONE);
+            self.source(down, ladder.slabs[below].reflects * down)
+        };
+        let all = || self.ladders.iter().flat_map(|ladder| (0..DEPTHS * DEPTHS).map(move |i| one(ladder, i))).collect();
+        self.sky.get_or_init(|| Arc::new(all())).clone()
+    }
+}
+
+/// Place of a scaled depth in a row of a table, from 0 to [`DEPTHS`] - 1.
+pub fn depth_place(depth: f64) -> f64 {
+    let x = if depth < THINNEST { depth / THINNEST } else { 1.0 + 2.0 * (depth / THINNEST).log2() };
+    x.clamp(0.0, (DEPTHS - 1) as f64)
+}
+
+/// Place of a leak among the [`LEAKS`], from 0 to their number less 1.
+pub fn leak_place(leak: f64) -> f64 {
+    (4.0 * (leak.sqrt() / LEAK_ROOT).ln_1p()).min((LEAKS - 1) as f64)
+}
+
+fn cell(x: f64, count: usize) -> (usize, f64) {
+    let i = (x as usize).min(count - 2);
+    (i, x - i as f64)
+}
+
+/// A table's source terms between its entries, of the ladder without leak.
+fn first_leak_at(table: &[[f32; 4]], above: f64, below: f64) -> [f64; 4] {
+    let (i, x) = cell(depth_place(above), DEPTHS);
+    let (j, y) = cell(depth_place(below), DEPTHS);
+    let mut out = [0.0; 4];
+    for (dj, wj) in [(0, 1.0 - y), (1, y)] {
+        for (di, wi) in [(0, 1.0 - x), (1, x)] {
+            let texel = table[(j + dj) * DEPTHS + i + di];
+            for l in 0..4 {
+                out[l] += wj * wi * f64::from(texel[l]);
+            }
+        }
+    }
+    out
+}
+
+/// A table's source terms between its entries.
+pub fn table_at(table: &Table, above: f64, below: f64, leak: f64) -> [f64; 4] {
+    let (k, z) = cell(leak_place(leak), LEAKS);
+    let [low, high] = [k, k + 1].map(|k| first_leak_at(&table[k * DEPTHS * DEPTHS..], above, below));
+    [0, 1, 2, 3].map(|l| low[l] + (high[l] - low[l]) * z)
+}

@@ -1,0 +1,137 @@
+//! The clouds in all directions from the camera, for what shows more than the picture: mirrors on the ground, the cube
+//! map. A frame makes some rows of them anew; `shaders/between/hung.wgsl` looks them up below the picture of the first
+//! layer.
+
+use super::shadow_projection::{HistoryUse, ShadowInputs};
+use crate::{
+    clouds::drawn::{
+        picture::{PANORAMA_SIDE, SEEN},
+        rows::{self, MapRows, Turn},
+    },
+    error::Result,
+    gpu::{
+        Device, flat_texture,
+        pass::{self, FullscreenDesc},
+    },
+    stage::flag,
+};
+
+/// Rows refreshed in a frame, once as many are old.
+const ROWS: u32 = 12;
+/// Changes that make all of them old: a way of the camera or of the clouds, m, which turns a cloud 500 m up by a texel;
+/// how many times faster they age than the map of shadows; a change of exposure.
+const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
+/// The camera's way between two frames, m, and the change of exposure after which nothing holds.
+const LEAPS: (f64, f64) = (100.0, 0.05);
+
+/// Inputs of the clouds of all directions.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct PanoramaInputs {
+    pub standing: ShadowInputs,
+    pub altitude_m: f64,
+    pub exposure: f64,
+}
+
+/// The map and the pass that makes it.
+pub(crate) struct CloudPanorama {
+    pub texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    pipeline: wgpu::RenderPipeline,
+    around: Option<PanoramaInputs>,
+    rows: MapRows,
+}
+
+impl CloudPanorama {
+    /// With the layouts of the march.
+    pub fn new(device: &Device, layouts: &[&wgpu::BindGroupLayout], is_placed: bool) -> Result<Self> {
+        let texture = flat_texture(
+            &device.device,
+            "clouds all round",
+            (PANORAMA_SIDE, PANORAMA_SIDE),
+            SEEN,
+            wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::RENDER_ATTACHMENT,
+        );
+        let desc = FullscreenDesc {
+            shader: "clouds/round.wgsl",
+            entry: "round",
+            layouts,
+            targets: &[SEEN.into()],
+            constants: &[("CLOUD_PLACED", flag(is_placed)), ("CLOUD_COARSE", 1.0)],
+            samples: 1,
+        };
+        Ok(Self {
+            view: texture.create_view(&Default::default()),
+            pipeline: pass::fullscreen(device, &desc)?,
+            texture,
+            around: None,
+            rows: MapRows::default(),
+        })
+    }
+
+    /// Bytes of GPU memory.
+    pub const BYTES: u64 = 8 * PANORAMA_SIDE as u64 * PANORAMA_SIDE as u64;
+
+    /// Makes some rows anew, or all of them, unless another map has its turn; answers the passes that it took.
+    pub fn draw(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        groups: &[&wgpu::BindGroup],
+        here: PanoramaInputs,
+        (past, waits): (HistoryUse, bool),
+    ) -> u32 {
+        let before = self.around.replace(here);
+        let turn = Turn {
+            rests: before == Some(here),
+            holds: past == HistoryUse::Kept && before.is_some_and(|b| !here.leaps_from(&b)),
+            aged: before.map_or(1.0, |b| here.aged_since(&b)),
+            waits,
+            is_coarse: false,
+        };
+        let due = self.rows.due((PANORAMA_SIDE, ROWS), &turn);
+        let Some((first, count)) = due else { return 0 };
+        rows::draw(encoder, &self.view, (PANORAMA_SIDE, first, count), &self.pipeline, groups);
+        1
+    }
+
+    /// Copies it below a picture of this height.
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Texture, height: u32) {
+        let origin = wgpu::Origin3d { x: 0, y: height, z: 0 };
+        let to = wgpu::TexelCopyTextureInfo { origin, ..to.as_image_copy() };
+        encoder.copy_texture_to_texture(self.texture.as_image_copy(), to, self.texture.size());
+    }
+}
+
+impl PanoramaInputs {
+    fn leaps_from(&self, before: &Self) -> bool {
+        let (way_m, exposed) = LEAPS;
+        self.standing.leaps_from(&before.standing)
+            || self.standing.camera_m.distance(before.standing.camera_m) > way_m
+            || (self.altitude_m - before.altitude_m).abs() > way_m
+            || (self.exposure / before.exposure).ln().abs() > exposed
+    }
+
+    /// The share of the map's rows that a change from `before` makes old.
+    fn aged_since(&self, before: &Self) -> f64 {
+        let (way_m, times, exposed) = AGES;
+        let (here, there) = (&self.standing, &before.standing);
+        let shares = [
+            times * here.aged_since(there),
+            here.camera_m.distance(there.camera_m) / way_m,
+            (self.altitude_m - before.altitude_m).abs() / way_m,
+            (here.drift_m - there.drift_m).length() / way_m,
+            (self.exposure / before.exposure).ln().abs() / exposed,
+        ];
+        shares.into_iter().fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shader_knows_the_side() {
+        let text = crate::gpu::shader::assemble("between/hung.wgsl").unwrap();
+        assert!(text.contains(&format!("const ROUND_SIDE: f32 = {PANORAMA_SIDE}.0;")));
+    }
+}

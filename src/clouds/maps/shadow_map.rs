@@ -1,0 +1,188 @@
+//! The map of the clouds' shadows that pictures read: a window about the camera in a plane at the station's height,
+//! fixed to the air that carries the clouds, so that a frame makes only some rows of it anew. A new map is coarse at
+//! first: all of it at once would cost as much as ten frames.
+
+use super::shadow_projection::{HistoryUse, ShadowInputs, ShadowProjection, TEXELS};
+use crate::{
+    clouds::drawn::{
+        rows::{self, MapRows, Turn},
+        tables::CloudTables,
+        uniforms::{CloudsUniform, ShadowUniform},
+    },
+    error::Result,
+    gpu::{
+        Device,
+        bind::{self, Slot},
+        blocks::{BlockView, Blocks, UniformBlock},
+        flat_texture,
+        pass::{self, FullscreenDesc},
+    },
+    stage::flag,
+};
+
+/// Along a side of the coarse map that a new one begins as: as many texels as a frame's rows have.
+const COARSE: u32 = 64;
+/// Rows refreshed in a frame, once as many are old, and in every frame while some of the map is coarse: sixteen frames
+/// refresh all of them.
+const ROWS: u32 = 32;
+/// The map and the passes that make it.
+pub(crate) struct ShadowMap {
+    pub view: wgpu::TextureView,
+    pub block: UniformBlock,
+    pipeline: wgpu::RenderPipeline,
+    /// The clouds, which both maps are made of.
+    clouds: wgpu::BindGroup,
+    coarse: Coarse,
+    standing: Option<ShadowInputs>,
+    rows: MapRows,
+    /// Rows that are still those of the coarse map.
+    coarse_rows: u32,
+}
+
+/// The coarse map, the pass that makes it and the one that spreads it over the map.
+struct Coarse {
+    view: wgpu::TextureView,
+    pipeline: wgpu::RenderPipeline,
+    spread: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+}
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+/// A map of so many texels along a side.
+fn texture(device: &Device, side: u32) -> wgpu::Texture {
+    let usage =
+        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+    flat_texture(&device.device, "shadows of clouds", (side, side), FORMAT, usage)
+}
+
+fn pipeline(
+    device: &Device,
+    (shader, entry): (&str, &str),
+    layout: &wgpu::BindGroupLayout,
+    constants: &[(&str, f64)],
+) -> Result<wgpu::RenderPipeline> {
+    let (layouts, targets) = ([layout], [FORMAT.into()]);
+    let of = FullscreenDesc { shader, entry, layouts: &layouts, targets: &targets, constants, samples: 1 };
+    pass::fullscreen(device, &of)
+}
+
+/// One that makes a map of so many texels along a side.
+fn shadow_pipeline(
+    device: &Device,
+    layout: &wgpu::BindGroupLayout,
+    (side, is_placed): (u32, bool),
+) -> Result<wgpu::RenderPipeline> {
+    let constants = [("SHADOW_TEXELS", f64::from(side)), ("CLOUD_PLACED", flag(is_placed))];
+    pipeline(device, ("clouds/shadow.wgsl", "shadow"), layout, &constants)
+}
+
+impl Coarse {
+    fn new(
+        device: &Device,
+        (shadow, is_placed): (&wgpu::BindGroupLayout, bool),
+        repeating: &wgpu::Sampler,
+    ) -> Result<Self> {
+        let slots = [(2, Slot::Filtered), (5, Slot::Sampler)];
+        let layout = bind::layout(&device.device, "coarse shadows", wgpu::ShaderStages::FRAGMENT, &slots);
+        let view = texture(device, COARSE).create_view(&Default::default());
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("coarse shadows"),
+            layout: &layout,
+            entries: &[bind::view(2, &view), bind::sampler(5, repeating)],
+        });
+        Ok(Self {
+            pipeline: shadow_pipeline(device, shadow, (COARSE, is_placed))?,
+            spread: pipeline(
+                device,
+                ("clouds/shadow_spread.wgsl", "spread"),
+                &layout,
+                &[("SHADOW_TEXELS", f64::from(TEXELS))],
+            )?,
+            view,
+            group,
+        })
+    }
+}
+
+impl ShadowMap {
+    /// The texture of a map.
+    pub fn texture(device: &Device) -> wgpu::Texture {
+        texture(device, TEXELS)
+    }
+
+    /// Creates the map of clouds in these tables and this block, in a texture.
+    pub fn new(
+        (device, blocks): (&Device, &Blocks),
+        tables: &CloudTables,
+        (clouds, is_placed): (&BlockView, bool),
+        of: &wgpu::Texture,
+    ) -> Result<Self> {
+        let slots = [
+            (1, Slot::Uniform(size_of::<CloudsUniform>())),
+            (2, Slot::FilteredArray),
+            (3, Slot::FilteredVolume),
+            (5, Slot::Sampler),
+            (7, Slot::Uniform(size_of::<ShadowUniform>())),
+            (8, Slot::Filtered),
+        ];
+        let layout = bind::layout(&device.device, "shadows of clouds", wgpu::ShaderStages::FRAGMENT, &slots);
+        let block = blocks.block(device, size_of::<ShadowUniform>());
+        let solid = tables.solid.view();
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shadows of clouds"),
+            layout: &layout,
+            entries: &[
+                clouds.entry(1),
+                bind::view(2, &tables.map),
+                bind::view(3, &solid),
+                bind::sampler(5, &tables.repeating),
+                block.entry(7),
+                bind::view(8, &tables.placed),
+            ],
+        });
+        Ok(Self {
+            view: of.create_view(&Default::default()),
+            pipeline: shadow_pipeline(device, &layout, (TEXELS, is_placed))?,
+            coarse: Coarse::new(device, (&layout, is_placed), &tables.repeating)?,
+            clouds: group,
+            block,
+            standing: None,
+            rows: MapRows::default(),
+            coarse_rows: 0,
+        })
+    }
+
+    /// Bytes of GPU memory.
+    pub const BYTES: u64 = TEXELS as u64 * TEXELS as u64 + COARSE as u64 * COARSE as u64;
+
+    /// Makes some rows anew where enough have grown old, and before them the whole map coarsely where nothing of it
+    /// holds any more or the picture is cut; where a frame is a pure function of view and time, all rows. Answers the
+    /// passes that it took.
+    pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, lie: &ShadowProjection, past: HistoryUse) -> u32 {
+        let here = lie.standing;
+        self.block.write(bytemuck::bytes_of(&lie.uniform()));
+        let before = self.standing.replace(here);
+        let begins = past == HistoryUse::Cut || past == HistoryUse::Kept && before.is_none_or(|b| here.leaps_from(&b));
+        if begins {
+            self.coarse_rows = TEXELS;
+        }
+        let turn = Turn {
+            rests: past != HistoryUse::Cut && before == Some(here),
+            holds: past != HistoryUse::None,
+            aged: before.map_or(1.0, |b| here.aged_since(&b)),
+            waits: false,
+            is_coarse: self.coarse_rows > 0,
+        };
+        let due = self.rows.due((TEXELS, ROWS), &turn);
+        let Some((first, count)) = due else { return 0 };
+        self.coarse_rows = self.coarse_rows.saturating_sub(count);
+        if begins {
+            let coarse = &self.coarse;
+            rows::draw(encoder, &coarse.view, (COARSE, 0, COARSE), &coarse.pipeline, &[&self.clouds]);
+            rows::draw(encoder, &self.view, (TEXELS, 0, TEXELS), &coarse.spread, &[&coarse.group]);
+        }
+        rows::draw(encoder, &self.view, (TEXELS, first, count), &self.pipeline, &[&self.clouds]);
+        1 + 2 * u32::from(begins)
+    }
+}

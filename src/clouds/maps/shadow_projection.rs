@@ -1,0 +1,174 @@
+//! Projection of the map of the clouds' shadows about a camera, and how old a map of earlier clouds has grown.
+
+use glam::{DVec2, DVec3};
+
+use crate::{
+    clouds::{drawn::uniforms::ShadowUniform, field::layers::CloudLayers, light::shadow::LOWEST},
+    moment::{Scene, SceneMoment},
+    stage::{Frame, FrameFlags},
+    weather::smoothstep,
+};
+
+/// Along a side of the map.
+pub(super) const TEXELS: u32 = 512;
+/// Metres a texel.
+const TEXEL_M: f64 = 40.0;
+/// Height above the lowest base over which, in the clouds themselves, shadows go over to the mean, m: that of the
+/// shaders and snippets.
+const ENDS_M: f64 = 100.0;
+/// Sines of the light's elevation between which shadows begin to be told apart.
+const FADE_SINES: [f64; 2] = [LOWEST, 0.07];
+/// Time between two frames, s, the light's turn, and the change of a layer's threshold after which nothing of the map
+/// is kept.
+const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
+
+/// Way of the layer that the map is fixed to, between two frames, m, after which nothing of the map is kept: another
+/// layer is the lowest.
+const LEAP_OF_DRIFT_M: f64 = 1500.0;
+/// Changes that make the whole map old: a time, s, in which clouds change by some thousandths of their life; a turn of
+/// the light, by which the shadow of a cloud 4 km up goes by a quarter of a texel; a change of a layer's threshold of
+/// the least that shows; the camera's way, m, less than from where the map repeats to where shadows begin to show, and
+/// as much of places of a host's map.
+const AGES: (f64, f64, f64, f64) = (4.0, 0.0025, 0.004, 600.0);
+
+/// History that a frame may take over from those before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum HistoryUse {
+    Kept,
+    /// Nothing; those after it may take over from it.
+    Cut,
+    /// Nothing: it is a pure function of view and time.
+    None,
+}
+
+impl HistoryUse {
+    pub fn of(frame: &Frame<'_>) -> Self {
+        match frame.flags {
+            flags if flags.has(FrameFlags::NO_HISTORY) => Self::None,
+            flags if flags.has(FrameFlags::CUT) => Self::Cut,
+            _ => Self::Kept,
+        }
+    }
+}
+
+/// Inputs of the map.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct ShadowInputs {
+    pub time_s: f64,
+    pub to_light: DVec3,
+    pub threshold_sum: f64,
+    /// How far the layer to which it is fixed has come, m.
+    pub drift_m: DVec2,
+    pub camera_m: DVec2,
+    /// Fingerprint of where clouds are other than their cover says (`field::placed`): the first number changes with
+    /// the cells over areas, the second is other for another map.
+    pub placed: (f64, usize),
+}
+
+/// How the map lies about a camera.
+#[derive(Clone, Copy)]
+pub(crate) struct ShadowProjection {
+    pub standing: ShadowInputs,
+    /// Unit, never level.
+    pub to_light: DVec3,
+    plane_m: f64,
+    /// Where the camera stands in the map, in its period, and its height over the plane, m.
+    pub camera: DVec2,
+    pub eye_m: f64,
+    pub period_m: f64,
+    mean: f64,
+    /// How far shadows are told apart, and the height over the plane from which on they are not, m.
+    pub told: f64,
+    pub top_m: f64,
+    /// Extinction of the air at the camera's height, 1/m, and the height over which it thins, m.
+    haze: [f64; 2],
+}
+
+/// Returns the extinction of the air at a scene's height, 1/m, and the height over which it thins there, m.
+fn haze(scene: &Scene) -> [f64; 2] {
+    let (planet, h) = (&scene.planet, scene.place.altitude_m.max(0.0));
+    let of = |extinction: f64, height_m: f64| (extinction * libm::exp(-h / height_m), height_m);
+    let parts = [
+        of(planet.rayleigh.scattering_per_m[1], planet.rayleigh.scale_height_m),
+        of(planet.mie.extinction_per_m[1], planet.mie.scale_height_m),
+    ];
+    let sum = parts.iter().map(|(extinction, _)| extinction).sum::<f64>().max(1e-9);
+    [sum, sum / parts.iter().map(|(extinction, height_m)| extinction / height_m).sum::<f64>().max(1e-12)]
+}
+
+impl ShadowProjection {
+    /// Creates the projection of a moment's clouds.
+    pub fn new(now: &SceneMoment<'_>, overhead: &CloudLayers) -> Self {
+        let shapes = overhead.layers().iter().map(|layer| &layer.shape);
+        let scene = &now.scene;
+        let plane_m = scene.conditions.air.station_altitude_m;
+        let light = scene.brighter();
+        let drift_m = shapes.clone().next().map_or(DVec2::ZERO, |s| s.drift_m);
+        let period_m = TEXEL_M * f64::from(TEXELS);
+        let camera = (DVec2::from_array(scene.map_m) - drift_m) / period_m;
+        let lowest_m = shapes.clone().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
+        Self {
+            standing: ShadowInputs {
+                time_s: now.time_s,
+                to_light: light.direction,
+                threshold_sum: shapes.map(|s| s.threshold + s.base_m / 1000.0).sum(),
+                camera_m: DVec2::from_array(scene.map_m),
+                drift_m,
+                placed: overhead.fingerprint(),
+            },
+            to_light: light.direction.with_z(light.direction.z.max(LOWEST)),
+            plane_m,
+            camera: DVec2::new(camera.x.rem_euclid(1.0), camera.y.rem_euclid(1.0)),
+            eye_m: scene.place.altitude_m - plane_m,
+            period_m,
+            mean: light.direct_share,
+            told: smoothstep(FADE_SINES[0], FADE_SINES[1], light.direction.z),
+            top_m: (lowest_m - plane_m).max(0.0) + ENDS_M,
+            haze: haze(scene),
+        }
+    }
+
+    /// Returns the block that shaders read.
+    pub fn uniform(&self) -> ShadowUniform {
+        ShadowUniform {
+            to_light: self.to_light.as_vec3().to_array(),
+            plane: self.plane_m as f32,
+            camera: self.camera.as_vec2().to_array(),
+            period: self.period_m as f32,
+            eye: self.eye_m as f32,
+            mean: self.mean as f32,
+            told: self.told as f32,
+            top: self.top_m as f32,
+            haze: self.haze[0] as f32,
+            haze_height: self.haze[1] as f32,
+            pad: [0.0; 3],
+        }
+    }
+}
+
+impl ShadowInputs {
+    /// Whether nothing of a map of what stood before holds.
+    pub fn leaps_from(&self, before: &Self) -> bool {
+        let (time_s, turn, threshold) = LEAPS;
+        (self.time_s - before.time_s).abs() > time_s
+            || self.to_light.dot(before.to_light) < turn.cos()
+            || (self.threshold_sum - before.threshold_sum).abs() > threshold
+            || self.drift_m.distance(before.drift_m) > LEAP_OF_DRIFT_M
+            || self.placed.1 != before.placed.1
+            || (self.placed.0 - before.placed.0).abs() > LEAP_OF_DRIFT_M
+            || self.camera_m.distance(before.camera_m) > 0.1 * TEXEL_M * f64::from(TEXELS)
+    }
+
+    /// The share of a map's rows that a change from `before` makes old.
+    pub fn aged_since(&self, before: &Self) -> f64 {
+        let (time_s, turn, threshold, way_m) = AGES;
+        let shares = [
+            (self.time_s - before.time_s).abs() / time_s,
+            self.to_light.distance(before.to_light) / turn,
+            (self.threshold_sum - before.threshold_sum).abs() / threshold,
+            self.camera_m.distance(before.camera_m) / way_m,
+            (self.placed.0 - before.placed.0).abs() / way_m,
+        ];
+        shares.into_iter().fold(0.0, f64::max)
+    }
+}
