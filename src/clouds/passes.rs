@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{
     drawn::{
         picture::{BEHIND, Picture, marched},
-        pipelines::{March, Pipelines, Resolve, TargetPart, run, run_each},
+        pipelines::{March, PassTargets, Pipelines, Resolve, TargetPart, run, run_each},
         tables::CloudTables,
         uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
     },
@@ -129,8 +129,8 @@ impl CloudPasses {
     }
 
     /// A map of shadows in a texture.
-    fn shadow_map(&self, device: &Device, of: &wgpu::Texture) -> Result<ShadowMap> {
-        ShadowMap::new((device, &self.pages), &self.tables, (&self.block, self.is_placed), of)
+    fn shadow_map(&self, device: &Device, texture: &wgpu::Texture) -> Result<ShadowMap> {
+        ShadowMap::new((device, &self.pages), &self.tables, (&self.block, self.is_placed), texture)
     }
 
     /// Makes textures for a picture of this size, and answers whether the last one's are kept.
@@ -162,10 +162,15 @@ impl CloudPasses {
     }
 
     /// Returns the bind group of the march.
-    fn march_group(&mut self, device: &Device, layout: &wgpu::BindGroupLayout, of: &CloudFrame<'_>) -> wgpu::BindGroup {
-        let is_shaded = of.has_shafts && of.shaded.is_some();
+    fn march_group(
+        &mut self,
+        device: &Device,
+        layout: &wgpu::BindGroupLayout,
+        inputs: &CloudFrame<'_>,
+    ) -> wgpu::BindGroup {
+        let is_shaded = inputs.has_shafts && inputs.shaded.is_some();
         if let Some((sky, was_shaded, group)) = &self.marched_of
-            && (sky, *was_shaded) == (of.sky.1, is_shaded)
+            && (sky, *was_shaded) == (inputs.sky.1, is_shaded)
         {
             return group.clone();
         }
@@ -175,7 +180,7 @@ impl CloudPasses {
             label: Some("clouds marched"),
             layout,
             entries: &[
-                of.frame.entry(0),
+                inputs.frame.entry(0),
                 self.block.entry(1),
                 bind::view(2, &self.tables.map),
                 bind::view(3, &solid),
@@ -189,7 +194,7 @@ impl CloudPasses {
                 self.lamps_block.entry(11),
             ],
         });
-        self.marched_of = Some((of.sky.1.clone(), is_shaded, group.clone()));
+        self.marched_of = Some((inputs.sky.1.clone(), is_shaded, group.clone()));
         group
     }
 
@@ -293,7 +298,9 @@ impl CloudPasses {
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
-        (clouds, lie, past): (&CloudsUniform, &ShadowProjection, HistoryUse),
+        clouds: &CloudsUniform,
+        lie: &ShadowProjection,
+        past: HistoryUse,
         texture: &wgpu::Texture,
     ) -> Result<()> {
         self.block.write(bytemuck::bytes_of(clouds));
@@ -306,33 +313,39 @@ impl CloudPasses {
     }
 
     /// Makes what is wanted of a frame. Answers the passes that it took.
-    pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, of: &CloudFrame<'_>) -> Result<u32> {
-        if of.shaded.is_some() {
+    pub fn draw(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        inputs: &CloudFrame<'_>,
+    ) -> Result<u32> {
+        if inputs.shaded.is_some() {
             self.hold_shadows(device)?;
         }
         let mut pipelines = match self.pipelines.take() {
             Some(pipelines) => pipelines,
-            None => Pipelines::new(device, of.sky.0)?,
+            None => Pipelines::new(device, inputs.sky.0)?,
         };
         let Some(mut picture) = self.picture.take() else { return Ok(0) };
-        self.block.write(bytemuck::bytes_of(&of.clouds));
-        let group = self.march_group(device, &pipelines.march_layouts[0], of);
+        self.block.write(bytemuck::bytes_of(&inputs.clouds));
+        let group = self.march_group(device, &pipelines.march_layouts[0], inputs);
         let (mut passes, mut of_shadows) = (0, 0);
-        if of.wanted.march || of.wanted.resolve {
-            (passes, of_shadows) = self.draw_picture(device, encoder, of, (&mut pipelines, &mut picture), &group)?;
+        if inputs.wanted.march || inputs.wanted.resolve {
+            (passes, of_shadows) =
+                self.draw_picture(device, encoder, inputs, (&mut pipelines, &mut picture), &group)?;
         }
         let made = &picture.whole[picture.newest].texture;
-        if let Some(behind) = of.behind {
+        if let Some(behind) = inputs.behind {
             copy_layer(encoder, behind, made);
         }
-        if of.wanted.shows_round {
+        if inputs.wanted.shows_round {
             let [march, sky] = &pipelines.march_layouts;
             let round = match &mut self.round {
                 Some(round) => round,
                 none => none.insert(CloudPanorama::new(device, &[march, sky], self.is_placed)?),
             };
-            if of.wanted.round {
-                passes += round.draw(encoder, &[&group, of.sky.1], of.around, (of.past, of_shadows > 0));
+            if inputs.wanted.round {
+                passes += round.draw(encoder, &[&group, inputs.sky.1], inputs.around, (inputs.past, of_shadows > 0));
             }
             round.copy(encoder, made, picture.of.0.1);
         }
@@ -346,55 +359,66 @@ impl CloudPasses {
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
-        of: &CloudFrame<'_>,
+        inputs: &CloudFrame<'_>,
         (pipelines, picture): (&mut Pipelines, &mut Picture),
         group: &wgpu::BindGroup,
     ) -> Result<(u32, u32)> {
-        let has_history = of.picture.exposed > 0.0;
-        let has_shadows = of.shaded.is_some();
-        let is_multisampled = has_shadows && of.is_multisampled;
-        let has_shafts = has_shadows && of.has_shafts;
+        let has_history = inputs.picture.exposed > 0.0;
+        let has_shadows = inputs.shaded.is_some();
+        let is_multisampled = has_shadows && inputs.is_multisampled;
+        let has_shafts = has_shadows && inputs.has_shafts;
         // Shafts stand before the sky too.
         let kinds = picture.kinds.as_ref().filter(|_| has_shadows && !has_shafts && !is_multisampled);
-        let (depth_kinds, shades_apart) = (of.depth_kinds, kinds.is_some());
+        let (depth_kinds, shades_apart) = (inputs.depth_kinds, kinds.is_some());
         let resolve = Resolve { has_history, has_shadows, has_shafts, is_multisampled, depth_kinds, shades_apart };
-        self.picture_block.write(bytemuck::bytes_of(&of.picture));
+        self.picture_block.write(bytemuck::bytes_of(&inputs.picture));
         let layout = &pipelines.shadow_layouts[usize::from(is_multisampled)];
-        let (shaded, of_shadows) = self.shade(device, encoder, layout, (of.shaded.as_ref(), of.past))?;
+        let (shaded, of_shadows) = self.shade(device, encoder, layout, (inputs.shaded.as_ref(), inputs.past))?;
         let groups = match &picture.groups {
             Some(groups) => groups.clone(),
-            None => self.picture_groups(device, &pipelines.picture_layout, of.frame, picture),
+            None => self.picture_groups(device, &pipelines.picture_layout, inputs.frame, picture),
         };
         let mut passes = 1;
         // A picture begins with more pixels than later frames march.
-        let begins = of.picture.side < picture.of.1;
+        let begins = inputs.picture.side < picture.of.1;
         if !begins {
             picture.begun = None;
         } else if picture.begun.is_none() {
-            let marched = marched(device, picture.of.0, of.picture.side);
-            let group = self.picture_group(device, &pipelines.picture_layout, of.frame, (&marched, self.no_past()));
+            let marched = marched(device, picture.of.0, inputs.picture.side);
+            let group = self.picture_group(device, &pipelines.picture_layout, inputs.frame, (&marched, self.no_past()));
             picture.begun = Some((marched, group));
         }
-        let march = March { fineness: of.fineness, is_placed: self.is_placed, has_shafts, is_coarse: of.is_coarse };
-        if of.wanted.march {
+        let march =
+            March { fineness: inputs.fineness, is_placed: self.is_placed, has_shafts, is_coarse: inputs.is_coarse };
+        if inputs.wanted.march {
             let [seen, reach] = picture.begun.as_ref().map_or(&picture.marched, |(marched, _)| marched);
-            run(encoder, (&[seen, reach], None), &pipelines.march(device, march)?, &[group, of.sky.1]);
+            run(encoder, PassTargets::whole(&[seen, reach]), &pipelines.march(device, march)?, &[group, inputs.sky.1]);
             passes += 1;
         }
-        if of.wanted.march && has_history {
+        if inputs.wanted.march && has_history {
             let [least, most, back] = &picture.followed;
-            run(encoder, (&[least, most, back], None), &pipelines.follow, &[&groups[0]]);
+            run(encoder, PassTargets::whole(&[least, most, back]), &pipelines.follow, &[&groups[0]]);
             passes += 1;
         }
-        let made = picture.to_make(of.wanted.is_begun);
+        let made = picture.to_make(inputs.wanted.is_begun);
         let [seen, reach] = &picture.whole[made].written;
         let past = picture.begun.as_ref().map_or(&groups[1 + (1 - made)], |(_, group)| group);
-        let whole = Some(TargetPart { first_row: 0, size: picture.of.0 });
-        run_each(encoder, (&[seen, reach], kinds, whole), pipelines.resolve(device, resolve)?, &[past, &shaded]);
-        if let Some(lamps) = &of.lamps {
+        let part = Some(TargetPart { first_row: 0, size: picture.of.0 });
+        run_each(
+            encoder,
+            PassTargets { colors: &[seen, reach], kinds, part },
+            pipelines.resolve(device, resolve)?,
+            &[past, &shaded],
+        );
+        if let Some(lamps) = &inputs.lamps {
             self.lamps_block.write(bytemuck::bytes_of(lamps));
             let below = TargetPart { first_row: picture.of.0.1, size: glow_size(picture.of.0) };
-            run(encoder, (&[reach], Some(below)), &pipelines.glow(device, march)?, &[group, of.sky.1]);
+            run(
+                encoder,
+                PassTargets { part: Some(below), ..PassTargets::whole(&[reach]) },
+                &pipelines.glow(device, march)?,
+                &[group, inputs.sky.1],
+            );
             passes += 1;
         }
         picture.newest = made;
@@ -404,12 +428,12 @@ impl CloudPasses {
 }
 
 /// Copies what stands behind the sky's own light into its layer.
-fn copy_layer(encoder: &mut wgpu::CommandEncoder, from: &wgpu::Texture, to: &wgpu::Texture) {
+fn copy_layer(encoder: &mut wgpu::CommandEncoder, source: &wgpu::Texture, target: &wgpu::Texture) {
     let origin = wgpu::Origin3d { x: 0, y: 0, z: BEHIND };
-    let size = wgpu::Extent3d { depth_or_array_layers: 1, ..from.size() };
+    let size = wgpu::Extent3d { depth_or_array_layers: 1, ..source.size() };
     encoder.copy_texture_to_texture(
-        from.as_image_copy(),
-        wgpu::TexelCopyTextureInfo { origin, ..to.as_image_copy() },
+        source.as_image_copy(),
+        wgpu::TexelCopyTextureInfo { origin, ..target.as_image_copy() },
         size,
     );
 }

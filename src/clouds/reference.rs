@@ -62,12 +62,12 @@ pub struct Box<'a> {
 impl Box<'_> {
     /// Follows a photon from a place on the way to `direction`: the face through which it leaves (low and high x, y,
     /// z), if it does.
-    pub fn leaves_by(&self, mut at: DVec3, mut direction: DVec3, chance: &mut Chance) -> Option<usize> {
+    pub fn leaves_by(&self, mut position: DVec3, mut direction: DVec3, chance: &mut Chance) -> Option<usize> {
         loop {
             let mut exit = (f64::INFINITY, 0);
             for axis in 0..3 {
                 let d = direction[axis];
-                let to = if d > 0.0 { (self.sides[axis] - at[axis]) / d } else { -at[axis] / d };
+                let to = if d > 0.0 { (self.sides[axis] - position[axis]) / d } else { -position[axis] / d };
                 if d != 0.0 && to < exit.0 {
                     exit = (to, 2 * axis + usize::from(d > 0.0));
                 }
@@ -76,8 +76,8 @@ impl Box<'_> {
             if free >= exit.0 {
                 return Some(exit.1);
             }
-            at += direction * free;
-            if chance.even() * self.most >= (self.extinction)(at) {
+            position += direction * free;
+            if chance.even() * self.most >= (self.extinction)(position) {
                 continue;
             }
             if chance.even() >= self.albedo {

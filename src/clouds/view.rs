@@ -81,24 +81,24 @@ pub(crate) struct CloudsView {
 
 impl CloudsView {
     /// Whether some clouds leave places in the light and others not, and the host drew what shadows may fall on.
-    fn casts_shadows(&self, at: &DrawContext<'_>, stages: Stages) -> bool {
-        let light_is_up = at.now.scene.brighter().direction.z > LOWEST;
+    fn casts_shadows(&self, context: &DrawContext<'_>, stages: Stages) -> bool {
+        let light_is_up = context.now.scene.brighter().direction.z > LOWEST;
         // A host that reads the map lays the shadows itself.
         light_is_up
             && self.handed.is_none()
             && stages.has(Stages::SURFACE)
-            && at.frame.depth.is_some()
+            && context.frame.depth.is_some()
             && self.overhead.as_ref().is_some_and(CloudLayers::is_broken)
     }
 
     /// Share of a picture's rays that lead towards the clouds.
-    fn share_of_rays(&self, at: &DrawContext<'_>) -> f64 {
+    fn share_of_rays(&self, context: &DrawContext<'_>) -> f64 {
         const SIDE: u32 = 8;
         let Some(overhead) = &self.overhead else { return 0.0 };
         let ndc = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE) * 2.0 - 1.0;
         let count = (0..SIDE * SIDE).filter(|i| {
-            let ray = at.target.rays.view_ray(DVec2::new(ndc(i % SIDE), ndc(i / SIDE)));
-            overhead.lies_toward(&at.now.scene, at.now.scene.world_to_enu * ray.direction)
+            let ray = context.target.rays.view_ray(DVec2::new(ndc(i % SIDE), ndc(i / SIDE)));
+            overhead.lies_toward(&context.now.scene, context.now.scene.world_to_enu * ray.direction)
         });
         count.count() as f64 / f64::from(SIDE * SIDE)
     }
@@ -115,10 +115,10 @@ impl CloudsView {
     }
 
     /// Returns the passes of a frame that are still to be made for a draw of these stages.
-    fn wanted(&self, at: &DrawContext<'_>) -> Wanted {
-        let made = self.made_of(at.frame);
-        let march = SHOWN.0 & at.stages.0 != 0 && !made.is_some_and(|m| m.is_marched);
-        let shade = self.casts_shadows(at, at.stages) && !made.is_some_and(|m| m.is_shaded);
+    fn wanted(&self, context: &DrawContext<'_>) -> Wanted {
+        let made = self.made_of(context.frame);
+        let march = SHOWN.0 & context.stages.0 != 0 && !made.is_some_and(|m| m.is_marched);
+        let shade = self.casts_shadows(context, context.stages) && !made.is_some_and(|m| m.is_shaded);
         Wanted {
             is_begun: made.is_some_and(|m| m.is_marched || m.is_shaded),
             march,
@@ -164,12 +164,12 @@ impl CloudsView {
     }
 
     /// How a picture's clouds follow from the last frame's.
-    fn picture(&self, at: &DrawContext<'_>) -> (PictureUniform, Before) {
-        let (frame, now) = (at.frame, at.now);
+    fn picture(&self, context: &DrawContext<'_>) -> (PictureUniform, Before) {
+        let (frame, now) = (context.frame, context.now);
         let drifts = self.overhead.as_ref().map_or(LayerDrifts::ZERO, |o| o.drifts);
-        let here = Before { clip: at.clip(), eye: now.eye, drifts, exposure: at.target.exposure };
+        let here = Before { clip: context.clip(), eye: now.eye, drifts, exposure: context.target.exposure };
         let last = self.before.filter(|_| self.kept && !frame.is_pure());
-        let size = at.picture().size();
+        let size = context.picture().size();
         let side = self.side(frame);
         // Without a past a picture begins finer.
         let side = if last.is_none() { side.min(BEGUN_SIDE) } else { side };
@@ -194,8 +194,8 @@ impl DrawnEffect for CloudsView {
         Exchange { needs: &[Output::Stars], gives: &[Output::Sky] }
     }
 
-    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
-        let (now, model) = (at.now, at.held.of::<HeldClouds>()?.model);
+    fn gather(&mut self, context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        let (now, model) = (context.now, context.held.of::<HeldClouds>()?.model);
         let query = LayersQuery { scene: &now.scene, eye: now.eye, weather: &now.weather, time_s: now.time_s };
         let still = |slab: &CloudSlab| self.shapes.get_or_put(slab, || Shape::of(slab));
         let overhead = if query.is_clear() { None } else { query.layers(model, &mut self.maps, still)? };
@@ -214,51 +214,55 @@ impl DrawnEffect for CloudsView {
         }
     }
 
-    fn prepare(&mut self, at: &FrameContext<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn prepare(&mut self, context: &FrameContext<'_>, recording: &mut Recording<'_>) -> Result<()> {
         let Some(overhead) = &self.overhead else {
-            self.lay(at.now, None);
+            self.lay(context.now, None);
             return Ok(());
         };
         let passes = match &mut self.passes {
             Some(passes) => passes,
-            none => none.insert(Box::new(CloudPasses::new((to.device, to.blocks), at.now.seed)?)),
+            none => none.insert(Box::new(CloudPasses::new((recording.device, recording.blocks), context.now.seed)?)),
         };
-        let cosine = at.now.scene.brighter().direction.z;
-        passes.tables.update(to.device, to.encoder, cosine, overhead.liquid_um);
-        passes.place(to.device, overhead)?;
+        let cosine = context.now.scene.brighter().direction.z;
+        passes.tables.update(recording.device, recording.encoder, cosine, overhead.liquid_um);
+        passes.place(recording.device, overhead)?;
         let has_shadows = cosine > LOWEST && overhead.is_broken();
-        let lie = has_shadows.then(|| ShadowProjection::new(at.now, overhead));
+        let lie = has_shadows.then(|| ShadowProjection::new(context.now, overhead));
         if let (Some(lie), Some(handed)) = (&lie, &self.handed) {
             // Shadows do not ask for the exposure.
-            let clouds = overhead.uniform(at.now, 1.0, &passes.tables.light.media);
-            let of = (&clouds, lie, HistoryUse::of(at.frame));
-            passes.draw_shadows(to.device, to.encoder, of, &handed.shadows.texture)?;
+            let clouds = overhead.uniform(context.now, 1.0, &passes.tables.light.media);
+            let (past, texture) = (HistoryUse::of(context.frame), &handed.shadows.texture);
+            passes.draw_shadows(recording.device, recording.encoder, &clouds, lie, past, texture)?;
         }
-        self.lay(at.now, lie.as_ref());
+        self.lay(context.now, lie.as_ref());
         Ok(())
     }
 
-    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        put(&CLOUDS, self.is_there(at.frame, stages), &[clouds_work(at.pixels(), self.share_of_rays(at))]);
+    fn parts(&mut self, context: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        put(
+            &CLOUDS,
+            self.is_there(context.frame, stages),
+            &[clouds_work(context.pixels(), self.share_of_rays(context))],
+        );
     }
 
-    fn compose(&mut self, at: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
+    fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
-        let (drawn, scene) = (at.share(&CLOUDS, 0), &at.now.scene);
-        let mean = self.overhead.as_ref().filter(|_| at.plan.is_gauged).map(|o| o.mean_radiance_and_cover(scene));
+        let (drawn, scene) = (context.share(&CLOUDS, 0), &context.now.scene);
+        let mean = self.overhead.as_ref().filter(|_| context.plan.is_gauged).map(|o| o.mean_radiance_and_cover(scene));
         if drawn <= 0.0 {
             self.before = None;
         }
-        let is_there = self.is_there(at.frame, at.stages) && self.passes.is_some() && drawn > 0.0;
+        let is_there = self.is_there(context.frame, context.stages) && self.passes.is_some() && drawn > 0.0;
         to.between_and_veil("CLOUDS", flag(is_there), flag(is_there));
         to.between("DECK_CLOSED", 0.0, flag(scene.deck_cover as f32 >= 1.0));
         let deck = flag(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
         to.between("DECK_BEHIND", deck, deck);
-        let shadows = is_there && self.casts_shadows(at, at.stages);
+        let shadows = is_there && self.casts_shadows(context, context.stages);
         to.constant("CLOUD_SHADOWS", flag(shadows), flag(shadows));
-        let size = (at.picture().width(), at.picture().height());
+        let size = (context.picture().width(), context.picture().height());
         let overhead = self.overhead.as_ref().filter(|_| is_there);
-        self.lamps = overhead.and_then(|o| LampsUniform::of(o, at.now, at.target.exposure, size));
+        self.lamps = overhead.and_then(|o| LampsUniform::of(o, context.now, context.target.exposure, size));
         let glow = flag(self.lamps.is_some());
         to.between_and_veil("CLOUD_GLOW", glow, glow);
         let shafts = shadows && self.settings.shafts;
@@ -267,10 +271,10 @@ impl DrawnEffect for CloudsView {
         to.set_traits(traits, traits);
         let shadow = shadows.then(|| shadow_strength(scene));
         to.set_frame_block(FrameBlock::Clouds { drawn, mean, shadow });
-        let (wanted, side) = (self.wanted(at), self.side(at.frame));
+        let (wanted, side) = (self.wanted(context), self.side(context.frame));
         self.wanted = is_there.then_some(wanted);
         if let Some(passes) = self.passes.as_mut().filter(|_| is_there) {
-            let holds = passes.hold(at.device, size, side);
+            let holds = passes.hold(context.device, size, side);
             if !wanted.is_begun {
                 self.kept = holds && self.before.is_some();
             }
@@ -280,16 +284,21 @@ impl DrawnEffect for CloudsView {
         Ok(to)
     }
 
-    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn draw(
+        &mut self,
+        context: &DrawContext<'_>,
+        merged: &MergedFrame<'_>,
+        recording: &mut Recording<'_>,
+    ) -> Result<()> {
         let Some(mut wanted) = self.wanted.take() else { return Ok(()) };
-        let casts_shadows = self.casts_shadows(at, at.stages);
-        let earlier = self.made_of(at.frame);
+        let casts_shadows = self.casts_shadows(context, context.stages);
+        let earlier = self.made_of(context.frame);
         wanted.shows_round = merged.composition.needs_panorama();
         wanted.round = wanted.shows_round && !earlier.is_some_and(|m| m.is_round);
         let (picture, here) = match earlier.filter(|_| !wanted.march) {
             Some(made) => (made.picture, None),
             None => {
-                let (picture, here) = self.picture(at);
+                let (picture, here) = self.picture(context);
                 (picture, wanted.march.then_some(here))
             }
         };
@@ -298,18 +307,18 @@ impl DrawnEffect for CloudsView {
         else {
             return Ok(());
         };
-        let lie = ShadowProjection::new(at.now, overhead);
-        let pixel = at.target.rays.pixel_angle(at.picture().height());
+        let lie = ShadowProjection::new(context.now, overhead);
+        let pixel = context.target.rays.pixel_angle(context.picture().height());
         let around = PanoramaInputs {
             standing: lie.standing,
-            altitude_m: at.now.scene.place.altitude_m,
-            exposure: at.target.exposure,
+            altitude_m: context.now.scene.place.altitude_m,
+            exposure: context.target.exposure,
         };
-        let shaded = at.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { lie, depth });
-        let sampling = Sampling::of(at.picture(), at.frame.depth);
-        let of = CloudFrame {
+        let shaded = context.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { lie, depth });
+        let sampling = Sampling::of(context.picture(), context.frame.depth);
+        let inputs = CloudFrame {
             wanted,
-            clouds: overhead.uniform(at.now, at.target.exposure, &passes.tables.light.media),
+            clouds: overhead.uniform(context.now, context.target.exposure, &passes.tables.light.media),
             picture,
             frame: merged.block,
             sky: (layout, group),
@@ -319,15 +328,15 @@ impl DrawnEffect for CloudsView {
             lamps: self.lamps,
             around,
             fineness: self.settings.fineness,
-            is_coarse: overhead.is_coarse(&at.now.scene, at.now.planet_radius_m, pixel),
-            past: HistoryUse::of(at.frame),
+            is_coarse: overhead.is_coarse(&context.now.scene, context.now.planet_radius_m, pixel),
+            past: HistoryUse::of(context.frame),
             is_multisampled: sampling.multisampled()[1],
-            depth_kinds: f64::from(at.target.rays.depth_kinds()),
+            depth_kinds: f64::from(context.target.rays.depth_kinds()),
         };
-        to.passes += passes.draw(to.device, to.encoder, &of)?;
+        recording.passes += passes.draw(recording.device, recording.encoder, &inputs)?;
         self.before = here.or(self.before);
         self.made = Some(FrameProgress {
-            frame_id: at.frame.frame_id,
+            frame_id: context.frame.frame_id,
             is_marched: wanted.march || earlier.is_some_and(|m| m.is_marched),
             is_shaded: casts_shadows || earlier.is_some_and(|m| m.is_shaded),
             is_round: merged.composition.needs_panorama() || earlier.is_some_and(|m| m.is_round),

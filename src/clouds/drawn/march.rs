@@ -118,7 +118,7 @@ struct MarchState {
 
 /// A place inside of a layer's cloud.
 struct AtPlace<'a> {
-    of: &'a MarchedLayer<'a>,
+    layer: &'a MarchedLayer<'a>,
     /// The layer's clouds as they are here.
     field: Field<'a>,
     position_m: DVec3,
@@ -236,9 +236,9 @@ impl<'a> CloudRays<'a> {
         }
     }
 
-    fn layer(&self, of: &MarchedLayer<'_>, d: DVec3, [first, last]: [f64; 2], mut seen: MarchState) -> MarchState {
-        let s = &of.field.shape;
-        let scaled = s.extinction_per_m * of.scale;
+    fn layer(&self, layer: &MarchedLayer<'_>, d: DVec3, [first, last]: [f64; 2], mut seen: MarchState) -> MarchState {
+        let s = &layer.field.shape;
+        let scaled = s.extinction_per_m * layer.scale;
         let fine = self.longer[0] * (STEP_DEPTH / scaled).clamp(s.thickness_m / 128.0, s.thickness_m / 24.0);
         let rise = (d.z + first / (self.radius_m + self.place_m.z)).abs();
         let coarse = fine.max(self.longer[1] * STEP_RISE * s.thickness_m / rise.max(1e-6));
@@ -248,16 +248,16 @@ impl<'a> CloudRays<'a> {
             let t = gone + 0.5 * step;
             let position_m = self.at(d, t);
             let height = (position_m.z - s.base_m) / s.thickness_m;
-            let (field, steady) = of.field.here(position_m);
+            let (field, steady) = layer.field.here(position_m);
             let over = field.over(position_m);
             let frays = field.frays(position_m);
             let fades = ((first + FARTHEST_M - t) / FADES_M).clamp(0.0, 1.0);
-            let extinction = field.dense(over - dome(&field.shape, over, height) + frays) * of.scale * fades;
+            let extinction = field.dense(over - dome(&field.shape, over, height) + frays) * layer.scale * fades;
             if extinction <= 0.0 {
                 gone += step.max(skip((&field.shape, steady), [over, frays], height, d));
                 continue;
             }
-            let place = AtPlace { of, field, position_m, height, excess: over + frays };
+            let place = AtPlace { layer, field, position_m, height, excess: over + frays };
             let left = (-extinction * step).exp();
             let share = seen.transmittance * (1.0 - left);
             seen.light += self.scattered(&place, -d, seen.transmittance) * share;
@@ -270,10 +270,10 @@ impl<'a> CloudRays<'a> {
 
     /// Returns the light that a place sends along a direction for each unit of its scaled depth, cd/m^2.
     fn scattered(&self, place: &AtPlace<'_>, direction: DVec3, transmittance: f64) -> DVec3 {
-        let sources = self.light.of(place.of.medium);
+        let sources = self.light.of(place.layer.medium);
         let s = sources.scattered(&place.depths(sources.to_sun), direction, -transmittance.ln());
-        let light = &place.of.light;
-        let is_ice = place.of.medium == ICE;
+        let light = &place.layer.light;
+        let is_ice = place.layer.medium == ICE;
         let halo = if is_ice { halo::excess(&sources.scattering, -direction.dot(sources.to_sun)) } else { [0.0; 3] };
         DVec3::from_array(light.sun) * (s.sun + s.once * DVec3::from_array(halo))
             + DVec3::from_array(light.above) * s.sky
@@ -339,7 +339,7 @@ impl AtPlace<'_> {
             let height = self.height + rise * t;
             let at = self.position_m.truncate() + to_sun.truncate() * t;
             let at = at.extend(s.base_m + height * s.thickness_m);
-            let (there, _) = self.of.field.here(at);
+            let (there, _) = self.layer.field.here(at);
             let over = there.over(at);
             if i < SUN_FRAYED {
                 let excess = over - dome(&there.shape, over, height) + there.frays(at);
@@ -355,7 +355,7 @@ impl AtPlace<'_> {
     /// Scaled depths of cloud about it: `cloud_depths`.
     fn depths(&self, to_sun: DVec3) -> Depths {
         let s = &self.field.shape;
-        let scaled = s.extinction_per_m * self.of.scale;
+        let scaled = s.extinction_per_m * self.layer.scale;
         let about = about(s, self.excess, self.height);
         let [above, below, level] = [about.above_m, about.below_m, about.edge_m].map(|m| m * scaled);
         let to_sun_depth = self.sun_way(to_sun) * scaled;

@@ -120,29 +120,29 @@ impl Pipelines {
     }
 
     /// The pipeline that marches rays.
-    pub fn march(&mut self, device: &Device, of: March) -> Result<wgpu::RenderPipeline> {
+    pub fn march(&mut self, device: &Device, key: March) -> Result<wgpu::RenderPipeline> {
         let make = || {
             let march = ("clouds/march_view.wgsl", "march");
             let constants = [
-                ("CLOUD_FINENESS", of.fineness),
-                ("CLOUD_PLACED", flag(of.is_placed)),
-                ("CLOUD_COARSE", flag(of.is_coarse)),
-                ("SHAFTS", flag(of.has_shafts)),
+                ("CLOUD_FINENESS", key.fineness),
+                ("CLOUD_PLACED", flag(key.is_placed)),
+                ("CLOUD_COARSE", flag(key.is_coarse)),
+                ("SHAFTS", flag(key.has_shafts)),
             ];
-            Ok((of, make(device, march, &self.march_layouts.each_ref(), &[SEEN, PAIR], &constants)?))
+            Ok((key, make(device, march, &self.march_layouts.each_ref(), &[SEEN, PAIR], &constants)?))
         };
-        self.march.get_or_make(|made| *made == of, make).cloned()
+        self.march.get_or_make(|made| *made == key, make).cloned()
     }
 
     /// The pipeline that draws clouds in the light of lamps and flashes.
-    pub fn glow(&mut self, device: &Device, of: March) -> Result<wgpu::RenderPipeline> {
-        let of = March { has_shafts: false, is_coarse: false, ..of };
+    pub fn glow(&mut self, device: &Device, key: March) -> Result<wgpu::RenderPipeline> {
+        let key = March { has_shafts: false, is_coarse: false, ..key };
         let make = || {
             let glow = ("clouds/glow_view.wgsl:lamps", "glow");
-            let constants = [("CLOUD_FINENESS", of.fineness), ("CLOUD_PLACED", flag(of.is_placed))];
-            Ok((of, make(device, glow, &self.march_layouts.each_ref(), &[SEEN], &constants)?))
+            let constants = [("CLOUD_FINENESS", key.fineness), ("CLOUD_PLACED", flag(key.is_placed))];
+            Ok((key, make(device, glow, &self.march_layouts.each_ref(), &[SEEN], &constants)?))
         };
-        self.glow.get_or_make(|made| *made == of, make).cloned()
+        self.glow.get_or_make(|made| *made == key, make).cloned()
     }
 
     /// The draws that make the whole picture: one, or a second one for shadows ([`Resolve::shades_apart`]).
@@ -206,28 +206,45 @@ pub(crate) struct TargetPart {
     pub size: (u32, u32),
 }
 
-/// Runs one pass over its targets, which are empty before, or over a part of them. What lies elsewhere stays.
+/// Attachments of a pass.
+#[derive(Clone, Copy)]
+pub(crate) struct PassTargets<'a> {
+    pub colors: &'a [&'a wgpu::TextureView],
+    /// Depth that tells which pixels each draw of the pass is for.
+    pub kinds: Option<&'a wgpu::TextureView>,
+    /// Part that is drawn; what lies elsewhere stays. `None`: all of them, which are empty before.
+    pub part: Option<TargetPart>,
+}
+
+impl<'a> PassTargets<'a> {
+    /// All of these textures.
+    pub fn whole(colors: &'a [&'a wgpu::TextureView]) -> Self {
+        Self { colors, kinds: None, part: None }
+    }
+}
+
+/// Runs a pass of one draw.
 pub(crate) fn run(
     encoder: &mut wgpu::CommandEncoder,
-    (targets, part): (&[&wgpu::TextureView], Option<TargetPart>),
+    targets: PassTargets<'_>,
     pipeline: &wgpu::RenderPipeline,
     groups: &[&wgpu::BindGroup],
 ) {
-    run_each(encoder, (targets, None, part), std::slice::from_ref(pipeline), groups);
+    run_each(encoder, targets, std::slice::from_ref(pipeline), groups);
 }
 
-/// As [`run`], with several draws. A depth attachment may tell which pixels each of them draws.
+/// Runs a pass of several draws.
 pub(crate) fn run_each(
     encoder: &mut wgpu::CommandEncoder,
-    (targets, kinds, part): (&[&wgpu::TextureView], Option<&wgpu::TextureView>, Option<TargetPart>),
+    PassTargets { colors, kinds, part }: PassTargets<'_>,
     pipelines: &[wgpu::RenderPipeline],
     groups: &[&wgpu::BindGroup],
 ) {
     let load = if part.is_some() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
-    let attachments: [_; 3] = std::array::from_fn(|i| targets.get(i).and_then(|t| attachment(t, load)));
+    let attachments: [_; 3] = std::array::from_fn(|i| colors.get(i).and_then(|t| attachment(t, load)));
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("clouds"),
-        color_attachments: &attachments[..targets.len()],
+        color_attachments: &attachments[..colors.len()],
         depth_stencil_attachment: kinds.map(|view| wgpu::RenderPassDepthStencilAttachment {
             view,
             depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),

@@ -61,18 +61,18 @@ impl EvenCloud {
         self.depths[0].is_infinite()
     }
 
-    fn uniform(&self, of: &Scattering) -> CloudsUniform {
+    fn uniform(&self, scattering: &Scattering) -> CloudsUniform {
         let [x, y, z] = self.depths;
         let side = |depth: f64| if self.is_slab() { WIDE * THICKNESS_M } else { depth / z * THICKNESS_M };
         let mut uniform = CloudsUniform::zeroed();
         uniform.to_sun = [-(1.0 - self.cosine * self.cosine).sqrt() as f32, 0.0, self.cosine as f32];
         uniform.layer_count = 1;
-        uniform.media = [MediumUniform::new(of); 2];
+        uniform.media = [MediumUniform::new(scattering); 2];
         uniform.layers[0] = LayerUniform {
             size: [0.0, 1.0 / THICKNESS_M as f32, 1.0, (z / THICKNESS_M) as f32],
             sheets: [side(x) as f32, side(y) as f32, 0.0, 0.0],
             sun: [1.0; 4],
-            medium: [0.0, of.scale() as f32, 0.0, 0.0],
+            medium: [0.0, scattering.scale() as f32, 0.0, 0.0],
             ..LayerUniform::zeroed()
         };
         uniform
@@ -154,7 +154,7 @@ pub fn lamp_fluxes(device: &Device, cloud: &EvenCloud, position: DVec3) -> Resul
 }
 
 /// Light that leaves a unit of each face.
-fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering, lamps: Option<&LampsUniform>) -> Result<[f64; 6]> {
+fn draw(device: &Device, cloud: &EvenCloud, scattering: &Scattering, lamps: Option<&LampsUniform>) -> Result<[f64; 6]> {
     let gpu = &device.device;
     let target = flat_texture(
         gpu,
@@ -163,11 +163,11 @@ fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering, lamps: Option<&Lamp
         wgpu::TextureFormat::Rgba16Float,
         wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
     );
-    let medium = Arc::new(Transport::new(*of));
+    let medium = Arc::new(Transport::new(*scattering));
     let mut tables = LightTables::new(device, [medium.clone(), medium]);
     tables.update(device, cloud.cosine);
     let block = bind::block(gpu, "cloud probe", size_of::<CloudsUniform>());
-    device.queue.write_buffer(&block, 0, bytemuck::bytes_of(&cloud.uniform(of)));
+    device.queue.write_buffer(&block, 0, bytemuck::bytes_of(&cloud.uniform(scattering)));
     let of_lamps = bind::block(gpu, "cloud probe", size_of::<LampsUniform>());
     device.queue.write_buffer(&of_lamps, 0, bytemuck::bytes_of(lamps.unwrap_or(&LampsUniform::zeroed())));
     let slots = [

@@ -51,11 +51,19 @@ impl MapRows {
     }
 }
 
+/// Rows of a map that is so many texels wide.
+#[derive(Clone, Copy)]
+pub(crate) struct RowSpan {
+    pub width: u32,
+    pub first: u32,
+    pub count: u32,
+}
+
 /// Draws these rows of a map by a full-screen pipeline, and leaves the others.
 pub(crate) fn draw(
     encoder: &mut wgpu::CommandEncoder,
     map: &wgpu::TextureView,
-    (width, first, rows): (u32, u32, u32),
+    RowSpan { width, first, count }: RowSpan,
     pipeline: &wgpu::RenderPipeline,
     groups: &[&wgpu::BindGroup],
 ) {
@@ -69,7 +77,7 @@ pub(crate) fn draw(
         })],
         ..Default::default()
     });
-    pass.set_scissor_rect(0, first, width, rows);
+    pass.set_scissor_rect(0, first, width, count);
     pass.set_pipeline(pipeline);
     for (i, group) in groups.iter().enumerate() {
         pass.set_bind_group(i as u32, *group, &[]);

@@ -63,9 +63,9 @@ pub struct GivenLight {
 
 impl GivenLight {
     /// A sun of irradiance 1 under a sky of this radiance, over ground of this albedo.
-    pub fn over_ground(to_sun: DVec3, above: f64, albedo: f64) -> Self {
-        let falls = to_sun.z.max(0.0) + std::f64::consts::PI * above;
-        Self { to_sun, sun: 1.0, above, below: albedo / std::f64::consts::PI * falls }
+    pub fn over_ground(to_sun: DVec3, sky: f64, albedo: f64) -> Self {
+        let falls = to_sun.z.max(0.0) + std::f64::consts::PI * sky;
+        Self { to_sun, sun: 1.0, above: sky, below: albedo / std::f64::consts::PI * falls }
     }
 }
 
@@ -110,10 +110,10 @@ impl LitLayer {
 
     /// Returns what the model sees from a place (east, north, up), m, in a direction: the march of questions, through
     /// this field. `longer`: lengths of its steps over the usual ones, of those by depth and of those by angle.
-    pub fn model(&self, from: DVec3, direction: DVec3, longer: [f64; 2]) -> Seen {
+    pub fn model(&self, eye: DVec3, direction: DVec3, longer: [f64; 2]) -> Seen {
         // A unit of each source in a channel of its own.
         let light = LayerLight { sun: [1.0, 0.0, 0.0], above: [0.0, 1.0, 0.0], below: [0.0, 0.0, 1.0] };
-        let rays = CloudRays::given(self.field(), &self.sources, light, from, longer);
+        let rays = CloudRays::given(self.field(), &self.sources, light, eye, longer);
         let CloudsSeen { light, transmittance, .. } = rays.seen(direction, f64::INFINITY);
         let mut by = [light.x * self.light.sun, light.y * self.light.above, light.z * self.light.below];
         let behind = if direction.z > 0.0 { 1 } else { 2 };
@@ -122,17 +122,17 @@ impl LitLayer {
     }
 
     /// Returns what `count` photons find from a place (east, north, up), m, in a direction.
-    pub fn photons(&self, from: DVec3, direction: DVec3, count: u32, seed: u64) -> Seen {
+    pub fn photons(&self, eye: DVec3, direction: DVec3, count: u32, seed: u64) -> Seen {
         let (mut chance, field) = (Chance::new(seed, 1), self.field());
         let s = &self.shape;
         // To the layer's nearer face.
         let face = if direction.z > 0.0 { s.base_m } else { s.base_m + s.thickness_m };
-        let inside = (s.base_m..s.base_m + s.thickness_m).contains(&from.z);
-        let from = if inside { from } else { from + direction * ((face - from.z) / direction.z).max(0.0) };
+        let inside = (s.base_m..s.base_m + s.thickness_m).contains(&eye.z);
+        let eye = if inside { eye } else { eye + direction * ((face - eye.z) / direction.z).max(0.0) };
         let photon = Photon { layer: self, field: &field, lobes: &self.sources.scattering.lobes };
         let (mut by, mut squares, mut through) = ([0.0; 3], 0.0, 0.0);
         for _ in 0..count {
-            let (one, met) = photon.follow(from, direction, &mut chance);
+            let (one, met) = photon.follow(eye, direction, &mut chance);
             let all: f64 = one.iter().sum();
             (0..3).for_each(|i| by[i] += one[i] / f64::from(count));
             squares += all * all / f64::from(count);
@@ -153,12 +153,12 @@ struct Photon<'a> {
 
 impl Photon<'_> {
     /// Extinction at a place, and the distance along a direction in which there is none.
-    fn look(&self, at: DVec3, direction: DVec3) -> [f64; 2] {
+    fn look(&self, position: DVec3, direction: DVec3) -> [f64; 2] {
         let s = &self.field.shape;
-        let height = (at.z - s.base_m) / s.thickness_m;
-        let over = self.field.over(at);
+        let height = (position.z - s.base_m) / s.thickness_m;
+        let over = self.field.over(position);
         let excess = over - dome(s, over, height);
-        let frays = if excess < -MOST_FRAYED * s.rough { f64::INFINITY } else { self.field.frays(at) };
+        let frays = if excess < -MOST_FRAYED * s.rough { f64::INFINITY } else { self.field.frays(position) };
         let dense = if frays.is_finite() { self.field.dense(excess + frays) } else { 0.0 };
         let clear =
             if dense > 0.0 { 0.0 } else { SKIPPED * skip((s, UNMAPPED), [over, frays], height, direction).max(0.0) };
@@ -166,17 +166,17 @@ impl Photon<'_> {
     }
 
     /// Where a photon meets a droplet next, unless it leaves.
-    fn meets(&self, at: DVec3, direction: DVec3, chance: &mut Chance) -> Option<DVec3> {
+    fn meets(&self, position: DVec3, direction: DVec3, chance: &mut Chance) -> Option<DVec3> {
         let s = &self.field.shape;
         let face = if direction.z > 0.0 { s.base_m + s.thickness_m } else { s.base_m };
-        let end = (face - at.z) / direction.z;
+        let end = (face - position.z) / direction.z;
         let mut gone = 0.0;
         loop {
             gone -= chance.even().ln() / s.extinction_per_m;
             if gone >= end {
                 return None;
             }
-            let here = at + direction * gone;
+            let here = position + direction * gone;
             let [dense, clear] = self.look(here, direction);
             if chance.even() * s.extinction_per_m < dense {
                 return Some(here);
@@ -186,22 +186,22 @@ impl Photon<'_> {
     }
 
     /// The radiance that one photon stands for, by source, and whether it met a droplet.
-    fn follow(&self, mut at: DVec3, mut direction: DVec3, chance: &mut Chance) -> ([f64; 3], bool) {
+    fn follow(&self, mut position: DVec3, mut direction: DVec3, chance: &mut Chance) -> ([f64; 3], bool) {
         let light = &self.layer.light;
         let (mut by, mut met, mut turns) = ([0.0; 3], false, 0);
         loop {
-            let Some(place) = self.meets(at, direction, chance) else {
+            let Some(place) = self.meets(position, direction, chance) else {
                 let (to, radiance) = if direction.z > 0.0 { (1, light.above) } else { (2, light.below) };
                 by[to] += radiance;
                 return (by, met);
             };
-            (at, met) = (place, true);
+            (position, met) = (place, true);
             // Back from the eye, so the light goes the other way round: the angle is the same.
             let versine = 1.0 - direction.dot(light.to_sun);
             let g_hg = self.lobes.g_hg.min(1.0 - WIDER * f64::from(turns));
             let phase = lobes_phase(&PhaseLobes { g_hg, ..*self.lobes }, 1.0, versine);
             let share = (phase * 4.0 * std::f64::consts::PI / ASKED_FROM).clamp(ASKED_LEAST, 1.0);
-            if chance.even() < share && self.meets(at, light.to_sun, chance).is_none() {
+            if chance.even() < share && self.meets(position, light.to_sun, chance).is_none() {
                 by[0] += light.sun * phase / share;
             }
             let (way, is_wide) = turned(self.lobes, direction, chance);
@@ -232,8 +232,8 @@ pub struct Case {
 
 /// Cumulus by day and with a low sun, stratocumulus from above under both, and cirrus.
 pub const CASES: [Case; 7] = {
-    const fn case(name: &'static str, kind: CloudKind, at: [f64; 4], pitch_deg: [f64; 2]) -> Case {
-        let [cover, base_m, height_m, sun_deg] = at;
+    const fn case(name: &'static str, kind: CloudKind, numbers: [f64; 4], pitch_deg: [f64; 2]) -> Case {
+        let [cover, base_m, height_m, sun_deg] = numbers;
         Case { name, kind, cover, base_m, height_m, sun_deg, pitch_deg }
     }
     [
@@ -275,9 +275,9 @@ pub struct Compared {
 }
 
 /// The number below which a share of them lies.
-fn quantile(mut of: Vec<f64>, share: f64) -> f64 {
-    of.sort_by(f64::total_cmp);
-    of[((of.len() - 1) as f64 * share).round() as usize]
+fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[((values.len() - 1) as f64 * share).round() as usize]
 }
 
 impl Case {

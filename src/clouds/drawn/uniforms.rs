@@ -105,11 +105,12 @@ pub(crate) struct ShadowUniform {
 }
 
 impl MediumUniform {
-    pub fn new(of: &Scattering) -> Self {
-        let l = &of.lobes;
+    pub fn new(scattering: &Scattering) -> Self {
+        let l = &scattering.lobes;
         Self {
             lobes: [l.g_hg, l.g_draine, l.alpha, l.w_draine].map(|v| v as f32),
-            smooth: [of.forward, of.cap, of.turning(), of.scaled_albedo()].map(|v| v as f32),
+            smooth: [scattering.forward, scattering.cap, scattering.turning(), scattering.scaled_albedo()]
+                .map(|v| v as f32),
         }
     }
 }

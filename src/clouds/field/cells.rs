@@ -110,17 +110,19 @@ impl AreaClouds {
     /// # Errors
     /// For a time that the weather does not know.
     pub fn new(
-        over: &WeatherOver<'_>,
+        weather: &WeatherOver<'_>,
         conditions: &Conditions,
-        (to_enu, eye, place_m): (DMat3, DVec3, DVec2),
+        to_enu: DMat3,
+        eye: DVec3,
+        place_m: DVec2,
         time_s: f64,
     ) -> Result<Option<Self>> {
         let mut cells = [AreaCell::default(); MAX_AREAS];
         let (mut count, mut lowest_m, mut half_m) = (0, f64::INFINITY, f64::INFINITY);
         let mut strongest = None::<(f64, &CloudSlab)>;
-        for shaft in over.shafts_at(time_s, conditions)? {
+        for shaft in weather.shafts_at(time_s, conditions)? {
             let rate = shaft.falling.rain_mm_h + shaft.falling.drizzle_mm_h;
-            let area = &over.regions[shaft.index as usize].area;
+            let area = &weather.regions[shaft.index as usize].area;
             if rate < LEAST_MM_H {
                 continue;
             }
@@ -179,18 +181,18 @@ fn view_factor(radius_m: f64, height_m: f64, aside_m: f64) -> f64 {
 /// # Errors
 /// For a time that the weather does not know.
 pub(crate) fn over_place(
-    over: &WeatherOver<'_>,
+    weather: &WeatherOver<'_>,
     conditions: &Conditions,
     (local, eye): (&LocalFrame, DVec3),
     time_s: f64,
 ) -> Result<Option<CloudSlab>> {
-    if over.regions.is_empty() {
+    if weather.regions.is_empty() {
         return Ok(None);
     }
-    let Some(clouds) = AreaClouds::new(over, conditions, (local.world_to_enu, eye, DVec2::ZERO), time_s)? else {
+    let Some(clouds) = AreaClouds::new(weather, conditions, local.world_to_enu, eye, DVec2::ZERO, time_s)? else {
         return Ok(None);
     };
-    let is_placed = |slab: &CloudSlab| over.cloud_map.is_some_and(|map| map.is_of(slab.base_m));
+    let is_placed = |slab: &CloudSlab| weather.cloud_map.is_some_and(|map| map.is_of(slab.base_m));
     let others = conditions.clouds.iter().filter(|slab| slab.cover > 0.0).map(|slab| (slab, is_placed(slab)));
     let Some(slab) = clouds.slab(others) else { return Ok(None) };
     let height_m = (slab.base_m + conditions.air.station_altitude_m - local.place.altitude_m).max(0.0);

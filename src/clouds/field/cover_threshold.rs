@@ -32,12 +32,12 @@ impl CoverThreshold {
         Self { threshold, ..Self::of(&shaped) }
     }
 
-    pub(crate) fn mix(self, to: &Self, t: f64) -> Self {
+    pub(crate) fn mix(self, other: &Self, t: f64) -> Self {
         let between = |a: f64, b: f64| a + (b - a) * t;
         Self {
-            threshold: between(self.threshold, to.threshold),
-            dome: between(self.dome, to.dome),
-            extinction_per_m: between(self.extinction_per_m, to.extinction_per_m),
+            threshold: between(self.threshold, other.threshold),
+            dome: between(self.dome, other.dome),
+            extinction_per_m: between(self.extinction_per_m, other.extinction_per_m),
         }
     }
 

@@ -140,8 +140,8 @@ mod tests {
     };
 
     /// A map that is one number over the places from which cover is looked at, and another west of them.
-    fn map(over: f32, beyond: f32) -> Arc<CloudMap> {
-        let cover = vec![beyond, over];
+    fn map(here: f32, west: f32) -> Arc<CloudMap> {
+        let cover = vec![west, here];
         Arc::new(CloudMap { first_m: [-2e5, 0.0], cell_m: 5e4, cells: [2, 1], base_m: [0.0, 2e4], cover })
     }
 

@@ -38,11 +38,11 @@ const COLUMNS: usize = 32;
 
 /// How much of its thickness a cloudy column of a layer fills on the mean: the tops of most are below the layer's. The
 /// map's number is spread normally, edges are taken unfrayed.
-fn filled_share(of: &Shape) -> f64 {
-    let below = 0.5 * libm::erfc(-of.threshold * std::f64::consts::FRAC_1_SQRT_2);
+fn filled_share(shape: &Shape) -> f64 {
+    let below = 0.5 * libm::erfc(-shape.threshold * std::f64::consts::FRAC_1_SQRT_2);
     let one = |i: usize| {
         let rank = below + (1.0 - below) * (i as f64 + 0.5) / COLUMNS as f64;
-        filled_below(of, normal_quantile(rank) - of.threshold, 1.0)
+        filled_below(shape, normal_quantile(rank) - shape.threshold, 1.0)
     };
     (0..COLUMNS).map(one).sum::<f64>() / COLUMNS as f64
 }

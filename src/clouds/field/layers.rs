@@ -127,9 +127,9 @@ impl CloudLayers {
     }
 
     /// How far the wind has carried the lowest layer since these were the drifts, m east and north.
-    pub fn carried_since(&self, before: &LayerDrifts) -> DVec2 {
+    pub fn carried_since(&self, earlier: &LayerDrifts) -> DVec2 {
         let OverheadLayer { slot, shape, .. } = &self.layers[0];
-        shape.stretch.inverse() * (self.drifts.slots[*slot].way - before.slots[*slot].way) * shape.scale_m
+        shape.stretch.inverse() * (self.drifts.slots[*slot].way - earlier.slots[*slot].way) * shape.scale_m
     }
 
     /// Whether some of it leaves gaps.

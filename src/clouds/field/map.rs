@@ -29,13 +29,13 @@ const CELLULAR_OCTAVES: u32 = 3;
 pub struct Map(pub Vec<[f32; 4]>);
 
 /// Returns the value of a sheet before its ranks are taken.
-fn raw(sheet: u32, at: DVec2, seed: u32) -> f64 {
+fn raw(sheet: u32, place: DVec2, seed: u32) -> f64 {
     let cells = MAP_CELLS as u32;
     let octaves = |count: u32, first: u32, persistence: f64, noise: &dyn Fn(DVec2, UVec2, u32) -> f64| {
         let one = |octave: u32| {
             let period = UVec2::splat(first << octave);
             let key = seed.wrapping_add(0x9e37_79b9u32.wrapping_mul(8 * sheet + octave + 1));
-            persistence.powi(octave as i32) * noise(at * period.as_dvec2(), period, key)
+            persistence.powi(octave as i32) * noise(place * period.as_dvec2(), period, key)
         };
         (0..count).map(one).sum::<f64>()
     };
@@ -53,10 +53,10 @@ pub(super) fn wrapped(x: f64, size: usize) -> (usize, usize, f64) {
 }
 
 impl Map {
-    /// Between its texels; `at` in periods.
-    pub fn at(&self, at: DVec2) -> [f64; 4] {
-        let (i0, i1, x) = wrapped(at.x, MAP_SIZE);
-        let (j0, j1, y) = wrapped(at.y, MAP_SIZE);
+    /// Between its texels; `place` in periods.
+    pub fn at(&self, place: DVec2) -> [f64; 4] {
+        let (i0, i1, x) = wrapped(place.x, MAP_SIZE);
+        let (j0, j1, y) = wrapped(place.y, MAP_SIZE);
         let texel = |i: usize, j: usize| self.0[j * MAP_SIZE + i];
         let (a, b, c, d) = (texel(i0, j0), texel(i1, j0), texel(i0, j1), texel(i1, j1));
         [0, 1, 2, 3].map(|k| {

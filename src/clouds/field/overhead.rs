@@ -79,8 +79,8 @@ impl CloudLayers {
         if weather.regions.is_empty() {
             return Ok(());
         }
-        let at = (scene.world_to_enu, eye, self.place_m);
-        let Some(clouds) = AreaClouds::new(weather, &scene.conditions, at, time_s)? else { return Ok(()) };
+        let clouds = AreaClouds::new(weather, &scene.conditions, scene.world_to_enu, eye, self.place_m, time_s)?;
+        let Some(clouds) = clouds else { return Ok(()) };
         if let Some(layer) = self.bring(scene, &clouds) {
             let slab = &self.all()[layer].slab;
             let filled = CoverThreshold::of(&Shape::still(slab, FILLED));

@@ -34,9 +34,9 @@ impl Solid {
         Ok(Self { size: SOLID_SIZE as usize, texels: image.levels()[0].clone() })
     }
 
-    /// Between its texels, 0 to 1; `at` in periods.
-    pub fn at(&self, at: DVec3) -> f64 {
-        let [x, y, z] = [at.x, at.y, at.z].map(|v| wrapped(v, self.size));
+    /// Between its texels, 0 to 1; `place` in periods.
+    pub fn at(&self, place: DVec3) -> f64 {
+        let [x, y, z] = [place.x, place.y, place.z].map(|v| wrapped(v, self.size));
         let texel = |i: usize, j: usize, k: usize| f64::from(self.texels[(k * self.size + j) * self.size + i]) / 255.0;
         let row = |j: usize, k: usize| texel(x.0, j, k) * (1.0 - x.2) + texel(x.1, j, k) * x.2;
         let sheet = |k: usize| row(y.0, k) * (1.0 - y.2) + row(y.1, k) * y.2;

@@ -42,10 +42,10 @@ pub fn phase(index: f64, angle: f64) -> f64 {
 
 /// Returns what the halo adds to the phase function of ice, or takes from it elsewhere, 1/sr a channel, at this cosine
 /// of the scattering angle. The phase function is the one without its peak.
-pub fn excess(of: &Scattering, cosine: f64) -> [f64; 3] {
+pub fn excess(scattering: &Scattering, cosine: f64) -> [f64; 3] {
     let angle = cosine.clamp(-1.0, 1.0).acos();
-    let smooth = of.smooth_phase(1.0 - cosine);
-    INDEX.map(|index| SHARE * (phase(index, angle) / (1.0 - of.forward) - smooth))
+    let smooth = scattering.smooth_phase(1.0 - cosine);
+    INDEX.map(|index| SHARE * (phase(index, angle) / (1.0 - scattering.forward) - smooth))
 }
 
 #[cfg(test)]

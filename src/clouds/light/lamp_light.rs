@@ -66,34 +66,41 @@ fn mirrored(shine: &Shine, direction: DVec3, [place, grows]: [f64; 2], source: f
 /// Returns the light that a place at these depths scatters into `direction` (the way light goes), through the scaled
 /// depth `to_eye` of more cloud, 1/sr, of a source of intensity 1 a unit of scaled depth squared. `sky`:
 /// [`super::transport::Transport::under_sky`].
-pub fn scattered(of: &Scattering, sky: &Table, at: &Depths, shine: &Shine, direction: DVec3, to_eye: f64) -> f64 {
+pub fn scattered(
+    scattering: &Scattering,
+    sky: &Table,
+    depths: &Depths,
+    shine: &Shine,
+    direction: DVec3,
+    to_eye: f64,
+) -> f64 {
     let shine = &Shine { distance: shine.distance.max(1e-3), ..*shine };
     let d = shine.distance;
     let share = ((shine.between / d - INSIDE[0]) / (INSIDE[1] - INSIDE[0])).clamp(0.0, 1.0);
     let share = if shine.is_buried { 1.0 } else { share * share * (3.0 - 2.0 * share) };
-    let inside = if share > 0.0 { from_inside(of, at, shine, direction, to_eye) } else { 0.0 };
-    let outside = if share < 1.0 { from_outside(of, sky, at, shine, direction) } else { 0.0 };
+    let inside = if share > 0.0 { from_inside(scattering, depths, shine, direction, to_eye) } else { 0.0 };
+    let outside = if share < 1.0 { from_outside(scattering, sky, depths, shine, direction) } else { 0.0 };
     share * inside + (1.0 - share) * outside
 }
 
-fn from_inside(of: &Scattering, at: &Depths, shine: &Shine, direction: DVec3, to_eye: f64) -> f64 {
+fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, direction: DVec3, to_eye: f64) -> f64 {
     let d = shine.distance;
-    let (turning, albedo) = (of.turning(), of.scaled_albedo());
+    let (turning, albedo) = (scattering.turning(), scattering.scaled_albedo());
     let versine = 1.0 + direction.dot(shine.toward);
-    let phase = of.smooth_phase(versine) + of.peak(versine, shine.between + to_eye);
+    let phase = scattering.smooth_phase(versine) + scattering.peak(versine, shine.between + to_eye);
     let once = albedo * phase * (-shine.between).exp() / (d * d);
     let dark = DARK_AT / turning;
     let level = shine.toward.truncate().length() * d;
     // Of the sides no more is known than that one looks at the nearer one, and that the source lies beyond it in the
     // same cloud.
     let out = direction.truncate().length();
-    let half = 0.5 * (at.left + at.right).max(d);
+    let half = 0.5 * (depths.left + depths.right).max(d);
     // Depths of place and source, and how fast the first grows along the direction.
     let faces = [
-        (at.above, shine.within[0], -direction.z),
-        (at.below, shine.within[1], direction.z),
-        (at.left, at.left + level, -out),
-        (at.right.max(level + half), half, out),
+        (depths.above, shine.within[0], -direction.z),
+        (depths.below, shine.within[1], direction.z),
+        (depths.left, depths.left + level, -out),
+        (depths.right.max(level + half), half, out),
         (half, half, 0.0),
         (half, half, 0.0),
     ];
@@ -112,26 +119,27 @@ fn from_inside(of: &Scattering, at: &Depths, shine: &Shine, direction: DVec3, to
     once + albedo * 3.0 / (4.0 * PI) * mean * (turning - (1.0 - turning) * grows).max(0.0)
 }
 
-fn from_outside(of: &Scattering, sky: &Table, at: &Depths, shine: &Shine, direction: DVec3) -> f64 {
+fn from_outside(scattering: &Scattering, sky: &Table, depths: &Depths, shine: &Shine, direction: DVec3) -> f64 {
     let d = shine.distance;
-    let turning = of.turning();
+    let turning = scattering.turning();
     // Where the light would leave the box behind the place.
     let (sine, rise) = (shine.toward.truncate().length(), shine.toward.z);
-    let upright = if rise > 0.0 { at.below } else { at.above };
-    let behind = (upright / rise.abs().max(1e-6)).min(at.right / sine.max(1e-6));
+    let upright = if rise > 0.0 { depths.below } else { depths.above };
+    let behind = (upright / rise.abs().max(1e-6)).min(depths.right / sine.max(1e-6));
     // What leaves across the way.
     let rate = |width: f64, across: f64| across * (PI / (width + 2.0 * DARK_AT / turning)).powi(2);
     let squares = shine.toward * shine.toward;
-    let level = at.left + at.right;
-    let leak =
-        (rate(level, 1.0 - squares.x) + rate(level, 1.0 - squares.y) + rate(at.above + at.below, 1.0 - squares.z))
-            / (3.0 * turning);
+    let level = depths.left + depths.right;
+    let leak = (rate(level, 1.0 - squares.x)
+        + rate(level, 1.0 - squares.y)
+        + rate(depths.above + depths.below, 1.0 - squares.z))
+        / (3.0 * turning);
     let terms = table_at(sky, shine.between, behind, leak);
     let x = -direction.dot(shine.toward);
     let sum = terms[0] + x * terms[1] + (1.5 * x * x - 0.5) * terms[2] + (2.5 * x * x - 1.5) * x * terms[3];
     let often = sum.max(0.0) / PI;
     let momentum = (-turning * shine.between).exp() - (-shine.between).exp();
-    let kept = of.scaled_albedo() * 3.0 * of.moments[1] / (4.0 * PI) * momentum * x;
+    let kept = scattering.scaled_albedo() * 3.0 * scattering.moments[1] / (4.0 * PI) * momentum * x;
     // What comes back to the face has been some way in.
     let d = d - shine.between + shine.between.max(RETURNS_FROM / turning);
     (often + kept.clamp(-often, often)) / (d * d)
@@ -168,31 +176,38 @@ pub(crate) mod tests {
         }
 
         /// To where a ray leaves the box.
-        fn exit(&self, at: DVec3, d: DVec3) -> f64 {
+        fn exit(&self, position: DVec3, d: DVec3) -> f64 {
             (0..3)
-                .map(|i| if d[i] > 0.0 { (self.sides[i] - at[i]) / d[i] } else { -at[i] / d[i].min(-1e-12) })
+                .map(
+                    |i| if d[i] > 0.0 { (self.sides[i] - position[i]) / d[i] } else { -position[i] / d[i].min(-1e-12) },
+                )
                 .fold(f64::INFINITY, f64::min)
         }
 
-        fn depths(&self, at: DVec3, scale: f64) -> Depths {
-            let (low, high) = (at * scale, (self.sides - at) * scale);
+        fn depths(&self, position: DVec3, scale: f64) -> Depths {
+            let (low, high) = (position * scale, (self.sides - position) * scale);
             let edge = low.x.min(high.x).min(low.y).min(high.y);
             let other = (self.sides.x.min(self.sides.y) * scale - edge).max(edge);
             Depths { above: high.z, below: low.z, to_sun: 0.0, near: edge, far: other, left: edge, right: other }
         }
 
-        fn shine(&self, at: DVec3, scale: f64) -> Shine {
-            let to = self.source - at;
+        fn shine(&self, position: DVec3, scale: f64) -> Shine {
+            let to = self.source - position;
             let distance = to.length();
             let toward = to / distance;
-            let between = distance.min(self.exit(at, toward));
+            let between = distance.min(self.exit(position, toward));
             let within = [(self.sides.z - self.source.z) * scale, self.source.z * scale];
             Shine { toward, distance: distance * scale, between: between * scale, within, is_buried: false }
         }
 
         /// Light out of a face about a place of it, lm a unit, as the model has it; without what comes straight from
         /// the source.
-        fn modelled(&self, transport: &Transport, (axis, high): (usize, bool), on: impl Fn([f64; 2]) -> DVec3) -> f64 {
+        fn modelled(
+            &self,
+            transport: &Transport,
+            (axis, high): (usize, bool),
+            face_place: impl Fn([f64; 2]) -> DVec3,
+        ) -> f64 {
             let (of, sky) = (&transport.scattering, transport.under_sky());
             let scale = of.scale();
             let rays = 2000;
@@ -205,7 +220,7 @@ pub(crate) mod tests {
                 out[axis] = sign * (1.0 - p[2]).sqrt();
                 out[(axis + 1) % 3] = sine * azimuth.cos();
                 out[(axis + 2) % 3] = sine * azimuth.sin();
-                let at = on([p[0], p[1]]) - out * 1e-6;
+                let at = face_place([p[0], p[1]]) - out * 1e-6;
                 let length = self.exit(at, -out).min(40.0);
                 let (step, mut gone, mut light) = (0.2, 0.0, 0.0);
                 while gone < length {
@@ -271,10 +286,10 @@ pub(crate) mod tests {
             }
         }
 
-        fn enters(&self, at: DVec3, d: DVec3) -> Option<f64> {
+        fn enters(&self, position: DVec3, d: DVec3) -> Option<f64> {
             let (mut first, mut last) = (0.0f64, f64::INFINITY);
             for i in 0..3 {
-                let (a, b) = (-at[i] / d[i], (self.sides[i] - at[i]) / d[i]);
+                let (a, b) = (-position[i] / d[i], (self.sides[i] - position[i]) / d[i]);
                 (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
             }
             (first < last).then_some(first)

@@ -59,18 +59,18 @@ fn even_share(lamp: &HostLight) -> f64 {
 
 /// Luminance of the cloud that a lamp lights most, cd/m^2 at most; `height_m` over the sea. What is above the beam's
 /// steepest ray stays dark.
-fn most_on(overhead: &CloudLayers, lamp: &HostLight, up: f64, height_m: f64) -> f64 {
+fn most_on(overhead: &CloudLayers, lamp: &HostLight, rise: f64, height_m: f64) -> f64 {
     let brightest = lamp.intensity_cd.into_iter().fold(0.0, f64::max);
-    let steepest = |up: f64| {
-        let angle = up.clamp(-1.0, 1.0).asin() + lamp.outer_deg.to_radians();
+    let steepest = |rise: f64| {
+        let angle = rise.clamp(-1.0, 1.0).asin() + lamp.outer_deg.to_radians();
         angle.min(0.5 * PI).sin()
     };
     let one = |layer: &OverheadLayer| {
         let (base_m, top_m) = (layer.shape.base_m, layer.shape.base_m + layer.shape.thickness_m);
         let (gap_m, sine) = if height_m < base_m {
-            (base_m - height_m, steepest(up))
+            (base_m - height_m, steepest(rise))
         } else {
-            ((height_m - top_m).max(0.0), steepest(-up))
+            ((height_m - top_m).max(0.0), steepest(-rise))
         };
         let way_m = if gap_m > 0.0 { gap_m / sine.max(0.0) } else { NEAREST_M };
         brightest * REFLECTS / (PI * way_m.max(NEAREST_M).powi(2))

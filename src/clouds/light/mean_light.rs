@@ -38,9 +38,8 @@ fn mean(c: &Conditions, grown: &[(Map, Solid)], height_m: f64, mu: f64) -> f64 {
     grown.iter().map(of_seed).sum::<f64>() / grown.len() as f64
 }
 
-fn under(layers: &[(CloudKind, f64, f64)]) -> Conditions {
-    let clouds = layers.iter().map(|(kind, cover, base_m)| CloudLayer::of(*kind, *cover, *base_m)).collect();
-    derive(&Weather { clouds, ..Weather::default() }).unwrap()
+fn under(layers: &[CloudLayer]) -> Conditions {
+    derive(&Weather { clouds: layers.to_vec(), ..Weather::default() }).unwrap()
 }
 
 /// How far the light that is told lies from the mean: root of the mean square, and most, at these heights and all
@@ -68,7 +67,7 @@ fn the_sun_that_is_told_of_is_the_mean_over_places() {
         let mut worst = (0.0, String::new());
         for cover in [0.125, 0.4375, 0.75, 1.0] {
             // From a layer on the ground to a high one: it is the height within the layer that counts.
-            let c = under(&[(*kind, cover, 0.0)]);
+            let c = under(&[CloudLayer::of(*kind, cover, 0.0)]);
             let thickness_m = c.cloud_slabs().next().unwrap().thickness_m;
             let (rms, most) = off(&c, &grown, &[-1.0]);
             below = (below.0.max(rms), below.1.max(most.0));
@@ -90,15 +89,16 @@ fn the_sun_that_is_told_of_is_the_mean_over_places() {
 fn so_it_is_among_several_layers() {
     use CloudKind::{Altocumulus, Cirrostratus, Cumulus, Nimbostratus, Stratocumulus, Stratus};
     let grown = grown();
-    for layers in [
+    for said in [
         &[(Stratus, 0.75, 30.0), (Stratocumulus, 0.75, 600.0)][..],
         &[(Stratus, 1.0, 30.0), (Nimbostratus, 1.0, 150.0)],
         &[(Cumulus, 0.3, 400.0), (Altocumulus, 0.5, 3000.0), (Cirrostratus, 1.0, 8000.0)],
         &[(Stratus, 0.4, 0.0), (Stratocumulus, 0.6, 100.0), (Cumulus, 0.5, 250.0)],
     ] {
-        let c = under(layers);
+        let layers: Vec<_> = said.iter().map(|(kind, cover, base_m)| CloudLayer::of(*kind, *cover, *base_m)).collect();
+        let c = under(&layers);
         let (rms, most) = off(&c, &grown, &[-10.0, 2.0, 60.0, 200.0, 450.0, 800.0, 3200.0, 9000.0]);
-        println!("{layers:?}: off by {rms:.3}, {:.3} at most: {}", most.0, most.1);
-        assert!(rms < 0.08 && most.0 < 0.25, "{layers:?}: {rms:.3}, {most:?}");
+        println!("{said:?}: off by {rms:.3}, {:.3} at most: {}", most.0, most.1);
+        assert!(rms < 0.08 && most.0 < 0.25, "{said:?}: {rms:.3}, {most:?}");
     }
 }

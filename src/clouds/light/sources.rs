@@ -78,8 +78,8 @@ fn legendre_sum(terms: [f64; 4], x: f64) -> f64 {
 }
 
 /// Extent of a box from side to side as diffusing light has it: to where it would be dark.
-fn reach(near: f64, far: f64, turning: f64) -> f64 {
-    (near + far).max(1e-3) + 1.42 / turning
+fn reach(near_depth: f64, far_depth: f64, turning: f64) -> f64 {
+    (near_depth + far_depth).max(1e-3) + 1.42 / turning
 }
 
 /// Returns the profile of light from side to side of a box, of mean 1, and its slope along the axis. In a box no wider
@@ -112,7 +112,7 @@ impl Sources {
 
     /// Returns the light that a place at these depths scatters into `direction` (the way light goes; (east, north,
     /// up)), through the scaled depth `to_eye` of more cloud.
-    pub fn scattered(&self, at: &Depths, direction: DVec3, to_eye: f64) -> Scattered {
+    pub fn scattered(&self, depths: &Depths, direction: DVec3, to_eye: f64) -> Scattered {
         let of = &self.scattering;
         let turning = of.turning();
         let (sun, up) = (self.to_sun, direction.z);
@@ -122,16 +122,16 @@ impl Sources {
         let along = direction.truncate().dot(level);
         let sideways = direction.truncate().dot(glam::DVec2::new(-level.y, level.x));
         let straight = -direction.dot(sun);
-        let (above, below) = if sun.z >= 0.0 { (at.above, at.below) } else { (at.below, at.above) };
+        let (above, below) = if sun.z >= 0.0 { (depths.above, depths.below) } else { (depths.below, depths.above) };
         let down = if sun.z >= 0.0 { -up } else { up };
 
         // A box of which one axis is upright, one along the sun's level direction, one across.
-        let (height, depth) = (reach(above, below, turning), reach(at.near, at.far, turning));
-        let [sides_a, sides_c] = [(at.near, at.far, along), (at.left, at.right, sideways)]
+        let (height, depth) = (reach(above, below, turning), reach(depths.near, depths.far, turning));
+        let [sides_a, sides_c] = [(depths.near, depths.far, along), (depths.left, depths.right, sideways)]
             .map(|(near, far, x)| (across([near, far], turning, height, above), x));
-        let sides_u = (across([above, below], turning, depth, at.near), down);
-        let sides_across = (across([at.left, at.right], turning, depth, at.near), sideways);
-        let (a, c, u) = (at.near + at.far, at.left + at.right, above + below);
+        let sides_u = (across([above, below], turning, depth, depths.near), down);
+        let sides_across = (across([depths.left, depths.right], turning, depth, depths.near), sideways);
+        let (a, c, u) = (depths.near + depths.far, depths.left + depths.right, above + below);
         let leak = leak_rate([a, c], turning);
         let spread = 1.0 / turning * of.scaled_albedo() * of.moments[1] / (4.0 * std::f64::consts::PI);
         let through = |terms: [f64; 4], axis: f64, sides: [((f64, f64), f64); 2]| {
@@ -142,27 +142,27 @@ impl Sources {
         };
 
         let by_top = above / cosine;
-        let by_side = if sine > 1e-6 { at.near / sine } else { f64::INFINITY };
+        let by_side = if sine > 1e-6 { depths.near / sine } else { f64::INFINITY };
         let top_share = 1.0 / (1.0 + (PART_RATE * turning * (by_top - by_side)).min(80.0).exp());
         // A way to the sun that is longer than the box's: light that has been scattered often falls off slowly along
         // it.
-        let aside = ((1.0 + turning * by_top.min(by_side)) / (1.0 + turning * at.to_sun)).min(1.0).powi(2);
+        let aside = ((1.0 + turning * by_top.min(by_side)) / (1.0 + turning * depths.to_sun)).min(1.0).powi(2);
         let share = aside * top_share.max(1.0 - top_share);
         let top = through(table_at(&self.top, above, below, leak), down, [sides_a, sides_c]);
         let side_leak = leak_rate([u, c], turning);
-        let side = through(table_at(&self.side, at.near, at.far, side_leak), along, [sides_u, sides_across]);
+        let side = through(table_at(&self.side, depths.near, depths.far, side_leak), along, [sides_u, sides_across]);
         let side = if sine > 1e-6 { side } else { 0.0 };
-        let momentum = (-turning * at.to_sun).exp() - (-at.to_sun).exp();
+        let momentum = (-turning * depths.to_sun).exp() - (-depths.to_sun).exp();
         let kept = of.scaled_albedo() * 3.0 * of.moments[1] / (4.0 * std::f64::consts::PI) * momentum;
         let level_kept = kept * (top_share * sine * along + (1.0 - top_share) * cosine * down);
-        let first = of.scaled_albedo() * (-at.to_sun).exp();
-        let once = first * (of.smooth_phase(1.0 - straight) + of.peak(1.0 - straight, at.to_sun + to_eye));
+        let first = of.scaled_albedo() * (-depths.to_sun).exp();
+        let once = first * (of.smooth_phase(1.0 - straight) + of.peak(1.0 - straight, depths.to_sun + to_eye));
         let often = share * (top.max(0.0) + side.max(0.0));
 
         let from = |one: f64, other: f64, axis: f64| {
             through(table_at(&self.sky, one, other, leak), axis, [sides_a, sides_c]).max(0.0)
         };
-        let (sky, ground) = (from(at.above, at.below, -up), from(at.below, at.above, up));
+        let (sky, ground) = (from(depths.above, depths.below, -up), from(depths.below, depths.above, up));
         // As much as leaves through the sides comes in there, half of it from above.
         let by_sides = 0.5 * (of.scaled_albedo() - sky - ground);
         Scattered {

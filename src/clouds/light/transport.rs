@@ -130,11 +130,11 @@ impl Scattering {
     }
 
     /// Mean of the smooth phase function over azimuth between directions of these cosines.
-    fn mean_phase(&self, from: f64, to: f64) -> f64 {
-        let sines = ((1.0 - from * from) * (1.0 - to * to)).max(0.0).sqrt();
+    fn mean_phase(&self, cosine_in: f64, cosine_out: f64) -> f64 {
+        let sines = ((1.0 - cosine_in * cosine_in) * (1.0 - cosine_out * cosine_out)).max(0.0).sqrt();
         let at = |k: usize| {
             let azimuth = PI * (k as f64 + 0.5) / AZIMUTHS as f64;
-            self.smooth_phase((1.0 - from * to - sines * azimuth.cos()).max(0.0))
+            self.smooth_phase((1.0 - cosine_in * cosine_out - sines * azimuth.cos()).max(0.0))
         };
         (0..AZIMUTHS).map(at).sum::<f64>() / AZIMUTHS as f64
     }
@@ -193,12 +193,12 @@ impl ScatterSlab {
         Self { depth: 2.0 * self.depth, reflects: r + t * between * r * t, passes: t * between * t }
     }
 
-    /// Returns the light that leaves two such slabs under a beam, from that which leaves one. `between`: light thrown
+    /// Returns the light that leaves two such slabs under a beam, from that which leaves one. `bounces`: light thrown
     /// back and forth between the two.
-    fn doubled_beam(&self, between: &DMat4, lit: &UnderBeam) -> UnderBeam {
+    fn doubled_beam(&self, bounces: &DMat4, lit: &UnderBeam) -> UnderBeam {
         let (r, t) = (self.reflects, self.passes);
         let below = lit.up * lit.left;
-        let down = *between * (lit.down + r * below);
+        let down = *bounces * (lit.down + r * below);
         let up = r * down + below;
         UnderBeam { down: lit.down * lit.left + t * down, up: lit.up + t * up, left: lit.left * lit.left }
     }
@@ -212,9 +212,10 @@ struct ScatterMatrices {
 }
 
 impl ScatterMatrices {
-    fn new(of: &Scattering) -> Self {
+    fn new(scattering: &Scattering) -> Self {
         let between = |sign: f64| {
-            let column = |j: usize| DVec4::from_array([0, 1, 2, 3].map(|i| of.mean_phase(NODES[i], sign * NODES[j])));
+            let column =
+                |j: usize| DVec4::from_array([0, 1, 2, 3].map(|i| scattering.mean_phase(NODES[i], sign * NODES[j])));
             DMat4::from_cols(column(0), column(1), column(2), column(3))
         };
         let (mut down, mut up) = (between(1.0), between(-1.0));
@@ -242,8 +243,8 @@ struct SlabLadder {
 const DOUBLINGS: i32 = 10;
 
 impl SlabLadder {
-    fn new(of: &Scattering, turned: &ScatterMatrices, leak: f64) -> Self {
-        let albedo = of.scaled_albedo() / (1.0 + leak);
+    fn new(scattering: &Scattering, turned: &ScatterMatrices, leak: f64) -> Self {
+        let albedo = scattering.scaled_albedo() / (1.0 + leak);
         let doublings = [1.0, 2f64.sqrt()].map(|step| {
             let mut slab = ScatterSlab::thin(turned, albedo, THINNEST * step / 2f64.powi(DOUBLINGS));
             let all = (0..DOUBLINGS as usize + DEPTHS.div_ceil(2)).map(|_| {
@@ -343,12 +344,13 @@ impl Transport {
     }
 
     /// The moments of light between a slab above and one below, times what a place scatters of them.
-    fn source(&self, down: DVec4, up: DVec4) -> [f32; 4] {
+    fn source(&self, downward: DVec4, upward: DVec4) -> [f32; 4] {
         let of = &self.scattering;
         [0usize, 1, 2, 3].map(|l| {
             let nodes = NODES.to_array();
-            let sum: f64 =
-                (0..4).map(|i| WEIGHTS[i] * (down[i] * legendre(l, nodes[i]) + up[i] * legendre(l, -nodes[i]))).sum();
+            let sum: f64 = (0..4)
+                .map(|i| WEIGHTS[i] * (downward[i] * legendre(l, nodes[i]) + upward[i] * legendre(l, -nodes[i])))
+                .sum();
             let scattered = of.scaled_albedo() * (2 * l + 1) as f64 * of.moments[l] / (4.0 * PI);
             (2.0 * PI * sum * scattered * self.conserved) as f32
         })
@@ -404,9 +406,9 @@ fn cell(x: f64, count: usize) -> (usize, f64) {
 }
 
 /// A table's source terms between its entries, of the ladder without leak.
-fn first_leak_at(table: &[[f32; 4]], above: f64, below: f64) -> [f64; 4] {
-    let (i, x) = cell(depth_place(above), DEPTHS);
-    let (j, y) = cell(depth_place(below), DEPTHS);
+fn first_leak_at(table: &[[f32; 4]], depth_above: f64, depth_below: f64) -> [f64; 4] {
+    let (i, x) = cell(depth_place(depth_above), DEPTHS);
+    let (j, y) = cell(depth_place(depth_below), DEPTHS);
     let mut out = [0.0; 4];
     for (dj, wj) in [(0, 1.0 - y), (1, y)] {
         for (di, wi) in [(0, 1.0 - x), (1, x)] {
@@ -420,8 +422,8 @@ fn first_leak_at(table: &[[f32; 4]], above: f64, below: f64) -> [f64; 4] {
 }
 
 /// A table's source terms between its entries.
-pub fn table_at(table: &Table, above: f64, below: f64, leak: f64) -> [f64; 4] {
+pub fn table_at(table: &Table, depth_above: f64, depth_below: f64, leak: f64) -> [f64; 4] {
     let (k, z) = cell(leak_place(leak), LEAKS);
-    let [low, high] = [k, k + 1].map(|k| first_leak_at(&table[k * DEPTHS * DEPTHS..], above, below));
+    let [low, high] = [k, k + 1].map(|k| first_leak_at(&table[k * DEPTHS * DEPTHS..], depth_above, depth_below));
     [0, 1, 2, 3].map(|l| low[l] + (high[l] - low[l]) * z)
 }

@@ -6,7 +6,7 @@ use super::shadow_projection::{HistoryUse, ShadowInputs};
 use crate::{
     clouds::drawn::{
         picture::{PANORAMA_SIDE, SEEN},
-        rows::{self, MapRows, Turn},
+        rows::{self, MapRows, RowSpan, Turn},
     },
     error::Result,
     gpu::{
@@ -89,37 +89,37 @@ impl CloudPanorama {
         };
         let due = self.rows.due((PANORAMA_SIDE, ROWS), &turn);
         let Some((first, count)) = due else { return 0 };
-        rows::draw(encoder, &self.view, (PANORAMA_SIDE, first, count), &self.pipeline, groups);
+        rows::draw(encoder, &self.view, RowSpan { width: PANORAMA_SIDE, first, count }, &self.pipeline, groups);
         1
     }
 
     /// Copies it below a picture of this height.
-    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Texture, height: u32) {
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::Texture, height: u32) {
         let origin = wgpu::Origin3d { x: 0, y: height, z: 0 };
-        let to = wgpu::TexelCopyTextureInfo { origin, ..to.as_image_copy() };
-        encoder.copy_texture_to_texture(self.texture.as_image_copy(), to, self.texture.size());
+        let target = wgpu::TexelCopyTextureInfo { origin, ..target.as_image_copy() };
+        encoder.copy_texture_to_texture(self.texture.as_image_copy(), target, self.texture.size());
     }
 }
 
 impl PanoramaInputs {
-    fn leaps_from(&self, before: &Self) -> bool {
+    fn leaps_from(&self, earlier: &Self) -> bool {
         let (way_m, exposed) = LEAPS;
-        self.standing.leaps_from(&before.standing)
-            || self.standing.camera_m.distance(before.standing.camera_m) > way_m
-            || (self.altitude_m - before.altitude_m).abs() > way_m
-            || (self.exposure / before.exposure).ln().abs() > exposed
+        self.standing.leaps_from(&earlier.standing)
+            || self.standing.camera_m.distance(earlier.standing.camera_m) > way_m
+            || (self.altitude_m - earlier.altitude_m).abs() > way_m
+            || (self.exposure / earlier.exposure).ln().abs() > exposed
     }
 
-    /// The share of the map's rows that a change from `before` makes old.
-    fn aged_since(&self, before: &Self) -> f64 {
+    /// The share of the map's rows that a change from `earlier` makes old.
+    fn aged_since(&self, earlier: &Self) -> f64 {
         let (way_m, times, exposed) = AGES;
-        let (here, there) = (&self.standing, &before.standing);
+        let (here, there) = (&self.standing, &earlier.standing);
         let shares = [
             times * here.aged_since(there),
             here.camera_m.distance(there.camera_m) / way_m,
-            (self.altitude_m - before.altitude_m).abs() / way_m,
+            (self.altitude_m - earlier.altitude_m).abs() / way_m,
             (here.drift_m - there.drift_m).length() / way_m,
-            (self.exposure / before.exposure).ln().abs() / exposed,
+            (self.exposure / earlier.exposure).ln().abs() / exposed,
         ];
         shares.into_iter().fold(0.0, f64::max)
     }

@@ -5,7 +5,7 @@
 use super::shadow_projection::{HistoryUse, ShadowInputs, ShadowProjection, TEXELS};
 use crate::{
     clouds::drawn::{
-        rows::{self, MapRows, Turn},
+        rows::{self, MapRows, RowSpan, Turn},
         tables::CloudTables,
         uniforms::{CloudsUniform, ShadowUniform},
     },
@@ -116,7 +116,7 @@ impl ShadowMap {
         (device, blocks): (&Device, &Blocks),
         tables: &CloudTables,
         (clouds, is_placed): (&BlockView, bool),
-        of: &wgpu::Texture,
+        target: &wgpu::Texture,
     ) -> Result<Self> {
         let slots = [
             (1, Slot::Uniform(size_of::<CloudsUniform>())),
@@ -142,7 +142,7 @@ impl ShadowMap {
             ],
         });
         Ok(Self {
-            view: of.create_view(&Default::default()),
+            view: target.create_view(&Default::default()),
             pipeline: shadow_pipeline(device, &layout, (TEXELS, is_placed))?,
             coarse: Coarse::new(device, (&layout, is_placed), &tables.repeating)?,
             clouds: group,
@@ -179,10 +179,11 @@ impl ShadowMap {
         self.coarse_rows = self.coarse_rows.saturating_sub(count);
         if begins {
             let coarse = &self.coarse;
-            rows::draw(encoder, &coarse.view, (COARSE, 0, COARSE), &coarse.pipeline, &[&self.clouds]);
-            rows::draw(encoder, &self.view, (TEXELS, 0, TEXELS), &coarse.spread, &[&coarse.group]);
+            let all = |side| RowSpan { width: side, first: 0, count: side };
+            rows::draw(encoder, &coarse.view, all(COARSE), &coarse.pipeline, &[&self.clouds]);
+            rows::draw(encoder, &self.view, all(TEXELS), &coarse.spread, &[&coarse.group]);
         }
-        rows::draw(encoder, &self.view, (TEXELS, first, count), &self.pipeline, &[&self.clouds]);
+        rows::draw(encoder, &self.view, RowSpan { width: TEXELS, first, count }, &self.pipeline, &[&self.clouds]);
         1 + 2 * u32::from(begins)
     }
 }

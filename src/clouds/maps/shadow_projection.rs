@@ -148,26 +148,26 @@ impl ShadowProjection {
 
 impl ShadowInputs {
     /// Whether nothing of a map of what stood before holds.
-    pub fn leaps_from(&self, before: &Self) -> bool {
+    pub fn leaps_from(&self, earlier: &Self) -> bool {
         let (time_s, turn, threshold) = LEAPS;
-        (self.time_s - before.time_s).abs() > time_s
-            || self.to_light.dot(before.to_light) < turn.cos()
-            || (self.threshold_sum - before.threshold_sum).abs() > threshold
-            || self.drift_m.distance(before.drift_m) > LEAP_OF_DRIFT_M
-            || self.placed.1 != before.placed.1
-            || (self.placed.0 - before.placed.0).abs() > LEAP_OF_DRIFT_M
-            || self.camera_m.distance(before.camera_m) > 0.1 * TEXEL_M * f64::from(TEXELS)
+        (self.time_s - earlier.time_s).abs() > time_s
+            || self.to_light.dot(earlier.to_light) < turn.cos()
+            || (self.threshold_sum - earlier.threshold_sum).abs() > threshold
+            || self.drift_m.distance(earlier.drift_m) > LEAP_OF_DRIFT_M
+            || self.placed.1 != earlier.placed.1
+            || (self.placed.0 - earlier.placed.0).abs() > LEAP_OF_DRIFT_M
+            || self.camera_m.distance(earlier.camera_m) > 0.1 * TEXEL_M * f64::from(TEXELS)
     }
 
-    /// The share of a map's rows that a change from `before` makes old.
-    pub fn aged_since(&self, before: &Self) -> f64 {
+    /// The share of a map's rows that a change from `earlier` makes old.
+    pub fn aged_since(&self, earlier: &Self) -> f64 {
         let (time_s, turn, threshold, way_m) = AGES;
         let shares = [
-            (self.time_s - before.time_s).abs() / time_s,
-            self.to_light.distance(before.to_light) / turn,
-            (self.threshold_sum - before.threshold_sum).abs() / threshold,
-            self.camera_m.distance(before.camera_m) / way_m,
-            (self.placed.0 - before.placed.0).abs() / way_m,
+            (self.time_s - earlier.time_s).abs() / time_s,
+            self.to_light.distance(earlier.to_light) / turn,
+            (self.threshold_sum - earlier.threshold_sum).abs() / threshold,
+            self.camera_m.distance(earlier.camera_m) / way_m,
+            (self.placed.0 - earlier.placed.0).abs() / way_m,
         ];
         shares.into_iter().fold(0.0, f64::max)
     }
