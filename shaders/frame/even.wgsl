@@ -1,5 +1,5 @@
 // Sky, air and fog at every fourth pixel, for draws of pixels that are interpolated between them
-// (src/frame/even.rs).
+// (src/frame/pixels/even.rs).
 
 // Pixels between texels of the grid. The first texel lies as much before the picture's first pixel, the last ones
 // beyond its last.

@@ -1,4 +1,4 @@
-// Which of the composition's draws a pixel belongs to, as a depth (src/frame/kinds.rs).
+// Which of the composition's draws a pixel belongs to, as a depth (src/frame/pixels/kinds.rs).
 //!include "common/host.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "common/frame.wgsl"

@@ -496,8 +496,8 @@ impl Live {
         (self.awake_s, self.rests) = (0.0, false);
     }
 
-    /// Whether a leap of time leads to the present, so that it begins anew. Counted from the end of its next step, which
-    /// the last update did not reach: so no update of [`LEAP_S`] is one, however long the steps.
+    /// Whether a leap of time leads to the present, so that it begins anew. Counted from the end of its next step,
+    /// which the last update did not reach: so no update of [`LEAP_S`] is one, however long the steps.
     pub fn is_left_behind(&self, present_s: f64) -> bool {
         present_s - self.next_s() > LEAP_S
     }

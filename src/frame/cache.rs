@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use super::{
     bound::Bound,
-    composite::SharedComposite,
-    draws::{DrawKey, Draws, MOST_DRAWS},
     environment_map::EnvironmentMap,
-    even::CoarseWeather,
     froxels::Froxels,
-    kinds::KindAttachment,
     opaque_step::OpaqueStep,
+    pixels::{
+        composite::SharedComposite,
+        draws::{DrawKey, Draws, MOST_DRAWS},
+        even::CoarseWeather,
+        kinds::KindAttachment,
+    },
 };
 use crate::{
     context::Context,

@@ -2,11 +2,13 @@
 //! of it.
 
 use super::{
-    draws::{DrawKey, Draws, PipelineNotReady},
     froxels::{FroxelKind, Froxels},
-    pixels::Pixels,
+    pixels::{
+        draws::{DrawKey, Draws, PipelineNotReady},
+        pixel_kind::Pixels,
+        variant::Variant,
+    },
     planned::{present, situation},
-    variant::Variant,
     view::View,
 };
 use crate::{

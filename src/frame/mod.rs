@@ -7,16 +7,12 @@
 mod bound;
 mod cache;
 mod check;
-mod composite;
 mod diagnose;
 mod draw;
-mod draws;
 mod environment;
 mod environment_map;
-mod even;
 mod froxels;
 mod history;
-mod kinds;
 mod light;
 mod opaque;
 mod opaque_step;
@@ -24,7 +20,6 @@ mod picture;
 mod pixels;
 mod planned;
 mod unit;
-mod variant;
 mod view;
 mod wind_picture;
 

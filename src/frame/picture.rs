@@ -1,7 +1,10 @@
 //! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
 
 use super::{
-    bound::Bound, environment_map::EnvironmentMap, even::CoarseWeather, froxels::Froxels, kinds::KindAttachment,
+    bound::Bound,
+    environment_map::EnvironmentMap,
+    froxels::Froxels,
+    pixels::{even::CoarseWeather, kinds::KindAttachment},
     view::View,
 };
 use crate::{

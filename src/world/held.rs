@@ -22,8 +22,8 @@ pub(crate) trait HeldEffect: std::any::Any {
         Ok(())
     }
 
-    /// Leads the state on to `within.until_s`, by steps of a grid that is anchored at time 0, or until the time is over:
-    /// one step at least. Says whether it got there.
+    /// Leads the state on to `within.until_s`, by steps of a grid that is anchored at time 0, or until the time is
+    /// over: one step at least. Says whether it got there.
     fn lead(&mut self, _world: &World, _within: Within) -> Result<Status> {
         Ok(Status::Ok)
     }

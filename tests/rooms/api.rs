@@ -1,5 +1,5 @@
-//! The public Rust API: every item that a user of the crate can name, held against `tests/abi/rust.txt` as the header is
-//! against its own lists. `WELKIN_BLESS=1` writes it anew.
+//! The public Rust API: every item that a user of the crate can name, held against `tests/abi/rust.txt` as the header
+//! is against its own lists. `WELKIN_BLESS=1` writes it anew.
 
 use std::{collections::BTreeSet, fs};
 
@@ -13,7 +13,7 @@ use crate::{
 /// Public API of a source tree, a line for each thing that has a name.
 fn api(sources: &Sources) -> BTreeSet<String> {
     let mut reader = ApiReader { sources, lines: BTreeSet::new() };
-    reader.take_module(&Vec::new());
+    reader.take_module(&Vec::new(), &Vec::new());
     reader.lines
 }
 
@@ -110,53 +110,58 @@ fn is_public_item(item: &syn::Item) -> bool {
 }
 
 impl ApiReader<'_> {
-    fn take_module(&mut self, module: &ModulePath) {
-        let Some(file) = self.sources.file(module) else { return };
+    /// Takes the items of a module, `from`, as those of the module that shows them.
+    fn take_module(&mut self, shown: &ModulePath, from: &ModulePath) {
+        let Some(file) = self.sources.file(from) else { return };
         for item in file.tree.items.iter().filter(|item| is_public_item(item)) {
             match item {
                 // The C API has lists of its own.
                 syn::Item::Mod(inner) if inner.ident == "capi" => {}
                 syn::Item::Mod(inner) => {
-                    let child = [module.as_slice(), &[inner.ident.to_string()]].concat();
-                    self.lines.insert(format!("{} mod", child.join("::")));
-                    self.take_module(&child);
+                    let child = |parent: &ModulePath| [parent.as_slice(), &[inner.ident.to_string()]].concat();
+                    self.lines.insert(format!("{} mod", child(shown).join("::")));
+                    self.take_module(&child(shown), &child(from));
                 }
-                syn::Item::Use(used) => self.take_use(module, &[], &used.tree),
-                item => self.take_item(module, module, item, None),
+                syn::Item::Use(used) => self.take_use([shown, from], &[], &used.tree),
+                item => self.take_item(shown, from, item, None),
             }
         }
     }
 
     /// Takes what a `pub use` line of a module adds to it.
-    fn take_use(&mut self, module: &ModulePath, before: &[String], tree: &syn::UseTree) {
+    fn take_use(&mut self, modules: [&ModulePath; 2], before: &[String], tree: &syn::UseTree) {
+        let [shown, module] = modules;
         let with = |name: &syn::Ident| [before, &[name.to_string()]].concat();
         match tree {
-            syn::UseTree::Path(path) => self.take_use(module, &with(&path.ident), &path.tree),
-            syn::UseTree::Group(group) => group.items.iter().for_each(|item| self.take_use(module, before, item)),
-            syn::UseTree::Name(name) => self.take_used(module, &with(&name.ident), None),
-            syn::UseTree::Rename(name) => self.take_used(module, &with(&name.ident), Some(name.rename.to_string())),
+            syn::UseTree::Path(path) => self.take_use(modules, &with(&path.ident), &path.tree),
+            syn::UseTree::Group(group) => group.items.iter().for_each(|item| self.take_use(modules, before, item)),
+            syn::UseTree::Name(name) => self.take_used(modules, &with(&name.ident), None),
+            syn::UseTree::Rename(name) => self.take_used(modules, &with(&name.ident), Some(name.rename.to_string())),
             syn::UseTree::Glob(_) => {
                 let Some(from) = self.sources.defining(module, before).cloned() else { return };
                 let file = self.sources.file(&from).expect("it was found");
                 for item in file.tree.items.iter().filter(|item| is_public_item(item)) {
-                    self.take_item(module, &from, item, None);
+                    self.take_item(shown, &from, item, None);
                 }
             }
         }
     }
 
-    fn take_used(&mut self, module: &ModulePath, path: &[String], alias: Option<String>) {
+    fn take_used(&mut self, [shown, module]: [&ModulePath; 2], path: &[String], alias: Option<String>) {
         let name = path.last().expect("a name");
-        let public = || [module.as_slice(), &[alias.clone().unwrap_or_else(|| name.clone())]].concat().join("::");
+        let public = [shown.as_slice(), &[alias.clone().unwrap_or_else(|| name.clone())]].concat();
         let Some(from) = self.sources.defining(module, path).cloned() else {
-            self.lines.insert(format!("{} = {}", public(), path.join("::")));
+            self.lines.insert(format!("{} = {}", public.join("::"), path.join("::")));
             return;
         };
         let items = &self.sources.file(&from).expect("it was found").tree.items;
         match items.iter().find(|item| item_name(item).as_ref() == Some(name)) {
-            Some(item) => self.take_item(module, &from, item, alias),
+            Some(item) => self.take_item(shown, &from, item, alias),
             // The path leads to a module.
-            None => _ = self.lines.insert(format!("{} mod = {}", public(), from.join("::"))),
+            None => {
+                self.lines.insert(format!("{} mod", public.join("::")));
+                self.take_module(&public, &from);
+            }
         }
     }
 

@@ -1,5 +1,5 @@
-//! The files of `src/` as the compiler reads them: the paths that each uses, the names that it gives, and its functions.
-//! Tests within a file and files of tests are left out.
+//! The files of `src/` as the compiler reads them: the paths that each uses, the names that it gives, and its
+//! functions. Tests within a file and files of tests are left out.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -233,6 +233,9 @@ impl<'a> Visit<'a> for Reader {
             self.take_use(&[], &item.tree);
         }
     }
+
+    /// Says who may name a thing, and names none.
+    fn visit_visibility(&mut self, _visibility: &'a syn::Visibility) {}
 
     fn visit_path(&mut self, path: &'a syn::Path) {
         let names: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();

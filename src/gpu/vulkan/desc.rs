@@ -6,7 +6,8 @@ use ash::vk;
 
 use super::facts::EnabledFeatures;
 
-/// Description of a host's Vulkan device. All handles stay the host's and must outlive the [`VulkanHost`](super::VulkanHost).
+/// Description of a host's Vulkan device. All handles stay the host's and must outlive the
+/// [`VulkanHost`](super::VulkanHost).
 #[derive(Clone, Copy, Debug)]
 pub struct VulkanHostDesc<'a> {
     /// The host's `vkGetInstanceProcAddr` (from its loader, GLFW, SDL, volk, ...).

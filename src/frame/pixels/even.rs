@@ -6,7 +6,7 @@
 //! shows is as far away as what they show. All others are drawn as ever: edges, thin things, the edge of fog, the
 //! neighbourhood of the sun's disc. The grid has no clouds: each pixel lays its own over what it looks up.
 
-use super::{pixels::Pixels, variant::Variant};
+use super::{pixel_kind::Pixels, variant::Variant};
 use crate::{
     gpu::{
         Device,
@@ -25,7 +25,7 @@ const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
 /// Whether a grid may stand for parts of the picture of `all`: not where something in it changes from pixel to pixel,
 /// nor where samples have depths of their own.
-pub(super) fn may_be(all: &Variant) -> bool {
+pub(in crate::frame) fn may_be(all: &Variant) -> bool {
     let weather = all.stages.has(Stages::BACKGROUND) || all.stages.has(Stages::MEDIUM);
     let traits = all.constants.traits;
     let is_fine = traits.is_fine || traits.is_overlaid && traits.veils_all;
@@ -33,7 +33,7 @@ pub(super) fn may_be(all: &Variant) -> bool {
 }
 
 /// The variant that draws the grid of `all`.
-pub(super) fn grid_of(all: &Variant) -> Variant {
+pub(in crate::frame) fn grid_of(all: &Variant) -> Variant {
     Variant {
         stages: all.stages.without(Stages::SURFACE.with(Stages::PARTICLES).with(Stages::TONE)),
         format: WEATHER,
@@ -44,7 +44,7 @@ pub(super) fn grid_of(all: &Variant) -> Variant {
 }
 
 /// Layouts and sampler with which grids are made, for all views of a device.
-pub(super) struct EvenLayouts {
+pub(in crate::frame) struct EvenLayouts {
     /// Layout of what the cells are found from.
     pub weather: wgpu::BindGroupLayout,
     /// Layout of the grid and its cells, group 3 of the draws.
@@ -74,7 +74,7 @@ impl EvenLayouts {
 }
 
 /// The grid of a view.
-pub(super) struct CoarseWeather {
+pub(in crate::frame) struct CoarseWeather {
     picture: [u32; 2],
     size: [u32; 2],
     weather: [wgpu::TextureView; 2],

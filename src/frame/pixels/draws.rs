@@ -7,7 +7,7 @@ use super::{
     composite::Composite,
     even::{self, CoarseWeather},
     kinds::{self, KindAttachment},
-    pixels::Pixels,
+    pixel_kind::Pixels,
     variant::Variant,
 };
 use crate::{
@@ -17,10 +17,10 @@ use crate::{
 };
 
 /// Calls of a frame whose draws a view keeps.
-pub(super) const MOST_DRAWS: usize = 4;
+pub(in crate::frame) const MOST_DRAWS: usize = 4;
 
 /// Key that draws are made for.
-pub(super) struct DrawKey {
+pub(in crate::frame) struct DrawKey {
     pub of: Variant,
     pub has_grid: bool,
 }
@@ -33,7 +33,7 @@ impl DrawKey {
 }
 
 /// The pipelines of a variant's draws.
-pub(super) struct Draws {
+pub(in crate::frame) struct Draws {
     /// Pipelines of the grid and its cells, where any pixel looks the weather up.
     even: Option<[wgpu::RenderPipeline; 2]>,
     pixels: Kinds,
@@ -49,7 +49,7 @@ enum Kinds {
 }
 
 /// Why there are no draws of a variant yet.
-pub(super) enum PipelineNotReady {
+pub(in crate::frame) enum PipelineNotReady {
     /// Not all of their pipelines are compiled: until they are, one draw stands for them.
     Coming(Draws),
     Failed(Error),

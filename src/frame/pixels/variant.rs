@@ -1,11 +1,11 @@
 //! Variant of the composition: the properties that distinguish one compiled pipeline from another.
 
-use super::pixels::Pixels;
+use super::pixel_kind::Pixels;
 use crate::stage::{Constants, Pipeline, Sampling, Stages, flag};
 
 /// Properties that distinguish one compiled variant from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Variant {
+pub(in crate::frame) struct Variant {
     pub stages: Stages,
     pub format: wgpu::TextureFormat,
     pub samples: u32,

@@ -3,11 +3,11 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::{
+    super::wind_picture::WindPicture,
     even::{self, EvenLayouts},
     kinds,
-    pixels::Pixels,
+    pixel_kind::Pixels,
     variant::Variant,
-    wind_picture::WindPicture,
 };
 use crate::{
     effects::{BLOCK_BYTES, tables_layout},
@@ -45,7 +45,7 @@ struct KindsPipeline {
 }
 
 /// The composition of a device, for all its views. Any thread.
-pub(super) struct SharedComposite(Mutex<Composite>);
+pub(in crate::frame) struct SharedComposite(Mutex<Composite>);
 
 impl SharedComposite {
     /// Makes what every view needs.
@@ -66,7 +66,7 @@ impl SharedComposite {
 }
 
 /// Pipelines of the composition, shared by the views of a device.
-pub(super) struct Composite {
+pub(in crate::frame) struct Composite {
     /// Layouts of group 0, by [`Sampling`].
     layouts: [wgpu::BindGroupLayout; 3],
     layout_tables: wgpu::BindGroupLayout,

@@ -3,11 +3,11 @@
 use crate::gpu::pass::depth_test;
 
 /// Format of the depth attachment: its values are exact.
-pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+pub(in crate::frame) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Pixels that a draw of the composition is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Pixels {
+pub(in crate::frame) enum Pixels {
     /// All of them.
     All,
     /// Pixels that are not interpolated from the coarse grid.

@@ -7,24 +7,24 @@
 //! and the sky for the planet's ground below it. A GPU branches, and draws them with one pipeline.
 
 use super::{
-    pixels::{FORMAT, Pixels},
+    pixel_kind::{FORMAT, Pixels},
     variant::Variant,
 };
 use crate::{gpu::flat_texture, stage::Stages};
 
 /// Whether pixels that look the weather up and on which the host drew have a draw of their own, which reads depth:
 /// water and snow lie on them, and clouds may stand before them.
-pub(super) fn draws_apart(all: &Variant) -> bool {
+pub(in crate::frame) fn draws_apart(all: &Variant) -> bool {
     all.stages.has(Stages::SURFACE) || all.constants.traits.is_overlaid
 }
 
 /// Most draws of a picture.
-pub(super) const DRAWS: usize = 5;
+pub(in crate::frame) const DRAWS: usize = 5;
 
 /// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have
 /// depths of their own, or rays are marched. With a `grid`, pixels between which the weather is even have draws of
 /// their own. If `splits`, the others have a draw for each kind of what they show.
-pub(super) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
+pub(in crate::frame) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];
     let veils_all = stages.has(Stages::MEDIUM) && traits.veils_all;
@@ -61,7 +61,7 @@ pub(super) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>
 }
 
 /// The depth attachment of a view: the kinds of its picture's pixels.
-pub(super) struct KindAttachment {
+pub(in crate::frame) struct KindAttachment {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
 }
