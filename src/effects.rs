@@ -347,8 +347,10 @@ impl Effects {
         for place in order {
             let effect = &mut effects[place];
             let exchange = effect.composes();
-            let added = effect.compose(context, &given.only(exchange.needs))?;
-            given.take_layers(&added, exchange.gives);
+            // Merged where it was returned: copies of ten contributions would cost a microsecond.
+            let mut outcome = effect.compose(context, &given.only(exchange.needs));
+            let Ok(added) = &mut outcome else { return outcome.map(|_| ()) };
+            given.take_layers(added, exchange.gives);
             composition.merge(added);
         }
         Ok(())

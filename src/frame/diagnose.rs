@@ -1,10 +1,12 @@
 //! A diagnostic picture in place of a frame's: the composition's bindings and constants, another shader.
 
-use super::view::View;
+use super::{draw::frame_block, view::View};
 use crate::{
     error::Result,
     gpu::{Layer, pass},
-    stage::{ColorSpace, CostItem, Diagnostic, DrawTarget, FrameContext, Recording, Stages, flag, is_float},
+    stage::{
+        ColorSpace, Composition, CostItem, Diagnostic, DrawTarget, FrameContext, Recording, Stages, flag, is_float,
+    },
 };
 
 impl View {
@@ -29,7 +31,8 @@ impl View {
         let behind = if frame.diagnostic == Diagnostic::PlanError { asked.0 & Stages::BACKGROUND.0 } else { 0 };
         context.stages = stage.with(Stages(behind));
         let color = target.color.texture;
-        let mut composition = self.composed(&context, false, false)?;
+        let mut composition = Composition::new(context.stages, frame_block(&context, false));
+        self.compose_effects(&context, &mut composition, false)?;
         let is_there = there.has(stage) && composition.stages().has(stage);
         if !is_there {
             composition.leave_out(stage);

@@ -16,10 +16,16 @@ use crate::{
     error::Result,
     gpu::Layer,
     stage::{
-        ColorSpace, Composition, CostItem, DrawContext, DrawTarget, FrameContext, MergedFrame, PlannedShares,
-        Recording, Sampling, Stages, flag, uniform,
+        ColorSpace, Composition, CostItem, DrawContext, DrawTarget, FrameContext, FrameUniform, MergedFrame,
+        PlannedShares, Recording, Sampling, Stages, flag, uniform,
     },
 };
+
+/// The frame's block for a draw. `tone` says that the whole picture is tone-mapped.
+pub(super) fn frame_block(context: &DrawContext<'_>, tone: bool) -> FrameUniform {
+    let target = &context.target;
+    uniform(context.frame, context.now, target.rays, context.picture(), target.exposure, tone)
+}
 
 impl View {
     /// Draws stages that neighbour each other into the host's picture.
@@ -39,7 +45,8 @@ impl View {
         }
         self.history.report.exposure = target.exposure;
         let context = self.planned(frame_context, target, drawn);
-        let mut composition = self.composed(&context, tone, self.cache.environment.is_some())?;
+        let mut composition = Composition::new(context.stages, frame_block(&context, tone));
+        self.compose_effects(&context, &mut composition, self.cache.environment.is_some())?;
         let variant = self.variant(&context, &mut composition)?;
         composition.set_compositions(self.planner.compositions(self.effects.weighs_unseen()));
         self.draw_effects(&context, &composition, recording)?;
@@ -65,20 +72,17 @@ impl View {
         Ok(())
     }
 
-    /// Merges what all effects add to a draw. `tone` says that the whole picture is tone-mapped, `has_cube_map` that
+    /// Merges what all effects add to a draw into a new composition, in place, for it is large. `has_cube_map` says that
     /// the host has asked for the cube map.
-    pub(super) fn composed(
+    pub(super) fn compose_effects(
         &mut self,
         context: &DrawContext<'_>,
-        tone: bool,
+        composition: &mut Composition,
         has_cube_map: bool,
-    ) -> Result<Composition> {
-        let target = &context.target;
-        let block = uniform(context.frame, context.now, target.rays, context.picture(), target.exposure, tone);
-        let mut composition = Composition::new(context.stages, block);
-        self.effects.compose(context, &mut composition)?;
+    ) -> Result<()> {
+        self.effects.compose(context, composition)?;
         composition.finish(has_cube_map);
-        Ok(composition)
+        Ok(())
     }
 
     /// Draws the passes of the effects, and copies the picture that the composition reads.

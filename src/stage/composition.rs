@@ -294,8 +294,8 @@ impl Composition {
         }
     }
 
-    /// Takes what one effect adds.
-    pub fn merge(&mut self, contribution: Contribution<'_>) {
+    /// Takes what one effect adds out of its contribution.
+    pub fn merge(&mut self, contribution: &mut Contribution<'_>) {
         for c in &contribution.constants[..contribution.count] {
             for (pipeline, value) in [(&mut self.whole, c.whole), (&mut self.least, c.least)] {
                 let constant = (c.name, value);
@@ -315,13 +315,13 @@ impl Composition {
         if let Some(block) = &contribution.block {
             self.block.merge(block);
         }
-        if let Some((place, block)) = contribution.own_block {
+        if let Some((place, block)) = contribution.own_block.take() {
             self.blocks[place as usize] = Some(block);
         }
-        for (place, texture) in self.textures.iter_mut().zip(contribution.textures) {
-            *place = texture.or(place.take());
+        for (place, texture) in self.textures.iter_mut().zip(&mut contribution.textures) {
+            *place = texture.take().or(place.take());
         }
-        self.tables = contribution.tables.or(self.tables.take());
+        self.tables = contribution.tables.take().or(self.tables.take());
         self.needs_panorama |= contribution.needs_panorama;
         self.near = match (self.near, contribution.near) {
             (Some(all), Some(near)) => Some(all.with(near)),

@@ -34,6 +34,9 @@ pub(crate) struct Outputs {
 impl Outputs {
     /// Returns those outputs that an effect `needs`: it sees nothing else.
     pub fn only(&self, needs: &[Output]) -> Self {
+        if needs.is_empty() {
+            return Self::default();
+        }
         let has = |output| needs.contains(&output);
         Self {
             fog_depth: if has(Output::FogDepth) { self.fog_depth } else { 0.0 },
