@@ -22,10 +22,11 @@ use crate::{
     weather::{CloudMap, CloudSlab},
 };
 
-/// How much less excess the anvil of such a cell needs than that of a layer: across its edge, by [`EDGE_SLOPE`], it
-/// reaches this much over that many distances from cloud to cloud farther than its towers.
+/// How much less excess the anvil of a cell over a rain area needs than that of a layer: across the cell's edge, by
+/// `EDGE_SLOPE` of the cells, it reaches this much over that many distances from cloud to cloud farther than its
+/// towers.
 const ANVIL_WIDER: f64 = 2.2;
-/// Thickness of a cell over the distance from cloud to cloud from which on its heads grow with its height, and how
+/// Thickness of such a cell over the distance from cloud to cloud from which on its heads grow with its height, and how
 /// rough they make it at most: by the map alone its sides would hang like curtains.
 const HEADS: f64 = 2.0;
 const MOST_ROUGH: f64 = 2.1;

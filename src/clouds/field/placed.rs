@@ -1,4 +1,4 @@
-//! Local cloud cover that overrides a layer's own: a host's map of cover ([`CloudMap`]), and cells of cloud over rain
+//! Local cloud cover that overrides a layer's own: a host's map of cover (`CloudMap`), and cells of cloud over rain
 //! areas, so that no rain falls out of a clear sky. Twin of `shaders/clouds/placed.wgsl`.
 //!
 //! # Model

@@ -62,7 +62,7 @@ impl HostImage {
     /// Refuses depth that was not created to be written, in a message about the parameter `name`.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the usage.
+    /// [`crate::Status::InvalidArgument`] naming the usage.
     pub fn check_written(&self, name: &str) -> Result<()> {
         let needed = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
         if self.usage.contains(needed) {
