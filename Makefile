@@ -16,7 +16,7 @@ OUT_DIR    := $(TARGET_DIR)/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))
 # The library as `make install` lays it out, for the C hosts that are built here.
 STAGE      := $(abspath $(TARGET_DIR))/stage/$(PROFILE)
 
-VERSION   := $(shell sed -n '/^\[package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
+VERSION   := $(shell sed -n '/^\[workspace\.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
 # Grows when a program linked against an older library would no longer run.
 ABI_MAJOR := 1
 
@@ -34,7 +34,7 @@ endif
 
 # cargo-nextest where it is installed; its summary, or cargo test's, is the last thing that `make test` prints.
 NEXTEST  := $(shell cargo nextest --version >/dev/null 2>&1 && echo yes)
-RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --no-fail-fast,cargo test --locked --no-fail-fast --tests)
+RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --workspace --no-fail-fast,cargo test --locked --workspace --no-fail-fast --tests)
 
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
@@ -83,12 +83,12 @@ demo: host ## a C simulator with weather in it: a window, or pictures in out/ wh
 	"$(STAGE)/glfw_host/glfw_host" --data examples/data --out out $(DEMO_ARGS)
 
 fmt: ## format the sources
-	cargo fmt
+	cargo fmt --all
 
 lint: ## formatting and clippy, warnings are errors
-	@cargo fmt --version >/dev/null 2>&1 || { $(call no_tool,rustfmt); exit 0; }; cargo fmt --check
+	@cargo fmt --version >/dev/null 2>&1 || { $(call no_tool,rustfmt); exit 0; }; cargo fmt --all --check
 	@cargo clippy --version >/dev/null 2>&1 || { $(call no_tool,clippy); exit 0; }; \
-	    cargo clippy --locked --all-targets -- -D warnings
+	    cargo clippy --locked --workspace --all-targets -- -D warnings
 
 # A check that cannot be made is said, and fails where nobody reads along.
 no_tool = echo "lint: $(1) is not installed (rustup component add $(1))" >&2; [ -z "$${CI:-}" ]
@@ -110,14 +110,14 @@ docs: setup-build ## the Rust documentation, warnings are errors
 # Lint, documentation, its examples, then every test; the header's drift and the C examples are among the tests.
 test: setup lint docs ## all checks, at most 25 minutes on two cores from a clean clone
 	$(MAKE) --no-print-directory lib PROFILE=dev
-	cargo test --locked --doc
+	cargo test --locked --workspace --doc
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/debug/$(SHARED))" $(RUN_TESTS)
 
 ci: test windows drivers ## all checks, Windows under Wine and other drivers, in this order
 
 accept: setup lint docs ## the long sweeps in release, and the benchmarks, at most 90 minutes
 	$(MAKE) --no-print-directory lib PROFILE=release
-	WELKIN_ACCEPT=1 cargo test --locked --release --doc
+	WELKIN_ACCEPT=1 cargo test --locked --workspace --release --doc
 	$(MAKE) --no-print-directory bench
 	$(MAKE) --no-print-directory windows-accept
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
@@ -130,7 +130,7 @@ drivers: setup ## twelve scenes on other drivers beside this system's, with vali
 
 drivers-all: setup ## every scene, gallery and lab picture on every driver: hours, outside `make accept`
 	$(MAKE) --no-print-directory host PROFILE=release
-	cargo build --locked --release --example lab
+	cargo build --locked --release --package welkin-lab
 	scripts/drivers-all.sh "$(abspath $(TARGET_DIR))/stage/release" "$(abspath $(TARGET_DIR))/drivers"
 
 gallery: host ## draw the pictures of docs/gallery.md anew, by the demo's host (GALLERY="noon fog": these alone)
@@ -140,7 +140,7 @@ fuzz: setup-build ## fuzz all that Welkin reads, 15 minutes a target (ARGS="--se
 	scripts/fuzz $(ARGS)
 
 lab: setup-build ## chart speed against accuracy, map where methods fail (ARGS="chart sky"; without: what it can do)
-	cargo run --locked --release --example lab -- $(ARGS)
+	cargo run --locked --release --package welkin-lab -- $(ARGS)
 
 # Built programs for a machine with a GPU that has no compiler, no network and no display; `scripts/on-gpu` runs them.
 ON_GPU := $(TARGET_DIR)/on-gpu
@@ -148,9 +148,9 @@ ON_GPU_TESTS := gl_host vulkan_host sky_gpu
 executable = sed -n 's/^ *Executable .*(\(.*\))$$/\1/p'
 
 on-gpu-pack: setup-build ## pack what `scripts/on-gpu` needs on a machine with a GPU into target/on-gpu, at most 60 MiB
-	cargo build --locked --release --example on_gpu
+	cargo build --locked --release --package welkin-on-gpu
 	rm -rf "$(ON_GPU)" && mkdir -p "$(ON_GPU)/bin"
-	strip -o "$(ON_GPU)/bin/on_gpu" "$(TARGET_DIR)/release/examples/on_gpu"
+	strip -o "$(ON_GPU)/bin/on_gpu" "$(TARGET_DIR)/release/on_gpu"
 	for test in $(ON_GPU_TESTS); do \
 	    strip -o "$(ON_GPU)/bin/$$test" "$$(cargo test --locked --release --no-run --test $$test 2>&1 | $(executable))"; \
 	done

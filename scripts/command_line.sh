@@ -11,7 +11,7 @@ answer_command_line() {
             ;;
         --version)
             root="$(dirname "${BASH_SOURCE[0]}")/.."
-            echo "$(basename "$script") (Welkin $(sed -n '/^\[package\]/,/^\[/s/^version = "\(.*\)"/\1/p' "$root/Cargo.toml"))"
+            echo "$(basename "$script") (Welkin $(sed -n '/^\[workspace\.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' "$root/Cargo.toml"))"
             exit 0
             ;;
         esac

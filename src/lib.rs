@@ -64,10 +64,6 @@
 //! as a thin shell.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 
-// Tests of single rooms take helpers of `tests/support`, which name the crate as its users do.
-#[cfg(test)]
-extern crate self as welkin;
-
 pub mod almanac;
 pub mod bow;
 pub mod candidates;
@@ -103,9 +99,6 @@ mod surroundings;
 pub mod terrain;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-#[path = "../tests/support/textures.rs"]
-mod textures;
 pub mod weather;
 pub mod wind;
 mod world;

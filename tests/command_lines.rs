@@ -3,9 +3,6 @@
 //! its name. `WELKIN_LIB` names a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
-#[path = "../examples/shared/mod.rs"]
-mod shared;
-
 use std::fs;
 use std::os::unix::process::ExitStatusExt as _;
 use std::path::{Path, PathBuf};
@@ -104,31 +101,29 @@ fn assert_conventions(program: &Path, wrong: &[(&[&str], &str)]) {
 
 #[test]
 fn examples_in_rust_keep_the_conventions() {
-    run(cargo()
-        .args(["build", "--quiet", "--locked"])
-        .args(["noise", "probe", "native", "lab", "on_gpu"].iter().flat_map(|e| ["--example", e])));
-    let example = |name: &str| built().join("examples").join(name);
+    run(cargo().args(["build", "--quiet", "--locked", "--workspace", "--bins", "--example", "native"]));
+    let native = built().join("examples/native");
     assert_conventions(
-        &example("noise"),
+        &built().join("noise"),
         &[
             (&["a.dds", "--octaves"], "--octaves has no value"),
             (&["a.dds", "--size", "9x"], "--size"),
             (&["a.xyz"], "a.xyz"),
         ],
     );
-    assert_conventions(&example("on_gpu"), &[(&["no-such-step"], "no-such-step"), (&[], "no step")]);
+    assert_conventions(&built().join("on_gpu"), &[(&["no-such-step"], "no-such-step"), (&[], "no step")]);
     assert_conventions(
-        &example("probe"),
+        &built().join("probe"),
         &[
             (&["fog", "--planet", "x"], "--planet"),
             (&["fog", "--visibility"], "--visibility has no value"),
             (&["why"], "why"),
         ],
     );
-    assert_conventions(&example("lab"), &[(&["chart", "soup"], "soup"), (&["--scene"], "--scene")]);
-    assert_conventions(&example("native"), &[(&["a.png", "METAR", "more"], "more")]);
+    assert_conventions(&built().join("lab"), &[(&["chart", "soup"], "soup"), (&["--scene"], "--scene")]);
+    assert_conventions(&native, &[(&["a.png", "METAR", "more"], "more")]);
     // What goes wrong later is a sentence too.
-    let bad = output(Command::new(example("native")).current_dir(root()).args(["/nowhere/a.png", "METAR KTRI"]));
+    let bad = output(Command::new(&native).current_dir(root()).args(["/nowhere/a.png", "METAR KTRI"]));
     let errors = String::from_utf8_lossy(&bad.stderr);
     assert!(bad.status.code() == Some(1) && errors.starts_with("native: "), "{}: {errors}", bad.status);
     assert!(!errors.contains("Error {") && !errors.contains("Parse("), "{errors}");
@@ -200,19 +195,19 @@ fn an_interrupted_c_program_leaves_no_half_of_a_file() {
 fn a_file_that_cannot_be_written_whole_is_not_written() {
     let folder = scratch("whole");
     let file = folder.join("a.txt");
-    shared::write_whole(&file, b"first").expect("writable");
-    shared::write_whole(&file, b"second").expect("writable");
+    welkin_command_line::write_whole(&file, b"first").expect("writable");
+    welkin_command_line::write_whole(&file, b"second").expect("writable");
     assert_eq!(fs::read(&file).expect("there"), b"second");
     // A folder of that name cannot be replaced by a file.
     let taken = folder.join("taken");
     fs::create_dir(&taken).expect("ours");
     fs::write(taken.join("x"), "").expect("ours");
-    let e = shared::write_whole(&taken, b"text").expect_err("a folder has this name").to_string();
+    let e = welkin_command_line::write_whole(&taken, b"text").expect_err("a folder has this name").to_string();
     assert!(e.contains("taken"), "{e}");
     assert_eq!(fs::read_dir(&folder).expect("ours").count(), 2, "nothing is left beside them");
-    assert!(shared::write_png(&folder.join("a.png"), &[0; 3], [1, 1]).is_ok());
-    assert_eq!(shared::at_work("test", "nothing", || 7), 7);
-    assert!(shared::answered("test", "usage", ["x".to_owned()].into_iter()).is_none());
+    assert!(welkin_command_line::write_png(&folder.join("a.png"), &[0; 3], [1, 1]).is_ok());
+    assert_eq!(welkin_command_line::at_work("test", "nothing", || 7), 7);
+    assert!(welkin_command_line::answered("test", "usage", ["x".to_owned()].into_iter()).is_none());
     fs::remove_dir_all(folder).expect("ours");
 }
 
@@ -230,11 +225,12 @@ fn sources(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
 /// No example opens a file to write in another way than these.
 #[test]
 fn examples_write_files_whole() {
-    let mut files = vec![root().join("examples/noise.rs")];
-    for folder in ["glfw_host", "osg_host", "vulkan_host", "window_host", "native", "probe", "lab"] {
+    let mut files = Vec::new();
+    for folder in ["glfw_host", "osg_host", "vulkan_host", "window_host", "native", "noise/src", "probe/src", "lab/src"]
+    {
         sources(&root().join("examples").join(folder), &["rs", "c", "cpp", "hpp", "h"], &mut files);
     }
-    for file in files.iter().filter(|f| !f.ends_with("lab/store.rs")) {
+    for file in files.iter().filter(|f| !f.ends_with("lab/src/store.rs")) {
         let text = fs::read_to_string(file).expect("a source");
         let text = text.split("#[cfg(test)]").next().expect("a part");
         for (number, line) in text.lines().enumerate() {

@@ -2,13 +2,11 @@
 //! and its window on an X server without a screen. `WELKIN_LIB` names a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
-mod x_server;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use x_server::Server;
+use welkin_support::x_server::Server;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -1,15 +1,6 @@
 //! How the cost of frames grows with the size of the picture and the number of views, in processor time on a software
 //! driver: alone in its binary.
 
-#[path = "support/coarse_sky.rs"]
-mod coarse_sky;
-#[path = "support/level_ground.rs"]
-mod level_ground;
-#[path = "support/processor.rs"]
-mod processor;
-#[path = "support/textures.rs"]
-mod textures;
-
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
@@ -20,11 +11,12 @@ use welkin::{
     scene::Camera,
     weather::Weather,
 };
-
-use coarse_sky::coarse_sky;
-use level_ground::level_ground;
-use processor::{median, processor_ns};
-use textures::texture;
+use welkin_support::{
+    coarse_sky::coarse_sky,
+    level_ground::level_ground,
+    processor::{median, processor_ns},
+    textures::texture,
+};
 
 /// Frames before the measurement, in which tables and pipelines are built, and measured frames.
 const FRAMES: (usize, usize) = (40, 30);

@@ -1,13 +1,6 @@
 //! What the night sky costs beside an even one, in processor time of the whole process on a software driver: alone in
 //! its binary.
 
-#[path = "support/coarse_sky.rs"]
-mod coarse_sky;
-#[path = "support/processor.rs"]
-mod processor;
-#[path = "support/textures.rs"]
-mod textures;
-
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
@@ -19,10 +12,11 @@ use welkin::{
     plan::{Budget, Wish},
     scene::Camera,
 };
-
-use coarse_sky::coarse_sky;
-use processor::{median, processor_ns};
-use textures::texture;
+use welkin_support::{
+    coarse_sky::coarse_sky,
+    processor::{median, processor_ns},
+    textures::texture,
+};
 
 #[test]
 fn a_picture_of_nothing_but_a_starry_sky_costs_a_sixth_more() {

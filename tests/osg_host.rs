@@ -2,15 +2,13 @@
 //! pictures and OpenGL state; here they are asked for in every way in which it draws, and looked at.
 #![cfg(target_os = "linux")]
 
-mod x_server;
-
 use std::{
     fs,
     path::{Path, PathBuf},
     process::Command,
 };
 
-use x_server::Server;
+use welkin_support::x_server::Server;
 
 /// Debian's package with what the host is built against.
 const PACKAGE: &str = "libopenscenegraph-dev";

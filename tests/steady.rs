@@ -4,9 +4,6 @@
 //! where there are line tables, some frames' allocations are asked who made them: the innermost caller that is wgpu's
 //! or Welkin's.
 
-#[path = "support/textures.rs"]
-mod textures;
-
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     backtrace::Backtrace,
@@ -36,8 +33,7 @@ use welkin::{
     terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
     weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface, Weather, Wind},
 };
-
-use textures::texture;
+use welkin_support::textures::texture;
 
 struct Counting;
 

@@ -13,12 +13,9 @@ use welkin::{
     scene::HostLight,
     weather::{CloudKind, CloudLayer, Weather},
 };
+use welkin_support::{processor::processor_ns, textures::texture};
 
-use crate::{
-    copies::{SIZE, Scene, measured, median, quantile, world},
-    processor::processor_ns,
-    textures::texture,
-};
+use crate::copies::{SIZE, Scene, measured, median, quantile, world};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

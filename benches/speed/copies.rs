@@ -18,9 +18,9 @@ use welkin::{
     weather::{Fog, FogKind, Surface, SurfaceState, Weather},
     wind::{WindGrid, WindGridKind},
 };
+use welkin_support::{level_ground::level_ground, processor::processor_ns, textures::texture};
 
-pub use crate::processor::median;
-use crate::{level_ground::level_ground, processor::processor_ns, textures::texture};
+pub use welkin_support::processor::median;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

@@ -11,8 +11,7 @@ use welkin::{
     scene::Camera,
     weather::Weather,
 };
-
-use crate::{depth_texture::depth_texture, textures::texture};
+use welkin_support::{depth_texture::depth_texture, textures::texture};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

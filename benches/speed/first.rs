@@ -14,8 +14,7 @@ use welkin::{
     scene::Camera,
     weather::Weather,
 };
-
-use crate::textures;
+use welkin_support::textures;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

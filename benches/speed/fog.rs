@@ -12,8 +12,7 @@ use welkin::{
     gpu::{Device, DeviceOptions, shader},
     scene::{Camera, DepthMapping, ViewRays},
 };
-
-use crate::fullscreen;
+use welkin_support::fullscreen;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

@@ -12,8 +12,7 @@ use welkin::{
     scene::Camera,
     weather::{Precipitation, PrecipitationKind, Weather},
 };
-
-use crate::textures;
+use welkin_support::textures;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

@@ -18,14 +18,13 @@ use welkin::{
     weather::{CloudLayer, Precipitation, PrecipitationKind, Surface, SurfaceState, Weather},
     wind::{WindGrid, WindGridKind},
 };
+use welkin_support::{level_ground::level_ground, textures};
 
 use crate::{
     clouds,
     copies::{Copying, SETTLED, median, size_of, world},
     glass,
-    level_ground::level_ground,
     record::empty_pass,
-    textures,
 };
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;

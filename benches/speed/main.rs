@@ -4,29 +4,19 @@
 
 mod clouds;
 mod copies;
-#[path = "../../tests/support/depth_texture.rs"]
-mod depth_texture;
 mod environment;
 mod falling;
 mod first;
 mod fog;
-#[path = "../../tests/support/fullscreen.rs"]
-mod fullscreen;
 mod glass;
 mod gpu;
 mod ground;
-#[path = "../../tests/support/level_ground.rs"]
-mod level_ground;
 mod noise;
 mod parts;
-#[path = "../../tests/support/processor.rs"]
-mod processor;
 mod radiance;
 mod rain;
 mod record;
 mod sky;
-#[path = "../../tests/support/textures.rs"]
-mod textures;
 mod wind;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

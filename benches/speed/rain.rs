@@ -13,8 +13,7 @@ use welkin::{
     weather::{Precipitation, PrecipitationKind, Weather},
     wind::{WindGrid, WindGridKind},
 };
-
-use crate::{depth_texture::depth_texture, textures};
+use welkin_support::{depth_texture::depth_texture, textures};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

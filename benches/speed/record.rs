@@ -13,8 +13,7 @@ use welkin::{
     scene::{Camera, WorldKind},
     weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Weather},
 };
-
-use crate::textures;
+use welkin_support::textures;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

@@ -2,8 +2,6 @@
 //!
 //! `cargo run --release --example native [-- FILE.png [METAR]]` writes one picture.
 
-#[path = "../shared/mod.rs"]
-mod shared;
 mod world;
 
 use std::path::Path;
@@ -204,7 +202,7 @@ fn take(host: &Host, shared: &Arc<Shared>, weather: Weather, path: &str) -> Fall
     let pixels = readback::rgba(&host.device, &host.color)?;
     let bytes =
         pixels.iter().flat_map(|p| [0, 1, 2].map(|c| (tone::srgb_encode(f64::from(p[c])) * 255.0).round() as u8));
-    Ok(shared::write_png(Path::new(path), &bytes.collect::<Vec<_>>(), SIZE.into())?)
+    Ok(welkin_command_line::write_png(Path::new(path), &bytes.collect::<Vec<_>>(), SIZE.into())?)
 }
 
 const USAGE: &str =
@@ -224,7 +222,7 @@ fn run(path: &str, metar: &str) -> Fallible<()> {
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    if let Some(text) = shared::answered("native", USAGE, arguments.iter().cloned()) {
+    if let Some(text) = welkin_command_line::answered("native", USAGE, arguments.iter().cloned()) {
         print!("{text}");
         return ExitCode::SUCCESS;
     }
@@ -236,7 +234,7 @@ fn main() -> ExitCode {
     }
     let path = arguments.first().map_or("native.png", String::as_str);
     let metar = arguments.get(1).map_or("METAR KTRI 121800Z 24012KT 3SM RA OVC015 12/11 A2978", String::as_str);
-    match shared::at_work("native", "drawing", || run(path, metar)) {
+    match welkin_command_line::at_work("native", "drawing", || run(path, metar)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(e) => {
             eprintln!("native: {e}");

@@ -1,17 +1,3 @@
-//! The targets of `tests/fuzz` as a library for the fuzzers; the tests replay them on the committed corpora.
-#![allow(dead_code)]
+//! The targets of `tests/support` for the fuzzers; the tests replay them on the committed corpora.
 
-#[path = "../../tests/fuzz/calls.rs"]
-mod calls;
-#[path = "../../tests/fuzz/dice.rs"]
-mod dice;
-#[path = "../../tests/fuzz/judge.rs"]
-mod judge;
-#[path = "../../tests/support/refusals.rs"]
-mod refusals;
-#[path = "../../tests/fuzz/structs.rs"]
-mod structs;
-#[path = "../../tests/fuzz/targets.rs"]
-pub mod targets;
-#[path = "../../tests/fuzz/texts.rs"]
-mod texts;
+pub use welkin_support::fuzz::targets;

@@ -28,7 +28,7 @@ class Welkin(ConanFile):
         self.version = re.search(r'^version = "(.*)"', cargo, re.MULTILINE).group(1)
 
     def export_sources(self):
-        for part in ("src/*", "shaders/*", "build/*", "include/*", "packaging/*", "scripts/*", "benches/*", "examples/*"):
+        for part in ("src/*", "shaders/*", "build/*", "include/*", "packaging/*", "scripts/*", "benches/*", "examples/*", "tests/support/*"):
             copy(self, part, self._root, self.export_sources_folder)
         for part in ("Cargo.*", "build.rs", "cbindgen.toml", "Makefile", "LICENSE-*", "README.md"):
             copy(self, part, self._root, self.export_sources_folder)

@@ -55,7 +55,7 @@ count_scenes() {
 }
 
 # The gallery by a host of OpenGL, the lab's scenes by Vulkan. OpenGL ES has neither.
-readonly lab=target/release/examples/lab
+readonly lab=target/release/lab
 draw_more() {
     local name="$1" way="$2" runner="$3" folder="$work/$1"
     case "$way" in

@@ -7,7 +7,7 @@ target_dir="${CARGO_TARGET_DIR:-target}"
 mkdir -p "$target_dir/windows"
 target_dir="$(cd "$target_dir" && pwd)"
 work="$target_dir/windows"
-version="$(sed -n '/^\[package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)"
+version="$(sed -n '/^\[workspace\.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)"
 # The tree as the archive holds it, and the archive.
 tree="$work/welkin-$version-windows-x86_64"
 archive="$tree.zip"

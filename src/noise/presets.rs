@@ -19,7 +19,7 @@ impl CloudPreset {
     /// All of them, from the closed sky on.
     pub const ALL: [Self; 3] = [Self::Overcast, Self::Broken, Self::Few];
 
-    /// Its name in small letters, as the tool `examples/noise.rs` takes it.
+    /// Its name in small letters, as the tool `examples/noise` takes it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Overcast => "overcast",

@@ -6,3 +6,4 @@ mod even;
 mod longest;
 mod moment;
 mod opaque;
+pub mod textures;

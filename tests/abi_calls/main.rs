@@ -14,8 +14,6 @@ mod limits;
 mod plan;
 mod planets;
 mod queries;
-#[path = "../support/refusals.rs"]
-mod refusals;
 mod shelters;
 mod sky;
 mod state;

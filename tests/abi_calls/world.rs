@@ -5,8 +5,7 @@ use std::ptr::null_mut;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use welkin::capi::{abi, context::*, device::*, status::*, texture::*, timeline::*, view::*};
-
-use super::refusals;
+use welkin_support::refusals;
 
 /// A device on the noop backend with a context, a view and a texture.
 pub struct World {

@@ -56,7 +56,7 @@ impl Scene {
         context.set_cloud_model(CloudModel::Deck);
         context.set_weather(weather, 0.0, 0.0).unwrap();
         let view = View::new(&context).unwrap();
-        let color = crate::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
+        let color = welkin_support::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
         Self { device, context, view, color }
     }
 

@@ -3,5 +3,3 @@
 mod drawn;
 mod mie;
 mod one_drop;
-#[path = "../support/textures.rs"]
-mod textures;

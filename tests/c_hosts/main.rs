@@ -2,15 +2,12 @@
 //! each looks at its own pixels. `WELKIN_LIB` names a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
-#[path = "../x_server/mod.rs"]
-mod x_server;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use x_server::Server;
+use welkin_support::x_server::Server;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -88,7 +88,7 @@ fn the_base_that_is_seen_is_the_one_asked_for() {
             sky.context.set_weather(&Weather { clouds, ..Weather::default() }, 0.0, 0.0).unwrap();
             let (met_m, look) = met_m(&sky, base_m);
             let over_m = over_m(&sky, base_m);
-            let wall = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
+            let wall = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
             write(&sky, &wall, &[(0.1 / LOOK_M) as f32]);
             let mut light = |z: f64| drawn(&mut sky, &wall, place(look, z));
             // Of clouds far away, where the planet has curved, some is drawn before the wall too: half-way to what is

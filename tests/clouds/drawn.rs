@@ -40,7 +40,7 @@ impl Sky {
         // OpenGL cannot draw to whole floats.
         let format =
             if options.force_tier0 { wgpu::TextureFormat::Rgba16Float } else { wgpu::TextureFormat::Rgba32Float };
-        let color = crate::textures::texture(&device, SIZE, format, 1);
+        let color = welkin_support::textures::texture(&device, SIZE, format, 1);
         Self { device, context, view, color, frame_id: 0 }
     }
 
@@ -190,7 +190,7 @@ fn volume_and_deck_are_as_bright_as_one_another() {
 #[test]
 fn things_stand_before_and_behind_clouds() {
     let mut sky = Sky::new(BROKEN, CloudModel::Volume);
-    let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
+    let depth = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
     let mut seen = |range_m: Option<f32>| {
         let texels = vec![range_m.map_or(0.0, |r| 0.1 / r); (SIZE.0 * SIZE.1) as usize];
         let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };

@@ -81,7 +81,7 @@ fn a_puddle_mirrors_the_clouds_that_stand_over_it() {
     let mut sky = Sky::new(BROKEN, CloudModel::Volume);
     sky.flood(BROKEN);
     let (puddle, elevation) = (sky.puddle(), 35f64);
-    let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
+    let depth = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
     let middle = (SIZE.1 / 2 * SIZE.0 + SIZE.0 / 2) as usize;
     let (mut mirrored, mut seen) = (Vec::new(), Vec::new());
     let sun = sky.context.light_at(puddle, sky.context.time_s()).unwrap().sun.apparent;
@@ -130,7 +130,7 @@ fn the_cube_map_shows_the_clouds_of_the_picture() {
     let camera = look(DVec3::Z * 2.0, 0.0, 30.0, 1.0);
     let picture = sky.draw(camera, None, &[Stages::BACKGROUND.with(Stages::MEDIUM)]);
     let map = sky.view.environment().unwrap();
-    let texels = crate::lookup::faces(&sky.device, &map.texture, 64, 0);
+    let texels = welkin_support::cube_lookup::faces(&sky.device, &map.texture, 64, 0);
     let clip = camera.projection * glam::DMat4::from_mat3(camera.rotation());
     // The face towards +Y, which is north: its right is +X, its lower edge +Z (OpenGL 4.6, table 8.19).
     let (mut cube, mut seen) = (Vec::new(), Vec::new());
@@ -157,7 +157,7 @@ fn the_cube_map_shows_the_clouds_of_the_picture() {
 fn a_picture_drawn_stage_by_stage_is_the_one_of_one_call() {
     let mut sky = Sky::new(BROKEN, CloudModel::Volume);
     sky.flood(BROKEN);
-    let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
+    let depth = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
     let camera = look(DVec3::Z * 30.0, 100.0, -4.0, 1.0);
     write_depth(&sky, &depth, &camera);
     let (behind, surface, between) = (Stages::BACKGROUND, Stages::SURFACE, Stages::MEDIUM);

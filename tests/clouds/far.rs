@@ -19,7 +19,8 @@ fn far(sky: &mut Sky, (height_m, down): (f64, f64)) -> [Vec<f64>; 2] {
     let got = lit(sky.look(forward, height_m, None, FrameFlags::NO_HISTORY));
     let format = sky.color.format();
     let [width, height] = [SIZE.0 * FINER, SIZE.1 * FINER];
-    let color = std::mem::replace(&mut sky.color, crate::textures::texture(&sky.device, (width, height), format, 1));
+    let color =
+        std::mem::replace(&mut sky.color, welkin_support::textures::texture(&sky.device, (width, height), format, 1));
     let settings = CloudSettings::default();
     sky.view.set_clouds(CloudSettings { fineness: 8.0, square_side: 1, ..settings }).unwrap();
     let fine = lit(sky.look(forward, height_m, None, FrameFlags::NO_HISTORY));

@@ -10,11 +10,11 @@ use welkin::{
     rain::{AreaMotion, AreaRain, AreaShape, RainArea},
     weather::{CloudKind, CloudLayer, CloudMap, Weather},
 };
+use welkin_support::seen_lux::seen_lux;
 
 use crate::{
     asked::drawn_over_asked,
     drawn::{BROKEN, Sky, p95},
-    seen_lux::seen_lux,
     shadows::over_ground,
 };
 

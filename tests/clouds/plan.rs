@@ -15,7 +15,7 @@ const SETTLED: u32 = 60;
 
 /// A depth that is near but for so many rows of sky below the picture's top.
 fn slit(sky: &Sky, rows: u32) -> wgpu::Texture {
-    let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
+    let depth = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
     let texels: Vec<f32> = (0..SIZE.0 * SIZE.1).map(|i| if i / SIZE.0 < rows { 0.0 } else { 0.1 }).collect();
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE.0), rows_per_image: None };
     sky.device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, depth.size());

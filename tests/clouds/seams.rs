@@ -98,7 +98,7 @@ fn what_passes_whole_clouds_is_never_less_than_nothing() {
 fn both_eyes_of_a_viewer_see_the_same_clouds() {
     let mut sky = Sky::new(BROKEN, CloudModel::Volume);
     let mut other = View::new(&sky.context).unwrap();
-    let color = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
+    let color = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
     let mut pair = |yaw_deg: f64, id: u64| {
         let yaw = yaw_deg.to_radians();
         let forward = DVec3::new(yaw.sin(), yaw.cos(), 0.35);
@@ -126,7 +126,7 @@ fn context(device: &Arc<Device>) -> Context {
 #[test]
 fn clouds_follow_from_seed_and_time_alone() {
     let device = Device::headless(&DeviceOptions::default()).unwrap();
-    let color = crate::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
+    let color = welkin_support::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
     let weather = Weather { wind: Wind::of(12.0, 250.0), ..Weather::from_metar(BROKEN).unwrap().weather };
     let shot = |context: &Context, id: u64| {
         let mut frame = Frame::new(id, camera(DVec3::Z * 2.0, FORWARD), &color, None);
@@ -162,7 +162,7 @@ fn every_target_and_depth_shows_the_same_clouds() {
         let frame = Frame::new(id, camera(DVec3::Z * 2.0, FORWARD), color, None);
         Frame { flags: FrameFlags::NO_HISTORY, exposure: Some(Exposure::Factor(5e-5)), ..frame }
     };
-    let of = |format, samples| crate::textures::texture(&sky.device, SIZE, format, samples);
+    let of = |format, samples| welkin_support::textures::texture(&sky.device, SIZE, format, samples);
     let (device, context) = (sky.device.clone(), &sky.context);
     let base = take(&device, context, &mut sky.view, &frame(1, &sky.color));
     // Half floats, logarithmic depth and OpenGL's clip space.
@@ -224,7 +224,7 @@ fn the_least_device_parallel_views_and_several_samples_show_clouds() {
     let least = Device::headless(&DeviceOptions { force_tier0: true, ..DeviceOptions::default() }).unwrap();
     let mut bare = context(&least);
     bare.set_weather(&Weather::from_metar(BROKEN).unwrap().weather, 0.0, 0.0).unwrap();
-    let color = crate::textures::texture(&least, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
+    let color = welkin_support::textures::texture(&least, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
     let mut frame = Frame::new(1, camera(DVec3::Z * 2.0, FORWARD), &color, None);
     frame.flags = FrameFlags::NO_HISTORY;
     let seen = take(&least, &bare, &mut View::new(&bare).unwrap(), &frame);
@@ -233,8 +233,8 @@ fn the_least_device_parallel_views_and_several_samples_show_clouds() {
     assert!(off < 1e-3, "{off}");
 
     // Four samples a pixel, resolved: the sky has no edges, so each sample is the pixel.
-    let many = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::Rgba16Float, 4);
-    let one = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
+    let many = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::Rgba16Float, 4);
+    let one = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
     let mut frame = Frame::new(2, camera(DVec3::Z * 2.0, FORWARD), &many, None);
     (frame.flags, frame.cd_m2_per_unit) = (FrameFlags::NO_HISTORY, 1e3);
     sky.view.record(&sky.context, &frame, SEEN).unwrap();

@@ -7,11 +7,9 @@ use welkin::{
     gpu::readback,
     scene::Camera,
 };
+use welkin_support::depth_texture::depth_texture;
 
-use crate::{
-    depth_texture::depth_texture,
-    drawn::{SIZE, Sky},
-};
+use crate::drawn::{SIZE, Sky};
 
 /// Height of the camera that looks straight down at level ground.
 const HEIGHT_M: f64 = 2500.0;

@@ -7,8 +7,9 @@ use welkin::{
     light::luminance,
     weather::{CloudKind, CloudLayer, Weather},
 };
+use welkin_support::seen_lux::seen_lux;
 
-use crate::{drawn::Sky, seen_lux::seen_lux};
+use crate::drawn::Sky;
 
 /// Real reports of broken or overcast cloud below 1000 ft: of all such ones those under which the told sun was furthest
 /// from the mean over places, and some of each kind.

@@ -4,8 +4,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use welkin::fog::LowAirUniform;
 use welkin::gpu::{Device, DeviceOptions, flat_texture, pass, readback, shader};
-
-use crate::fullscreen;
+use welkin_support::fullscreen;
 
 /// The device all tests of this file share.
 pub fn device() -> &'static Arc<Device> {

@@ -4,8 +4,6 @@ mod cameras;
 mod contrast;
 mod depth;
 mod drawn;
-#[path = "../support/fullscreen.rs"]
-mod fullscreen;
 mod gpu;
 mod light;
 mod path;

@@ -21,7 +21,7 @@ fn nothing_of_the_rain_is_seen_in_the_sky_above_it() {
     let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();
     context.set_sun(Some(GivenDirection { azimuth_deg: 10.0, elevation_deg: 20.0 })).unwrap();
     let mut view = View::new(&context).unwrap();
-    let color = crate::textures::texture(&device, (64, 36), wgpu::TextureFormat::Rgba32Float, 1);
+    let color = welkin_support::textures::texture(&device, (64, 36), wgpu::TextureFormat::Rgba32Float, 1);
     let mut id = 0;
     let hail = Weather::from_metar("LOWI 121150Z 24008KT 9000 TSGR BKN030CB 12/11 Q1005").unwrap().weather;
     let weathers = [(Weather::preset("rain").unwrap(), 1000), (hail, 0)];

@@ -10,10 +10,9 @@ use welkin::{
     weather::{Fog, FogKind, Precipitation, PrecipitationKind, Surface, SurfaceState, Weather},
     wind::{WindGrid, WindGridKind},
 };
-
-use crate::{
+use welkin_support::{
     depth_texture::depth_texture,
-    host::{Host, SIZE, camera, texture},
+    frame_host::{Host, SIZE, camera, texture},
 };
 
 const HALF: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;

@@ -12,8 +12,7 @@ use welkin::{
     scene::Camera,
     weather::{CloudKind, CloudLayer, Weather},
 };
-
-use crate::{host::Host, lookup};
+use welkin_support::{cube_lookup, frame_host::Host};
 
 const SIZE: u32 = 64;
 const LEVELS: u32 = 7;
@@ -39,7 +38,7 @@ impl Level {
     /// As a host's shader finds it: looked up by direction. (wgpu does not copy cube maps of OpenGL.)
     pub fn read(device: &Arc<Device>, map: &Environment, level: u32) -> Self {
         let size = SIZE >> level;
-        let looked_up = lookup::faces(device, &map.texture, size, level);
+        let looked_up = cube_lookup::faces(device, &map.texture, size, level);
         let texels = |face: usize| {
             let row = |y: usize| (0..size as usize).map(move |x| (x + face * size as usize, y));
             let texel = |(x, y): (usize, usize)| looked_up[y * 6 * size as usize + x];
@@ -93,7 +92,7 @@ fn square(device: Arc<Device>) -> Host {
     let mut host = Host::on(device, FORMAT);
     // The cube map's coarser clouds have a test of their own (tests/clouds/elsewhere.rs).
     host.context.set_cloud_model(CloudModel::Deck);
-    host.color = crate::textures::texture(&host.device, (SIZE, SIZE), FORMAT, 1);
+    host.color = welkin_support::textures::texture(&host.device, (SIZE, SIZE), FORMAT, 1);
     host
 }
 

@@ -4,11 +4,9 @@ use welkin::{
     frame::{Exposure, Frame, Stages},
     gpu::readback,
 };
+use welkin_support::frame_host::{Host, SIZE, camera};
 
-use crate::{
-    host::{Host, SIZE, camera},
-    spaces::{EXPOSURE, veil},
-};
+use crate::spaces::{EXPOSURE, veil};
 
 /// The published snippet's lookup, by hand: bilinear within a tile, linear between slices.
 fn sample(texels: &[[f32; 4]], uv: [f64; 2], distance: f64) -> [f64; 3] {

@@ -6,8 +6,7 @@ use welkin::{
     Status,
     frame::{ColorSpace, CostItem, Costs, Exposure, Frame, FrameFlags, Stages},
 };
-
-use crate::host::{Host, camera};
+use welkin_support::frame_host::{Host, camera};
 
 fn record(host: &mut Host, frame_id: u64, flags: FrameFlags, stages: Stages) {
     let mut frame = Frame::new(frame_id, camera(), &host.color, Some(&host.depth));

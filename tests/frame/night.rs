@@ -14,8 +14,7 @@ use welkin::{
     stars::{Heavens, StarSettings, StarView, light::star_lux, reference},
     weather::Weather,
 };
-
-use crate::host::coarse;
+use welkin_support::frame_host::coarse;
 
 /// A night without moon over 50 degrees north: the almanac of 2026-01-18 22:00 UTC at the origin's place.
 const NIGHT: Utc = Utc(1_768_773_600.0);

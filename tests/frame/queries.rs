@@ -6,8 +6,7 @@ use welkin::{
     sky::SkySettings,
     weather::{Fog, FogKind, Lofted, LoftedKind, Precipitation, PrecipitationKind, Weather},
 };
-
-use crate::host::Host;
+use welkin_support::frame_host::Host;
 
 fn host() -> Host {
     Host::new(wgpu::TextureFormat::Rgba16Float)
@@ -16,8 +15,8 @@ fn host() -> Host {
 #[test]
 fn a_context_says_how_its_sky_is_drawn() {
     let mut host = host();
-    assert_eq!(host.context.sky_settings().unwrap(), crate::coarse_sky::coarse_sky());
-    let other = SkySettings { orders: 3, ..crate::coarse_sky::coarse_sky() };
+    assert_eq!(host.context.sky_settings().unwrap(), welkin_support::coarse_sky::coarse_sky());
+    let other = SkySettings { orders: 3, ..welkin_support::coarse_sky::coarse_sky() };
     host.context.set_sky_settings(&other).unwrap();
     assert_eq!(host.context.sky_settings().unwrap(), other);
     assert!(host.context.set_sky_settings(&SkySettings { orders: 0, ..other }).is_err());

@@ -14,8 +14,9 @@ use welkin::{
     stars::StarSettings,
     weather::{CloudKind, CloudLayer, Weather},
 };
+use welkin_support::seen_lux::seen_lux;
 
-use crate::{environment::Level, seen_lux::seen_lux};
+use crate::environment::Level;
 
 const SIZE: (u32, u32) = (64, 36);
 /// Winter night without moon, 2026-01-18 22:00 UTC.
@@ -41,7 +42,7 @@ impl Sky {
         // Edges of clouds have a test of their own (tests/clouds/asked.rs).
         context.set_cloud_model(CloudModel::Deck);
         let view = View::new(&context).unwrap();
-        let color = crate::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
+        let color = welkin_support::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
         Self { device, context, view, color, frame_id: 0 }
     }
 

@@ -9,8 +9,7 @@ use welkin::{
     scene::Camera,
     weather::{Aerosol, AerosolKind, Weather},
 };
-
-use super::host::texture;
+use welkin_support::frame_host::texture;
 
 /// Frames in which the tables of a draft become whole: slices of 1/80 in seven of eight frames, a frame in which
 /// observers draw them, and a fade of sixteen, with a few to spare for slices that do not come out even.

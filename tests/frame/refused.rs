@@ -7,8 +7,7 @@ use welkin::{
     Status,
     frame::{Exposure, Frame, Stages},
 };
-
-use crate::host::{Host, camera, texture};
+use welkin_support::frame_host::{Host, camera, texture};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 

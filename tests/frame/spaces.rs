@@ -7,9 +7,8 @@ use welkin::{
     scene::Camera,
     weather::{Precipitation, PrecipitationKind, Weather},
 };
-
-use crate::{
-    host::{Host, SIZE, camera, texture},
+use welkin_support::{
+    frame_host::{Host, SIZE, camera, texture},
     opaque::{Opaque, draw_opaque},
 };
 

@@ -8,8 +8,7 @@ use welkin::{
     scene::Camera,
     weather::{Aerosol, AerosolKind, Fog, FogKind, Weather},
 };
-
-use crate::host::{Host, SIZE};
+use welkin_support::frame_host::{Host, SIZE};
 
 const FLOAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const DRAW: Stages = Stages(Stages::PREPARE.0 | Stages::BACKGROUND.0 | Stages::MEDIUM.0);

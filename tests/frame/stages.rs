@@ -7,9 +7,8 @@ use welkin::{
     frame::{CostItem, Frame, FrameFlags, Stages},
     scene::Camera,
 };
-
-use crate::{
-    host::{Host, SIZE, camera},
+use welkin_support::{
+    frame_host::{Host, SIZE, camera},
     textures::texture,
 };
 

@@ -8,8 +8,7 @@ use welkin::{
     frame::{Exposure, Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
 };
-
-use crate::host::{camera, coarse, texture};
+use welkin_support::frame_host::{camera, coarse, texture};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const FRAMES: u64 = 8;

@@ -9,8 +9,7 @@ use welkin::{
     scene::Camera,
     weather::{CloudLayer, Fog, FogKind, LayerWind, Precipitation, PrecipitationKind, Weather},
 };
-
-use crate::host::Host;
+use welkin_support::frame_host::Host;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 

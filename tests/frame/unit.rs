@@ -3,8 +3,7 @@
 use std::cell::RefCell;
 
 use welkin::frame::{ColorSpace, Frame, Stages, View};
-
-use crate::host::{Host, camera};
+use welkin_support::frame_host::{Host, camera};
 
 thread_local! {
     /// Of this test alone: others record at the same time.

@@ -11,8 +11,7 @@ use welkin::{
     scene::HostLight,
     weather::{Fog, FogKind, Precipitation, PrecipitationKind, Weather},
 };
-
-use crate::host::{Host, camera, texture};
+use welkin_support::frame_host::{Host, camera, texture};
 
 /// Set in the process of its own in which memory is measured.
 const ALONE: &str = "WELKIN_ALONE";

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use crate::targets;
+use welkin_support::fuzz::targets;
 
 type Target = (&'static str, fn(&[u8]));
 

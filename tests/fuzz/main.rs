@@ -3,16 +3,8 @@
 //!
 //! Seeded: `WELKIN_FUZZ_SEED=N` plays sequence N again and prints its calls.
 
-mod calls;
 mod corpora;
-mod dice;
-mod judge;
 mod noise_files;
-#[path = "../support/refusals.rs"]
-mod refusals;
-mod structs;
-mod targets;
-mod texts;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -22,10 +14,14 @@ use std::{
 };
 
 use welkin::capi::{abi, status::WK_ERROR_DEVICE_LOST};
-
-use calls::{Answer, CALLS, ELSEWHERE, World};
-use dice::Dice;
-use judge::Judge;
+use welkin_support::{
+    fuzz::{
+        calls::{Answer, CALLS, ELSEWHERE, World},
+        dice::Dice,
+        judge::Judge,
+    },
+    refusals,
+};
 
 /// Calls of one sequence.
 const LENGTH: usize = 120;

@@ -1,9 +1,7 @@
 //! Damaged files of noise: each is read or refused, and what is read holds together.
 
 use welkin::noise::{NoiseImage, NoiseSettings};
-
-use crate::dice::Dice;
-use crate::texts::damage;
+use welkin_support::fuzz::{dice::Dice, texts::damage};
 
 /// A number as damaged headers hold it.
 fn header_word(dice: &mut Dice) -> u32 {

@@ -2,11 +2,11 @@
 
 use glow::HasContext;
 use welkin::capi::{frame::*, opengl::*, view::*};
-
-use crate::c_scene::{
+use welkin_support::c_scene::{
     Scene, init, ok,
     own::{Size, grey_ground, ground_depths, still_frame},
 };
+
 use crate::{
     capi::image,
     host::Host,

@@ -6,11 +6,13 @@ use std::ptr::null_mut;
 use glow::HasContext;
 use welkin::capi::{context::*, device::*, environment::*, frame::*, opengl::*, status::*, veil::*, view::*};
 use welkin::gpu::gl::{GlImage, GlMode};
-
-use crate::c_scene::{Scene, assert_same, frame, init, message, ok, own_picture};
-use crate::{
-    SIZE,
+use welkin_support::{
+    c_scene::{Scene, assert_same, init, message, ok, own_picture},
     egl::{Api, Window, make_none_current},
+};
+
+use crate::{
+    SIZE, frame,
     host::{Host, get_proc, make_current},
     images::{framebuffer, image_of, image_of_samples, multisampled_texture, texture},
     kinds::resolved,
@@ -73,7 +75,7 @@ pub fn picture(host: &Host, scene: &Scene, fbo: glow::Framebuffer, target: &wk_o
 
 #[test]
 fn c_hosts_get_the_same_picture_in_both_modes() {
-    let wanted = own_picture(0.001, 1);
+    let wanted = own_picture(SIZE, 0.001, 1);
     for (api, mode) in [
         (Api::Core(3, 3), GlMode::Shared),
         (Api::Es(3, 1), GlMode::Shared),
@@ -364,7 +366,7 @@ fn what_is_destroyed_without_a_context_goes_at_the_next_call() {
     });
     assert_eq!(elsewhere.join().unwrap(), (WK_OK, WK_OK));
     let got = picture(&host, &second, fbo, &target(color, depth), 1);
-    assert_same(&got, &own_picture(0.001, 1), 3);
+    assert_same(&got, &own_picture(SIZE, 0.001, 1), 3);
     second.destroy();
     // SAFETY: a live handle.
     ok(unsafe { wk_device_destroy(device) });

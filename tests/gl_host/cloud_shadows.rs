@@ -3,11 +3,14 @@
 use glow::HasContext;
 use welkin::capi::{cloud_shadow::*, device::*, veil::*};
 use welkin::gpu::gl::GlMode;
-
-use crate::c_scene::{Scene, cloud_shadows::*, ok};
-use crate::capi::device;
-use crate::{
+use welkin_support::{
+    c_scene::{Scene, cloud_shadows::*, ok},
     egl::{Api, Window},
+};
+
+use crate::{
+    SIZE,
+    capi::device,
     host::Host,
     painter::{CORNERS, program},
 };
@@ -98,7 +101,7 @@ fn a_hosts_shader_finds_the_shadow_of_each_place() {
         let device = device(&host);
         let scene = Scene::new(device);
         scatter(&scene);
-        let map = whole(&scene);
+        let map = whole(&scene, SIZE);
         assert_shares(&scene, &drawn(&host, api, &map));
         scene.destroy();
         // SAFETY: a live handle.

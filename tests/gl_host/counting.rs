@@ -9,11 +9,15 @@ use std::{
 use glow::HasContext;
 use welkin::capi::{device::*, frame::*, opengl::*, status::*, view::*};
 use welkin::gpu::gl::GlMode;
-
-use crate::c_scene::{Scene, assert_same, frame, init, message, ok, own_picture};
-use crate::{
-    capi::{device, picture, target},
+use welkin_support::{
+    c_scene::{Scene, assert_same, init, message, ok, own_picture},
     egl::{Api, Window, function},
+};
+
+use crate::{
+    SIZE,
+    capi::{device, picture, target},
+    frame,
     host::{Host, get_proc},
     images::{framebuffer, image_of, texture},
 };
@@ -73,7 +77,7 @@ fn create(host: &Host) -> (wk_status, *mut wk_device) {
 
 #[test]
 fn a_frame_inside_a_conditional_render_is_refused_and_the_next_one_is_right() {
-    let wanted = own_picture(0.001, 1);
+    let wanted = own_picture(SIZE, 0.001, 1);
     for api in [Api::Core(3, 3), Api::Compatibility(4, 5)] {
         let host = Host::new(api, Window::None, GlMode::HostContext);
         let color = image_of(texture(&host.gl, glow::RGBA8));
@@ -107,7 +111,7 @@ fn a_frame_inside_a_conditional_render_is_refused_and_the_next_one_is_right() {
 /// The table's first texel tells.
 #[test]
 fn tables_that_were_never_drawn_are_noticed_where_a_trial_tells_nothing() {
-    let wanted = own_picture(0.001, 1);
+    let wanted = own_picture(SIZE, 0.001, 1);
     let host = Host::new(Api::Core(4, 5), Window::None, GlMode::HostContext);
     let color = image_of(texture(&host.gl, glow::RGBA8));
     let depth = image_of(texture(&host.gl, glow::DEPTH_COMPONENT32F));

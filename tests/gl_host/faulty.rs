@@ -10,11 +10,15 @@ use std::{
 use glow::HasContext;
 use welkin::capi::{device::*, frame::*, opengl::*, status::*, view::*};
 use welkin::gpu::gl::GlMode;
-
-use crate::c_scene::{Scene, assert_same, frame, init, message, ok, own_picture};
-use crate::{
-    capi::{picture, target},
+use welkin_support::{
+    c_scene::{Scene, assert_same, init, message, ok, own_picture},
     egl::{Api, Window, function, proc_address},
+};
+
+use crate::{
+    SIZE,
+    capi::{picture, target},
+    frame,
     host::{Host, get_proc, make_current},
     images::{framebuffer, image_of, texture},
 };
@@ -175,7 +179,7 @@ fn a_driver_with_other_bytes_in_blocks_is_refused_by_name() {
 
 #[test]
 fn where_mapped_memory_brings_other_bytes_the_other_way_draws_the_right_picture() {
-    let wanted = own_picture(0.001, 1);
+    let wanted = own_picture(SIZE, 0.001, 1);
     for (api, mode) in [(Api::Core(4, 5), GlMode::Shared), (Api::Compatibility(4, 5), GlMode::HostContext)] {
         let host = Host::new(api, Window::None, mode);
         let color = image_of(texture(&host.gl, glow::RGBA8));

@@ -6,11 +6,14 @@ use welkin::capi::{
     device::*, frame::*, ground::*, ground_grid::*, ground_texture::*, status::*, terrain::*, veil::*, view::*,
 };
 use welkin::gpu::gl::GlMode;
+use welkin_support::{
+    c_scene::{Scene, ground::*, init, ok},
+    egl::{Api, Window},
+};
 
-use crate::c_scene::{Scene, frame, ground::*, init, ok};
 use crate::capi::{device, target};
 use crate::{
-    egl::{Api, Window},
+    frame,
     host::Host,
     images::{framebuffer, image_of, texture as image},
     painter::{CORNERS, program},

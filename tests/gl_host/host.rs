@@ -7,8 +7,7 @@ use welkin::gpu::{
     HostBinding,
     gl::{GlDevice, GlHostDesc, GlMode, GlTarget, Handover, adopt},
 };
-
-use crate::egl::{self, Api, Context, Window};
+use welkin_support::egl::{self, Api, Context, Window};
 
 /// What the callbacks get.
 pub struct Contexts {

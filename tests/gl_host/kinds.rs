@@ -5,9 +5,9 @@ use welkin::{
     Status,
     gpu::gl::{GlImage, GlMode, GlTargetDesc, Multisample},
 };
+use welkin_support::egl::{Api, Window};
 
 use crate::{
-    egl::{Api, Window},
     host::{Depth, Host, Picture, close},
     images::*,
     pictures::draw,

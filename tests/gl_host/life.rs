@@ -11,9 +11,9 @@ use welkin::{
     Status,
     gpu::gl::{GlDevice, GlHostDesc, GlImage, GlMode, GlTargetDesc, Handover, adopt},
 };
+use welkin_support::egl::{self, Api, Context, Window};
 
 use crate::{
-    egl::{self, Api, Context, Window},
     host::{Depth, Host, Picture, close, get_proc},
     images::*,
 };

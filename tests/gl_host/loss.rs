@@ -4,17 +4,20 @@
 use glow::HasContext;
 use welkin::capi::{device::*, frame::*, status::*, texture::*, view::*};
 use welkin::gpu::gl::GlMode;
-
-use crate::c_scene::{
-    Scene, frame, init,
-    loss::lose_and_ask,
-    message, ok,
-    own::{Own, wet_scene},
+use welkin_support::{
+    c_scene::{
+        Scene, init,
+        loss::lose_and_ask,
+        message, ok,
+        own::{Own, wet_scene},
+    },
+    egl::{Api, Window},
 };
+
 use crate::{
     SIZE,
     capi::{device, picture, target},
-    egl::{Api, Window},
+    frame,
     host::Host,
     images::{framebuffer, image_of, texture},
 };

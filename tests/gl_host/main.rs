@@ -2,13 +2,10 @@
 //! looked at with the host's own OpenGL.
 #![cfg(target_os = "linux")]
 
-#[path = "../c_scene/mod.rs"]
-mod c_scene;
 mod canvas;
 mod capi;
 mod cloud_shadows;
 mod counting;
-mod egl;
 mod exercise;
 mod faulty;
 mod ground;
@@ -20,10 +17,6 @@ mod loss;
 mod marks;
 mod matrix;
 mod memory;
-#[path = "../support/opaque.rs"]
-mod opaque;
-#[path = "../support/opaque_card.rs"]
-mod opaque_card;
 mod own;
 mod painter;
 mod pictures;
@@ -37,5 +30,13 @@ mod veil;
 mod windows;
 mod written;
 
+use welkin::capi::frame::wk_frame;
+use welkin_support::c_scene;
+
 /// The size of the pictures that come through the C functions.
 const SIZE: (u32, u32) = (images::WIDTH, images::HEIGHT);
+
+/// Frame of the scene at the size of the pictures.
+fn frame(frame_id: u64) -> wk_frame {
+    c_scene::frame_of(frame_id, SIZE)
+}

@@ -2,17 +2,19 @@
 
 use welkin::capi::device::*;
 use welkin::gpu::gl::GlMode;
-
-use crate::c_scene::{
-    marks::{STAGES, classes, half_normals, own_pictures, packed_normals},
-    ok,
-    own::{different, wet_scene},
+use welkin_support::{
+    c_scene::{
+        marks::{STAGES, classes, half_normals, own_pictures, packed_normals},
+        ok,
+        own::{different, wet_scene},
+    },
+    egl::{Api, Window},
 };
+
 use crate::{
     SIZE,
     canvas::{filled, wet_picture},
     capi::{device, image},
-    egl::{Api, Window},
     host::Host,
     images::image_of,
 };

@@ -9,12 +9,15 @@ use welkin::capi::{
     device::*, frame::*, opengl::*, status::*, texture::*, timeline::*, view::*, weather::*, weather_kinds::*,
 };
 use welkin::gpu::gl::{GlImage, GlMode};
+use welkin_support::{
+    c_scene::{Scene, init, message, ok},
+    egl::{Api, Window},
+};
 
 use crate::{
     SIZE,
-    c_scene::{Scene, frame, init, message, ok},
     capi::{device, target},
-    egl::{Api, Window},
+    frame,
     host::Host,
     images::*,
     painter::{GROUND, Painter, depth_of_row, is_float},

@@ -6,18 +6,20 @@ use std::ptr::null_mut;
 use welkin::capi::{device::*, frame::*, status::*, texture::*, view::*};
 
 use welkin::gpu::gl::GlMode;
+use welkin_support::{
+    c_scene::{
+        init,
+        limited::{MIB, in_a_process, is_limited, leave},
+        message, ok,
+        own::{Own, Size, different, still_frame, wet_scene},
+    },
+    egl::{Api, Window},
+};
 
 use crate::SIZE;
-use crate::c_scene::{
-    init,
-    limited::{MIB, in_a_process, is_limited, leave},
-    message, ok,
-    own::{Own, Size, different, still_frame, wet_scene},
-};
 use crate::{
     canvas::{Canvas, wet_picture},
     capi::device,
-    egl::{Api, Window},
     host::Host,
 };
 

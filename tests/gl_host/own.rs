@@ -3,9 +3,9 @@
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{device::*, frame::*, status::*, texture::*, view::*};
+use welkin_support::c_scene::{Scene, init, message, ok};
 
-use crate::SIZE;
-use crate::c_scene::{Scene, frame, init, message, ok};
+use crate::{SIZE, frame};
 
 #[test]
 fn every_texture_of_an_own_device_serves_or_is_refused_by_name() {

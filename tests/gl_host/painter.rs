@@ -3,11 +3,8 @@
 
 use glow::HasContext;
 
-use crate::{
-    egl::{Api, Context},
-    host::Host,
-    images::*,
-};
+use crate::{host::Host, images::*};
+use welkin_support::egl::{Api, Context};
 
 /// Distance of the depth value 1, m: the near plane of `c_scene::frame`.
 const NEAR_M: f64 = 0.1;

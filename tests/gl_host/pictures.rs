@@ -2,9 +2,9 @@
 
 use glow::HasContext;
 use welkin::gpu::gl::{GlImage, GlMode, GlTargetDesc};
+use welkin_support::egl::{Api, Window};
 
 use crate::{
-    egl::{Api, Window},
     host::{Depth, Host, Picture, close},
     images::*,
 };

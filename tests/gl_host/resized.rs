@@ -5,18 +5,15 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{device::*, frame::*, status::*, texture::*, view::*};
 use welkin::gpu::gl::GlMode;
-
-use crate::c_scene::{
-    Scene, frame_of, init, message, ok,
-    own::{Own, Size, different, grey_ground, ground_depths, still_frame, wet_scene},
-};
-use crate::{
-    SIZE,
-    canvas::wet_picture,
-    capi::device,
+use welkin_support::{
+    c_scene::{
+        Scene, frame_of, init, message, ok,
+        own::{Own, Size, different, grey_ground, ground_depths, still_frame, wet_scene},
+    },
     egl::{Api, Window},
-    host::Host,
 };
+
+use crate::{SIZE, canvas::wet_picture, capi::device, host::Host};
 
 /// Larger, smaller, one pixel, one column, and back.
 const SIZES: [Size; 6] = [SIZE, (200, 113), (33, 19), (1, 1), (1, 40), SIZE];

@@ -10,11 +10,9 @@ use welkin::{
     gpu::gl::GlMode,
     sky::{SkyModel, SkySettings},
 };
+use welkin_support::egl::{Api, Window};
 
-use crate::{
-    egl::{Api, Window},
-    host::{Host, close},
-};
+use crate::host::{Host, close};
 
 fn builds_ahead(mode: GlMode) {
     let host = Host::new(Api::Core(3, 3), Window::None, mode);

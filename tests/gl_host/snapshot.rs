@@ -4,7 +4,7 @@ use std::ffi::c_void;
 
 use glow::HasContext;
 
-use crate::egl::function;
+use welkin_support::egl::function;
 
 type Get<T> = unsafe extern "system" fn(u32, *mut T);
 type GetAt<T> = unsafe extern "system" fn(u32, u32, *mut T);

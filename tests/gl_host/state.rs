@@ -2,9 +2,9 @@
 
 use glow::HasContext;
 use welkin::gpu::gl::GlMode;
+use welkin_support::egl::{Api, Window};
 
 use crate::{
-    egl::{Api, Window},
     exercise,
     host::{Depth, Host, Picture, close},
     images::*,

@@ -8,11 +8,14 @@ use std::{
 
 use welkin::capi::{device::*, opengl::*, status::*};
 use welkin::gpu::gl::GlMode;
-
-use crate::c_scene::{Scene, assert_same, init, message, ok, own_picture};
-use crate::{
-    capi::{picture, target},
+use welkin_support::{
+    c_scene::{Scene, assert_same, init, message, ok, own_picture},
     egl::{Api, Window, function, proc_address},
+};
+
+use crate::{
+    SIZE,
+    capi::{picture, target},
     host::{Host, make_current},
     images::{framebuffer, image_of, texture},
 };
@@ -114,7 +117,7 @@ unsafe extern "C" fn strict_proc(_: *mut c_void, name: *const c_char) -> *const 
 
 #[test]
 fn strict_contexts_before_es_3_2_draw_the_same_picture() {
-    let wanted = own_picture(0.001, 1);
+    let wanted = own_picture(SIZE, 0.001, 1);
     for (minor, is_null, mode) in [
         (1, false, GlMode::Shared),
         (1, true, GlMode::HostContext),

@@ -4,11 +4,8 @@ use std::ffi::c_void;
 
 use glow::HasContext;
 
-use crate::{
-    egl::{Api, function},
-    host::Host,
-    snapshot::Objects,
-};
+use crate::{host::Host, snapshot::Objects};
+use welkin_support::egl::{Api, function};
 
 const VERTEX: &str = "in vec4 place; out vec4 caught; void main() { caught = place; gl_Position = place; }";
 const FRAGMENT: &str = "uniform vec4 tint; out vec4 color; void main() { color = tint; }";

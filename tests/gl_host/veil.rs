@@ -4,13 +4,15 @@
 use glow::HasContext;
 use welkin::capi::{device::*, frame::*, veil::*, view::*};
 use welkin::gpu::gl::GlMode;
+use welkin_support::{
+    c_scene::{Scene, ok, veil::*},
+    egl::{Api, Window},
+};
 
 use crate::SIZE;
-use crate::c_scene::{Scene, ok, veil::*};
 use crate::{
     canvas::{Canvas, filled},
     capi::device,
-    egl::{Api, Window},
     host::Host,
     images::{framebuffer, image_of},
     painter::{CORNERS, program},

@@ -10,12 +10,16 @@ use std::{
 
 use glow::HasContext;
 use welkin::capi::{device::*, frame::*, opengl::*, status::*, view::*};
+use welkin_support::{
+    c_scene::{Scene, init, message, ok},
+    egl::{Api, Context, Window, function, make_none_current},
+    refusals::field,
+};
 
 use crate::{
     SIZE,
-    c_scene::{Scene, frame, init, message, ok, refusals::field},
     capi::target,
-    egl::{Api, Context, Window, function, make_none_current},
+    frame,
     host::get_proc,
     images::{framebuffer, image_of, texture},
 };

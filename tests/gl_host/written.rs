@@ -10,15 +10,18 @@ use welkin::{
         gl::{GlImage, GlMode, GlTargetDesc, Multisample},
     },
 };
+use welkin_support::{
+    c_scene::{Scene, message, ok},
+    egl::{Api, Window},
+    opaque_card::draw_card,
+};
 
 use crate::{
-    c_scene::{Scene, frame, message, ok},
     capi::{device, picture, target},
-    egl::{Api, Window},
+    frame,
     host::{Depth, Host, Picture, close},
     images::*,
     kinds::{assert_refused, resolved},
-    opaque_card::draw_card,
 };
 
 /// Depths of the host's image, rows from the bottom; of several samples the first.

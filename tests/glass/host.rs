@@ -11,8 +11,7 @@ use welkin::{
     scene::Camera,
     weather::{Precipitation, PrecipitationKind, Weather},
 };
-
-use crate::{coarse_sky::coarse_sky, textures::texture};
+use welkin_support::{coarse_sky::coarse_sky, textures::texture};
 
 pub struct Host {
     pub device: Arc<Device>,

@@ -7,11 +7,9 @@ use welkin::{
     glass::{Pane, Windscreen, WiperArm, laws::radius_m, step::VOLUME_UNIT_M3},
     scene::{Camera, DepthKind, DepthMapping},
 };
+use welkin_support::textures::texture;
 
-use crate::{
-    host::{Host, camera, upright},
-    textures::texture,
-};
+use crate::host::{Host, camera, upright};
 
 const SIZE: (u32, u32) = (320, 180);
 const PLAIN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

@@ -2,14 +2,8 @@
 //! binary.
 
 pub mod cells;
-#[path = "../support/coarse_sky.rs"]
-mod coarse_sky;
-#[path = "../support/depth_texture.rs"]
-mod depth_texture;
 mod host;
 mod lens;
 mod pictures;
 mod shelter;
 mod snow;
-#[path = "../support/textures.rs"]
-mod textures;

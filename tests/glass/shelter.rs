@@ -9,10 +9,10 @@ use welkin::{
     gpu::{Device, DeviceOptions},
     rain::{OccluderMap, Planes, Shelter, Taken},
 };
+use welkin_support::depth_texture::depth_texture;
 
 use crate::{
     cells::acting_on,
-    depth_texture::depth_texture,
     host::{Host, upright},
 };
 

@@ -9,11 +9,9 @@ use welkin::{
     ground::reference::{WATER_OUTSIDE, fresnel_water, wet_share},
     weather::{Surface, SurfaceState, Weather, Wind},
 };
+use welkin_support::textures::texture;
 
-use crate::{
-    host::{Hit, Host, SIZE, ground, look, ray},
-    textures::texture,
-};
+use crate::host::{Hit, Host, SIZE, ground, look, ray};
 
 const EYE: DVec3 = DVec3::new(0.0, 0.0, 2.0);
 

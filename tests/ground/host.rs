@@ -11,8 +11,7 @@ use welkin::{
     scene::{Camera, DepthMapping, ViewRays},
     weather::{Surface, SurfaceState, Weather, Wind},
 };
-
-use crate::{coarse_sky::coarse_sky, textures::texture};
+use welkin_support::{coarse_sky::coarse_sky, textures::texture};
 
 pub const SIZE: (u32, u32) = (160, 90);
 

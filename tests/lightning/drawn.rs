@@ -38,7 +38,7 @@ impl Night {
     fn new(weather: &Weather, size: (u32, u32)) -> Self {
         let device = device();
         let shared = Arc::new(Shared::new(&device).unwrap());
-        let desc = ContextDesc { sky: crate::sky::coarse_sky(), seed: 3, ..ContextDesc::default() };
+        let desc = ContextDesc { sky: welkin_support::coarse_sky::coarse_sky(), seed: 3, ..ContextDesc::default() };
         let mut context = Context::new(device.clone(), shared, desc).unwrap();
         let below = GivenDirection { azimuth_deg: 120.0, elevation_deg: -40.0 };
         context.set_sun(Some(below)).unwrap();
@@ -47,7 +47,7 @@ impl Night {
         // Flashes are those that a test triggers.
         context.set_lightning(LightningSettings { flashes_per_minute: Some(0.0), ..Default::default() }).unwrap();
         let view = View::new(&context).unwrap();
-        let color = crate::textures::texture(&device, size, wgpu::TextureFormat::Rgba32Float, 1);
+        let color = welkin_support::textures::texture(&device, size, wgpu::TextureFormat::Rgba32Float, 1);
         Self {
             context,
             view,
@@ -77,7 +77,7 @@ impl Night {
                 depths.push((NEAR_M / (range(d) * d.dot(forward))) as f32);
             }
         }
-        self.depth = Some(crate::depth::depth_texture(&device(), self.size, &depths));
+        self.depth = Some(welkin_support::depth_texture::depth_texture(&device(), self.size, &depths));
     }
 
     fn set_ground(&mut self) {

@@ -1,13 +1,7 @@
 //! Lightning: its schedule and queries, and how it is drawn.
 
-#[path = "../support/depth_texture.rs"]
-mod depth;
 mod drawn;
 mod schedule;
-#[path = "../support/coarse_sky.rs"]
-mod sky;
-#[path = "../support/textures.rs"]
-mod textures;
 
 use std::sync::{Arc, LazyLock};
 

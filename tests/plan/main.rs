@@ -1,13 +1,9 @@
 //! The plan against pictures: what it leaves out is within the tolerance, what it keeps is needed.
 
-#[path = "../support/coarse_sky.rs"]
-mod coarse_sky;
 mod devices;
 mod kept;
 mod rain;
 mod scenes;
-#[path = "../support/textures.rs"]
-mod textures;
 mod time;
 
 use scenes::{Bench, PlanScene};

@@ -12,8 +12,7 @@ use welkin::{
     scene::Camera,
     weather::Weather,
 };
-
-use crate::{coarse_sky::coarse_sky, textures::texture};
+use welkin_support::{coarse_sky::coarse_sky, textures::texture};
 
 /// Size of the pictures.
 pub const SIZE: (u32, u32) = (192, 108);

@@ -3,9 +3,6 @@
 //! files; without them it is skipped with a line. `WELKIN_LIB` names a ready library; without it the test builds one.
 #![cfg(target_os = "linux")]
 
-#[path = "../x_server/mod.rs"]
-mod x_server;
-
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
@@ -75,7 +72,7 @@ fn the_articles_widget_draws_in_every_way_that_it_promises() {
         cc.arg(format!("-Wl,-rpath,{}", folder.display())).arg("-o").arg(folder.join(program));
         run(&mut cc).unwrap_or_else(|e| panic!("{e}"));
     }
-    let server = x_server::Server::start();
+    let server = welkin_support::x_server::Server::start();
     for samples in ["0", "4"] {
         for profile in ["core", "compatibility"] {
             let mut host = Command::new(folder.join("widgets"));

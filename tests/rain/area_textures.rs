@@ -7,11 +7,9 @@ use welkin::{
     gpu::readback,
     rain::{RainArea, RainModel, RainSettings},
 };
+use welkin_support::rain_scene::upright;
 
-use crate::{
-    areas::{fair, host, shower, square},
-    scene::upright,
-};
+use crate::areas::{fair, host, shower, square};
 
 /// The published snippet's lookup, by hand: bilinear within a tile, linear between slices.
 fn sample(texels: &[[f32; 4]], uv: DVec2, distance: f64) -> f64 {

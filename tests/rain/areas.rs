@@ -14,11 +14,9 @@ use welkin::{
     scene::{Place, WorldFrame, WorldKind},
     weather::{CloudKind, CloudLayer, Precipitation, PrecipitationKind, Weather},
 };
+use welkin_support::rain_scene::Host;
 
-use crate::{
-    pictures::{paint, save},
-    scene::Host,
-};
+use crate::pictures::{paint, save};
 
 pub fn shower(north_m: f64, rate_mm_h: f64) -> RainArea {
     RainArea {
@@ -267,7 +265,7 @@ fn a_shaft_from_afar_takes_what_the_integral_says() {
     let mut host = Host::new((320, 180));
     host.context.set_weather(&fair(6.0), 0.0, 0.0).unwrap();
     host.look(DVec3::new(0.0, 0.0, 1.7), DVec3::new(0.0, 1.0, 0.08));
-    host.boxes = vec![crate::scene::upright([0.0, 12_000.0, 900.0], [9000.0, 10.0, 1000.0])];
+    host.boxes = vec![welkin_support::rain_scene::upright([0.0, 12_000.0, 900.0], [9000.0, 10.0, 1000.0])];
     let shown = |host: &mut Host, areas: &[RainArea], wall: f64| {
         host.context.set_rain_areas(areas).unwrap();
         host.draw(|_, _| [wall; 3]);
@@ -307,7 +305,7 @@ fn a_shaft_from_afar_takes_what_the_integral_says() {
 /// A dark room of which only the drops are bright: the sum of what they cover.
 fn brightness(host: &mut Host, position: DVec3, [x0, x1]: [f64; 2]) -> f64 {
     host.look(position, DVec3::Y);
-    host.boxes = vec![crate::scene::upright([position.x, position.y + 12.0, 0.0], [60.0, 0.5, 60.0])];
+    host.boxes = vec![welkin_support::rain_scene::upright([position.x, position.y + 12.0, 0.0], [60.0, 0.5, 60.0])];
     host.draw(|_, _| [0.0; 3]);
     host.record(Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
     mean(host, [x0, 0.0, x1, 1.0])

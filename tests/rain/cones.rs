@@ -13,11 +13,9 @@ use welkin::{
     },
     scene::Camera,
 };
+use welkin_support::rain_scene::{Host, NEAR_M, rain, upright};
 
-use crate::{
-    drops::{classes, mean, through, white},
-    scene::{Host, NEAR_M, rain, upright},
-};
+use crate::drops::{classes, mean, through, white};
 
 fn draws(host: &mut Host, model: RainModel) {
     host.view.set_rain(RainSettings { model, ..RainSettings::default() }).unwrap();

@@ -8,11 +8,9 @@ use welkin::{
     scene::HostLight,
     weather::Weather,
 };
+use welkin_support::rain_scene::{Host, rain, upright};
 
-use crate::{
-    scene::{Host, rain, upright},
-    shelter::map,
-};
+use crate::shelter::map;
 
 /// Without compute shaders, where each drop is drawn, and with them.
 fn hosts(backends: wgpu::Backends) -> [Host; 2] {

@@ -10,8 +10,7 @@ use welkin::{
     },
     weather::{Fog, Weather, derive},
 };
-
-use crate::scene::{Host, rain, upright};
+use welkin_support::rain_scene::{Host, rain, upright};
 
 /// Radiance of the host's picture: far above what drops send at night, within half floats.
 pub const WHITE: f64 = 3e4;

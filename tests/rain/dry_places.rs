@@ -13,10 +13,10 @@ use welkin::{
     },
     scene::Camera,
 };
+use welkin_support::rain_scene::{Host, NEAR_M, rain, upright};
 
 use crate::{
     drops::classes,
-    scene::{Host, NEAR_M, rain, upright},
     shelter::{check, few, map, through, white},
 };
 

@@ -6,11 +6,9 @@ use welkin::{
     rain::{RainModel, RainSettings},
     weather::{CloudKind, CloudLayer, Weather},
 };
+use welkin_support::rain_scene::{Host, rain, upright};
 
-use crate::{
-    pictures::save,
-    scene::{Host, rain, upright},
-};
+use crate::pictures::save;
 
 /// Rain under a closed deck.
 fn overcast(rate_mm_h: f64, wind_m_s: f64, visibility_m: f64) -> Weather {

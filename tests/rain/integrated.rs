@@ -11,11 +11,9 @@ use welkin::{
     rain::{RainModel, RainSettings},
     wind::{WindGrid, WindGridKind},
 };
+use welkin_support::rain_scene::{Host, rain, upright};
 
-use crate::{
-    drops::{mean, through, white},
-    scene::{Host, rain, upright},
-};
+use crate::drops::{mean, through, white};
 
 fn draws(host: &mut Host, model: RainModel) {
     host.view.set_rain(RainSettings { model, most_drops: Some(60_000), ..RainSettings::default() }).unwrap();

@@ -3,13 +3,8 @@
 
 mod area_textures;
 mod areas;
-mod brute;
-#[path = "../support/coarse_sky.rs"]
-mod coarse_sky;
 mod cones;
 mod culled;
-#[path = "../support/depth_texture.rs"]
-mod depth_texture;
 mod drops;
 mod dry_places;
 mod far;
@@ -19,7 +14,6 @@ mod photometry;
 mod pictures;
 mod processes;
 mod sand;
-mod scene;
 mod shapes;
 mod shelter;
 mod slopes;
@@ -28,5 +22,3 @@ mod stability;
 mod stereo;
 mod stones;
 mod streaks;
-#[path = "../support/textures.rs"]
-mod textures;

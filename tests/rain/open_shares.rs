@@ -10,10 +10,10 @@ use welkin::{
         shelter::sheltered,
     },
 };
+use welkin_support::rain_scene::{Host, rain};
 
 use crate::{
     drops::{classes, night},
-    scene::{Host, rain},
     shelter::{map, standing, surely, through},
 };
 

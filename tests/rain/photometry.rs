@@ -1,5 +1,5 @@
 //! How much rain shows: streaks against the photometric model of Garg and Nayar (2007), the rain's motion against drops
-//! that are drawn one by one ([`crate::brute`]), and what trainees see by day.
+//! that are drawn one by one ([`welkin_support::brute_rain`]), and what trainees see by day.
 //!
 //! `cargo test --test rain photometry -- --nocapture` prints the tables of docs/lab/rain.md.
 
@@ -13,11 +13,13 @@ use welkin::{
     scene::Camera,
     weather::{Weather, derive},
 };
+use welkin_support::{
+    brute_rain::{Film, speed_m_s, sphere_radiance},
+    rain_scene::{Host, NEAR_M, rain, upright},
+};
 
 use crate::{
-    brute::{Film, speed_m_s, sphere_radiance},
     drops::{mean, through, white},
-    scene::{Host, NEAR_M, rain, upright},
     streaks::{LEAST_PIXELS, Streak},
 };
 

@@ -7,8 +7,7 @@ use welkin::{
     rain::{RainModel, RainSettings},
     scene::HostLight,
 };
-
-use crate::scene::{Host, rain, upright};
+use welkin_support::rain_scene::{Host, rain, upright};
 
 /// The host's own drawing: a road in a meadow and concrete, lit by what Welkin answers.
 pub fn paint(host: &Host) {

@@ -20,10 +20,10 @@ use welkin::{
     },
     weather::{Weather, derive},
 };
+use welkin_support::rain_scene::{Host, NEAR_M, rain};
 
 use crate::{
     drops::{WHITE, night},
-    scene::{Host, NEAR_M, rain},
     streaks::{LEAST_PIXELS, Streak, alone, distance},
 };
 

@@ -6,11 +6,11 @@ use welkin::{
     frame::Stages,
     weather::{Lofted, LoftedKind, Weather, Wind, derive},
 };
+use welkin_support::rain_scene::{Host, upright};
 
 use crate::{
     drops::WHITE,
     pictures::{paint, save},
-    scene::{Host, upright},
 };
 
 fn blowing(kind: LoftedKind, visibility_m: f64, wind_m_s: f64) -> Weather {

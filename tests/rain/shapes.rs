@@ -2,11 +2,9 @@
 
 use glam::{DMat3, DVec3};
 use welkin::rain::{Planes, Shelter};
+use welkin_support::rain_scene::{rain, upright};
 
-use crate::{
-    scene::{rain, upright},
-    shelter::{check, few, through, white},
-};
+use crate::shelter::{check, few, through, white};
 
 /// A gable roof in the air, a tent on the ground, and a cab with a slanted front that drives.
 fn shapes() -> Vec<Shelter> {

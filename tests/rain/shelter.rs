@@ -15,13 +15,13 @@ use welkin::{
     scene::{Camera, DepthKind, DepthMapping, ViewRays},
     weather::derive,
 };
-
-use crate::{
+use welkin_support::{
     depth_texture::depth_texture,
-    pictures::{paint, save},
-    scene::{Host, NEAR_M, rain, upright},
+    rain_scene::{Host, NEAR_M, rain, upright},
     textures::texture,
 };
+
+use crate::pictures::{paint, save};
 
 /// Radiance of the host's picture: far above what drops send at night, within half floats.
 const WHITE: f64 = 3e4;

@@ -5,10 +5,10 @@ use welkin::rain::{
     RainModel, RainSettings,
     splash::{LEAST_MM, LIFE_S, Splashes},
 };
+use welkin_support::rain_scene::{Host, rain, upright};
 
 use crate::{
     pictures::{paint, save},
-    scene::{Host, rain, upright},
     shelter::{few, through, white},
 };
 

@@ -11,11 +11,9 @@ use welkin::{
     },
     weather::derive,
 };
+use welkin_support::rain_scene::{Host, rain};
 
-use crate::{
-    drops::{depth_to, mean, through, white},
-    scene::{Host, rain},
-};
+use crate::drops::{depth_to, mean, through, white};
 
 const RATES: [f64; 4] = [0.0, 0.3, 20.0, 500.0];
 const WINDS: [f64; 3] = [0.0, 20.0, 80.0];

@@ -9,11 +9,9 @@ use welkin::{
     scene::Camera,
     weather::{CloudKind, CloudLayer, Fog, FogKind, Weather, derive},
 };
+use welkin_support::rain_scene::{Host, NEAR_M, rain, upright};
 
-use crate::{
-    scene::{Host, NEAR_M, rain, upright},
-    shelter::{check, through, white},
-};
+use crate::shelter::{check, through, white};
 
 const SIZE: (u32, u32) = (320, 180);
 /// From eye to eye.

@@ -5,11 +5,11 @@ use welkin::{
     rain::Stones,
     weather::{Precipitation, PrecipitationKind, Weather, derive},
 };
+use welkin_support::rain_scene::{Host, upright};
 
 use crate::{
     drops::{mean, through, white},
     pictures::{paint, save},
-    scene::{Host, upright},
 };
 
 fn ice(kind: PrecipitationKind, rate: f64, wind: f64) -> Weather {

@@ -10,11 +10,9 @@ use welkin::{
     scene::Camera,
     weather::{Weather, derive},
 };
+use welkin_support::rain_scene::{Host, NEAR_M, rain};
 
-use crate::{
-    drops::{through, white},
-    scene::{Host, NEAR_M, rain},
-};
+use crate::drops::{through, white};
 
 const SIZE: (u32, u32) = (640, 360);
 const FOV: f64 = 0.25;

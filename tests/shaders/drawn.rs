@@ -2,8 +2,7 @@
 //! cannot be read.
 
 use welkin::gpu::{Device, DeviceOptions, readback, shader};
-
-use crate::{fullscreen, textures::texture};
+use welkin_support::{fullscreen, textures::texture};
 
 /// Infinity, a value that is not a number, and -0, through the limit of each.
 const FRAGMENT: &str = "

@@ -4,13 +4,9 @@
 mod accepted;
 mod arithmetic;
 mod drawn;
-#[path = "../support/fullscreen.rs"]
-mod fullscreen;
 mod loops;
 mod operands;
 mod ranges;
-#[path = "../support/textures.rs"]
-mod textures;
 mod value;
 mod written;
 

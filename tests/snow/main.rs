@@ -1,16 +1,7 @@
 //! Falling snow as a host sees it: where flakes are drawn, what they hide, where none fall. One binary, so that it
 //! links once.
 
-#[path = "../support/coarse_sky.rs"]
-mod coarse_sky;
-#[allow(dead_code)] // The tests of rain need more of it.
-#[path = "../rain/scene.rs"]
-mod scene;
-#[path = "../support/textures.rs"]
-mod textures;
-
 use glam::DVec3;
-use scene::{Host, upright};
 use welkin::{
     context::GivenDirection,
     frame::Stages,
@@ -24,6 +15,7 @@ use welkin::{
     },
     weather::{Precipitation, PrecipitationKind, Weather, hydrometeors::snow_extinction_per_m},
 };
+use welkin_support::rain_scene::{Host, NEAR_M, upright};
 
 /// Radiance of the host's picture: far above what flakes send at night, within half floats.
 const WHITE: f64 = 3e4;
@@ -174,7 +166,7 @@ fn the_list_draws_what_all_flakes_draw() {
         }),
         ("130 degrees wide", |h| {
             let eye = DVec3::new(3.0, -5.0, 1.7);
-            h.camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 1.75, 16.0 / 9.0, scene::NEAR_M);
+            h.camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 1.75, 16.0 / 9.0, NEAR_M);
         }),
         ("beside a box", |h| h.context.set_shelters(&[upright([3.0, -2.0, 4.0], [1.0, 2.0, 0.1])]).unwrap()),
         ("before a lamp", |h| {
@@ -244,7 +236,7 @@ fn flakes_keep_their_size_straight_up_and_straight_down() {
             host.camera = {
                 let up = if forward.x == 0.0 && forward.y == 0.0 { DVec3::Y } else { DVec3::Z };
                 let aspect = f64::from(host.size.0) / f64::from(host.size.1);
-                welkin::scene::Camera::look_to(DVec3::new(0.0, 0.0, 60.0), forward, up, 0.9, aspect, scene::NEAR_M)
+                welkin::scene::Camera::look_to(DVec3::new(0.0, 0.0, 60.0), forward, up, 0.9, aspect, NEAR_M)
             };
             // A wall all around.
             host.boxes =

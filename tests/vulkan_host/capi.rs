@@ -5,10 +5,10 @@ use std::ptr::null_mut;
 
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, environment::*, frame::*, status::*, veil::*, view::*, vulkan::*};
+use welkin_support::c_scene::{Scene, assert_same, init, message, ok, own_picture};
 
-use crate::Picture;
-use crate::c_scene::{Scene, assert_same, frame, init, message, ok, own_picture};
 use crate::host::{Host, Owned, Setup};
+use crate::{Picture, SIZE, frame};
 
 fn desc(host: &Host) -> wk_vulkan_host_desc {
     let at = |raw: u64| raw as usize as *mut c_void;
@@ -96,7 +96,7 @@ fn c_hosts_get_the_same_picture_and_their_layouts_and_semaphores() {
         // SAFETY: plain Vulkan by its rules.
         unsafe { host.device.wait_semaphores(&info.values(&values), 10_000_000_000).expect("signalled") };
     }
-    assert_same(&host.read(&picture.colour.image, &[]), &own_picture(depth, last), 1);
+    assert_same(&host.read(&picture.colour.image, &[]), &own_picture(SIZE, depth, last), 1);
     scene.destroy();
     // SAFETY: live handles.
     unsafe {

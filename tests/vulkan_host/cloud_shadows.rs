@@ -3,10 +3,13 @@
 use ash::vk::{self, Handle};
 use welkin::capi::{cloud_shadow::*, device::*};
 use welkin::gpu::vulkan::HostImage;
+use welkin_support::c_scene::{Scene, cloud_shadows::*, ok};
 
-use crate::c_scene::{Scene, cloud_shadows::*, ok};
-use crate::capi::device;
-use crate::host::{Host, Setup};
+use crate::{
+    SIZE,
+    capi::device,
+    host::{Host, Setup},
+};
 
 /// The image's texels, read from the layout in which the host finds it and given back in that.
 fn texels(host: &Host, from: &wk_cloud_shadows) -> Vec<u8> {
@@ -26,7 +29,7 @@ fn a_hosts_image_has_the_shadow_of_each_place() {
     let device = device(&host);
     let scene = Scene::new(device);
     scatter(&scene);
-    let map = whole(&scene);
+    let map = whole(&scene, SIZE);
     let texels = texels(&host, &map);
     let size = i64::from(map.width);
     let at = |x: i64, y: i64| f64::from(texels[(y.rem_euclid(size) * size + x.rem_euclid(size)) as usize]) / 255.0;

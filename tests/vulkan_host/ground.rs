@@ -4,11 +4,11 @@
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, ground_grid::*, ground_texture::*, view::*, vulkan::*};
 use welkin::gpu::vulkan::HostImage;
+use welkin_support::c_scene::{Scene, ground::*, init, ok};
 
-use crate::Picture;
-use crate::c_scene::{Scene, frame, ground::*, init, ok};
 use crate::capi::{device, image};
 use crate::host::{Host, Setup};
+use crate::{Picture, frame};
 
 /// The texture's texels, read from the layout in which the host finds it and given back in that.
 fn texels(host: &Host, from: &wk_ground_texture) -> Vec<[f32; 4]> {

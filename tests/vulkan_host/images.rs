@@ -4,11 +4,11 @@
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, status::*, view::*, vulkan::*};
 use welkin::gpu::vulkan::HostImage;
+use welkin_support::c_scene::{Scene, ground, init, message, ok};
 
-use crate::c_scene::{Scene, frame, ground, init, message, ok};
 use crate::capi::{device, image};
 use crate::host::{Host, Owned, Setup};
-use crate::{SIZE, assert_all};
+use crate::{SIZE, assert_all, frame};
 
 const COLOUR: vk::Format = vk::Format::R8G8B8A8_UNORM;
 /// 2 m below the eye at 40 m, in reversed depth with the near plane at 0.1 m.

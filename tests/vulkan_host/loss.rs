@@ -3,11 +3,11 @@
 
 use ash::vk;
 use welkin::capi::{device::*, frame::*, view::*, vulkan::*};
+use welkin_support::c_scene::{init, loss::lose_and_ask, ok, own::wet_scene};
 
-use crate::Picture;
-use crate::c_scene::{frame, init, loss::lose_and_ask, ok, own::wet_scene};
 use crate::capi::{device, image};
 use crate::host::{Host, Setup};
+use crate::{Picture, frame};
 
 #[test]
 fn a_vulkan_host_whose_device_was_lost_goes_on_with_another() {

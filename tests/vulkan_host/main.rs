@@ -2,8 +2,6 @@
 //! host reads, the layouts and semaphores are kept to, and the validation layer has nothing to say.
 #![cfg(not(any(target_os = "macos", target_os = "ios")))]
 
-#[path = "../c_scene/mod.rs"]
-mod c_scene;
 mod capi;
 mod cloud_shadows;
 mod draw;
@@ -14,25 +12,26 @@ mod loss;
 mod marks;
 #[cfg(target_os = "linux")]
 mod memory;
-#[path = "../support/opaque.rs"]
-mod opaque;
-#[path = "../support/opaque_card.rs"]
-mod opaque_card;
 mod refusals;
 mod reuse;
 mod sharing;
-#[path = "../support/textures.rs"]
-mod textures;
 mod veil;
 mod weather;
 mod written;
 
 use ash::vk;
 use host::{Host, Owned, Setup};
+use welkin::capi::frame::wk_frame;
 use welkin::gpu::vulkan::{HandOver, HostImage, ImageRole, VulkanHost, adopt};
+use welkin_support::c_scene;
 
 /// The size of every test image: small, not square, not a power of two.
 const SIZE: (u32, u32) = (37, 20);
+
+/// Frame of the scene at the size of the test images.
+fn frame(frame_id: u64) -> wk_frame {
+    c_scene::frame_of(frame_id, SIZE)
+}
 
 fn adopted(host: &Host) -> VulkanHost {
     // SAFETY: the description is true and the host outlives the device.

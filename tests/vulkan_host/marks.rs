@@ -3,14 +3,14 @@
 
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, view::*, vulkan::*};
-
-use crate::SIZE;
-use crate::c_scene::{
+use welkin_support::c_scene::{
     Scene, init,
     marks::{STAGES, classes, half_normals, own_pictures, packed_normals},
     ok,
     own::{Own, Size, different, grey_ground, ground_depths, still_frame, wet_scene},
 };
+
+use crate::SIZE;
 use crate::capi::{device, image};
 use crate::host::{Host, Owned, Setup};
 

@@ -3,16 +3,16 @@
 
 use ash::vk;
 use welkin::capi::{device::*, frame::*, status::*, view::*, vulkan::*};
-
-use crate::Picture;
-use crate::c_scene::{
-    frame, frame_of, init,
+use welkin_support::c_scene::{
+    frame_of, init,
     limited::{MIB, in_a_process, is_limited, leave},
     message, ok,
     own::wet_scene,
 };
+
 use crate::capi::{device, image};
 use crate::host::{Host, Setup};
+use crate::{Picture, frame};
 
 #[test]
 fn a_frame_that_does_not_fit_is_refused_in_a_vulkan_host() {

@@ -3,10 +3,10 @@
 
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, veil::*, view::*, vulkan::*};
+use welkin_support::c_scene::{Scene, init, ok, veil::*};
 use wgpu::naga;
 
 use crate::SIZE;
-use crate::c_scene::{Scene, init, ok, veil::*};
 use crate::capi::{device, image};
 use crate::host::{Host, Owned, Setup};
 

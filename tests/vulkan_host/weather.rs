@@ -9,9 +9,9 @@ use welkin::frame::{ColorSpace, Frame, Shared, Stages, View};
 use welkin::gpu::vulkan::{HandOver, HostImage, ImageRole, VulkanHost};
 use welkin::gpu::{Device, DeviceOptions, readback};
 use welkin::scene::Camera;
+use welkin_support::textures::texture;
 
 use crate::host::{Host, Setup};
-use crate::textures::texture;
 use crate::{Picture, SIZE, adopted};
 
 /// A context and a view on `device`, with the sun in the picture.

@@ -6,13 +6,16 @@ use welkin::{
     capi::{device::wk_device_destroy, frame::*, status::*, view::*, vulkan::*},
     gpu::vulkan::{HandOver, HostImage, ImageRole},
 };
+use welkin_support::{
+    c_scene::{Scene, init, message, ok},
+    opaque_card::draw_card,
+};
 
 use crate::{
     Picture, SIZE, adopted,
-    c_scene::{Scene, frame, init, message, ok},
     capi::{device, image},
+    frame,
     host::{Host, Setup},
-    opaque_card::draw_card,
 };
 
 /// Depths of an image that is ready to be copied from.

@@ -10,8 +10,9 @@ use welkin::{
     sky::SkySettings,
     weather::{AerosolKind, Fog, FogKind, derive_with},
 };
+use welkin_support::{coarse_sky::coarse_sky, frame_host::Host};
 
-use crate::{accepted::report, coarse_sky::coarse_sky, frame_host::Host, host::Dice, random::Given};
+use crate::{accepted::report, host::Dice, random::Given};
 
 /// Cameras: at the ground looking level and up, in low cloud, high above.
 const EYES: [(f64, f64); 4] = [(2.0, 0.05), (1.5, 0.6), (700.0, -0.1), (11_000.0, -0.3)];

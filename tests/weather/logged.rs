@@ -12,8 +12,7 @@ use welkin::{
     scene::Camera,
     weather::Weather,
 };
-
-use crate::frame_host::{Host, coarse};
+use welkin_support::frame_host::{Host, coarse};
 
 /// A night without a moon, and noon of the same day.
 const TIMES: [Utc; 2] = [Utc(1_768_773_600.0), Utc(1_768_773_600.0 + 43_200.0)];

@@ -6,8 +6,8 @@ use std::sync::atomic::Ordering;
 
 use welkin::capi::{abi, context::*, device::*, frame::*, status::*, surface::*, view::*};
 use welkin::gpu::surface::NativeWindow;
+use welkin_support::refusals;
 
-use crate::refusals;
 use crate::x11::{Server, Window, X_ERRORS};
 
 /// The thread's last message, whose field is held against the header.

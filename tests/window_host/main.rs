@@ -4,8 +4,6 @@
 
 mod capi;
 mod held;
-#[path = "../support/refusals.rs"]
-mod refusals;
 mod x11;
 
 use std::sync::atomic::Ordering;

@@ -2,7 +2,7 @@
 //!
 //! Cover is the share of the solid angle within 75 degrees of the zenith whose slant optical depth of the layer exceeds
 //! 0.1, of a layer of ice crystals 0.03, from far below. Sides of clouds hide more of the sky than their bases, so
-//! thresholds are found by looking: `cargo run --release --example lab -- thresholds` prints `thresholds.in`.
+//! thresholds are found by looking: `cargo run --release -p welkin-lab -- thresholds` prints `thresholds.in`.
 
 use std::f64::consts::PI;
 

@@ -7,7 +7,7 @@ use crate::{
     light::luminance,
     scene::{Camera, ClipSpace, DepthKind, DepthMapping, Place, ViewRays},
     stars::{Heavens, catalogue, reference},
-    textures::texture,
+    tests::textures::texture,
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;

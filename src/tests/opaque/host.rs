@@ -13,7 +13,7 @@ pub struct Host {
 }
 
 pub fn texture(device: &Device, format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
-    crate::textures::texture(device, SIZE, format, samples)
+    crate::tests::textures::texture(device, SIZE, format, samples)
 }
 
 pub fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {

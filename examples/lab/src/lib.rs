@@ -1,0 +1,34 @@
+//! Speed charted against accuracy, growth of cost, and maps of where methods fail: the commands of `lab`, and what they
+//! rest on.
+
+pub mod candidates;
+pub mod canvas;
+pub mod chart;
+pub mod clouds;
+pub mod cloudscapes;
+pub mod command;
+pub mod compare;
+pub mod effect_charts;
+pub mod fog;
+pub mod front;
+pub mod genera;
+pub mod growth;
+pub mod page;
+pub mod painted;
+pub mod painted_chart;
+pub mod peers;
+pub mod picture;
+pub mod plot;
+pub mod quadrature;
+pub mod rain;
+pub mod regression;
+pub mod report;
+pub mod scenes;
+pub mod sky;
+pub mod snow;
+pub mod source_lod;
+pub mod stability;
+pub mod stars;
+pub mod store;
+pub mod timing;
+pub mod wind_flakes;

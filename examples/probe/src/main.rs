@@ -1,0 +1,42 @@
+//! Asks the drawn model from a script: CSV with a header on standard input, each line back with the answer's columns.
+//!
+//! ```text
+//! probe sky|aerial|irradiance --planet FILE [--model table3d|isotropic|directional|brute-force]
+//! probe fog --visibility METRES
+//! probe rain-speed
+//! probe snow-speed
+//! probe rain
+//! probe ice
+//! probe slab
+//! probe cover --genus NAME --okta 0..8 --seeds N
+//! probe lightning --rate FLASHES_A_MINUTE --hours H
+//! probe cavity --re R --n N
+//! probe taylor-green --n N --cfl C [--scheme semi-lagrangian|maccormack|reflection]
+//! probe wind --scene FILE
+//! ```
+//! Wrong input: line and column on standard error, exit code 2, nothing on standard output.
+
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use welkin::{Error, Status};
+use welkin_probe::command;
+
+fn main() -> ExitCode {
+    if let Some(text) = welkin_command_line::answered("probe", command::USAGE, std::env::args().skip(1)) {
+        print!("{text}");
+        return ExitCode::SUCCESS;
+    }
+    let done =
+        welkin_command_line::at_work("probe", "working", || command::run(std::env::args().skip(1))).and_then(|out| {
+            let failed = |e: std::io::Error| Error::new(Status::Io, format!("writing the answers: {e}"));
+            std::io::stdout().write_all(out.as_bytes()).map_err(failed)
+        });
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(e) => {
+            eprintln!("probe: {e}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! What every answer of the C interface must be like, whatever was asked.
+
+use crate::refusals::{PUBLIC, field_fault, message};
+use welkin::capi::status::*;
+
+/// What holds for every answer.
+pub struct Judge;
+
+/// Words of the inside, which say nothing to a host.
+const INTERNAL: &[&str] = &[
+    "wgpu::",
+    "Validation",
+    "naga",
+    "TextureUsages",
+    "Some(",
+    "None)",
+    "Error {",
+    "unwrap",
+    "src/",
+    ".rs:",
+    "Label",
+    "overflow",
+    "panicked",
+    "encoder",
+    "bind group",
+];
+
+impl Judge {
+    /// What is wrong with an answer of `function`, if anything.
+    pub fn fault(&self, function: &str, status: wk_status) -> Option<String> {
+        if status >= 0 {
+            return None;
+        }
+        let text = message();
+        if status == WK_ERROR_INTERNAL || status == WK_ERROR_POISONED || status == WK_ERROR_DEVICE_LOST {
+            return Some(format!("status {status}: {text}"));
+        }
+        let Some(what) = text.strip_prefix(&format!("{function}: ")) else {
+            return Some(format!("the message does not begin with the function's name: {text:?}"));
+        };
+        if let Some(word) = INTERNAL.iter().find(|w| what.contains(**w)) {
+            return Some(format!("the message has {word:?} in it: {text:?}"));
+        }
+        if text.len() >= 300 {
+            return Some(format!("the message has {} bytes: {text:?}", text.len()));
+        }
+        let mut words = what.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        if !words.any(|w| PUBLIC.contains(w)) {
+            return Some(format!("the message names no field or parameter of the header: {text:?}"));
+        }
+        field_fault()
+    }
+}

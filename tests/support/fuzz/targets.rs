@@ -1,0 +1,207 @@
+//! What coverage-guided fuzzers run (`make fuzz`), and the tests replay on `fuzz/corpus`: one function a kind of input.
+//! Each panics where Welkin does, where a refusal is unfit for a host, and where what was read does not hold together.
+
+use std::{ffi::CString, ptr::null_mut};
+
+use welkin::{
+    capi::{conditions::*, context::*, plan::*, report::*, status::WK_OK, timeline::*},
+    error::{Error, Status},
+    noise::NoiseImage,
+    planet::Planet,
+    sky,
+};
+
+use super::{
+    calls::{CALLS, World},
+    dice::Dice,
+    judge::Judge,
+    structs::Struct,
+};
+
+/// Calls of a sequence at most, so that a long input is no slower than a short one.
+const MOST_CALLS: usize = 60;
+/// Bytes of the longest message of a refusal.
+const MOST_MESSAGE: usize = 300;
+
+thread_local! {
+    /// Objects for inputs that replace all that was before.
+    static WORLD: World = World::new();
+}
+
+/// Panics where a refusal is unfit for a host.
+fn fit(error: &Error) {
+    let text = error.to_string();
+    assert!(!text.is_empty() && text.len() < MOST_MESSAGE, "{} bytes: {text}", text.len());
+    assert!(!matches!(error.status, Status::Internal | Status::Poisoned), "{text}");
+}
+
+/// Panics where an answer of the C interface is wrong.
+fn judged(function: &str, status: i32) -> bool {
+    if let Some(fault) = Judge.fault(function, status) {
+        panic!("{function}: {fault}");
+    }
+    status == WK_OK
+}
+
+/// A weather report: what is read is a weather that a context takes, and the conditions of it are finite.
+pub fn metar(data: &[u8]) {
+    let Ok(text) = CString::new(data) else { return };
+    let (mut layers, mut weather, mut metar) =
+        (Struct::list("wk_cloud_layer", 16), Struct::plain("wk_weather"), Struct::plain("wk_metar"));
+    let size = layers.stride();
+    // SAFETY: pointers to live locals, and a list of as many elements.
+    let status = unsafe {
+        let layers = layers.ptr().cast();
+        wk_weather_from_metar(text.as_ptr(), layers, 16, size, weather.ptr().cast(), metar.ptr().cast())
+    };
+    if !judged("wk_weather_from_metar", status) {
+        return;
+    }
+    assert_eq!([weather.not_finite(), metar.not_finite()].concat(), Vec::<&str>::new());
+    let world = World::new();
+    let (mut conditions, position) = (Struct::plain("wk_conditions"), [0.0_f64, 0.0, 2.0]);
+    // SAFETY: a live handle and pointers to live locals.
+    unsafe {
+        let context = world.context();
+        let status = wk_context_set_weather(context, weather.ptr().cast(), 0.0, 0.0);
+        assert!(judged("wk_context_set_weather", status), "a weather that was read is refused");
+        let status = wk_context_get_conditions(context, &position, 0.0, conditions.ptr().cast());
+        assert!(judged("wk_context_get_conditions", status));
+    }
+    assert!(conditions.not_finite().iter().all(|f| *f == "visibility_m"), "{:?}", conditions.not_finite());
+}
+
+/// A planet file: what is read is written and read again as itself.
+pub fn planet(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    match Planet::from_toml(text) {
+        Err(e) => fit(&e),
+        Ok(planet) => {
+            planet.check().expect("what was read is in range");
+            let again = Planet::from_toml(&planet.to_toml()).expect("what was written is read");
+            assert_eq!(again.hash(), planet.hash());
+        }
+    }
+}
+
+/// FNV-1a, 64 bits (Fowler, Noll and Vo 1991), as states seal themselves with.
+fn fnv(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
+/// A state whose sums fit again, that of the timeline in it too: without them a fuzzer would reach nothing behind.
+fn sealed(text: &str) -> String {
+    let Some((_, body)) = text.split_once('\n') else { return text.to_owned() };
+    let timeline = body.split_once("# timeline ").and_then(|(before, rest)| {
+        let (inner, after) = rest.split_once('\n')?.1.split_once("\"\"\"")?;
+        Some(format!("{before}# timeline {:016x}\n{inner}\"\"\"{after}", fnv(inner)))
+    });
+    let body = timeline.unwrap_or_else(|| body.to_owned());
+    format!("welkin state 2 {:016x}\n{body}", fnv(&body))
+}
+
+/// A saved state with sums that fit: one that is loaded is saved and loaded as itself.
+pub fn state(data: &[u8]) {
+    let context = WORLD.with(World::context);
+    let data = &std::str::from_utf8(data).map_or_else(|_| data.to_vec(), |text| sealed(text).into_bytes());
+    // SAFETY: a live handle, and a slice's own pointer and length.
+    let status = unsafe { wk_context_load(context, data.as_ptr().cast(), data.len()) };
+    if !judged("wk_context_load", status) {
+        return;
+    }
+    let (before, saved) = (hash(context), saved(context));
+    // SAFETY: as above.
+    let status = unsafe { wk_context_load(context, saved.as_ptr().cast(), saved.len()) };
+    assert!(judged("wk_context_load", status), "a state that was saved is refused");
+    assert_eq!(hash(context), before, "a state that was loaded is another");
+}
+
+/// The hash of a context's state.
+fn hash(context: *mut wk_context) -> u64 {
+    let mut hash = 0;
+    // SAFETY: a live handle.
+    assert!(judged("wk_context_state_hash", unsafe { wk_context_state_hash(context, &mut hash) }));
+    hash
+}
+
+/// A context's state as bytes.
+fn saved(context: *mut wk_context) -> Vec<u8> {
+    let mut size = 0;
+    // SAFETY: a live handle, and room as long as is said.
+    unsafe {
+        judged("wk_context_save", wk_context_save(context, null_mut(), 0, &mut size));
+        let mut bytes = vec![0_u8; size];
+        assert!(judged("wk_context_save", wk_context_save(context, bytes.as_mut_ptr().cast(), size, &mut size)));
+        bytes
+    }
+}
+
+/// States that were saved in the middle of things.
+pub fn states() -> Vec<Vec<u8>> {
+    let changing = |f: &str| f.starts_with("wk_context_set") || f == "wk_context_update";
+    let state = |seed| {
+        let (mut dice, mut world) = (Dice::new(seed), World::new());
+        for (_, call) in (0..400).map(|_| dice.pick(CALLS)).filter(|c| changing(c.0)).collect::<Vec<_>>() {
+            call(&mut dice, &mut world);
+        }
+        saved(world.context())
+    };
+    (0..6).map(state).collect()
+}
+
+/// A plan as it is saved.
+pub fn saved_plan() -> Vec<u8> {
+    let (world, mut size) = (World::new(), 0);
+    let mut bytes = vec![0_u8; 1 << 16];
+    // SAFETY: a live handle, and room as long as is said.
+    let status = unsafe { wk_view_save_plan(world.view(), bytes.as_mut_ptr().cast(), bytes.len(), &mut size) };
+    assert!(judged("wk_view_save_plan", status));
+    bytes.truncate(size);
+    bytes
+}
+
+/// A body of a cache's file that [`cache`] takes.
+pub fn tables() -> Vec<u8> {
+    sky::body_of_tables()
+}
+
+/// A saved plan.
+pub fn plan(data: &[u8]) {
+    let view = WORLD.with(World::view);
+    // SAFETY: a live handle, and a slice's own pointer and length.
+    judged("wk_view_load_plan", unsafe { wk_view_load_plan(view, data.as_ptr().cast(), data.len()) });
+}
+
+/// The tables in a cache's file, with the key and the sum that make them worth reading.
+pub fn cache(data: &[u8]) {
+    let _ = sky::takes_tables(data);
+}
+
+/// A file of noise: levels have the bytes that their sizes say.
+pub fn noise(data: &[u8]) {
+    match NoiseImage::from_bytes(data) {
+        Err(e) => fit(&e),
+        Ok(read) => {
+            for (level, bytes) in (0..).zip(read.levels()) {
+                let texels: u32 = read.size_of_level(level).iter().product();
+                assert_eq!(bytes.len(), texels as usize, "level {level}");
+            }
+        }
+    }
+}
+
+/// Calls of the whole header with arguments out of the data.
+pub fn calls(data: &[u8]) {
+    let mut dice = Dice::of_bytes(data);
+    // A device of its own would make its noise and its shaders anew for each input: most of the time.
+    let mut world = WORLD.with(World::beside);
+    for _ in 0..MOST_CALLS {
+        if dice.is_spent() {
+            break;
+        }
+        let (function, call) = dice.pick(CALLS);
+        let answer = call(&mut dice, &mut world);
+        assert!(answer.faults.is_empty(), "{function}: {:?}", answer.faults);
+        judged(function, answer.status);
+    }
+}

@@ -1,0 +1,22 @@
+//! What the library's tests, its benchmarks and the lab share: small hosts, textures and pipelines of their own, scenes
+//! through the C functions, and references that take nothing from the library.
+
+pub mod brute_rain;
+pub mod c_scene;
+pub mod coarse_sky;
+pub mod cube_lookup;
+pub mod depth_texture;
+#[cfg(target_os = "linux")]
+pub mod egl;
+pub mod frame_host;
+pub mod fullscreen;
+pub mod fuzz;
+pub mod level_ground;
+pub mod opaque;
+pub mod opaque_card;
+pub mod processor;
+pub mod rain_scene;
+pub mod refusals;
+pub mod seen_lux;
+pub mod textures;
+pub mod x_server;
