@@ -29,8 +29,8 @@ fn the_ways_through_the_code_lead_past_functions_that_stand_there() {
     }
 }
 
-/// Files that a text names with their folder, in the form `src/room/file.rs`: from the repository's root, or from its own
-/// package's.
+/// Files that a text names with their folder, in the form `src/room/file.rs`: from the repository's root, or from its
+/// own package's.
 fn files_named_in(text: &str) -> BTreeSet<String> {
     const FOLDERS: [&str; 9] =
         ["src/", "shaders/", "docs/", "tests/", "examples/", "benches/", "include/", "scripts/", "packaging/"];

@@ -156,7 +156,8 @@ fn kept_path(scene: &SkyScene, planet: &Planet, size: (u32, u32), quick: bool) -
     use std::hash::{Hash as _, Hasher as _};
     let mut h = std::hash::DefaultHasher::new();
     (planet.hash(), size, quick, format!("{scene:?}")).hash(&mut h);
-    PathBuf::from(format!("out/lab/truth-{}-{:016x}.bin", scene.name, h.finish()))
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../out/lab");
+    folder.join(format!("truth-{}-{:016x}.bin", scene.name, h.finish()))
 }
 
 fn kept(path: &PathBuf, count: usize) -> Option<Vec<f64>> {
