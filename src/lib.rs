@@ -63,9 +63,15 @@
 //! `docs/README.md`. C and C++ hosts use the same nouns and verbs through `include/welkin.h`, which [`capi`] implements
 //! as a thin shell.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
+// What the lab alone calls is public under its feature, with which tests and clippy look at it.
+#![cfg_attr(not(feature = "lab"), allow(dead_code, unused_imports, unreachable_pub))]
 
 pub mod almanac;
 pub mod bow;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod candidates;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod candidates;
 pub mod capi;
 pub mod chance;

@@ -28,6 +28,10 @@
 //! what falls on the cube (`cargo test --lib clouds::drawn::probe -- --nocapture`); along rays through the field,
 //! against photons, what `lab photons` prints, most under a low sun. Of the cover that is seen: 3 points ([`cover`]).
 
+#[cfg(not(feature = "lab"))]
+pub(crate) mod candidates;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod candidates;
 mod drawn;
 pub mod field;

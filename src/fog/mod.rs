@@ -43,6 +43,10 @@
 //! # What is not here
 //! No `passes.rs`: the composition draws the layer, which has no pass of its own.
 
+#[cfg(not(feature = "lab"))]
+pub(crate) mod candidates;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod candidates;
 mod held;
 pub mod laws;
@@ -70,7 +74,12 @@ pub use queries::{
     vertical_visibility_m, visibility_between_m,
 };
 pub use reference::{FallingModel, FogKind, FogModel, FogSample};
-pub use uniforms::{FogUniform, FogVariant, LowAirUniform};
+pub use uniforms::FogVariant;
+#[cfg(not(feature = "lab"))]
+pub(crate) use uniforms::{FogUniform, LowAirUniform};
+#[cfg(feature = "lab")]
+#[doc(hidden)]
+pub use uniforms::{FogUniform, LowAirUniform};
 
 pub(crate) use held::HeldFog;
 pub(crate) use of_weather::{LowAir, dim};

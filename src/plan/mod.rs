@@ -1,7 +1,7 @@
 //! Plan of a picture: what the parts of the weather are worth in it, and which of them it does with less of.
 //!
 //! Ways to draw an effect have their [`Work`], a deterministic model of cost, and their [`Difference`] from the truth
-//! ([`crate::candidates`]). A view with a [`Budget`] gauges its own picture (a coarse grid of its pixels, read back
+//! (`src/candidates.rs`). A view with a [`Budget`] gauges its own picture (a coarse grid of its pixels, read back
 //! without waiting), chooses at which rung each [`Part`] of the weather is drawn ([`parts`]), and fades between them so
 //! that nothing pops. [`Plan`] says what was chosen and why, and the error to expect; [`Prediction`] holds that against
 //! what was. A plan can be saved and pinned elsewhere ([`View::save_plan`](crate::frame::View::save_plan)).

@@ -13,6 +13,10 @@
 //! and time; those that are stepped ([`RainModel::Integrated`]) belong to a view and are not saved.
 
 mod area_pass;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod candidates;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod candidates;
 mod cone_pass;
 pub mod cones;

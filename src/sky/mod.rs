@@ -54,6 +54,10 @@
 //! save.
 
 mod cache;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod candidates;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod candidates;
 mod disc;
 mod followed;

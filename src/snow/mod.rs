@@ -20,6 +20,10 @@
 //!
 //! No `held.rs`: flakes follow from seed and time, and those that are stepped belong to a view and are not saved.
 
+#[cfg(not(feature = "lab"))]
+pub(crate) mod candidates;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod candidates;
 pub mod contrast;
 pub mod lattice;

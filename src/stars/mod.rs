@@ -3,7 +3,7 @@
 //! On a clear night an eye sees some thousand stars, the planets, the band of the Milky Way, and a sky that is not
 //! black even without moon and towns. This room says where each of them stands over a place at a time, how much light
 //! it sends and of which colour, what the air leaves of it, and which of them need no drawing. [`Heavens::at`] gives
-//! the places, [`StarPass`] draws the points, [`NightSky`] is the glow. The moon and the sun are the sky's.
+//! the places, `passes.rs` draws the points, [`NightSky`] is the glow. The moon and the sun are the sky's.
 //!
 //! ```text
 //! let heavens = Heavens::at(utc, &place, &settings)?;             // one matrix, aberration, planets
@@ -39,7 +39,7 @@
 //!
 //! # Cost
 //! 24 bytes a point on the CPU and the GPU: 218 448 for the catalogue and planets. A frame uploads those in the picture
-//! that are brighter than [`StarView::faintest_lux`], some hundreds, and draws each as 4 corners that light at most 16
+//! that are brighter than `StarView::faintest_lux`, some hundreds, and draws each as 4 corners that light at most 16
 //! pixels. The glow is a ball of 1421 corners, found anew after each six hours of simulated time, of which a frame
 //! draws the triangles in the picture, with an even sky's work a pixel. On the CPU a frame pays for [`Heavens::at`],
 //! some 900 sines and cosines, and for [`NightSky::new`], which looks in 32 directions. By day there is none of it.
@@ -60,6 +60,10 @@
 //! binoculars), clouds and dark clouds of the Milky Way, airglow's waves and its layer as seen from orbit.
 
 mod behind;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod candidates;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod candidates;
 pub mod catalogue;
 mod disc;
@@ -70,12 +74,20 @@ mod held;
 pub mod light;
 pub mod limits;
 mod orbits;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod passes;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod passes;
 pub mod places;
 pub mod planets;
 pub mod reference;
 pub mod settings;
 pub mod starlight;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod uniforms;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod uniforms;
 mod view;
 
@@ -83,9 +95,17 @@ pub(crate) use behind::NightBehind;
 pub use catalogue::{Star, catalogue};
 pub use glow::NightSky;
 pub(crate) use held::{HeldStars, night_lux};
+#[cfg(not(feature = "lab"))]
+pub(crate) use passes::{StarDepth, StarPass};
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub use passes::{StarDepth, StarPass};
 pub use places::Heavens;
 pub use planets::{Body, PlanetPlace};
 pub use settings::StarSettings;
+#[cfg(not(feature = "lab"))]
+pub(crate) use uniforms::StarView;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub use uniforms::StarView;
 pub(crate) use view::{LAND_ALBEDO, StarsView};

@@ -1,18 +1,5 @@
-//! Where there is cloud: the extinction of a layer at a place. Twin of `shaders/clouds/field.wgsl`.
-//!
-//! # Model
-//! A map over the plane says how strongly cloud grows at a place, as a number z that is spread normally about 0: two
-//! sheets of noise, each made normal by ranks, whose periods have no common multiple, so that no tile shows. Cloud is
-//! where z exceeds a threshold that follows from the cover ([`super::cover`]); how far it exceeds it says how high the
-//! cloud grows there. Solid noise frays its edges. The two sheets glide against each other, which makes clouds form and
-//! dissolve, without end and as a function of time alone.
-//!
-//! Of a place with the excess e = z - threshold and the height h, 0 at the base to 1 at the top, the extinction is that
-//! of the layer times (e - dome(h) + rough (noise - 1/2)) / soft, held between 0 and 1. Over heaps the dome grows with
-//! e, so that no top is cut flat.
-//!
-//! Ice is drawn out along the wind that carries it, and leans with height: heads stand downwind of what falls from
-//! them. Cumulonimbus has an anvil, a sheet below the layer's top about its towers (`anvil_needs`).
+//! Extinction of a layer at a place, where there is cloud. Twin of `shaders/clouds/field.wgsl`; the model is told in
+//! the folder's `mod.rs`.
 
 use glam::{DMat2, DVec2, DVec3};
 
