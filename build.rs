@@ -37,17 +37,16 @@ fn main() {
     write_capi(&root);
 }
 
-/// `OUT_DIR/welkin.h` (a test holds the committed one against it) and what `src/capi/layout.rs` includes.
+/// `OUT_DIR/welkin.h` (a test holds the committed one against it) and what `src/capi/boundary/layout.rs` includes.
 fn write_capi(root: &Path) {
     println!("cargo:rerun-if-changed=build");
     let out = PathBuf::from(std::env::var("OUT_DIR").expect("cargo sets OUT_DIR"));
-    let capi = root.join("src/capi");
-    let model = abi::read(&capi);
+    let model = abi::read(&root.join("src/capi"));
     let write = |name: &str, text: String| fs::write(out.join(name), text).expect("OUT_DIR is writable");
     write("abi_table.rs", abi::write_table(&model));
     for section in &model.sections {
         write(&format!("init_{}.rs", section.module), abi::write_inits(section));
     }
     let version = std::env::var("CARGO_PKG_VERSION").expect("cargo sets the version");
-    write("welkin.h", header::write(&model, &capi, &out, &root.join("cbindgen.toml"), &version));
+    write("welkin.h", header::write(&model, &out, &root.join("cbindgen.toml"), &version));
 }

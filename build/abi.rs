@@ -1,8 +1,13 @@
-//! Reads `src/capi/*.rs` into a model of the C interface: sections in header order, structs with typed fields,
-//! enumerations with their constants, functions. From it come the header (`header.rs`) and the table that the
+//! Reads the sections of `src/capi` into a model of the C interface: sections in header order, structs with typed
+//! fields, enumerations with their constants, functions. From it come the header (`header.rs`) and the table that the
 //! boundary uses at run time to check every struct and number by name.
 
-use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path};
+use std::{
+    collections::BTreeMap,
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+};
 
 /// One struct of the interface.
 pub struct Struct {
@@ -26,9 +31,11 @@ pub struct Enumeration {
     pub constants: Vec<String>,
 }
 
-/// One public file of `src/capi`: one section of the header.
+/// One public module of `src/capi`: one section of the header.
 pub struct Section {
     pub module: String,
+    /// Its files, in the order of their items in the header.
+    pub sources: Vec<PathBuf>,
     pub article: Vec<String>,
     pub structs: Vec<Struct>,
     pub enums: Vec<Enumeration>,
@@ -49,9 +56,7 @@ pub fn read(dir: &Path) -> Model {
         let syn::Item::Mod(m) = item else { continue };
         // `#[doc(hidden)]` modules are public for the tests only.
         if matches!(m.vis, syn::Visibility::Public(_)) && m.attrs.is_empty() {
-            let name = m.ident.to_string();
-            let file = parse(&dir.join(format!("{name}.rs")));
-            let section = section(name, &file, &mut model.aliases);
+            let section = section(m.ident.to_string(), dir, &mut model.aliases);
             model.sections.push(section);
         }
     }
@@ -81,10 +86,16 @@ fn doc_lines(attrs: &[syn::Attribute]) -> Vec<String> {
     lines
 }
 
-fn section(module: String, file: &syn::File, aliases: &mut BTreeMap<String, syn::Type>) -> Section {
+/// A section: the files whose items its own file takes over whole, and that file, which has the article.
+fn section(module: String, dir: &Path, aliases: &mut BTreeMap<String, syn::Type>) -> Section {
+    let own = dir.join(format!("{module}.rs"));
+    let file = parse(&own);
     let article = doc_lines(&file.attrs);
-    let mut section = Section { module, article, structs: vec![], enums: vec![], functions: vec![] };
-    for item in &file.items {
+    let mut sources: Vec<PathBuf> = file.items.iter().filter_map(|item| taken_over(item, dir)).collect();
+    let others: Vec<syn::File> = sources.iter().map(|path| parse(path)).collect();
+    sources.push(own);
+    let mut section = Section { module, sources, article, structs: vec![], enums: vec![], functions: vec![] };
+    for item in others.iter().chain([&file]).flat_map(|f| &f.items) {
         match item {
             syn::Item::Struct(s) => section.structs.extend(structure(s)),
             syn::Item::Type(t) => {
@@ -102,6 +113,21 @@ fn section(module: String, file: &syn::File, aliases: &mut BTreeMap<String, syn:
     }
     section.enums.retain(|e| !e.constants.is_empty());
     section
+}
+
+/// The file `dir/a/b.rs` of an item `pub use super::a::b::*`.
+fn taken_over(item: &syn::Item, dir: &Path) -> Option<PathBuf> {
+    let syn::Item::Use(syn::ItemUse { vis: syn::Visibility::Public(_), tree, .. }) = item else { return None };
+    let syn::UseTree::Path(first) = tree else { return None };
+    if first.ident != "super" {
+        return None;
+    }
+    let (mut path, mut rest) = (dir.to_owned(), &*first.tree);
+    while let syn::UseTree::Path(part) = rest {
+        path.push(part.ident.to_string());
+        rest = &part.tree;
+    }
+    matches!(rest, syn::UseTree::Glob(_)).then(|| path.with_extension("rs"))
 }
 
 /// A `#[repr(C)]` struct; handles are opaque and have no fields to list.

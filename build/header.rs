@@ -1,17 +1,17 @@
-//! Writes `welkin.h`: for each section its article, then what cbindgen makes of its Rust file, then the `WK_X_INIT`
-//! macros, all in reading order. cbindgen alone would sort constants, types and functions apart.
+//! Writes `welkin.h`: for each section its article, then what cbindgen makes of its Rust files, then the
+//! `WK_X_INIT` macros, all in reading order. cbindgen alone would sort constants, types and functions apart.
 
 use std::{fmt::Write as _, path::Path};
 
 use crate::abi::{Enumeration, Model, Section, Struct, type_name};
 
 /// The whole header.
-pub fn write(model: &Model, capi: &Path, out_dir: &Path, config: &Path, version: &str) -> String {
+pub fn write(model: &Model, out_dir: &Path, config: &Path, version: &str) -> String {
     println!("cargo:rerun-if-changed={}", config.display());
     let config = cbindgen::Config::from_file(config).expect("cbindgen.toml");
     let mut out = String::new();
     for (i, section) in model.sections.iter().enumerate() {
-        let body = bindings(section, capi, out_dir, &config);
+        let body = bindings(section, out_dir, &config);
         if i == 0 {
             let article: Vec<String> = section.article.iter().cloned().chain(contents(&model.sections[1..])).collect();
             out.push_str(&comment(&article));
@@ -25,14 +25,14 @@ pub fn write(model: &Model, capi: &Path, out_dir: &Path, config: &Path, version:
 }
 
 /// cbindgen's view of one section.
-fn bindings(section: &Section, capi: &Path, out_dir: &Path, config: &cbindgen::Config) -> String {
+fn bindings(section: &Section, out_dir: &Path, config: &cbindgen::Config) -> String {
     let inits = out_dir.join(format!("init_{}.rs", section.module));
     let mut config = config.clone();
     config.export.include.extend(section.structs.iter().map(|s| s.name.clone()));
     config.export.include.extend(section.enums.iter().map(|e| e.name.clone()));
-    let bindings = cbindgen::Builder::new()
+    let sources = section.sources.iter().fold(cbindgen::Builder::new(), |builder, path| builder.with_src(path));
+    let bindings = sources
         .with_config(config)
-        .with_src(capi.join(format!("{}.rs", section.module)))
         .with_src(inits)
         .generate()
         .unwrap_or_else(|e| panic!("cbindgen, section {}: {e}", section.module));

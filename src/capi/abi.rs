@@ -1,8 +1,8 @@
 //! Data that the tests of the binary interface compare with C's view and with the committed lists. Not part of the API.
 
-use super::{
-    boundary,
-    layout::{FUNCTIONS, FieldKind, STRUCTS},
+use super::boundary::{
+    call,
+    layout::{self, FUNCTIONS, FieldKind, STRUCTS},
 };
 
 /// The header as it should be committed.
@@ -18,9 +18,8 @@ pub type Span = (&'static str, usize, usize);
 
 /// Every struct of the header: name, size, alignment, and its fields' names, offsets and sizes.
 pub fn structs() -> Vec<(&'static str, usize, usize, Vec<Span>)> {
-    let fields = |s: &'static super::layout::StructInfo| {
-        s.fields.iter().map(|f| (f.name, f.offset, f.count * f.kind.size())).collect()
-    };
+    let fields =
+        |s: &'static layout::StructInfo| s.fields.iter().map(|f| (f.name, f.offset, f.count * f.kind.size())).collect();
     STRUCTS.iter().map(|s| (s.name, s.size, s.align, fields(s))).collect()
 }
 
@@ -33,7 +32,7 @@ pub fn has_init(name: &str) -> bool {
 pub fn init(name: &str, bytes: &mut [u64], struct_size: u32) -> i32 {
     assert!(struct_size as usize <= size_of_val(bytes), "the buffer holds the struct");
     // SAFETY: `bytes` is writable and holds `struct_size` bytes.
-    unsafe { super::layout::init_by_name(name, bytes.as_mut_ptr().cast(), struct_size) }
+    unsafe { layout::init_by_name(name, bytes.as_mut_ptr().cast(), struct_size) }
 }
 
 /// Every float of every struct: struct, field, its offset, whether it is 8 bytes wide, element count.
@@ -52,22 +51,22 @@ pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
 /// Status of the calling thread's last failed call, of which wk_last_error_message and wk_last_error_field tell; 0
 /// before the first.
 pub fn last_status() -> i32 {
-    boundary::last_status()
+    call::last_status()
 }
 
 /// The next call of this thread that reaches a device panics there.
 pub fn panic_in_next_call() {
-    boundary::inject(boundary::Injected::Panic);
+    call::inject(call::Injected::Panic);
 }
 
 /// The next call of this thread that reaches a device finds it lost, as after a driver's reset.
 pub fn lose_in_next_call() {
-    boundary::inject(boundary::Injected::Loss);
+    call::inject(call::Injected::Loss);
 }
 
 /// The next call of this thread that reaches a device logs a message there.
 pub fn log_in_next_call() {
-    boundary::inject(boundary::Injected::Message);
+    call::inject(call::Injected::Message);
 }
 
 /// Every enumeration and every reserved field of every struct: struct, field, offset, whether it is 8 bytes wide.

@@ -5,12 +5,12 @@
 
 use std::{ffi::c_void, ptr::null};
 
-use super::{
-    boundary::guard,
-    context::{ContextObject, wk_context},
+use super::boundary::{
+    guard,
     input::{self, Named},
     layout::{self, init_struct, struct_size},
-    status::*,
+    numbers::*,
+    objects::{ContextObject, wk_context},
 };
 use crate::{
     error::{Error, Status},

@@ -10,13 +10,15 @@ use std::{
 };
 
 use super::{
-    boundary::guard,
+    boundary::{
+        guard,
+        input::out,
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{ViewObject, wk_view},
+    },
     host,
-    input::out,
-    layout::{self, init_struct, struct_size},
-    status::*,
     veil::wk_shading_language,
-    view::{ViewObject, wk_view},
 };
 use crate::{
     clouds::{SHADOW_SNIPPET_GLSL, SHADOW_SNIPPET_WGSL},

@@ -12,14 +12,12 @@ use std::{ffi::c_void, ptr::null};
 
 use glam::DVec3;
 
-use super::{
-    boundary::guard,
-    conditions::position,
-    context::{ContextObject, wk_context},
-    input::{self, out},
+use super::boundary::{
+    guard,
+    input::{self, out, position},
     layout::{self, init_struct, struct_size},
-    status::*,
-    view::{ViewObject, wk_view},
+    numbers::*,
+    objects::{ContextObject, ViewObject, wk_context, wk_view},
 };
 use crate::{
     clouds::{CloudModel, CloudSettings},

@@ -12,15 +12,15 @@ use std::{ffi::c_void, ptr::null};
 
 use glam::DVec3;
 
-use super::{
-    boundary::guard,
-    context::{ContextObject, wk_context},
-    input::{self, out},
+use super::boundary::{
+    guard,
+    input::{self, out, position},
     layout::{self, init_struct, struct_size},
-    status::*,
+    numbers::*,
+    objects::{ContextObject, wk_context},
 };
 use crate::{
-    error::{Result, Status},
+    error::Status,
     weather::{CloudSlab, Conditions, MAX_CLOUD_LAYERS},
 };
 
@@ -292,16 +292,6 @@ impl wk_cloud_slab {
             ice_fraction: s.ice_fraction,
         }
     }
-}
-
-/// Three numbers for a place of the host's world; whether it is one, the query finds.
-///
-/// # Safety
-/// `p` is NULL or points to three numbers.
-pub(super) unsafe fn position(param: &str, p: *const [f64; 3]) -> Result<[f64; 3]> {
-    layout::check_pointer(&param, p)?;
-    // SAFETY: checked, and the caller's promise.
-    Ok(unsafe { p.read() })
 }
 
 /// Gets the conditions at a position and a past or future simulation time. What falls is what falls at the position

@@ -15,19 +15,20 @@ use std::{
     ffi::{c_char, c_void},
     path::PathBuf,
     ptr::null,
-    sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard},
+    sync::Arc,
 };
 
+pub use super::boundary::objects::context::*;
 use super::{
-    boundary::guard,
-    device::{DeviceObject, wk_device},
-    device_cell::DeviceCell,
+    boundary::{
+        guard, handles,
+        input::{self, out},
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{DeviceObject, wk_device},
+    },
     ground::wk_simulation_desc,
-    handles::{self, HandleObject},
-    input::{self, out},
-    layout::{self, init_struct, struct_size},
     sky::wk_sky_settings,
-    status::*,
 };
 use crate::{
     context::{Context, ContextDesc},
@@ -41,11 +42,6 @@ use crate::{
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_context.rs"));
-
-/// Weather, time and place. Child of a wk_device, parent of views.
-pub struct wk_context {
-    _opaque: [u8; 0],
-}
 
 /// How the host's world is placed on the planet.
 pub type wk_world_kind = u32;
@@ -155,32 +151,6 @@ impl wk_context_desc {
     };
 }
 
-/// A context behind the lock that orders its updates and everything that reads it.
-pub(super) struct ContextObject {
-    pub(super) cell: Arc<DeviceCell>,
-    context: RwLock<Context>,
-}
-
-impl ContextObject {
-    pub(super) fn read(&self) -> RwLockReadGuard<'_, Context> {
-        // A panic while it was held has poisoned the device already.
-        self.context.read().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    pub(super) fn write(&self) -> RwLockWriteGuard<'_, Context> {
-        self.context.write().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl HandleObject for ContextObject {
-    type C = wk_context;
-    const KIND: u8 = 2;
-    const NAME: &'static str = "wk_context";
-    fn device(&self) -> Option<&Arc<DeviceCell>> {
-        Some(&self.cell)
-    }
-}
-
 /// An exposure as a context or a frame states it; `None` for WK_EXPOSURE_OF_CONTEXT.
 pub(super) fn exposure(mode: wk_exposure_mode, value: f64) -> Option<Exposure> {
     match mode {
@@ -273,7 +243,7 @@ pub unsafe extern "C" fn wk_context_create(
         // SAFETY: as above.
         let description = unsafe { description(&desc)? };
         let context = Context::new(object.cell.gpu().clone(), object.cell.shared()?, description)?;
-        let context = ContextObject { cell: object.cell.clone(), context: RwLock::new(context) };
+        let context = ContextObject::new(object.cell.clone(), context);
         let handle = handles::insert::<_, DeviceObject>(Arc::new(context), Some(device))?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(handle) };

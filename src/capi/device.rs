@@ -16,14 +16,12 @@ use std::{
     sync::Arc,
 };
 
-use super::{
-    boundary::guard,
-    device_cell::DeviceCell,
-    handles::{self, HandleObject},
-    host::Host,
-    input::out,
+pub use super::boundary::objects::device::*;
+use super::boundary::{
+    DeviceCell, Host, guard, handles,
+    input::{MAX_BATCH, out},
     layout::{self, init_struct, struct_size},
-    status::*,
+    numbers::*,
 };
 use crate::{
     error::{Result, Status},
@@ -31,11 +29,6 @@ use crate::{
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_device.rs"));
-
-/// A native queue or OpenGL context. Parent of contexts, surfaces and textures.
-pub struct wk_device {
-    _opaque: [u8; 0],
-}
 
 /// Native graphics interfaces.
 pub type wk_backend_flags = u32;
@@ -130,22 +123,6 @@ impl wk_caps {
     };
 }
 
-/// A device with the texts that `wk_caps` points to.
-pub(super) struct DeviceObject {
-    pub(super) cell: Arc<DeviceCell>,
-    adapter_name: CString,
-    driver: CString,
-}
-
-impl HandleObject for DeviceObject {
-    type C = wk_device;
-    const KIND: u8 = 1;
-    const NAME: &'static str = "wk_device";
-    fn device(&self) -> Option<&Arc<DeviceCell>> {
-        Some(&self.cell)
-    }
-}
-
 /// Enters a new device into the handle table.
 pub(super) fn issue(gpu: Arc<Device>, host: Host) -> Result<*mut wk_device> {
     let text = |s: &str| CString::new(s.replace('\0', " ")).unwrap_or_default();
@@ -232,7 +209,7 @@ pub unsafe extern "C" fn wk_device_get_caps(device: *const wk_device, out_caps: 
             software: u32::from(caps.software),
             max_texture_size: caps.max_texture_size,
             max_cloud_layers: 16,
-            max_batch: super::MAX_BATCH as u32,
+            max_batch: MAX_BATCH as u32,
             adapter_name: object.adapter_name.as_ptr(),
             driver: object.driver.as_ptr(),
             ..wk_caps::INIT

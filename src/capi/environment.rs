@@ -13,11 +13,13 @@
 use std::{ffi::c_void, ptr::null};
 
 use super::{
-    boundary::guard,
+    boundary::{
+        guard,
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{ViewObject, wk_view},
+    },
     host,
-    layout::{self, init_struct, struct_size},
-    status::*,
-    view::{ViewObject, wk_view},
 };
 use crate::error::Status;
 

@@ -17,12 +17,13 @@ use std::{ffi::c_void, ptr::null};
 use glam::{DMat4, DVec3};
 
 use super::{
-    boundary::guard,
-    context::{self, ContextObject, WK_EXPOSURE_OF_CONTEXT, wk_context, wk_exposure_mode},
-    layout::{self, init_struct, struct_size},
-    status::*,
-    surface::wk_surface,
-    texture::wk_texture,
+    boundary::{
+        guard,
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{ContextObject, wk_context, wk_surface, wk_texture},
+    },
+    context::{self, WK_EXPOSURE_OF_CONTEXT, wk_exposure_mode},
 };
 use crate::{
     error::{Error, Result, Status},

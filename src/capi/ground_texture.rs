@@ -14,13 +14,14 @@ use std::{
 use glam::DVec3;
 
 use super::{
-    boundary::guard,
-    conditions::position,
-    context::{ContextObject, wk_context},
+    boundary::{
+        guard,
+        input::{out, position},
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{ContextObject, wk_context},
+    },
     host,
-    input::out,
-    layout::{self, init_struct, struct_size},
-    status::*,
     veil::wk_shading_language,
 };
 use crate::{

@@ -7,12 +7,12 @@ use std::{ffi::c_void, ptr::null};
 
 use glam::DVec3;
 
-use super::{
-    boundary::guard,
-    context::{ContextObject, wk_context},
+use super::boundary::{
+    guard,
     input::{self, List},
     layout::{init_struct, struct_size},
-    status::*,
+    numbers::*,
+    objects::{ContextObject, wk_context},
 };
 use crate::{
     error::{Error, Status},

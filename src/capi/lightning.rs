@@ -21,13 +21,12 @@ use std::{ffi::c_void, ptr::null};
 
 use glam::DVec3;
 
-use super::{
-    boundary::guard,
-    conditions::position,
-    context::{ContextObject, wk_context},
-    input::{self, Named, out},
+use super::boundary::{
+    guard,
+    input::{self, Named, out, position},
     layout::{self, init_struct, struct_size},
-    status::*,
+    numbers::*,
+    objects::{ContextObject, wk_context},
 };
 use crate::{
     error::{Error, Result, Status, check_range},

@@ -24,12 +24,12 @@ use std::{
     sync::LazyLock,
 };
 
-use super::{
-    boundary::guard,
+use super::boundary::{
+    guard,
     input::{self, List, Named},
     layout::{self, init_struct, struct_size},
-    status::*,
-    view::{ViewObject, wk_view},
+    numbers::*,
+    objects::{ViewObject, wk_view},
 };
 use crate::{
     error::{Error, Result, Status},

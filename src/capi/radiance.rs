@@ -13,13 +13,13 @@
 use glam::DVec3;
 
 use super::{
-    MAX_BATCH,
-    boundary::guard,
-    conditions::position,
-    context::{ContextObject, wk_context},
-    input,
+    boundary::{
+        guard,
+        input::{self, MAX_BATCH, position},
+        numbers::*,
+        objects::{ContextObject, wk_context},
+    },
     query::time_or_now,
-    status::*,
 };
 use crate::error::{Error, Status};
 

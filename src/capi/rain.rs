@@ -14,13 +14,12 @@ use std::{ffi::c_void, ptr::null};
 
 use glam::{DMat3, DVec3};
 
-use super::{
-    boundary::guard,
-    context::{ContextObject, wk_context},
+use super::boundary::{
+    guard,
     input::{self, List},
     layout::{self, init_struct, struct_size},
-    status::*,
-    view::{ViewObject, wk_view},
+    numbers::*,
+    objects::{ContextObject, ViewObject, wk_context, wk_view},
 };
 use crate::{
     error::{Error, Result, Status},

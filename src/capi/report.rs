@@ -15,10 +15,11 @@ use std::{
 };
 
 use super::{
-    boundary::guard,
-    input,
-    layout::{self, init_struct, struct_size},
-    status::*,
+    boundary::{
+        guard, input,
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+    },
     weather::{wk_cloud_layer, wk_weather},
     weather_convert::{WeatherOut, weather_out},
 };

@@ -6,11 +6,11 @@
 
 use std::{ffi::c_void, ptr::null};
 
-use super::{
-    boundary::guard,
-    context::{ContextObject, wk_context},
+use super::boundary::{
+    guard,
     layout::{self, init_struct, struct_size},
-    status::*,
+    numbers::*,
+    objects::{ContextObject, wk_context},
 };
 use crate::{
     error::Status,

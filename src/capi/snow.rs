@@ -7,11 +7,11 @@
 
 use std::{ffi::c_void, ptr::null};
 
-use super::{
-    boundary::guard,
+use super::boundary::{
+    guard,
     layout::{self, init_struct, struct_size},
-    status::*,
-    view::{ViewObject, wk_view},
+    numbers::*,
+    objects::{ViewObject, wk_view},
 };
 use crate::{
     error::Status,

@@ -10,14 +10,12 @@ use std::{ffi::c_void, ptr::null};
 
 use glam::DVec3;
 
-use super::{
-    MAX_BATCH,
-    boundary::guard,
-    conditions::position,
-    context::{ContextObject, wk_context},
-    input::{self, Named},
+use super::boundary::{
+    guard,
+    input::{self, MAX_BATCH, Named, position},
     layout::{self, init_struct, struct_size},
-    status::*,
+    numbers::*,
+    objects::{ContextObject, wk_context},
 };
 use crate::{
     error::{Result, Status},

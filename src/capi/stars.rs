@@ -8,13 +8,12 @@ use std::{ffi::c_void, ptr::null};
 
 use glam::{DMat3, DVec3};
 
-use super::{
-    boundary::guard,
-    conditions::position,
-    context::{ContextObject, wk_context},
-    input::{self, Named},
+use super::boundary::{
+    guard,
+    input::{self, Named, position},
     layout::{self, init_struct, struct_size},
-    status::*,
+    numbers::*,
+    objects::{ContextObject, wk_context},
 };
 use crate::{
     error::{Error, Result, Status, check_range},

@@ -12,18 +12,19 @@
 use std::{
     ffi::c_void,
     ptr::{null, null_mut},
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::Arc,
 };
 
+pub use super::boundary::objects::surface::*;
 use super::{
-    boundary::guard,
-    device::{self, DeviceObject, wk_device, wk_device_desc},
-    device_cell::DeviceCell,
-    handles::{self, HandleObject},
-    host::Host,
-    input::out,
-    layout::{self, init_struct, struct_size},
-    status::*,
+    boundary::{
+        Host, guard, handles,
+        input::out,
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{DeviceObject, wk_device},
+    },
+    device::{self, wk_device_desc},
 };
 use crate::{
     error::{Error, Result, Status},
@@ -31,11 +32,6 @@ use crate::{
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_surface.rs"));
-
-/// A window to present to. Child of a wk_device.
-pub struct wk_surface {
-    _opaque: [u8; 0],
-}
 
 /// Window systems.
 pub type wk_window_kind = u32;
@@ -132,28 +128,6 @@ impl wk_surface_config {
     };
 }
 
-/// A surface and the device that presents to it.
-pub(super) struct SurfaceObject {
-    pub(super) cell: Arc<DeviceCell>,
-    surface: Mutex<Surface>,
-}
-
-impl SurfaceObject {
-    pub(super) fn lock(&self) -> MutexGuard<'_, Surface> {
-        // A panic while it was held has poisoned the device already.
-        self.surface.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl HandleObject for SurfaceObject {
-    type C = wk_surface;
-    const KIND: u8 = 4;
-    const NAME: &'static str = "wk_surface";
-    fn device(&self) -> Option<&Arc<DeviceCell>> {
-        Some(&self.cell)
-    }
-}
-
 /// # Safety
 /// `p` is NULL or a `wk_window`.
 unsafe fn native(p: *const wk_window) -> Result<NativeWindow> {
@@ -228,7 +202,7 @@ pub unsafe extern "C" fn wk_surface_create(
         object.cell.drain();
         // SAFETY: the window outlives the surface by the header's words.
         let surface = unsafe { Surface::new(object.cell.gpu(), &window) }.map_err(in_window)?;
-        let surface = SurfaceObject { cell: object.cell.clone(), surface: Mutex::new(surface) };
+        let surface = SurfaceObject::new(object.cell.clone(), surface);
         let handle = handles::insert::<_, DeviceObject>(Arc::new(surface), Some(device))?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(handle) };

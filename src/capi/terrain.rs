@@ -15,15 +15,15 @@ use std::{ffi::c_void, ptr::null};
 use glam::DVec3;
 
 use super::{
-    MAX_BATCH,
-    boundary::guard,
-    conditions::position,
-    context::{ContextObject, wk_context},
+    boundary::{
+        guard,
+        input::{self, MAX_BATCH, Named, position},
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{ContextObject, wk_context},
+    },
     ground::wk_surface_class,
     ground_grid::wk_ground_cell,
-    input::{self, Named},
-    layout::{self, init_struct, struct_size},
-    status::*,
 };
 use crate::{
     error::{Error, Result, Status},

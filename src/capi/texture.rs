@@ -9,14 +9,13 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use super::{
-    boundary::guard,
-    device::{DeviceObject, wk_device},
-    device_cell::DeviceCell,
-    handles::{self, HandleObject},
+pub use super::boundary::objects::texture::*;
+use super::boundary::{
+    DeviceCell, guard, handles,
     input::{self, Named, out},
     layout::{self, init_struct, struct_size},
-    status::*,
+    numbers::*,
+    objects::{DeviceObject, wk_device},
 };
 use crate::{
     error::{Error, Result, Status, check_range},
@@ -24,11 +23,6 @@ use crate::{
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_texture.rs"));
-
-/// A 2-D texture of an own device. Child of a wk_device.
-pub struct wk_texture {
-    _opaque: [u8; 0],
-}
 
 /// Texel formats, little-endian, channels in the order of the name.
 pub type wk_format = u32;
@@ -79,24 +73,6 @@ impl wk_texture_desc {
         format: WK_FORMAT_RGBA8_UNORM,
         reserved0: 0,
     };
-}
-
-/// A texture and the device it lives on.
-pub(super) struct TextureObject {
-    cell: Arc<DeviceCell>,
-    pub(super) texture: wgpu::Texture,
-    pub(super) format: wk_format,
-    /// Reads and writes wait for the GPU; one at a time.
-    transfer: Mutex<()>,
-}
-
-impl HandleObject for TextureObject {
-    type C = wk_texture;
-    const KIND: u8 = 5;
-    const NAME: &'static str = "wk_texture";
-    fn device(&self) -> Option<&Arc<DeviceCell>> {
-        Some(&self.cell)
-    }
 }
 
 /// The header's name of a checked constant.

@@ -11,11 +11,14 @@
 use std::{ffi::c_void, ptr::null};
 
 use super::{
-    boundary::guard,
-    context::{self, ContextObject, wk_context, wk_exposure_mode},
-    input::{self, Named, out},
-    layout::{self, init_struct, struct_size},
-    status::*,
+    boundary::{
+        guard,
+        input::{self, Named, out},
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{ContextObject, wk_context},
+    },
+    context::{self, wk_exposure_mode},
     weather::wk_weather,
     weather_convert::{from_c, overrides},
 };

@@ -11,12 +11,14 @@ use std::{
 };
 
 use super::{
-    boundary::guard,
+    boundary::{
+        guard,
+        input::out,
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{ViewObject, wk_view},
+    },
     host,
-    input::out,
-    layout::{self, init_struct, struct_size},
-    status::*,
-    view::{ViewObject, wk_view},
 };
 use crate::{
     error::Status,

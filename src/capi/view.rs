@@ -18,23 +18,21 @@
 use std::{
     ffi::{c_char, c_void},
     ptr::null,
-    sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::Arc,
     time::Instant,
 };
 
+pub use super::boundary::objects::view::*;
 use super::{
-    boundary::guard,
-    context::{ContextObject, wk_context},
-    device_cell::DeviceCell,
+    boundary::{
+        guard, handles,
+        input::{Room, out},
+        layout::{self, init_struct, struct_size},
+        numbers::*,
+        objects::{ContextObject, wk_context},
+    },
     frame::{WK_FRAME_MEASURE, wk_frame},
-    handles::{self, HandleObject},
     host,
-    input::{Room, out},
-    layout::{self, init_struct, struct_size},
-    status::*,
 };
 use crate::{
     error::Status,
@@ -42,11 +40,6 @@ use crate::{
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_view.rs"));
-
-/// One camera or projector channel. Child of a wk_context.
-pub struct wk_view {
-    _opaque: [u8; 0],
-}
 
 /// Stages that a call records.
 pub type wk_stage_flags = u32;
@@ -224,65 +217,6 @@ pub struct wk_effect_cost {
     pub ms: f64,
 }
 
-/// A view, its context and the lock that makes its calls exclusive.
-pub(super) struct ViewObject {
-    pub(super) cell: Arc<DeviceCell>,
-    pub(super) context: Arc<ContextObject>,
-    view: Mutex<View>,
-    /// Whether the host samples the veil, which then is handed over after each frame.
-    veil: AtomicBool,
-    /// Whether it samples the cube map of what stands around.
-    environment: AtomicBool,
-    /// Whether it samples the map of the clouds' shadows.
-    cloud_shadows: AtomicBool,
-}
-
-impl ViewObject {
-    /// From now on the veil is handed over.
-    pub(super) fn uses_veil(&self) {
-        self.veil.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether the host samples the veil.
-    pub(super) fn has_veil(&self) -> bool {
-        self.veil.load(Ordering::Relaxed)
-    }
-
-    /// From now on the cube map is handed over.
-    pub(super) fn uses_environment(&self) {
-        self.environment.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether the host samples the cube map.
-    pub(super) fn has_environment(&self) -> bool {
-        self.environment.load(Ordering::Relaxed)
-    }
-
-    /// From now on the map of the clouds' shadows is handed over.
-    pub(super) fn uses_cloud_shadows(&self) {
-        self.cloud_shadows.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether the host samples the map of the clouds' shadows.
-    pub(super) fn has_cloud_shadows(&self) -> bool {
-        self.cloud_shadows.load(Ordering::Relaxed)
-    }
-
-    pub(super) fn lock(&self) -> MutexGuard<'_, View> {
-        // A panic while it was held has poisoned the device already.
-        self.view.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl HandleObject for ViewObject {
-    type C = wk_view;
-    const KIND: u8 = 3;
-    const NAME: &'static str = "wk_view";
-    fn device(&self) -> Option<&Arc<DeviceCell>> {
-        Some(&self.cell)
-    }
-}
-
 /// Makes a view of a context. `desc` NULL means WK_VIEW_DESC_INIT. On success `*out_view` is a new handle for
 /// `wk_view_destroy`.
 /// Thread: exclusive on the context.
@@ -300,15 +234,8 @@ pub unsafe extern "C" fn wk_view_create(
         // SAFETY: as above.
         unsafe { layout::check_chain(&"desc", desc.next, &[])? };
         object.cell.drain();
-        let view = Mutex::new(View::new(&object.read())?);
-        let view = ViewObject {
-            cell: object.cell.clone(),
-            context: object,
-            view,
-            veil: AtomicBool::new(false),
-            environment: AtomicBool::new(false),
-            cloud_shadows: AtomicBool::new(false),
-        };
+        let view = View::new(&object.read())?;
+        let view = ViewObject::new(object, view);
         let handle = handles::insert::<_, ContextObject>(Arc::new(view), Some(context))?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(handle) };

@@ -8,8 +8,10 @@
 use std::{ffi::c_void, ptr::null};
 
 use super::{
-    layout::{init_struct, struct_size},
-    status::*,
+    boundary::{
+        layout::{init_struct, struct_size},
+        numbers::*,
+    },
     weather_kinds::*,
 };
 

@@ -3,9 +3,11 @@
 use std::ptr::null;
 
 use super::{
-    input::{self, List, Named},
-    layout,
-    status::WK_STRUCT_TYPE_WEATHER_OVERRIDES,
+    boundary::{
+        input::{self, List, Named},
+        layout,
+        numbers::WK_STRUCT_TYPE_WEATHER_OVERRIDES,
+    },
     weather::*,
 };
 use crate::{

@@ -135,7 +135,7 @@ pub const WK_SURFACE_SNOW: wk_surface_state = 6;
 #[cfg(test)]
 mod tests {
     use crate::{
-        capi::layout::{self, EnumInfo},
+        capi::boundary::layout::{self, EnumInfo},
         weather::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState},
     };
 

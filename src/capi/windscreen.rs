@@ -17,12 +17,12 @@ use std::{ffi::c_void, ptr::null};
 
 use glam::DVec3;
 
-use super::{
-    boundary::guard,
+use super::boundary::{
+    guard,
     input::{self, List, Named},
     layout::{self, init_struct, struct_size},
-    status::*,
-    view::{ViewObject, wk_view},
+    numbers::*,
+    objects::{ViewObject, wk_view},
 };
 use crate::{
     error::{Result, Status},

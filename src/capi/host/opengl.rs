@@ -2,15 +2,17 @@
 
 use wgpu::hal::{api::Gles, gles::TextureInner};
 
-use super::{Host, in_map, target};
+use super::target::{in_map, target};
 use crate::{
     capi::{
-        context::ContextObject,
-        device::{self, WK_DEVICE_FORCE_TIER0, wk_device},
+        boundary::{
+            Host,
+            objects::{ContextObject, ViewObject, wk_device},
+        },
+        device::{self, WK_DEVICE_FORCE_TIER0},
         frame::{self, Images, WK_DEPTH_ACCESS_READ_WRITE, in_frame, wk_frame},
-        occluder::wk_occluder_map,
-        opengl::*,
-        view::ViewObject,
+        occluder_map::wk_occluder_map,
+        opengl_structs::*,
     },
     error::{Error, Result, Status},
     frame::Stages,

@@ -1,7 +1,7 @@
 //! OpenGL hosts on Apple's systems, where the graphics interface is Metal: refused by name.
 
 use crate::{
-    capi::{device::wk_device, opengl::wk_opengl_host_desc},
+    capi::{boundary::objects::wk_device, opengl_structs::wk_opengl_host_desc},
     error::{Error, Result},
 };
 

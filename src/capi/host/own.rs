@@ -2,18 +2,17 @@
 
 use std::sync::Arc;
 
-use super::{in_map, target};
+use super::target::{in_map, target};
 use crate::{
     capi::{
-        boundary::Call,
-        context::ContextObject,
-        device_cell::DeviceCell,
+        boundary::{
+            Call, DeviceCell,
+            handles::HandleObject,
+            objects::{ContextObject, SurfaceObject, TextureObject, ViewObject},
+        },
         frame::{self, Images, in_frame, wk_frame, wk_own_target},
-        handles::HandleObject,
-        occluder::wk_occluder_map,
-        surface::SurfaceObject,
+        occluder_map::wk_occluder_map,
         texture::*,
-        view::ViewObject,
     },
     error::{Error, Result, Status},
     frame::Stages,

@@ -4,18 +4,19 @@ use std::ffi::{CStr, c_char, c_void};
 
 use ash::vk::{self, Handle};
 
-use super::{Host, in_map, target};
+use super::target::{in_map, target};
 use crate::{
     capi::{
-        context::ContextObject,
-        device::{self, wk_device},
-        device_cell::DeviceCell,
+        boundary::{
+            DeviceCell, Host,
+            input::{self, List, Named},
+            layout,
+            objects::{ContextObject, ViewObject, wk_device},
+        },
+        device,
         frame::{self, Images, WK_DEPTH_ACCESS_READ_WRITE, in_frame, wk_frame},
-        input::{self, List, Named},
-        layout,
-        occluder::wk_occluder_map,
-        view::ViewObject,
-        vulkan::*,
+        occluder_map::wk_occluder_map,
+        vulkan_structs::*,
     },
     error::{Error, Result, Status},
     frame::{ImageLayers, Stages, View},

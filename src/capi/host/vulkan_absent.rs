@@ -1,7 +1,10 @@
 //! Vulkan hosts on Apple's systems, where the graphics interface is Metal: refused by name.
 
 use crate::{
-    capi::{device::wk_device, device_cell::DeviceCell, vulkan::wk_vulkan_host_desc},
+    capi::{
+        boundary::{DeviceCell, objects::wk_device},
+        vulkan_structs::wk_vulkan_host_desc,
+    },
     error::{Error, Result, Status},
 };
 

@@ -6,7 +6,7 @@
 
 use std::{ffi::c_void, fmt::Display};
 
-use super::status::*;
+use super::{call::guard, numbers::*};
 use crate::error::{Error, Result, Status, listed};
 
 /// Type of a field.
@@ -152,7 +152,9 @@ unsafe fn check_element(name: &FieldPath<'_>, at: *const u8, field: &LayoutField
         // SAFETY: the caller's promise.
         FieldKind::F64 => unsafe { at.cast::<f64>().read_unaligned() },
         // SAFETY: the caller's promise; the width is the type's.
-        FieldKind::Enum(info) if info.wide => return info.check(name, unsafe { at.cast::<u64>().read_unaligned() }),
+        FieldKind::Enum(info) if info.wide => {
+            return info.check(name, unsafe { at.cast::<u64>().read_unaligned() });
+        }
         // SAFETY: as above.
         FieldKind::Enum(info) => return info.check(name, unsafe { at.cast::<u32>().read_unaligned() }.into()),
         // SAFETY: the caller's promise.
@@ -201,7 +203,7 @@ pub(crate) fn check_pointer<T>(param: &dyn Display, p: *const T) -> Result<()> {
 ///
 /// # Errors
 /// If it is misaligned. To be asked of every place before any is written.
-pub(super) fn optional_out<T>(param: &dyn Display, p: *mut T) -> Result<Option<*mut T>> {
+pub(in crate::capi) fn optional_out<T>(param: &dyn Display, p: *mut T) -> Result<Option<*mut T>> {
     if p.is_null() {
         return Ok(None);
     }
@@ -405,7 +407,7 @@ pub(crate) unsafe fn write_version<T: Layout>(value: &T, at: *mut u8, bytes: usi
 /// # Safety
 /// `out` is NULL or points to `struct_size` writable bytes.
 pub(crate) unsafe fn init_struct<T: Layout>(function: &'static str, out: *mut T, size: u32) -> wk_status {
-    super::boundary::guard(function, |_| {
+    guard(function, |_| {
         check_pointer(&"out", out)?;
         check_version_size::<T>("struct_size", size as usize)?;
         // SAFETY: the size was checked, and the bytes are the caller's promise.

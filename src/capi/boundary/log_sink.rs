@@ -7,7 +7,7 @@ use std::{
     sync::{OnceLock, PoisonError, RwLock},
 };
 
-use super::status::{
+use super::numbers::{
     WK_LOG_LEVEL_DEBUG, WK_LOG_LEVEL_ERROR, WK_LOG_LEVEL_INFO, WK_LOG_LEVEL_WARNING, wk_log_fn, wk_log_level,
 };
 use crate::error::{Error, Result, Status};
@@ -55,7 +55,7 @@ impl log::Log for LogSink {
 }
 
 /// Installs, replaces or (with `None`) removes the receiver. When this returns, the old one is no longer called.
-pub(super) fn set(callback: wk_log_fn, user: *mut c_void, max_level: wk_log_level) -> Result<()> {
+pub(in crate::capi) fn set(callback: wk_log_fn, user: *mut c_void, max_level: wk_log_level) -> Result<()> {
     static INSTALLED: OnceLock<bool> = OnceLock::new();
     let receiver = callback.map(|callback| Receiver { callback, user });
     if receiver.is_some() && !*INSTALLED.get_or_init(|| log::set_logger(&LogSink).is_ok()) {

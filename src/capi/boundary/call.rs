@@ -9,7 +9,7 @@ use std::{
     sync::{Arc, Once},
 };
 
-use super::{device_cell::DeviceCell, handles, status::wk_status};
+use super::{device_cell::DeviceCell, handles, numbers::wk_status};
 use crate::error::{Error, Result, Status};
 
 thread_local! {
@@ -22,7 +22,7 @@ thread_local! {
 }
 
 /// One call from C: the way to objects, and the device to blame when it panics.
-pub(super) struct Call {
+pub(in crate::capi) struct Call {
     device: Option<Arc<DeviceCell>>,
 }
 
@@ -31,7 +31,11 @@ impl Call {
     ///
     /// # Errors
     /// [`Status::BadHandle`] by the parameter's name, [`Status::Poisoned`].
-    pub(super) fn get<T: handles::HandleObject>(&mut self, param: &str, handle: *const T::C) -> Result<Arc<T>> {
+    pub(in crate::capi) fn get<T: handles::HandleObject>(
+        &mut self,
+        param: &str,
+        handle: *const T::C,
+    ) -> Result<Arc<T>> {
         let object = handles::get::<T>(param, handle)?;
         if let Some(device) = object.device() {
             device.check_alive()?;
@@ -41,7 +45,7 @@ impl Call {
     }
 
     /// Names the device that a panic in this call makes unusable.
-    pub(super) fn blame(&mut self, device: &Arc<DeviceCell>) {
+    pub(in crate::capi) fn blame(&mut self, device: &Arc<DeviceCell>) {
         self.device = Some(device.clone());
         match INJECTED.replace(Injected::Nothing) {
             Injected::Nothing => {}
@@ -53,7 +57,7 @@ impl Call {
 }
 
 /// Runs the body of a C function: its error or panic becomes a status and the thread's message.
-pub(super) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Result<Status>) -> wk_status {
+pub(in crate::capi) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Result<Status>) -> wk_status {
     hush_panics();
     if DEPTH.get() > 0 {
         let text = "called inside a callback of Welkin's: no Welkin function may be";
@@ -86,23 +90,23 @@ struct Last {
 }
 
 /// Status of the calling thread's last failed call; 0 before the first.
-pub(super) fn last_status() -> wk_status {
+pub(in crate::capi) fn last_status() -> wk_status {
     LAST.with_borrow(|last| last.status)
 }
 
 /// The calling thread's last message; valid until its next failing call.
-pub(super) fn last_error() -> *const c_char {
+pub(in crate::capi) fn last_error() -> *const c_char {
     LAST.with_borrow(|last| last.message.as_ptr())
 }
 
 /// The field that it is about, by the header's names; empty where it is about none.
-pub(super) fn last_error_field() -> *const c_char {
+pub(in crate::capi) fn last_error_field() -> *const c_char {
     LAST.with_borrow(|last| last.field.as_ptr())
 }
 
 /// Faults that the tests inject into a call.
 #[derive(Clone, Copy)]
-pub(super) enum Injected {
+pub(in crate::capi) enum Injected {
     Nothing,
     Panic,
     Message,
@@ -110,7 +114,7 @@ pub(super) enum Injected {
 }
 
 /// It happens in the next call of this thread that reaches a device.
-pub(super) fn inject(what: Injected) {
+pub(in crate::capi) fn inject(what: Injected) {
     INJECTED.set(what);
 }
 

@@ -4,13 +4,16 @@ use std::ffi::{CStr, c_char, c_void};
 
 use super::{
     layout::{self, EnumInfo, Layout},
-    status::wk_struct_type,
+    numbers::wk_struct_type,
 };
 use crate::error::{Error, Result};
 
+/// Most places or rays in one batch query: bounds the time of one call.
+pub(in crate::capi) const MAX_BATCH: usize = 65_536;
+
 /// # Errors
 /// Names the parameter and every accepted constant.
-pub(super) fn check_enum(param: &str, info: &EnumInfo, value: u32) -> Result<()> {
+pub(in crate::capi) fn check_enum(param: &str, info: &EnumInfo, value: u32) -> Result<()> {
     info.check(&param, value.into())
 }
 
@@ -18,9 +21,19 @@ pub(super) fn check_enum(param: &str, info: &EnumInfo, value: u32) -> Result<()>
 ///
 /// # Errors
 /// If it is NULL or misaligned.
-pub(super) fn out<T>(param: &str, p: *mut T) -> Result<*mut T> {
+pub(in crate::capi) fn out<T>(param: &str, p: *mut T) -> Result<*mut T> {
     layout::check_pointer(&param, p)?;
     Ok(p)
+}
+
+/// Three numbers for a place of the host's world; whether it is one, the query finds.
+///
+/// # Safety
+/// `p` is NULL or points to three numbers.
+pub(in crate::capi) unsafe fn position(param: &str, p: *const [f64; 3]) -> Result<[f64; 3]> {
+    layout::check_pointer(&param, p)?;
+    // SAFETY: checked, and the caller's promise.
+    Ok(unsafe { p.read() })
 }
 
 /// A NUL-terminated UTF-8 text.
@@ -30,7 +43,7 @@ pub(super) fn out<T>(param: &str, p: *mut T) -> Result<*mut T> {
 ///
 /// # Errors
 /// If it is NULL or not UTF-8; the message gives the byte.
-pub(super) unsafe fn text<'a>(param: &str, p: *const c_char) -> Result<&'a str> {
+pub(in crate::capi) unsafe fn text<'a>(param: &str, p: *const c_char) -> Result<&'a str> {
     layout::check_pointer(&param, p)?;
     // SAFETY: not NULL, and the caller's promise.
     unsafe { CStr::from_ptr(p) }
@@ -45,7 +58,7 @@ pub(super) unsafe fn text<'a>(param: &str, p: *const c_char) -> Result<&'a str> 
 ///
 /// # Errors
 /// If it is not UTF-8.
-pub(super) unsafe fn optional_text<'a>(param: &str, p: *const c_char) -> Result<Option<&'a str>> {
+pub(in crate::capi) unsafe fn optional_text<'a>(param: &str, p: *const c_char) -> Result<Option<&'a str>> {
     // SAFETY: the caller's promise.
     if p.is_null() { Ok(None) } else { unsafe { text(param, p) }.map(Some) }
 }
@@ -57,7 +70,12 @@ pub(super) unsafe fn optional_text<'a>(param: &str, p: *const c_char) -> Result<
 ///
 /// # Errors
 /// If there are more than `limit`, or `p` is NULL while `count` is not 0.
-pub(super) unsafe fn slice<'a, T: Copy>(param: &str, p: *const T, count: Named, limit: usize) -> Result<&'a [T]> {
+pub(in crate::capi) unsafe fn slice<'a, T: Copy>(
+    param: &str,
+    p: *const T,
+    count: Named,
+    limit: usize,
+) -> Result<&'a [T]> {
     let count = count.at_most(limit)?;
     if count == 0 {
         return Ok(&[]);
@@ -74,7 +92,12 @@ pub(super) unsafe fn slice<'a, T: Copy>(param: &str, p: *const T, count: Named, 
 ///
 /// # Errors
 /// As [`slice`].
-pub(super) unsafe fn slice_mut<'a, T: Copy>(param: &str, p: *mut T, count: Named, limit: usize) -> Result<&'a mut [T]> {
+pub(in crate::capi) unsafe fn slice_mut<'a, T: Copy>(
+    param: &str,
+    p: *mut T,
+    count: Named,
+    limit: usize,
+) -> Result<&'a mut [T]> {
     let count = count.at_most(limit)?;
     if count == 0 {
         return Ok(&mut []);
@@ -92,7 +115,7 @@ pub(super) unsafe fn slice_mut<'a, T: Copy>(param: &str, p: *mut T, count: Named
 ///
 /// # Errors
 /// Missing places, or too little room.
-pub(super) unsafe fn answer_bytes(
+pub(in crate::capi) unsafe fn answer_bytes(
     bytes: &[u8],
     buffer: *mut c_void,
     capacity: usize,
@@ -115,7 +138,7 @@ pub(super) unsafe fn answer_bytes(
 
 /// A number with the name that it has in the header.
 #[derive(Clone, Copy)]
-pub(super) struct Named<'a>(pub(super) &'a str, pub(super) usize);
+pub(in crate::capi) struct Named<'a>(pub(in crate::capi) &'a str, pub(in crate::capi) usize);
 
 impl Named<'_> {
     fn at_most(self, limit: usize) -> Result<usize> {
@@ -127,24 +150,24 @@ impl Named<'_> {
 }
 
 /// A caller's list of structs.
-pub(super) struct List<'a> {
-    pub(super) name: &'a str,
-    pub(super) count: Named<'a>,
+pub(in crate::capi) struct List<'a> {
+    pub(in crate::capi) name: &'a str,
+    pub(in crate::capi) count: Named<'a>,
     /// Bytes from one element to the next.
-    pub(super) stride: Named<'a>,
+    pub(in crate::capi) stride: Named<'a>,
     /// Most elements.
-    pub(super) limit: usize,
+    pub(in crate::capi) limit: usize,
 }
 
 impl<'a> List<'a> {
     /// The list that a function has by its parameters `name`, `count` and `stride`.
-    pub(super) fn parameters(name: &'a str, count: u32, stride: u32, limit: usize) -> Self {
+    pub(in crate::capi) fn parameters(name: &'a str, count: u32, stride: u32, limit: usize) -> Self {
         Self { name, count: Named("count", count as usize), stride: Named("stride", stride as usize), limit }
     }
 }
 
 /// A caller's list of plain values, `size` bytes apart.
-pub(super) struct Places<T> {
+pub(in crate::capi) struct Places<T> {
     first: *const T,
     size: usize,
 }
@@ -152,7 +175,7 @@ pub(super) struct Places<T> {
 impl<T: Copy> Places<T> {
     /// # Errors
     /// Too many, NULL, misaligned, or a size that does not fit.
-    pub(super) fn new(
+    pub(in crate::capi) fn new(
         param: &str,
         size_name: &str,
         first: *const T,
@@ -169,13 +192,13 @@ impl<T: Copy> Places<T> {
     }
 
     /// The element `i`; the caller knows that there is one.
-    pub(super) fn at(&self, i: usize) -> *const T {
+    pub(in crate::capi) fn at(&self, i: usize) -> *const T {
         self.first.wrapping_byte_add(i * self.size)
     }
 }
 
 /// A caller's room for plain values, `size` bytes apart.
-pub(super) struct Room<T> {
+pub(in crate::capi) struct Room<T> {
     first: *mut T,
     capacity: usize,
     size: usize,
@@ -184,7 +207,7 @@ pub(super) struct Room<T> {
 impl<T: Copy> Room<T> {
     /// # Errors
     /// NULL, misaligned, or a size that does not fit.
-    pub(super) fn new(param: &str, size_name: &str, first: *mut T, capacity: u32, size: u32) -> Result<Self> {
+    pub(in crate::capi) fn new(param: &str, size_name: &str, first: *mut T, capacity: u32, size: u32) -> Result<Self> {
         if capacity > 0 {
             layout::check_pointer(&param, first.cast_const())?;
             check_element_size::<T>(size_name, size)?;
@@ -194,7 +217,7 @@ impl<T: Copy> Room<T> {
 
     /// # Errors
     /// If it cannot hold `count`.
-    pub(super) fn check_capacity(&self, param: &str, count: usize) -> Result<()> {
+    pub(in crate::capi) fn check_capacity(&self, param: &str, count: usize) -> Result<()> {
         if count <= self.capacity {
             return Ok(());
         }
@@ -205,7 +228,7 @@ impl<T: Copy> Room<T> {
     ///
     /// # Safety
     /// `i` is below the capacity, and the caller has that room.
-    pub(super) unsafe fn write(&self, i: usize, value: &T) {
+    pub(in crate::capi) unsafe fn write(&self, i: usize, value: &T) {
         // SAFETY: the caller's promise.
         unsafe { self.first.wrapping_byte_add(i * self.size).write(*value) };
     }
@@ -227,7 +250,7 @@ fn check_element_size<T>(name: &str, size: u32) -> Result<()> {
 ///
 /// # Errors
 /// Too many, a stride that does not fit, the first wrong field, or what `take` answers.
-pub(super) unsafe fn each<T: Layout>(
+pub(in crate::capi) unsafe fn each<T: Layout>(
     list: &List<'_>,
     p: *const T,
     take: &mut dyn FnMut(usize, T) -> Result<()>,
@@ -243,7 +266,7 @@ pub(super) unsafe fn each<T: Layout>(
 ///
 /// # Errors
 /// As [`each`].
-pub(super) unsafe fn each_with<T: Layout>(
+pub(in crate::capi) unsafe fn each_with<T: Layout>(
     list: &List<'_>,
     p: *const T,
     known: &[wk_struct_type],

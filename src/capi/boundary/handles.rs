@@ -10,7 +10,7 @@ use super::device_cell::DeviceCell;
 use crate::error::{Error, Result, Status};
 
 /// Object that a C handle type stands for.
-pub(super) trait HandleObject: Any + Send + Sync {
+pub(in crate::capi) trait HandleObject: Any + Send + Sync {
     /// The opaque type in the header.
     type C;
     /// 1 to 15, different for every kind.
@@ -85,7 +85,7 @@ fn locate<T: HandleObject>(table: &HandleTable, param: &str, handle: usize) -> R
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] when the table is full, [`Status::BadHandle`] if the parent died meanwhile.
-pub(super) fn insert<T: HandleObject, P: HandleObject>(
+pub(in crate::capi) fn insert<T: HandleObject, P: HandleObject>(
     object: Arc<T>,
     parent: Option<*const P::C>,
 ) -> Result<*mut T::C> {
@@ -118,7 +118,7 @@ pub(super) fn insert<T: HandleObject, P: HandleObject>(
 ///
 /// # Errors
 /// [`Status::BadHandle`] naming the parameter and what was found instead.
-pub(super) fn get<T: HandleObject>(param: &str, handle: *const T::C) -> Result<Arc<T>> {
+pub(in crate::capi) fn get<T: HandleObject>(param: &str, handle: *const T::C) -> Result<Arc<T>> {
     let table = read();
     let slot = locate::<T>(&table, param, handle as usize)?;
     let object = table.slots[slot].object.clone().map(|o| o.downcast::<T>());
@@ -133,7 +133,7 @@ pub(super) fn get<T: HandleObject>(param: &str, handle: *const T::C) -> Result<A
 ///
 /// # Errors
 /// [`Status::BadHandle`]; [`Status::InUse`] while it has children.
-pub(super) fn remove<T: HandleObject>(param: &str, handle: *const T::C) -> Result<Arc<T>> {
+pub(in crate::capi) fn remove<T: HandleObject>(param: &str, handle: *const T::C) -> Result<Arc<T>> {
     let mut table = write();
     let index = locate::<T>(&table, param, handle as usize)?;
     let children = table.slots[index].children;

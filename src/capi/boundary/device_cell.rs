@@ -9,14 +9,14 @@ use std::{
     },
 };
 
-use super::host::Host;
+use super::owner::Host;
 use crate::{
     error::{Error, Result, Status},
     gpu::{Device, Entered, Shared},
 };
 
 /// A device as the boundary sees it; every child of the device holds one.
-pub(super) struct DeviceCell {
+pub(in crate::capi) struct DeviceCell {
     gpu: Arc<Device>,
     host: RwLock<Host>,
     poisoned: AtomicBool,
@@ -27,7 +27,7 @@ pub(super) struct DeviceCell {
 
 impl DeviceCell {
     /// A device with its owner.
-    pub(super) fn new(gpu: Arc<Device>, host: Host) -> Arc<Self> {
+    pub(in crate::capi) fn new(gpu: Arc<Device>, host: Host) -> Arc<Self> {
         let host = RwLock::new(host);
         Arc::new(Self {
             gpu,
@@ -39,12 +39,12 @@ impl DeviceCell {
     }
 
     /// The device itself.
-    pub(super) fn gpu(&self) -> &Arc<Device> {
+    pub(in crate::capi) fn gpu(&self) -> &Arc<Device> {
         &self.gpu
     }
 
     /// Whose device it is.
-    pub(super) fn host(&self) -> RwLockReadGuard<'_, Host> {
+    pub(in crate::capi) fn host(&self) -> RwLockReadGuard<'_, Host> {
         self.host.read().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -52,7 +52,7 @@ impl DeviceCell {
     ///
     /// # Errors
     /// Whatever keeps them from being made.
-    pub(super) fn shared(&self) -> Result<Arc<Shared>> {
+    pub(in crate::capi) fn shared(&self) -> Result<Arc<Shared>> {
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(shared) = &*shared {
             return Ok(shared.clone());
@@ -64,13 +64,13 @@ impl DeviceCell {
     }
 
     /// Every later call but destroy is refused.
-    pub(super) fn poison(&self) {
+    pub(in crate::capi) fn poison(&self) {
         self.poisoned.store(true, Ordering::Release);
     }
 
     /// # Errors
     /// [`Status::Poisoned`] after a panic.
-    pub(super) fn check_alive(&self) -> Result<()> {
+    pub(in crate::capi) fn check_alive(&self) -> Result<()> {
         if self.poisoned.load(Ordering::Acquire) {
             let text = "an earlier call on this device ended in a fault inside Welkin; destroy it and its children";
             return Err(Error::new(Status::Poisoned, text));
@@ -80,7 +80,7 @@ impl DeviceCell {
 
     /// # Errors
     /// [`Status::DeviceLost`].
-    pub(super) fn check_not_lost(&self) -> Result<()> {
+    pub(in crate::capi) fn check_not_lost(&self) -> Result<()> {
         if self.gpu.is_lost() {
             return Err(Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one"));
         }
@@ -88,7 +88,7 @@ impl DeviceCell {
     }
 
     /// Releases everything that it holds, at the end of the device, and gives the owner back.
-    pub(super) fn close(&self) -> Host {
+    pub(in crate::capi) fn close(&self) -> Host {
         let waiting = self.take_retired();
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner).take();
         self.release((waiting, shared));
@@ -116,7 +116,7 @@ impl DeviceCell {
     }
 
     /// Releases what waited for the host's context, before a call that enters it by itself.
-    pub(super) fn drain(&self) {
+    pub(in crate::capi) fn drain(&self) {
         let waits = !self.retired.lock().unwrap_or_else(PoisonError::into_inner).is_empty();
         if waits && let Ok(_entered) = self.gpu.enter_to_release() {
             drop(self.take_retired());
@@ -127,14 +127,14 @@ impl DeviceCell {
     ///
     /// # Errors
     /// As [`Device::enter`].
-    pub(super) fn enter(&self) -> Result<Entered<'_>> {
+    pub(in crate::capi) fn enter(&self) -> Result<Entered<'_>> {
         let entered = self.gpu.enter()?;
         drop(self.take_retired());
         Ok(entered)
     }
 
     /// Releases an object now if the host's context can be entered from here, else at the next GPU call.
-    pub(super) fn retire(&self, object: Arc<dyn Any + Send + Sync>) {
+    pub(in crate::capi) fn retire(&self, object: Arc<dyn Any + Send + Sync>) {
         match self.gpu.enter_to_release() {
             Ok(entered) => {
                 drop(object);

@@ -1,0 +1,14 @@
+//! Objects that handles stand for: one file holds the handle's opaque type in C, the object in Rust and the lock that
+//! orders its calls.
+
+pub(in crate::capi) mod context;
+pub(in crate::capi) mod device;
+pub(in crate::capi) mod surface;
+pub(in crate::capi) mod texture;
+pub(in crate::capi) mod view;
+
+pub(in crate::capi) use context::{ContextObject, wk_context};
+pub(in crate::capi) use device::{DeviceObject, wk_device};
+pub(in crate::capi) use surface::{SurfaceObject, wk_surface};
+pub(in crate::capi) use texture::{TextureObject, wk_texture};
+pub(in crate::capi) use view::{ViewObject, wk_view};
