@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use super::boundary::{
     guard,
-    input::{self, MAX_BATCH, position},
+    input::{self, ListParameters, MAX_BATCH, position},
     layout::{self, init_struct, struct_size},
     numbers::*,
     objects::{ContextObject, wk_context},
@@ -142,8 +142,8 @@ pub struct wk_between {
 }
 
 impl wk_between {
-    fn of(between: &Between) -> Self {
-        Self { transmittance: between.transmittance, visibility_m: between.visibility_m }
+    fn of(segment: &Between) -> Self {
+        Self { transmittance: segment.transmittance, visibility_m: segment.visibility_m }
     }
 }
 
@@ -176,8 +176,9 @@ pub unsafe extern "C" fn wk_context_get_sun(
     position_m: *const [f64; 3],
     out_sun: *mut wk_celestial,
 ) -> wk_status {
+    let point = QueryPoint { context, position_m, time_s: None };
     // SAFETY: the caller's promises are the same.
-    unsafe { celestial("wk_context_get_sun", (context, position_m, None), "out_sun", out_sun, |l| l.sun) }
+    unsafe { celestial("wk_context_get_sun", point, "out_sun", out_sun, |l| l.sun) }
 }
 
 /// Gets the sun over a place of the host's world at a simulation time.
@@ -190,8 +191,9 @@ pub unsafe extern "C" fn wk_context_get_sun_at(
     time_s: f64,
     out_sun: *mut wk_celestial,
 ) -> wk_status {
+    let point = QueryPoint { context, position_m, time_s: Some(time_s) };
     // SAFETY: the caller's promises are the same.
-    unsafe { celestial("wk_context_get_sun_at", (context, position_m, Some(time_s)), "out_sun", out_sun, |l| l.sun) }
+    unsafe { celestial("wk_context_get_sun_at", point, "out_sun", out_sun, |l| l.sun) }
 }
 
 /// Gets the moon over a place of the host's world, now.
@@ -202,8 +204,9 @@ pub unsafe extern "C" fn wk_context_get_moon(
     position_m: *const [f64; 3],
     out_moon: *mut wk_celestial,
 ) -> wk_status {
+    let point = QueryPoint { context, position_m, time_s: None };
     // SAFETY: the caller's promises are the same.
-    unsafe { celestial("wk_context_get_moon", (context, position_m, None), "out_moon", out_moon, |l| l.moon) }
+    unsafe { celestial("wk_context_get_moon", point, "out_moon", out_moon, |l| l.moon) }
 }
 
 /// Gets the moon over a place of the host's world at a simulation time.
@@ -216,30 +219,35 @@ pub unsafe extern "C" fn wk_context_get_moon_at(
     time_s: f64,
     out_moon: *mut wk_celestial,
 ) -> wk_status {
+    let point = QueryPoint { context, position_m, time_s: Some(time_s) };
     // SAFETY: the caller's promises are the same.
-    unsafe {
-        celestial("wk_context_get_moon_at", (context, position_m, Some(time_s)), "out_moon", out_moon, |l| l.moon)
-    }
+    unsafe { celestial("wk_context_get_moon_at", point, "out_moon", out_moon, |l| l.moon) }
 }
 
-/// Context, place, and time if it is not the present.
-type When = (*const wk_context, *const [f64; 3], Option<f64>);
+/// Context, place, and time if it is not the present, of a query.
+#[derive(Clone, Copy)]
+pub(super) struct QueryPoint {
+    pub(super) context: *const wk_context,
+    pub(super) position_m: *const [f64; 3],
+    pub(super) time_s: Option<f64>,
+}
 
 /// # Safety
-/// The position is NULL or three numbers, `out` NULL or a `wk_celestial`.
+/// The position is NULL or three numbers, `answer` NULL or a `wk_celestial`.
 unsafe fn celestial(
     function: &'static str,
-    (context, position_m, time_s): When,
-    out_name: &str,
-    out: *mut wk_celestial,
+    point: QueryPoint,
+    answer_name: &str,
+    answer: *mut wk_celestial,
     which: fn(&LightAt) -> Light,
 ) -> wk_status {
     guard(function, |call| {
-        let object = call.get::<ContextObject>("context", context)?;
+        let object = call.get::<ContextObject>("context", point.context)?;
         // SAFETY: the caller's promises.
-        let (at, place) = unsafe { (position("position_m", position_m)?, layout::out_struct(&out_name, out)?) };
+        let (at, place) =
+            unsafe { (position("position_m", point.position_m)?, layout::out_struct(&answer_name, answer)?) };
         let context = object.read();
-        let light = context.light_at(DVec3::from_array(at), time_or_now(&context, time_s)?);
+        let light = context.light_at(DVec3::from_array(at), time_or_now(&context, point.time_s)?);
         place.set(&wk_celestial::of(&which(&light.map_err(|e| e.renamed("position", "position_m"))?)));
         Ok(Status::Ok)
     })
@@ -263,7 +271,7 @@ pub unsafe extern "C" fn wk_context_get_light(
     lights: *mut wk_ground_light,
     light_size: u32,
 ) -> wk_status {
-    let places = (positions_m, count, position_size);
+    let places = ListParameters { first: positions_m, count, size: position_size };
     // SAFETY: the caller's promises are the same.
     unsafe { light("wk_context_get_light", context, places, None, (lights, light_size)) }
 }
@@ -281,7 +289,7 @@ pub unsafe extern "C" fn wk_context_get_light_at(
     lights: *mut wk_ground_light,
     light_size: u32,
 ) -> wk_status {
-    let places = (positions_m, count, position_size);
+    let places = ListParameters { first: positions_m, count, size: position_size };
     // SAFETY: the caller's promises are the same.
     unsafe { light("wk_context_get_light_at", context, places, Some(time_s), (lights, light_size)) }
 }
@@ -291,13 +299,14 @@ pub unsafe extern "C" fn wk_context_get_light_at(
 unsafe fn light(
     function: &'static str,
     context: *const wk_context,
-    (positions_m, count, position_size): (*const [f64; 3], u32, u32),
+    places: ListParameters<[f64; 3]>,
     time_s: Option<f64>,
     (lights, light_size): (*mut wk_ground_light, u32),
 ) -> wk_status {
     guard(function, |call| {
         let object = call.get::<ContextObject>("context", context)?;
-        let places = input::Places::new("positions_m", "position_size", positions_m, count, position_size, MAX_BATCH)?;
+        let ListParameters { first, count, size } = places;
+        let places = input::Places::new("positions_m", "position_size", first, count, size, MAX_BATCH)?;
         let room = input::Room::new("lights", "light_size", lights, count, light_size)?;
         let context = object.read();
         let time_s = time_or_now(&context, time_s)?;
@@ -329,7 +338,7 @@ pub unsafe extern "C" fn wk_context_get_between(
     between: *mut wk_between,
     between_size: u32,
 ) -> wk_status {
-    let pairs = (segments, count, segment_size);
+    let pairs = ListParameters { first: segments, count, size: segment_size };
     // SAFETY: the caller's promises are the same.
     unsafe { way("wk_context_get_between", context, pairs, None, (between, between_size)) }
 }
@@ -347,7 +356,7 @@ pub unsafe extern "C" fn wk_context_get_between_at(
     between: *mut wk_between,
     between_size: u32,
 ) -> wk_status {
-    let pairs = (segments, count, segment_size);
+    let pairs = ListParameters { first: segments, count, size: segment_size };
     // SAFETY: the caller's promises are the same.
     unsafe { way("wk_context_get_between_at", context, pairs, Some(time_s), (between, between_size)) }
 }
@@ -357,13 +366,14 @@ pub unsafe extern "C" fn wk_context_get_between_at(
 unsafe fn way(
     function: &'static str,
     context: *const wk_context,
-    (segments, count, segment_size): (*const wk_segment, u32, u32),
+    pairs: ListParameters<wk_segment>,
     time_s: Option<f64>,
     (between, between_size): (*mut wk_between, u32),
 ) -> wk_status {
     guard(function, |call| {
         let object = call.get::<ContextObject>("context", context)?;
-        let pairs = input::Places::new("segments", "segment_size", segments, count, segment_size, MAX_BATCH)?;
+        let ListParameters { first, count, size } = pairs;
+        let pairs = input::Places::new("segments", "segment_size", first, count, size, MAX_BATCH)?;
         let room = input::Room::new("between", "between_size", between, count, between_size)?;
         let context = object.read();
         let time_s = time_or_now(&context, time_s)?;

@@ -15,11 +15,11 @@ use glam::DVec3;
 use super::{
     boundary::{
         guard,
-        input::{self, MAX_BATCH, position},
+        input::{self, ListParameters, MAX_BATCH, position},
         numbers::*,
         objects::{ContextObject, wk_context},
     },
-    query::time_or_now,
+    query::{QueryPoint, time_or_now},
 };
 use crate::error::{Error, Status};
 
@@ -45,9 +45,10 @@ pub unsafe extern "C" fn wk_context_get_sky_radiance(
     radiances: *mut wk_sky_radiance,
     radiance_size: u32,
 ) -> wk_status {
-    let toward = (directions, count, direction_size);
+    let point = QueryPoint { context, position_m, time_s: None };
+    let list = ListParameters { first: directions, count, size: direction_size };
     // SAFETY: the caller's promises are the same.
-    unsafe { radiance("wk_context_get_sky_radiance", (context, position_m, None), toward, (radiances, radiance_size)) }
+    unsafe { radiance("wk_context_get_sky_radiance", point, list, (radiances, radiance_size)) }
 }
 
 /// As wk_context_get_sky_radiance, at a simulation time.
@@ -64,29 +65,31 @@ pub unsafe extern "C" fn wk_context_get_sky_radiance_at(
     radiances: *mut wk_sky_radiance,
     radiance_size: u32,
 ) -> wk_status {
-    let (at, toward) = ((context, position_m, Some(time_s)), (directions, count, direction_size));
+    let point = QueryPoint { context, position_m, time_s: Some(time_s) };
+    let list = ListParameters { first: directions, count, size: direction_size };
     // SAFETY: the caller's promises are the same.
-    unsafe { radiance("wk_context_get_sky_radiance_at", at, toward, (radiances, radiance_size)) }
+    unsafe { radiance("wk_context_get_sky_radiance_at", point, list, (radiances, radiance_size)) }
 }
 
 /// # Safety
 /// The position is NULL or three numbers, the lists NULL or as long as they say.
 unsafe fn radiance(
     function: &'static str,
-    (context, position_m, time_s): (*const wk_context, *const [f64; 3], Option<f64>),
-    (directions, count, direction_size): (*const [f64; 3], u32, u32),
+    point: QueryPoint,
+    list: ListParameters<[f64; 3]>,
     (radiances, radiance_size): (*mut wk_sky_radiance, u32),
 ) -> wk_status {
     guard(function, |call| {
-        let object = call.get::<ContextObject>("context", context)?;
-        let list = input::Places::new("directions", "direction_size", directions, count, direction_size, MAX_BATCH)?;
+        let object = call.get::<ContextObject>("context", point.context)?;
+        let ListParameters { first, count, size } = list;
+        let list = input::Places::new("directions", "direction_size", first, count, size, MAX_BATCH)?;
         let room = input::Room::new("radiances", "radiance_size", radiances, count, radiance_size)?;
         // SAFETY: the caller's promise.
-        let at = unsafe { position("position_m", position_m)? };
+        let at = unsafe { position("position_m", point.position_m)? };
         // SAFETY: every index is below the count that the caller promises.
         let toward: Vec<DVec3> = (0..count as usize).map(|i| DVec3::from_array(unsafe { *list.at(i) })).collect();
         let context = object.read();
-        let time_s = time_or_now(&context, time_s)?;
+        let time_s = time_or_now(&context, point.time_s)?;
         let named = |e: Error| e.renamed("position", "position_m");
         let answers = context.sky_radiance(DVec3::from_array(at), &toward, time_s).map_err(named)?;
         for (i, radiance) in answers.iter().enumerate() {

@@ -274,7 +274,7 @@ pub(super) struct WeatherOut {
 /// Checks the caller's room for an answer.
 ///
 /// # Safety
-/// `out` is NULL or a `wk_weather`; `layers` is NULL or has `capacity` elements of `stride` bytes.
+/// `answer` is NULL or a `wk_weather`; `layers` is NULL or has `capacity` elements of `stride` bytes.
 ///
 /// # Errors
 /// The wrong parameter by name.
@@ -282,10 +282,10 @@ pub(super) unsafe fn weather_out(
     layers: *mut wk_cloud_layer,
     capacity: u32,
     stride: u32,
-    out: *mut wk_weather,
+    answer: *mut wk_weather,
 ) -> Result<WeatherOut> {
     // SAFETY: the caller's promise.
-    let weather = unsafe { layout::out_struct(&"out_weather", out)? };
+    let weather = unsafe { layout::out_struct(&"out_weather", answer)? };
     let (capacity, stride) = (capacity as usize, stride as usize);
     if capacity > 0 {
         layout::check_pointer(&"layers", layers)?;

@@ -163,8 +163,8 @@ pub struct wk_rain_on {
 }
 
 impl wk_rain_on {
-    fn of(on: &RainOn) -> Self {
-        Self { rate_mm_h: on.rate_mm_h, drops_per_s: on.drops_per_s }
+    fn of(rain: &RainOn) -> Self {
+        Self { rate_mm_h: rain.rate_mm_h, drops_per_s: rain.drops_per_s }
     }
 }
 

@@ -166,6 +166,13 @@ impl<'a> List<'a> {
     }
 }
 
+/// Parameters of a caller's list of plain values: its first element, their count, and the bytes from one to the next.
+pub(in crate::capi) struct ListParameters<T> {
+    pub(in crate::capi) first: *const T,
+    pub(in crate::capi) count: u32,
+    pub(in crate::capi) size: u32,
+}
+
 /// A caller's list of plain values, `size` bytes apart.
 pub(in crate::capi) struct Places<T> {
     first: *const T,

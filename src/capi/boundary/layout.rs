@@ -134,34 +134,34 @@ unsafe fn check_fields(param: &dyn Display, base: *const u8, info: &'static Stru
     for field in info.fields.iter().filter(|f| f.offset < upto) {
         for i in 0..field.count {
             // SAFETY: the table's offsets lie inside the struct.
-            let at = unsafe { base.add(field.offset + i * field.kind.size()) };
+            let element = unsafe { base.add(field.offset + i * field.kind.size()) };
             let name = FieldPath { param, field: field.name, index: (field.count > 1).then_some(i) };
             // SAFETY: as above, and reads are unaligned.
-            unsafe { check_element(&name, at, field)? };
+            unsafe { check_element(&name, element, field)? };
         }
     }
     Ok(())
 }
 
 /// # Safety
-/// `at` points to an element of `field`'s kind.
-unsafe fn check_element(name: &FieldPath<'_>, at: *const u8, field: &LayoutField) -> Result<()> {
+/// `element` points to an element of `field`'s kind.
+unsafe fn check_element(name: &FieldPath<'_>, element: *const u8, field: &LayoutField) -> Result<()> {
     let float = match field.kind {
         // SAFETY: the caller's promise.
-        FieldKind::F32 => f64::from(unsafe { at.cast::<f32>().read_unaligned() }),
+        FieldKind::F32 => f64::from(unsafe { element.cast::<f32>().read_unaligned() }),
         // SAFETY: the caller's promise.
-        FieldKind::F64 => unsafe { at.cast::<f64>().read_unaligned() },
+        FieldKind::F64 => unsafe { element.cast::<f64>().read_unaligned() },
         // SAFETY: the caller's promise; the width is the type's.
         FieldKind::Enum(info) if info.wide => {
-            return info.check(name, unsafe { at.cast::<u64>().read_unaligned() });
+            return info.check(name, unsafe { element.cast::<u64>().read_unaligned() });
         }
         // SAFETY: as above.
-        FieldKind::Enum(info) => return info.check(name, unsafe { at.cast::<u32>().read_unaligned() }.into()),
+        FieldKind::Enum(info) => return info.check(name, unsafe { element.cast::<u32>().read_unaligned() }.into()),
         // SAFETY: the caller's promise.
-        FieldKind::Struct(info) => return unsafe { check_fields(name, at, info, info.size) },
+        FieldKind::Struct(info) => return unsafe { check_fields(name, element, info, info.size) },
         FieldKind::U32 if field.name.starts_with("reserved") => {
             // SAFETY: the caller's promise.
-            let value = unsafe { at.cast::<u32>().read_unaligned() };
+            let value = unsafe { element.cast::<u32>().read_unaligned() };
             return if value == 0 { Ok(()) } else { Err(Error::range(&name.to_string(), "0", value)) };
         }
         _ => return Ok(()),
@@ -391,27 +391,27 @@ pub(crate) fn check_version_size<T: Layout>(param: &str, bytes: usize) -> Result
 /// Writes a whole struct as a version of `bytes` bytes knows it: cut, or with a zero tail.
 ///
 /// # Safety
-/// `at` points to `bytes` writable bytes, and `check_version_size` has accepted them.
-pub(crate) unsafe fn write_version<T: Layout>(value: &T, at: *mut u8, bytes: usize) {
+/// `place` points to `bytes` writable bytes, and `check_version_size` has accepted them.
+pub(crate) unsafe fn write_version<T: Layout>(value: &T, place: *mut u8, bytes: usize) {
     let from = std::ptr::from_ref(value).cast::<u8>();
     // SAFETY: the caller's promise; every tagged struct begins with its size.
     unsafe {
-        std::ptr::write_bytes(at, 0, bytes);
-        std::ptr::copy_nonoverlapping(from, at, bytes.min(size_of::<T>()));
-        at.cast::<u32>().write_unaligned(bytes as u32);
+        std::ptr::write_bytes(place, 0, bytes);
+        std::ptr::copy_nonoverlapping(from, place, bytes.min(size_of::<T>()));
+        place.cast::<u32>().write_unaligned(bytes as u32);
     }
 }
 
 /// Writes the default of a struct, as every `wk_x_init` does.
 ///
 /// # Safety
-/// `out` is NULL or points to `struct_size` writable bytes.
-pub(crate) unsafe fn init_struct<T: Layout>(function: &'static str, out: *mut T, size: u32) -> wk_status {
+/// `place` is NULL or points to `size` writable bytes.
+pub(crate) unsafe fn init_struct<T: Layout>(function: &'static str, place: *mut T, size: u32) -> wk_status {
     guard(function, |_| {
-        check_pointer(&"out", out)?;
+        check_pointer(&"out", place)?;
         check_version_size::<T>("struct_size", size as usize)?;
         // SAFETY: the size was checked, and the bytes are the caller's promise.
-        unsafe { write_version(&T::DEFAULT, out.cast(), size as usize) };
+        unsafe { write_version(&T::DEFAULT, place.cast(), size as usize) };
         Ok(Status::Ok)
     })
 }
