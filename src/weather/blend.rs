@@ -5,24 +5,15 @@
 //! can be seen. Every field is continuous in time, those of layers that come and go too.
 
 use super::conditions::{
-    AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, GroundLayer, SeaState, SurfaceCover,
-    WindProfile, clear_between,
+    AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, GroundLayer, SeaState, SurfaceCover, WindProfile,
+    clear_between,
 };
-
-/// a + (b - a) t, exact at both ends and monotone in t.
-pub(super) fn mix(a: f64, b: f64, t: f64) -> f64 {
-    if t >= 1.0 { b } else { a + (b - a) * t }
-}
+use super::mix::mix;
+use super::precipitation::Falling;
 
 /// Weight of no layer at all beside a whole one: a layer's geometry moves while there is about so much of it, which
 /// nobody sees. Were it 0, the geometry would jump from that of no layer in the moment in which the layer begins.
 const LEAST_SHARE: f64 = 1e-3;
-
-/// 0 at `a`, 1 at `b`, level at both.
-pub(crate) fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
-    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
 
 /// Weight of `b` where amounts of `a` and `b` fade into each other: (t qb) / ((1 - t) qa + t qb), each amount counted
 /// as [`LEAST_SHARE`] of the larger more than it is.
@@ -54,34 +45,34 @@ fn burden_per_m(c: &Conditions) -> f64 {
 }
 
 impl Conditions {
-    /// The weather between `self` (at `t` = 0) and `to` (at 1); `t` outside is clamped, NaN counts as 0.
+    /// The weather between `self` (at `t` = 0) and `other` (at 1); `t` outside is clamped, NaN counts as 0.
     ///
     /// Extinctions share one weight that makes the total geometric (see the module); cloud layers blend slot by slot,
     /// covers linearly, optical depth in tau / (tau + 10), which is nearly the light that a cloud stops; no more of the
     /// sky is clear than at the clearer end, however much of one overcast has gone and of another has come; wind blends
     /// as a vector, so a turn by more than 90 degrees passes through a lull; everything else is linear.
-    pub fn lerp(&self, to: &Self, t: f64) -> Self {
+    pub fn lerp(&self, other: &Self, t: f64) -> Self {
         if t >= 1.0 {
-            return *to;
+            return *other;
         }
         if t.is_nan() || t <= 0.0 {
             return *self;
         }
-        let w = geometric_weight(burden_per_m(self), burden_per_m(to), t);
-        let clouds = std::array::from_fn(|i| self.clouds[i].blend(&to.clouds[i], t));
+        let w = geometric_weight(burden_per_m(self), burden_per_m(other), t);
+        let clouds = std::array::from_fn(|i| self.clouds[i].blend(&other.clouds[i], t));
         Self {
-            extinction_per_m: mix(self.extinction_per_m, to.extinction_per_m, w),
-            air: self.air.blend(&to.air, t, w),
-            aerosol: self.aerosol.blend(&to.aerosol, w),
-            fog: self.fog.blend(&to.fog, w),
-            precipitation: self.precipitation.blend(&to.precipitation, t, w),
-            clear_sky: clear_between_ends([self, to], clear_between(&clouds), t),
+            extinction_per_m: mix(self.extinction_per_m, other.extinction_per_m, w),
+            air: self.air.blend(&other.air, t, w),
+            aerosol: self.aerosol.blend(&other.aerosol, w),
+            fog: self.fog.blend(&other.fog, w),
+            precipitation: self.precipitation.blend(&other.precipitation, t, w),
+            clear_sky: clear_between_ends([self, other], clear_between(&clouds), t),
             clouds,
-            cloud_light: self.cloud_light.blend(&to.cloud_light, t),
-            wind: self.wind.blend(&to.wind, t),
-            sea: self.sea.blend(&to.sea, t),
-            surface: self.surface.blend(&to.surface, t),
-            ozone_du: mix(self.ozone_du, to.ozone_du, t),
+            cloud_light: self.cloud_light.blend(&other.cloud_light, t),
+            wind: self.wind.blend(&other.wind, t),
+            sea: self.sea.blend(&other.sea, t),
+            surface: self.surface.blend(&other.surface, t),
+            ozone_du: mix(self.ozone_du, other.ozone_du, t),
         }
     }
 }
@@ -95,149 +86,149 @@ fn clear_between_ends([a, b]: [&Conditions; 2], independent: f64, t: f64) -> f64
 }
 
 impl Air {
-    fn blend(&self, to: &Self, t: f64, w: f64) -> Self {
+    fn blend(&self, other: &Self, t: f64, w: f64) -> Self {
         Self {
-            temperature_c: mix(self.temperature_c, to.temperature_c, t),
-            relative_humidity: mix(self.relative_humidity, to.relative_humidity, t),
-            pressure_hpa: mix(self.pressure_hpa, to.pressure_hpa, t),
-            station_pressure_hpa: mix(self.station_pressure_hpa, to.station_pressure_hpa, t),
-            station_altitude_m: mix(self.station_altitude_m, to.station_altitude_m, t),
-            rayleigh_density_ratio: mix(self.rayleigh_density_ratio, to.rayleigh_density_ratio, t),
-            rayleigh_scale_height_m: mix(self.rayleigh_scale_height_m, to.rayleigh_scale_height_m, t),
-            rayleigh_extinction_per_m: mix(self.rayleigh_extinction_per_m, to.rayleigh_extinction_per_m, w),
+            temperature_c: mix(self.temperature_c, other.temperature_c, t),
+            relative_humidity: mix(self.relative_humidity, other.relative_humidity, t),
+            pressure_hpa: mix(self.pressure_hpa, other.pressure_hpa, t),
+            station_pressure_hpa: mix(self.station_pressure_hpa, other.station_pressure_hpa, t),
+            station_altitude_m: mix(self.station_altitude_m, other.station_altitude_m, t),
+            rayleigh_density_ratio: mix(self.rayleigh_density_ratio, other.rayleigh_density_ratio, t),
+            rayleigh_scale_height_m: mix(self.rayleigh_scale_height_m, other.rayleigh_scale_height_m, t),
+            rayleigh_extinction_per_m: mix(self.rayleigh_extinction_per_m, other.rayleigh_extinction_per_m, w),
         }
     }
 }
 
 impl AerosolLayer {
-    fn blend(&self, to: &Self, w: f64) -> Self {
-        let q = share(self.extinction_per_m, to.extinction_per_m, w);
+    fn blend(&self, other: &Self, w: f64) -> Self {
+        let q = share(self.extinction_per_m, other.extinction_per_m, w);
         Self {
-            extinction_per_m: mix(self.extinction_per_m, to.extinction_per_m, w),
-            angstrom_exponent: mix(self.angstrom_exponent, to.angstrom_exponent, q),
-            absorption_angstrom_exponent: mix(self.absorption_angstrom_exponent, to.absorption_angstrom_exponent, q),
-            single_scattering_albedo: mix(self.single_scattering_albedo, to.single_scattering_albedo, q),
-            asymmetry: mix(self.asymmetry, to.asymmetry, q),
-            scale_height_m: mix(self.scale_height_m, to.scale_height_m, q),
-            reference_altitude_m: mix(self.reference_altitude_m, to.reference_altitude_m, q),
+            extinction_per_m: mix(self.extinction_per_m, other.extinction_per_m, w),
+            angstrom_exponent: mix(self.angstrom_exponent, other.angstrom_exponent, q),
+            absorption_angstrom_exponent: mix(self.absorption_angstrom_exponent, other.absorption_angstrom_exponent, q),
+            single_scattering_albedo: mix(self.single_scattering_albedo, other.single_scattering_albedo, q),
+            asymmetry: mix(self.asymmetry, other.asymmetry, q),
+            scale_height_m: mix(self.scale_height_m, other.scale_height_m, q),
+            reference_altitude_m: mix(self.reference_altitude_m, other.reference_altitude_m, q),
         }
     }
 }
 
 impl GroundLayer {
-    fn blend(&self, to: &Self, w: f64) -> Self {
-        let q = share(self.extinction_per_m, to.extinction_per_m, w);
+    fn blend(&self, other: &Self, w: f64) -> Self {
+        let q = share(self.extinction_per_m, other.extinction_per_m, w);
         Self {
-            extinction_per_m: mix(self.extinction_per_m, to.extinction_per_m, w),
-            angstrom_exponent: mix(self.angstrom_exponent, to.angstrom_exponent, q),
-            single_scattering_albedo: mix(self.single_scattering_albedo, to.single_scattering_albedo, q),
-            asymmetry: mix(self.asymmetry, to.asymmetry, q),
-            base_m: mix(self.base_m, to.base_m, q),
-            top_m: mix(self.top_m, to.top_m, q),
-            softness_m: mix(self.softness_m, to.softness_m, q),
-            coverage: mix(self.coverage, to.coverage, q),
-            patch_size_m: mix(self.patch_size_m, to.patch_size_m, q),
-            lifted: mix(self.lifted, to.lifted, q),
+            extinction_per_m: mix(self.extinction_per_m, other.extinction_per_m, w),
+            angstrom_exponent: mix(self.angstrom_exponent, other.angstrom_exponent, q),
+            single_scattering_albedo: mix(self.single_scattering_albedo, other.single_scattering_albedo, q),
+            asymmetry: mix(self.asymmetry, other.asymmetry, q),
+            base_m: mix(self.base_m, other.base_m, q),
+            top_m: mix(self.top_m, other.top_m, q),
+            softness_m: mix(self.softness_m, other.softness_m, q),
+            coverage: mix(self.coverage, other.coverage, q),
+            patch_size_m: mix(self.patch_size_m, other.patch_size_m, q),
+            lifted: mix(self.lifted, other.lifted, q),
         }
     }
 }
 
 impl Falling {
-    fn blend(&self, to: &Self, t: f64, w: f64) -> Self {
-        let snow_mm_h = mix(self.snow_mm_h, to.snow_mm_h, t);
+    fn blend(&self, other: &Self, t: f64, w: f64) -> Self {
+        let snow_mm_h = mix(self.snow_mm_h, other.snow_mm_h, t);
         // Of snow that comes or goes the kinds are those of what there is.
         let kind = |share: fn(&Self) -> f64| {
-            let amount = mix(self.snow_mm_h * share(self), to.snow_mm_h * share(to), t);
-            if snow_mm_h > 0.0 { (amount / snow_mm_h).clamp(0.0, 1.0) } else { share(to) }
+            let amount = mix(self.snow_mm_h * share(self), other.snow_mm_h * share(other), t);
+            if snow_mm_h > 0.0 { (amount / snow_mm_h).clamp(0.0, 1.0) } else { share(other) }
         };
         Self {
-            rain_mm_h: mix(self.rain_mm_h, to.rain_mm_h, t),
-            drizzle_mm_h: mix(self.drizzle_mm_h, to.drizzle_mm_h, t),
+            rain_mm_h: mix(self.rain_mm_h, other.rain_mm_h, t),
+            drizzle_mm_h: mix(self.drizzle_mm_h, other.drizzle_mm_h, t),
             snow_mm_h,
             grain_share: kind(|f| f.grain_share),
             crystal_share: kind(|f| f.crystal_share),
-            ice_pellets_mm_h: mix(self.ice_pellets_mm_h, to.ice_pellets_mm_h, t),
-            hail_mm_h: mix(self.hail_mm_h, to.hail_mm_h, t),
-            freezing: mix(self.freezing, to.freezing, t),
-            showers: mix(self.showers, to.showers, t),
-            thunder: mix(self.thunder, to.thunder, t),
-            liquid_extinction_per_m: mix(self.liquid_extinction_per_m, to.liquid_extinction_per_m, w),
-            solid_extinction_per_m: mix(self.solid_extinction_per_m, to.solid_extinction_per_m, w),
+            ice_pellets_mm_h: mix(self.ice_pellets_mm_h, other.ice_pellets_mm_h, t),
+            hail_mm_h: mix(self.hail_mm_h, other.hail_mm_h, t),
+            freezing: mix(self.freezing, other.freezing, t),
+            showers: mix(self.showers, other.showers, t),
+            thunder: mix(self.thunder, other.thunder, t),
+            liquid_extinction_per_m: mix(self.liquid_extinction_per_m, other.liquid_extinction_per_m, w),
+            solid_extinction_per_m: mix(self.solid_extinction_per_m, other.solid_extinction_per_m, w),
         }
     }
 }
 
 impl CloudSlab {
     /// As in [`Conditions::lerp`].
-    pub(crate) fn blend(&self, to: &Self, t: f64) -> Self {
-        let q = share(self.cover, to.cover, t);
+    pub(crate) fn blend(&self, other: &Self, t: f64) -> Self {
+        let q = share(self.cover, other.cover, t);
         let stopped = |tau: f64| tau / (tau + 10.0);
-        let y = mix(stopped(self.optical_depth), stopped(to.optical_depth), q);
+        let y = mix(stopped(self.optical_depth), stopped(other.optical_depth), q);
         Self {
-            cover: mix(self.cover, to.cover, t),
-            base_m: mix(self.base_m, to.base_m, q),
-            thickness_m: mix(self.thickness_m, to.thickness_m, q),
+            cover: mix(self.cover, other.cover, t),
+            base_m: mix(self.base_m, other.base_m, q),
+            thickness_m: mix(self.thickness_m, other.thickness_m, q),
             optical_depth: 10.0 * y / (1.0 - y),
-            droplet_radius_um: mix(self.droplet_radius_um, to.droplet_radius_um, q),
-            asymmetry: mix(self.asymmetry, to.asymmetry, q),
-            convection: mix(self.convection, to.convection, q),
-            ice_fraction: mix(self.ice_fraction, to.ice_fraction, q),
-            scale_m: mix(self.scale_m, to.scale_m, q),
-            cellular: mix(self.cellular, to.cellular, q),
-            fibre: mix(self.fibre, to.fibre, q),
-            wind_m_s: [0, 1].map(|i| mix(self.wind_m_s[i], to.wind_m_s[i], q)),
-            life_s: mix(self.life_s, to.life_s, q),
+            droplet_radius_um: mix(self.droplet_radius_um, other.droplet_radius_um, q),
+            asymmetry: mix(self.asymmetry, other.asymmetry, q),
+            convection: mix(self.convection, other.convection, q),
+            ice_fraction: mix(self.ice_fraction, other.ice_fraction, q),
+            scale_m: mix(self.scale_m, other.scale_m, q),
+            cellular: mix(self.cellular, other.cellular, q),
+            fibre: mix(self.fibre, other.fibre, q),
+            wind_m_s: [0, 1].map(|i| mix(self.wind_m_s[i], other.wind_m_s[i], q)),
+            life_s: mix(self.life_s, other.life_s, q),
         }
     }
 }
 
 impl CloudLightOverride {
-    fn blend(&self, to: &Self, t: f64) -> Self {
-        let q = share(self.weight, to.weight, t);
+    fn blend(&self, other: &Self, t: f64) -> Self {
+        let q = share(self.weight, other.weight, t);
         Self {
-            weight: mix(self.weight, to.weight, t),
-            direct: mix(self.direct, to.direct, q),
-            diffuse: mix(self.diffuse, to.diffuse, q),
+            weight: mix(self.weight, other.weight, t),
+            direct: mix(self.direct, other.direct, q),
+            diffuse: mix(self.diffuse, other.diffuse, q),
         }
     }
 }
 
 impl WindProfile {
     /// As in [`Conditions::lerp`].
-    pub(crate) fn blend(&self, to: &Self, t: f64) -> Self {
+    pub(crate) fn blend(&self, other: &Self, t: f64) -> Self {
         Self {
-            east_m_s: mix(self.east_m_s, to.east_m_s, t),
-            north_m_s: mix(self.north_m_s, to.north_m_s, t),
-            gust_m_s: mix(self.gust_m_s, to.gust_m_s, t),
-            turbulence_intensity: mix(self.turbulence_intensity, to.turbulence_intensity, t),
-            wander_deg: mix(self.wander_deg, to.wander_deg, t),
-            roughness_length_m: mix(self.roughness_length_m, to.roughness_length_m, t),
-            sea_roughness_length_m: mix(self.sea_roughness_length_m, to.sea_roughness_length_m, t),
+            east_m_s: mix(self.east_m_s, other.east_m_s, t),
+            north_m_s: mix(self.north_m_s, other.north_m_s, t),
+            gust_m_s: mix(self.gust_m_s, other.gust_m_s, t),
+            turbulence_intensity: mix(self.turbulence_intensity, other.turbulence_intensity, t),
+            wander_deg: mix(self.wander_deg, other.wander_deg, t),
+            roughness_length_m: mix(self.roughness_length_m, other.roughness_length_m, t),
+            sea_roughness_length_m: mix(self.sea_roughness_length_m, other.sea_roughness_length_m, t),
         }
     }
 }
 
 impl SeaState {
-    fn blend(&self, to: &Self, t: f64) -> Self {
-        let q = share(self.swell_height_m, to.swell_height_m, t);
+    fn blend(&self, other: &Self, t: f64) -> Self {
+        let q = share(self.swell_height_m, other.swell_height_m, t);
         Self {
-            significant_wave_height_m: mix(self.significant_wave_height_m, to.significant_wave_height_m, t),
-            swell_height_m: mix(self.swell_height_m, to.swell_height_m, t),
-            swell_period_s: mix(self.swell_period_s, to.swell_period_s, q),
-            swell_east: mix(self.swell_east, to.swell_east, q),
-            swell_north: mix(self.swell_north, to.swell_north, q),
-            temperature_c: mix(self.temperature_c, to.temperature_c, t),
+            significant_wave_height_m: mix(self.significant_wave_height_m, other.significant_wave_height_m, t),
+            swell_height_m: mix(self.swell_height_m, other.swell_height_m, t),
+            swell_period_s: mix(self.swell_period_s, other.swell_period_s, q),
+            swell_east: mix(self.swell_east, other.swell_east, q),
+            swell_north: mix(self.swell_north, other.swell_north, q),
+            temperature_c: mix(self.temperature_c, other.temperature_c, t),
         }
     }
 }
 
 impl SurfaceCover {
-    fn blend(&self, to: &Self, t: f64) -> Self {
+    fn blend(&self, other: &Self, t: f64) -> Self {
         Self {
-            wetness: mix(self.wetness, to.wetness, t),
-            puddles: mix(self.puddles, to.puddles, t),
-            ice: mix(self.ice, to.ice, t),
-            snow_depth_m: mix(self.snow_depth_m, to.snow_depth_m, t),
+            wetness: mix(self.wetness, other.wetness, t),
+            puddles: mix(self.puddles, other.puddles, t),
+            ice: mix(self.ice, other.ice, t),
+            snow_depth_m: mix(self.snow_depth_m, other.snow_depth_m, t),
         }
     }
 }

@@ -31,13 +31,13 @@ fn onset(begins_m: f64, altitude_m: f64) -> f64 {
 }
 
 /// Mean of `f` over layers by the part of the sky in which each is the first to be met, in the order of `layers`
-/// (cover, layer); `without` where there are none. Continuous where a layer comes or goes.
+/// (cover, layer); `clear` where there are none. Continuous where a layer comes or goes.
 fn over_layers<'a>(
     layers: impl Iterator<Item = (f64, &'a CloudSlab)>,
-    without: f64,
+    clear: f64,
     f: impl Fn(&CloudSlab) -> f64,
 ) -> f64 {
-    let (mut open, mut met, mut sum) = (1.0, LEAST_COVER, LEAST_COVER * without);
+    let (mut open, mut met, mut sum) = (1.0, LEAST_COVER, LEAST_COVER * clear);
     for (cover, slab) in layers {
         (met, sum) = (met + open * cover, sum + open * cover * f(slab));
         open *= 1.0 - cover;

@@ -10,8 +10,8 @@
 //! `cargo test --lib clouds::light::mean_light -- --nocapture` prints it, kind by kind, against the clouds that are
 //! drawn.
 
-use super::blend::{mix, smoothstep};
 use super::conditions::CloudSlab;
+use super::mix::{mix, smoothstep};
 
 /// Sine of the lowest sun whose beam is followed through clouds: light that comes lower goes as light from there.
 pub(super) const LOWEST: f64 = 0.03;

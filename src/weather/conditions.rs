@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::model::MAX_CLOUD_LAYERS;
+use super::precipitation::Falling;
 
 /// ln 20: extinction times the distance at which contrast falls to 5 % (Koschmieder 1924 with the WMO threshold).
 pub const LN_20: f64 = 2.995_732_273_553_991;
@@ -112,79 +113,6 @@ pub struct GroundLayer {
     /// Share of it that the wind lifts from the ground, 0 to 1: it comes in gusts ([`super::lifting`]).
     #[serde(default)]
     pub lifted: f64,
-}
-
-/// Precipitation, as rates of liquid water at the ground.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "SavedFalling")]
-pub struct Falling {
-    /// Rain, mm/h.
-    pub rain_mm_h: f64,
-    /// Drizzle, mm/h.
-    pub drizzle_mm_h: f64,
-    /// Snow, snow grains and ice crystals, mm/h of melted water.
-    pub snow_mm_h: f64,
-    /// Part of it that falls as snow grains, 0 to 1.
-    pub grain_share: f64,
-    /// Part of it that falls as ice crystals, 0 to 1; the rest are flakes.
-    pub crystal_share: f64,
-    /// Ice pellets and small hail, mm/h of melted water.
-    pub ice_pellets_mm_h: f64,
-    /// Hail, mm/h of melted water.
-    pub hail_mm_h: f64,
-    /// Part of the rain and drizzle that freezes where it lands, 0 to 1.
-    pub freezing: f64,
-    /// How convective it is, 0 (steady) to 1 (showers).
-    pub showers: f64,
-    /// Whether there is thunder, 0 to 1.
-    pub thunder: f64,
-    /// Extinction by rain and drizzle, at 550 nm, 1/m.
-    pub liquid_extinction_per_m: f64,
-    /// Extinction by snow, ice pellets and hail, at 550 nm, 1/m.
-    pub solid_extinction_per_m: f64,
-}
-
-/// [`Falling`] as states hold it. Older states hold the sum of both extinctions.
-#[derive(Deserialize)]
-struct SavedFalling {
-    rain_mm_h: f64,
-    drizzle_mm_h: f64,
-    snow_mm_h: f64,
-    #[serde(default)]
-    grain_share: f64,
-    #[serde(default)]
-    crystal_share: f64,
-    ice_pellets_mm_h: f64,
-    hail_mm_h: f64,
-    freezing: f64,
-    showers: f64,
-    thunder: f64,
-    liquid_extinction_per_m: Option<f64>,
-    solid_extinction_per_m: Option<f64>,
-    extinction_per_m: Option<f64>,
-}
-
-impl From<SavedFalling> for Falling {
-    fn from(s: SavedFalling) -> Self {
-        let falling = Self {
-            rain_mm_h: s.rain_mm_h,
-            drizzle_mm_h: s.drizzle_mm_h,
-            snow_mm_h: s.snow_mm_h,
-            grain_share: s.grain_share,
-            crystal_share: s.crystal_share,
-            ice_pellets_mm_h: s.ice_pellets_mm_h,
-            hail_mm_h: s.hail_mm_h,
-            freezing: s.freezing,
-            showers: s.showers,
-            thunder: s.thunder,
-            liquid_extinction_per_m: s.liquid_extinction_per_m.unwrap_or(0.0),
-            solid_extinction_per_m: s.solid_extinction_per_m.unwrap_or(0.0),
-        };
-        match s.extinction_per_m {
-            Some(whole) => super::hydrometeors::by_species(falling).with_extinction(whole),
-            None => falling,
-        }
-    }
 }
 
 /// A horizontally mixed layer of cloud.
@@ -414,51 +342,6 @@ impl WindProfile {
             return 0.0;
         }
         self.friction_velocity_m_s() / 0.4 * libm::log(z / self.roughness_length_m)
-    }
-}
-
-impl Falling {
-    /// Nothing.
-    pub(crate) const NONE: Self = Self {
-        rain_mm_h: 0.0,
-        drizzle_mm_h: 0.0,
-        snow_mm_h: 0.0,
-        grain_share: 0.0,
-        crystal_share: 0.0,
-        ice_pellets_mm_h: 0.0,
-        hail_mm_h: 0.0,
-        freezing: 0.0,
-        showers: 0.0,
-        thunder: 0.0,
-        liquid_extinction_per_m: 0.0,
-        solid_extinction_per_m: 0.0,
-    };
-
-    /// Snow as flakes, as snow grains and as ice crystals, mm/h of melted water: together [`Falling::snow_mm_h`].
-    pub fn snow_kinds_mm_h(&self) -> [f64; 3] {
-        let [grains, crystals] = [self.grain_share, self.crystal_share].map(|share| share * self.snow_mm_h);
-        [(self.snow_mm_h - grains - crystals).max(0.0), grains, crystals]
-    }
-
-    /// Everything that falls, mm/h of liquid water.
-    pub fn total_mm_h(&self) -> f64 {
-        self.rain_mm_h + self.drizzle_mm_h + self.snow_mm_h + self.ice_pellets_mm_h + self.hail_mm_h
-    }
-
-    /// Extinction by all that falls, at 550 nm, 1/m.
-    pub fn extinction_per_m(&self) -> f64 {
-        self.liquid_extinction_per_m + self.solid_extinction_per_m
-    }
-
-    /// Returns the precipitation with `whole` as the extinction of all, 1/m, in which liquid and solid keep their
-    /// shares. What has no species counts as solid: no drop is drawn of it.
-    pub(crate) fn with_extinction(self, whole: f64) -> Self {
-        let before = self.extinction_per_m();
-        if before <= 0.0 {
-            return Self { liquid_extinction_per_m: 0.0, solid_extinction_per_m: whole, ..self };
-        }
-        let liquid_extinction_per_m = whole * (self.liquid_extinction_per_m / before);
-        Self { liquid_extinction_per_m, solid_extinction_per_m: whole - liquid_extinction_per_m, ..self }
     }
 }
 

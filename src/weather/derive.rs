@@ -3,60 +3,9 @@
 
 use super::conditions::{CloudLightOverride, Conditions, clear_between};
 use super::model::Weather;
-use super::{air, cloud_slabs, hydrometeors, particles, surface};
-use crate::error::{Result, check_range};
-
-/// The host's own figures in place of a coupling's. `None` leaves the law in force; default all `None`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Overrides {
-    /// Aerosol extinction at 550 nm and station height, 1/m, in place of the share of the visibility. Range [0, 10].
-    pub aerosol_extinction_per_m: Option<f64>,
-    /// Extinction inside the ground layer, 1/m, in place of the rest of the visibility. Range [0, 10].
-    pub fog_extinction_per_m: Option<f64>,
-    /// Extinction of what falls, 1/m, in place of the drop and flake spectra's. Range [0, 10].
-    pub precipitation_extinction_per_m: Option<f64>,
-    /// Visibility that the air above a mist or fog keeps, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
-    pub visibility_above_fog_m: Option<f64>,
-    /// Growth of particles by humidity over their size at 80 %, in place of Haenel's law. Range [0.1, 20]; 1 switches
-    /// it off.
-    pub humidity_growth: Option<f64>,
-    /// Air density at sea level over the standard's. Range [0, 10].
-    pub rayleigh_density_ratio: Option<f64>,
-    /// Scale height of the air, m. Range [100, 50 000].
-    pub rayleigh_scale_height_m: Option<f64>,
-    /// Whether rain brings its cloud. Law: it does.
-    pub rain_needs_cloud: Option<bool>,
-    /// Part of the sun's beam, and diffuse part of it, below the clouds, in place of the slabs' light. Range [0, 1]
-    /// each.
-    pub cloud_light: Option<(f64, f64)>,
-    /// Significant wave height, m, in place of what wind or state say. Range [0, 30].
-    pub wave_height_m: Option<f64>,
-    /// Wetness of the ground, in place of what falls on it. Range [0, 1].
-    pub wetness: Option<f64>,
-}
-
-impl Overrides {
-    /// Checks every figure that is set.
-    ///
-    /// # Errors
-    /// [`crate::Status::InvalidArgument`] with the name and range of the first that is not finite or outside.
-    pub fn validate(&self) -> Result<()> {
-        let fields = [
-            ("overrides.aerosol_extinction_per_m", self.aerosol_extinction_per_m, 0.0, 10.0, "1/m"),
-            ("overrides.fog_extinction_per_m", self.fog_extinction_per_m, 0.0, 10.0, "1/m"),
-            ("overrides.precipitation_extinction_per_m", self.precipitation_extinction_per_m, 0.0, 10.0, "1/m"),
-            ("overrides.visibility_above_fog_m", self.visibility_above_fog_m, 100.0, 1e6, "m"),
-            ("overrides.humidity_growth", self.humidity_growth, 0.1, 20.0, ""),
-            ("overrides.rayleigh_density_ratio", self.rayleigh_density_ratio, 0.0, 10.0, ""),
-            ("overrides.rayleigh_scale_height_m", self.rayleigh_scale_height_m, 100.0, 50_000.0, "m"),
-            ("overrides.cloud_light.0", self.cloud_light.map(|l| l.0), 0.0, 1.0, ""),
-            ("overrides.cloud_light.1", self.cloud_light.map(|l| l.1), 0.0, 1.0, ""),
-            ("overrides.wave_height_m", self.wave_height_m, 0.0, 30.0, "m"),
-            ("overrides.wetness", self.wetness, 0.0, 1.0, ""),
-        ];
-        fields.iter().try_for_each(|&(name, v, lo, hi, unit)| v.map_or(Ok(()), |v| check_range(name, v, lo, hi, unit)))
-    }
-}
+use super::overrides::Overrides;
+use super::{air, cloud_slabs, particles, precipitation, surface};
+use crate::error::Result;
 
 /// The conditions that follow from a weather by the laws alone. Pure and deterministic; any thread.
 ///
@@ -84,7 +33,7 @@ pub fn derive_with(weather: &Weather, overrides: &Overrides) -> Result<Condition
         air.rayleigh_density_ratio = ratio;
     }
     air.rayleigh_scale_height_m = o.rayleigh_scale_height_m.unwrap_or(air.rayleigh_scale_height_m);
-    let mut falling = hydrometeors::falling(&w.precipitation);
+    let mut falling = precipitation::falling(&w.precipitation);
     let left = (super::LN_20 / w.visibility_m - air.rayleigh_extinction_per_m).max(0.0);
     if let Some(whole) = o.precipitation_extinction_per_m {
         falling = falling.with_extinction(whole);

@@ -1,9 +1,4 @@
-//! Precipitation, and how much light it stops.
-
-use super::blend::mix;
-use super::conditions::Falling;
-use super::kinds::PrecipitationKind;
-use super::model::Precipitation;
+//! Extinction of what falls by its rate, a law for each species, and the rates of rain and snow by their extinction.
 
 /// Extinction of rain at `rate_mm_h`, 1/m, any visible wavelength.
 ///
@@ -112,50 +107,6 @@ pub fn hail_extinction_per_m(rate_mm_h: f64) -> f64 {
     fitted(c, 0.1, rate_mm_h.min(MOST_MM_H)) * (rate_mm_h / MOST_MM_H).max(1.0)
 }
 
-/// Part of the water of a shower that falls as hail where the report names hail beside rain.
-const HAIL_SHARE: f64 = 0.2;
-
-/// The rates of what falls, from the report's kind: liquid and frozen parts apart, hail beside rain taking
-/// [`HAIL_SHARE`].
-pub(super) fn falling(p: &Precipitation) -> Falling {
-    use PrecipitationKind as K;
-    let liquid = p.liquid_fraction.unwrap_or_else(|| p.kind.default_liquid_fraction());
-    let hail_beside = if p.hail && p.kind != K::Hail { HAIL_SHARE * p.rate_mm_h } else { 0.0 };
-    let rest = p.rate_mm_h - hail_beside;
-    let (wet, frozen) = (rest * liquid, rest * (1.0 - liquid));
-    let drizzle = matches!(p.kind, K::Drizzle | K::FreezingDrizzle);
-    let flag = |on: bool| if on { 1.0 } else { 0.0 };
-    let only = |on: bool, amount: f64| if on { amount } else { 0.0 };
-    let pellets = matches!(p.kind, K::IcePellets | K::SmallHail);
-    let f = Falling {
-        rain_mm_h: only(!drizzle, wet),
-        drizzle_mm_h: only(drizzle, wet),
-        snow_mm_h: only(!pellets && p.kind != K::Hail, frozen),
-        grain_share: flag(p.kind == K::SnowGrains),
-        crystal_share: flag(p.kind == K::IceCrystals),
-        ice_pellets_mm_h: only(pellets, frozen),
-        hail_mm_h: hail_beside + only(p.kind == K::Hail, frozen),
-        freezing: flag(p.kind.is_freezing()),
-        showers: flag(p.showers || p.thunderstorm),
-        thunder: flag(p.thunderstorm),
-        liquid_extinction_per_m: 0.0,
-        solid_extinction_per_m: 0.0,
-    };
-    by_species(f)
-}
-
-/// Returns these rates with the extinction of their drops, and of their flakes, pellets and stones.
-pub(super) fn by_species(f: Falling) -> Falling {
-    let [steady, showers] = [rain_extinction_per_m, shower_extinction_per_m].map(|law| law(f.rain_mm_h));
-    Falling {
-        liquid_extinction_per_m: mix(steady, showers, f.showers) + drizzle_extinction_per_m(f.drizzle_mm_h),
-        solid_extinction_per_m: snow_extinction_per_m(f.snow_mm_h)
-            + ice_pellet_extinction_per_m(f.ice_pellets_mm_h)
-            + hail_extinction_per_m(f.hail_mm_h),
-        ..f
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -222,8 +173,6 @@ mod tests {
             let fit = shower_extinction_per_m(r);
             assert!((fit * rate / (ext * r) - 1.0).abs() < 0.007, "{r} mm/h: {fit}");
         }
-        let shower = falling(&Precipitation { showers: true, ..Precipitation::of(PrecipitationKind::Rain, 10.0) });
-        assert_eq!(shower.extinction_per_m(), shower_extinction_per_m(10.0));
     }
 
     #[test]
@@ -251,26 +200,5 @@ mod tests {
         }
         let visibility_1 = super::super::LN_20 / snow_extinction_per_m(1.0);
         assert!((visibility_1 - 1000.0).abs() < 10.0, "{visibility_1}");
-    }
-
-    #[test]
-    fn kinds_split_into_rates_that_keep_the_water() {
-        for &kind in PrecipitationKind::ALL {
-            for hail in [false, true] {
-                let rate = if kind == PrecipitationKind::None { 0.0 } else { 4.0 };
-                let f = falling(&Precipitation { hail, ..Precipitation::of(kind, rate) });
-                assert!((f.total_mm_h() - rate).abs() < 1e-12, "{kind:?}");
-                assert_eq!(f.extinction_per_m() > 0.0, rate > 0.0, "{kind:?}");
-                assert_eq!(f.liquid_extinction_per_m > 0.0, f.rain_mm_h + f.drizzle_mm_h > 0.0, "{kind:?}");
-            }
-        }
-        let sleet = falling(&Precipitation::of(PrecipitationKind::Sleet, 4.0));
-        assert_eq!((sleet.rain_mm_h, sleet.snow_mm_h), (2.0, 2.0));
-        let storm = falling(&Precipitation {
-            hail: true,
-            thunderstorm: true,
-            ..Precipitation::of(PrecipitationKind::Rain, 10.0)
-        });
-        assert_eq!((storm.rain_mm_h, storm.hail_mm_h, storm.thunder, storm.showers), (8.0, 2.0, 1.0, 1.0));
     }
 }

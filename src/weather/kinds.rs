@@ -220,12 +220,12 @@ impl PrecipitationKind {
 mod tests {
     use super::*;
 
-    fn numbers_are_dense<T: Copy + PartialEq + std::fmt::Debug>(all: &[T], from: impl Fn(u32) -> Result<T>) {
+    fn numbers_are_dense<T: Copy + PartialEq + std::fmt::Debug>(all: &[T], read: impl Fn(u32) -> Result<T>) {
         for (i, k) in all.iter().enumerate() {
-            assert_eq!(from(i as u32).unwrap(), *k);
+            assert_eq!(read(i as u32).unwrap(), *k);
         }
-        assert!(from(all.len() as u32).is_err());
-        assert!(from(u32::MAX).is_err());
+        assert!(read(all.len() as u32).is_err());
+        assert!(read(u32::MAX).is_err());
     }
 
     #[test]

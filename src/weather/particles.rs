@@ -2,9 +2,9 @@
 //! reported visibility is shared out among them.
 
 use super::conditions::{AerosolLayer, Air, GroundLayer, LN_20};
-use super::derive::Overrides;
 use super::kinds::{AerosolKind, FogKind, LoftedKind};
 use super::model::Weather;
+use super::overrides::Overrides;
 
 /// Optical properties of one kind of aerosol at a relative humidity of 0.8.
 struct Properties {

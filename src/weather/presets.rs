@@ -289,7 +289,7 @@ mod tests {
         for name in Weather::preset_names() {
             let w = Weather::preset(name).unwrap();
             let c = derive(&w).unwrap();
-            let alone = super::super::hydrometeors::falling(&w.precipitation).extinction_per_m();
+            let alone = super::super::precipitation::falling(&w.precipitation).extinction_per_m();
             assert!(
                 (c.precipitation.extinction_per_m() - alone).abs() < 1e-12,
                 "{name}: the rate fits into the visibility"

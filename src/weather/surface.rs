@@ -1,8 +1,9 @@
 //! Wind near the ground, the sea it raises, and what weather does to the ground.
 
-use super::conditions::{Falling, SeaState, SurfaceCover, WindProfile};
+use super::conditions::{SeaState, SurfaceCover, WindProfile};
 use super::kinds::SurfaceState;
 use super::model::{Surface, Weather};
+use super::precipitation::Falling;
 
 /// Roughness of open grassland, m: how wind masts are sited (WMO-No. 8, part I, chapter 5).
 const GRASS_ROUGHNESS_M: f64 = 0.03;
@@ -182,7 +183,7 @@ mod tests {
 
     #[test]
     fn observed_ground_wins_over_rain() {
-        let rain = Falling { rain_mm_h: 10.0, ..super::super::hydrometeors::falling(&Default::default()) };
+        let rain = Falling { rain_mm_h: 10.0, ..super::super::precipitation::falling(&Default::default()) };
         let dry = Surface { state: Some(SurfaceState::Dry), ..Surface::default() };
         assert_eq!(surface_cover(&dry, 10.0, 0.9, &rain).wetness, 0.0);
         let wet = surface_cover(&Surface::default(), 10.0, 0.9, &rain);

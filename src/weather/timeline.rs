@@ -74,13 +74,13 @@ impl Timeline {
         Self { version: VERSION, now_s: EVER_S, known_from_s: always(), base, changes: Vec::new() }
     }
 
-    /// Changes to `to`, beginning at simulation time `start_s` (\[-1e10, 1e10\] s) and lasting `transition_s`
+    /// Changes to `weather`, beginning at simulation time `start_s` (\[-1e10, 1e10\] s) and lasting `transition_s`
     /// (\[0, 3.2e7\] s; 0 is a cut).
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] by name; [`Status::WrongOrder`] if it begins before the last update or before a
     /// change that was given earlier. The timeline stays as it was.
-    pub fn change(&mut self, to: Conditions, start_s: f64, transition_s: f64) -> Result<()> {
+    pub fn change(&mut self, weather: Conditions, start_s: f64, transition_s: f64) -> Result<()> {
         check_range("start_time_s", start_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
         check_range("transition_s", transition_s, 0.0, MAX_TRANSITION_S, "s")?;
         let earliest = self.changes.last().map_or(self.now_s, |c| c.start_s.max(self.now_s));
@@ -96,7 +96,7 @@ impl Timeline {
                 "one more",
             ));
         }
-        self.changes.push(Change { start_s, transition_s, to });
+        self.changes.push(Change { start_s, transition_s, to: weather });
         Ok(())
     }
 

@@ -27,9 +27,9 @@ pub(super) fn words(report: &str) -> Vec<Word<'_>> {
     words
 }
 
-/// The refusal: place of byte `at` in `report` as line and column, what was expected, what is there.
-pub(super) fn fault(report: &str, at: usize, expected: &str, found: Option<&str>) -> Error {
-    let before = &report[..at.min(report.len())];
+/// The refusal: place of `byte` in `report` as line and column, what was expected, what is there.
+pub(super) fn fault(report: &str, byte: usize, expected: &str, found: Option<&str>) -> Error {
+    let before = &report[..byte.min(report.len())];
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
     // A long or binary word would drown the message: escapes of a character take up to ten bytes.

@@ -4,8 +4,8 @@
 use std::ops::RangeInclusive;
 
 use super::super::kinds::CloudKind;
-use super::RunwayVisualRange;
 use super::amounts::Amount;
+use super::report::RunwayVisualRange;
 
 /// Metres in a foot and in a statute mile; metres a second in a knot.
 const FOOT_M: f64 = 0.3048;

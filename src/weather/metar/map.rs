@@ -5,11 +5,11 @@ use super::assumed;
 use super::groups::CloudGroup;
 use super::parse::Parsed;
 use super::phenomena::{Descriptor, Intensity, Phenomenon, WeatherGroup};
-use super::{MetarOptions, MetarReport};
+use super::report::{MetarOptions, MetarReport};
 use crate::error::{Result, Status};
 use crate::weather::kinds::{AerosolKind, CloudAmountRule, CloudKind, FogKind, LoftedKind, PrecipitationKind};
 use crate::weather::model::{Aerosol, CloudLayer, Fog, Lofted, Precipitation, Sea, Weather, Wind};
-use crate::weather::{LN_20, air, hydrometeors, particles};
+use crate::weather::{LN_20, air, hydrometeors, particles, precipitation};
 
 /// Base of a layer whose height a report leaves out, m.
 const ASSUMED_BASE_M: f64 = 600.0;
@@ -237,7 +237,7 @@ fn visibility_m(p: &Parsed, w: &Weather, assumed: &mut Vec<&'static str>) -> f64
             (0.0, assumed::visibility_bound_m(p))
         }
     };
-    let falling = hydrometeors::falling(&w.precipitation).extinction_per_m();
+    let falling = precipitation::falling(&w.precipitation).extinction_per_m();
     particles::unlimited_visibility_m(w.relative_humidity, falling).clamp(least, most)
 }
 

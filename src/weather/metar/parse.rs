@@ -10,8 +10,8 @@ use std::ops::Range;
 use super::fault::{Word, fault, words};
 use super::groups::{self, CloudGroup, Reading, SeaGroup, VisibilityGroup, WindGroup};
 use super::phenomena::{self, WeatherGroup};
+use super::report::{MAX_METAR_BYTES, MetarPlaces, RunwayVisualRange};
 use super::supplements;
-use super::{MAX_METAR_BYTES, MetarPlaces, RunwayVisualRange};
 use crate::error::{Error, Result, Status};
 use crate::weather::model::MAX_CLOUD_LAYERS;
 
