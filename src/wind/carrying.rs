@@ -4,7 +4,10 @@ use std::cell::{Cell, RefCell};
 
 use glam::DVec3;
 
-use super::{Blowing, Drift, LayerDrifts, Wind};
+use super::{
+    drift::{Blowing, Drift, Wind},
+    layers::LayerDrifts,
+};
 use crate::weather::Timeline;
 
 /// The wind of a seed over a timeline of weathers.
@@ -84,15 +87,15 @@ pub(crate) struct Remembered {
 }
 
 impl Remembered {
-    fn at(&self, over: &WindOver<'_>, time_s: f64) -> Blowing {
+    fn at(&self, wind: &WindOver<'_>, time_s: f64) -> Blowing {
         let mut winds = self.winds.borrow_mut();
-        if self.revision.replace(over.revision) != over.revision {
+        if self.revision.replace(wind.revision) != wind.revision {
             winds.clear();
         }
         if let Some((_, found)) = winds.iter().find(|(bits, _)| *bits == time_s.to_bits()) {
             return *found;
         }
-        let found = over.at(time_s);
+        let found = wind.at(time_s);
         if winds.len() < REMEMBERED {
             let room = REMEMBERED - winds.len();
             winds.reserve_exact(room);

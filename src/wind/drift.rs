@@ -1,4 +1,4 @@
-//! The wind along the timeline: how far the air has come, and how fast it goes.
+//! The wind of a seed along the timeline: how far the air has come, and how fast it goes.
 //!
 //! Between the starts and ends of changes the mean wind is one polynomial of time, which eight points of Gauss and
 //! Legendre integrate exactly while at most five changes overlap; gusts and wander are integrated in closed form.
@@ -7,10 +7,7 @@
 
 use glam::DVec2;
 
-use super::{
-    Wind,
-    gusts::{GustStretch, Gusts, Stir},
-};
+use super::gusts::{GustStretch, Gusts, Stir};
 use crate::weather::{Conditions, Timeline, WindProfile, timeline::Change};
 
 /// Nodes and weights of Gauss and Legendre's rule of 8 points on [-1, 1], one half (Abramowitz and Stegun 1964, table
@@ -21,6 +18,25 @@ pub(super) const GAUSS: [(f64, f64); 4] = [
     (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
     (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
 ];
+
+/// The wind of a seed. Plain data, any thread.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wind {
+    gusts: Gusts,
+}
+
+impl Wind {
+    /// The gusts that a seed decides.
+    pub fn new(seed: u64) -> Self {
+        Self { gusts: Gusts::new(seed) }
+    }
+
+    /// The wind at 10 m at time `t`, s, not before what `timeline` knows; `kept` is what was kept of that which it has
+    /// forgotten ([`Drift::ZERO`] as long as that is nothing).
+    pub fn blowing(&self, timeline: &Timeline, kept: Drift, t: f64) -> Blowing {
+        Walk::new(&self.gusts, timeline, kept, t).blowing(t)
+    }
+}
 
 /// How far the air at 10 m has come at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +74,7 @@ impl Drift {
 }
 
 /// Goes along a timeline from one start or end of a change to the next.
-pub(super) struct Walk<'a> {
+struct Walk<'a> {
     gusts: &'a Gusts,
     base: WindProfile,
     changes: &'a [Change],

@@ -30,7 +30,7 @@ pub(crate) struct LayerDrifts {
 
 /// Slots of the weather below all changes, and the changes that are under way over it.
 #[derive(Clone, Copy)]
-struct Under<'a> {
+struct LayerChanges<'a> {
     base: &'a Conditions,
     active: &'a [Change],
 }
@@ -58,7 +58,7 @@ fn rate(slab: &CloudSlab) -> LayerDrift {
     LayerDrift { way, lives: 1.0 / slab.life_s }
 }
 
-impl Under<'_> {
+impl LayerChanges<'_> {
     fn slab(&self, slot: usize, t: f64) -> CloudSlab {
         let over = |below: CloudSlab, change: &Change| below.blend(&change.to.clouds[slot], change.share(t));
         self.active.iter().fold(self.base.clouds[slot], over)
@@ -88,8 +88,8 @@ impl LayerDrifts {
     /// Time 0.
     pub const ZERO: Self = Self { time_s: 0.0, slots: [LayerDrift { way: DVec2::ZERO, lives: 0.0 }; MAX_CLOUD_LAYERS] };
 
-    fn onward(&self, under: Under<'_>, to_s: f64) -> Self {
-        let one = |slot: usize| self.slots[slot].after(&under.integral(slot, self.time_s, to_s), 1.0);
+    fn onward(&self, changes: LayerChanges<'_>, to_s: f64) -> Self {
+        let one = |slot: usize| self.slots[slot].after(&changes.integral(slot, self.time_s, to_s), 1.0);
         Self { time_s: to_s, slots: std::array::from_fn(one) }
     }
 
@@ -101,7 +101,7 @@ impl LayerDrifts {
             // Counting begins at time 0, wherever the changes do.
             Some(first) if timeline.known_since_ever() && t < first.start_s => changes = &[],
             Some(first) if timeline.known_since_ever() && first.start_s < at.time_s => {
-                at = at.onward(Under { base, active: &[] }, first.start_s);
+                at = at.onward(LayerChanges { base, active: &[] }, first.start_s);
             }
             _ => {}
         }
@@ -114,7 +114,7 @@ impl LayerDrifts {
             let active = &changes[..count];
             let end = active.iter().map(Change::end_s).fold(f64::INFINITY, f64::min);
             let next = changes.get(count).map_or(end, |c| c.start_s.min(end));
-            at = at.onward(Under { base, active }, next.min(t));
+            at = at.onward(LayerChanges { base, active }, next.min(t));
             if next > t {
                 return at;
             }

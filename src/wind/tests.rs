@@ -3,22 +3,22 @@
 
 use std::f64::consts::TAU;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::*;
-use crate::weather::{Conditions, Weather, derive};
+use crate::weather::{Conditions, Timeline, Weather, derive};
 
-fn of(speed: f64, from: f64) -> Conditions {
-    derive(&Weather { wind: crate::weather::Wind::of(speed, from), ..Weather::default() }).unwrap()
+fn of(speed: f64, from_deg: f64) -> Conditions {
+    derive(&Weather { wind: crate::weather::Wind::of(speed, from_deg), ..Weather::default() }).unwrap()
 }
 
-fn varying(speed: f64, from: f64, range: (f64, f64)) -> Conditions {
-    let wind = crate::weather::Wind { variable_deg: Some(range), ..crate::weather::Wind::of(speed, from) };
+fn varying(speed: f64, from_deg: f64, range: (f64, f64)) -> Conditions {
+    let wind = crate::weather::Wind { variable_deg: Some(range), ..crate::weather::Wind::of(speed, from_deg) };
     derive(&Weather { wind, ..Weather::default() }).unwrap()
 }
 
 /// Changes one after another, laid over each other, cuts among them, calms, turns and wandering winds.
-fn told(until: usize) -> Timeline {
+fn told(count: usize) -> Timeline {
     let mut t = Timeline::new(of(4.0, 270.0));
     let changes = [
         (of(12.0, 180.0), -40.0, 20.0),
@@ -32,7 +32,7 @@ fn told(until: usize) -> Timeline {
         (varying(5.0, 250.0, (210.0, 280.0)), 300.0, 100.0),
         (of(15.0, 70.0), 350.0, 25.0),
     ];
-    for (weather, start, transition) in &changes[..until.min(changes.len())] {
+    for (weather, start, transition) in &changes[..count.min(changes.len())] {
         t.change(*weather, *start, *transition).unwrap();
     }
     t
