@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::Scene;
+use super::scene::Scene;
 
 /// Light on the things that fall about a camera, cd/m^2 and lux or these times an exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]

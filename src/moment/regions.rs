@@ -210,17 +210,17 @@ fn with_falling(c: Conditions, falling: Falling) -> Conditions {
     Conditions { extinction_per_m, precipitation: falling, ..c }
 }
 
-/// Rates and extinction of drops where `over` lies with a share over `falling`, of which the share `begun` has left its
-/// cloud.
-fn covered(falling: &Falling, over: &Falling, share: f64, begun: f64) -> Falling {
+/// Rates and extinction of drops where `region` lies with a share over `falling`, of which the share `begun` has left
+/// its cloud.
+fn covered(falling: &Falling, region: &Falling, share: f64, begun: f64) -> Falling {
     let (kept, come) = (1.0 - share, share * begun);
-    let rain = falling.rain_mm_h * kept + over.rain_mm_h * come;
-    let showers = falling.rain_mm_h * falling.showers * kept + over.rain_mm_h * over.showers * come;
+    let rain = falling.rain_mm_h * kept + region.rain_mm_h * come;
+    let showers = falling.rain_mm_h * falling.showers * kept + region.rain_mm_h * region.showers * come;
     Falling {
         rain_mm_h: rain,
-        drizzle_mm_h: falling.drizzle_mm_h * kept + over.drizzle_mm_h * come,
+        drizzle_mm_h: falling.drizzle_mm_h * kept + region.drizzle_mm_h * come,
         showers: if rain > 0.0 { (showers / rain).min(1.0) } else { falling.showers },
-        liquid_extinction_per_m: falling.liquid_extinction_per_m * kept + over.liquid_extinction_per_m * come,
+        liquid_extinction_per_m: falling.liquid_extinction_per_m * kept + region.liquid_extinction_per_m * come,
         ..*falling
     }
 }
