@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::World;
+use super::state::World;
 use crate::error::{Error, Result, Status};
 
 /// Simulation time to which states are led, the present at the latest, and how long the update that leads them may go
@@ -22,9 +22,9 @@ pub(crate) trait HeldEffect: std::any::Any {
         Ok(())
     }
 
-    /// Leads the state on to `within.until_s`, by steps of a grid that is anchored at time 0, or until the time is
+    /// Leads the state on to `budget.until_s`, by steps of a grid that is anchored at time 0, or until the time is
     /// over: one step at least. Says whether it got there.
-    fn lead(&mut self, _world: &World, _within: Within) -> Result<Status> {
+    fn lead(&mut self, _world: &World, _budget: Within) -> Result<Status> {
         Ok(Status::Ok)
     }
 

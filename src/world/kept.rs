@@ -2,7 +2,10 @@
 
 use glam::DVec3;
 
-use super::{GivenDirection, NightSettings, World};
+use super::{
+    settings::{GivenDirection, NightSettings},
+    state::World,
+};
 use crate::{almanac::sun::Utc, error::Result, moment::Scene, planet::Planet, weather::Conditions, wind::Blowing};
 
 /// A scene with the weather at its place, and all that they follow from.

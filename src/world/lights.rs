@@ -2,19 +2,15 @@
 
 use glam::DVec3;
 
-use super::{World, planet_under};
+use super::{air::planet_under, color::color_of, state::World};
 use crate::{
     almanac::{
         moon::{self, MoonPosition},
         sun::{self, SunPosition, Turned},
     },
     error::{Error, Result},
-    light::luminance,
     moment::Light,
-    planet::{
-        Planet,
-        spectral::{Conversion, sun_rec709},
-    },
+    planet::Planet,
     scene::{Place, angle_between},
     weather::{CloudLight, Conditions, snow_cover},
 };
@@ -23,23 +19,6 @@ use crate::{
 const SUN_LUX: f64 = 133_334.0;
 /// Colour of moonlight over sunlight: the moon's albedo rises towards red (Velikodsky et al. 2011), luminance kept.
 const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
-/// Linear Rec. 709 colours, lux, of unscattered sunlight's parts at each of the planet's wavelengths: what a transfer
-/// of light at these wavelengths looks like is their sum weighted by it ([`Conversion::fitted`]; each wavelength as one
-/// channel where two of them are too close to tell colours apart).
-///
-/// Adapted (von Kries) to unscattered sunlight as white, as daylight film and eyes are: on a D65 display it would look
-/// yellow.
-pub(super) fn color_columns(planet: &Planet) -> [[f64; 3]; 3] {
-    let conversion = Conversion::of(planet);
-    let white = sun_rec709();
-    let lux = luminance(&white);
-    [0, 1, 2].map(|k| [0, 1, 2].map(|c| conversion.matrix[c][k] / white[c] * lux))
-}
-
-/// Colour of a transfer at the planet's wavelengths.
-pub(crate) fn color_of(columns: &[[f64; 3]; 3], spectrum: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| (0..3).map(|k| columns[k][i] * spectrum[k]).sum())
-}
 
 /// The moon adds less than a hundredth to a twilight whose sun stands above this elevation, degrees.
 const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
@@ -155,35 +134,35 @@ impl World {
 
     fn moon_over(
         &self,
-        mut at: MoonPosition,
+        mut almanac: MoonPosition,
         sun: &Light,
         (c, albedo): (&Conditions, f64),
         altitude_m: f64,
         see: impl Fn(DVec3) -> (DVec3, f64),
     ) -> UnderClouds {
         if let Some(given) = &self.set.given_moon {
-            at.direction = given.unit();
+            almanac.direction = given.unit();
         }
         if self.set.given_moon.is_some() || self.set.given_sun.is_some() {
             // The host moved one of them: the phase follows from where they stand now.
-            let elongation = angle_between(at.direction, sun.direction);
-            at.phase_angle = std::f64::consts::PI - elongation;
-            at.illuminated = 0.5 * (1.0 + libm::cos(at.phase_angle));
-            let in_disc = sun.direction - at.direction * sun.direction.dot(at.direction);
-            at.bright_limb = in_disc.normalize_or(at.direction.any_orthonormal_vector());
-            at.illuminance_lux = moon::moon_illuminance_lux(at.phase_angle, at.distance_m);
+            let elongation = angle_between(almanac.direction, sun.direction);
+            almanac.phase_angle = std::f64::consts::PI - elongation;
+            almanac.illuminated = 0.5 * (1.0 + libm::cos(almanac.phase_angle));
+            let in_disc = sun.direction - almanac.direction * sun.direction.dot(almanac.direction);
+            almanac.bright_limb = in_disc.normalize_or(almanac.direction.any_orthonormal_vector());
+            almanac.illuminance_lux = moon::moon_illuminance_lux(almanac.phase_angle, almanac.distance_m);
         }
-        let (apparent, flattening) = see(at.direction);
-        let spectrum = MOON_TINT.map(|t| t * at.illuminance_lux / SUN_LUX);
+        let (apparent, flattening) = see(almanac.direction);
+        let spectrum = MOON_TINT.map(|t| t * almanac.illuminance_lux / SUN_LUX);
         let dark = sun.direction.z < libm::sin(MOON_MATTERS_BELOW_DEG.to_radians());
         let above = apparent.z > -0.02;
-        let clouds = c.cloud_light_at(at.direction.z, albedo, altitude_m);
+        let clouds = c.cloud_light_at(almanac.direction.z, albedo, altitude_m);
         let moon = Light {
-            direction: at.direction,
+            direction: almanac.direction,
             apparent,
-            bright_limb: at.bright_limb,
-            angular_radius: at.angular_radius,
-            lit: at.illuminated,
+            bright_limb: almanac.bright_limb,
+            angular_radius: almanac.angular_radius,
+            lit: almanac.illuminated,
             spectrum,
             illuminance_lux: color_of(&self.set.color, spectrum),
             flattening,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::World;
+use super::state::World;
 use crate::{
     error::{Error, Result, check_range},
     falling::{

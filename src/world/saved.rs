@@ -4,9 +4,10 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    GivenDirection, Settings, World,
-    lights::color_columns,
+    color::color_columns,
     saved_settings::{SavedSettings, SetBeside},
+    settings::{GivenDirection, Settings},
+    state::{World, next_revision},
 };
 use crate::{
     almanac::sun::{Utc, sun_position},
@@ -254,7 +255,7 @@ impl World {
         use std::mem::swap;
         swap(&mut self.time_s, &mut other.time_s);
         swap(&mut self.timeline, &mut other.timeline);
-        self.timeline_revision = super::next_revision();
+        self.timeline_revision = next_revision();
         swap(&mut self.drifted, &mut other.drifted);
         swap(&mut self.layers_drifted, &mut other.layers_drifted);
         swap(&mut self.set, &mut other.set);

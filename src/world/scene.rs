@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use super::{
-    World,
     air::planet_under,
-    lights::{LandSeen, UnderClouds, color_of},
+    color::color_of,
+    lights::{LandSeen, UnderClouds},
+    state::World,
 };
 use crate::{
     error::Result,
@@ -195,7 +196,9 @@ impl World {
     pub(crate) fn clouds_over(
         &self,
         conditions: &Conditions,
-        (local, position, map_m): (&LocalFrame, DVec3, DVec2),
+        local: &LocalFrame,
+        position: DVec3,
+        map_m: DVec2,
         time_s: f64,
     ) -> Result<[Option<Conditions>; 2]> {
         let mapped = self.set.cloud_map.as_ref().map(|map| conditions.under_map(map, map_m));
@@ -218,7 +221,7 @@ impl World {
         let map_m = self.map_place(position, &local);
         // Light is that of the clouds over the place, those over rain areas among them; all else is the weather's.
         let [mapped, under_areas] =
-            self.clouds_over(&conditions, (&local, position, DVec2::from_array(map_m)), time_s)?;
+            self.clouds_over(&conditions, &local, position, DVec2::from_array(map_m), time_s)?;
         let shown = mapped.as_ref().unwrap_or(&conditions);
         let overhead = under_areas.as_ref().unwrap_or(shown);
         let lights = self.lights_over(&local.place, (overhead, land.albedo), time_s)?;
@@ -364,7 +367,7 @@ impl GroundLight {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lights::color_columns;
+    use super::super::color::color_columns;
     use super::*;
 
     fn lux(elevation_deg: f64) -> f64 {

@@ -1,10 +1,10 @@
 //! The wind at a place: the weather's, and what varies in space about it.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError};
 
 use glam::{DVec2, DVec3};
 
-use super::{HostWind, World};
+use super::{detours::DetourInputs, settings::HostWind, state::World};
 use crate::{
     error::Result,
     weather::Conditions,
@@ -17,20 +17,6 @@ const SEEN_DEPTHS: f64 = 8.0;
 /// a weather changes not in every frame.
 const WIND_STEP_M_S: f64 = 0.125;
 const SIZE_STEP: f64 = 1.0 / 32.0;
-
-/// All that detours follow from.
-#[derive(Clone, Copy, PartialEq)]
-struct DetourInputs {
-    volume: u64,
-    terrain: u64,
-    /// At two heights over the ground.
-    weathers_m_s: [DVec2; 2],
-    life_m: f64,
-}
-
-/// The last detours that were asked for.
-#[derive(Default)]
-pub(super) struct KeptDetours(Mutex<Option<(DetourInputs, Option<Arc<DetourMap>>)>>);
 
 impl World {
     /// The wind that varies in space at a time: the host's grid if there is one, else the solved field.

@@ -1,0 +1,219 @@
+//! State of a world, `World`: place, weather, time and surroundings, and what each is set to.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+
+use glam::DVec3;
+
+use super::{
+    color::color_columns,
+    couplings::Couplings,
+    detours::KeptDetours,
+    settings::{NightSettings, Settings},
+};
+use crate::{
+    almanac::{
+        ephemeris::Ephemeris,
+        sun::{Utc, sun_position},
+    },
+    error::{Result, check_range},
+    falling::FallingLayer,
+    light::{Exposure, ToneCurve},
+    moment::WeatherOver,
+    planet::Planet,
+    scene::{HostLight, WorldFrame},
+    surroundings::{LyingSnow, OccluderMaps, WindTexture},
+    weather::{CloudMap, Conditions, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
+    wind::{Drift, LayerDrifts, Wind, WindOver, WindVolume},
+};
+
+/// Place, weather, time and surroundings.
+pub(crate) struct World {
+    pub frame: WorldFrame,
+    pub seed: u64,
+    pub exposure: Exposure,
+    pub tone: ToneCurve,
+    pub timeline: Timeline,
+    /// Revision of the timeline: no two worlds share one, and every change of the timeline makes a new one.
+    pub(super) timeline_revision: u64,
+    pub(super) wind: Wind,
+    /// How far the wind had carried the air when the last change ended that the timeline has forgotten.
+    pub drifted: Drift,
+    /// Drifts of the layers of cloud at that time.
+    pub(super) layers_drifted: LayerDrifts,
+    pub set: Settings,
+    pub night: NightSettings,
+    pub maps: Option<Box<OccluderMaps>>,
+    pub lights: Vec<HostLight>,
+    /// The wind round terrain and boxes, where something has solved for it.
+    pub solved_wind: Option<Box<WindVolume>>,
+    pub(super) wind_texture: WindTexture,
+    pub(super) detours: KeptDetours,
+    /// The lying snow, where it is led through time.
+    pub snow: Option<Box<LyingSnow>>,
+    pub time_s: f64,
+    pub(super) ephemeris: Ephemeris,
+    pub(super) couplings: Couplings,
+    /// Revision of the rain areas and static shelters.
+    pub surroundings_revision: u64,
+}
+
+/// A number that no timeline has had.
+pub(super) fn next_revision() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(1);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// Description that a world is made from.
+pub(crate) struct WorldDesc {
+    pub frame: WorldFrame,
+    pub planet: Planet,
+    pub seed: u64,
+    pub exposure: Exposure,
+    pub tone: ToneCurve,
+    pub utc_at_zero: Utc,
+}
+
+impl World {
+    /// With a first weather, at time 0.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field.
+    pub fn new(made: WorldDesc, weather: Conditions, couplings: Couplings) -> Result<Self> {
+        let WorldDesc { frame, planet, seed, exposure, tone, utc_at_zero } = made;
+        frame.validate()?;
+        planet.check()?;
+        exposure.validate()?;
+        sun_position(utc_at_zero, &frame.origin)?;
+        Ok(Self {
+            frame,
+            seed,
+            exposure,
+            tone,
+            timeline: Timeline::new(weather),
+            timeline_revision: next_revision(),
+            wind: Wind::new(seed),
+            drifted: Drift::ZERO,
+            layers_drifted: LayerDrifts::ZERO,
+            set: Settings {
+                shelters: Vec::new(),
+                terrain: None,
+                tiles: None,
+                regions: Vec::new(),
+                cloud_map: None,
+                host_wind: None,
+                given_sun: None,
+                given_moon: None,
+                utc_at_zero,
+                undimmed: false,
+                color: color_columns(&planet),
+                planet,
+            },
+            night: NightSettings::default(),
+            maps: None,
+            lights: Vec::new(),
+            solved_wind: None,
+            wind_texture: WindTexture::default(),
+            detours: KeptDetours::default(),
+            snow: None,
+            time_s: 0.0,
+            ephemeris: Ephemeris::default(),
+            couplings,
+            surroundings_revision: 0,
+        })
+    }
+
+    /// Changes the weather; see [`Timeline::change`].
+    ///
+    /// # Errors
+    /// As [`Timeline::change`]; the weather stays as it was.
+    pub fn change_weather(&mut self, weather: Conditions, start_s: f64, transition_s: f64) -> Result<()> {
+        self.timeline.change(weather, start_s, transition_s)?;
+        self.timeline_revision = next_revision();
+        Ok(())
+    }
+
+    /// The weather over all places and times.
+    pub fn over(&self) -> WeatherOver<'_> {
+        let revision = self.timeline_revision;
+        let (kept, kept_layers) = (self.drifted, &self.layers_drifted);
+        let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept, kept_layers, revision };
+        WeatherOver { world: &self.frame, wind, regions: &self.set.regions, cloud_map: self.set.cloud_map.as_ref() }
+    }
+
+    /// The weather at a time, with what its wind lifts of the snow that lies now.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the time is not finite, out of range or forgotten.
+    pub fn weather_at(&self, time_s: f64) -> Result<Conditions> {
+        self.over().check_time(time_s)?;
+        let mut c = self.timeline.at(time_s);
+        if let Some(snow) = &self.snow {
+            lift_snow(&mut c, snow.threshold_m_s, snow.cover);
+        }
+        Ok(c)
+    }
+
+    /// The weather at a time with what falls at a place.
+    ///
+    /// # Errors
+    /// As [`World::weather_at`]; for what is no place.
+    pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
+        self.frame.place_at("position", position)?;
+        Ok(self.over().falling_at(position, time_s, self.weather_at(time_s)?))
+    }
+
+    /// Lays a map on layers of cloud, in place of the one before.
+    ///
+    /// # Errors
+    /// As [`CloudMap::validate`]; nothing changes then.
+    pub fn set_cloud_map(&mut self, map: Option<CloudMap>) -> Result<()> {
+        map.as_ref().map_or(Ok(()), CloudMap::validate)?;
+        self.set.cloud_map = map.map(Arc::new);
+        self.surroundings_revision += 1;
+        Ok(())
+    }
+
+    /// Universal time at simulation time `time_s`.
+    pub fn utc_at(&self, time_s: f64) -> Utc {
+        Utc(self.set.utc_at_zero.0 + time_s)
+    }
+
+    /// Ties universal time to simulation time: it is `utc` at simulation time `at_s`.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for times out of range.
+    pub fn set_clock(&mut self, utc: Utc, at_s: f64) -> Result<()> {
+        check_range("time_s", at_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        let zero = Utc(utc.0 - at_s);
+        sun_position(zero, &self.frame.origin)?;
+        self.set.utc_at_zero = zero;
+        Ok(())
+    }
+
+    /// Puts another planet in place of the one before.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_planet(&mut self, planet: Planet) -> Result<()> {
+        planet.check()?;
+        self.set.color = color_columns(&planet);
+        self.set.planet = planet;
+        Ok(())
+    }
+
+    /// Forgets what has ended, but for what is asked from `keep_s` on.
+    pub fn forget_before(&mut self, keep_s: f64) {
+        self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
+        self.layers_drifted = self.layers_drifted.kept(&self.timeline, keep_s);
+        self.timeline.advance_keeping(self.time_s, keep_s);
+    }
+
+    /// Extinction of what falls in the weather `c` outside of all regions; none where a law of the host's stands in for
+    /// it.
+    pub fn falling(&self, c: &Conditions) -> FallingLayer {
+        if self.set.undimmed { FallingLayer::NONE } else { FallingLayer::new(c) }
+    }
+}
