@@ -5,7 +5,7 @@
 //! and by each effect that holds a part of it. Keys may be added without another format if a state without them means
 //! what it did; a key whose meaning changes makes another format.
 
-use super::Context;
+use super::shared_world::Context;
 use crate::{
     effects::LoadedHeld,
     error::{Error, Result, Status, number, toml_fault},

@@ -5,7 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::Context;
+use super::shared_world::Context;
 use crate::{
     error::{Error, Result, Status, check_range, number},
     weather::timeline::MAX_TIME_S,
@@ -64,8 +64,8 @@ impl Context {
     }
 
     /// Leads all state after the present, as far as the time reaches.
-    fn lead(&mut self, within: Within) -> Result<Status> {
-        let led = self.lead_steps(within)?;
+    fn lead(&mut self, budget: Within) -> Result<Status> {
+        let led = self.lead_steps(budget)?;
         // What has ended is forgotten, but for what the next step asks.
         let stepped = self.held.all().into_iter().filter_map(|effect| effect.stepped_to_s());
         let keep_s = stepped.fold(self.world.time_s, f64::min);
@@ -76,16 +76,16 @@ impl Context {
 
     /// Leads the effects on until the present, or until the time is over: one step at least. Says whether they got
     /// there.
-    fn lead_steps(&mut self, within: Within) -> Result<Status> {
+    fn lead_steps(&mut self, budget: Within) -> Result<Status> {
         let mut behind = self.behind.take();
         if let Some(then) = &mut behind {
             std::mem::swap(&mut self.world.set, then);
         }
-        let mut until_s = self.next_stop_s(f64::NEG_INFINITY, within.until_s);
-        let mut led = self.lead_each(Within { until_s, ..within });
-        while led == Ok(Status::Ok) && until_s < within.until_s {
-            until_s = self.next_stop_s(until_s, within.until_s);
-            led = self.lead_each(Within { until_s, ..within });
+        let mut until_s = self.next_stop_s(f64::NEG_INFINITY, budget.until_s);
+        let mut led = self.lead_each(Within { until_s, ..budget });
+        while led == Ok(Status::Ok) && until_s < budget.until_s {
+            until_s = self.next_stop_s(until_s, budget.until_s);
+            led = self.lead_each(Within { until_s, ..budget });
         }
         match (&mut behind, &led) {
             (Some(then), _) => std::mem::swap(&mut self.world.set, then),
@@ -112,7 +112,7 @@ impl Context {
     }
 
     /// Leads each effect on in turn, as far as the time allows.
-    fn lead_each(&mut self, within: Within) -> Result<Status> {
+    fn lead_each(&mut self, budget: Within) -> Result<Status> {
         let mut led = Ok(Status::Ok);
         for effect in self.held.each() {
             let led_to = effect.lead(&self.world, within);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::Context;
+use super::shared_world::Context;
 use crate::{
     error::Result,
     wind::{Blowing, WindAt, WindGrid},

@@ -1,0 +1,314 @@
+//! Context: the weather, the time and the place that all views of a simulator share, as a host sets and asks them.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::{
+    almanac::sun::Utc,
+    effects::{COUPLINGS, ContextDesc, Held},
+    error::{Error, Result},
+    gpu::{Device, Shared},
+    light::{Exposure, ToneCurve},
+    moment::{GroundLight, Light, Scene, SceneMoment},
+    scene::{HostLight, MAX_LIGHTS, WorldFrame},
+    surroundings::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
+    weather::{Conditions, Overrides, Weather, derive, derive_with},
+    world::{GivenDirection, KeptScene, Settings, World, WorldDesc},
+};
+
+/// Light at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightAt {
+    /// The sun, in (east, north, up) of the place.
+    pub sun: Light,
+    /// The moon.
+    pub moon: Light,
+    /// Light that arrives, after air, clouds and fog.
+    pub arriving: GroundLight,
+}
+
+/// The weather, the time and the place that all views of a simulator share.
+///
+/// Thread rule: `&Context` from any number of threads, `&mut Context` exclusive.
+pub struct Context {
+    pub(super) device: Arc<Device>,
+    pub(super) shared: Arc<Shared>,
+    pub(crate) world: World,
+    pub(crate) held: Held,
+    /// Settings when an update was called that has left steps for another call.
+    pub(super) behind: Option<Box<Settings>>,
+}
+
+impl Context {
+    /// Makes a context on `device`, with the default weather, at time 0. Contexts of one device share `shared`.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field of `desc`.
+    pub fn new(device: Arc<Device>, shared: Arc<Shared>, desc: ContextDesc) -> Result<Self> {
+        let made = WorldDesc {
+            frame: desc.world,
+            planet: desc.planet,
+            seed: desc.seed,
+            exposure: desc.exposure,
+            tone: desc.tone,
+            utc_at_zero: desc.utc_at_zero,
+        };
+        let world = World::new(made, derive(&Weather::default())?, COUPLINGS)?;
+        let held = Held::new(&device, &shared, &desc)?;
+        Ok(Self { device, shared, world, held, behind: None })
+    }
+
+    /// The device it was made on.
+    pub fn device(&self) -> &Arc<Device> {
+        &self.device
+    }
+
+    /// Pipelines and tables it shares with other contexts of the device.
+    pub fn shared(&self) -> &Arc<Shared> {
+        &self.shared
+    }
+
+    /// Where the host's world lies.
+    pub fn world(&self) -> &WorldFrame {
+        &self.world.frame
+    }
+
+    /// Exposure of frames that bring none.
+    pub fn exposure(&self) -> Exposure {
+        self.world.exposure
+    }
+
+    /// Sets the exposure of frames that bring none.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field.
+    pub fn set_exposure(&mut self, exposure: Exposure) -> Result<()> {
+        exposure.validate()?;
+        self.world.exposure = exposure;
+        Ok(())
+    }
+
+    /// From luminance to the display.
+    pub fn tone_curve(&self) -> ToneCurve {
+        self.world.tone
+    }
+
+    /// Sets the curve from luminance to the display, from the next frame on.
+    pub fn set_tone_curve(&mut self, tone: ToneCurve) {
+        self.world.tone = tone;
+    }
+
+    /// Changes the weather, beginning at simulation time `start_s` and lasting `transition_s`; see
+    /// [`Timeline::change`](crate::weather::Timeline::change).
+    ///
+    /// # Errors
+    /// As [`derive()`] and [`Timeline::change`](crate::weather::Timeline::change); the weather stays as it was.
+    pub fn set_weather(&mut self, weather: &Weather, start_s: f64, transition_s: f64) -> Result<()> {
+        self.world.change_weather(derive(weather)?, start_s, transition_s)?;
+        self.refresh()
+    }
+
+    /// As [`Context::set_weather`], with the host's own figures in place of some couplings.
+    ///
+    /// # Errors
+    /// As [`derive_with`] and [`Timeline::change`](crate::weather::Timeline::change); the weather stays as it was.
+    pub fn set_weather_with(
+        &mut self,
+        weather: &Weather,
+        overrides: &Overrides,
+        start_s: f64,
+        transition_s: f64,
+    ) -> Result<()> {
+        self.world.change_weather(derive_with(weather, overrides)?, start_s, transition_s)?;
+        self.refresh()
+    }
+
+    /// Sets what keeps rain off, in place of what did before: roofs, bridges, cabs. A moving box is set anew every
+    /// frame.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_SHELTERS`], or naming the field; nothing changes then.
+    pub fn set_shelters<'a>(&mut self, shelters: impl IntoIterator<Item = &'a Shelter, IntoIter: Clone>) -> Result<()> {
+        let shelters = shelters.into_iter();
+        let count = shelters.clone().count();
+        if count > MAX_SHELTERS {
+            return Err(Error::range("shelters", &format!("at most {MAX_SHELTERS}"), count));
+        }
+        shelters.clone().try_for_each(Shelter::validate)?;
+        let same = self.world.set.shelters.iter().filter(|s| s.stands()).eq(shelters.clone().filter(|s| s.stands()));
+        self.world.set.shelters.clear();
+        self.world.set.shelters.extend(shelters);
+        if same {
+            return Ok(());
+        }
+        self.world.surroundings_revision += 1;
+        self.refresh()
+    }
+
+    /// Sets what keeps rain off, as depth textures of the host's own, in place of those before; an empty list takes
+    /// them away. What they show is taken over in a submission of its own, after what is submitted already: the host
+    /// may then draw into them again. At most [`MAX_OCCLUDER_MAPS`](crate::surroundings::MAX_OCCLUDER_MAPS). Best taken
+    /// along [`RainAt::fall_velocity_m_s`](crate::rain::RainAt::fall_velocity_m_s). Not part of a saved state: each
+    /// channel may have its own.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field,
+    /// [`crate::Status::DeviceLost`]; nothing changes then.
+    pub fn set_occluder_maps(&mut self, maps: &[OccluderMap<'_>]) -> Result<()> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        let label = wgpu::CommandEncoderDescriptor { label: Some("occluder maps") };
+        let mut encoder = device.device.create_command_encoder(&label);
+        self.record_occluder_maps(maps, &mut encoder)?;
+        device.submit(encoder);
+        device.check()
+    }
+
+    /// As [`Context::set_occluder_maps`], into an encoder that is submitted before the next frame.
+    pub(crate) fn record_occluder_maps(
+        &mut self,
+        maps: &[OccluderMap<'_>],
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<()> {
+        let device = self.device.clone();
+        let mut held = match self.world.maps.take() {
+            Some(held) => held,
+            None if maps.is_empty() => return Ok(()),
+            None => Box::new(OccluderMaps::new(&device)?),
+        };
+        let outcome = held.set(&device, encoder, maps);
+        self.world.maps = Some(held);
+        outcome
+    }
+
+    /// The host's lamps, in place of those before: they light what Welkin draws in their beams (today rain). A moving
+    /// lamp is set anew every frame.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_LIGHTS`], or naming the field; nothing changes then.
+    pub fn set_lights<'a>(&mut self, lights: impl IntoIterator<Item = &'a HostLight, IntoIter: Clone>) -> Result<()> {
+        let lights = lights.into_iter();
+        let count = lights.clone().count();
+        if count > MAX_LIGHTS {
+            return Err(Error::range("lights", &format!("at most {MAX_LIGHTS}"), count));
+        }
+        lights.clone().try_for_each(HostLight::validate)?;
+        self.world.lights.clear();
+        self.world.lights.extend(lights);
+        Ok(())
+    }
+
+    /// The host's lamps.
+    pub fn lights(&self) -> &[HostLight] {
+        &self.world.lights
+    }
+
+    /// Returns the shelters that keep rain off.
+    pub fn shelters(&self) -> &[Shelter] {
+        &self.world.set.shelters
+    }
+
+    /// Seed of everything that chance decides.
+    pub fn seed(&self) -> u64 {
+        self.world.seed
+    }
+
+    /// Radius of the planet's ground, m.
+    pub fn planet_radius_m(&self) -> f64 {
+        self.world.set.planet.bottom_radius_m
+    }
+
+    /// Ties universal time to simulation time: it is `utc` at simulation time `at_s`.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for times out of range.
+    pub fn set_clock(&mut self, utc: Utc, at_s: f64) -> Result<()> {
+        self.world.set_clock(utc, at_s)
+    }
+
+    /// Puts the sun where the host says; `None` returns it to the almanac.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the angle.
+    pub fn set_sun(&mut self, sun: Option<GivenDirection>) -> Result<()> {
+        sun.map_or(Ok(()), |s| s.validate("sun"))?;
+        self.world.set.given_sun = sun;
+        Ok(())
+    }
+
+    /// Puts the moon where the host says (its phase follows from the sun's place); `None` returns it to the almanac.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the angle.
+    pub fn set_moon(&mut self, moon: Option<GivenDirection>) -> Result<()> {
+        moon.map_or(Ok(()), |m| m.validate("moon"))?;
+        self.world.set.given_moon = moon;
+        Ok(())
+    }
+
+    /// Simulation time, s.
+    pub fn time_s(&self) -> f64 {
+        self.world.time_s
+    }
+
+    /// Universal time at simulation time `time_s`.
+    pub fn utc_at(&self, time_s: f64) -> Utc {
+        self.world.utc_at(time_s)
+    }
+
+    /// The conditions at `position` and simulation time `time_s`, past or to come. What falls is what falls at the
+    /// position itself: that of the rain areas there ([`Context::set_rain_areas`]), mixed by their rims, and nothing
+    /// above the cloud that it falls from; rain and drizzle are those of [`Context::rain_at`]. The extinction of all
+    /// that falls and the total, and so the visibility, go with it. Everything else is the weather's, the same over all
+    /// of the world, at the station's height (each field says so).
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place, or the time is not finite, out of range, or
+    /// before what the timeline still knows ([`Timeline::known_from_s`](crate::weather::Timeline::known_from_s)).
+    pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
+        self.world.conditions_at(position, time_s)
+    }
+
+    /// Refuses a time of which the weather is not known.
+    ///
+    /// # Errors
+    /// As [`Context::conditions_at`].
+    pub fn check_time(&self, time_s: f64) -> Result<()> {
+        self.world.over().check_time(time_s)
+    }
+
+    /// Returns the moment at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an
+    /// earlier call, taken again where nothing has changed since.
+    ///
+    /// # Errors
+    /// As [`Context::scene_at`].
+    pub(crate) fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<SceneMoment<'_>> {
+        self.world.moment(name, eye, kept)
+    }
+
+    /// Returns the scene from which a camera at `position` draws at simulation time `time_s`, past or to come. Closed
+    /// form: no device is asked.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet; for times as
+    /// [`Context::conditions_at`].
+    pub fn scene_at(&self, position: DVec3, time_s: f64) -> Result<Scene> {
+        self.world.scene_named("position", position, time_s)
+    }
+
+    /// Sun, moon and sky at `position` and simulation time `time_s`, with the clouds' and the air's share taken off.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
+    pub fn light_at(&self, position: DVec3, time_s: f64) -> Result<LightAt> {
+        let scene = self.scene_at(position, time_s)?;
+        Ok(LightAt { sun: scene.sun, moon: scene.moon, arriving: scene.ground })
+    }
+
+    /// Updates what effects make of weather and surroundings.
+    pub(crate) fn refresh(&mut self) -> Result<()> {
+        let world = &self.world;
+        self.held.each().into_iter().try_for_each(|effect| effect.refresh(world))
+    }
+}
