@@ -24,8 +24,11 @@ use glam::DVec2;
 
 use super::{
     column::{Column, SnowParcel, UNITS},
-    field::{NONE, Patch, SnowField, SnowStep},
+    drift_state::{DriftFlux, DriftSweep},
+    field::SnowField,
+    inputs::SnowStep,
     laws::{DRY_THRESHOLD_M_S, new_density_kg_m3, saltation_kg_m_s, suspension_kg_m_s, threshold_m_s},
+    patch::{NONE, Patch},
 };
 
 /// Ways over which the flux of what hops grows and falls to 1/e, m.
@@ -43,44 +46,6 @@ const CALMED: f64 = 0.85;
 const LEAST_M: f64 = 1.0;
 /// Distances over which slope and curvature of the surface are taken, m.
 const SHAPES_M: [f64; 3] = [6.0, 10.0, 15.0];
-
-/// Snow and lee that cross a cell's border with the wind.
-#[derive(Clone, Copy, Debug, Default)]
-struct DriftFlux {
-    /// Snow that hops and that is suspended, in units of mass.
-    snow: [i64; 2],
-    /// Height of the lee's line there, and of what casts it, m; none at the end of the ground.
-    lee: Option<[f64; 2]>,
-}
-
-/// State of a sweep for a patch.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Edges {
-    /// Air that has left it down the wind: along each row to the east or west, along each column to the north or south.
-    left: [Vec<DriftFlux>; 2],
-    /// Wind over each cell: its parts along the sweep, m/s, or its speed over the mean wind's and nothing.
-    wind: Vec<[f64; 2]>,
-    /// The line of the calm before what stands to its lee, along each row and each column where the wind comes in: its
-    /// height and that of what casts it, m. Empty where nothing stands.
-    fronts: [Vec<Option<[f64; 2]>>; 2],
-    /// Number of the sweep that it was in last.
-    swept: u64,
-    /// Snow may lie on it or come to it in this sweep; and some may lie to its lee.
-    has_snow: bool,
-    has_lee: bool,
-}
-
-/// Room for a sweep.
-#[derive(Clone, Debug, Default)]
-pub(super) struct DriftSweep {
-    /// Numbers of the patches down the wind.
-    order: Vec<u32>,
-    /// Air that comes to a patch: along each row, and along each column.
-    coming: [Vec<DriftFlux>; 2],
-    /// Fronts of the patches to the lee: see [`Edges`].
-    fronts: [Vec<Option<[f64; 2]>>; 2],
-    sweeps: u64,
-}
 
 /// How a sweep goes down the wind.
 struct Way {
@@ -110,8 +75,8 @@ impl Way {
     }
 
     /// The patch up or down the wind along an axis.
-    fn beside(&self, patch: &Patch, axis: usize, down: bool) -> u32 {
-        patch.near[2 * axis + usize::from(self.back[axis] != down)]
+    fn beside(&self, patch: &Patch, axis: usize, leeward: bool) -> u32 {
+        patch.near[2 * axis + usize::from(self.back[axis] != leeward)]
     }
 }
 
@@ -158,20 +123,26 @@ fn smooth(x: f64) -> f64 {
 
 /// Height of ground and snow so many cells along an axis from a cell, m, and how many they were: fewer at the end of
 /// the ground, and none where something stands.
-fn along(field: &SnowField, (patch, place): (usize, [usize; 2]), axis: usize, up: bool, cells: usize) -> (f64, usize) {
+fn along(
+    field: &SnowField,
+    (patch, place): (usize, [usize; 2]),
+    axis: usize,
+    forward: bool,
+    cells: usize,
+) -> (f64, usize) {
     let (mut at, mut patch, mut left) = (place, patch, cells);
     loop {
-        let room = if up { field.size[axis] - 1 - at[axis] } else { at[axis] };
-        let next = field.patches[patch].near[2 * axis + usize::from(up)];
+        let room = if forward { field.size[axis] - 1 - at[axis] } else { at[axis] };
+        let next = field.patches[patch].near[2 * axis + usize::from(forward)];
         let ends = left <= room || next == NONE;
         if ends {
             let go = left.min(room);
-            at[axis] = if up { at[axis] + go } else { at[axis] - go };
+            at[axis] = if forward { at[axis] + go } else { at[axis] - go };
             left -= go;
             break;
         }
         left -= room + 1;
-        (patch, at[axis]) = (next as usize, if up { 0 } else { field.size[axis] - 1 });
+        (patch, at[axis]) = (next as usize, if forward { 0 } else { field.size[axis] - 1 });
     }
     let (patch, cell) = (&field.patches[patch], at[1] * field.size[0] + at[0]);
     if patch.is_blocked(cell) { (f64::NAN, 0) } else { (patch.surface_m(cell), cells - left) }
@@ -203,9 +174,9 @@ fn shaped(field: &SnowField, patch: usize, place: [usize; 2], unit: DVec2) -> f6
 
 /// A calm's line over a cell, from the lines over its two neighbours on the side of what casts it: its height, m, lower
 /// by the way through the cell, and the height of what casts it, m.
-fn fallen(way: &Way, beside: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
+fn fallen(way: &Way, neighbours: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
-    for (share, known) in way.shares.into_iter().zip(beside).filter_map(|(share, known)| Some((share, known?))) {
+    for (share, known) in way.shares.into_iter().zip(neighbours).filter_map(|(share, known)| Some((share, known?))) {
         line += share * known[0];
         caster += share * known[1];
         sum += share;
@@ -214,8 +185,8 @@ fn fallen(way: &Way, beside: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
 }
 
 /// Returns the share of the wind that a lee leaves at a cell, up to a factor, and the line over it.
-fn calmed(patch: &Patch, cell: usize, way: &Way, before: [DriftFlux; 2]) -> (f64, Option<[f64; 2]>) {
-    let fallen = fallen(way, before.map(|air| air.lee)).map(|[line, caster]| [line, caster.max(LEAST_M)]);
+fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f64, Option<[f64; 2]>) {
+    let fallen = fallen(way, windward.map(|air| air.lee)).map(|[line, caster]| [line, caster.max(LEAST_M)]);
     if patch.is_hole(cell) {
         return (1.0, fallen);
     }
@@ -229,8 +200,8 @@ fn calmed(patch: &Patch, cell: usize, way: &Way, before: [DriftFlux; 2]) -> (f64
 
 /// Returns the share of the wind that is left at a cell by the calm before what stands to the lee, up to a factor, and
 /// the line over it.
-fn dammed(patch: &Patch, cell: usize, way: &Way, behind: [Option<[f64; 2]>; 2]) -> (f64, Option<[f64; 2]>) {
-    let fallen = fallen(way, behind);
+fn dammed(patch: &Patch, cell: usize, way: &Way, leeward: [Option<[f64; 2]>; 2]) -> (f64, Option<[f64; 2]>) {
+    let fallen = fallen(way, leeward);
     if patch.is_hole(cell) {
         return (1.0, fallen);
     }
@@ -372,9 +343,9 @@ impl DriftSweep {
     }
 
     /// Finds what comes to a patch: from those up the wind, or what the country about the field yields.
-    fn come(&mut self, field: &mut SnowField, at: usize, way: &Way, inflow: [[i64; 2]; 2]) {
+    fn come(&mut self, field: &mut SnowField, patch: usize, way: &Way, inflow: [[i64; 2]; 2]) {
         for (axis, inflow) in inflow.into_iter().enumerate() {
-            let before = way.beside(&field.patches[at], axis, false);
+            let before = way.beside(&field.patches[patch], axis, false);
             let coming = &mut self.coming[axis];
             coming.clear();
             match field.patches.get(before as usize).map(|p| &p.edges) {
@@ -389,11 +360,11 @@ impl DriftSweep {
     }
 
     /// Sweeps over a patch: what comes to it becomes what leaves it.
-    fn sweep(&mut self, field: &mut SnowField, at: usize, sweep: &Sweep<'_>) {
+    fn sweep(&mut self, field: &mut SnowField, patch: usize, sweep: &Sweep<'_>) {
         let way = sweep.way;
         let [nx, ny] = field.size;
         let [by_rows, by_columns] = &mut self.coming;
-        let patch = &mut *field.patches[at];
+        let patch = &mut *field.patches[patch];
         patch.edges.swept = self.sweeps;
         let mut changes = false;
         for j in 0..ny {
@@ -422,9 +393,14 @@ impl DriftSweep {
 impl Sweep<'_> {
     /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell along the row and along
     /// the column, hopping and suspended, the lee's line over it, and whether its column of snow has changed.
-    fn cell(&self, patch: &mut Patch, cell: usize, before: [DriftFlux; 2]) -> ([[i64; 2]; 2], Option<[f64; 2]>, bool) {
-        let (calm, lee) = if self.is_local { (1.0, None) } else { calmed(patch, cell, self.way, before) };
-        let mut leaving = [0, 1].map(|kind| before[0].snow[kind] + before[1].snow[kind]);
+    fn cell(
+        &self,
+        patch: &mut Patch,
+        cell: usize,
+        windward: [DriftFlux; 2],
+    ) -> ([[i64; 2]; 2], Option<[f64; 2]>, bool) {
+        let (calm, lee) = if self.is_local { (1.0, None) } else { calmed(patch, cell, self.way, windward) };
+        let mut leaving = [0, 1].map(|kind| windward[0].snow[kind] + windward[1].snow[kind]);
         if leaving == [0; 2] && patch.is_bare() {
             return ([[0; 2]; 2], lee, false);
         }

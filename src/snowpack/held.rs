@@ -5,12 +5,13 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::{
-    COARSE_STEP_S, STEP_S,
-    column::{Column, ColumnForcing, Settling},
-    field::{FallsAt, FieldWind, SnowField, SnowStep, WindAt},
-    laws, query,
+    column::{Column, ColumnForcing, Settling, UNITS},
+    field::SnowField,
+    inputs::{FallsAt, FieldWind, SnowStep, WindAt},
+    laws, published,
     saved::SavedSnow,
     site::Site,
+    state::{COARSE_STEP_S, STEP_S, SnowState, reported},
 };
 use crate::{
     error::{Error, Result, Status},
@@ -37,25 +38,8 @@ const SUN_EVERY_S: f64 = 300.0;
 /// Beyond this an update is fast-forward, s, and beyond this the rest is left out.
 const LONGEST_S: f64 = 86_400.0;
 const MOST_S: f64 = 30.0 * 86_400.0;
-/// Density of snow of which only the depth is reported, kg/m^3: a seasonal pack's (Sturm et al. 1995, "prairie").
-const REPORTED_KG_M3: f64 = 250.0;
 /// Where it is in a saved state.
 const KEY: &str = "lying_snow";
-
-/// The snow and what its next step needs.
-#[derive(Clone, Debug)]
-pub(super) struct SnowState {
-    pub time_s: f64,
-    /// Sunlight on level ground since the last look at it.
-    pub sunlight_w_m2: f64,
-    /// On level, open ground.
-    pub country: Column,
-    pub melted: Meltwater,
-    /// Time that was laid by fast-forward, s.
-    pub coarse_s: f64,
-    /// On the host's terrain, once it has any.
-    pub field: Option<SnowField>,
-}
 
 /// The lying snow of a context.
 pub(crate) struct HeldSnow {
@@ -103,34 +87,6 @@ impl SnowGround {
 
 /// A saved snow that can be shown.
 pub(crate) struct LoadedSnow(Option<SnowState>);
-
-fn reported(depth_m: f64) -> Column {
-    Column::of(depth_m, REPORTED_KG_M3)
-}
-
-impl SnowState {
-    fn first(world: &World, time_s: f64) -> Result<Self> {
-        Ok(Self {
-            time_s,
-            sunlight_w_m2: world.sunlight_w_m2(time_s)?,
-            country: reported(world.timeline.at(time_s).surface.snow_depth_m),
-            melted: Meltwater { covered: 0.0, runoff_mm_h: 0.0 },
-            coarse_s: 0.0,
-            field: None,
-        })
-    }
-
-    /// Where its next step ends, s.
-    fn next_s(&self, coarse_until_s: f64) -> f64 {
-        let after = |length: f64| ((self.time_s / length).floor() + 1.0) * length;
-        let coarse = after(COARSE_STEP_S);
-        if coarse <= coarse_until_s { coarse } else { after(STEP_S) }
-    }
-
-    fn lies_anywhere(&self) -> bool {
-        self.country.mass() > 0 || self.field.as_ref().is_some_and(|f| f.books.balance() > 0)
-    }
-}
 
 impl HeldSnow {
     pub fn new(model: LyingSnowModel) -> Self {
@@ -242,7 +198,7 @@ impl HeldSnow {
             old => Site::of_tiles(terrain, old.as_ref(), &mut state.field),
         };
         if let Some(field) = &mut state.field {
-            site.follow_all(terrain, (field, state.country, revision));
+            site.follow_all(terrain, field, state.country, revision);
         }
         self.site = Some(site);
         self.revision = revision;
@@ -253,7 +209,7 @@ impl HeldSnow {
         let revision = self.next_revision();
         let Some(SnowState { field: Some(field), country, .. }) = &mut self.state else { return };
         let Some(site) = self.site.as_mut().filter(|site| site.seen(terrain).is_some()) else { return };
-        site.follow(terrain, key, (field, *country, revision));
+        site.follow(terrain, key, field, *country, revision);
         site.mark_known(terrain);
         self.revision = revision;
     }
@@ -298,7 +254,7 @@ impl HeldSnow {
         let ran_off = state.country.step(&forcing, &self.settling, 1.0).ran_off;
         state.melted = Meltwater {
             covered: snow_cover(state.country.depth_m()),
-            runoff_mm_h: ran_off as f64 / super::column::UNITS * 3600.0 / seconds,
+            runoff_mm_h: ran_off as f64 / UNITS * 3600.0 / seconds,
         };
         if let (Some(site), Some(field)) = (&mut self.site, &mut state.field) {
             let revision = self.revision + 1;
@@ -382,13 +338,13 @@ impl HeldEffect for HeldSnow {
         self.settle_on(&SnowGround::of(world));
     }
 
-    fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
+    fn lead(&mut self, world: &World, budget: Within) -> Result<Status> {
         for steps in 0.. {
             let Some(end_s) = self.state.as_ref().map(|s| s.next_s(self.coarse_until_s)) else { break };
             if end_s > within.until_s {
                 break;
             }
-            if steps > 0 && within.begun.elapsed() >= within.most {
+            if steps > 0 && budget.begun.elapsed() >= budget.most {
                 return Ok(Status::Pending);
             }
             self.step(world, end_s)?;
@@ -414,11 +370,11 @@ impl HeldEffect for HeldSnow {
             return;
         }
         self.published = self.revision;
-        snow.country = query::seen(&state.country);
+        snow.country = published::seen(&state.country);
         snow.cover = snow_cover(state.country.depth_m());
         snow.threshold_m_s = laws::threshold_m_s(state.country.is_wet(), state.country.density_kg_m3());
         match &state.field {
-            Some(field) => query::publish(field, snow),
+            Some(field) => published::publish(field, snow),
             None => snow.show_none(),
         }
         snow.revision += 1;

@@ -20,13 +20,19 @@
 
 mod column;
 mod drift;
+mod drift_state;
 mod field;
 mod held;
+mod inputs;
 pub mod laws;
+mod patch;
+mod published;
 mod query;
 mod saved;
 mod site;
 mod slides;
+mod state;
+mod step;
 mod strips;
 #[cfg(test)]
 mod tests;
@@ -34,9 +40,5 @@ mod tests;
 pub use held::LyingSnowModel;
 pub(crate) use held::{HeldSnow, LoadedSnow};
 pub use query::{SnowAt, SnowBooks, SnowFriction};
+pub use state::{COARSE_STEP_S, STEP_S};
 pub use strips::{MAX_STRIP_POINTS, SnowStrip};
-
-/// Length of a step, s.
-pub const STEP_S: f64 = 60.0;
-/// Length of a step of fast-forward, s. Steep snow slides this often, too.
-pub const COARSE_STEP_S: f64 = 600.0;

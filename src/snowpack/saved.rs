@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     column::Column,
-    field::{Books, Patch, SnowField},
-    held::SnowState,
+    field::{Books, SnowField},
+    patch::Patch,
+    state::SnowState,
 };
 use crate::{
     surroundings::Meltwater,

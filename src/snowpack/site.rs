@@ -7,10 +7,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{
-    column::Column,
-    field::{Patch, SnowField},
-};
+use super::{column::Column, field::SnowField, patch::Patch};
 use crate::{
     falling::flakes::aggregate_speed_m_s,
     surroundings::{
@@ -136,7 +133,7 @@ impl Site {
     }
 
     /// Takes all tiles as the terrain has them by now.
-    pub fn follow_all(&mut self, terrain: &Terrain, (field, country, revision): (&mut SnowField, Column, u64)) {
+    pub fn follow_all(&mut self, terrain: &Terrain, field: &mut SnowField, country: Column, revision: u64) {
         for at in (0..field.patches.len()).rev() {
             let [east, north] = field.patches[at].key;
             if terrain.slot(TileKey::new(east, north)).is_none() {
@@ -144,19 +141,14 @@ impl Site {
             }
         }
         for (_, tile) in terrain.all() {
-            self.follow(terrain, tile.key, (field, country, revision));
+            self.follow(terrain, tile.key, field, country, revision);
         }
         self.mark_known(terrain);
     }
 
     /// Synchronises one tile with the terrain: a removed one loses its snow, a new one starts with that of the country,
     /// a changed one keeps its own wherever there is ground.
-    pub fn follow(
-        &mut self,
-        terrain: &Terrain,
-        key: TileKey,
-        (field, country, revision): (&mut SnowField, Column, u64),
-    ) {
+    pub fn follow(&mut self, terrain: &Terrain, key: TileKey, field: &mut SnowField, country: Column, revision: u64) {
         let at = field.find([key.east, key.north]);
         let tile = terrain.slot(key).map(|slot| terrain.tile(slot));
         let (tile, ground) = match (tile, at) {
@@ -347,16 +339,16 @@ impl Site {
     }
 
     /// How high a box that reaches the ground stands over it at a cell, m; 0 where it does not.
-    fn stands_on(&self, shelter: &Shelter, ground: DVec3, up: DVec3) -> f64 {
-        let half_height = (shelter.axes.transpose() * up).abs().dot(shelter.half_size_m);
-        let over = up.dot(shelter.center_m - ground);
+    fn stands_on(&self, shelter: &Shelter, ground: DVec3, upward: DVec3) -> f64 {
+        let half_height = (shelter.axes.transpose() * upward).abs().dot(shelter.half_size_m);
+        let over = upward.dot(shelter.center_m - ground);
         let (top, bottom) = (over + half_height, over - half_height);
         if bottom > GAP_M || top <= 0.0 {
             return 0.0;
         }
         // At the box's own height, since it may lean; cells that it only touches count.
-        let at = shelter.axes.transpose() * (ground + up * over - shelter.center_m);
-        let upright = (shelter.axes.transpose() * up).abs();
+        let at = shelter.axes.transpose() * (ground + upward * over - shelter.center_m);
+        let upright = (shelter.axes.transpose() * upward).abs();
         let touches = (0..3).all(|i| {
             let reach = shelter.half_size_m[i] + 0.5 * self.cell_m * (1.0 - upright[i] * upright[i]).max(0.0).sqrt();
             at[i].abs() <= reach + 1e-9
@@ -419,6 +411,10 @@ fn slant(wind: DVec2, fall: f64) -> DVec3 {
 }
 
 /// Height of the ground about a place, m.
-pub(super) fn ground_m(field: &SnowField, about: &CornerShares) -> f64 {
-    about.iter().flatten().map(|((patch, cell), share)| f64::from(field.patches[*patch].heights_m[*cell]) * share).sum()
+pub(super) fn ground_m(field: &SnowField, corners: &CornerShares) -> f64 {
+    corners
+        .iter()
+        .flatten()
+        .map(|((patch, cell), share)| f64::from(field.patches[*patch].heights_m[*cell]) * share)
+        .sum()
 }

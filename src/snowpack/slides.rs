@@ -1,11 +1,7 @@
 //! Snow that is too steep slides down until no slope is above the angle of repose: to the neighbour below that is
 //! steepest, by half of what is too much. Cells are looked at by the rows of the lattice, whatever patches they lie in.
 
-use super::{
-    column::UNITS,
-    field::{NONE, SnowField},
-    laws::REPOSE_DEG,
-};
+use super::{column::UNITS, field::SnowField, laws::REPOSE_DEG, patch::NONE};
 
 /// Heights too great by less than this stay, m.
 const SLACK_M: f64 = 5e-4;

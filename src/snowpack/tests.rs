@@ -2,8 +2,11 @@ use glam::DVec2;
 
 use super::{
     column::{Column, ColumnForcing, Settling, UNITS},
-    field::{FieldWind, Patch, SnowField, SnowStep, WindAt},
-    laws, slides,
+    field::SnowField,
+    inputs::{FieldWind, SnowStep, WindAt},
+    laws,
+    patch::Patch,
+    slides,
 };
 use crate::weather::{Conditions, Falling, Weather, Wind, derive};
 

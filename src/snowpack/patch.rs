@@ -1,0 +1,138 @@
+//! Patch of ground: a rectangle of cells, what stands on them, and the snow on it.
+
+use std::sync::OnceLock;
+
+use super::{column::Column, drift_state::Edges};
+
+/// In the place of a patch's number: there is none.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A rectangle of ground and the snow on it, by rows from the south-west.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Patch {
+    /// Where it lies on the lattice, in patches east and north.
+    pub key: [i32; 2],
+    /// Revision of the host's tile from which the ground was taken.
+    pub tile_revision: u64,
+    /// Height of each cell, m. Empty until the ground is known.
+    pub heights_m: Vec<f32>,
+    /// At most as high as any of them, m.
+    pub lowest_m: f64,
+    /// Where there is no ground; empty where there is ground everywhere. And how many cells have some.
+    pub holes: Vec<bool>,
+    pub ground_cells: usize,
+    /// Height of what stands on each cell and stops the wind, m; 0 without, empty where nothing stands anywhere.
+    pub obstacles_m: Vec<f64>,
+    /// Whether something keeps off each cell what falls; empty where nothing does.
+    pub sheltered: Vec<bool>,
+    /// Empty while no snow lies on it.
+    pub columns: Vec<Column>,
+    /// Other whenever its snow may be.
+    pub revision: u64,
+    /// West, east, south, north of it.
+    pub near: [u32; 4],
+    /// Snow that the wind carries over its borders, and the wind's speed.
+    pub edges: Edges,
+    hash: OnceLock<u64>,
+}
+
+impl Patch {
+    /// With these heights and the same snow everywhere but on holes.
+    pub fn new(key: [i32; 2], heights_m: Vec<f32>, holes: Vec<bool>, column: Column) -> Self {
+        let mut patch = Self { key, ..Self::default() };
+        patch.set_ground(heights_m, holes);
+        if column.mass() > 0 {
+            let at = |cell| if patch.is_hole(cell) { Column::default() } else { column };
+            patch.columns = (0..patch.heights_m.len()).map(at).collect();
+        }
+        patch
+    }
+
+    /// With this snow, on ground that is still to be known.
+    pub fn loaded(key: [i32; 2], columns: Vec<Column>) -> Self {
+        Self { key, columns, ..Self::default() }
+    }
+
+    /// Takes other ground of the same size. The snow stays.
+    pub fn set_ground(&mut self, heights_m: Vec<f32>, holes: Vec<bool>) {
+        self.lowest_m = f64::from(heights_m.iter().fold(f32::MAX, |low, h| h.min(low)));
+        self.ground_cells = heights_m.len() - holes.iter().filter(|hole| **hole).count();
+        (self.heights_m, self.holes) = (heights_m, holes);
+    }
+
+    pub fn is_bare(&self) -> bool {
+        self.columns.is_empty()
+    }
+
+    pub fn column(&self, cell: usize) -> Column {
+        self.columns.get(cell).copied().unwrap_or_default()
+    }
+
+    /// Puts another column into a cell.
+    pub fn put(&mut self, cell: usize, column: Column) {
+        self.wake();
+        self.columns[cell] = column;
+    }
+
+    pub fn wake(&mut self) {
+        if self.columns.is_empty() {
+            self.columns.resize(self.heights_m.len(), Column::default());
+        }
+    }
+
+    pub fn is_hole(&self, cell: usize) -> bool {
+        self.holes.get(cell).copied().unwrap_or(false)
+    }
+
+    pub fn obstacle_m(&self, cell: usize) -> f64 {
+        self.obstacles_m.get(cell).copied().unwrap_or(0.0)
+    }
+
+    pub fn has_obstacles(&self) -> bool {
+        self.obstacles_m.iter().any(|height| *height > 0.0)
+    }
+
+    /// Whether no snow lies on a cell because something stands on it or there is no ground.
+    pub fn is_blocked(&self, cell: usize) -> bool {
+        self.obstacle_m(cell) > 0.0 || self.is_hole(cell)
+    }
+
+    pub fn open(&self, cell: usize) -> f64 {
+        if self.sheltered.get(cell).copied().unwrap_or(false) { 0.0 } else { 1.0 }
+    }
+
+    /// Height of ground and snow, m.
+    pub fn surface_m(&self, cell: usize) -> f64 {
+        f64::from(self.heights_m[cell]) + self.columns.get(cell).map_or(0.0, Column::depth_m)
+    }
+
+    pub fn lying(&self) -> i64 {
+        self.columns.iter().map(Column::mass).sum()
+    }
+
+    /// Returns a hash that is equal for equal snow.
+    pub fn hash(&self) -> u64 {
+        *self.hash.get_or_init(|| {
+            let fold = |hash: u64, v: i64| (hash ^ v as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+            let numbers = self.columns.iter().flat_map(|c| [c.ice, c.water, c.depth, c.albedo]);
+            numbers.fold(0xcbf2_9ce4_8422_2325, fold)
+        })
+    }
+
+    /// Says that its snow is other than before.
+    pub fn changed(&mut self, revision: u64) {
+        self.revision = revision;
+        self.hash.take();
+    }
+
+    /// Takes the snow off cells on which none can lie. Answers its mass.
+    pub fn clear_blocked(&mut self) -> i64 {
+        let mut taken = 0;
+        for cell in 0..self.columns.len() {
+            if self.is_blocked(cell) {
+                taken += std::mem::take(&mut self.columns[cell]).mass();
+            }
+        }
+        taken
+    }
+}

@@ -1,0 +1,56 @@
+//! State of lying snow that is led through time, and the lengths of its steps.
+
+use super::{column::Column, field::SnowField};
+use crate::{error::Result, surroundings::Meltwater, world::World};
+
+/// Length of a step, s.
+pub const STEP_S: f64 = 60.0;
+
+/// Length of a step of fast-forward, s. Steep snow slides this often, too.
+pub const COARSE_STEP_S: f64 = 600.0;
+
+/// Density of snow of which only the depth is reported, kg/m^3: a seasonal pack's (Sturm et al. 1995, "prairie").
+const REPORTED_KG_M3: f64 = 250.0;
+
+/// The snow and what its next step needs.
+#[derive(Clone, Debug)]
+pub(super) struct SnowState {
+    pub time_s: f64,
+    /// Sunlight on level ground since the last look at it.
+    pub sunlight_w_m2: f64,
+    /// On level, open ground.
+    pub country: Column,
+    pub melted: Meltwater,
+    /// Time that was laid by fast-forward, s.
+    pub coarse_s: f64,
+    /// On the host's terrain, once it has any.
+    pub field: Option<SnowField>,
+}
+
+pub(super) fn reported(depth_m: f64) -> Column {
+    Column::of(depth_m, REPORTED_KG_M3)
+}
+
+impl SnowState {
+    pub fn first(world: &World, time_s: f64) -> Result<Self> {
+        Ok(Self {
+            time_s,
+            sunlight_w_m2: world.sunlight_w_m2(time_s)?,
+            country: reported(world.timeline.at(time_s).surface.snow_depth_m),
+            melted: Meltwater { covered: 0.0, runoff_mm_h: 0.0 },
+            coarse_s: 0.0,
+            field: None,
+        })
+    }
+
+    /// Where its next step ends, s.
+    pub fn next_s(&self, coarse_until_s: f64) -> f64 {
+        let after = |length: f64| ((self.time_s / length).floor() + 1.0) * length;
+        let coarse = after(COARSE_STEP_S);
+        if coarse <= coarse_until_s { coarse } else { after(STEP_S) }
+    }
+
+    pub fn lies_anywhere(&self) -> bool {
+        self.country.mass() > 0 || self.field.as_ref().is_some_and(|f| f.books.balance() > 0)
+    }
+}
