@@ -115,7 +115,7 @@ impl Context {
     fn lead_each(&mut self, budget: Within) -> Result<Status> {
         let mut led = Ok(Status::Ok);
         for effect in self.held.each() {
-            let led_to = effect.lead(&self.world, within);
+            let led_to = effect.lead(&self.world, budget);
             effect.publish(&mut self.world);
             match led_to {
                 Ok(Status::Ok) => {}

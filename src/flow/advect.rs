@@ -211,34 +211,34 @@ impl<'a> Carrier<'a> {
         self.moved(place, v, dt)
     }
 
-    /// Carries `from` by `dt` along straight paths, linear.
-    pub(super) fn semi_lagrangian(&self, from: &Faces, dt: f32, to: &mut Faces) {
+    /// Carries `source` by `dt` along straight paths, linear.
+    pub(super) fn semi_lagrangian(&self, source: &Faces, dt: f32, target: &mut Faces) {
         for c in self.lattice.axes() {
             self.lattice.each(c, |i, at| {
                 let place = self.straight(self.lattice.place(c, i), -dt);
-                to[c][at] = self.linear(&from[c], &self.taps(c, place));
+                target[c][at] = self.linear(&source[c], &self.taps(c, place));
             });
         }
     }
 
-    /// Carries `from` by `dt` along curved paths; cubic between values, within the eight nearest.
-    pub(super) fn cubic(&self, from: &Faces, dt: f32, to: &mut Faces) {
+    /// Carries `source` by `dt` along curved paths; cubic between values, within the eight nearest.
+    pub(super) fn cubic(&self, source: &Faces, dt: f32, target: &mut Faces) {
         for c in self.lattice.axes() {
             self.lattice.each(c, |i, at| {
                 let taps = self.taps(c, self.curved(self.lattice.place(c, i), -dt));
-                let [least, most] = self.bounds(&from[c], &taps);
-                to[c][at] = self.cubic_between(&from[c], &taps).max(least).min(most);
+                let [least, most] = self.bounds(&source[c], &taps);
+                target[c][at] = self.cubic_between(&source[c], &taps).max(least).min(most);
             });
         }
     }
 
-    /// Carries `from` by `dt` along curved paths, linear, and keeps the bounds of what each value came from.
-    pub(super) fn predict(&self, from: &Faces, dt: f32, to: &mut Faces, bounds: &mut [Vec<[f32; 2]>; 3]) {
+    /// Carries `source` by `dt` along curved paths, linear, and keeps the bounds of what each value came from.
+    pub(super) fn predict(&self, source: &Faces, dt: f32, target: &mut Faces, bounds: &mut [Vec<[f32; 2]>; 3]) {
         for c in self.lattice.axes() {
             self.lattice.each(c, |i, at| {
                 let taps = self.taps(c, self.curved(self.lattice.place(c, i), -dt));
-                to[c][at] = self.linear(&from[c], &taps);
-                bounds[c][at] = self.bounds(&from[c], &taps);
+                target[c][at] = self.linear(&source[c], &taps);
+                bounds[c][at] = self.bounds(&source[c], &taps);
             });
         }
     }
@@ -246,17 +246,17 @@ impl<'a> Carrier<'a> {
     /// MacCormack's correction of `predicted`, whose ghosts are filled: half of what carrying it back misses.
     pub(super) fn correct(
         &self,
-        from: &Faces,
+        source: &Faces,
         predicted: &Faces,
         dt: f32,
         bounds: &[Vec<[f32; 2]>; 3],
-        to: &mut Faces,
+        target: &mut Faces,
     ) {
         for c in self.lattice.axes() {
             self.lattice.each(c, |i, at| {
                 let back = self.linear(&predicted[c], &self.taps(c, self.curved(self.lattice.place(c, i), dt)));
                 let [least, most] = bounds[c][at];
-                to[c][at] = (predicted[c][at] + 0.5 * (from[c][at] - back)).max(least).min(most);
+                target[c][at] = (predicted[c][at] + 0.5 * (source[c][at] - back)).max(least).min(most);
             });
         }
     }

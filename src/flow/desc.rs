@@ -128,6 +128,13 @@ pub struct WindFieldReport {
     pub bytes: u64,
 }
 
+/// From when on there is a field, or none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FieldChange {
+    pub start_s: f64,
+    pub desc: Option<WindFieldDesc>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

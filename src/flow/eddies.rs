@@ -42,7 +42,7 @@ impl GroundMixing {
 const C: f32 = 0.07;
 
 /// Finds the eddy viscosity of each cell, m2/s; the ghosts of `v` are filled.
-pub(super) fn viscosity(lattice: &Lattice, v: &Faces, out: &mut [f32]) {
+pub(super) fn viscosity(lattice: &Lattice, v: &Faces, cells: &mut [f32]) {
     let h = lattice.h;
     lattice.each_cell(|_, cell, at| {
         let mut a = [[0.0_f32; 3]; 3];
@@ -59,14 +59,14 @@ pub(super) fn viscosity(lattice: &Lattice, v: &Faces, out: &mut [f32]) {
         }
         let all: f32 = a.iter().flatten().map(|v| v * v).sum();
         if all < 1e-12 {
-            out[cell] = 0.0;
+            cells[cell] = 0.0;
             return;
         }
         let b = |i: usize, j: usize| (0..3).map(|m| h[m] * h[m] * a[m][i] * a[m][j]).sum::<f32>();
         let [b11, b22, b33] = [b(0, 0), b(1, 1), b(2, 2)];
         let [b12, b13, b23] = [b(0, 1), b(0, 2), b(1, 2)];
         let sum = b11 * b22 - b12 * b12 + b11 * b33 - b13 * b13 + b22 * b33 - b23 * b23;
-        out[cell] = C * (sum.max(0.0) / all).sqrt();
+        cells[cell] = C * (sum.max(0.0) / all).sqrt();
     });
 }
 

@@ -1,6 +1,6 @@
-//! The field itself: settings, a step, the steady state, and questions to it.
+//! The field itself: its velocity on the grid, what stands in it, and questions to it.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{
     advect::{Carrier, Scheme},
@@ -8,59 +8,12 @@ use super::{
     lattice::{Faces, Lattice},
     obstacles::{FlowObstacles, Shares},
     openings::Openings,
-    pressure::{Pressure, PressureMethod, Solved},
-    sides::{Role, Roles, Side, fastest, fill, roles},
+    pressure::{Pressure, Solved},
+    settings::{FlowSettings, MAX_SPEED_M_S},
+    sides::{Role, Roles, fastest, fill, roles},
     walls::Walls,
 };
-use crate::error::{Error, Result, check_range};
-
-/// Largest speed of the air that a field takes, m/s.
-pub const MAX_SPEED_M_S: f64 = 300.0;
-
-/// Settings of a field. Lengths count from the lowest corner of its box.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlowSettings {
-    /// Cells east, north and up, 1 to 4096 each, at most 33,554,432 in all. An axis of one cell is flat: nothing
-    /// changes along it.
-    pub cells: [u32; 3],
-    /// Size of a cell, m, \[1e-6, 10,000\].
-    pub cell_m: DVec3,
-    /// Low and high side of each axis.
-    pub sides: [[Side; 2]; 3],
-    /// How velocity is carried.
-    pub scheme: Scheme,
-    /// How the pressure is solved for.
-    pub pressure: PressureMethod,
-    /// The pressure is good enough where no cell's divergence times cell size exceeds this share of the largest speed,
-    /// \[1e-7, 1\].
-    pub tolerance: f64,
-    /// Kinematic viscosity, m2/s, \[0, 1e6\]: 0 for weather, whose walls stop no air by it; tests set it.
-    pub viscosity_m2_s: f64,
-    /// Air slides along terrain and boxes; otherwise it sticks to them.
-    pub is_slip: bool,
-    /// Roughness length of terrain, boxes and a slip wall as floor, m, \[0, 5\]: what they take of the speed of air
-    /// that slides along them. 0: nothing.
-    pub roughness_m: f64,
-    /// Whirls below a cell mix the air (Vreman 2004).
-    pub has_eddies: bool,
-}
-
-impl Default for FlowSettings {
-    fn default() -> Self {
-        Self {
-            cells: [128, 128, 32],
-            cell_m: DVec3::splat(4.0),
-            sides: [[Side::Open; 2], [Side::Open; 2], [Side::Slip; 2]],
-            scheme: Scheme::default(),
-            pressure: PressureMethod::Multigrid { max_cycles: 50 },
-            tolerance: 1e-4,
-            viscosity_m2_s: 0.0,
-            is_slip: true,
-            roughness_m: 0.0,
-            has_eddies: false,
-        }
-    }
-}
+use crate::error::{Error, Result};
 
 /// The air's velocity on a staggered grid, led through time.
 #[derive(Clone, Debug)]
@@ -88,30 +41,6 @@ pub struct FlowField {
     pub(super) solved: Solved,
 }
 
-fn check(settings: &FlowSettings) -> Result<()> {
-    settings.pressure.check()?;
-    check_range("flow.tolerance", settings.tolerance, 1e-7, 1.0, "")?;
-    check_range("flow.viscosity_m2_s", settings.viscosity_m2_s, 0.0, 1e6, "m2/s")?;
-    check_range("flow.roughness_m", settings.roughness_m, 0.0, 5.0, "m")?;
-    for (a, [low, high]) in settings.sides.into_iter().enumerate() {
-        if (low == Side::Periodic) != (high == Side::Periodic) {
-            return Err(Error::invalid(format!("flow.sides[{a}]"), "must be periodic on both sides or on neither"));
-        }
-        for side in [low, high] {
-            if let Side::NoSlip(v) = side {
-                check_range(
-                    &format!("flow.sides[{a}].velocity"),
-                    Vec3::from(v).length().into(),
-                    0.0,
-                    MAX_SPEED_M_S,
-                    "m/s",
-                )?;
-            }
-        }
-    }
-    Ok(())
-}
-
 impl FlowField {
     /// A field of air round `obstacles` that moves as `wind` says (m/s east, north, up, at a place), made free of
     /// divergence. Open sides keep that wind as the outer one.
@@ -120,7 +49,7 @@ impl FlowField {
     /// [`crate::Status::InvalidArgument`] for settings outside their ranges, for a wind that is not finite or over
     /// [`MAX_SPEED_M_S`], and for obstacles outside of the field or without a finite height.
     pub fn new(settings: &FlowSettings, obstacles: &FlowObstacles, wind: impl Fn(DVec3) -> DVec3) -> Result<Self> {
-        check(settings)?;
+        settings.check()?;
         let lattice = Lattice::new(settings.cells, settings.cell_m)?;
         let outer = at_faces(&lattice, wind)?;
         let roles = roles(&lattice, &settings.sides, &outer);

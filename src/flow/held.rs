@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    WindFieldDesc, WindFieldReport,
+    desc::{FieldChange, WindFieldDesc, WindFieldReport},
     live::{LEAP_S, Live, step_s},
     saved::{SavedChange, SavedField},
 };
@@ -19,13 +19,6 @@ use crate::{
 const MAX_CHANGES: usize = 64;
 /// Where it is in a saved state.
 const KEY: &str = "wind_field";
-
-/// From when on there is a field, or none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FieldChange {
-    pub start_s: f64,
-    pub desc: Option<WindFieldDesc>,
-}
 
 /// The wind field of a context, if the host asked for one.
 #[derive(Default)]
@@ -210,9 +203,9 @@ enum StepOutcome {
 }
 
 impl HeldEffect for HeldFlow {
-    fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
-        while self.go_on(world, within.until_s)? {
-            if within.begun.elapsed() >= within.most {
+    fn lead(&mut self, world: &World, budget: Within) -> Result<Status> {
+        while self.go_on(world, budget.until_s)? {
+            if budget.begun.elapsed() >= budget.most {
                 return Ok(Status::Pending);
             }
         }

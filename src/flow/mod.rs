@@ -76,6 +76,7 @@ mod pressure;
 pub mod probe;
 mod projection;
 mod saved;
+mod settings;
 mod sides;
 #[cfg(test)]
 mod tests;
@@ -84,8 +85,9 @@ mod walls;
 
 pub use advect::Scheme;
 pub use desc::{WindFieldDesc, WindFieldMode, WindFieldReport, WindWalls};
-pub use field::{FlowField, FlowSettings, MAX_SPEED_M_S};
+pub use field::FlowField;
 pub(crate) use held::HeldFlow;
 pub use obstacles::{FlowBox, FlowObstacles, Heights};
 pub use pressure::{PressureMethod, Solved};
+pub use settings::{FlowSettings, MAX_SPEED_M_S};
 pub use sides::Side;

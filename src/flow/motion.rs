@@ -110,22 +110,22 @@ impl FlowField {
         self.fill_all(mirrored);
     }
 
-    /// `to` becomes what `from` is after the wind has carried it by `dt`, ghosts filled.
-    fn carry(&mut self, from: &Faces, wind: &Faces, dt: f64, other: &mut Faces, to: &mut Faces) {
+    /// `target` becomes what `source` is after the wind has carried it by `dt`, ghosts filled.
+    fn carry(&mut self, source: &Faces, wind: &Faces, dt: f64, other: &mut Faces, target: &mut Faces) {
         let mut bounds = std::mem::take(&mut self.bounds);
         let carrier = Carrier::new(&self.lattice, wind, self.range());
         let t = dt as f32;
         match self.settings.scheme {
-            Scheme::SemiLagrangian => carrier.semi_lagrangian(from, t, to),
+            Scheme::SemiLagrangian => carrier.semi_lagrangian(source, t, target),
             Scheme::MacCormack => {
-                carrier.predict(from, t, other, &mut bounds);
+                carrier.predict(source, t, other, &mut bounds);
                 self.fill_all(other);
-                carrier.correct(from, other, t, &bounds, to);
+                carrier.correct(source, other, t, &bounds, target);
             }
-            Scheme::Reflection => carrier.cubic(from, t, to),
+            Scheme::Reflection => carrier.cubic(source, t, target),
         }
         self.bounds = bounds;
-        self.fill_all(to);
+        self.fill_all(target);
     }
 
     pub(super) fn range(&self) -> [Option<[f32; 2]>; 3] {
@@ -181,9 +181,9 @@ fn largest_of(faces: &Faces, f: impl Fn(usize, usize) -> f32) -> f32 {
     all.fold(0.0, |most, (c, at)| most.max(f(c, at).abs()))
 }
 
-/// Makes `before` the wind that goes on from it through `now`, `ahead` times as far as from the one to the other.
-fn lead_on(now: &Faces, before: &mut Faces, ahead: f32) {
-    for (now, before) in now.iter().flatten().zip(before.iter_mut().flatten()) {
-        *before = now + ahead * (now - *before);
+/// Makes `earlier` the wind that goes on from it through `now`, `ahead` times as far as from the one to the other.
+fn lead_on(now: &Faces, earlier: &mut Faces, ahead: f32) {
+    for (now, earlier) in now.iter().flatten().zip(earlier.iter_mut().flatten()) {
+        *earlier = now + ahead * (now - *earlier);
     }
 }

@@ -109,21 +109,21 @@ impl GridLevel {
     }
 
     /// Computes the residual of the equation: right-hand side less left-hand side.
-    pub(super) fn residual(&self, x: &[f32], b: &[f32], out: &mut [f32]) {
+    pub(super) fn residual(&self, x: &[f32], b: &[f32], residual: &mut [f32]) {
         self.each_row(|row, _| {
             for i in 0..self.n[0] {
                 let at = row.own + i;
-                out[at] = b[at] - (self.neighbours(x, row, i) - self.sum[at] * x[at]);
+                residual[at] = b[at] - (self.neighbours(x, row, i) - self.sum[at] * x[at]);
             }
         });
     }
 
     /// The left-hand side.
-    pub(super) fn apply(&self, x: &[f32], out: &mut [f32]) {
+    pub(super) fn apply(&self, x: &[f32], product: &mut [f32]) {
         self.each_row(|row, _| {
             for i in 0..self.n[0] {
                 let at = row.own + i;
-                out[at] = self.neighbours(x, row, i) - self.sum[at] * x[at];
+                product[at] = self.neighbours(x, row, i) - self.sum[at] * x[at];
             }
         });
     }
@@ -250,13 +250,13 @@ impl Levels {
     }
 
     /// One V-cycle from zero: roughly the solution for the right-hand side `b`.
-    pub(super) fn cycle(&mut self, b: &[f32], out: &mut [f32]) {
+    pub(super) fn cycle(&mut self, b: &[f32], solution: &mut [f32]) {
         if let Some(finest) = self.0.first_mut() {
             finest.b.copy_from_slice(b);
         }
         v_cycle(&mut self.0);
         if let Some(finest) = self.0.first() {
-            out.copy_from_slice(&finest.x);
+            solution.copy_from_slice(&finest.x);
         }
     }
 }

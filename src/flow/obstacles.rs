@@ -6,7 +6,10 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::lattice::{Faces, Lattice};
+use super::{
+    lattice::{Faces, Lattice},
+    settings::MAX_SPEED_M_S,
+};
 use crate::error::{Error, Result, check_range};
 
 /// Places along each level side of a face at which obstacles are looked up.
@@ -151,8 +154,8 @@ impl FlowObstacles<'_> {
                 check_range(&name("half_size_m"), v, 1e-3, 1e5, "m")?;
             }
             let speed = b.velocity_m_s.length();
-            if !(0.0..=super::MAX_SPEED_M_S).contains(&speed) {
-                let wanted = format!("a vector of at most {} m/s", super::MAX_SPEED_M_S);
+            if !(0.0..=MAX_SPEED_M_S).contains(&speed) {
+                let wanted = format!("a vector of at most {MAX_SPEED_M_S} m/s");
                 return Err(Error::range(&name("velocity_m_s"), &wanted, b.velocity_m_s));
             }
             let off = (b.axes.transpose() * b.axes - DMat3::IDENTITY).to_cols_array();

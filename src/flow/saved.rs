@@ -4,8 +4,7 @@ use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    WindFieldDesc, WindFieldMode, WindWalls,
-    held::FieldChange,
+    desc::{FieldChange, WindFieldDesc, WindFieldMode, WindWalls},
     live::{Anchor, Live},
 };
 use crate::{

@@ -21,14 +21,14 @@ fn round_cube(cells: [u32; 3], n: u32, center: DVec3, roughness_m: f64, wind: im
 }
 
 /// Mean drag coefficient of a cube of 10 cells an edge in 96 x 64 x 64 between two times, edges over the wind's speed.
-fn drag(from: f64, to: f64) -> f64 {
+fn drag(begin: f64, end: f64) -> f64 {
     let center = dvec3(2.5, 3.2, 3.2);
     let mut field = round_cube([96, 64, 64], 10, center, 0.0, |_| DVec3::X);
     let dt = 0.2;
     let (mut sum, mut count) = (0.0, 0.0);
-    for step in 1..=(to / dt) as u32 {
+    for step in 1..=(end / dt) as u32 {
         field.step(dt).expect("a step");
-        if f64::from(step) * dt > from {
+        if f64::from(step) * dt > begin {
             // Over half the density and the square of the speed, 1 each, and the area.
             sum += 2.0 * field.pressure_force(center - 0.7, center + 0.7).x;
             count += 1.0;
