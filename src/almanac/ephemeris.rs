@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use glam::DVec3;
 use solar_positioning::SolarPositions;
 
-use super::moon;
+use super::lunar_series;
 use crate::{
     almanac::{Utc, celestial, time::UTC_RANGE_S},
     error::Result,
@@ -29,7 +29,7 @@ pub struct Geocentric {
 }
 
 impl Geocentric {
-    /// From the series themselves: NREL's solar position algorithm (Reda & Andreas 2004) and [`moon`]'s.
+    /// From the series themselves: NREL's solar position algorithm (Reda & Andreas 2004), and [`lunar_series`].
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time out of range.
@@ -40,7 +40,7 @@ impl Geocentric {
         let (nutation, obliquity) = celestial::nutation_obliquity(t);
         Ok(Self {
             sun_m: toward * series.earth_radius_vector().unwrap_or(1.0) * AU_M,
-            moon_m: moon::geocentric_equatorial(t, nutation, obliquity),
+            moon_m: lunar_series::geocentric_equatorial(t, nutation, obliquity),
             equinoxes: nutation * libm::cos(obliquity),
         })
     }
@@ -99,11 +99,11 @@ impl Ephemeris {
     }
 }
 
-/// The four knots from number `first` on, taken from those `before` where they are among them.
-fn knots_from(before: Option<&(f64, [Geocentric; 4])>, first: f64) -> Result<[Geocentric; 4]> {
+/// The four knots from number `first` on, taken from those `kept` where they are among them.
+fn knots_from(kept: Option<&(f64, [Geocentric; 4])>, first: f64) -> Result<[Geocentric; 4]> {
     let knot = |i: usize| {
         let number = first + i as f64;
-        let known = before.and_then(|(from, knots)| {
+        let known = kept.and_then(|(from, knots)| {
             let at = number - from;
             (0.0..4.0).contains(&at).then(|| knots[at as usize])
         });

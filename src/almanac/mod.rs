@@ -3,6 +3,7 @@
 
 pub mod celestial;
 pub(crate) mod ephemeris;
+mod lunar_series;
 pub mod moon;
 pub mod sun;
 pub(crate) mod time;
