@@ -109,14 +109,14 @@ impl Error {
         self
     }
 
-    /// Returns the error with the segments `to` in place of `from` at the beginning of the field's path; as it is if it
+    /// Returns the error with the segments `new` in place of `old` at the beginning of the field's path; as it is if it
     /// does not begin so.
     #[must_use]
-    pub fn renamed(mut self, from: &str, to: &str) -> Self {
-        if let Some(rest) = self.field.strip_prefix(from)
+    pub fn renamed(mut self, old: &str, new: &str) -> Self {
+        if let Some(rest) = self.field.strip_prefix(old)
             && (rest.is_empty() || rest.starts_with(['.', '[']))
         {
-            self.field = format!("{to}{rest}");
+            self.field = format!("{new}{rest}");
         }
         self
     }

@@ -139,13 +139,13 @@ impl DropSizes {
         Self { parts: filled([part(0, rate_mm_h), part(1, 0.0), part(2, 0.0)]), factor: speed_factor }
     }
 
-    /// The mixture of which `share` is `over`, as far as that has `begun` to fall, and the rest these; both where drops
-    /// are as fast.
-    pub fn covered(mut self, over: &Self, share: f64, begun: f64) -> Self {
+    /// The mixture of which `share` is that of a `region`, as far as it has `begun` to fall, and the rest these; both
+    /// where drops are as fast.
+    pub fn covered(mut self, region: &Self, share: f64, begun: f64) -> Self {
         for part in &mut self.parts {
             part.n0 *= 1.0 - share;
         }
-        for part in over.parts.iter().filter(|p| p.n0 > 0.0) {
+        for part in region.parts.iter().filter(|p| p.n0 > 0.0) {
             let part = SizeMode { n0: part.n0 * share * begun, ..*part };
             if let Some(free) = self.parts.iter_mut().find(|p| p.n0 <= 0.0) {
                 *free = part;

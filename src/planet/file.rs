@@ -99,9 +99,9 @@ mod tests {
 
     const GOLDEN: &str = include_str!("../../examples/data/planet_golden.toml");
 
-    fn refused(from: &str, to: &str, status: Status, needles: &[&str]) {
-        assert!(GOLDEN.contains(from), "{from}");
-        let e = Planet::from_toml(&GOLDEN.replacen(from, to, 1)).unwrap_err();
+    fn refused(old: &str, new: &str, status: Status, needles: &[&str]) {
+        assert!(GOLDEN.contains(old), "{old}");
+        let e = Planet::from_toml(&GOLDEN.replacen(old, new, 1)).unwrap_err();
         assert_eq!(e.status, status, "{}", e);
         for needle in needles {
             assert!(e.to_string().contains(needle), "`{}` does not say `{needle}`", e);

@@ -342,8 +342,8 @@ pub fn rayleigh_scattering_per_m(wavelength_nm: f64) -> f64 {
 }
 
 /// An error of a planet file at a place in its text.
-pub(crate) fn file_error(text: &str, at: usize, error: Error) -> Error {
-    let before = &text[..at.min(text.len())];
+pub(crate) fn file_error(text: &str, byte: usize, error: Error) -> Error {
+    let before = &text[..byte.min(text.len())];
     let line = before.matches('\n').count() + 1;
     let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
     error.found_in(format_args!("planet file, line {line}, column {column}"))

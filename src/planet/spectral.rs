@@ -68,30 +68,30 @@ pub fn ozone_cross_section_m2(wavelength_nm: f64) -> f64 {
 }
 
 /// Value at `x` of the broken line through three points in any order, constant outside.
-pub(crate) fn between(at: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
+pub(crate) fn between(points: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     let mut order = [0, 1, 2];
-    order.sort_by(|a, b| at[*a].total_cmp(&at[*b]));
+    order.sort_by(|a, b| points[*a].total_cmp(&points[*b]));
     let [a, b, c] = order;
     let line = |i: usize, j: usize| {
-        let range = at[j] - at[i];
-        let f = if range > 0.0 { ((x - at[i]) / range).clamp(0.0, 1.0) } else { 0.0 };
+        let range = points[j] - points[i];
+        let f = if range > 0.0 { ((x - points[i]) / range).clamp(0.0, 1.0) } else { 0.0 };
         values[i] * (1.0 - f) + values[j] * f
     };
-    if x < at[b] { line(a, b) } else { line(b, c) }
+    if x < points[b] { line(a, b) } else { line(b, c) }
 }
 
 /// Value at `x` of the powers of x through neighbours of three points in any order, going on beyond the outer two; of
 /// the broken line where a value is 0 or two points coincide.
-pub(crate) fn power_between(at: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
+pub(crate) fn power_between(points: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     let mut order = [0, 1, 2];
-    order.sort_by(|a, b| at[*a].total_cmp(&at[*b]));
+    order.sort_by(|a, b| points[*a].total_cmp(&points[*b]));
     let [a, b, c] = order;
-    let (i, j) = if x < at[b] { (a, b) } else { (b, c) };
-    let range = (at[j] / at[i]).ln();
+    let (i, j) = if x < points[b] { (a, b) } else { (b, c) };
+    let range = (points[j] / points[i]).ln();
     if range <= 0.0 || values[i] <= 0.0 || values[j] <= 0.0 {
-        return between(at, values, x);
+        return between(points, values, x);
     }
-    values[i] * (x / at[i]).powf((values[j] / values[i]).ln() / range)
+    values[i] * (x / points[i]).powf((values[j] / values[i]).ln() / range)
 }
 
 /// Colour of something whose transfer is `transfer` at every wavelength, under the sun of 1 au: sums of 1 nm.

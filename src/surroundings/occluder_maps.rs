@@ -241,16 +241,16 @@ impl OccluderMaps {
         &self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
-        from: &wgpu::Texture,
-        to: &wgpu::Texture,
+        source: &wgpu::Texture,
+        target: &wgpu::Texture,
     ) {
-        let [from, to] = [from, to].map(|t| t.create_view(&Default::default()));
+        let [source, target] = [source, target].map(|t| t.create_view(&Default::default()));
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("occluder cells"),
             layout: &self.layouts[1],
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&from) }],
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&source) }],
         });
-        let mut pass = begin(encoder, &to);
+        let mut pass = begin(encoder, &target);
         pass.set_pipeline(&self.pipelines[1]);
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..1);

@@ -245,8 +245,8 @@ pub(crate) struct CellRect {
 
 impl CellRect {
     /// With so many cells more on each side.
-    pub fn grown(self, by: i32) -> Self {
-        Self { low: self.low.map(|v| v - by), high: self.high.map(|v| v + by) }
+    pub fn grown(self, cells: i32) -> Self {
+        Self { low: self.low.map(|v| v - cells), high: self.high.map(|v| v + cells) }
     }
 
     /// Returns the smallest rectangle that holds both.

@@ -74,10 +74,10 @@ impl Scene {
         made
     }
 
-    fn write(&self, to: &wgpu::Texture, bytes: &[u8], texel: u32) {
+    fn write(&self, texture: &wgpu::Texture, bytes: &[u8], texel: u32) {
         let layout =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * SIZE.0), rows_per_image: None };
-        self.device.queue.write_texture(to.as_image_copy(), bytes, layout, to.size());
+        self.device.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
     }
 
     /// Draws over a grey picture.

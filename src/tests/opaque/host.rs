@@ -100,8 +100,8 @@ pub fn pixels() -> std::ops::Range<usize> {
 
 /// Metres along the pixel's ray to the host's wall: 60 m north of the camera, 24 m wide, from the world's floor to 15
 /// m.
-pub fn to_wall(rays: &ViewRays, at: DVec2) -> f64 {
-    let ray = rays.view_ray(at);
+pub fn to_wall(rays: &ViewRays, ndc: DVec2) -> f64 {
+    let ray = rays.view_ray(ndc);
     let range = (60.0 - ray.origin.y) / ray.direction.y;
     let place = ray.origin + ray.direction * range + EYE;
     let hit = range > 0.0 && (place.x - EYE.x).abs() < 12.0 && (0.0..15.0).contains(&place.z);
@@ -109,8 +109,8 @@ pub fn to_wall(rays: &ViewRays, at: DVec2) -> f64 {
 }
 
 /// Metres along the pixel's ray to Welkin's plane, and the luminance of the square that is met.
-pub fn to_plane(rays: &ViewRays, at: DVec2) -> (f64, f64) {
-    let ray = rays.view_ray(at);
+pub fn to_plane(rays: &ViewRays, ndc: DVec2) -> (f64, f64) {
+    let ray = rays.view_ray(ndc);
     let range = (PLANE_M - EYE.z - ray.origin.z) / ray.direction.z;
     let place = ray.origin + ray.direction * range;
     if !(range > 0.0 && place.x.abs() < HALF_SIZE_M && place.y.abs() < HALF_SIZE_M) {
@@ -187,17 +187,17 @@ fn covering(
     (pipeline, layout)
 }
 
-/// Draws a triangle over the whole picture by a shader that reads `from` as its binding 0; depth is cleared before.
+/// Draws a triangle over the whole picture by a shader that reads `source` as its binding 0; depth is cleared before.
 pub fn cover(
     device: &Device,
     text: &str,
-    from: &wgpu::Texture,
+    source: &wgpu::Texture,
     (color, depth): (&wgpu::Texture, Option<(&wgpu::Texture, f32)>),
 ) {
     let to = (color, depth.map(|d| d.0));
-    let (pipeline, layout) = covering(&device.device, text, from.sample_count() > 1, to);
-    let aspect = if from.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { Default::default() };
-    let view = from.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() });
+    let (pipeline, layout) = covering(&device.device, text, source.sample_count() > 1, to);
+    let aspect = if source.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { Default::default() };
+    let view = source.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() });
     let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &layout,
