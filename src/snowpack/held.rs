@@ -341,7 +341,7 @@ impl HeldEffect for HeldSnow {
     fn lead(&mut self, world: &World, budget: Within) -> Result<Status> {
         for steps in 0.. {
             let Some(end_s) = self.state.as_ref().map(|s| s.next_s(self.coarse_until_s)) else { break };
-            if end_s > within.until_s {
+            if end_s > budget.until_s {
                 break;
             }
             if steps > 0 && budget.begun.elapsed() >= budget.most {
