@@ -4,7 +4,19 @@
 #[derive(Clone, Copy, Debug)]
 pub struct Chance(u64);
 
+/// Spreads the bits of a number over all of a word (the finalizer of SplitMix64, Steele, Lea and Flood 2014).
+pub(crate) fn mixed(v: u64) -> u64 {
+    let v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    v ^ (v >> 31)
+}
+
 impl Chance {
+    /// Stream of a seed alone: SplitMix64 as published.
+    pub(crate) fn seeded(seed: u64) -> Self {
+        Self(seed)
+    }
+
     /// Creates the stream of a seed for one use, `what`.
     pub fn new(seed: u64, what: u64) -> Self {
         let mut one = Self(seed);
@@ -14,10 +26,12 @@ impl Chance {
 
     fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut v = self.0;
-        v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        v ^ (v >> 31)
+        mixed(self.0)
+    }
+
+    /// Evenly spread over \[0, 1).
+    pub(crate) fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// Evenly spread over (0, 1).

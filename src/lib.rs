@@ -91,6 +91,7 @@ pub mod light;
 pub mod lightning;
 mod moment;
 pub mod noise;
+mod numerics;
 mod particles;
 pub mod plan;
 pub mod planet;

@@ -8,6 +8,7 @@ use glam::{DMat3, DVec3};
 use super::time::{UTC_RANGE_S, Utc};
 use crate::{
     error::{Result, check_range},
+    numerics::smooth,
     scene::{Place, turn_x, turn_y, turn_z},
 };
 
@@ -102,8 +103,7 @@ pub fn refraction_deg(elevation_deg: f64, pressure_hpa: f64, temperature_c: f64)
     let h = elevation_deg.max(-1.0);
     let arc_minutes = 1.02 / libm::tan((h + 10.3 / (h + 5.11)).to_radians());
     let fade = ((elevation_deg + 4.0) / 3.0).clamp(0.0, 1.0);
-    let smooth = fade * fade * (3.0 - 2.0 * fade);
-    (arc_minutes / 60.0 * pressure_hpa / 1010.0 * 283.0 / (273.0 + temperature_c) * smooth).max(0.0)
+    (arc_minutes / 60.0 * pressure_hpa / 1010.0 * 283.0 / (273.0 + temperature_c) * smooth(fade)).max(0.0)
 }
 
 #[cfg(test)]

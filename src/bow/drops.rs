@@ -6,7 +6,8 @@ use super::table::{CLASSES, RAIN_EDGES_MM, Table, mixed};
 use crate::{
     falling::{FallingLayer, drops::factor_in, sizes::DropSizes},
     moment::{GroundLight, Light, Scene, SceneMoment},
-    weather::{Conditions, Falling, GroundLayer, smoothstep},
+    numerics::smoothstep,
+    weather::{Conditions, Falling, GroundLayer},
 };
 
 /// Direct light over all light on level ground below which no bow shows.

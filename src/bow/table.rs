@@ -10,6 +10,8 @@ use glam::DVec3;
 
 use super::reference::{Pair, Rays, WAVELENGTHS_NM, colour_shares, water_index};
 
+use crate::numerics::smooth;
+
 /// Entries of a table.
 pub const ENTRIES: usize = 160;
 /// Angle between two of them, rad: 0.4 degrees.
@@ -113,7 +115,7 @@ fn class_table(i: usize) -> Table {
         .collect();
     let mut table: [DVec3; ENTRIES] = std::array::from_fn(|j| {
         let left = ((ENTRIES - 1 - j) as f64 / FADE as f64).min(1.0);
-        smoothed(&fine, j) * (left * left * (3.0 - 2.0 * left))
+        smoothed(&fine, j) * smooth(left)
     });
     // Less a smooth function of the same sum over the sphere.
     let sine = |j: usize| (j as f64 * STEP_RAD).sin();

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Result, check_range},
-    weather::{Falling, hydrometeors, smoothstep},
+    numerics::smoothstep,
+    weather::{Falling, hydrometeors},
 };
 
 /// Most corners of a polygon.

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use super::random3;
-use crate::weather::{Falling, smoothstep};
+use crate::{numerics::smoothstep, weather::Falling};
 
 /// Waves of the pattern of columns.
 pub(crate) const WAVES: usize = 12;

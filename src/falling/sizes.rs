@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 use glam::DVec3;
 
 use super::drops::{GUNN_KINZER, terminal_speed_m_s};
-use crate::weather::Falling;
+use crate::{numerics::GAUSS_4, weather::Falling};
 
 /// Smallest drop, mm.
 pub const SMALLEST_MM: f64 = 0.1;
@@ -66,17 +66,11 @@ pub struct SurfaceFlux {
 /// Where integrals over all sizes are taken: diameter (mm), weight (mm), sea-level speed (m/s); four points of Gauss in
 /// each interval of Gunn and Kinzer's table.
 static NODES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
-    const GAUSS: [(f64, f64); 4] = [
-        (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-        (-0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
-        (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
-        (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-    ];
     let inside = GUNN_KINZER.iter().map(|e| e.0).filter(|d| *d > SMALLEST_MM);
     let edges: Vec<f64> = std::iter::once(SMALLEST_MM).chain(inside).chain([LARGEST_MM]).collect();
     let nodes = edges.windows(2).flat_map(|e| {
         let (middle, half) = (0.5 * (e[0] + e[1]), 0.5 * (e[1] - e[0]));
-        GAUSS.map(|(x, w)| [middle + half * x, half * w, terminal_speed_m_s(middle + half * x)])
+        GAUSS_4.map(|(x, w)| [middle + half * x, half * w, terminal_speed_m_s(middle + half * x)])
     });
     nodes.collect()
 });

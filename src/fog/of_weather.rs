@@ -13,8 +13,9 @@ use crate::{
     error::Result,
     falling::{FallingLayer, curtain},
     moment::{GroundLight, Light, Scene},
+    numerics::smoothstep,
     scene::Place,
-    weather::{Conditions, lifting, smoothstep},
+    weather::{Conditions, lifting},
     wind::Detour,
 };
 

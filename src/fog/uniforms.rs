@@ -11,7 +11,7 @@ use crate::{
     error::{Result, check_range},
     falling::FallingLayer,
     light::PhaseLobes,
-    weather::smoothstep,
+    numerics::smoothstep,
     wind::DETOUR_SIDE,
 };
 

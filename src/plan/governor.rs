@@ -182,6 +182,7 @@ mod tests {
         parts::{Part, Worth},
     };
     use super::*;
+    use crate::chance::Chance;
 
     const fn part(importance: f64) -> Part {
         Part { name: "part", rungs: &["all", "none"], importance, worth: Worth::Composed(0) }
@@ -290,15 +291,6 @@ mod tests {
         assert!(governor.ratios[0] > 1.1 && governor.ratios[1] == 1.0, "{:?}", governor.ratios);
     }
 
-    /// Uniform in [0, 1): SplitMix64.
-    fn chance(state: &mut u64) -> f64 {
-        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = *state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     /// A machine whose parts cost other shares of a pixel than the constants say, with a timer that answers late.
     struct Machine {
         ms: f64,
@@ -309,10 +301,10 @@ mod tests {
     }
 
     impl Machine {
-        fn frame(&mut self, all: &WorkAmount, absent: Set, random: &mut u64) -> Option<f64> {
+        fn frame(&mut self, all: &WorkAmount, absent: Set, random: &mut Chance) -> Option<f64> {
             self.drawn.push(absent);
             let frame = self.drawn.len().checked_sub(1 + self.late)?;
-            let noise = 1.0 + self.noise * (2.0 * chance(random) - 1.0);
+            let noise = 1.0 + self.noise * (2.0 * random.unit() - 1.0);
             Some(self.ms * noise * all.without(self.drawn[frame]).weighed(&self.ratios))
         }
     }
@@ -322,7 +314,7 @@ mod tests {
         // Everything 19.9 ms of 19: by the constants air would leave enough room to come back.
         let mut picture = Picture::new([0.05, 0.3, 0.02], [0.41, 0.17, 0.0]);
         let mut machine = Machine { ms: 10.0, ratios: steps([2.0, 1.0, 1.0]), late: 2, noise: 0.02, drawn: Vec::new() };
-        let (mut governor, mut random, mut set, mut switches) = (Governor::default(), 7, 0, Vec::new());
+        let (mut governor, mut random, mut set, mut switches) = (Governor::default(), Chance::seeded(7), 0, Vec::new());
         for frame in 0..300 {
             if let Some(ms) = machine.frame(&picture.all, set, &mut random) {
                 governor.report(ms, &picture.all, set);
@@ -340,8 +332,8 @@ mod tests {
     fn times_are_predicted_within_a_quarter_on_machines_unlike_the_one_that_was_measured() {
         let (mut settled, mut stepped) = (Vec::new(), Vec::new());
         for seed in 0..64 {
-            let mut random = seed;
-            let mut between = |low: f64, high: f64| low + (high - low) * chance(&mut random);
+            let mut random = Chance::seeded(seed);
+            let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
             let ratios = steps([0; 3].map(|_| between(0.5, 2.0)));
             let (ms, late) = (between(0.2, 30.0), between(0.0, 4.99) as usize);
             let mut machine = Machine { ms, ratios, late, noise: 0.05, drawn: Vec::new() };
@@ -373,7 +365,7 @@ mod tests {
         assert!(beyond(&stepped) == 0.0, "{} of {}", beyond(&stepped), stepped.len());
     }
 
-    fn random_of(seed: u64, step: usize, frame: usize) -> u64 {
-        seed * 1_000_003 + step as u64 * 1009 + frame as u64
+    fn random_of(seed: u64, step: usize, frame: usize) -> Chance {
+        Chance::seeded(seed * 1_000_003 + step as u64 * 1009 + frame as u64)
     }
 }

@@ -262,6 +262,7 @@ mod tests {
         parts::{MOST_STEPS, Part, Worth},
     };
     use super::*;
+    use crate::chance::Chance;
 
     const fn part(rungs: &'static [&'static str]) -> Part {
         Part { name: "part", rungs, importance: 0.5, worth: Worth::Composed(0) }
@@ -278,29 +279,20 @@ mod tests {
         &[TWO; 10],
     ];
 
-    /// Uniform in [0, 1): SplitMix64.
-    fn chance(state: &mut u64) -> f64 {
-        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = *state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     /// A picture whose parts brighten or darken some of its pixels, a lower rung more than the one above.
-    fn picture(ladder: &Ladder, random: &mut u64) -> (Estimator, Vec<f64>) {
+    fn picture(ladder: &Ladder, random: &mut Chance) -> (Estimator, Vec<f64>) {
         let steps = ladder.len();
         let mut estimator = Estimator::new(400);
         let amplitudes: Vec<[f64; 3]> = (0..ladder.parts.len())
             .map(|_| {
-                let sign = if chance(random) < 0.6 { 1.0 } else { -1.0 };
-                [sign * 0.06 * chance(random).powi(3), chance(random), 0.2 + 0.8 * chance(random)]
+                let sign = if random.unit() < 0.6 { 1.0 } else { -1.0 };
+                [sign * 0.06 * random.unit().powi(3), random.unit(), 0.2 + 0.8 * random.unit()]
             })
             .collect();
         for _ in 0..400 {
             let mut changes = [0.0; MOST_STEPS];
             for (part, [amplitude, spread, share]) in amplitudes.iter().enumerate() {
-                let here = if chance(random) < *share { amplitude * (1.0 - spread * chance(random)) } else { 0.0 };
+                let here = if random.unit() < *share { amplitude * (1.0 - spread * random.unit()) } else { 0.0 };
                 let (from, count) = (ladder.steps(part).start, ladder.steps(part).len());
                 for step in 0..count {
                     changes[from + step] = (here * (step + 1) as f64 / count as f64) as f32;
@@ -308,7 +300,7 @@ mod tests {
             }
             estimator.see(changes);
         }
-        (estimator, (0..steps).map(|_| 0.02 + chance(random)).collect())
+        (estimator, (0..steps).map(|_| 0.02 + random.unit()).collect())
     }
 
     fn whole(free: Free<'_>, work: impl Fn(Set) -> f64, mut strain: impl FnMut(Set) -> f64) -> Set {
@@ -323,7 +315,7 @@ mod tests {
 
     #[test]
     fn five_hundred_searches_save_nearly_what_the_best_set_saves_and_never_break_the_tolerance() {
-        let (mut worst, mut most, mut random) = (1.0f64, 0.0f64, 3);
+        let (mut worst, mut most, mut random) = (1.0f64, 0.0f64, Chance::seeded(3));
         for case in 0..500 {
             let ladder = Ladder::new(LISTS[case % LISTS.len()]);
             let (mut estimator, saves) = picture(&ladder, &mut random);
@@ -369,17 +361,17 @@ mod tests {
 
     #[test]
     fn in_a_short_time_little_more_is_missed_than_must_be() {
-        let mut random = 9;
+        let mut random = Chance::seeded(9);
         let (mut sum, mut best_sum) = (0.0, 0.0);
         for case in 0..500 {
             let ladder = Ladder::new(LISTS[case % LISTS.len()]);
             let steps = ladder.len();
             let (saves, losses): (Vec<f64>, Vec<f64>) =
-                (0..steps).map(|_| (0.05 + chance(&mut random), chance(&mut random))).unzip();
+                (0..steps).map(|_| (0.05 + random.unit(), random.unit())).unzip();
             let sum_of = |v: &[f64], set: Set| (0..steps).filter(|i| set & (1 << i) != 0).map(|i| v[i]).sum::<f64>();
             let total: f64 = saves.iter().sum();
             let (work, loss) = (|set: Set| total - sum_of(&saves, set), |set: Set| sum_of(&losses, set));
-            let budget = total * (0.2 + 0.7 * chance(&mut random));
+            let budget = total * (0.2 + 0.7 * random.unit());
             let free = Free { ladder: &ladder, steps: (1 << steps) - 1, pinned: 0 };
             let (found, fits) = least_missed(free, work, loss, |set| work(set) <= budget);
             assert!(fits && work(found) <= budget, "case {case}");

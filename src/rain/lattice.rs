@@ -18,7 +18,7 @@ pub use crate::falling::{
     lattice::{fraction, nearest, short_seed},
     random3,
 };
-pub(super) use crate::weather::smoothstep;
+pub(super) use crate::numerics::smoothstep;
 
 /// Shells of the lattice.
 pub const SHELLS: usize = 4;

@@ -20,7 +20,7 @@ use crate::falling::{
     lattice::{fraction, nearest, short_seed},
     random3,
 };
-use crate::weather::smoothstep;
+use crate::numerics::smoothstep;
 
 /// Shells of the lattice.
 pub const SHELLS: usize = 4;

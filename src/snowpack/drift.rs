@@ -31,6 +31,8 @@ use super::{
     patch::{NONE, Patch},
 };
 
+use crate::numerics::smoothstep;
+
 /// Ways over which the flux of what hops grows and falls to 1/e, m.
 const ERODING_M: f64 = 30.0;
 const LANDING_M: f64 = 3.0;
@@ -116,11 +118,6 @@ impl Through {
     }
 }
 
-fn smooth(x: f64) -> f64 {
-    let t = x.clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
-
 /// Height of ground and snow so many cells along an axis from a cell, m, and how many they were: fewer at the end of
 /// the ground, and none where something stands.
 fn along(
@@ -193,7 +190,7 @@ fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f
     let (ground, stands) = (patch.surface_m(cell), patch.obstacle_m(cell));
     let top = ground + stands;
     match fallen.filter(|fallen| fallen[0] > top) {
-        Some(lee) => (1.0 - CALMED * smooth((lee[0] - ground) / lee[1]), Some(lee)),
+        Some(lee) => (1.0 - CALMED * smoothstep(0.0, 1.0, (lee[0] - ground) / lee[1]), Some(lee)),
         None => (1.0, Some([top, stands.max(LEAST_M)])),
     }
 }

@@ -16,11 +16,11 @@ use crate::{
     gpu::{Device, Layer, bind},
     light::luminance,
     moment::Scene,
+    numerics::smoothstep,
     stage::{
         Contribution, DrawContext, DrawnEffect, Exchange, FrameBlock, FrameContext, MergedFrame, Output, Outputs,
         PutPart, Recording, Stages, Texture, Traits, flag,
     },
-    weather::smoothstep,
     world::{night_share, zenith_depth},
 };
 

@@ -2,6 +2,8 @@
 
 use super::{HOLE, SurfaceClass, TerrainCells, TileKey, desc::is_height};
 
+use crate::chance::mixed;
+
 /// The heights and classes of a tile's cells.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tile {
@@ -14,13 +16,6 @@ pub(crate) struct Tile {
     pub revision: u64,
     /// Hash, equal for tiles with the same cells: the sum of its cells' hashes.
     pub hash: u64,
-}
-
-/// Spreads the bits of a number over all of a word (the finalizer of splitmix64, Steele, Lea and Flood 2014).
-pub(super) fn mixed(v: u64) -> u64 {
-    let v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    v ^ (v >> 31)
 }
 
 impl Tile {

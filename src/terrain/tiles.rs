@@ -10,8 +10,9 @@ use std::{
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{CellRect, MAX_TERRAIN_CELLS, SurfaceClass, TerrainCells, TerrainDesc, Tile, TileKey, tile::mixed};
+use super::{CellRect, MAX_TERRAIN_CELLS, SurfaceClass, TerrainCells, TerrainDesc, Tile, TileKey};
 use crate::{
+    chance::mixed,
     error::{Error, Result},
     scene::WorldFrame,
 };

@@ -11,7 +11,9 @@
 //! drawn.
 
 use super::conditions::CloudSlab;
-use super::mix::{mix, smoothstep};
+use super::mix::mix;
+
+use crate::numerics::smoothstep;
 
 /// Sine of the lowest sun whose beam is followed through clouds: light that comes lower goes as light from there.
 pub(super) const LOWEST: f64 = 0.03;

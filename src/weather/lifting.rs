@@ -1,9 +1,8 @@
 //! Unevenness of what the wind lifts, which comes in gusts: by the law of grains that hop along the ground.
 
-use super::{
-    conditions::{Conditions, GroundLayer, WindProfile},
-    smoothstep,
-};
+use super::conditions::{Conditions, GroundLayer, WindProfile};
+
+use crate::numerics::smoothstep;
 
 /// Wind at 10 m that first moves dry sand or snow, m/s: a friction velocity of 0.25 to 0.3 m/s over smooth ground
 /// (Bagnold 1941; for dry snow 7.7 m/s, Li and Pomeroy 1997).

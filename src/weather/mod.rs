@@ -39,7 +39,6 @@ pub use conditions::{
 pub use derive::{derive, derive_with};
 pub use kinds::{AerosolKind, CloudAmountRule, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
 pub use metar::{ASSUMED_FIELDS, MAX_METAR_BYTES, MetarOptions, MetarPlaces, MetarReport, RunwayVisualRange};
-pub(crate) use mix::smoothstep;
 pub use model::{
     Aerosol, CloudLayer, Fog, LayerWind, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Surface, Swell, Weather, Wind,
     cover_from_oktas, saturation_pressure_hpa,

@@ -3,7 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::Conditions;
-use crate::error::{Error, Result, Status, check_range, toml_fault};
+use crate::{
+    error::{Error, Result, Status, check_range, toml_fault},
+    numerics::smooth,
+};
 
 /// Longest transition, s: a year.
 const MAX_TRANSITION_S: f64 = 3.2e7;
@@ -31,8 +34,7 @@ impl Change {
         if t >= self.end_s() {
             return 1.0;
         }
-        let x = ((t - self.start_s) / self.transition_s).clamp(0.0, 1.0);
-        x * x * (3.0 - 2.0 * x)
+        smooth(((t - self.start_s) / self.transition_s).clamp(0.0, 1.0))
     }
 
     /// When it is over, s.

@@ -16,6 +16,8 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::WindVolume;
 
+use crate::numerics::smooth;
+
 /// Nodes of a map on each side: `DETOUR_SIDE` of `shaders/fog/uniform.wgsl`.
 pub(crate) const DETOUR_SIDE: usize = 24;
 /// Height over the ground of the wind that patches are followed in, m.
@@ -123,7 +125,7 @@ impl DetourMap {
         let lag = |at: [usize; 2]| {
             let edge = (place(at) / size).min(1.0 - place(at) / size).min_element() / EDGE;
             let share = edge.min(1.0);
-            followed(&low, (entering, size), place(at), life_m) * (share * share * (3.0 - 2.0 * share))
+            followed(&low, (entering, size), place(at), life_m) * smooth(share)
         };
         let lags_m = places().map(|at| lag(at).as_vec2().to_array()).collect();
         // How much the wind of a height varies over the area.
@@ -192,7 +194,7 @@ impl Detour {
         };
         let row = |j: usize| node(0, j).lerp(node(1, j), part.x);
         let x = ((place.z - self.floor_m) * self.fade_per_m).clamp(0.0, 1.0);
-        row(0).lerp(row(1), part.y) * (1.0 - x * x * (3.0 - 2.0 * x))
+        row(0).lerp(row(1), part.y) * (1.0 - smooth(x))
     }
 
     /// Where a ray is over the map: distances from its origin, m; the second is less than the first where it is not.

@@ -8,16 +8,10 @@
 use glam::DVec2;
 
 use super::gusts::{GustStretch, Gusts, Stir};
-use crate::weather::{Conditions, Timeline, WindProfile, timeline::Change};
-
-/// Nodes and weights of Gauss and Legendre's rule of 8 points on [-1, 1], one half (Abramowitz and Stegun 1964, table
-/// 25.4).
-pub(super) const GAUSS: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
-    (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
-];
+use crate::{
+    numerics::GAUSS_8_HALF,
+    weather::{Conditions, Timeline, WindProfile, timeline::Change},
+};
 
 /// The wind of a seed. Plain data, any thread.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,7 +141,7 @@ impl<'a> Walk<'a> {
     /// Integrals of the mean velocity and of the mean speed over time.
     fn integrals(&self, active: &[Change], from_s: f64, to_s: f64) -> (DVec2, f64) {
         let (middle, half) = (0.5 * (from_s + to_s), 0.5 * (to_s - from_s));
-        GAUSS.iter().fold((DVec2::ZERO, 0.0), |(way, path), &(x, weight)| {
+        GAUSS_8_HALF.iter().fold((DVec2::ZERO, 0.0), |(way, path), &(x, weight)| {
             let [(a, va), (b, vb)] = [-x, x].map(|x| self.wind_at(active, middle + half * x));
             (way + (mean(&a) + mean(&b)) * (half * weight), path + (va + vb) * (half * weight))
         })

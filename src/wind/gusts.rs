@@ -7,6 +7,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
+use crate::chance::Chance;
+
 /// Waves in each direction.
 const TONES: usize = 24;
 /// Longest and shortest wave, m. What is longer is a change of weather, what is shorter is no wind of a whole scene.
@@ -89,18 +91,6 @@ fn share_below(x: f64) -> f64 {
     1.0 - libm::pow(1.0 + 6.0 * x, -2.0 / 3.0)
 }
 
-/// Numbers in [0, 1) from a seed: SplitMix64 (Steele, Lea and Flood 2014).
-pub(crate) fn randoms(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 /// Complex exponential of an angle.
 fn turn(angle: f64) -> DVec2 {
     let (sin, cos) = libm::sincos(angle);
@@ -132,7 +122,8 @@ pub(super) struct Stirred {
 impl Gusts {
     pub fn new(seed: u64) -> Self {
         // A word of its own, so that nothing else that the seed decides goes with the gusts.
-        let mut random = randoms(seed ^ 0x7769_6e64_2067_7573);
+        let mut stream = Chance::seeded(seed ^ 0x7769_6e64_2067_7573);
+        let mut random = || stream.unit();
         let mut tones = |scale_m: f64| -> [GustWave; TONES] {
             let (low, high) = (scale_m / WAVES_M.0, scale_m / WAVES_M.1);
             let edge = |i: f64| low * libm::pow(high / low, i / TONES as f64);

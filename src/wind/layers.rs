@@ -8,8 +8,10 @@
 
 use glam::{DMat2, DVec2};
 
-use super::drift::GAUSS;
-use crate::weather::{CloudSlab, Conditions, MAX_CLOUD_LAYERS, Timeline, timeline::Change};
+use crate::{
+    numerics::GAUSS_8_HALF,
+    weather::{CloudSlab, Conditions, MAX_CLOUD_LAYERS, Timeline, timeline::Change},
+};
 
 /// How far one layer has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -70,7 +72,7 @@ impl LayerChanges<'_> {
         if self.active.is_empty() {
             return LayerDrift::default().after(&rate(&self.base.clouds[slot]), to_s - from_s);
         }
-        GAUSS.iter().fold(LayerDrift::default(), |sum, &(x, weight)| {
+        GAUSS_8_HALF.iter().fold(LayerDrift::default(), |sum, &(x, weight)| {
             let at = |x: f64| rate(&self.slab(slot, middle + half * x));
             sum.after(&at(-x), half * weight).after(&at(x), half * weight)
         })

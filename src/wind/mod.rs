@@ -26,7 +26,6 @@ pub(crate) use carrying::{Carrying, Remembered, WindOver};
 pub(crate) use detour::{DETOUR_SIDE, Detour, DetourMap};
 pub use drift::{Blowing, Drift, Wind};
 pub use grid::{MAX_NODES, WindGrid, WindGridKind};
-pub(crate) use gusts::randoms;
 pub use height::WindAt;
 pub(crate) use layers::{LayerDrift, LayerDrifts, stretch, stretch_toward};
 pub(crate) use volume::WindVolume;

@@ -15,9 +15,10 @@ use crate::{
     falling::curtain,
     light::luminance,
     moment::{GroundLight, Light, Scene},
+    numerics::smoothstep,
     planet::Planet,
     scene::{LocalFrame, Place, WorldKind},
-    weather::{CloudLight, Conditions, slab_diffuse_reflectance, slab_reflectance, smoothstep},
+    weather::{CloudLight, Conditions, slab_diffuse_reflectance, slab_reflectance},
     wind::Blowing,
 };
 

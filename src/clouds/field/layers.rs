@@ -14,7 +14,8 @@ use super::{
 use crate::{
     clouds::model::CloudModel,
     moment::Scene,
-    weather::{CloudSlab, MAX_CLOUD_LAYERS, smoothstep},
+    numerics::smoothstep,
+    weather::{CloudSlab, MAX_CLOUD_LAYERS},
     wind::LayerDrifts,
 };
 

@@ -3,7 +3,8 @@
 use crate::{
     chance::normal_quantile,
     error::Result,
-    weather::{CloudKind, CloudLayer, CloudSlab, Weather, derive, smoothstep},
+    numerics::smoothstep,
+    weather::{CloudKind, CloudLayer, CloudSlab, Weather, derive},
 };
 
 /// Threshold above all of the map: no cloud.

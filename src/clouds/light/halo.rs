@@ -17,6 +17,8 @@ use std::f64::consts::PI;
 
 use super::transport::Scattering;
 
+use crate::numerics::smooth;
+
 /// Refractive index of ice at 610, 550 and 460 nm (Warren and Brandt 2008, table 1, to three digits).
 const INDEX: [f64; 3] = [1.309, 1.311, 1.315];
 /// Angle over which the light falls to 1/e, rad.
@@ -37,7 +39,7 @@ pub fn phase(index: f64, angle: f64) -> f64 {
     // Integral of exp(-(angle - first) / fall) over the sphere.
     let all = 2.0 * PI * FALL_RAD * (first.sin() + FALL_RAD * first.cos()) / (1.0 + FALL_RAD * FALL_RAD);
     let begun = ((angle - first) / (2.0 * DISC_RAD) + 0.5).clamp(0.0, 1.0);
-    begun * begun * (3.0 - 2.0 * begun) * (-(angle - first).max(0.0) / FALL_RAD).exp() / all
+    smooth(begun) * (-(angle - first).max(0.0) / FALL_RAD).exp() / all
 }
 
 /// Returns what the halo adds to the phase function of ice, or takes from it elsewhere, 1/sr a channel, at this cosine

@@ -27,6 +27,8 @@ use super::{
     transport::{Scattering, Table, table_at},
 };
 
+use crate::numerics::smooth;
+
 /// Extrapolation length of the diffusion approximation, over 1 / (1 - g') (Milne's problem).
 const DARK_AT: f64 = 0.71;
 /// Powers of the ratio of distances by which the faces other than the nearest one take light: the one opposite to it,
@@ -77,7 +79,7 @@ pub fn scattered(
     let shine = &Shine { distance: shine.distance.max(1e-3), ..*shine };
     let d = shine.distance;
     let share = ((shine.between / d - INSIDE[0]) / (INSIDE[1] - INSIDE[0])).clamp(0.0, 1.0);
-    let share = if shine.is_buried { 1.0 } else { share * share * (3.0 - 2.0 * share) };
+    let share = if shine.is_buried { 1.0 } else { smooth(share) };
     let inside = if share > 0.0 { from_inside(scattering, depths, shine, direction, to_eye) } else { 0.0 };
     let outside = if share < 1.0 { from_outside(scattering, sky, depths, shine, direction) } else { 0.0 };
     share * inside + (1.0 - share) * outside

@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 use crate::{
     clouds::{drawn::uniforms::ShadowUniform, field::layers::CloudLayers, light::shadow::LOWEST},
     moment::{Scene, SceneMoment},
+    numerics::smoothstep,
     stage::{Frame, FrameFlags},
-    weather::smoothstep,
 };
 
 /// Along a side of the map.
