@@ -33,7 +33,7 @@ impl Context {
     /// more than [`MAX_TERRAIN_CELLS`](crate::terrain::MAX_TERRAIN_CELLS) in all. Nothing changes then.
     pub fn set_terrain_tile(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
         let waits = self.is_behind();
-        self.held.ground.set_tile((&mut self.world, waits), cells)?;
+        self.held.ground.set_tile(&mut self.world, waits, cells)?;
         self.held.snowpack.tile_changed(&mut self.world, cells.key, waits);
         Ok(())
     }
@@ -46,7 +46,7 @@ impl Context {
     /// As [`Context::set_terrain_tile`]; also for a tile that there is not.
     pub fn update_terrain(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
         let waits = self.is_behind();
-        self.held.ground.update_tile((&mut self.world, waits), cells)?;
+        self.held.ground.update_tile(&mut self.world, waits, cells)?;
         self.held.snowpack.tile_changed(&mut self.world, cells.key, waits);
         Ok(())
     }
@@ -58,7 +58,7 @@ impl Context {
     /// not.
     pub fn remove_terrain_tile(&mut self, key: TileKey) -> Result<()> {
         let waits = self.is_behind();
-        self.held.ground.remove_tile((&mut self.world, waits), key)?;
+        self.held.ground.remove_tile(&mut self.world, waits, key)?;
         self.held.snowpack.tile_changed(&mut self.world, key, waits);
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::SurfaceClass;
+use super::class::SurfaceClass;
 use crate::error::{Error, Result, check_range};
 
 /// Most nodes of a grid east and north.

@@ -3,18 +3,18 @@
 
 use std::sync::{Arc, Mutex};
 
-use glam::{DMat3, DVec2, DVec3};
-use serde::{Deserialize, Serialize};
-
 use super::{
-    GroundGrid, GroundSeen, GroundWater, Hollows, SurfaceClass,
-    held_tiles::GroundStep,
+    class::SurfaceClass,
+    grid::GroundGrid,
+    hollows::{Hollows, pattern_axes},
     host::{GroundCell, HostGround},
     saved::SavedGround,
+    seen::GroundSeen,
+    state::{GroundModel, GroundState, GroundStep},
     terrain::CellWater,
     texture::TerrainTextures,
     tiled::{Changed, SavedTiles, TiledWater},
-    water::{Forcing, STEP_S, depth_at_mm},
+    water::{Forcing, GroundWater, STEP_S, depth_at_mm},
     window::{DrawnTerrain, RecentChanges, TerrainWindow},
 };
 use crate::{
@@ -25,19 +25,7 @@ use crate::{
     weather::{Conditions, SurfaceCover, cover_under_rain},
     world::{HeldEffect, Within, World, parse_error},
 };
-
-/// Where the wetness of the ground comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum GroundModel {
-    /// From the weather of the moment: as reported, or as the rain of the moment keeps it. No state: rain that ends
-    /// leaves dry ground.
-    #[default]
-    Reported,
-    /// A state that rain fills and that drains and dries by wind, sun and humidity ([`crate::ground::water`]). It
-    /// begins at simulation time 0 as the weather of that moment reports the ground. An update that moves time by more
-    /// than a day begins it anew, in the same way, a day before its end.
-    Simulated,
-}
+use glam::{DMat3, DVec2, DVec3};
 
 /// Water at a place of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,47 +48,6 @@ pub struct GroundAt {
 const SUN_EVERY_S: f64 = 300.0;
 /// An update that moves time by more than this begins the state anew, this long before its end, s.
 const LONGEST_S: f64 = 86_400.0;
-
-/// The simulated water and what its next step needs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct GroundState {
-    time_s: f64,
-    film_mm: f64,
-    soaked_mm: f64,
-    hollows_mm: f64,
-    /// Sunlight on level ground since the last look at it.
-    sunlight_w_m2: f64,
-}
-
-impl GroundState {
-    pub fn water(&self) -> GroundWater {
-        GroundWater { film_mm: self.film_mm, soaked_mm: self.soaked_mm, hollows_mm: self.hollows_mm }
-    }
-
-    fn set(&mut self, water: GroundWater) {
-        (self.film_mm, self.soaked_mm, self.hollows_mm) = (water.film_mm, water.soaked_mm, water.hollows_mm);
-    }
-
-    /// A state that begins at `time_s` as the weather reports the ground.
-    fn first(world: &World, time_s: f64) -> Result<Self> {
-        let sunlight_w_m2 = world.sunlight_w_m2(time_s)?;
-        let mut state = Self { time_s, film_mm: 0.0, soaked_mm: 0.0, hollows_mm: 0.0, sunlight_w_m2 };
-        state.set(GroundWater::of_cover(&world.timeline.at(time_s).surface));
-        Ok(state)
-    }
-
-    /// Where its next step ends, s.
-    fn next_s(&self) -> f64 {
-        ((self.time_s / STEP_S).floor() + 1.0) * STEP_S
-    }
-
-    /// Whether a saved one can be one of ours.
-    pub fn is_valid(&self) -> bool {
-        let amounts = [self.film_mm, self.soaked_mm, self.hollows_mm, self.sunlight_w_m2];
-        self.time_s.is_finite() && amounts.iter().all(|v| (0.0..1e4).contains(v))
-    }
-}
 
 /// The ground of a context.
 pub(crate) struct HeldGround {
@@ -327,7 +274,7 @@ impl HeldGround {
             Some(state) => state.max(&kept),
             None => kept,
         };
-        let at = DVec2::from(super::pattern_axes(&frame.world_to_enu).map(|a| a.dot(position)));
+        let at = DVec2::from(pattern_axes(&frame.world_to_enu).map(|a| a.dot(position)));
         let hollow_mm = depth_at_mm(&water, self.hollows.depth(at));
         let water_mm = if surface_class.has_hollows() { hollow_mm } else { water.film_mm };
         Ok(GroundAt {
@@ -424,7 +371,7 @@ impl HeldEffect for HeldGround {
         self.follow_late(world);
     }
 
-    fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
+    fn lead(&mut self, world: &World, budget: Within) -> Result<Status> {
         self.follow_late(world);
         let Some(mut state) = self.state else { return Ok(Status::Ok) };
         for steps in 0.. {
@@ -432,7 +379,7 @@ impl HeldEffect for HeldGround {
             if end_s > within.until_s {
                 break;
             }
-            if steps > 0 && within.begun.elapsed() >= within.most {
+            if steps > 0 && budget.begun.elapsed() >= budget.most {
                 return Ok(Status::Pending);
             }
             if state.time_s.rem_euclid(SUN_EVERY_S) == 0.0 {
@@ -442,13 +389,13 @@ impl HeldEffect for HeldGround {
             let c = world.timeline.at(0.5 * (from_s + end_s));
             let forcing = forcing(world, &c, &state);
             let step = GroundStep { from_s, seconds, conditions: &c, forcing: &forcing, water: &before };
-            if !self.step_tiles(world, &step, within)? {
+            if !self.step_tiles(world, &step, budget)? {
                 return Ok(Status::Pending);
             }
             state.set(before.after(&forcing, seconds));
             state.time_s = end_s;
             if let Some(host) = self.host.as_mut().filter(|_| from_s >= self.terrain_from_s) {
-                let stepped = host.lead(world, (from_s, seconds), (&c, &forcing), &before)?;
+                let stepped = host.lead(world, &step)?;
                 self.revision += u64::from(stepped);
             }
             self.state = Some(state);

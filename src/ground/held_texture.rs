@@ -5,9 +5,8 @@ use std::sync::{Arc, MutexGuard, PoisonError};
 use glam::DVec3;
 
 use super::{
-    GroundTexture,
     held::HeldGround,
-    texture::{Filled, TerrainTextures, uv_from_world},
+    texture::{Filled, GroundTexture, TerrainTextures, uv_from_world},
     window::{DrawnTerrain, TerrainWindow},
 };
 use crate::{

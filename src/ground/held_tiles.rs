@@ -5,32 +5,21 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{
-    GroundWater, SurfaceClass,
+    class::SurfaceClass,
     grid::ABOVE_M,
     held::{HeldGround, TILES_KEY},
     host::GroundCell,
+    state::GroundStep,
     terrain::CellWater,
     tiled::{Changed, SavedTiles, TiledStep, TiledWater},
-    water::Forcing,
+    water::GroundWater,
     window::{RecentChanges, Shown},
 };
 use crate::{
     error::{Error, Result, Status},
     terrain::{CellRect, Terrain, TerrainCells, TerrainDesc, TileKey},
-    weather::Conditions,
     world::{Within, World},
 };
-
-/// A step of level, open ground, for the tiles beside it.
-#[derive(Clone, Copy)]
-pub(super) struct GroundStep<'a> {
-    pub from_s: f64,
-    pub seconds: f64,
-    pub conditions: &'a Conditions,
-    pub forcing: &'a Forcing,
-    /// Water of level ground at the step's beginning.
-    pub water: &'a GroundWater,
-}
 
 fn without_terrain() -> Error {
     Error::new(Status::WrongOrder, "tiles come after wk_context_set_terrain: there is no terrain")
@@ -63,7 +52,8 @@ impl HeldGround {
     /// before.
     fn change(
         &mut self,
-        (world, waits): (&mut World, bool),
+        world: &mut World,
+        waits: bool,
         is_removal: bool,
         change: impl FnOnce(&mut Terrain) -> Result<Option<CellRect>>,
     ) -> Result<()> {
@@ -92,24 +82,24 @@ impl HeldGround {
     ///
     /// # Errors
     /// As there; nothing changes then.
-    pub fn set_tile(&mut self, on: (&mut World, bool), cells: &TerrainCells<'_>) -> Result<()> {
-        self.change(on, false, |terrain| terrain.set_tile(cells))
+    pub fn set_tile(&mut self, world: &mut World, waits: bool, cells: &TerrainCells<'_>) -> Result<()> {
+        self.change(world, waits, false, |terrain| terrain.set_tile(cells))
     }
 
     /// See [`Context::update_terrain`](crate::context::Context::update_terrain).
     ///
     /// # Errors
     /// As there; nothing changes then.
-    pub fn update_tile(&mut self, on: (&mut World, bool), cells: &TerrainCells<'_>) -> Result<()> {
-        self.change(on, false, |terrain| terrain.update(cells))
+    pub fn update_tile(&mut self, world: &mut World, waits: bool, cells: &TerrainCells<'_>) -> Result<()> {
+        self.change(world, waits, false, |terrain| terrain.update(cells))
     }
 
     /// See [`Context::remove_terrain_tile`](crate::context::Context::remove_terrain_tile).
     ///
     /// # Errors
     /// As there; nothing changes then.
-    pub fn remove_tile(&mut self, on: (&mut World, bool), key: TileKey) -> Result<()> {
-        self.change(on, true, |terrain| terrain.remove(key).map(Some))
+    pub fn remove_tile(&mut self, world: &mut World, waits: bool, key: TileKey) -> Result<()> {
+        self.change(world, waits, true, |terrain| terrain.remove(key).map(Some))
     }
 
     /// Lets the water follow the changes that had to wait, each on the terrain as it was then, up to that of the world
@@ -125,7 +115,7 @@ impl HeldGround {
     }
 
     /// Leads the water on the tiles through a step, or a part of it. Says whether it is done.
-    pub(super) fn step_tiles(&mut self, world: &World, step: &GroundStep<'_>, within: Within) -> Result<bool> {
+    pub(super) fn step_tiles(&mut self, world: &World, step: &GroundStep<'_>, budget: Within) -> Result<bool> {
         let (Some(terrain), Some(tiled)) = (world.set.tiles.as_ref(), self.tiled.as_mut()) else { return Ok(true) };
         if !tiled.is_of(terrain) {
             return Ok(true);
@@ -139,7 +129,7 @@ impl HeldGround {
             forcing: step.forcing,
             water: step.water,
         };
-        let stepped = tiled.step(&step, Some(within))?;
+        let stepped = tiled.step(&step, Some(budget))?;
         self.revision += u64::from(stepped.is_some_and(|s| s.changes));
         Ok(stepped.is_some())
     }

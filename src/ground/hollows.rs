@@ -79,20 +79,20 @@ impl Hollows {
     }
 
     /// Depth below the mean ground at a place of the pattern, in units of its root mean square.
-    pub fn depth(&self, at: DVec2) -> f64 {
-        (0..WAVES).map(|k| amplitude(k) * libm::sin(TAU * self.turns_at(k, at).fract())).sum()
+    pub fn depth(&self, place: DVec2) -> f64 {
+        (0..WAVES).map(|k| amplitude(k) * libm::sin(TAU * self.turns_at(k, place).fract())).sum()
     }
 
     /// Phases of the waves for a camera at this place of the pattern, in turns, by fours as the shader reads them.
-    pub(super) fn seen_from(&self, at: DVec2) -> [[f32; 4]; WAVES / 4] {
-        std::array::from_fn(|four| std::array::from_fn(|i| self.turns_at(4 * four + i, at).rem_euclid(1.0) as f32))
+    pub(super) fn seen_from(&self, place: DVec2) -> [[f32; 4]; WAVES / 4] {
+        std::array::from_fn(|four| std::array::from_fn(|i| self.turns_at(4 * four + i, place).rem_euclid(1.0) as f32))
     }
 
     /// Phase of a wave at a place, turns.
-    fn turns_at(&self, wave: usize, at: DVec2) -> f64 {
+    fn turns_at(&self, wave: usize, place: DVec2) -> f64 {
         // Whole turns are dropped before they cost digits.
-        let at = at.rem_euclid(DVec2::splat(PERIOD_M)) / PERIOD_M;
-        self.phases[wave] + turns(wave).dot(at)
+        let place = place.rem_euclid(DVec2::splat(PERIOD_M)) / PERIOD_M;
+        self.phases[wave] + turns(wave).dot(place)
     }
 }
 

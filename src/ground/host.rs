@@ -4,12 +4,12 @@
 use glam::{DMat3, DVec2};
 
 use super::{
-    GroundGrid, GroundModel, GroundWater,
-    held::GroundState,
+    grid::GroundGrid,
     host_rain::AreasOverGrid,
-    rain_on::GridRain,
+    rain_on::{GridRain, RainStep},
+    state::{GroundModel, GroundState, GroundStep},
     terrain::{GridTerrain, TerrainWater},
-    water::{Forcing, STEP_S, Step},
+    water::{GroundWater, STEP_S, Step},
 };
 use crate::{
     error::Result,
@@ -70,22 +70,15 @@ impl HostGround {
         self.rain.ice(cell)
     }
 
-    /// Leads the water through a step under the weather `c`.
-    fn step(
-        &mut self,
-        c: &Conditions,
-        forcing: &Forcing,
-        seconds: f64,
-        overs: &AreasOverGrid,
-        shelters: &[Shelter],
-    ) -> bool {
-        let rains = overs.rain(forcing);
+    /// Leads the water through a step.
+    fn step(&mut self, now: &RainStep<'_>, overs: &AreasOverGrid, shelters: &[Shelter]) -> bool {
+        let rains = overs.rain(now.forcing);
         if !rains && self.water.is_dry() {
             return false;
         }
-        let step = Step::new(forcing, seconds);
+        let step = Step::new(now.forcing, now.seconds);
         if rains {
-            self.rain.fall(&self.terrain.grid.cells(), (c, forcing, seconds), overs, shelters);
+            self.rain.fall(&self.terrain.grid.cells(), now, overs, shelters);
             let rain = &self.rain;
             self.water.step(&self.terrain, &step, |run| rain.rains_on(run), |cell| rain.fallen_mm(cell));
         } else {
@@ -100,22 +93,16 @@ impl HostGround {
         self.water = TerrainWater::new(&self.terrain, |cell| cells[cell]);
     }
 
-    /// Leads the water from `from_s` through a step, under the weather in its middle; `water` is that of level, open
-    /// ground at its beginning. Says whether it may have changed.
-    pub fn lead(
-        &mut self,
-        world: &World,
-        (from_s, seconds): (f64, f64),
-        (c, forcing): (&Conditions, &Forcing),
-        water: &GroundWater,
-    ) -> Result<bool> {
-        let overs = self.rain.overs(world, from_s + 0.5 * seconds, c)?;
+    /// Leads the water through a step beside that of level, open ground. Says whether it may have changed.
+    pub fn lead(&mut self, world: &World, step: &GroundStep<'_>) -> Result<bool> {
+        let GroundStep { from_s, seconds, conditions, forcing, water } = *step;
+        let overs = self.rain.overs(world, from_s + 0.5 * seconds, conditions)?;
         let shelters = &world.set.shelters;
         if !self.begun {
-            self.show(c, water, &overs, shelters);
+            self.show(conditions, water, &overs, shelters);
             self.begun = true;
         }
-        Ok(self.step(c, forcing, seconds, &overs, shelters))
+        Ok(self.step(&RainStep { conditions, forcing, seconds }, &overs, shelters))
     }
 
     /// Lets the water begin at its next step as the ground is then.

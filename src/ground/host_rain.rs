@@ -1,15 +1,13 @@
-//! Rain of the rain areas on each part of the host's terrain.
+//! Rain areas over a grid, and the bounds of its cells by which their shares are found.
 
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::{grid::CellGrid, rain_on::GridRain, terrain::RUN, water::Forcing};
+use super::{grid::CellGrid, terrain::RUN, water::Forcing};
 use crate::{
-    error::Result,
     falling::{MAX_AREAS, area::Shaft},
-    weather::{Conditions, Falling},
-    world::World,
+    weather::Falling,
 };
 
 /// A rain area above a grid.
@@ -24,13 +22,13 @@ pub(super) struct AreaOverGrid {
 
 /// Share of each area, and how much of its rain has left its cloud, where both are the same all over a part of the
 /// grid; none where they vary.
-type Evens = [Option<(f64, f64)>; MAX_AREAS];
+pub(super) type Evens = [Option<(f64, f64)>; MAX_AREAS];
 
 /// Areas over a grid, in their order.
 pub(super) struct AreasOverGrid {
-    list: [Option<AreaOverGrid>; MAX_AREAS],
+    pub list: [Option<AreaOverGrid>; MAX_AREAS],
     /// Shares that are the same all over the grid.
-    evens: Evens,
+    pub evens: Evens,
 }
 
 impl AreasOverGrid {
@@ -38,7 +36,7 @@ impl AreasOverGrid {
         self.list.iter().flatten()
     }
 
-    fn are_even(&self, evens: &Evens) -> bool {
+    pub fn are_even(&self, evens: &Evens) -> bool {
         self.list.iter().zip(evens).all(|(over, even)| over.is_none() || even.is_some())
     }
 
@@ -97,7 +95,7 @@ impl CellBounds {
     }
 
     /// Bounds of an area's share here, and the share itself where it is the same everywhere.
-    fn even(&self, shaft: &Shaft, to_enu: &DMat3) -> (f64, Option<(f64, f64)>) {
+    pub fn even(&self, shaft: &Shaft, to_enu: &DMat3) -> (f64, Option<(f64, f64)>) {
         let [low, high] = self.altitudes_m;
         let [least, most] = shaft.share_within(self.middle, to_enu, 0.5 * (low + high), self.reach_m);
         let begun = [low, high].map(|m| shaft.begun(m));
@@ -106,64 +104,11 @@ impl CellBounds {
     }
 
     /// Finds share and begun rain of each area over this part, where they are even, as [`Evens`].
-    fn evens(&self, overs: &AreasOverGrid, to_enu: &DMat3) -> Evens {
+    pub fn evens(&self, overs: &AreasOverGrid, to_enu: &DMat3) -> Evens {
         let mut evens = overs.evens;
         for (even, over) in evens.iter_mut().zip(&overs.list) {
             *even = even.or_else(|| self.even(&over.as_ref()?.shaft, to_enu).1);
         }
         evens
-    }
-}
-
-impl GridRain {
-    /// Rain and drizzle at a cell where the weather has `own`, mm/h.
-    fn liquid_with(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, evens: &Evens, own: f64, cell: usize) -> f64 {
-        overs.list.iter().zip(evens).fold(own, |sum, (over, even)| {
-            let Some(over) = over else { return sum };
-            let (share, begun) = even.unwrap_or_else(|| {
-                let altitude = self.altitude_m + f64::from(grid.heights_m[cell]);
-                let p = grid.node(cell, &self.to_enu);
-                (over.shaft.share_at(p, &self.to_enu, altitude), over.shaft.begun(altitude))
-            });
-            sum * (1.0 - share) + over.liquid_mm_h * share * begun
-        })
-    }
-
-    /// Returns rain and drizzle at a cell, mm/h, from what is even over all of the grid.
-    pub(super) fn liquid(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, cell: usize) -> f64 {
-        self.liquid_with(grid, overs, &overs.evens, own, cell)
-    }
-
-    /// Rain and drizzle at each cell, mm/h: asked once for each run of cells on which areas lie evenly.
-    pub(super) fn liquids(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, liquids: &mut Vec<f64>) {
-        liquids.clear();
-        let count = grid.len();
-        for (run, part) in self.runs.iter().enumerate() {
-            let cells = run * RUN..((run + 1) * RUN).min(count);
-            let evens = part.evens(overs, &self.to_enu);
-            if overs.are_even(&evens) {
-                liquids.resize(cells.end, self.liquid_with(grid, overs, &evens, own, cells.start));
-            } else {
-                liquids.extend(cells.map(|cell| self.liquid_with(grid, overs, &evens, own, cell)));
-            }
-        }
-    }
-}
-
-impl GridRain {
-    /// The areas over the terrain at a time; `c` is the weather then.
-    pub(super) fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<AreasOverGrid> {
-        let mut overs = AreasOverGrid { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };
-        if world.set.regions.is_empty() {
-            return Ok(overs);
-        }
-        let places = overs.list.iter_mut().zip(&mut overs.evens);
-        for ((place, even), shaft) in places.zip(world.over().shafts_at(time_s, c)?) {
-            let (most, over_all) = self.whole.even(&shaft, &self.to_enu);
-            let liquid_mm_h = if most > 0.0 { liquid(&shaft.falling) } else { 0.0 };
-            *even = over_all;
-            *place = Some(AreaOverGrid { shaft, reaches: most > 0.0, liquid_mm_h });
-        }
-        Ok(overs)
     }
 }

@@ -3,16 +3,17 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    GroundWater,
     grid::CellGrid,
-    host_rain::{AreasOverGrid, CellBounds, liquid},
+    host_rain::{AreaOverGrid, AreasOverGrid, CellBounds, Evens, liquid},
     terrain::RUN,
-    water::Forcing,
+    water::{Forcing, GroundWater},
 };
 use crate::{
-    falling::{drops::factor_in, sizes::DropSizes},
+    error::Result,
+    falling::{MAX_AREAS, drops::factor_in, sizes::DropSizes},
     surroundings::{Shelter, shelter::sheltered},
     weather::{Conditions, Falling, cover_under_rain},
+    world::World,
 };
 
 /// Height above the ground up to which a place counts as its surface, m.
@@ -37,6 +38,15 @@ impl Shadow {
 struct Glaze {
     ice: f64,
     shadow: Shadow,
+}
+
+/// A step in which rain falls on a grid.
+#[derive(Clone, Copy)]
+pub(super) struct RainStep<'a> {
+    /// The weather in its middle, and what it does to the ground.
+    pub conditions: &'a Conditions,
+    pub forcing: &'a Forcing,
+    pub seconds: f64,
 }
 
 /// Where a grid lies under the sky, and what falls on its cells.
@@ -214,14 +224,9 @@ impl GridRain {
         self.glaze.ice > 0.0
     }
 
-    /// Finds what falls on each cell in a step of so many seconds, under the weather in its middle.
-    pub fn fall(
-        &mut self,
-        grid: &CellGrid<'_>,
-        (c, forcing, seconds): (&Conditions, &Forcing, f64),
-        overs: &AreasOverGrid,
-        shelters: &[Shelter],
-    ) {
+    /// Finds what falls on each cell in a step.
+    pub fn fall(&mut self, grid: &CellGrid<'_>, step: &RainStep<'_>, overs: &AreasOverGrid, shelters: &[Shelter]) {
+        let RainStep { conditions: c, forcing, seconds } = *step;
         self.shade_rain(grid, c, overs, shelters);
         let own = liquid(&c.precipitation);
         let liquid_stays = 1.0 - c.precipitation.freezing;
@@ -286,5 +291,56 @@ impl GridRain {
             }
         };
         (0..grid.len()).map(at).collect()
+    }
+}
+
+impl GridRain {
+    /// Rain and drizzle at a cell where the weather has `own`, mm/h.
+    fn liquid_with(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, evens: &Evens, own: f64, cell: usize) -> f64 {
+        overs.list.iter().zip(evens).fold(own, |sum, (over, even)| {
+            let Some(over) = over else { return sum };
+            let (share, begun) = even.unwrap_or_else(|| {
+                let altitude = self.altitude_m + f64::from(grid.heights_m[cell]);
+                let p = grid.node(cell, &self.to_enu);
+                (over.shaft.share_at(p, &self.to_enu, altitude), over.shaft.begun(altitude))
+            });
+            sum * (1.0 - share) + over.liquid_mm_h * share * begun
+        })
+    }
+
+    /// Returns rain and drizzle at a cell, mm/h, from what is even over all of the grid.
+    fn liquid(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, cell: usize) -> f64 {
+        self.liquid_with(grid, overs, &overs.evens, own, cell)
+    }
+
+    /// Rain and drizzle at each cell, mm/h: asked once for each run of cells on which areas lie evenly.
+    fn liquids(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, liquids: &mut Vec<f64>) {
+        liquids.clear();
+        let count = grid.len();
+        for (run, part) in self.runs.iter().enumerate() {
+            let cells = run * RUN..((run + 1) * RUN).min(count);
+            let evens = part.evens(overs, &self.to_enu);
+            if overs.are_even(&evens) {
+                liquids.resize(cells.end, self.liquid_with(grid, overs, &evens, own, cells.start));
+            } else {
+                liquids.extend(cells.map(|cell| self.liquid_with(grid, overs, &evens, own, cell)));
+            }
+        }
+    }
+
+    /// The areas over the terrain at a time; `c` is the weather then.
+    pub fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<AreasOverGrid> {
+        let mut overs = AreasOverGrid { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };
+        if world.set.regions.is_empty() {
+            return Ok(overs);
+        }
+        let places = overs.list.iter_mut().zip(&mut overs.evens);
+        for ((place, even), shaft) in places.zip(world.over().shafts_at(time_s, c)?) {
+            let (most, over_all) = self.whole.even(&shaft, &self.to_enu);
+            let liquid_mm_h = if most > 0.0 { liquid(&shaft.falling) } else { 0.0 };
+            *even = over_all;
+            *place = Some(AreaOverGrid { shaft, reaches: most > 0.0, liquid_mm_h });
+        }
+        Ok(overs)
     }
 }

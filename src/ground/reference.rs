@@ -52,16 +52,16 @@ pub fn seen_area(slope: f64, cosine: f64) -> f64 {
 }
 
 /// Luminance that a lamp of illuminance 1 makes on rough water, per Fresnel share (Cox & Munk 1954, eq. 5, with the
-/// shadows of facets on each other): `up` is the surface's normal, `facet` the one that mirrors the lamp's middle into
+/// shadows of facets on each other): `normal` is the surface's, `facet` the one that mirrors the lamp's middle into
 /// the eye, `disc2` = (radius of the lamp / 4)^2, rad^2.
-pub fn glitter(slope: f64, disc2: f64, up: DVec3, facet: DVec3, to_eye: DVec3, to_lamp: DVec3) -> f64 {
-    let (c, lit, seen) = (up.dot(facet), up.dot(to_lamp), up.dot(to_eye));
+pub fn glitter(slope: f64, disc2: f64, normal: DVec3, facet: DVec3, to_eye: DVec3, to_lamp: DVec3) -> f64 {
+    let (c, lit, seen) = (normal.dot(facet), normal.dot(to_lamp), normal.dot(to_eye));
     let area = seen_area(slope, seen) * seen_area(slope, lit);
     if c <= 0.0 || lit <= 0.0 || area <= 1e-6 {
         return 0.0;
     }
-    let tilt = facet / c - up;
-    let along = tilt.dot((to_eye - up * seen).normalize_or_zero()).powi(2);
+    let tilt = facet / c - normal;
+    let along = tilt.dot((to_eye - normal * seen).normalize_or_zero()).powi(2);
     let across = (tilt.length_squared() - along).max(0.0);
     let opening = facet.dot(to_eye).max(1e-3);
     let [s, t] = [disc2, disc2 / (opening * opening)].map(|d| d + slope * slope);

@@ -3,7 +3,12 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{GroundGrid, MAX_GRID_NODES, SurfaceClass, host::HostGround, terrain::TerrainWater};
+use super::{
+    class::SurfaceClass,
+    grid::{GroundGrid, MAX_GRID_NODES},
+    host::HostGround,
+    terrain::TerrainWater,
+};
 use crate::{
     scene::WorldFrame,
     world::{values, words},

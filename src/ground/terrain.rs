@@ -9,10 +9,10 @@
 use half::f16;
 
 use super::{
-    GroundGrid, GroundWater,
     basins::{Basins, OUT},
+    grid::GroundGrid,
     pools::Pools,
-    water::{PORES_MM, Step, SurfaceWater, wetness_of},
+    water::{GroundWater, PORES_MM, Step, SurfaceWater, wetness_of},
 };
 
 /// Cells that are gone through together, or passed over together where nothing falls, flows or dries.
@@ -231,8 +231,8 @@ impl TerrainWater {
     }
 
     /// Water between cells.
-    pub fn between(&self, about: &[(usize, f64); 4]) -> CellWater {
-        about.iter().fold(CellWater::default(), |sum, (cell, share)| {
+    pub fn between(&self, shares: &[(usize, f64); 4]) -> CellWater {
+        shares.iter().fold(CellWater::default(), |sum, (cell, share)| {
             let c = self.cell(*cell);
             CellWater {
                 film_mm: sum.film_mm + share * c.film_mm,

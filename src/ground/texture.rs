@@ -8,7 +8,11 @@
 
 use glam::DVec4;
 
-use super::{GroundGrid, terrain::GridTerrain, terrain::TerrainWater, window::DrawnTerrain};
+use super::{
+    grid::GroundGrid,
+    terrain::{GridTerrain, TerrainWater},
+    window::DrawnTerrain,
+};
 use crate::{gpu::Device, surroundings::LyingSnow};
 
 /// WGSL text of the functions that say how the water looks; see [`GroundTexture`].

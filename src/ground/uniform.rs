@@ -5,9 +5,8 @@ use std::f64::consts::PI;
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    Hollows, SurfaceClass,
-    class::{CLASSES, SurfaceLook},
-    hollows::{PERIOD_M, WAVES, pattern_axes},
+    class::{CLASSES, SurfaceClass, SurfaceLook},
+    hollows::{Hollows, PERIOD_M, WAVES, pattern_axes},
     reference::{WATER_OUTSIDE, fresnel_water, normal_quantile, ring_drops_per_m2_s},
     window::DrawnTerrain,
 };

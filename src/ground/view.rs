@@ -3,8 +3,10 @@
 use glam::DMat3;
 
 use super::{
-    DropsKept, GroundUniform, HeldGround, Hollows, SurfaceClass, WetScene,
-    window::{DrawnTerrain, TerrainWindow},
+    held::HeldGround,
+    seen::GroundSeen,
+    uniform::{DropsKept, GroundUniform, WetScene},
+    window::TerrainWindow,
 };
 use crate::{
     error::Result,
@@ -18,30 +20,10 @@ use crate::{
         Block, Contribution, DrawContext, DrawnEffect, Exchange, Frame, FrameContext, FrameFlags, Output, Outputs,
         Stages, Texture, flag, is_float, rounding,
     },
-    surroundings::SnowHere,
-    weather::SurfaceCover,
 };
 
 /// Largest number of a half float, with room for what follows.
 const MOST_UNITS: f64 = 6e4;
-
-/// State of the ground that a context holds, as a camera sees it.
-pub(crate) struct GroundSeen<'a> {
-    /// Cover that weather has left on the ground at the camera.
-    pub cover: SurfaceCover,
-    pub hollows: &'a Hollows,
-    /// The host's terrain about the camera.
-    pub terrain: Option<DrawnTerrain>,
-    /// Whether there is water on it.
-    pub has_wet_terrain: bool,
-    /// Snow on level, open ground, and whether any lies on the terrain.
-    pub snow: SnowHere,
-    pub has_snowy_terrain: bool,
-    /// Whether the terrain's cells have snow of their own.
-    pub terrain_has_snow: bool,
-    /// Class of ground for which the host gives none.
-    pub surface_class: SurfaceClass,
-}
 
 /// The ground of a view.
 pub(crate) struct GroundView {
@@ -71,9 +53,9 @@ impl DrawnEffect for GroundView {
         Exchange { needs: &[Output::FogDepth], ..Exchange::NONE }
     }
 
-    fn gather(&mut self, at: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
-        let (now, frame, held) = (at.now, at.frame, at.held.of::<HeldGround>()?);
-        let seen = held.seen(at.world, now);
+    fn gather(&mut self, context: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
+        let (now, frame, held) = (context.now, context.frame, context.held.of::<HeldGround>()?);
+        let seen = held.seen(context.world, now);
         let glaze = glaze(now);
         self.has_water = seen.has_wet_terrain || seen.cover.wetness > 0.0 || seen.cover.puddles > 0.0 || glaze > 0.0;
         self.has_terrain = seen.terrain.is_some();
@@ -85,11 +67,11 @@ impl DrawnEffect for GroundView {
         }
         // The textures of the host's terrain, of its tiles about the camera or of its grid: up to date where any of it
         // is drawn.
-        let is_drawn = self.block.is_some() && at.asked.has(Stages::SURFACE);
-        self.views = match held.shown_tiles(at.world, now.here.surface.ice) {
-            Some(shown) if is_drawn => self.window.views(at.device, now.eye, &shown),
+        let is_drawn = self.block.is_some() && context.asked.has(Stages::SURFACE);
+        self.views = match held.shown_tiles(context.world, now.here.surface.ice) {
+            Some(shown) if is_drawn => self.window.views(context.device, now.eye, &shown),
             Some(_) => [None, None],
-            None => held.views(at.device, is_drawn, at.world.snow.as_deref()),
+            None => held.views(context.device, is_drawn, context.world.snow.as_deref()),
         };
         Ok(())
     }
@@ -98,9 +80,9 @@ impl DrawnEffect for GroundView {
         if self.block.is_some() { Stages::SURFACE } else { Stages(0) }
     }
 
-    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
-        let drawn = self.block.as_ref().filter(|_| at.stages.has(Stages::SURFACE));
+        let drawn = self.block.as_ref().filter(|_| context.stages.has(Stages::SURFACE));
         let has_rings = self.has_water && drawn.is_some_and(GroundUniform::has_rings);
         for (name, is_there) in
             [("TERRAIN", self.has_terrain), ("SNOW", self.has_snow), ("WATER", self.has_water), ("RINGS", has_rings)]

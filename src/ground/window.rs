@@ -12,8 +12,9 @@ use glam::{DMat3, DVec3};
 use half::f16;
 
 use super::{
-    GroundGrid, GroundWater,
+    grid::GroundGrid,
     tiled::{Changed, TiledWater},
+    water::GroundWater,
 };
 use crate::{
     gpu::Device,

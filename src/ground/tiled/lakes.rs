@@ -11,13 +11,12 @@
 //! found is the same for the same ground and water, however these came to be.
 
 mod parting;
-mod saved;
+pub(super) mod saved;
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 use super::drains::is_lower;
 use crate::terrain::{CellId, Terrain};
-pub(super) use saved::LakeBranch;
 
 /// No hollow.
 const NONE: u32 = u32::MAX;
@@ -110,9 +109,9 @@ fn put<T>(list: &mut Vec<Option<T>>, free: &mut Vec<u32>, value: T) -> u32 {
 }
 
 impl Hollow {
-    fn new(parts: Option<[u32; 2]>, below: f64, base: f64, birth_mm: f64) -> Self {
+    fn new(parts: Option<[u32; 2]>, part_cells: f64, base: f64, birth_mm: f64) -> Self {
         let (cells, levels_mm, held_at) = (Vec::new(), Vec::new(), Vec::new());
-        Self { parts, cells, levels_mm, held_at, below, base, birth_mm, close: None }
+        Self { parts, cells, levels_mm, held_at, below: part_cells, base, birth_mm, close: None }
     }
 
     /// Level of the water, mm, and how many cells lie under it, when it holds `held`.
@@ -259,10 +258,10 @@ impl Lakes {
         }
     }
 
-    fn change(&mut self, lake: u32, with: impl FnOnce(&mut Hollow)) {
+    fn change(&mut self, lake: u32, edit: impl FnOnce(&mut Hollow)) {
         let hollow = self.lake(lake).map_or(NONE, |l| l.hollow);
         if let Some(h) = self.hollows.get_mut(hollow as usize).and_then(Option::as_mut) {
-            with(h);
+            edit(h);
         }
     }
 
@@ -331,19 +330,19 @@ impl Lakes {
     }
 
     /// Pours water into a pit. Answers what leaves the terrain.
-    pub fn pour(&mut self, terrain: &Terrain, below: PitBelow<'_>, pit: CellId, water: f64) -> f64 {
+    pub fn pour(&mut self, terrain: &Terrain, pit_below: PitBelow<'_>, pit: CellId, water: f64) -> f64 {
         let mut lake = self.lake_at(terrain, pit);
         let mut left = self.fill(terrain, lake, water);
         if left <= 0.0 {
             return 0.0;
         }
         let mut made = vec![lake];
-        while let Some(pit) = self.spills_to(lake).and_then(below) {
+        while let Some(pit) = self.spills_to(lake).and_then(pit_below) {
             let next = self.lake_at(terrain, pit);
             if next == lake {
                 break;
             }
-            let back = self.spills_to(next).and_then(below).map(|pit| terrain.split(pit));
+            let back = self.spills_to(next).and_then(pit_below).map(|pit| terrain.split(pit));
             lake = if back.is_some_and(|(slot, at)| self.lake_of(slot, at) == Some(lake)) {
                 self.join(terrain, lake, next)
             } else {

@@ -3,7 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{TiledWater, lakes::LakeBranch, pit_below};
+use super::{
+    lakes::saved::LakeBranch,
+    water::{TiledWater, pit_below},
+};
 use crate::{
     error::{Error, Result},
     ground::water::PORES_MM,
@@ -29,7 +32,7 @@ struct SavedWaterTile {
 /// Water on tiles as it is saved.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in super::super) struct SavedTiles {
+pub(crate) struct SavedTiles {
     origin_m: [f64; 3],
     cell_m: f64,
     tile_cells: u32,

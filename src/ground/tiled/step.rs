@@ -1,21 +1,25 @@
 //! A step of the water on all tiles, in parts where it takes long.
 
-use super::{TiledWater, drains::Sink, pit_below, pour_all, tile::cells_of};
+use super::{
+    drains::Sink,
+    tile::cells_of,
+    water::{StepInParts, TiledWater, pit_below, pour_all},
+};
 use crate::{
     error::Result,
     ground::{
-        GroundWater,
+        rain_on::RainStep,
         terrain::Flows,
-        water::{Forcing, Step},
+        water::{Forcing, GroundWater, Step},
     },
-    terrain::{CellId, Terrain, TileKey},
+    terrain::{CellId, Terrain},
     weather::Conditions,
     world::{Within, World},
 };
 
 /// Forcing of the ground in a step.
 #[derive(Clone, Copy)]
-pub(in super::super) struct TiledStep<'a> {
+pub(crate) struct TiledStep<'a> {
     pub world: &'a World,
     pub terrain: &'a Terrain,
     /// Simulation time in its middle, and its length, s.
@@ -28,18 +32,9 @@ pub(in super::super) struct TiledStep<'a> {
     pub water: &'a GroundWater,
 }
 
-/// A step of which some tiles are done.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct StepInParts {
-    /// The last tile that is done.
-    last: Option<TileKey>,
-    flows: Flows,
-    changes: bool,
-}
-
 /// Water that a step brought and took, and whether any water changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) struct SteppedTiles {
+pub(crate) struct SteppedTiles {
     pub flows: Flows,
     pub changes: bool,
 }
@@ -47,7 +42,7 @@ pub(in super::super) struct SteppedTiles {
 impl TiledWater {
     /// Leads the water through a step, or a part of it until the time is over: one tile at least. None while tiles
     /// remain.
-    pub fn step(&mut self, now: &TiledStep<'_>, within: Option<Within>) -> Result<Option<SteppedTiles>> {
+    pub fn step(&mut self, now: &TiledStep<'_>, budget: Option<Within>) -> Result<Option<SteppedTiles>> {
         let mut part = self.part.take().unwrap_or_default();
         let step = Step::new(now.forcing, now.seconds);
         let keys = std::mem::take(&mut self.keys);
@@ -60,7 +55,7 @@ impl TiledWater {
                 break;
             }
             part.last = Some(*key);
-            if within.is_some_and(|w| w.begun.elapsed() >= w.most) {
+            if budget.is_some_and(|w| w.begun.elapsed() >= w.most) {
                 break;
             }
         }
@@ -94,7 +89,8 @@ impl TiledWater {
         }
         let rains = overs.rain(now.forcing);
         if rains {
-            tile.rain.fall(&cells, (now.conditions, now.forcing, now.seconds), &overs, shelters);
+            let falling = RainStep { conditions: now.conditions, forcing: now.forcing, seconds: now.seconds };
+            tile.rain.fall(&cells, &falling, &overs, shelters);
         }
         part.changes |= rains || tile.is_awake();
         let flows = tile.step(data, (slot as usize, &self.lakes), step, rains);

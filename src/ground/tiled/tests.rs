@@ -4,19 +4,24 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::{lakes::LakeBranch, step::SteppedTiles, *};
+use super::{
+    lakes::saved::LakeBranch,
+    saved::SavedTiles,
+    step::{SteppedTiles, TiledStep},
+    water::{Changed, TiledWater},
+};
 use crate::{
     almanac::sun::Utc,
     ground::{
-        GroundGrid,
         basins::tests::{flooded, rough},
-        terrain::{GridTerrain, TerrainWater},
-        water::{Forcing, STEP_S, Step},
+        grid::GroundGrid,
+        terrain::{CellWater, GridTerrain, TerrainWater},
+        water::{Forcing, GroundWater, STEP_S, Step},
     },
     light::{Exposure, ToneCurve},
     planet::Planet,
     scene::WorldFrame,
-    terrain::{Rows, SurfaceClass, TerrainCells, TerrainDesc},
+    terrain::{CellId, CellRect, Rows, SurfaceClass, Terrain, TerrainCells, TerrainDesc, TileKey},
     weather::{Conditions, Weather, derive},
     world::{Couplings, World, WorldDesc},
 };
@@ -122,12 +127,12 @@ impl Bench {
     }
 
     #[track_caller]
-    fn holds_its_water(&self, when: &str) {
+    fn holds_its_water(&self, situation: &str) {
         let held = self.water.total();
         let off = (self.fallen - self.gone - held).abs();
         assert!(
             off <= 1e-6 * self.fallen,
-            "{when}: {} fell, {} gone, {held} held: off by {off}",
+            "{situation}: {} fell, {} gone, {held} held: off by {off}",
             self.fallen,
             self.gone
         );

@@ -5,11 +5,10 @@ use std::sync::OnceLock;
 use super::{drains::Drains, lakes::Lakes};
 use crate::{
     ground::{
-        GroundWater,
         grid::CellGrid,
         rain_on::GridRain,
         terrain::{Flows, RUN},
-        water::{Step, SurfaceWater},
+        water::{GroundWater, Step, SurfaceWater},
     },
     terrain::{CellRect, Terrain, Tile, TileKey},
 };

@@ -5,7 +5,7 @@ use crate::terrain::{CellId, Terrain};
 
 /// A hollow's tree, to be saved: pits, and after every two trees that they are one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) enum LakeBranch {
+pub(crate) enum LakeBranch {
     Pit(CellId),
     Joined,
 }
@@ -29,13 +29,13 @@ impl Lakes {
     }
 
     /// Restores a water that was saved. Says whether it can be one of this terrain.
-    pub fn restore(&mut self, terrain: &Terrain, below: PitBelow<'_>, branches: &[LakeBranch], held: f64) -> bool {
+    pub fn restore(&mut self, terrain: &Terrain, pit_below: PitBelow<'_>, branches: &[LakeBranch], held: f64) -> bool {
         let mut stack: Vec<u32> = Vec::new();
         for branch in branches {
             match branch {
                 LakeBranch::Pit(pit) => {
                     let (slot, at) = terrain.split(*pit);
-                    if below(*pit) != Some(*pit) || self.lake_of(slot, at).is_some() {
+                    if pit_below(*pit) != Some(*pit) || self.lake_of(slot, at).is_some() {
                         return false;
                     }
                     stack.push(self.lake_at(terrain, *pit));
@@ -44,7 +44,7 @@ impl Lakes {
                     let (Some(b), Some(a)) = (stack.pop(), stack.pop()) else { return false };
                     let brim = [a, b].map(|lake| self.fill(terrain, lake, f64::MAX));
                     let to = |s: &Self, lake: u32| {
-                        let pit = s.spills_to(lake).and_then(below)?;
+                        let pit = s.spills_to(lake).and_then(pit_below)?;
                         let (slot, at) = terrain.split(pit);
                         s.lake_of(slot, at)
                     };
