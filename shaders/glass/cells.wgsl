@@ -101,12 +101,12 @@ fn perp_dot(a: vec2i, b: vec2i) -> i32 {
 }
 
 // Whether a blade has passed over a point, in 1/16 cell, during the step, or lies on it.
-fn swept(at: vec2i) -> bool {
+fn swept(point: vec2i) -> bool {
     for (var i = 0u; i < 6u; i += 3u) {
         let reach = step.arms[i];
         let before = step.arms[i + 1u];
         let now = step.arms[i + 2u];
-        let d = at - reach.xy;
+        let d = point - reach.xy;
         if now.w == 0 || abs(d.x) > reach.w || abs(d.y) > reach.w {
             continue;
         }
@@ -127,11 +127,11 @@ fn swept(at: vec2i) -> bool {
 // Nodes of the net along the pane's lower edge, and up the glass.
 const NODES: vec2u = vec2u(16u, 8u);
 
-fn node(at: vec2u) -> u32 {
-    let i = at.y * NODES.x + at.x;
+fn node(index: vec2u) -> u32 {
+    let i = index.y * NODES.x + index.x;
     let share = (step.reach[i / 16u][(i / 4u) % 4u] >> (8u * (i % 4u))) & 255u;
     if MAPPED {
-        return (share * textureLoad(mapped, vec2i(at), 0).x) >> 7u;
+        return (share * textureLoad(mapped, vec2i(index), 0).x) >> 7u;
     }
     return share;
 }

@@ -42,18 +42,18 @@ impl Snowing {
         }
     }
 
-    /// Water that stays on a surface whose outward normal has the upward component `up` and that moves outwards against
-    /// the air at `approach_m_s`, m/s. Air that turns away before the glass takes light flakes with it: a share S^3 /
-    /// (S^3 + 0.77 S^2 + 0.22) of those blown at it arrive, S their Stokes number (Landahl & Herrmann 1949). Of those
-    /// that arrive faster than 1 m/s a share of one over that speed stays (ISO 12494:2001, wet snow).
-    pub fn stays_m_s(&self, up: f64, approach_m_s: f64) -> f64 {
+    /// Water that stays on a surface whose outward normal has the upward component `normal_up` and that moves outwards
+    /// against the air at `approach_m_s`, m/s. Air that turns away before the glass takes light flakes with it: a share
+    /// S^3 / (S^3 + 0.77 S^2 + 0.22) of those blown at it arrive, S their Stokes number (Landahl & Herrmann 1949). Of
+    /// those that arrive faster than 1 m/s a share of one over that speed stays (ISO 12494:2001, wet snow).
+    pub fn stays_m_s(&self, normal_up: f64, approach_m_s: f64) -> f64 {
         if self.water_m_s <= 0.0 {
             return 0.0;
         }
         let blown = approach_m_s.max(0.0);
         let s = self.fall_m_s / GRAVITY * blown / BLUFF_M;
         let arrives = s * s * s / (s * s * s + 0.77 * s * s + 0.22);
-        let speed = self.fall_m_s * up + approach_m_s.min(0.0) + blown * arrives;
+        let speed = self.fall_m_s * normal_up + approach_m_s.min(0.0) + blown * arrives;
         if speed <= 0.0 { 0.0 } else { self.water_m_s / self.fall_m_s * speed / speed.max(1.0) }
     }
 }

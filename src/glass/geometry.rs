@@ -1,9 +1,23 @@
-//! Where the glass lies: its plane in the camera's axes, and the lattice on it.
+//! Pane of the glass: where it is, its plane in the camera's axes, and the lattice on it.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-use super::{CELL_M, MAX_CELLS, Pane};
 use crate::error::{Error, Result};
+
+/// Edge of a cell, m, on glass up to 4 m across; larger glass has larger cells.
+pub const CELL_M: f64 = 0.004;
+/// Cells along the longer edge at most.
+pub const MAX_CELLS: u32 = 1024;
+
+/// Where the glass is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pane {
+    /// A flat window, its corners in the camera's axes (x right, y up, z backwards), m from the camera: lower left,
+    /// lower right, upper right, upper left as seen from the camera. Convex; edges from 0.05 to 8 m.
+    Quad([DVec3; 4]),
+    /// The whole picture: glass across the view at this distance, m, [0.1, 3].
+    WholeView(f64),
+}
 
 /// A pane as a plane with axes: u along the lower edge, v up the glass, both from the lower left of the pane's bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -99,15 +99,16 @@ pub struct Arrivals {
 }
 
 impl Arrivals {
-    /// A share of the rain on a surface whose outward normal has the upward component `up`, and that moves outwards
-    /// against the air at `approach_m_s`: each size arrives at its own speed against the surface, fall x up + approach.
-    pub fn of(rain: &DropSizes, share: f64, up: f64, approach_m_s: f64) -> Self {
+    /// A share of the rain on a surface whose outward normal has the upward component `normal_up`, and that moves
+    /// outwards against the air at `approach_m_s`: each size arrives at its own speed against the surface, fall x
+    /// normal_up + approach.
+    pub fn of(rain: &DropSizes, share: f64, normal_up: f64, approach_m_s: f64) -> Self {
         let mut arrivals = Self { classes: [(0.0, 0.0); CLASSES], number_m2_s: 0.0, water_m_s: 0.0 };
         for (i, class) in arrivals.classes.iter_mut().enumerate() {
             let to = LARGEST_MM - i as f64 * STEP_MM;
             let d = to - 0.5 * STEP_MM;
             let number = share * rain.number_between(to - STEP_MM, to);
-            let flux = number * (rain.speed_m_s(d) * up + approach_m_s).max(0.0);
+            let flux = number * (rain.speed_m_s(d) * normal_up + approach_m_s).max(0.0);
             *class = (d, flux);
             arrivals.number_m2_s += flux;
             arrivals.water_m_s += flux * drop_volume_m3(d);

@@ -3,7 +3,12 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{MAX_ARMS, Plane, Windscreen, geometry::PictureRays, laws, step::VOLUME_UNIT_M3};
+use super::{
+    geometry::{PictureRays, Plane},
+    laws,
+    step::VOLUME_UNIT_M3,
+    windscreen::{MAX_ARMS, Windscreen},
+};
 use crate::{error::Result, gpu::Layer, scene::Camera};
 
 /// Optical depth of snow over its water, 1/m: 3 / (2 r) over the density of ice, for grains of r = 0.1 mm (Wiscombe &

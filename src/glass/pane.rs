@@ -2,7 +2,12 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{PaneUniform, Plane, Reach, SIZES, Windscreen};
+use super::{
+    geometry::Plane,
+    reach::{Reach, SIZES},
+    reach_pass::PaneUniform,
+    windscreen::Windscreen,
+};
 use crate::{
     falling::sizes::{DropSizes, SMALLEST_MM, Weight},
     moment::SceneMoment,

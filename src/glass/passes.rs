@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    LensFrame,
-    lens::LensUniform,
+    cell_passes::{CELLS, WORD, bind, buffer, cells_pipeline, settle_pipelines, tex, texture, view},
+    lens::{LensFrame, LensUniform},
     reach_pass::{self, MapReach, Mapped, MappedKit},
     step::StepUniform,
 };
@@ -13,16 +13,13 @@ use crate::{
     gpu::{
         Device, KeptLayer, Layer,
         bind::Slot,
-        flat_texture, is_kept,
+        is_kept,
         pass::{self, FullscreenDesc},
         recent::LruCache,
     },
     stage::flag,
 };
 
-const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// Shares of the rain that maps let through, and snow.
-pub(super) const WORD: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 const SMALL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Texels of the picture in one of its smaller copies, along an edge.
 const SMALLER: u32 = 8;
@@ -56,65 +53,6 @@ pub(crate) struct GlassKit {
     no_mask: wgpu::TextureView,
     no_cells: wgpu::TextureView,
     no_snow: wgpu::TextureView,
-}
-
-fn texture(device: &Device, label: &str, format: wgpu::TextureFormat, [width, height]: [u32; 2]) -> wgpu::Texture {
-    flat_texture(
-        &device.device,
-        label,
-        (width, height),
-        format,
-        wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
-    )
-}
-
-pub(super) fn buffer(device: &Device, label: &str, size: u64) -> wgpu::Buffer {
-    crate::gpu::bind::block(&device.device, label, size as usize)
-}
-
-fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
-    texture.create_view(&Default::default())
-}
-
-/// A bind group of `resources`, numbered from 0.
-pub(super) fn bind(
-    device: &Device,
-    layout: &wgpu::BindGroupLayout,
-    resources: &[wgpu::BindingResource<'_>],
-) -> wgpu::BindGroup {
-    let numbered = resources.iter().enumerate();
-    let entries: Vec<_> =
-        numbered.map(|(i, r)| wgpu::BindGroupEntry { binding: i as u32, resource: r.clone() }).collect();
-    device.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("glass"), layout, entries: &entries })
-}
-
-fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
-    wgpu::BindingResource::TextureView(view)
-}
-
-/// Shader that lands, melts and wipes away snow, and takes its declared state.
-const SETTLE: &str = "glass/settle.wgsl";
-
-/// The two pipelines of snow.
-pub(super) fn settle_pipelines(
-    device: &Device,
-    layout: &wgpu::BindGroupLayout,
-    constants: &[(&str, f64)],
-) -> Result<[wgpu::RenderPipeline; 2]> {
-    let one = |entry| cells_pipeline(device, (SETTLE, entry), layout, constants);
-    Ok([one("settle")?, one("declare_snow")?])
-}
-
-/// A pipeline over the cells.
-pub(super) fn cells_pipeline(
-    device: &Device,
-    (shader, entry): (&str, &str),
-    layout: &wgpu::BindGroupLayout,
-    constants: &[(&str, f64)],
-) -> Result<wgpu::RenderPipeline> {
-    let format = if shader == SETTLE { WORD } else { CELLS };
-    let targets = &[format.into()];
-    pass::fullscreen(device, &FullscreenDesc { shader, entry, layouts: &[layout], targets, constants, samples: 1 })
 }
 
 impl GlassKit {
@@ -304,7 +242,7 @@ impl PaneLattice {
         &self.mapped.0
     }
 
-    /// Records the work that was added, below what maps show; says how many passes that took.
+    /// Records the work that was added, below what `maps` show; says how many passes that took.
     ///
     /// # Errors
     /// A missing shader file.
@@ -313,7 +251,7 @@ impl PaneLattice {
         device: &Device,
         kit: &mut GlassKit,
         encoder: &mut wgpu::CommandEncoder,
-        below: Option<(&mut Option<Box<MapReach>>, &Mapped<'_>)>,
+        maps: Option<(&mut Option<Box<MapReach>>, &Mapped<'_>)>,
     ) -> Result<u32> {
         if self.due.is_empty() {
             return Ok(0);
@@ -321,7 +259,7 @@ impl PaneLattice {
         device.queue.write_buffer(&self.steps, 0, &self.slots);
         let mut passes = 0;
         let (mut gather, mut declare, mut settle) = (&kit.gather, &kit.declare, &kit.settle);
-        if let Some((reach, mapped)) = below {
+        if let Some((reach, mapped)) = maps {
             let more = match &mut kit.mapped {
                 Some(more) => more,
                 none => none.insert(MappedKit::new(device, &kit.step_layout)?),
@@ -375,6 +313,13 @@ fn draw(
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, group, &[offset]);
     pass.draw(0..3, 0..1);
+}
+
+/// Numbers, pipeline and target of a lens to draw.
+pub(super) struct LensDraw<'a> {
+    pub uniform: &'a LensUniform,
+    pub variant: LensVariant,
+    pub target: &'a wgpu::TextureView,
 }
 
 /// The lens over one picture: its smaller copies and bind groups, made anew when the host hands over other textures.
@@ -446,7 +391,7 @@ impl LensPass {
         device: &Arc<Device>,
         kit: &mut GlassKit,
         encoder: &mut wgpu::CommandEncoder,
-        (uniform, variant, target): (&LensUniform, LensVariant, &wgpu::TextureView),
+        &LensDraw { uniform, variant, target }: &LensDraw<'_>,
         lattice: Option<&PaneLattice>,
     ) -> Result<u32> {
         device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));

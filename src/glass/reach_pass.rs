@@ -1,9 +1,8 @@
 //! The pass that asks the host's maps, where they live, which share of the rain gets to which part of the pane.
 
 use super::{
-    SIZES,
-    passes::{self, bind, buffer},
-    reach::NODES,
+    cell_passes::{WORD, bind, buffer, cells_pipeline, settle_pipelines},
+    reach::{NODES, SIZES},
 };
 use crate::{
     error::Result,
@@ -61,18 +60,18 @@ impl MappedKit {
                 shader: "glass/maps.wgsl",
                 entry: "reach_by_maps",
                 layouts: &[&layouts[0], &layouts[1], &around_layout(&device.device)],
-                targets: &[passes::WORD.into()],
+                targets: &[WORD.into()],
                 constants: &[("MAPS", 1.0)],
                 samples: 1,
             },
         )?;
-        let cells = |shader, entry| passes::cells_pipeline(device, (shader, entry), step_layout, &[("MAPPED", 1.0)]);
+        let cells = |shader, entry| cells_pipeline(device, (shader, entry), step_layout, &[("MAPPED", 1.0)]);
         Ok(Self {
             layouts,
             reach,
             gather: cells("glass/gather.wgsl", "gather")?,
             declare: cells("glass/declare.wgsl", "declare")?,
-            settle: passes::settle_pipelines(device, step_layout, &[("MAPPED", 1.0)])?,
+            settle: settle_pipelines(device, step_layout, &[("MAPPED", 1.0)])?,
         })
     }
 }

@@ -4,7 +4,8 @@
 use glam::DVec2;
 
 use super::{
-    Plane, laws,
+    geometry::Plane,
+    laws,
     reach::NODES,
     step::{StepUniform, VOLUME_UNIT_M3, pcg},
 };
@@ -56,10 +57,10 @@ fn perp_dot(a: [i32; 2], b: [i32; 2]) -> i32 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-fn swept(step: &StepUniform, at: [i32; 2]) -> bool {
+fn swept(step: &StepUniform, point: [i32; 2]) -> bool {
     step.arms.chunks(3).any(|arm| {
         let [reach, before, now] = [arm[0], arm[1], arm[2]];
-        let d = [at[0] - reach[0], at[1] - reach[1]];
+        let d = [point[0] - reach[0], point[1] - reach[1]];
         if now[3] == 0 || d[0].abs() > reach[3] || d[1].abs() > reach[3] {
             return false;
         }
@@ -75,8 +76,8 @@ fn swept(step: &StepUniform, at: [i32; 2]) -> bool {
     })
 }
 
-fn node(step: &StepUniform, at: [u32; 2]) -> u32 {
-    let i = at[1] * NODES[0] as u32 + at[0];
+fn node(step: &StepUniform, index: [u32; 2]) -> u32 {
+    let i = index[1] * NODES[0] as u32 + index[0];
     (step.reach[i as usize / 16][(i as usize / 4) % 4] >> (8 * (i % 4))) & 255
 }
 

@@ -5,13 +5,15 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::{
-    LensFrame, MAX_ARMS, MAX_STEPS, Plane, Reach, STEPS_PER_S, Windscreen,
     frost::Snowing,
-    lens::{LensLattice, LensUniform},
-    passes::{GlassKit, LatticeWork, LensPass, LensVariant, PaneLattice},
+    geometry::Plane,
+    lens::{LensFrame, LensLattice, LensUniform},
+    passes::{GlassKit, LatticeWork, LensDraw, LensPass, LensVariant, PaneLattice},
+    reach::Reach,
     reach_pass::{MapReach, Mapped},
     reference::{Cells, Snow},
-    step::{StepConditions, Tables, seed_key},
+    step::{MAX_STEPS, STEPS_PER_S, StepConditions, Tables, seed_key},
+    windscreen::{MAX_ARMS, Windscreen},
 };
 use crate::{
     error::Result,
@@ -228,7 +230,7 @@ impl Glass {
         (acts, screen): (&StepConditions, &Windscreen),
         seed: u64,
         (step, size): (i64, [u32; 2]),
-        before: Option<(f64, Windscreen)>,
+        last_frame: Option<(f64, Windscreen)>,
         until_s: f64,
     ) {
         let reached = self.reach.0.any();
@@ -238,7 +240,7 @@ impl Glass {
         if !rains && self.moisture <= 0.0 && !snows && self.frost <= 0.0 {
             return;
         }
-        let earlier = match before {
+        let earlier = match last_frame {
             Some((from_s, old)) => blend(&old, &self.screen, share(from_s, until_s, (step - 1) as f64 / STEPS_PER_S)),
             None => *screen,
         };
@@ -273,8 +275,8 @@ impl Glass {
     }
 
     /// The windscreen at a time since the last frame.
-    fn between(&self, before: Option<(f64, Windscreen)>, until_s: f64, time_s: f64) -> Windscreen {
-        before.map_or(self.screen, |(from_s, old)| blend(&old, &self.screen, share(from_s, until_s, time_s)))
+    fn between(&self, last_frame: Option<(f64, Windscreen)>, until_s: f64, time_s: f64) -> Windscreen {
+        last_frame.map_or(self.screen, |(from_s, old)| blend(&old, &self.screen, share(from_s, until_s, time_s)))
     }
 
     /// Draws what the glass does to the finished picture; says how many passes that took.
@@ -303,7 +305,7 @@ impl Glass {
         let uniform = LensUniform::of(&self.screen, &plane, frame, &shown)?;
         let variant =
             LensVariant { format: frame.picture.format(), encoded: frame.encoded, has_mask: frame.mask.is_some() };
-        lens.draw(device, kit, encoder, (&uniform, variant, frame.target), lattice)
+        lens.draw(device, kit, encoder, &LensDraw { uniform: &uniform, variant, target: frame.target }, lattice)
     }
 
     /// Water on the pane. Reads the cells back: waits for the GPU.

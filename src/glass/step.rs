@@ -6,12 +6,17 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 
 use super::{
-    Reach, STEPS_PER_S, WiperArm,
     frost::{self, Snowing},
     laws::{self, Arrivals},
+    reach::Reach,
+    windscreen::WiperArm,
 };
 use crate::falling::sizes::DropSizes;
 
+/// Steps a second.
+pub const STEPS_PER_S: f64 = 60.0;
+/// Steps that one frame may be behind; beyond, the glass takes its declared state.
+pub const MAX_STEPS: i64 = 30;
 /// Volume of water that a cell counts as 1, m^3.
 pub const VOLUME_UNIT_M3: f64 = 1e-13;
 /// Classes of drops: sixteen octaves of rarity, each in sixteen parts.

@@ -3,11 +3,15 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::{
-    Glass, GlassReport, LensFrame, Mapped, Plane, Reach, Windscreen,
+    geometry::Plane,
+    lens::LensFrame,
     pane::PaneAt,
     passes::GlassKit,
+    reach::Reach,
+    reach_pass::Mapped,
     reference::{Cells, Snow},
-    state::{AtGlass, Reached},
+    state::{AtGlass, Glass, GlassReport, Reached},
+    windscreen::Windscreen,
 };
 use crate::{
     error::{Error, Result, Status},
@@ -111,13 +115,13 @@ impl DrawnEffect for GlassView {
     }
 
     /// Brings the water on the glass to the frame's time.
-    fn prepare(&mut self, at: &FrameContext<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn prepare(&mut self, context: &FrameContext<'_>, recording: &mut Recording<'_>) -> Result<()> {
         if self.glass.is_none() {
             return Ok(());
         }
-        let kit = self.kit(to.device)?;
+        let kit = self.kit(recording.device)?;
         let Some(glass) = &mut self.glass else { return Ok(()) };
-        let (now, frame) = (at.now, at.frame);
+        let (now, frame) = (context.now, context.frame);
         let moment = AtGlass {
             time_s: now.time_s,
             seed: now.seed,
@@ -128,9 +132,9 @@ impl DrawnEffect for GlassView {
             reach: &|plane, screen| reached(now, frame, plane, screen),
             cut: frame.is_pure(),
         };
-        let passes = glass.advance(to.device, &mut *locked(&kit)?, to.encoder, &moment)?;
-        to.passes += passes;
-        to.ends(CostItem::Windscreen, passes > 0)
+        let passes = glass.advance(recording.device, &mut *locked(&kit)?, recording.encoder, &moment)?;
+        recording.passes += passes;
+        recording.ends(CostItem::Windscreen, passes > 0)
     }
 
     fn has_lens(&self) -> bool {
@@ -142,10 +146,10 @@ impl DrawnEffect for GlassView {
         frame: &Frame<'_>,
         picture: LensPicture<'_>,
         toned: bool,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
     ) -> Result<()> {
         let Some(layer) = frame.color_layer().filter(|_| self.glass.is_some()) else { return Ok(()) };
-        let kit = self.kit(to.device)?;
+        let kit = self.kit(recording.device)?;
         let Some(glass) = &mut self.glass else { return Ok(()) };
         let color = layer.texture;
         let plain = !is_float(color.format()) && !color.format().is_srgb();
@@ -158,9 +162,9 @@ impl DrawnEffect for GlassView {
             encoded: plain && (toned || frame.color_space == ColorSpace::DisplaySrgb),
             bottom_left: frame.origin_bottom_left,
         };
-        let passes = glass.draw(to.device, &mut *locked(&kit)?, to.encoder, &lens)?;
-        to.passes += passes;
-        to.ends(CostItem::Windscreen, passes > 0)
+        let passes = glass.draw(recording.device, &mut *locked(&kit)?, recording.encoder, &lens)?;
+        recording.passes += passes;
+        recording.ends(CostItem::Windscreen, passes > 0)
     }
 
     fn bytes(&self) -> u64 {

@@ -1,0 +1,131 @@
+//! The windscreen as a host describes it: pane, wipers, and what acts on the glass.
+
+use glam::DVec3;
+
+use super::geometry::{Pane, Plane};
+use crate::error::{Error, Result, check_range};
+
+/// Wiper arms at most.
+pub const MAX_ARMS: usize = 2;
+
+/// A wiper: a blade on an arm that turns about a pivot in the glass's plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WiperArm {
+    /// Pivot, m right of and above the pane's lower left corner along the glass, each [-4, 12].
+    pub pivot_m: [f64; 2],
+    /// From the pivot to the blade's outer end, m, (0, 3].
+    pub length_m: f64,
+    /// From the pivot to the blade's inner end, m, [0, `length_m`).
+    pub inner_radius_m: f64,
+    /// Angle of the parked blade, degrees anticlockwise from the glass's right, as seen from the camera, [-360, 360].
+    pub parked_deg: f64,
+    /// Angle at the far end of the stroke, degrees, within 350 of `parked_deg`.
+    pub far_deg: f64,
+    /// Where the blade is now: 0 parked, 1 at the far end.
+    pub position: f64,
+    /// Width of the rubber on the glass, m, [0, 0.1].
+    pub blade_width_m: f64,
+}
+
+impl Default for WiperArm {
+    fn default() -> Self {
+        Self {
+            pivot_m: [0.0, 0.0],
+            length_m: 0.6,
+            inner_radius_m: 0.1,
+            parked_deg: 0.0,
+            far_deg: 90.0,
+            position: 0.0,
+            blade_width_m: 0.006,
+        }
+    }
+}
+
+/// The window that a view looks through, and what acts on it. A host that drives sets it anew before each frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Windscreen {
+    /// Where the glass is.
+    pub pane: Pane,
+    /// Velocity of the glass against the air (the vehicle's less the wind's), m/s in the camera's axes, each within
+    /// 400: decides how many drops it meets.
+    pub velocity_m_s: DVec3,
+    /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]: drives the beads.
+    pub airflow_m_s: f64,
+    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel for which there is no box. What the
+    /// context's boxes and maps keep off each part of the pane ([`crate::context::Context::set_shelters`],
+    /// [`crate::context::Context::set_occluder_maps`]) is taken off besides; a box that holds the camera and ends
+    /// within 3 m before the glass is the vehicle's own and keeps nothing off.
+    pub exposed: f64,
+    /// Mist on the inside, [0, 1].
+    pub fogging: f64,
+    /// How far the blower has cleared it, from the lower edge upwards, [0, 1].
+    pub demist: f64,
+    /// The wipers; 0 to 2.
+    pub arms: [Option<WiperArm>; MAX_ARMS],
+    /// Heat that the glass gets from wires in it or from a blower, W/m^2, [0, 3000]: melts snow.
+    pub heat_w_m2: f64,
+}
+
+impl Default for Windscreen {
+    fn default() -> Self {
+        Self {
+            pane: Pane::WholeView(0.6),
+            velocity_m_s: DVec3::ZERO,
+            airflow_m_s: 0.0,
+            exposed: 1.0,
+            fogging: 0.0,
+            demist: 0.0,
+            arms: [None; MAX_ARMS],
+            heat_w_m2: 0.0,
+        }
+    }
+}
+
+impl WiperArm {
+    fn validate(&self) -> Result<()> {
+        check_range("pivot_m[0]", self.pivot_m[0], -4.0, 12.0, "m")?;
+        check_range("pivot_m[1]", self.pivot_m[1], -4.0, 12.0, "m")?;
+        check_range("length_m", self.length_m, 0.01, 3.0, "m")?;
+        check_range("inner_radius_m", self.inner_radius_m, 0.0, 3.0, "m")?;
+        if self.inner_radius_m >= self.length_m {
+            let accepted = format!("below length_m, {}", self.length_m);
+            return Err(Error::range("inner_radius_m", &accepted, self.inner_radius_m));
+        }
+        check_range("parked_deg", self.parked_deg, -360.0, 360.0, "deg")?;
+        check_range("far_deg", self.far_deg, self.parked_deg - 350.0, self.parked_deg + 350.0, "deg")?;
+        check_range("position", self.position, 0.0, 1.0, "")?;
+        check_range("blade_width_m", self.blade_width_m, 0.0, 0.1, "m")
+    }
+
+    /// The blade's angle at a place of the stroke, rad.
+    pub(super) fn angle(&self, position: f64) -> f64 {
+        (self.parked_deg + (self.far_deg - self.parked_deg) * position).to_radians()
+    }
+}
+
+impl Windscreen {
+    /// Refuses what is out of range, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        match &self.pane {
+            Pane::Quad(corners) => {
+                Plane::of(corners)?;
+            }
+            Pane::WholeView(distance) => check_range("windscreen.distance_m", *distance, 0.1, 3.0, "m")?,
+        }
+        let axes = ["windscreen.velocity_m_s[0]", "windscreen.velocity_m_s[1]", "windscreen.velocity_m_s[2]"];
+        for (name, v) in axes.iter().zip(self.velocity_m_s.to_array()) {
+            check_range(name, v, -400.0, 400.0, "m/s")?;
+        }
+        check_range("windscreen.airflow_m_s", self.airflow_m_s, -100.0, 100.0, "m/s")?;
+        check_range("windscreen.exposed", self.exposed, 0.0, 1.0, "")?;
+        check_range("windscreen.fogging", self.fogging, 0.0, 1.0, "")?;
+        check_range("windscreen.demist", self.demist, 0.0, 1.0, "")?;
+        check_range("windscreen.heat_w_m2", self.heat_w_m2, 0.0, 3000.0, "W/m^2")?;
+        // Names are put together for an error only: a host that drives sets its windscreen before every frame.
+        let named = |i: usize| move |e: Error| e.within(&format!("windscreen.arms[{i}]"));
+        self.arms.iter().flatten().enumerate().try_for_each(|(i, a)| a.validate().map_err(named(i)))
+    }
+}
