@@ -337,21 +337,21 @@ fn source_at(u: FogUniform, mu: f32, beam: vec3f, a: vec3f) -> vec3f {
 
 // The source integrated over the optical `path` between the scaled depths a0 and a1 below the top.
 fn source_along(
-    u: FogUniform, mu: f32, beam: vec3f, a0: vec3f, a1: vec3f, slant: vec3f, path: vec3f, through: vec3f,
+    u: FogUniform, mu: f32, beam: vec3f, a0: vec3f, a1: vec3f, slant: vec3f, path: vec3f, transmitted: vec3f,
 ) -> vec3f {
-    let filled = filled_by(path, through);
-    let ramp = a0 * filled - slant * (filled - path * through);
+    let filled = filled_by(path, transmitted);
+    let ramp = a0 * filled - slant * (filled - path * transmitted);
     let b0 = fog_exp(-a0 * u.inverse_mu0);
     let b1 = fog_exp(-a1 * u.inverse_mu0);
     var l = fog_term(u.constant, mu) * filled
         + fog_term(u.slope, mu) * ramp
-        + beam * attenuated(1.0 - slant * u.inverse_mu0, b0, b1 * through, path);
+        + beam * attenuated(1.0 - slant * u.inverse_mu0, b0, b1 * transmitted, path);
     if FOG_ABSORBING && u.absorbing != 0u {
         let below0 = fog_channels(u.scaling) * u.depth_total - a0;
         let below1 = fog_channels(u.scaling) * u.depth_total - a1;
-        l += fog_term(u.rise, mu) * attenuated(1.0 - slant * u.k, fog_exp(-u.k * a0), fog_exp(-u.k * a1) * through, path);
+        l += fog_term(u.rise, mu) * attenuated(1.0 - slant * u.k, fog_exp(-u.k * a0), fog_exp(-u.k * a1) * transmitted, path);
         l += fog_term(u.fall, mu)
-            * attenuated(1.0 + slant * u.k, fog_exp(-u.k * below0), fog_exp(-u.k * below1) * through, path);
+            * attenuated(1.0 + slant * u.k, fog_exp(-u.k * below0), fog_exp(-u.k * below1) * transmitted, path);
     }
     return l;
 }

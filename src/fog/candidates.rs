@@ -1,7 +1,10 @@
 //! The ways to draw a layer of fog that are charted against each other, with what they cost.
 
-use super::laws::{CompatibilityLaw, Curve, DistanceKind};
-use super::{CONTRAST_THRESHOLD, FogLayer, Law};
+use super::{
+    laws::{CompatibilityLaw, Curve, DistanceKind},
+    layer::{FogLayer, Law},
+    visibility::CONTRAST_THRESHOLD,
+};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 

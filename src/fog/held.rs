@@ -1,6 +1,6 @@
 //! State of the fog in a context: the law that stands in for the weather's, if the host asked for one.
 
-use super::Law;
+use super::layer::Law;
 use crate::{
     error::{Error, Result, Status},
     world::{HeldEffect, parse_error},

@@ -6,7 +6,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result, check_range};
+use crate::{
+    error::{Error, Result, check_range},
+    moment::MAX_EXTINCTION_PER_M,
+};
 
 /// Kind of distance that a compatibility law takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -71,7 +74,7 @@ impl CompatibilityLaw {
                 }
             }
             Curve::Exponential { density_per_m } | Curve::ExponentialSquared { density_per_m } => {
-                check_range("fog.density_per_m", density_per_m, 0.0, super::MAX_EXTINCTION_PER_M, "1/m")?;
+                check_range("fog.density_per_m", density_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
             }
         }
         for c in self.colour.iter().flatten() {

@@ -71,15 +71,15 @@ impl Slab {
         self.solve_beside(1e-7)
     }
 
-    /// As [`Slab::solve`], with terms that f32 can add up: they are 1 / `beside` times their sum at most.
-    pub(super) fn solve_beside(&self, beside: f64) -> Solution {
+    /// As [`Slab::solve`], with terms that f32 can add up: they are 1 / `margin` times their sum at most.
+    pub(super) fn solve_beside(&self, margin: f64) -> Solution {
         let Self { depth, albedo: w, asymmetry: g, .. } = *self;
         let mut slab = *self;
         let k = (3.0 * (1.0 - w) * (1.0 - w * g)).sqrt();
         // Where the beam falls off exactly as the diffuse light does, the particular solution has a pole; beside it
         // none.
-        if (1.0 - (k * slab.mu0).powi(2)).abs() < beside {
-            slab.mu0 *= 1.0 - beside;
+        if (1.0 - (k * slab.mu0).powi(2)).abs() < margin {
+            slab.mu0 *= 1.0 - margin;
         }
         let mu0 = slab.mu0;
         let q = w * self.sun / (4.0 * PI);

@@ -5,14 +5,17 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::{
-    FogKind, FogLayer, FogLight, FogModel, Law, MAX_EXTINCTION_PER_M, Patches, Phase, Profile, Viewpoint,
-    patterns::{CURTAIN_WAVES, Curtains},
-    reference::layer_depth_above,
+    curtains::{CURTAIN_WAVES, Curtains},
+    layer::{FogLayer, Law, Patches, Profile},
+    model::{FogKind, FogModel},
+    path::layer_depth_above,
+    viewpoint::{FogLight, Viewpoint},
 };
 use crate::{
     error::Result,
     falling::{FallingLayer, curtain},
-    moment::{GroundLight, Light, Scene},
+    light::Phase,
+    moment::{GroundLight, Light, MAX_EXTINCTION_PER_M, Scene},
     numerics::smoothstep,
     scene::Place,
     weather::{Conditions, lifting},
@@ -126,24 +129,25 @@ fn viewpoint(place: &Place, c: &Conditions, map_m: [f64; 2], planet_radius_m: f6
 /// [`crate::Status::InvalidArgument`] naming the parameter.
 pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
     let (above, lights) = (&scene.above_fog, [&scene.sun, &scene.moon]);
-    let lux = ([above.sun_lux, above.moon_lux, above.sky_lux], scene.ground_albedo);
-    let left = through_fog(&scene.conditions, &scene.place, lights, lux)?;
+    let lux = [above.sun_lux, above.moon_lux, above.sky_lux];
+    let left = through_fog(&scene.conditions, &scene.place, lights, lux, scene.ground_albedo)?;
     scene.ground = GroundLight::new(left, lights, scene.place.altitude_m);
     Ok(())
 }
 
-/// Returns the light that the weather's low layer leaves of that `above` it: sun, moon, and all else on level ground,
-/// lux.
+/// Returns the light that the weather's low layer leaves of that above it, `lux`: sun, moon, and all else on level
+/// ground.
 fn through_fog(
     c: &Conditions,
     place: &Place,
     [sun, moon]: [&Light; 2],
-    above: ([[f64; 3]; 3], [f64; 3]),
+    lux: [[f64; 3]; 3],
+    ground_albedo: [f64; 3],
 ) -> Result<[[f64; 3]; 3]> {
-    let ([sun_lux, moon_lux, sky_lux], ground_albedo) = above;
+    let [sun_lux, moon_lux, sky_lux] = lux;
     let air = LowAir::even(c);
     if air.is_clear() {
-        return Ok(above.0);
+        return Ok(lux);
     }
     let view = viewpoint(place, c, [0.0; 2], f64::INFINITY);
     let under = |light: &Light, sun_irradiance, sky_irradiance| -> Result<FogModel> {

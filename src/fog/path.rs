@@ -7,7 +7,7 @@
 //! rises, and meets an altitude d higher after c/(mu + sqrt(mu^2 + k c)), c = d (2 + k d): a form that only adds. So a
 //! slab with linear flanks is three path lengths; a flank counts with its mean, in which the path's curvature enters.
 
-use super::reference::{FogKind, FogModel};
+use super::model::{FogKind, FogModel};
 
 /// A ray's way through the layer.
 #[derive(Clone, Copy, Debug, PartialEq)]

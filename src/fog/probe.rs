@@ -3,7 +3,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{FogLayer, FogLight, FogModel, Law, LowAirUniform, Profile, Viewpoint, koschmieder_extinction_per_m};
+use super::{
+    layer::{FogLayer, Law, Profile},
+    model::FogModel,
+    uniforms::LowAirUniform,
+    viewpoint::{FogLight, Viewpoint},
+    visibility::koschmieder_extinction_per_m,
+};
 use crate::{
     error::{Result, check_range},
     gpu::{

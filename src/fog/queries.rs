@@ -2,7 +2,19 @@
 
 use glam::DVec3;
 
-use super::reference::{FogModel, fog_along, layer_depth_above};
+use super::{
+    layer::{FogLayer, Law},
+    model::FogModel,
+    of_weather::LowAir,
+    path::layer_depth_above,
+    reference::fog_along,
+    viewpoint::{FogLight, Viewpoint},
+    visibility::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m, koschmieder_visibility_m},
+};
+use crate::{
+    error::{Error, Result, check_range},
+    moment::MAX_EXTINCTION_PER_M,
+};
 
 /// Transmittance and visibility between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +25,6 @@ pub struct Between {
     /// were like this part of it; infinite where nothing stops light.
     pub visibility_m: f64,
 }
-use super::{CONTRAST_THRESHOLD, FogLayer, FogLight, Law, LowAir, Viewpoint};
-use crate::error::{Error, Result, check_range};
 
 /// Light that plays no part where only extinction is asked for.
 const NO_LIGHT: FogLight =
@@ -25,9 +35,9 @@ const NO_LIGHT: FogLight =
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
-pub fn transmittance_between(layer: &FogLayer, from: &Viewpoint, offset: DVec3) -> Result<[f64; 3]> {
+pub fn transmittance_between(layer: &FogLayer, eye: &Viewpoint, offset: DVec3) -> Result<[f64; 3]> {
     check_offset(offset)?;
-    Ok(FogModel::new(&Law::Layer(*layer), &NO_LIGHT, from)?.transmittance_over(offset))
+    Ok(FogModel::new(&Law::Layer(*layer), &NO_LIGHT, eye)?.transmittance_over(offset))
 }
 
 fn check_offset(offset: DVec3) -> Result<()> {
@@ -50,9 +60,9 @@ impl LowAir {
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
-    pub fn transmittance(&self, from: &Viewpoint, offset: DVec3) -> Result<[f64; 3]> {
+    pub fn transmittance(&self, eye: &Viewpoint, offset: DVec3) -> Result<[f64; 3]> {
         check_offset(offset)?;
-        Ok(self.model(&NO_LIGHT, from)?.transmittance_over(offset))
+        Ok(self.model(&NO_LIGHT, eye)?.transmittance_over(offset))
     }
 }
 
@@ -62,14 +72,14 @@ impl LowAir {
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
-pub fn visibility_between_m(layer: &FogLayer, from: &Viewpoint, offset: DVec3, background_per_m: f64) -> Result<f64> {
-    check_range("background_per_m", background_per_m, 0.0, super::MAX_EXTINCTION_PER_M, "1/m")?;
+pub fn visibility_between_m(layer: &FogLayer, eye: &Viewpoint, offset: DVec3, background_per_m: f64) -> Result<f64> {
+    check_range("background_per_m", background_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
     let range = offset.length();
     if range.is_nan() || range <= 0.0 {
         return Err(Error::range("offset", "longer than 0 m", range));
     }
-    let depth = -transmittance_between(layer, from, offset)?[1].max(f64::MIN_POSITIVE).ln();
-    Ok(super::koschmieder_visibility_m(depth / range + background_per_m))
+    let depth = -transmittance_between(layer, eye, offset)?[1].max(f64::MIN_POSITIVE).ln();
+    Ok(koschmieder_visibility_m(depth / range + background_per_m))
 }
 
 /// Vertical visibility from altitude `altitude_m`, m (METAR VV): how far straight up a black target keeps 5 % of its
@@ -79,7 +89,7 @@ pub fn visibility_between_m(layer: &FogLayer, from: &Viewpoint, offset: DVec3, b
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
 pub fn vertical_visibility_m(layer: &FogLayer, altitude_m: f64, background_per_m: f64) -> Result<f64> {
-    check_range("background_per_m", background_per_m, 0.0, super::MAX_EXTINCTION_PER_M, "1/m")?;
+    check_range("background_per_m", background_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
     let m = FogModel::new(&Law::Layer(*layer), &NO_LIGHT, &Viewpoint::flat(altitude_m))?;
     let wanted = -CONTRAST_THRESHOLD.ln();
     let here = layer_depth_above(&m, altitude_m);
@@ -113,7 +123,7 @@ pub fn light_threshold_lx(background_cd_m2: f64) -> f64 {
 /// [`crate::Status::InvalidArgument`] naming the parameter.
 pub fn lights_range_m(intensity_cd: f64, extinction_per_m: f64, background_cd_m2: f64) -> Result<f64> {
     check_range("intensity_cd", intensity_cd, 0.0, 1e9, "cd")?;
-    check_range("extinction_per_m", extinction_per_m, 0.0, super::MAX_EXTINCTION_PER_M, "1/m")?;
+    check_range("extinction_per_m", extinction_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
     check_range("background_cd_m2", background_cd_m2, 0.0, 1e6, "cd/m2")?;
     let threshold = light_threshold_lx(background_cd_m2);
     // ln(I/E) = sigma R + 2 ln R: the right side grows with R, so bisect.
@@ -133,7 +143,7 @@ pub fn lights_range_m(intensity_cd: f64, extinction_per_m: f64, background_cd_m2
 /// As [`lights_range_m`].
 pub fn runway_visual_range_m(intensity_cd: f64, extinction_per_m: f64, background_cd_m2: f64) -> Result<f64> {
     let lights = lights_range_m(intensity_cd, extinction_per_m, background_cd_m2)?;
-    Ok(lights.max(super::koschmieder_visibility_m(extinction_per_m)))
+    Ok(lights.max(koschmieder_visibility_m(extinction_per_m)))
 }
 
 /// Extinction, 1/m, of a reported runway visual range: the inverse of [`runway_visual_range_m`].
@@ -145,12 +155,11 @@ pub fn extinction_of_rvr_per_m(rvr_m: f64, intensity_cd: f64, background_cd_m2: 
     check_range("intensity_cd", intensity_cd, 0.0, 1e9, "cd")?;
     check_range("background_cd_m2", background_cd_m2, 0.0, 1e6, "cd/m2")?;
     let lights = ((intensity_cd / light_threshold_lx(background_cd_m2)).ln() - 2.0 * rvr_m.ln()) / rvr_m;
-    Ok(lights.max(super::koschmieder_extinction_per_m(rvr_m)))
+    Ok(lights.max(koschmieder_extinction_per_m(rvr_m)))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{koschmieder_extinction_per_m, koschmieder_visibility_m};
     use super::*;
 
     /// The steps of the table, taken at the geometric middle of neighbouring ones.

@@ -1,6 +1,11 @@
 //! Fog in a view: its block of numbers, and the constants of the composition.
 
-use super::{FogKind, FogModel, FogVariant, HeldFog, LowAirUniform, candidates};
+use super::{
+    candidates,
+    held::HeldFog,
+    model::{FogKind, FogModel},
+    uniforms::{FogVariant, LowAirUniform},
+};
 use crate::{
     error::Result,
     gpu::{
@@ -36,8 +41,8 @@ impl DrawnEffect for FogView {
         Exchange { gives: &[Output::FogDepth], ..Exchange::NONE }
     }
 
-    fn gather(&mut self, at: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
-        let (now, law) = (at.now, at.held.of::<HeldFog>()?.law.as_ref());
+    fn gather(&mut self, context: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
+        let (now, law) = (context.now, context.held.of::<HeldFog>()?.law.as_ref());
         let model = now.scene.fog_model(law, now.seed, now.planet_radius_m)?.led_by(now.detour.clone());
         // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes. Detours,
         // which few scenes have, would cost every other one registers.
@@ -57,9 +62,9 @@ impl DrawnEffect for FogView {
         put(&candidates::FOG, is_there, &[candidates::FOG_WORK]);
     }
 
-    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
-        let share = at.share(&candidates::FOG, 0);
+        let share = context.share(&candidates::FOG, 0);
         let least = self.variant.filter(|_| share > 0.0);
         to.between_and_veil("FOG", flag(self.variant.is_some()), flag(least.is_some()));
         let traits = |veils_all| Traits { veils_all, ..Traits::default() };

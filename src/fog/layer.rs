@@ -1,0 +1,158 @@
+//! Layer of fog as it is set, and the law by which fog is drawn: such a layer, or one of the older simulators'.
+
+use serde::{Deserialize, Serialize};
+
+use super::laws::CompatibilityLaw;
+use crate::{
+    error::{Result, check_range},
+    light::Phase,
+    moment::MAX_EXTINCTION_PER_M,
+};
+
+/// How the layer's extinction changes with altitude. Altitudes in metres above mean sea level.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Profile {
+    /// Constant between base and top with linear flanks, so that the optical depth has no kink.
+    Slab {
+        /// Where the lower flank is half-way, m; far below the ground for fog that lies on it.
+        base_m: f64,
+        /// Where the upper flank is half-way, m.
+        top_m: f64,
+        /// Height of the lower flank, m, \[0, 1e5\].
+        base_softness_m: f64,
+        /// Height of the upper flank, m, \[0, 1e5\]: dust thins out to twice its scale height, 40 km at most.
+        top_softness_m: f64,
+    },
+    /// Falls as exp(-(h - reference)/scale); not cut off above or below.
+    Exponential {
+        /// Altitude at which the extinction has its stated value, m.
+        reference_m: f64,
+        /// Scale height, m, \[1, 1e5\].
+        scale_height_m: f64,
+    },
+}
+
+/// Horizontal patches (METAR BCFG): the extinction is multiplied by 1 + amount (s - 1), where s is a smooth pattern of
+/// mean 1, fixed to the world, that reaches 0 between the patches.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Patches {
+    /// 0 = even layer, 1 = clear gaps between patches.
+    pub amount: f64,
+    /// Typical distance between patches, m, \[5, 1e5\].
+    pub size_m: f64,
+    /// Chooses the pattern.
+    #[serde(with = "seed_text")]
+    pub seed: u64,
+    /// How far the wind has carried the pattern (east, north), m.
+    pub drift_m: [f64; 2],
+}
+
+/// A low layer of fog or mist.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FogLayer {
+    /// Extinction at 550 nm inside the slab, or at the reference altitude, 1/m, \[0, 10\].
+    pub extinction_per_m: f64,
+    /// Exponent of Angstrom's law sigma ~ wavelength^-a, \[-1, 4\]; 0 for droplets, about 1 for haze.
+    pub angstrom: f64,
+    /// Single-scattering albedo per channel, \[0, 1\]; 1 for water.
+    pub albedo: [f64; 3],
+    /// Shape in altitude.
+    pub profile: Profile,
+    /// Phase function.
+    pub phase: Phase,
+    /// Patches, if any.
+    pub patches: Option<Patches>,
+}
+
+impl FogLayer {
+    /// Water fog with the extinction of a budget's layer, lying on everything below `top_m`; droplets of 15 um.
+    pub fn ground_fog(extinction_per_m: f64, top_m: f64, top_softness_m: f64) -> Self {
+        Self {
+            extinction_per_m,
+            angstrom: 0.0,
+            albedo: [1.0; 3],
+            profile: Profile::Slab { base_m: -1e4, top_m, base_softness_m: 0.0, top_softness_m },
+            phase: Phase::Droplets { diameter_um: 15.0 },
+            patches: None,
+        }
+    }
+
+    /// Refuses what is not a layer, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        check_range("fog.extinction_per_m", self.extinction_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
+        check_range("fog.angstrom", self.angstrom, -1.0, 4.0, "")?;
+        for a in self.albedo {
+            check_range("fog.albedo", a, 0.0, 1.0, "")?;
+        }
+        match self.profile {
+            Profile::Slab { base_m, top_m, base_softness_m, top_softness_m } => {
+                check_range("fog.base_m", base_m, -1e5, 1e6, "m")?;
+                check_range("fog.top_m", top_m, base_m, 1e6, "m")?;
+                check_range("fog.base_softness_m", base_softness_m, 0.0, 1e5, "m")?;
+                check_range("fog.top_softness_m", top_softness_m, 0.0, 1e5, "m")?;
+            }
+            Profile::Exponential { reference_m, scale_height_m } => {
+                check_range("fog.reference_m", reference_m, -1e5, 1e6, "m")?;
+                check_range("fog.scale_height_m", scale_height_m, 1.0, 1e5, "m")?;
+            }
+        }
+        match self.phase {
+            Phase::Droplets { diameter_um } => check_range("fog.diameter_um", diameter_um, 5.0, 50.0, "um")?,
+            Phase::HenyeyGreenstein { g } => check_range("fog.g", g, -0.95, 0.95, "")?,
+            Phase::Between { diameter_um, g, share } => {
+                check_range("fog.diameter_um", diameter_um, 5.0, 50.0, "um")?;
+                check_range("fog.g", g, -0.95, 0.95, "")?;
+                check_range("fog.share", share, 0.0, 1.0, "")?;
+            }
+        }
+        if let Some(p) = &self.patches {
+            check_range("fog.patches.amount", p.amount, 0.0, 1.0, "")?;
+            check_range("fog.patches.size_m", p.size_m, 5.0, 1e5, "m")?;
+            for d in p.drift_m {
+                check_range("fog.patches.drift_m", d, -1e12, 1e12, "m")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Fog that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Law {
+    /// None.
+    Clear,
+    /// A physical layer, lit by sun and sky.
+    Layer(FogLayer),
+    /// One of the older simulators' laws.
+    Compatibility(CompatibilityLaw),
+}
+
+impl Law {
+    /// Refuses what is not a law, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        match self {
+            Self::Clear => Ok(()),
+            Self::Layer(layer) => layer.validate(),
+            Self::Compatibility(law) => law.validate(),
+        }
+    }
+}
+
+/// A number of 64 bits as text: TOML's end at 63.
+mod seed_text {
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub fn serialize<S: Serializer>(seed: &u64, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(seed)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
+    }
+}

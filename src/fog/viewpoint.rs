@@ -1,0 +1,73 @@
+//! Viewpoint of the camera, and the light that falls on the layer: a frame's inputs beside the law.
+
+use glam::DVec3;
+
+use crate::error::{Error, Result, check_range};
+
+/// The light that falls on the layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FogLight {
+    /// Unit vector to the sun, or at night to the moon: (east, north, up).
+    pub to_sun: DVec3,
+    /// Its direct irradiance at the layer's top, facing it, per channel (any unit; radiance comes out per that unit
+    /// and steradian).
+    pub sun_irradiance: [f64; 3],
+    /// Irradiance of the sky on a horizontal surface at the layer's top, per channel.
+    pub sky_irradiance: [f64; 3],
+    /// Diffuse reflectance of the ground, per channel, \[0, 1\].
+    pub ground_albedo: [f64; 3],
+}
+
+impl FogLight {
+    /// Refuses light that is negative or not finite, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        if !(self.to_sun.length() - 1.0).abs().lt(&1e-3) {
+            return Err(Error::range("fog.to_sun", "a unit vector", self.to_sun));
+        }
+        for i in 0..3 {
+            check_range("fog.sun_irradiance", self.sun_irradiance[i], 0.0, 1e12, "")?;
+            check_range("fog.sky_irradiance", self.sky_irradiance[i], 0.0, 1e12, "")?;
+            check_range("fog.ground_albedo", self.ground_albedo[i], 0.0, 1.0, "")?;
+        }
+        Ok(())
+    }
+}
+
+/// Where the camera is, as the fog sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewpoint {
+    /// Altitude of the camera above mean sea level, m, \[-1e4, 1e9\].
+    pub altitude_m: f64,
+    /// Place on the map, m east and north of any fixed point: only the patches' pattern depends on it.
+    pub map_m: [f64; 2],
+    /// Radius of the planet, m; infinite for a flat world.
+    pub planet_radius_m: f64,
+    /// Altitude of the planet's ground where the host drew none, m.
+    pub ground_m: f64,
+}
+
+impl Viewpoint {
+    /// A camera at `altitude_m` over a flat world.
+    pub fn flat(altitude_m: f64) -> Self {
+        Self { altitude_m, map_m: [0.0; 2], planet_radius_m: f64::INFINITY, ground_m: 0.0 }
+    }
+
+    /// Refuses what is not a viewpoint, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        check_range("altitude_m", self.altitude_m, -1e5, 1e9, "m")?;
+        check_range("fog.ground_m", self.ground_m, -1e5, 1e5, "m")?;
+        if self.planet_radius_m.is_nan() || self.planet_radius_m <= 1e3 {
+            return Err(Error::range("planet_radius_m", "above 1000 m, or infinite", self.planet_radius_m));
+        }
+        for v in self.map_m {
+            check_range("map_m", v, -2e12, 2e12, "m")?;
+        }
+        Ok(())
+    }
+}
