@@ -13,7 +13,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::schedule::{Flash, FlashKind};
+use super::flash::{Flash, FlashKind};
 use crate::chance::Chance;
 
 /// Sideways move of a stretch's middle over the stretch's length, one spread.

@@ -4,8 +4,9 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    schedule::FlashKind,
-    settings::{FlashTrigger, LightningSettings, MAX_TRIGGERED, StormCell},
+    flash::FlashKind,
+    settings::{LightningSettings, MAX_TRIGGERED, StormCell},
+    trigger::FlashTrigger,
 };
 use crate::{
     error::{Error, Result, Status},

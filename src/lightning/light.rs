@@ -11,7 +11,7 @@
 //! Idone 1982); the first one's steps are taken to have 0.02 of it for 1 us in each 50 us. The stroke runs up at a
 //! third of the speed of light.
 
-use super::schedule::{Flash, FlashKind};
+use super::flash::{Flash, FlashKind, Stroke};
 
 /// Light of a stroke of [`OF_KA`] at its peak, W/m, and its current.
 const PEAK_W_M: f64 = 1e6;
@@ -118,7 +118,7 @@ pub fn flux_lm_m(flash: &Flash, stretch: &Stretch, span: &Span, course: Course) 
         return unit * energy / SMOOTH_S * span.mean_fading(flash.time_s, SMOOTH_S);
     }
     let left_m = (1.0 - stretch.down).max(0.0) * stretch.length_m;
-    let one = |(i, stroke): (usize, &super::schedule::Stroke)| {
+    let one = |(i, stroke): (usize, &Stroke)| {
         let begins_s = flash.time_s + stroke.after_s;
         let (leader, speed_m_s, lasts_s) = LEADERS[i.min(1)];
         let arrives_s = begins_s - left_m / speed_m_s;

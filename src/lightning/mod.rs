@@ -40,6 +40,7 @@
 //! `candidates.rs`: a flash is drawn in one way, and no plan leaves it out.
 
 pub mod channel;
+mod flash;
 mod glow;
 mod held;
 pub mod light;
@@ -51,12 +52,14 @@ pub mod settings;
 mod sources;
 mod storms;
 mod strike;
+mod trigger;
 mod uniforms;
 mod view;
 
+pub use flash::FlashKind;
 pub(crate) use held::HeldLightning;
 pub use query::{FlashEvent, LightningLight, MOST_DISTANCE_M, MOST_EXPOSURE_S, MOST_SPAN_S};
 pub(crate) use query::{events, light_at};
-pub use schedule::FlashKind;
-pub use settings::{FlashTrigger, LightningSettings, MAX_CELLS, MAX_MASTS, MAX_TRIGGERED, StormCell};
+pub use settings::{LightningSettings, MAX_CELLS, MAX_MASTS, MAX_TRIGGERED, StormCell};
+pub use trigger::FlashTrigger;
 pub(crate) use view::LightningView;

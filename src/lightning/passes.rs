@@ -80,14 +80,14 @@ impl ChannelPass {
     /// A missing shader file.
     pub fn draw(
         &mut self,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
         (block, parts): (&ChannelUniform, &[PartInstance]),
         merged: &MergedFrame<'_>,
         depth: Option<Layer<'_>>,
         (target, over): (&wgpu::TextureView, bool),
     ) -> Result<()> {
         let Some((tables_layout, tables)) = merged.composition.tables() else { return Ok(()) };
-        let device = to.device;
+        let device = recording.device;
         self.block.write(bytemuck::bytes_of(block));
         device.queue.write_buffer(&self.parts, 0, bytemuck::cast_slice(parts));
         let kind = (depth.is_some_and(Layer::is_multisampled), depth.is_some());
@@ -95,7 +95,7 @@ impl ChannelPass {
         let pipeline = self.pipeline(device, tables_layout, kind, merged.composition.least().between.all())?;
         let Some((.., group)) = &self.bound else { return Ok(()) };
         let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        let mut pass = recording.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("flashes"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: target,

@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use super::{
     channel::sound_m_s,
+    flash::{Flash, FlashKind},
     held::HeldLightning,
     light::{COLOR, Course, Span},
-    schedule::{Flash, FlashKind},
-    settings::FlashTrigger,
     storms::Storms,
     strike::Strike,
+    trigger::FlashTrigger,
 };
 use crate::{
     error::{Result, check_range},

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::settings::FlashTrigger;
+pub use super::flash::{Flash, FlashKind, MOST_STROKES, Stroke};
+use super::trigger::FlashTrigger;
 use crate::{
     chance::Chance,
     error::{Result, check_range},
@@ -20,8 +21,6 @@ const TO_GROUND: f64 = 0.25;
 /// further one with which they have 3.5 on the mean.
 const SINGLE: f64 = 0.2;
 const ANOTHER: f64 = 0.68;
-/// Most strokes: more have hardly been seen (26; Rakov and Uman 2003).
-pub const MOST_STROKES: usize = 26;
 /// Pause between strokes: geometric mean, s, and spread of its logarithm (Rakov and Uman 2003, table 1.1).
 const PAUSE_S: (f64, f64) = (0.06, 0.55);
 /// Peak current of first and of later strokes: median, kA, and spread of the logarithm (Berger et al. 1975).
@@ -39,66 +38,6 @@ pub struct Storm {
     pub middle_m: DVec2,
     /// Distance from the middle within which two of three flashes start, m, [0, 1e5].
     pub radius_m: f64,
-}
-
-/// Where a flash goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FlashKind {
-    /// Within the cloud.
-    InCloud,
-    /// To the ground.
-    ToGround,
-}
-
-impl FlashKind {
-    /// Its name in the probe's answers.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::InCloud => "cloud",
-            Self::ToGround => "ground",
-        }
-    }
-}
-
-/// One stroke of a flash.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Stroke {
-    /// After the flash began, s.
-    pub after_s: f64,
-    /// Peak current, kA.
-    pub peak_ka: f64,
-}
-
-/// A flash.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flash {
-    /// Number of its own; seed of what chance decides of it.
-    pub id: u64,
-    /// When its first stroke comes, s of simulation time.
-    pub time_s: f64,
-    /// Where it goes.
-    pub kind: FlashKind,
-    /// Where it starts, m east and north.
-    pub place_m: DVec2,
-    strokes: [Stroke; MOST_STROKES],
-    count: usize,
-}
-
-impl Flash {
-    /// Its strokes in order; those of a flash in the cloud are the steps of its light.
-    pub fn strokes(&self) -> &[Stroke] {
-        &self.strokes[..self.count]
-    }
-
-    /// When the last stroke comes, s of simulation time.
-    pub fn last_s(&self) -> f64 {
-        self.time_s + self.strokes().last().map_or(0.0, |s| s.after_s)
-    }
-
-    /// Largest of its strokes' peak currents, kA.
-    pub fn peak_ka(&self) -> f64 {
-        self.strokes().iter().fold(0.0, |most, s| most.max(s.peak_ka))
-    }
 }
 
 impl Storm {
@@ -119,9 +58,9 @@ impl Storm {
         out
     }
 
-    /// Shows `to` its flashes from `from_s` on until `until_s` at a rate that depends on time, flashes a minute: in the
-    /// order of their windows. No memory is asked for.
-    pub fn visit(&self, from_s: f64, until_s: f64, rate: impl Fn(f64) -> f64, mut to: impl FnMut(&Flash)) {
+    /// Shows `see` its flashes from `from_s` on until `until_s` at a rate that depends on time, flashes a minute: in
+    /// the order of their windows. No memory is asked for.
+    pub fn visit(&self, from_s: f64, until_s: f64, rate: impl Fn(f64) -> f64, mut see: impl FnMut(&Flash)) {
         let (first, last) = ((from_s / WINDOW_S).floor() as i64, (until_s / WINDOW_S).ceil() as i64);
         for window in first..last {
             let mut chance = Chance::new(self.seed, window as u64);
@@ -129,7 +68,7 @@ impl Storm {
                 let time_s = (window as f64 + chance.even()) * WINDOW_S;
                 let number = chance.even();
                 if time_s >= from_s && time_s < until_s && number < rate(time_s) / MOST_PER_MINUTE {
-                    to(&self.flash((window as u64).wrapping_mul(4096).wrapping_add(k), time_s));
+                    see(&self.flash((window as u64).wrapping_mul(4096).wrapping_add(k), time_s));
                 }
             }
         }

@@ -1,8 +1,9 @@
-//! Settings of the lightning, and flashes that the host triggers.
+//! Settings of the lightning: rate, storm cells, tall things, the limit.
 
 use glam::DVec3;
 
-use super::schedule::{FlashKind, MOST_PER_MINUTE, MOST_STROKES};
+pub use super::trigger::FlashTrigger;
+use super::{schedule::MOST_PER_MINUTE, trigger::check_place};
 use crate::error::{Error, Result, check_range};
 
 /// Most storm cells of a host.
@@ -11,9 +12,6 @@ pub const MAX_CELLS: usize = 16;
 pub const MAX_MASTS: usize = 64;
 /// Most triggered flashes that are kept at a time.
 pub const MAX_TRIGGERED: usize = 64;
-/// Farthest that a place of the host's world may be from its origin, m.
-const FARTHEST_M: f64 = 1e12;
-
 /// A storm cell of the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StormCell {
@@ -66,49 +64,10 @@ impl LightningSettings {
     }
 }
 
-/// A flash that the host triggers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlashTrigger {
-    /// When its first stroke comes, s of simulation time: not before the present.
-    pub time_s: f64,
-    /// Where it strikes, in the host's world; a flash in the cloud passes over it.
-    pub position: DVec3,
-    /// Where it goes.
-    pub kind: FlashKind,
-    /// Largest peak current, kA, \[1, 500\]; by chance where there is none.
-    pub peak_ka: Option<f64>,
-    /// Strokes, 1 to 26; by chance where there is none.
-    pub strokes: Option<u32>,
-}
-
-impl FlashTrigger {
-    /// Refuses what is out of range, by name.
-    ///
-    /// # Errors
-    /// [`crate::Status::InvalidArgument`].
-    pub fn validate(&self) -> Result<()> {
-        check_range("flash.time_s", self.time_s, -1e10, 1e10, "s")?;
-        check_place("flash.position", self.position)?;
-        if let Some(peak_ka) = self.peak_ka {
-            check_range("flash.peak_ka", peak_ka, 1.0, 500.0, "kA")?;
-        }
-        if let Some(strokes) = self.strokes {
-            check_range("flash.strokes", f64::from(strokes), 1.0, MOST_STROKES as f64, "")?;
-        }
-        Ok(())
-    }
-}
-
-fn check_place(name: &str, position: DVec3) -> Result<()> {
-    if position.is_finite() && position.length() <= FARTHEST_M {
-        return Ok(());
-    }
-    Err(Error::range(name, "finite and within 1e12 m of the world's origin", position))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lightning::flash::FlashKind;
 
     #[test]
     fn what_is_out_of_range_is_refused_by_name() {

@@ -3,12 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{
-    held::HeldLightning,
-    light::LONGEST_S,
-    schedule::{Flash, Storm},
-    settings::FlashTrigger,
-};
+use super::{flash::Flash, held::HeldLightning, light::LONGEST_S, schedule::Storm, trigger::FlashTrigger};
 use crate::world::World;
 
 /// Side of the squares of the map of which each has one cell of a thunderstorm, m, and the cell's radius: common sizes
@@ -38,13 +33,13 @@ impl Storms<'_> {
         !(by_host || by_weather && thunders())
     }
 
-    /// Shows `to` the flashes that begin from `from_s` on until `until_s` within `reach_m` of a place of the map, in no
-    /// order, and what triggered them.
+    /// Shows `see` the flashes that begin from `from_s` on until `until_s` within `reach_m` of a place of the map, in
+    /// no order, and what triggered them.
     pub fn visit(
         &self,
         (near_m, reach_m): (DVec2, f64),
         (from_s, until_s): (f64, f64),
-        mut to: impl FnMut(&Flash, Option<&FlashTrigger>),
+        mut see: impl FnMut(&Flash, Option<&FlashTrigger>),
     ) {
         if self.is_quiet(from_s, until_s) {
             return;
@@ -53,12 +48,12 @@ impl Storms<'_> {
         for trigger in self.held.triggered.iter().filter(|t| (from_s..until_s).contains(&t.time_s)) {
             let flash = Storm::triggered(self.world.seed, trigger, self.world.map_at(trigger.position));
             if is_near(flash.place_m) {
-                to(&flash, Some(trigger));
+                see(&flash, Some(trigger));
             }
         }
         let mut show = |flash: &Flash| {
             if is_near(flash.place_m) {
-                to(flash, None);
+                see(flash, None);
             }
         };
         let set = &self.held.settings;

@@ -4,8 +4,8 @@ use glam::{DMat3, DVec3};
 
 use super::{
     channel::{Channel, Mast, struck},
+    flash::{Flash, FlashKind},
     light::{Course, Span, Stretch, flux_lm_m},
-    schedule::{Flash, FlashKind},
 };
 use crate::{
     surroundings::{Shelter, met_at},
@@ -80,11 +80,11 @@ pub(crate) struct Strike {
 }
 
 impl Strike {
-    /// Puts a flash in its place; `at` is where a host wants it.
-    pub fn new(world: &World, masts: &[DVec3], flash: Flash, at: Option<DVec3>) -> Self {
+    /// Puts a flash in its place; `wanted` is where a host wants it.
+    pub fn new(world: &World, masts: &[DVec3], flash: Flash, wanted: Option<DVec3>) -> Self {
         let conditions = world.timeline.at(flash.time_s);
         let air = &conditions.air;
-        let ground_m = match at {
+        let ground_m = match wanted {
             Some(position) => world.frame.frame_at(position).place.altitude_m,
             None => air.station_altitude_m,
         };
@@ -98,7 +98,7 @@ impl Strike {
             let inside_m = WITHIN_M.min(0.5 * (c.top_m - c.base_m));
             charge_m.clamp(c.base_m + inside_m, c.top_m - inside_m)
         });
-        let end = match at {
+        let end = match wanted {
             Some(_) => flash.place_m.extend(ground_m),
             None => {
                 let tall = tall_near(world, masts, &flash, &local.world_to_enu);
@@ -135,10 +135,10 @@ impl Strike {
         self.anchor_m + (p - self.anchor).dot(self.up)
     }
 
-    /// Shows `to` its parts with their light on the mean of a span.
-    pub fn each_part(&self, span: &Span, course: Course, mut to: impl FnMut(&ChannelPart)) {
+    /// Shows `see` its parts with their light on the mean of a span.
+    pub fn each_part(&self, span: &Span, course: Course, mut see: impl FnMut(&ChannelPart)) {
         let main = self.channel.points_m.as_slice();
-        self.each_of(main, (0.0, 1.0), (1.0, false), (span, course), &mut to);
+        self.each_of(main, (0.0, 1.0), (1.0, false), (span, course), &mut see);
         for branch in &self.channel.branches {
             let long_m: f64 = branch.points_m.windows(2).map(|p| (p[1] - p[0]).length()).sum();
             let reaches = branch.leaves_at + long_m / self.length_m.max(1.0);
@@ -147,7 +147,7 @@ impl Strike {
                 (branch.leaves_at, reaches),
                 (branch.strength, true),
                 (span, course),
-                &mut to,
+                &mut see,
             );
         }
     }
@@ -158,7 +158,7 @@ impl Strike {
         (from, until): (f64, f64),
         (strength, is_branch): (f64, bool),
         (span, course): (&Span, Course),
-        to: &mut impl FnMut(&ChannelPart),
+        see: &mut impl FnMut(&ChannelPart),
     ) {
         let count = (points.len() - 1) as f64;
         for (i, ends) in points.windows(2).enumerate() {
@@ -173,7 +173,7 @@ impl Strike {
                 let depth_m = |c: CloudSpan| (altitude_m - c.base_m).min(c.top_m - altitude_m).max(0.0);
                 let open = self.clouds.map_or(1.0, |c| libm::exp(-depth_m(c) / FADES_M));
                 let flux_lm = lm_m * (ends[1] - ends[0]).length();
-                to(&ChannelPart { ends: [ends[0], ends[1]], altitude_m, flux_lm, open });
+                see(&ChannelPart { ends: [ends[0], ends[1]], altitude_m, flux_lm, open });
             }
         }
     }

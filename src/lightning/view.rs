@@ -83,9 +83,9 @@ pub(crate) struct LightningView {
 
 /// The time whose light a frame has: from the frame before it on; of one that follows none, a sixtieth of a second.
 /// While time stands, frames have the same.
-fn frame_time(before: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: bool) -> FrameTime {
+fn frame_time(last_frame: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: bool) -> FrameTime {
     let alone = Span { from_s: now_s - FRAME_S, until_s: now_s };
-    let span = match before {
+    let span = match last_frame {
         Some(b) if b.span.until_s == now_s && (b.frame_id == frame_id || !is_pure) => b.span,
         Some(b) if !is_pure && (0.0..=LONGEST_FRAME_S).contains(&(now_s - b.span.until_s)) => {
             Span { from_s: b.span.until_s, until_s: now_s }
@@ -186,14 +186,14 @@ impl LightningView {
     }
 
     /// The parts of all open channels, camera-relative.
-    fn gather_parts(&mut self, at: &DrawContext<'_>) {
+    fn gather_parts(&mut self, context: &DrawContext<'_>) {
         self.parts.clear();
         let Some(lit) = &self.lit else { return };
-        let to_enu = at.now.scene.world_to_enu;
+        let to_enu = context.now.scene.world_to_enu;
         let relative = |p: DVec3| (to_enu * (p - lit.eye)).as_vec3().to_array();
         for shining in &self.shining {
             shining.strike.each_part(&lit.span, lit.course, |part| {
-                let intensity = part.flux_lm * part.open / (4.0 * PI) * at.target.exposure;
+                let intensity = part.flux_lm * part.open / (4.0 * PI) * context.target.exposure;
                 if part.open > 1e-3 && self.parts.len() < MOST_PARTS {
                     let [from, to] = part.ends.map(relative);
                     self.parts.push(PartInstance { from, intensity: intensity as f32, to, pad: 0.0 });
@@ -269,12 +269,12 @@ impl DrawnEffect for LightningView {
     }
 
     /// Finds the flashes that shine in a frame, and says so to what they light ([`SceneMoment::flash_lamps`]).
-    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
-        let (now, held) = (at.now, at.held.of::<HeldLightning>()?);
-        let time = frame_time(self.frame, at.frame.frame_id, now.time_s, at.frame.is_pure());
+    fn gather(&mut self, context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        let (now, held) = (context.now, context.held.of::<HeldLightning>()?);
+        let time = frame_time(self.frame, context.frame.frame_id, now.time_s, context.frame.is_pure());
         self.frame = Some(time);
         (self.lit, self.target) = (None, None);
-        let storms = Storms { world: at.world, held };
+        let storms = Storms { world: context.world, held };
         let (from_s, until_s) = Storms::begin_within(time.span.from_s, time.span.until_s);
         self.storms = !storms.is_quiet(from_s, until_s);
         if !self.storms {
@@ -295,18 +295,18 @@ impl DrawnEffect for LightningView {
         }
     }
 
-    fn compose(&mut self, at: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
+    fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
         to.constant("FLASH", flag(self.storms), flag(self.lit.is_some()));
         let Some(lit) = &self.lit else { return Ok(to) };
         let traits = Traits { is_fine: true, ..Traits::default() };
         to.set_traits(traits, traits);
-        let has_line = lit.has_line && at.stages.has(Stages::PARTICLES);
-        self.shown = lit.block(&at.now.scene.conditions);
+        let has_line = lit.has_line && context.stages.has(Stages::PARTICLES);
+        self.shown = lit.block(&context.now.scene.conditions);
         if has_line {
             // What falls has a layer already, into which the lines are drawn after it.
             let over = given.before.is_some();
-            let view = given.before.clone().unwrap_or_else(|| self.layer(at.device, at.picture()));
+            let view = given.before.clone().unwrap_or_else(|| self.layer(context.device, context.picture()));
             to.set_texture(Texture::Before, Some(view.clone()));
             self.target = Some((view, over));
         }
@@ -315,14 +315,19 @@ impl DrawnEffect for LightningView {
     }
 
     /// Draws the open channels into the layer before the picture.
-    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn draw(
+        &mut self,
+        context: &DrawContext<'_>,
+        merged: &MergedFrame<'_>,
+        recording: &mut Recording<'_>,
+    ) -> Result<()> {
         let Some((target, over)) = self.target.take() else { return Ok(()) };
-        self.gather_parts(at);
-        let size = at.picture().size();
-        let block = ChannelUniform::new(&at.clip(), [size.width, size.height]);
-        let passes = self.passes.get_or_insert_with(|| Box::new(ChannelPass::new(to.device, to.blocks)));
-        passes.draw(to, (&block, &self.parts), merged, at.frame.depth_layer(), (&target, over))?;
-        to.passes += 1;
+        self.gather_parts(context);
+        let size = context.picture().size();
+        let block = ChannelUniform::new(&context.clip(), [size.width, size.height]);
+        let passes = self.passes.get_or_insert_with(|| Box::new(ChannelPass::new(recording.device, recording.blocks)));
+        passes.draw(recording, (&block, &self.parts), merged, context.frame.depth_layer(), (&target, over))?;
+        recording.passes += 1;
         Ok(())
     }
 

@@ -1,0 +1,50 @@
+//! Flash that the host triggers.
+
+use glam::DVec3;
+
+use super::flash::{FlashKind, MOST_STROKES};
+use crate::error::{Error, Result, check_range};
+
+/// Farthest that a place of the host's world may be from its origin, m.
+const FARTHEST_M: f64 = 1e12;
+
+/// A flash that the host triggers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlashTrigger {
+    /// When its first stroke comes, s of simulation time: not before the present.
+    pub time_s: f64,
+    /// Where it strikes, in the host's world; a flash in the cloud passes over it.
+    pub position: DVec3,
+    /// Where it goes.
+    pub kind: FlashKind,
+    /// Largest peak current, kA, \[1, 500\]; by chance where there is none.
+    pub peak_ka: Option<f64>,
+    /// Strokes, 1 to 26; by chance where there is none.
+    pub strokes: Option<u32>,
+}
+
+impl FlashTrigger {
+    /// Refuses what is out of range, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        check_range("flash.time_s", self.time_s, -1e10, 1e10, "s")?;
+        check_place("flash.position", self.position)?;
+        if let Some(peak_ka) = self.peak_ka {
+            check_range("flash.peak_ka", peak_ka, 1.0, 500.0, "kA")?;
+        }
+        if let Some(strokes) = self.strokes {
+            check_range("flash.strokes", f64::from(strokes), 1.0, MOST_STROKES as f64, "")?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a place that is too far from the origin of the host's world, by name.
+pub(super) fn check_place(name: &str, position: DVec3) -> Result<()> {
+    if position.is_finite() && position.length() <= FARTHEST_M {
+        return Ok(());
+    }
+    Err(Error::range(name, "finite and within 1e12 m of the world's origin", position))
+}
