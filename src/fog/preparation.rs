@@ -16,7 +16,7 @@ use crate::{
     falling::FallingLayer,
     light::{Phase, PhaseLobes},
     moment::MAX_EXTINCTION_PER_M,
-    weather::smoothstep,
+    numerics::smoothstep,
 };
 
 /// Wavelengths of the channels, nm: those at which the sky's three-channel tables stand; green is Koschmieder's 550.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::{
     context::Context,
     error::Result,
-    rain::{AreaField, RainArea, RainAt, RainOn, RainSurface, rain_at, rain_on},
+    rain::{AreaField, EyeInWorld, RainArea, RainAt, RainOn, RainSurface, rain_at, rain_on},
     weather::Conditions,
 };
 
@@ -60,7 +60,7 @@ impl Context {
         let local = world.frame.frame_at(position);
         let field = AreaField::new(
             over.shafts_at(time_s, c)?,
-            (position, &local.world_to_enu, local.place.altitude_m),
+            EyeInWorld { position, to_enu: &local.world_to_enu, altitude_m: local.place.altitude_m },
             &world.falling(c),
             0.0,
         );

@@ -376,7 +376,7 @@ impl HeldEffect for HeldGround {
         let Some(mut state) = self.state else { return Ok(Status::Ok) };
         for steps in 0.. {
             let end_s = state.next_s();
-            if end_s > within.until_s {
+            if end_s > budget.until_s {
                 break;
             }
             if steps > 0 && budget.begun.elapsed() >= budget.most {

@@ -102,42 +102,42 @@ struct Left {
 
 impl ParticleStepUniform {
     /// From what was `left` to now; none where there is nothing to step.
-    fn new(goal: &Stepped<'_>, left: Option<Left>, rooms: &Rooms) -> Option<Self> {
+    fn new(stepped: &Stepped<'_>, left: Option<Left>, rooms: &Rooms) -> Option<Self> {
         let v = |d: DVec3| d.as_vec3().to_array();
-        let left = left.filter(|l| (0.0..=MOST_S).contains(&(goal.time_s - l.time_s)));
-        let dt = left.map_or(0.0, |l| goal.time_s - l.time_s);
-        let moved = left.map_or(DVec3::ZERO, |l| goal.position_m - l.position_m);
+        let left = left.filter(|l| (0.0..=MOST_S).contains(&(stepped.time_s - l.time_s)));
+        let dt = left.map_or(0.0, |l| stepped.time_s - l.time_s);
+        let moved = left.map_or(DVec3::ZERO, |l| stepped.position_m - l.position_m);
         let known = left.map_or([0; SHELLS], |l| l.counts);
-        let counts = rooms.within(goal.counts);
+        let counts = rooms.within(stepped.counts);
         let all_known = counts.iter().zip(known).all(|(count, known)| known >= *count);
         if left.is_some() && dt == 0.0 && moved == DVec3::ZERO && all_known {
             return None;
         }
         let steps = (dt / STEP_S).ceil().clamp(1.0, MOST_STEPS);
         let blows = match left {
-            Some(l) if dt > 0.0 => (goal.carried)(l.time_s) / dt,
-            _ => goal.air_m_s,
+            Some(l) if dt > 0.0 => (stepped.carried)(l.time_s) / dt,
+            _ => stepped.air_m_s,
         };
         let begins = rooms.begins();
         let places = |p: DVec3| {
             std::array::from_fn(|s| {
-                let [x, y, z] = p.to_array().map(|x| fraction(x, goal.sides_m[s]));
+                let [x, y, z] = p.to_array().map(|x| fraction(x, stepped.sides_m[s]));
                 [x, y, z, begins[s]]
             })
         };
         Some(Self {
             air: v(blows),
             dt: (dt / steps) as f32,
-            wind: goal.wind.1.unwrap_or_default(),
+            wind: stepped.wind.1.unwrap_or_default(),
             moved: v(moved),
             steps: if dt > 0.0 { steps as u32 } else { 0 },
             counts,
             known,
             begins,
-            sides: goal.sides_m.map(|side| side as f32),
-            eye: places(goal.position_m),
-            before: places(goal.position_m - moved),
-            seed: goal.seed,
+            sides: stepped.sides_m.map(|side| side as f32),
+            eye: places(stepped.position_m),
+            before: places(stepped.position_m - moved),
+            seed: stepped.seed,
             pad: [0; 3],
         })
     }
@@ -261,19 +261,19 @@ impl StepPass {
         device: &Arc<Device>,
         encoder: &mut wgpu::CommandEncoder,
         own: wgpu::BufferBinding<'_>,
-        goal: &Stepped<'_>,
+        stepped: &Stepped<'_>,
     ) -> Result<()> {
-        self.make_room(device, encoder, goal);
-        let (view, map) = &goal.wind;
+        self.make_room(device, encoder, stepped);
+        let (view, map) = &stepped.wind;
         if self.wind.as_ref().is_none_or(|bound| bound.generation != view.generation) {
             (self.wind, self.groups) = (Some(view.clone()), None);
         }
         self.bind(device, own);
         let Some((rooms, _)) = &self.states else { return Ok(()) };
-        let left = self.left.filter(|_| !goal.anew);
-        let counts = rooms.within(goal.counts);
-        self.left = Some(Left { time_s: goal.time_s, position_m: goal.position_m, counts });
-        let Some(block) = ParticleStepUniform::new(goal, left, rooms) else { return Ok(()) };
+        let left = self.left.filter(|_| !stepped.anew);
+        let counts = rooms.within(stepped.counts);
+        self.left = Some(Left { time_s: stepped.time_s, position_m: stepped.position_m, counts });
+        let Some(block) = ParticleStepUniform::new(stepped, left, rooms) else { return Ok(()) };
         let mut bytes = [0; EYES + 16 * SHELLS];
         bytes[..size_of::<ParticleStepUniform>()].copy_from_slice(bytemuck::bytes_of(&block));
         bytes[EYES..].copy_from_slice(bytemuck::bytes_of(&block.eye));
@@ -300,9 +300,9 @@ impl StepPass {
     }
 
     /// Makes room for more states, with those that there are.
-    fn make_room(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, goal: &Stepped<'_>) {
+    fn make_room(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, stepped: &Stepped<'_>) {
         let before = self.states.as_ref().map_or(Rooms::default(), |(rooms, _)| *rooms);
-        let rooms = before.for_counts(goal.counts, goal.least_room, Self::most(device));
+        let rooms = before.for_counts(stepped.counts, stepped.least_room, Self::most(device));
         if self.states.is_some() && rooms == before {
             return;
         }
@@ -317,11 +317,10 @@ impl StepPass {
         });
         if let (Some((_, old)), Some(left)) = (&self.states, &mut self.left) {
             left.counts = rooms.within(left.counts);
-            for (s, (source, destination)) in before.begins().into_iter().zip(rooms.begins()).enumerate() {
-                let [source, destination, kept] =
-                    [source, destination, left.counts[s]].map(|n| STATE_BYTES * u64::from(n));
+            for (s, (source, target)) in before.begins().into_iter().zip(rooms.begins()).enumerate() {
+                let [source, target, kept] = [source, target, left.counts[s]].map(|n| STATE_BYTES * u64::from(n));
                 if kept > 0 {
-                    encoder.copy_buffer_to_buffer(old, source, &buffer, destination, kept);
+                    encoder.copy_buffer_to_buffer(old, source, &buffer, target, kept);
                 }
             }
         }

@@ -15,6 +15,9 @@ use crate::{
 /// Light of what falls times the picture's exposure, and the share of what lies behind that it hides.
 pub(crate) const LAYER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
+/// A streak or a flake is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/common/streak.wgsl`.
+pub(crate) const LEAST_PIXELS: f64 = 1.2;
+
 /// A camera among things that fall past it, as streaks while the shutter is open.
 pub(crate) struct StreakCamera<'a> {
     /// From camera-relative east-north-up to clip space.
@@ -123,6 +126,26 @@ impl FallingTexture {
     pub fn forget(&self) {
         *self.locked() = None;
     }
+}
+
+/// Begins a pass that draws into the layer, which is cleared first unless it keeps what lies in it.
+pub(crate) fn layer_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    label: &str,
+    layer: &wgpu::TextureView,
+    keeps: bool,
+) -> wgpu::RenderPass<'a> {
+    let load = if keeps { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: layer,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    })
 }
 
 /// Angles between line of sight and streaks at which the variance is tabulated.

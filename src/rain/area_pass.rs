@@ -4,10 +4,13 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::{AreaField, BELOW_M, ColumnUniform, DropLight, MAX_AREAS, RainColumn};
+use super::{
+    light::DropLight,
+    shaft::{AreaField, BELOW_M, ColumnUniform, RainColumn},
+};
 use crate::{
     error::Result,
-    falling::curtain::WAVES,
+    falling::{MAX_AREAS, curtain::WAVES},
     gpu::{
         Device, KeptLayer, Layer,
         bind::{self, Slot},
@@ -17,10 +20,9 @@ use crate::{
         recent::LruCache,
     },
     moment::Scene,
+    particles::{LAYER_FORMAT, layer_pass},
     stage::{Block, Constant, FrameUniform, MergedFrame, Recording, Texture, flag},
 };
-
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// `Columns` of `shaders/rain/area.wgsl`.
 #[repr(C)]
@@ -197,13 +199,13 @@ impl AreaPass {
     /// A missing shader file.
     pub fn draw(
         &mut self,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
         columns: &Columns<'_>,
         merged: &MergedFrame<'_>,
         depth: Option<Layer<'_>>,
         target: &wgpu::TextureView,
     ) -> Result<()> {
-        let (device, composition) = (to.device, merged.composition);
+        let (device, composition) = (recording.device, merged.composition);
         let Some((tables_layout, tables)) = composition.tables() else { return Ok(()) };
         let (blocks, count) = columns.blocks();
         self.blocks.write(bytemuck::bytes_of(&blocks));
@@ -216,19 +218,7 @@ impl AreaPass {
         self.bind(device, merged, depth, kind.multi);
         let pipeline = self.pipeline(device, tables_layout, kind, composition.least().between.all())?;
         let Some((.., group)) = &self.bound else { return Ok(()) };
-        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("rain areas"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        });
+        let mut pass = layer_pass(recording.encoder, "rain areas", target, false);
         if count > 0 {
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, group, &[]);
@@ -286,7 +276,7 @@ impl AreaPass {
                     fragment: (&module, "shaft_fragment", &all),
                     layouts: &[Some(columns), Some(tables)],
                     buffers: &[],
-                    format: FORMAT,
+                    format: LAYER_FORMAT,
                     counts,
                 },
             );

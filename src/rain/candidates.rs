@@ -1,6 +1,6 @@
 //! The ways to draw rain that are charted against each other, with what they cost.
 
-use super::{RainModel, RainSettings};
+use super::settings::{RainModel, RainSettings};
 use crate::particles::stepping::STATE_BYTES;
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};

@@ -13,7 +13,7 @@ use crate::{
         blocks::{BlockView, Blocks, UniformBlock},
         pass::{FullscreenDesc, Made, fullscreen},
     },
-    particles::DepthRead,
+    particles::{DepthRead, LAYER_FORMAT},
     stage::Recording,
     surroundings::SurroundingsBlock,
 };
@@ -77,24 +77,28 @@ impl ConePass {
         self.pipelines.prepare(kind, |_| pipeline(device, &[frame, own, around], kind, counts))
     }
 
-    /// Asks what keeps rain off for a picture of this size, maps among it or not; `blocks` begin with the rain's.
+    /// Asks what keeps rain off for a picture of this size, maps among it or not; `blocks` begin with the rain's,
+    /// `layout` is that of the surroundings.
     ///
     /// # Errors
     /// A missing shader file.
     pub fn shelter(
         &mut self,
-        to: &mut Recording<'_>,
-        (blocks, layout, around): (&BlockView, &wgpu::BindGroupLayout, &SurroundingsBlock),
-        (picture, maps): (wgpu::Extent3d, bool),
+        recording: &mut Recording<'_>,
+        blocks: &BlockView,
+        layout: &wgpu::BindGroupLayout,
+        surroundings: &SurroundingsBlock,
+        picture: wgpu::Extent3d,
+        maps: bool,
     ) -> Result<()> {
-        let device = to.device;
+        let device = recording.device;
         let first = self.open.is_none();
         let open = self.open.get_or_insert_with(|| OpenPass::new(&device.device, [blocks, &self.block], picture));
         let (grid, anew) = open.fit(&device.device, picture);
         if first || anew {
             self.group = group(&device.device, &self.layout, &self.block, &self.streaks, &self.samplers, grid);
         }
-        open.draw(device, to.encoder, (layout, around.bind_group()), maps)
+        open.draw(device, recording.encoder, (layout, surroundings.bind_group()), maps)
     }
 
     /// Draws what was prepared; the other groups are set.
@@ -137,7 +141,7 @@ fn pipeline(
         entry: if counts { "cones_counted" } else { "cones_fragment" },
         layouts,
         targets: &[wgpu::ColorTargetState {
-            format: super::passes::FORMAT,
+            format: LAYER_FORMAT,
             blend: kind.over.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
             write_mask: wgpu::ColorWrites::ALL,
         }],

@@ -22,10 +22,13 @@ use glam::{DVec2, DVec3};
 use half::f16;
 
 use super::{
-    Classes,
-    lattice::{HIDDEN_M, SIDE_M, random3},
+    classes::Classes,
+    shells::{HIDDEN_M, SIDE_M},
     sizes::{DropSizes, Weight},
-    uniforms::{MovingAir, StreakCamera},
+};
+use crate::{
+    falling::random3,
+    particles::{MovingAir, StreakCamera},
 };
 
 /// Cones.

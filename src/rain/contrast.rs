@@ -12,11 +12,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{DropLight, StreakCamera, uniforms::Classes};
-use crate::{particles::StreakContrast, plan::parts::MOST_RUNGS, stage::Tone};
+use super::{classes::Classes, light::DropLight};
+use crate::{
+    particles::{LEAST_PIXELS, StreakCamera, StreakContrast},
+    plan::parts::MOST_RUNGS,
+    stage::Tone,
+};
 
-/// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
-const LEAST_PIXELS: f64 = 1.2;
 /// Largest share of the contrast of streaks that cones miss. Their error over that of a veil without any is a tenth of
 /// it in the lab's chart (docs/lab/rain.csv: 0.20 % of 2.65 %), where single streaks near the eye hardly count.
 const CONES_MISS: f64 = 0.3;

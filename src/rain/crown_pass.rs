@@ -2,7 +2,7 @@
 //! ([`crate::particles::listing`]), for each of which the place of its crown is sought in the picture's depth once.
 //! Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
 
-use super::cull_pass::listed_pipeline;
+use super::cull_pass::{ListedQuads, listed_pipeline};
 use crate::{
     error::Result,
     gpu::{
@@ -73,8 +73,9 @@ impl CrownPass {
             pass::compute(device, &ComputeDesc { shader, entry: "make_crowns", layouts, constants })
         })?;
         let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Uint32];
-        let listed = (["crown_vertex", "crown_fragment"], &attributes[..], CROWN_BYTES);
-        self.draws.prepare(depth, |_| listed_pipeline(device, frame, listed, (depth, counts)))
+        let entries = ["crown_vertex", "crown_fragment"];
+        let listed = ListedQuads { entries, attributes: &attributes, bytes: CROWN_BYTES };
+        self.draws.prepare(depth, |_| listed_pipeline(device, frame, &listed, depth, counts))
     }
 
     /// Makes the crowns of that many slots; `frame` and `around` are bound as groups 0 and 2.

@@ -2,9 +2,8 @@
 //! `shaders/rain/cull.wgsl` and `cull_streaks.wgsl`.
 
 use super::{
-    LocalUniform,
-    lattice::SHELLS,
-    passes::{COLUMNS_BYTES, FORMAT, LOCAL},
+    local::{COLUMNS_BYTES, LOCAL, LocalUniform},
+    shells::SHELLS,
     uniforms::RainUniform,
 };
 use crate::{
@@ -16,7 +15,7 @@ use crate::{
         pass::{self, ComputeDesc, Made, QuadsDesc},
     },
     particles::{
-        DepthRead,
+        DepthRead, LAYER_FORMAT,
         listing::Listing,
         stepping::{STATE_BYTES, source_layout},
     },
@@ -141,8 +140,9 @@ impl CullPass {
             attribute(1, 16, wgpu::VertexFormat::Float32x3),
             attribute(2, 32, wgpu::VertexFormat::Float32x4),
         ];
-        let listed = (["listed_vertex", "rain_fragment"], &attributes[..], STREAK_BYTES);
-        self.draws.prepare(depth, |_| listed_pipeline(device, frame, listed, (depth, self.counts)))
+        let entries = ["listed_vertex", "rain_fragment"];
+        let listed = ListedQuads { entries, attributes: &attributes, bytes: STREAK_BYTES };
+        self.draws.prepare(depth, |_| listed_pipeline(device, frame, &listed, depth, self.counts))
     }
 
     /// Draws what was found; group 0 is set.
@@ -153,7 +153,12 @@ impl CullPass {
         }
     }
 
-    fn prepare(&mut self, device: &Device, around: &wgpu::BindGroupLayout, lattice: DropLattice<'_>) -> Result<()> {
+    fn prepare(
+        &mut self,
+        device: &Device,
+        surroundings: &wgpu::BindGroupLayout,
+        lattice: DropLattice<'_>,
+    ) -> Result<()> {
         let DropLattice { states, areas, maps, .. } = lattice;
         let ([frame, source], [found, streaks]) = (&self.layouts, &self.listing.layouts);
         let is_stepped = states.is_some();
@@ -171,18 +176,28 @@ impl CullPass {
         self.makes.prepare([is_stepped, areas, maps], |_| {
             // Mixtures take each column by itself: what lies over what is in their order.
             let constants = [stepped, flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps)];
-            let layouts = [Some(frame), Some(streaks), Some(around), Some(source)];
+            let layouts = [Some(frame), Some(streaks), Some(surroundings), Some(source)];
             compute("rain/cull_streaks.wgsl", "make_streaks", &layouts, &constants)
         })
     }
 }
 
-/// A draw of what compute shaders have made: what each instance brings to which entry points, in how many bytes.
+/// Quads that compute shaders have made.
+pub(super) struct ListedQuads<'a> {
+    /// Entry points of the vertex and the fragment shader.
+    pub entries: [&'static str; 2],
+    /// Attributes of each instance, and its bytes.
+    pub attributes: &'a [wgpu::VertexAttribute],
+    pub bytes: u64,
+}
+
+/// The pipeline that draws listed quads.
 pub(super) fn listed_pipeline(
     device: &Device,
     frame: &wgpu::BindGroupLayout,
-    ([vertex, fragment], attributes, bytes): ([&str; 2], &[wgpu::VertexAttribute], u64),
-    (depth, counts): (DepthRead, bool),
+    &ListedQuads { entries: [vertex, fragment], attributes, bytes }: &ListedQuads<'_>,
+    depth: DepthRead,
+    counts: bool,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(&depth.shader("rain/drops_view.wgsl"))?;
     pass::quads(
@@ -197,7 +212,7 @@ pub(super) fn listed_pipeline(
                 step_mode: wgpu::VertexStepMode::Instance,
                 attributes,
             })],
-            format: FORMAT,
+            format: LAYER_FORMAT,
             counts,
         },
     )

@@ -1,7 +1,11 @@
 //! Hail and ice pellets of a view: what falls round its camera, counted once.
 
-use super::{RainModel, RainSettings, Stones, drops};
+use super::{
+    settings::{RainModel, RainSettings},
+    stones::Stones,
+};
 use crate::{
+    falling::drops,
     moment::{Scene, SceneMoment},
     weather::Falling,
 };

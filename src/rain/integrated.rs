@@ -3,15 +3,15 @@
 
 use glam::DVec3;
 
-use super::{
-    Classes,
-    lattice::{short_seed, side_m},
-    uniforms::{MovingAir, RainUniform, StreakCamera},
-};
+use super::{classes::Classes, shells::side_m, uniforms::RainUniform};
 pub use crate::falling::drag::step;
 use crate::{
+    falling::lattice::short_seed,
     gpu::{Device, blocks::Blocks},
-    particles::stepping::{StepPass, Stepped},
+    particles::{
+        MovingAir, StreakCamera,
+        stepping::{StepPass, Stepped},
+    },
     surroundings::{WindMap, WindView},
 };
 

@@ -4,16 +4,15 @@
 //! mixture of the counts there. The number of a drop has nothing to do with its place, so that thins evenly, and the
 //! same drop stays or goes on every channel. A camera that no rim is near sees one pure rain and needs none of this.
 
-use glam::{DMat3, DVec3};
+use std::ops::Range;
 
 use super::{
-    MAX_AREAS,
-    lattice::CLASSES,
-    shaft::{AreaField, ColumnUniform},
+    classes::Classes,
+    shaft::{AreaField, ColumnUniform, EyeInWorld, RainColumn},
+    shells::CLASSES,
     splash::Splashes,
-    uniforms::Classes,
 };
-use crate::weather::Falling;
+use crate::{falling::MAX_AREAS, weather::Falling};
 
 /// Rains of a mixture: the weather's and each area's.
 const STATES: usize = MAX_AREAS + 1;
@@ -33,6 +32,22 @@ pub(crate) struct LocalUniform {
     pub cones: [[f32; 4]; ROWS],
 }
 
+/// The columns of [`LocalUniform`], which are a block of their own.
+pub(super) const COLUMNS_BYTES: usize = std::mem::offset_of!(LocalUniform, counts);
+/// Where the drops of areas begin behind their columns, and where they end.
+pub(super) const LOCAL: Range<usize> = {
+    let at = COLUMNS_BYTES.next_multiple_of(256);
+    at..at + size_of::<LocalUniform>() - COLUMNS_BYTES
+};
+
+/// Drops of a column that reach a camera.
+pub(crate) struct LocalColumn<'a> {
+    pub uniform: ColumnUniform,
+    /// Share of its rain that has left its cloud at the camera.
+    pub begun: f64,
+    pub classes: &'a Classes,
+}
+
 /// Rains that fall within reach of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Local {
@@ -44,17 +59,12 @@ pub(crate) enum Local {
 
 impl Local {
     /// At a camera, under columns that lie about it, as far as `reach_m`.
-    pub fn new(
-        weather: &Falling,
-        field: &AreaField,
-        (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
-        reach_m: f64,
-    ) -> Self {
+    pub fn new(weather: &Falling, field: &AreaField, eye: EyeInWorld<'_>, reach_m: f64) -> Self {
         let mut local = Self::Pure(*weather);
         for (i, column) in field.columns.iter().enumerate() {
             let shaft = column.shaft();
-            let [least, most] = shaft.share_within(eye, to_enu, altitude_m, reach_m);
-            let begun = shaft.begun(altitude_m);
+            let [least, most] = shaft.share_within(eye.position, eye.to_enu, eye.altitude_m, reach_m);
+            let begun = shaft.begun(eye.altitude_m);
             local = match local {
                 _ if least >= 1.0 && begun >= 1.0 => Self::Pure(shaft.falling),
                 _ if most <= 0.0 => local,
@@ -71,7 +81,7 @@ impl Local {
         match self {
             Self::Pure(f) => wet(f),
             Self::Mixed(f, bits) => {
-                let mixed = |(i, c): (usize, &super::RainColumn)| bits & (1 << i) != 0 && wet(&c.shaft().falling);
+                let mixed = |(i, c): (usize, &RainColumn)| bits & (1 << i) != 0 && wet(&c.shaft().falling);
                 wet(f) || field.columns.iter().enumerate().any(mixed)
             }
         }
@@ -123,10 +133,7 @@ impl Classes {
 
 impl LocalUniform {
     /// A mixture of the `weather`'s drops with those of some columns, and the classes that hold enough for all of them.
-    pub fn new<'a>(
-        weather: &Classes,
-        columns: impl Iterator<Item = (ColumnUniform, f64, &'a Classes)>,
-    ) -> (Self, Classes) {
+    pub fn new<'a>(weather: &Classes, columns: impl Iterator<Item = LocalColumn<'a>>) -> (Self, Classes) {
         let mut block: Self = bytemuck::Zeroable::zeroed();
         let mut envelope = *weather;
         let mut put = |state: usize, classes: &Classes, begun: f64| {
@@ -142,8 +149,8 @@ impl LocalUniform {
         put(0, weather, 1.0);
         let mut list = [ColumnUniform::NONE; MAX_AREAS];
         let mut count = 0;
-        for (column, begun, classes) in columns.take(MAX_AREAS) {
-            list[count] = column;
+        for LocalColumn { uniform, begun, classes } in columns.take(MAX_AREAS) {
+            list[count] = uniform;
             count += 1;
             put(count, classes, begun);
             envelope = envelope.enveloped(classes);
@@ -167,11 +174,15 @@ impl LocalUniform {
 mod tests {
     use std::mem::offset_of;
 
+    use glam::{DMat3, DVec3};
+
     use super::*;
     use crate::{
-        falling::FallingLayer,
+        falling::{
+            FallingLayer,
+            area::{AreaShape, RainArea, Shaft},
+        },
         gpu::shader,
-        rain::{AreaShape, RainArea, Shaft},
     };
 
     #[test]
@@ -206,7 +217,7 @@ mod tests {
         let dry = crate::weather::derive(&Default::default()).unwrap().precipitation;
         let at = |x: f64| {
             let shaft = Shaft::new(&area, 0, (DVec3::ZERO, 0.0), (6.0, Default::default()), 0.0);
-            let eye = (DVec3::X * x, &DMat3::IDENTITY, 0.0);
+            let eye = EyeInWorld { position: DVec3::X * x, to_enu: &DMat3::IDENTITY, altitude_m: 0.0 };
             let own = FallingLayer::NONE;
             let field = AreaField::new(std::iter::once(shaft), eye, &own, 0.0);
             let local = Local::new(&dry, &field, eye, 4.0);

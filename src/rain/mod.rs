@@ -18,6 +18,7 @@ pub(crate) mod candidates;
 #[cfg(feature = "lab")]
 #[doc(hidden)]
 pub mod candidates;
+mod classes;
 mod cone_pass;
 pub mod cones;
 pub mod contrast;
@@ -30,9 +31,11 @@ pub mod light;
 mod local;
 mod open_pass;
 mod passes;
+mod presence;
 mod query;
 mod settings;
 mod shaft;
+mod shells;
 pub mod splash;
 mod stone_pass;
 mod stones;
@@ -50,16 +53,8 @@ pub use query::{RainAt, RainOn, RainSurface};
 pub(crate) use query::{rain_at, rain_on};
 pub use settings::{RainModel, RainSettings};
 
-#[cfg(test)]
-use crate::falling::area::Shaft;
-pub(crate) use cones::ConeUniform;
+pub use classes::Classes;
 pub(crate) use contrast::Streaks;
-pub(crate) use local::{Local, LocalUniform};
-pub(crate) use passes::{LayerDraw, RainLayer};
-pub(crate) use shaft::{AreaField, BELOW_M, ColumnUniform, RainColumn};
-pub(crate) use splash::Splashes;
-pub(crate) use stone_pass::StoneDraw;
+pub(crate) use shaft::{AreaField, EyeInWorld};
 pub use stones::Stones;
-pub use uniforms::Classes;
-use uniforms::{MovingAir, RainUniform, StreakCamera};
 pub(crate) use view::RainView;

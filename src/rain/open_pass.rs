@@ -58,8 +58,8 @@ pub(super) fn grid(device: &wgpu::Device, size: wgpu::Extent3d) -> wgpu::Texture
     })
 }
 
-fn layer(grid: &wgpu::Texture, at: usize) -> wgpu::TextureView {
-    Layer { texture: grid, index: at as u32 }.attached_view()
+fn layer(grid: &wgpu::Texture, index: usize) -> wgpu::TextureView {
+    Layer { texture: grid, index: index as u32 }.attached_view()
 }
 
 impl OpenPass {

@@ -3,14 +3,14 @@
 use std::ops::Range;
 
 use super::{
-    LocalUniform, StoneDraw,
     cone_pass::{ConeKind, ConePass},
     cones::{self, ConeUniform},
     crown_pass::{CrownKind, CrownPass},
     cull_pass::{CullPass, DropLattice},
     integrated,
+    local::{COLUMNS_BYTES, LOCAL, LocalUniform},
     splash::SplashUniform,
-    stone_pass::{StoneKind, StonePass},
+    stone_pass::{StoneDraw, StoneKind, StonePass},
     uniforms::RainUniform,
 };
 use crate::{
@@ -23,15 +23,13 @@ use crate::{
         pass::{self, Made, QuadsDesc},
     },
     particles::{
-        DepthRead, FallingTexture,
+        DepthRead, FallingTexture, LAYER_FORMAT, layer_pass,
         stepping::{StepPass, Stepped},
     },
     scene::ViewRays,
     stage::Recording,
     surroundings::{self, SurroundingsBlock},
 };
-
-pub(super) use crate::particles::LAYER_FORMAT as FORMAT;
 
 /// Drops as one more veil before the picture: premultiplied, one sample a pixel.
 pub(crate) struct RainLayer {
@@ -93,19 +91,11 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
     bind::layout(device, "rain", all, &slots)
 }
 
-/// The columns of [`LocalUniform`], which are a block of their own.
-pub(super) const COLUMNS_BYTES: usize = std::mem::offset_of!(LocalUniform, counts);
 /// Where the splashes begin behind the rain, and where they end.
 pub(super) const SPLASHES: Range<usize> = {
     let at = size_of::<RainUniform>().next_multiple_of(256);
     at..at + size_of::<SplashUniform>()
 };
-/// Where the drops of areas begin behind their columns, and where they end.
-pub(super) const LOCAL: Range<usize> = {
-    let at = COLUMNS_BYTES.next_multiple_of(256);
-    at..at + size_of::<LocalUniform>() - COLUMNS_BYTES
-};
-
 impl RainLayer {
     /// A layer of light, or one that counts how often its pixels are drawn.
     pub fn new(device: &Device, blocks: &Blocks, texture: FallingTexture, counts: bool) -> Self {
@@ -146,23 +136,22 @@ impl RainLayer {
     /// Makes stones and cones ready, and what keeps rain off these.
     fn prepare_far(
         &mut self,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
         drawn: &LayerDraw<'_>,
         picture: wgpu::Extent3d,
         cone_kind: ConeKind,
     ) -> Result<()> {
-        let (device, blocks, depth) = (to.device, to.blocks, cone_kind.depth);
+        let (device, blocks, depth) = (recording.device, recording.blocks, cone_kind.depth);
         let (frame, counts) = ([&self.layouts[usize::from(depth.multi)], &self.surroundings], self.counts);
         if let Some(stones) = &drawn.stones {
             let own = self.stones.get_or_insert_with(|| StonePass::new(device, blocks, counts));
-            own.prepare(device, stones, frame, FORMAT, StoneKind { depth, maps: drawn.maps })?;
+            own.prepare(device, stones, frame, LAYER_FORMAT, StoneKind { depth, maps: drawn.maps })?;
         }
         if let Some(block) = drawn.cones {
             let cones = self.cones.get_or_insert_with(|| ConePass::new(device, blocks, counts));
             cones.prepare(device, block, frame, cone_kind)?;
             if cone_kind.sheltered {
-                let told = (&*self.block, &self.surroundings, drawn.surroundings);
-                cones.shelter(to, told, (picture, drawn.maps))?;
+                cones.shelter(recording, &self.block, &self.surroundings, drawn.surroundings, picture, drawn.maps)?;
             }
         }
         Ok(())
@@ -174,12 +163,12 @@ impl RainLayer {
     /// A missing shader file.
     pub fn draw(
         &mut self,
-        to: &mut Recording<'_>,
+        recording: &mut Recording<'_>,
         drawn: &LayerDraw<'_>,
         color: &wgpu::Texture,
         depth: Option<Layer<'_>>,
     ) -> Result<()> {
-        let device = to.device;
+        let device = recording.device;
         self.write(&device.queue, drawn);
         let read = DepthRead::of(depth, drawn.rays);
         self.bind(device, depth, read.multi);
@@ -194,10 +183,10 @@ impl RainLayer {
             innermost: drawn.cones.is_some_and(|c| c.first == 0),
             growing: drawn.cones.is_some_and(|c| (c.first..cones::NONE_GROWS).contains(&c.growing)),
         };
-        let over = (drawn.over, drawn.surroundings.bind_group());
-        self.prepare_far(to, drawn, color.size(), cone_kind)?;
+        let surroundings = drawn.surroundings.bind_group();
+        self.prepare_far(recording, drawn, color.size(), cone_kind)?;
         if drawn.rain.shells == 0 {
-            self.draw_into(to.encoder, over, |pass, layer| {
+            self.draw_into(recording.encoder, drawn.over, surroundings, |pass, layer| {
                 if drawn.cones.is_some() {
                     layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
                 }
@@ -206,12 +195,12 @@ impl RainLayer {
             return Ok(());
         }
         if let Some(stepped) = drawn.stepped {
-            let pass = self.stepped.get_or_insert_with(|| Box::new(integrated::pass(device, to.blocks)));
-            pass.step(device, to.encoder, self.block.range(0, size_of::<RainUniform>()), stepped)?;
+            let pass = self.stepped.get_or_insert_with(|| Box::new(integrated::pass(device, recording.blocks)));
+            pass.step(device, recording.encoder, self.block.range(0, size_of::<RainUniform>()), stepped)?;
         }
         let splashes = drawn.splashes * u32::from(depth.is_some());
         if CullPass::serves(device) {
-            self.list(device, to.encoder, drawn, kind, splashes)?;
+            self.list(device, recording.encoder, drawn, kind, splashes)?;
         } else {
             let (frame, counts) = ([&self.layouts[usize::from(read.multi)], &self.surroundings], self.counts);
             let make = |entries| pipeline(device, frame, entries, kind, counts);
@@ -219,13 +208,13 @@ impl RainLayer {
                 Ok([make(["rain_vertex", "rain_fragment"])?, make(["splash_vertex", "crown_fragment"])?])
             })?;
         }
-        self.draw_into(to.encoder, over, |pass, layer| {
+        self.draw_into(recording.encoder, drawn.over, surroundings, |pass, layer| {
             if drawn.cones.is_some() {
                 layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
                 // The drops' layout lacks a group before this one. wgpu 30 does not see that on OpenGL it then lies
                 // elsewhere, nor that a group is set, if it is the same one.
                 pass.set_bind_group(2, None, &[]);
-                pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
+                pass.set_bind_group(2, surroundings, &[]);
             }
             match (layer.listed.as_deref(), layer.pipelines.get(&kind)) {
                 (Some((cull, crowns)), _) => {
@@ -280,29 +269,18 @@ impl RainLayer {
         }
     }
 
-    /// Draws into the layer, over what is there or a clear one.
+    /// Draws into the layer, which is cleared first unless it keeps what lies in it.
     fn draw_into(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        (over, around): (bool, &wgpu::BindGroup),
+        keeps: bool,
+        surroundings: &wgpu::BindGroup,
         draw: impl FnOnce(&mut wgpu::RenderPass<'_>, &Self),
     ) {
         let (Some((.., group)), Some(target)) = (&self.bound, self.texture.held()) else { return };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("drops"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: if over { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) },
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        });
+        let mut pass = layer_pass(encoder, "drops", &target, keeps);
         pass.set_bind_group(0, group, &[]);
-        pass.set_bind_group(2, around, &[]);
+        pass.set_bind_group(2, surroundings, &[]);
         draw(&mut pass, self);
     }
 
@@ -355,7 +333,7 @@ fn pipeline(
             fragment: (&module, fragment, &depth.constants()),
             layouts: &[Some(frame), None, Some(around)],
             buffers: &[],
-            format: FORMAT,
+            format: LAYER_FORMAT,
             counts,
         },
     )

@@ -8,17 +8,15 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{
-    MAX_AREAS,
-    lattice::{HIDDEN_M, smoothstep},
-};
+use super::shells::HIDDEN_M;
 use crate::{
     falling::{
-        FallingLayer,
+        FallingLayer, MAX_AREAS,
         area::{MAX_CORNERS, Outline, Shaft},
         curtain::{AMOUNT, PATTERN_M, PERIOD_M, WAVES},
     },
     light::sinc,
+    numerics::smoothstep,
     scene::depth::RANGE_SKY_M,
 };
 
@@ -80,6 +78,16 @@ impl ColumnUniform {
     };
 }
 
+/// An eye in the host's world, about which columns stand.
+#[derive(Clone, Copy)]
+pub(crate) struct EyeInWorld<'a> {
+    /// In the host's world, m.
+    pub position: DVec3,
+    /// Turns the host's axes at the eye to east, north, up.
+    pub to_enu: &'a DMat3,
+    pub altitude_m: f64,
+}
+
 /// A column about a camera: east, north, up of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RainColumn {
@@ -126,13 +134,8 @@ fn ramp_mean(top: f64, soft: f64, a: f64, b: f64) -> f64 {
 }
 
 impl RainColumn {
-    fn new(
-        shaft: Shaft,
-        (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
-        own: &FallingLayer,
-        time_s: f64,
-    ) -> Option<Self> {
-        let away = to_enu * (shaft.center - eye);
+    fn new(shaft: Shaft, eye: EyeInWorld<'_>, own: &FallingLayer, time_s: f64) -> Option<Self> {
+        let away = eye.to_enu * (shaft.center - eye.position);
         let distance = away.length() - shaft.radius_m;
         // Nothing of it shows from so far away; it goes without a jump.
         let shown = 1.0 - smoothstep(1.5e5, 2.5e5, distance);
@@ -141,8 +144,8 @@ impl RainColumn {
         }
         // On a round planet it stands as low as its centre's place does.
         let level = |altitude: f64| {
-            let sunk = away.z - (shaft.center_altitude_m - altitude_m);
-            altitude - altitude_m + sunk
+            let sunk = away.z - (shaft.center_altitude_m - eye.altitude_m);
+            altitude - eye.altitude_m + sunk
         };
         Some(Self {
             center: away.truncate(),
@@ -283,30 +286,19 @@ impl AreaField {
         Self { columns: Vec::new(), own, own_top: 0.0, own_near: 0.0, near_m: HIDDEN_M, waves: [[0.0; 4]; WAVES] }
     }
 
-    /// About an eye: its place in the host's world, its axes and altitude.
-    pub fn new(
-        shafts: impl Iterator<Item = Shaft>,
-        (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
-        own: &FallingLayer,
-        time_s: f64,
-    ) -> Self {
+    /// About an eye.
+    pub fn new(shafts: impl Iterator<Item = Shaft>, eye: EyeInWorld<'_>, own: &FallingLayer, time_s: f64) -> Self {
         let mut field = Self::empty();
-        field.set(shafts, (eye, to_enu, altitude_m), own, time_s);
+        field.set(shafts, eye, own, time_s);
         field
     }
 
     /// As [`AreaField::new`], in the place of what was there.
-    pub fn set(
-        &mut self,
-        shafts: impl Iterator<Item = Shaft>,
-        (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
-        own: &FallingLayer,
-        time_s: f64,
-    ) {
+    pub fn set(&mut self, shafts: impl Iterator<Item = Shaft>, eye: EyeInWorld<'_>, own: &FallingLayer, time_s: f64) {
         self.columns.clear();
         self.columns.reserve_exact(MAX_AREAS);
-        self.columns.extend(shafts.filter_map(|s| RainColumn::new(s, (eye, to_enu, altitude_m), own, time_s)));
-        (self.own, self.own_top, self.own_near) = (*own, own.top_m - altitude_m, 0.0);
+        self.columns.extend(shafts.filter_map(|s| RainColumn::new(s, eye, own, time_s)));
+        (self.own, self.own_top, self.own_near) = (*own, own.top_m - eye.altitude_m, 0.0);
         for i in 0..self.columns.len() {
             let later = (i + 1..self.columns.len()).filter(|j| self.columns[i].meets(&self.columns[*j]));
             self.columns[i].later = later.fold(0, |bits, j| bits | 1 << j);
@@ -435,7 +427,8 @@ mod tests {
             Shaft::new(a, i as u32, (DVec3::from(a.center_m), 0.0), (6.0, DVec2::new(1.5, 0.5)), 0.0)
         });
         let own = FallingLayer { liquid_per_m: own_per_m, top_m: 1200.0, ..FallingLayer::NONE };
-        let mut field = AreaField::new(shafts, (DVec3::Z * 2.0, &DMat3::IDENTITY, 2.0), &own, 77.0);
+        let eye = EyeInWorld { position: DVec3::Z * 2.0, to_enu: &DMat3::IDENTITY, altitude_m: 2.0 };
+        let mut field = AreaField::new(shafts, eye, &own, 77.0);
         field.waves = curtain::waves(5, COLUMN_LENGTHS_M);
         field
     }

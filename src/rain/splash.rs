@@ -2,10 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{
-    lattice::{random3, short_seed},
-    uniforms::Classes,
-};
+use super::classes::Classes;
+use crate::falling::{lattice::short_seed, random3};
 
 /// Side of a cell of the grid, m.
 const SIDE_M: f64 = 0.5;

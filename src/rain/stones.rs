@@ -10,9 +10,9 @@ use glam::DVec3;
 use super::{
     drops::GRAVITY_M_S2,
     ice::{Stone, StoneSizes},
-    lattice::{FADE, SPEED_UNIT, fraction},
+    shells::{FADE, SPEED_UNIT},
 };
-use crate::weather::Falling;
+use crate::{falling::lattice::fraction, weather::Falling};
 
 /// Shells of the lattice, and the side of the innermost one's cell, m.
 const SHELLS: usize = 4;

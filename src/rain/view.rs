@@ -3,24 +3,31 @@
 use glam::DVec3;
 
 use super::{
-    AreaField, Classes, ConeUniform, DropLight, LayerDraw, Local, LocalUniform, MovingAir, RainLayer, RainModel,
-    RainSettings, RainUniform, Splashes, StoneDraw, StreakCamera, Streaks,
     area_pass::{AreaPass, Columns},
     candidates,
-    cones::{BANDS_M, CONES},
-    drops,
+    classes::Classes,
+    cones::{BANDS_M, CONES, ConeUniform},
+    contrast::Streaks,
     ice_here::Ice,
     integrated::{self, SteppedDrops},
-    lattice::{HIDDEN_M, REACH_M, SHELLS, hidden_m},
-    splash,
+    light::DropLight,
+    local::{Local, LocalColumn, LocalUniform},
+    passes::{LayerDraw, RainLayer},
+    presence::{RainPresence, begun_at},
+    settings::{RainModel, RainSettings},
+    shaft::{AreaField, EyeInWorld},
+    shells::{HIDDEN_M, REACH_M, SHELLS, hidden_m},
+    splash::{self, Splashes},
+    stone_pass::StoneDraw,
+    uniforms::RainUniform,
 };
 use crate::{
     error::Result,
-    falling::curtain,
+    falling::{MAX_AREAS, curtain, drops},
     gpu::{Device, blocks::Blocks},
     moment::{Scene, SceneMoment},
     particles::{
-        FallingTexture,
+        FallingTexture, MovingAir, StreakCamera,
         stepping::{self, Stepped},
     },
     stage::{
@@ -28,7 +35,7 @@ use crate::{
         Outputs, PutPart, RainReport, Recording, Report, Stages, Texture, rounding,
     },
     surroundings::ShelterReach,
-    weather::{Conditions, Falling},
+    weather::Falling,
     wind::Remembered,
 };
 
@@ -61,43 +68,6 @@ const COUNTED: usize = 32;
 
 /// Least weight of a nearby rain area, so that cones exist before the camera enters it.
 const LEAST_OF_CONES: f64 = 1e-2;
-
-/// Steps in which rain sets in below its cloud, so that a climbing camera does not count drops anew in each frame.
-const ONSET_STEPS: f64 = 32.0;
-
-/// Returns what falls in a weather without rain areas, as much of it as has left its cloud at an altitude.
-fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
-    let share = (c.begun(altitude_m) * ONSET_STEPS).ceil() / ONSET_STEPS;
-    let f = c.precipitation;
-    Falling {
-        rain_mm_h: f.rain_mm_h * share,
-        drizzle_mm_h: f.drizzle_mm_h * share,
-        liquid_extinction_per_m: f.liquid_extinction_per_m * share,
-        solid_extinction_per_m: f.solid_extinction_per_m * share,
-        ..f
-    }
-}
-
-/// Presence of rain and ice before a picture.
-#[derive(Clone, Copy)]
-struct RainPresence {
-    /// Drops near the camera, as streaks or cones.
-    drops: bool,
-    /// Hail and ice pellets near the camera.
-    stones: bool,
-    /// Columns of rain areas.
-    columns: bool,
-}
-
-impl RainPresence {
-    fn is_near(self) -> bool {
-        self.drops || self.stones
-    }
-
-    fn is_any(self) -> bool {
-        self.is_near() || self.columns
-    }
-}
 
 impl RainView {
     pub fn new(device: &Device, blocks: &Blocks, settings: RainSettings, layer: FallingTexture) -> Self {
@@ -267,17 +237,27 @@ impl RainView {
     }
 
     /// Draws the columns of rain areas into the layer; whether there are any.
-    fn draw_areas(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<bool> {
+    fn draw_areas(
+        &mut self,
+        context: &DrawContext<'_>,
+        merged: &MergedFrame<'_>,
+        recording: &mut Recording<'_>,
+    ) -> Result<bool> {
         if self.field.columns.is_empty() {
             return Ok(false);
         }
-        self.set_near(to.device, at.now);
-        let columns =
-            Columns { field: &self.field, scene: &at.now.scene, clip: at.clip(), veiled: at.target.is_veiled };
+        self.set_near(recording.device, context.now);
+        let columns = Columns {
+            field: &self.field,
+            scene: &context.now.scene,
+            clip: context.clip(),
+            veiled: context.target.is_veiled,
+        };
         let counts = self.layer.counts();
-        let target = self.layer.texture().view(to.device, at.picture().size());
-        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(to.device, to.blocks, counts)));
-        pass.draw(to, &columns, merged, at.frame.depth_layer(), &target)?;
+        let target = self.layer.texture().view(recording.device, context.picture().size());
+        let pass =
+            self.areas.get_or_insert_with(|| Box::new(AreaPass::new(recording.device, recording.blocks, counts)));
+        pass.draw(recording, &columns, merged, context.frame.depth_layer(), &target)?;
         Ok(true)
     }
 
@@ -288,7 +268,7 @@ impl RainView {
             Local::Pure(falling) => (self.classes(device, scene, &falling), None),
             Local::Mixed(falling, bits) => {
                 let base = self.classes(device, scene, &falling);
-                let mut near = [None; crate::rain::MAX_AREAS];
+                let mut near = [None; MAX_AREAS];
                 for (i, to) in near.iter_mut().enumerate().take(self.field.columns.len()) {
                     let column = self.field.columns[i];
                     let begun = column.shaft().begun(scene.place.altitude_m);
@@ -296,7 +276,11 @@ impl RainView {
                         *to = Some((column.uniform(), begun, self.classes(device, scene, &column.shaft().falling)));
                     }
                 }
-                let columns = near.iter().flatten().map(|(column, begun, classes)| (*column, *begun, classes));
+                let columns = near.iter().flatten().map(|(uniform, begun, classes)| LocalColumn {
+                    uniform: *uniform,
+                    begun: *begun,
+                    classes,
+                });
                 let (block, envelope) = LocalUniform::new(&base, columns);
                 (envelope, Some(block))
             }
@@ -325,40 +309,39 @@ impl RainView {
         mixture.map_or(base, |m| m.with(left.max(LEAST_OF_CONES), &base))
     }
 
-    fn camera<'a>(&self, at: &DrawContext<'a>) -> StreakCamera<'a> {
-        StreakCamera::new(at, self.settings.shutter_s, self.settings.contrast_gain)
+    fn camera<'a>(&self, context: &DrawContext<'a>) -> StreakCamera<'a> {
+        StreakCamera::new(context, self.settings.shutter_s, self.settings.contrast_gain)
     }
 
     /// Returns what streaks are worth in a picture, if the plan decides about them.
-    pub fn streaks(&mut self, at: &DrawContext<'_>) -> Option<Streaks> {
+    pub fn streaks(&mut self, context: &DrawContext<'_>) -> Option<Streaks> {
         if !self.is_planned() {
             return None;
         }
-        let (device, now) = (at.device, at.now);
+        let (device, now) = (context.device, context.now);
         let (classes, _) = self.falling_here(device, &now.scene);
         let wind = now.carrying().ok()?.velocity_m_s();
-        let light = (DropLight::of(&now.scene).exposed(at.target.exposure), at.tone());
-        Some(Streaks::new((&classes, wind), &self.camera(at), light, now.has_lamps()))
+        let light = (DropLight::of(&now.scene).exposed(context.target.exposure), context.tone());
+        Some(Streaks::new((&classes, wind), &self.camera(context), light, now.has_lamps()))
     }
 
-    /// Draws the drops round the camera into the layer, in which something lies already if `over`; answers what of
-    /// them.
+    /// Draws the drops round the camera into the layer, `over_columns` if some lie in it already; answers what of them.
     fn draw_near(
         &mut self,
-        at: &DrawContext<'_>,
+        context: &DrawContext<'_>,
         merged: &MergedFrame<'_>,
-        over: bool,
-        to: &mut Recording<'_>,
+        over_columns: bool,
+        recording: &mut Recording<'_>,
     ) -> Result<RainReport> {
         if !self.kept().is_near() {
             return Ok(RainReport::default());
         }
-        let (device, now, frame, scene) = (to.device, at.now, at.frame, &at.now.scene);
+        let (device, now, frame, scene) = (recording.device, context.now, context.frame, &context.now.scene);
         let (classes, mut local) = self.falling_here(device, scene);
-        let camera = self.camera(at);
-        let (wind, air) = (now.carrying()?, air(now)?);
+        let camera = self.camera(context);
+        let (wind, air) = (now.carrying()?, MovingAir::of(now)?);
         let mut block =
-            RainUniform::new(now.seed, &classes, &DropLight::of(scene).exposed(at.target.exposure), &camera, &air);
+            RainUniform::new(now.seed, &classes, &DropLight::of(scene).exposed(context.target.exposure), &camera, &air);
         let [share, shown] = self.shares.map(f64::from);
         let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
@@ -388,7 +371,7 @@ impl RainView {
             rain: &block,
             cones: cones.as_ref(),
             stepped: stepped.as_ref(),
-            rays: at.target.rays,
+            rays: context.target.rays,
             surroundings: merged.surroundings,
             maps: now.has_maps(),
             lamps: now.has_lamps(),
@@ -400,11 +383,11 @@ impl RainView {
             ),
             splashes: if block.shells > 0 { splashes.instances() } else { 0 },
             local: local.as_ref(),
-            over,
+            over: over_columns,
             stones: stones
                 .map(|s| StoneDraw::new(&s, s.uniform(camera.position_m, height_m, air.displacement_m, air.time_s))),
         };
-        let done = self.layer.draw(to, &drawn, at.picture(), frame.depth_layer());
+        let done = self.layer.draw(recording, &drawn, context.picture(), frame.depth_layer());
         self.births = births;
         done?;
         let drops = block.shells > 0;
@@ -424,17 +407,17 @@ impl DrawnEffect for RainView {
         Exchange { needs: &[Output::Sky], gives: &[Output::Rain] }
     }
 
-    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
-        self.set_counting(at.device, at.frame.diagnostic == Diagnostic::Overdraw);
-        let (now, scene) = (at.now, &at.now.scene);
+    fn gather(&mut self, context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        self.set_counting(context.device, context.frame.diagnostic == Diagnostic::Overdraw);
+        let (now, scene) = (context.now, &context.now.scene);
         self.own = begun_at(&scene.conditions, scene.place.altitude_m);
-        let at = (now.eye, &scene.world_to_enu, scene.place.altitude_m);
+        let eye = EyeInWorld { position: now.eye, to_enu: &scene.world_to_enu, altitude_m: scene.place.altitude_m };
         self.field.columns.clear();
         if !now.weather.regions.is_empty() {
             let shafts = now.weather.shafts_at(now.time_s, &scene.conditions)?;
-            self.field.set(shafts, at, &now.falling, now.time_s);
+            self.field.set(shafts, eye, &now.falling, now.time_s);
         }
-        self.local = Some(Local::new(&self.own, &self.field, at, REACH_M.max(self.reach(now))));
+        self.local = Some(Local::new(&self.own, &self.field, eye, REACH_M.max(self.reach(now))));
         self.ice.gather(now);
         Ok(())
     }
@@ -449,53 +432,60 @@ impl DrawnEffect for RainView {
         }
     }
 
-    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
+    fn parts(&mut self, context: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
         let is_there = stages.has(Stages::PARTICLES) && self.is_planned();
-        let drops = if is_there { self.drops(at.device, &at.now.scene) } else { 0 };
-        put(&candidates::RAIN, is_there, &candidates::rain_work(at.pixels(), drops));
+        let drops = if is_there { self.drops(context.device, &context.now.scene) } else { 0 };
+        put(&candidates::RAIN, is_there, &candidates::rain_work(context.pixels(), drops));
     }
 
-    fn compose(&mut self, at: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
-        self.set_shares([1, 0].map(|step| at.share(&candidates::RAIN, step)));
-        let (hidden, share) = if self.presence().is_any() { self.hidden(at.device, at.now) } else { ([0.0; 2], 1.0) };
+        self.set_shares([1, 0].map(|step| context.share(&candidates::RAIN, step)));
+        let (hidden, share) =
+            if self.presence().is_any() { self.hidden(context.device, context.now) } else { ([0.0; 2], 1.0) };
         to.set_frame_block(FrameBlock::Rain { hidden, share });
         let is_kept = self.kept().is_any();
         if is_kept {
-            let layer = self.layer.texture().view(at.device, at.picture().size());
+            let layer = self.layer.texture().view(context.device, context.picture().size());
             to.set_texture(Texture::Before, Some(layer));
         }
-        if at.stages.has(Stages::SURFACE) || is_kept && at.stages.has(Stages::PARTICLES) {
-            to.set_near(self.shelter_reach(at.device, &at.now.scene));
+        if context.stages.has(Stages::SURFACE) || is_kept && context.stages.has(Stages::PARTICLES) {
+            to.set_near(self.shelter_reach(context.device, &context.now.scene));
         }
         Ok(to)
     }
 
     /// Draws the layer before the picture: columns of rain areas, and what falls near the camera.
-    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn draw(
+        &mut self,
+        context: &DrawContext<'_>,
+        merged: &MergedFrame<'_>,
+        recording: &mut Recording<'_>,
+    ) -> Result<()> {
         if !merged.composition.stages().has(Stages::PARTICLES) {
             return Ok(());
         }
-        let over = self.draw_areas(at, merged, to)?;
-        self.drawn = (at.frame.frame_id, self.draw_near(at, merged, over, to)?);
-        to.passes += u32::from(self.kept().is_any()) + u32::from(over);
+        let over = self.draw_areas(context, merged, recording)?;
+        self.drawn = (context.frame.frame_id, self.draw_near(context, merged, over, recording)?);
+        recording.passes += u32::from(self.kept().is_any()) + u32::from(over);
         Ok(())
     }
 
     /// The columns of rain areas in the veil of the host's own shaders.
     fn veil(
         &mut self,
-        at: &DrawContext<'_>,
+        context: &DrawContext<'_>,
         merged: &MergedFrame<'_>,
     ) -> Option<(&'static str, wgpu::BindGroupLayout, wgpu::BindGroup)> {
         if self.field.columns.is_empty() {
             return None;
         }
-        self.set_near(at.device, at.now);
-        let columns = Columns { field: &self.field, scene: &at.now.scene, clip: at.clip(), veiled: true };
-        let pass =
-            self.areas.get_or_insert_with(|| Box::new(AreaPass::new(at.device, &self.blocks, self.layer.counts())));
-        let (layout, group) = pass.bound(at.device, &columns, merged, at.frame.depth_layer())?;
+        self.set_near(context.device, context.now);
+        let columns = Columns { field: &self.field, scene: &context.now.scene, clip: context.clip(), veiled: true };
+        let pass = self
+            .areas
+            .get_or_insert_with(|| Box::new(AreaPass::new(context.device, &self.blocks, self.layer.counts())));
+        let (layout, group) = pass.bound(context.device, &columns, merged, context.frame.depth_layer())?;
         Some(("frame/froxels_areas.wgsl", layout, group))
     }
 
@@ -512,15 +502,4 @@ impl DrawnEffect for RainView {
     fn forget_picture(&mut self) {
         self.layer.texture().forget();
     }
-}
-
-/// The air that drops are drawn in.
-fn air(now: &SceneMoment<'_>) -> Result<MovingAir> {
-    let (wind, c) = (now.carrying()?, &now.scene.conditions);
-    Ok(MovingAir {
-        displacement_m: wind.displacement_m(),
-        velocity_m_s: wind.velocity_m_s(),
-        time_s: now.time_s,
-        extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
-    })
 }

@@ -1,6 +1,6 @@
 //! The ways to draw falling snow that are charted against each other, with what they cost.
 
-use super::{SnowModel, SnowSettings};
+use super::settings::{SnowModel, SnowSettings};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 

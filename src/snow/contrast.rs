@@ -15,13 +15,11 @@ use super::{
 use crate::{
     falling::flakes::seen_area_m2,
     moment::LightAround,
-    particles::{StreakCamera, StreakContrast},
+    particles::{LEAST_PIXELS, StreakCamera, StreakContrast},
     plan::parts::MOST_RUNGS,
     stage::Tone,
 };
 
-/// A flake is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/common/streak.wgsl`.
-const LEAST_PIXELS: f64 = 1.2;
 /// Panels of the sum over distances.
 const PANELS: usize = 24;
 

@@ -249,21 +249,21 @@ pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
 /// moved by `displacement_m` in `time_s`. Equal ids of two cameras are the same flake. The f64 side of `flake_of` in
 /// `shaders/snow/flakes.wgsl`.
 pub fn flakes(
-    of: &Flakes,
+    flakes: &Flakes,
     seed: u64,
     position_m: DVec3,
     displacement_m: DVec3,
     time_s: f64,
 ) -> impl Iterator<Item = Flake> {
     let seed = short_seed(seed);
-    (0..of.shells).flat_map(move |shell| {
+    (0..flakes.shells).flat_map(move |shell| {
         let side = side_m(shell);
         let moment = Moment::new(shell, displacement_m, time_s);
         let eye = position_m.to_array().map(|x| fraction(x, side));
         (0..CLASSES).flat_map(move |class| {
-            let row = of.table[class];
-            let before = if class > 0 { of.upto[class - 1][shell] } else { 0 };
-            (0..of.upto[class][shell] - before).map(move |index| {
+            let row = flakes.table[class];
+            let before = if class > 0 { flakes.upto[class - 1][shell] } else { 0 };
+            (0..flakes.upto[class][shell] - before).map(move |index| {
                 let id = (shell as u32, class as u32, index);
                 let random = random3([seed, SALT | id.0 << 8 | id.1, index]);
                 let (speed, turns, start) = own(random, &row);
@@ -282,7 +282,7 @@ pub fn flakes(
                     velocity_m_s: DVec3::new(-sin * around, cos * around, -f64::from(speed) * SPEED_UNIT),
                     diameter_m: f64::from(row[0]),
                     share: shell_share(shell, middle.length()),
-                    weight: f64::from(of.weight[class][shell]),
+                    weight: f64::from(flakes.weight[class][shell]),
                 }
             })
         })

@@ -11,7 +11,7 @@ use crate::{
         pass::{self, ComputeDesc, Made, QuadsDesc},
     },
     particles::{
-        DepthRead, LAYER_FORMAT,
+        DepthRead, LAYER_FORMAT, layer_pass,
         listing::Listing,
         stepping::{STATE_BYTES, StepPass, Stepped},
     },
@@ -90,8 +90,8 @@ impl SnowPass {
     ///
     /// # Errors
     /// A missing shader file.
-    pub fn draw(&mut self, to: &mut Recording<'_>, drawn: &FlakeDraw<'_>) -> Result<()> {
-        let device = to.device;
+    pub fn draw(&mut self, recording: &mut Recording<'_>, drawn: &FlakeDraw<'_>) -> Result<()> {
+        let device = recording.device;
         self.block.write(bytemuck::bytes_of(drawn.block));
         let depth = DepthRead::of(drawn.depth, drawn.rays);
         self.bind(device, drawn.depth, depth.multi);
@@ -106,28 +106,18 @@ impl SnowPass {
         self.pipelines.prepare(kind, |_| pipeline(device, &layouts, kind, counts))?;
         match drawn.stepped {
             Some(by) => {
-                let step = self.step.get_or_insert_with(|| Box::new(stepped::pass(device, to.blocks)));
-                step.step(device, to.encoder, self.block.range(0, self.block.bytes()), by)?;
+                let step = self.step.get_or_insert_with(|| Box::new(stepped::pass(device, recording.blocks)));
+                step.step(device, recording.encoder, self.block.range(0, self.block.bytes()), by)?;
             }
             None => self.step = None,
         }
         if source == FlakeSource::Listed {
             let list = || Box::new(ListedFlakes::new(&device.device, &self.block));
             let listed = self.listed.get_or_insert_with(list);
-            listed.find(to, drawn, &self.surroundings)?;
+            listed.find(recording, drawn, &self.surroundings)?;
         }
         let (Some(pipeline), Some((_, group))) = (self.pipelines.get(&kind), &self.bound) else { return Ok(()) };
-        let load = if drawn.over { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
-        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("snow"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: drawn.target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
+        let mut pass = layer_pass(recording.encoder, "snow", drawn.target, drawn.over);
         pass.set_bind_group(0, group, &[]);
         pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
         pass.set_pipeline(pipeline);
@@ -233,8 +223,13 @@ impl ListedFlakes {
     }
 
     /// Records what finds them. The flakes' block is up.
-    fn find(&mut self, to: &mut Recording<'_>, drawn: &FlakeDraw<'_>, around: &wgpu::BindGroupLayout) -> Result<()> {
-        let (device, count) = (to.device, drawn.block.count);
+    fn find(
+        &mut self,
+        recording: &mut Recording<'_>,
+        drawn: &FlakeDraw<'_>,
+        surroundings: &wgpu::BindGroupLayout,
+    ) -> Result<()> {
+        let (device, count) = (recording.device, drawn.block.count);
         self.listing.make_room(&device.device, [count, 1]);
         let [list, made] = &self.listing.layouts;
         let compute = |shader, entry, layouts: &[Option<&wgpu::BindGroupLayout>], constants: &[(&str, f64)]| {
@@ -245,12 +240,12 @@ impl ListedFlakes {
             let make = |entry| compute("snow/cull.wgsl", entry, &layouts, &[]);
             self.mark = Some([make("mark")?, make("order")?]);
         }
-        let layouts = [Some(&self.layout), Some(made), Some(around)];
+        let layouts = [Some(&self.layout), Some(made), Some(surroundings)];
         self.makes.prepare(drawn.maps, |maps| {
             compute("snow/cull_spots.wgsl", "make_spots", &layouts, &[("MAPS", flag(*maps))])
         })?;
         let (Some([mark, order]), Some(make)) = (&self.mark, self.makes.get(&drawn.maps)) else { return Ok(()) };
-        let mut pass = to.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = recording.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_bind_group(0, &self.group, &[]);
         pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
         self.listing.find(&mut pass, [mark, order, make], [count, 1]);

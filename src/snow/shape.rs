@@ -30,14 +30,14 @@ fn noise(p: [f64; 2], seed: u32) -> f64 {
 }
 
 /// How much the flake of a seed hides at a place in radii, 0 to 1.
-pub fn flake_shape(at: [f64; 2], seed: u32) -> f64 {
-    let square = at[0] * at[0] + at[1] * at[1];
+pub fn flake_shape(place: [f64; 2], seed: u32) -> f64 {
+    let square = place[0] * place[0] + place[1] * place[1];
     if square >= 1.0 {
         return 0.0;
     }
     let (mut sum, mut strength, mut scale) = (0.0, 0.5, CELLS);
     for i in 0..OCTAVES {
-        sum += strength * noise(at.map(|v| v * scale), seed.wrapping_add(i));
+        sum += strength * noise(place.map(|v| v * scale), seed.wrapping_add(i));
         strength *= 0.5;
         scale *= 2.0;
     }

@@ -5,13 +5,13 @@ use glam::DVec3;
 
 use super::{
     lattice::{Flakes, SALT, side_m},
-    uniforms::{FlakeAir, FlakesUniform},
+    uniforms::FlakesUniform,
 };
 use crate::{
     falling::lattice::short_seed,
     gpu::{Device, blocks::Blocks},
     particles::{
-        StreakCamera,
+        MovingAir, StreakCamera,
         stepping::{StepPass, Stepped},
     },
     surroundings::{WindMap, WindView},
@@ -25,7 +25,7 @@ pub(super) fn pass(device: &Device, blocks: &Blocks) -> StepPass {
 /// Creates the inputs of a step of the flakes.
 pub(super) fn stepped<'a>(
     (seed, flakes): (u64, &Flakes),
-    (camera, air): (&StreakCamera<'_>, &FlakeAir),
+    (camera, air): (&StreakCamera<'_>, &MovingAir),
     carried: &'a dyn Fn(f64) -> DVec3,
     wind: (WindView, Option<WindMap>),
 ) -> Stepped<'a> {

@@ -6,7 +6,7 @@ use super::lattice::{CLASSES, FADE, Flakes, Moment, SHELLS, side_m};
 use crate::{
     falling::lattice::{fraction, short_seed},
     moment::LightAround,
-    particles::StreakCamera,
+    particles::{MovingAir, StreakCamera},
     scene::DepthUniform,
 };
 
@@ -40,19 +40,9 @@ pub(crate) struct FlakesUniform {
     pub weight: [[f32; SHELLS]; CLASSES],
 }
 
-/// The air that flakes fall in.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct FlakeAir {
-    pub displacement_m: DVec3,
-    pub velocity_m_s: DVec3,
-    pub time_s: f64,
-    /// Extinction beside the snow's, 1/m.
-    pub extinction_per_m: f64,
-}
-
 impl FlakesUniform {
     /// Creates the block of flakes, for a camera in moving air; `light` is exposed.
-    pub fn new(seed: u64, flakes: &Flakes, light: &LightAround, shot: &StreakCamera<'_>, air: &FlakeAir) -> Self {
+    pub fn new(seed: u64, flakes: &Flakes, light: &LightAround, shot: &StreakCamera<'_>, air: &MovingAir) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let last = flakes.upto[CLASSES - 1];
         let eyes: [[u32; 3]; SHELLS] =

@@ -1,13 +1,13 @@
 //! The falling snow of a view: what it draws of it, from moment and camera.
 
 use super::{
-    SnowSettings, candidates,
+    candidates,
     contrast::FlakeContrast,
     lattice::Flakes,
     passes::{FlakeDraw, SnowPass},
-    settings::SnowModel,
+    settings::{SnowModel, SnowSettings},
     stepped,
-    uniforms::{FlakeAir, FlakesUniform},
+    uniforms::FlakesUniform,
 };
 use crate::{
     error::Result,
@@ -15,7 +15,7 @@ use crate::{
     gpu::Device,
     moment::LightAround,
     particles::{
-        FallingTexture, StreakCamera,
+        FallingTexture, MovingAir, StreakCamera, begun_in_steps,
         stepping::{self, StepPass, Stepped},
     },
     stage::{
@@ -26,9 +26,6 @@ use crate::{
     weather::Falling,
     wind::Remembered,
 };
-
-/// Steps in which snow sets in below its cloud, so that a climbing camera does not count flakes anew in each frame.
-const ONSET_STEPS: f64 = 32.0;
 
 /// Conditions for which the flakes were counted.
 #[derive(Clone, Copy, PartialEq)]
@@ -94,12 +91,12 @@ impl SnowView {
     }
 
     /// Returns the contrast of the flakes in a picture, if the plan decides about them.
-    pub fn contrast(&self, at: &DrawContext<'_>) -> Option<FlakeContrast> {
+    pub fn contrast(&self, context: &DrawContext<'_>) -> Option<FlakeContrast> {
         let flakes = self.flakes().filter(|_| self.is_planned())?;
-        let wind = at.now.carrying().ok()?.velocity_m_s();
-        let light = (LightAround::of(&at.now.scene).exposed(at.target.exposure), at.tone());
-        let camera = StreakCamera::new(at, self.settings.shutter_s, 1.0);
-        Some(FlakeContrast::new((flakes, wind), &camera, light, at.now.has_lamps()))
+        let wind = context.now.carrying().ok()?.velocity_m_s();
+        let light = (LightAround::of(&context.now.scene).exposed(context.target.exposure), context.tone());
+        let camera = StreakCamera::new(context, self.settings.shutter_s, 1.0);
+        Some(FlakeContrast::new((flakes, wind), &camera, light, context.now.has_lamps()))
     }
 }
 
@@ -108,9 +105,9 @@ impl DrawnEffect for SnowView {
         Exchange { needs: &[Output::Rain], gives: &[Output::Snow] }
     }
 
-    fn gather(&mut self, at: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
-        self.counts = at.frame.diagnostic == Diagnostic::Overdraw;
-        let scene = &at.now.scene;
+    fn gather(&mut self, context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
+        self.counts = context.frame.diagnostic == Diagnostic::Overdraw;
+        let scene = &context.now.scene;
         let c = &scene.conditions;
         let falling = c.precipitation;
         let begun = c.begun(scene.place.altitude_m);
@@ -122,8 +119,8 @@ impl DrawnEffect for SnowView {
             falling,
             temperature_c: c.air.temperature_c,
             factor: drops::factor_in(&c.air, c.air.station_altitude_m),
-            begun: (begun * ONSET_STEPS).ceil() / ONSET_STEPS,
-            most: self.settings.most_on(at.device),
+            begun: begun_in_steps(begun),
+            most: self.settings.most_on(context.device),
         };
         if self.counted.as_ref().is_none_or(|kept| kept.0 != counted) {
             let sizes = FlakeSizes::new(&falling, counted.temperature_c, counted.factor);
@@ -147,72 +144,72 @@ impl DrawnEffect for SnowView {
         }
     }
 
-    fn parts(&mut self, at: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
+    fn parts(&mut self, context: &DrawContext<'_>, stages: Stages, put: &mut PutPart<'_>) {
         let is_there = stages.has(Stages::PARTICLES) && self.is_planned();
         let flakes = if is_there { self.flakes().map_or(0, |f| f.drawn) } else { 0 };
-        put(&candidates::SNOW, is_there, &candidates::snow_work(at.pixels(), flakes));
+        put(&candidates::SNOW, is_there, &candidates::snow_work(context.pixels(), flakes));
     }
 
     /// Leaves to the flakes what they hide, beside what else falls and is drawn.
-    fn compose(&mut self, at: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
+    fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
-        self.share = if self.is_planned() { at.share(&candidates::SNOW, 0) } else { 1.0 };
+        self.share = if self.is_planned() { context.share(&candidates::SNOW, 0) } else { 1.0 };
         self.over = given.before.is_some();
         let Some(flakes) = self.flakes().copied().filter(|_| self.is_there) else { return Ok(to) };
         let hidden = [flakes.hidden_per_m, flakes.hidden_m()].map(|v| v as f32);
         to.set_frame_block(FrameBlock::Snow { hidden, share: self.share });
-        let is_drawn = self.is_kept() && at.stages.has(Stages::PARTICLES);
+        let is_drawn = self.is_kept() && context.stages.has(Stages::PARTICLES);
         if is_drawn {
-            to.set_texture(Texture::Before, Some(self.layer.view(at.device, at.picture().size())));
+            to.set_texture(Texture::Before, Some(self.layer.view(context.device, context.picture().size())));
         }
-        if at.stages.has(Stages::SURFACE) || (is_drawn || self.over) && at.stages.has(Stages::PARTICLES) {
+        if context.stages.has(Stages::SURFACE) || (is_drawn || self.over) && context.stages.has(Stages::PARTICLES) {
             to.set_near(ShelterReach { slowest_m_s: flakes.slowest_m_s(), reach_m: flakes.reach_m() });
         }
         Ok(to)
     }
 
-    fn draw(&mut self, at: &DrawContext<'_>, merged: &MergedFrame<'_>, to: &mut Recording<'_>) -> Result<()> {
+    fn draw(
+        &mut self,
+        context: &DrawContext<'_>,
+        merged: &MergedFrame<'_>,
+        recording: &mut Recording<'_>,
+    ) -> Result<()> {
         if !merged.composition.stages().has(Stages::PARTICLES) || !self.is_kept() {
             return Ok(());
         }
         let Some(flakes) = self.flakes().copied() else { return Ok(()) };
-        let (now, c) = (at.now, &at.now.scene.conditions);
-        let wind = now.carrying()?;
-        let air = FlakeAir {
-            displacement_m: wind.displacement_m(),
-            velocity_m_s: wind.velocity_m_s(),
-            time_s: now.time_s,
-            extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
-        };
-        let light = LightAround::of(&now.scene).exposed(at.target.exposure);
-        let camera = StreakCamera::new(at, self.settings.shutter_s, 1.0);
+        let now = context.now;
+        let (wind, air) = (now.carrying()?, MovingAir::of(now)?);
+        let light = LightAround::of(&now.scene).exposed(context.target.exposure);
+        let camera = StreakCamera::new(context, self.settings.shutter_s, 1.0);
         let block = FlakesUniform { share: self.share, ..FlakesUniform::new(now.seed, &flakes, &light, &camera, &air) };
-        let target = self.layer.view(to.device, at.picture().size());
+        let target = self.layer.view(recording.device, context.picture().size());
         if self.pass.as_ref().is_some_and(|pass| pass.counts() != self.counts) {
             self.pass = None;
         }
-        let pass = self.pass.get_or_insert_with(|| Box::new(SnowPass::new(to.device, to.blocks, self.counts)));
-        let is_pure = at.frame.is_pure();
-        self.is_stepped = u64::from(flakes.drawn) <= StepPass::most(to.device)
-            && stepping::is_due(now, to.device, flakes.reach_m(), self.is_stepped, is_pure);
+        let pass =
+            self.pass.get_or_insert_with(|| Box::new(SnowPass::new(recording.device, recording.blocks, self.counts)));
+        let is_pure = context.frame.is_pure();
+        self.is_stepped = u64::from(flakes.drawn) <= StepPass::most(recording.device)
+            && stepping::is_due(now, recording.device, flakes.reach_m(), self.is_stepped, is_pure);
         let carried = |from| wind.since(from, &self.last_wind);
         let stepped = self.is_stepped.then(|| Stepped {
             anew: is_pure,
-            ..stepped::stepped((now.seed, &flakes), (&camera, &air), &carried, now.wind_texture(to.device))
+            ..stepped::stepped((now.seed, &flakes), (&camera, &air), &carried, now.wind_texture(recording.device))
         });
         let drawn = FlakeDraw {
             block: &block,
             stepped: stepped.as_ref(),
-            rays: at.target.rays,
+            rays: context.target.rays,
             surroundings: merged.surroundings,
             maps: now.has_maps(),
             target: &target,
             over: self.over,
-            depth: at.frame.depth_layer(),
+            depth: context.frame.depth_layer(),
         };
-        pass.draw(to, &drawn)?;
-        self.drawn = (at.frame.frame_id, SnowReport { flakes: flakes.drawn, flakes_to_m: flakes.reach_m() });
-        to.passes += 1;
+        pass.draw(recording, &drawn)?;
+        self.drawn = (context.frame.frame_id, SnowReport { flakes: flakes.drawn, flakes_to_m: flakes.reach_m() });
+        recording.passes += 1;
         Ok(())
     }
 

@@ -10,11 +10,11 @@ use crate::{
         DeviceOptions,
         blocks::{Blocks, UniformBlock},
     },
-    particles::listing,
+    particles::{MovingAir, StreakCamera, listing},
     rain::{
         DropLight,
+        classes::Classes,
         lattice::{self, Drop, SPEED_UNIT},
-        uniforms::{Classes, MovingAir, StreakCamera},
     },
     scene::{Camera, DepthMapping, ViewRays},
     surroundings,

@@ -84,7 +84,7 @@ impl Bench {
             exposure_s: 1.0 / 60.0,
             gain: 1.0,
         };
-        let air = FlakeAir { displacement_m: wind * time_s, velocity_m_s: wind, time_s, extinction_per_m: 0.0 };
+        let air = MovingAir { displacement_m: wind * time_s, velocity_m_s: wind, time_s, extinction_per_m: 0.0 };
         let dark = LightAround { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };
         let block = FlakesUniform::new(SEED, &self.flakes, &dark, &shot, &air);
         self.block.write(bytemuck::bytes_of(&block));

@@ -1,0 +1,40 @@
+//! Presence of rain and ice before a picture, and what of the weather's own rain falls at an altitude.
+
+use crate::{
+    particles::begun_in_steps,
+    weather::{Conditions, Falling},
+};
+
+/// Returns what falls in a weather without rain areas, as much of it as has left its cloud at an altitude.
+pub(super) fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
+    let share = begun_in_steps(c.begun(altitude_m));
+    let f = c.precipitation;
+    Falling {
+        rain_mm_h: f.rain_mm_h * share,
+        drizzle_mm_h: f.drizzle_mm_h * share,
+        liquid_extinction_per_m: f.liquid_extinction_per_m * share,
+        solid_extinction_per_m: f.solid_extinction_per_m * share,
+        ..f
+    }
+}
+
+/// Presence of rain and ice before a picture.
+#[derive(Clone, Copy)]
+pub(super) struct RainPresence {
+    /// Drops near the camera, as streaks or cones.
+    pub drops: bool,
+    /// Hail and ice pellets near the camera.
+    pub stones: bool,
+    /// Columns of rain areas.
+    pub columns: bool,
+}
+
+impl RainPresence {
+    pub fn is_near(self) -> bool {
+        self.drops || self.stones
+    }
+
+    pub fn is_any(self) -> bool {
+        self.is_near() || self.columns
+    }
+}
