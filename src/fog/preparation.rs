@@ -12,6 +12,7 @@ use super::{
     viewpoint::{FogLight, Viewpoint},
 };
 use crate::{
+    chance::Chance,
     error::{Result, check_range},
     falling::FallingLayer,
     light::{Phase, PhaseLobes},
@@ -298,15 +299,8 @@ impl FogModel {
     /// Four waves of like length and different direction; the pattern is the square of their sum.
     fn set_patches(&mut self, patches: &Patches, view: &Viewpoint) {
         self.patch_amount = patches.amount;
-        let mut state = patches.seed;
-        let mut random = move || {
-            // SplitMix64 (Steele, Lea and Flood 2014).
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut stream = Chance::seeded(patches.seed);
+        let mut random = move || stream.unit();
         let tau = std::f64::consts::TAU;
         let place = [view.map_m[0] - patches.drift_m[0], view.map_m[1] - patches.drift_m[1]];
         let waves: [([f64; 2], f64); 4] = std::array::from_fn(|i| {

@@ -24,7 +24,7 @@ use super::path::both_paths;
 pub use super::path::{LayerPath, falling_depth_above, falling_path, layer_depth_above, layer_path, layer_rise};
 use super::patterns::patch_mean;
 use super::phase::{fog_phase_after, share_unscattered};
-use crate::scene::depth::RANGE_SKY_M;
+use crate::{numerics::smooth, scene::depth::RANGE_SKY_M};
 
 /// A band of this height, rad, or more covers all of the sky: pi, less what f32 rounds away.
 const WHOLE_SKY: f64 = 0.999 * std::f64::consts::PI;
@@ -155,7 +155,7 @@ fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64
     let aureole = m.first * peak * (met + beyond * (through - left));
 
     let x = ((slant.abs() / FORWARD_SPREAD - 0.5) / 1.5).clamp(0.0, 1.0);
-    let steep = x * x * (3.0 - 2.0 * x);
+    let steep = smooth(x);
     let wide = grazing_light(m, mu, beam, a, slant, [full, left]);
     let behind = m.ground_radiance.lerp(m.sky_radiance, toward_sky);
     let end = behind * clear + source_along(m, mu, beam, [a[1], edge], level, rest, clear);
@@ -261,7 +261,7 @@ fn fog_compatible(m: &FogModel, direction: DVec3, range: f64, plane: f64) -> Fog
     };
     if range >= RANGE_SKY_M {
         let x = (direction.z.clamp(-1.0, 1.0).asin() / m.sky_band.max(1e-6)).clamp(0.0, 1.0);
-        v = if m.sky_band > 0.0 { x * x * (3.0 - 2.0 * x) } else { 1.0 };
+        v = if m.sky_band > 0.0 { smooth(x) } else { 1.0 };
         if m.sky_band >= WHOLE_SKY {
             v = 0.0;
         }

@@ -72,8 +72,8 @@ impl View {
         Ok(())
     }
 
-    /// Merges what all effects add to a draw into a new composition, in place, for it is large. `has_cube_map` says that
-    /// the host has asked for the cube map.
+    /// Merges what all effects add to a draw into a new composition, in place, for it is large. `has_cube_map` says
+    /// that the host has asked for the cube map.
     pub(super) fn compose_effects(
         &mut self,
         context: &DrawContext<'_>,

@@ -111,7 +111,7 @@ impl HeldGround {
             return None;
         };
         let numbers = [self.generation, self.revision, self.classes_revision];
-        textures.upload(device, (&held.terrain, &held.water, |cell| held.ice(cell)), numbers);
+        textures.upload(device, &held.terrain, &held.water, |cell| held.ice(cell), numbers);
         textures.upload_snow(device, snow.filter(|s| s.cells.len() == held.terrain.grid.len()))
     }
 

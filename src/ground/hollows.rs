@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec2, DVec3};
 
+use crate::chance::Chance;
+
 /// The pattern repeats after this distance, m: a multiple of every wave.
 pub const PERIOD_M: f64 = 1e4;
 /// Waves of the pattern.
@@ -69,11 +71,11 @@ fn amplitude(wave: usize) -> f64 {
 impl Hollows {
     /// Creates the hollows of a world with this seed.
     pub fn new(seed: u64) -> Self {
-        let mut state = seed;
+        let mut stream = Chance::seeded(seed);
         // The second of two numbers each: the lengths in TURNS are those that the first ones drew for seed 0.
         let phases = [(); WAVES].map(|()| {
-            uniform(&mut state);
-            uniform(&mut state)
+            stream.unit();
+            stream.unit()
         });
         Self { phases }
     }
@@ -94,15 +96,6 @@ impl Hollows {
         let place = place.rem_euclid(DVec2::splat(PERIOD_M)) / PERIOD_M;
         self.phases[wave] + turns(wave).dot(place)
     }
-}
-
-/// The next number in [0, 1) (SplitMix64, Steele, Lea & Flood 2014).
-fn uniform(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
 /// Axes of the pattern in the host's world: the two of its three axes that lie flattest on the ground. In an

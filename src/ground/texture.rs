@@ -87,7 +87,9 @@ impl TerrainTextures {
     pub fn upload(
         &mut self,
         device: &Device,
-        (terrain, water, ice): (&GridTerrain, &TerrainWater, impl Fn(usize) -> f32),
+        terrain: &GridTerrain,
+        water: &TerrainWater,
+        ice: impl Fn(usize) -> f32,
         [generation, revision, classes]: [u64; 3],
     ) {
         let filled = self.filled.take().filter(|f| f.generation == generation);

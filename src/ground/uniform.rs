@@ -16,6 +16,7 @@ use crate::{
         sizes::{DropSizes, SMALLEST_MM, Weight},
     },
     moment::Scene,
+    numerics::smoothstep,
     surroundings::SnowHere,
     weather::{Falling, SurfaceCover, snow_cover},
 };
@@ -129,14 +130,9 @@ const TERRAIN_RIM: f64 = 2.0;
 /// How far a surface may lie off a terrain, m, and of its cells' size.
 const NEAR_TERRAIN: [f64; 2] = [0.25, 0.25];
 
-fn smooth(lo: f64, hi: f64, x: f64) -> f64 {
-    let t = ((x - lo) / (hi - lo)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
-
 /// How soaked ground of this wetness looks, and the share of it that a film covers.
 fn look_of(wetness: f64) -> (f64, f64) {
-    (smooth(0.0, 0.3, wetness), smooth(0.3, 1.0, wetness))
+    (smoothstep(0.0, 0.3, wetness), smoothstep(0.3, 1.0, wetness))
 }
 
 /// Level of what fills no hollow, however rare; twin of the shader's.

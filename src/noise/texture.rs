@@ -240,8 +240,9 @@ impl NoiseBuild {
         let noise_layout = layout("noise", &[(0, Slot::DynamicUniform(size_of::<SliceUniform>()))]);
         let pipeline_of = |(channel, settings): (usize, &NoiseSettings)| {
             let octaves = [("OCTAVES", f64::from(settings.octaves_in(size)))];
-            let shader = ("noise/slice.wgsl", entry(settings.kind, is_plane), &octaves[..]);
-            pipeline(device, shader, &noise_layout, format, wgpu::ColorWrites::from_bits_truncate(1 << channel))
+            let (shader, entry) = ("noise/slice.wgsl", entry(settings.kind, is_plane));
+            let writes = wgpu::ColorWrites::from_bits_truncate(1 << channel);
+            pipeline(device, shader, entry, &octaves, &noise_layout, format, writes)
         };
         let noise = channels.iter().enumerate().map(pipeline_of).collect::<Result<_>>()?;
         let slices = (0..size[2]).flat_map(|z| channels.iter().map(move |s| SliceUniform::new(s, size, z)));
@@ -259,8 +260,8 @@ impl NoiseBuild {
             if is_plane { (1, Slot::Filtered, "shrink_plane") } else { (2, Slot::FilteredVolume, "shrink_volume") };
         let block = (0, Slot::DynamicUniform(size_of::<ShrinkUniform>()));
         let shrink_layout = layout("noise mip level", &[block, (at, slot)]);
-        let shader = ("noise/shrink.wgsl", entry, &[][..]);
-        let shrink = pipeline(device, shader, &shrink_layout, format, wgpu::ColorWrites::ALL)?;
+        let shader = "noise/shrink.wgsl";
+        let shrink = pipeline(device, shader, entry, &[], &shrink_layout, format, wgpu::ColorWrites::ALL)?;
         let shrinks = (1..texture.mip_level_count()).flat_map(|level| {
             let above = size_of_level(size, level - 1);
             (0..size_of_level(size, level)[2]).map(move |z| ShrinkUniform { above, z })
@@ -343,7 +344,9 @@ fn entry(kind: NoiseKind, is_plane: bool) -> &'static str {
 
 fn pipeline(
     device: &Device,
-    (shader, entry, constants): (&str, &str, &[(&str, f64)]),
+    shader: &str,
+    entry: &str,
+    constants: &[(&str, f64)],
     layout: &wgpu::BindGroupLayout,
     format: wgpu::TextureFormat,
     write_mask: wgpu::ColorWrites,

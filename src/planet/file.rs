@@ -3,14 +3,27 @@
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::{FIELDS, Mie, Planet, PlanetField, file_error};
+use super::model::{FIELDS, Mie, Planet, PlanetField};
 use crate::error::{Error, Result, Status, listed, shown, toml_message};
 
 /// The one section that a file may lack: the weather says the haze then.
 const HAZE: &str = "mie";
 
+impl Planet {
+    /// Reads a planet file (TOML; every key of [`Planet`] by its name, sections `rayleigh`, `mie`, `absorption`).
+    /// Without `mie` the haze is the Earth's at the file's wavelengths.
+    ///
+    /// # Errors
+    /// [`crate::Status::Parse`] with line and column for what is not TOML, for a key that is missing, unknown or of the
+    /// wrong kind; [`crate::Status::InvalidArgument`] for a value that is not finite or out of range. The message names
+    /// the key, its unit and the accepted range.
+    pub fn from_toml(text: &str) -> Result<Self> {
+        parse(text)
+    }
+}
+
 /// Parses and checks a whole planet file.
-pub(super) fn parse(text: &str) -> Result<Planet> {
+fn parse(text: &str) -> Result<Planet> {
     let root = DeTable::parse(text).map_err(|e| {
         let at = e.span().map_or(0, |s| s.start);
         file_error(text, at, Error::new(Status::Parse, format!("not TOML: {}", toml_message(&e))))
@@ -91,6 +104,14 @@ fn number(value: &Spanned<DeValue<'_>>) -> Option<f64> {
         DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
         _ => None,
     }
+}
+
+/// An error of a planet file at a place in its text.
+pub(crate) fn file_error(text: &str, byte: usize, error: Error) -> Error {
+    let before = &text[..byte.min(text.len())];
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    error.found_in(format_args!("planet file, line {line}, column {column}"))
 }
 
 #[cfg(test)]

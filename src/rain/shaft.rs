@@ -16,6 +16,7 @@ use crate::{
         curtain::{AMOUNT, PATTERN_M, PERIOD_M, WAVES},
     },
     light::sinc,
+    numerics::GAUSS_4,
     numerics::smoothstep,
     scene::depth::RANGE_SKY_M,
 };
@@ -24,13 +25,6 @@ use crate::{
 pub(crate) const BELOW_M: f64 = 1000.0;
 /// Way into a dense column from which most of its light comes, m.
 const FRONT_M: f64 = 500.0;
-/// Gauss's four points in \[0, 1\], and their weights.
-const GAUSS: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_7, 0.173_927_422_568_727),
-    (0.330_009_478_207_571_9, 0.326_072_577_431_273),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_727),
-];
 
 /// `Column` of `shaders/rain/area.wgsl`, which explains the fields.
 #[repr(C)]
@@ -343,7 +337,7 @@ impl AreaField {
                 continue;
             }
             let (mut share, mut fallen) = (0.0, 0.0);
-            for (x, w) in GAUSS {
+            for (x, w) in GAUSS_4.map(|(x, w)| (0.5 + 0.5 * x, 0.5 * w)) {
                 let p = origin + d * (from + x * length);
                 let here = w * self.share(i, p);
                 share += here;

@@ -6,7 +6,7 @@
 //! the mean over discs is the share of a flake that is ice, so near flakes hide what far ones, drawn as faint discs,
 //! do.
 
-use crate::falling::random3;
+use crate::{falling::random3, numerics::smooth};
 
 /// Octaves of the noise.
 const OCTAVES: u32 = 4;
@@ -23,7 +23,7 @@ fn corner(cell: [i32; 2], seed: u32) -> f64 {
 
 fn noise(p: [f64; 2], seed: u32) -> f64 {
     let cell = p.map(|v| v.floor() as i32);
-    let w = p.map(|v| v - v.floor()).map(|t| t * t * (3.0 - 2.0 * t));
+    let w = p.map(|v| v - v.floor()).map(smooth);
     let at = |x: i32, y: i32| corner([cell[0] + x, cell[1] + y], seed);
     let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
     mix(mix(at(0, 0), at(1, 0), w[0]), mix(at(0, 1), at(1, 1), w[0]), w[1])

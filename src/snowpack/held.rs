@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::{
     column::{Column, ColumnForcing, Settling, UNITS},
     field::SnowField,
-    inputs::{FallsAt, FieldWind, SnowStep, WindAt},
+    inputs::{CellWind, FallsAt, FieldWind, SnowStep},
     laws, published,
     saved::SavedSnow,
     site::Site,
@@ -264,7 +264,7 @@ impl HeldSnow {
                 field.clear_blocked(revision);
             }
             let over = air.as_ref().map(|air| |place: [i32; 2], surface_m: f64| air.over(place, surface_m));
-            let local = over.as_ref().map(|over| over as WindAt<'_>);
+            let local = over.as_ref().map(|over| over as CellWind<'_>);
             let site = &*site;
             let sunlight_w_m2 = state.sunlight_w_m2;
             let falls = |place: [i32; 2], height_m: f64| {

@@ -8,14 +8,14 @@ use super::column::{Column, ColumnForcing, Settling};
 pub(super) type FallsAt<'a> = &'a dyn Fn([i32; 2], f64) -> ColumnForcing;
 
 /// The wind at 10 m over a place of the lattice whose snow reaches so high, m; m/s east and north.
-pub(super) type WindAt<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
+pub(super) type CellWind<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
 
 /// The wind over a field at 10 m, m/s east and north.
 #[derive(Clone, Copy)]
 pub(super) struct FieldWind<'a> {
     pub mean: DVec2,
     /// Where it varies in space; else the surface's shape decides.
-    pub local: Option<WindAt<'a>>,
+    pub local: Option<CellWind<'a>>,
 }
 
 /// Inputs of a step.

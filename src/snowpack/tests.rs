@@ -3,7 +3,7 @@ use glam::DVec2;
 use super::{
     column::{Column, ColumnForcing, Settling, UNITS},
     field::SnowField,
-    inputs::{FieldWind, SnowStep, WindAt},
+    inputs::{CellWind, FieldWind, SnowStep},
     laws,
     patch::Patch,
     slides,
@@ -95,7 +95,7 @@ fn lead_amid(
     country: &Column,
     field: &mut SnowField,
     Acts(even, settling): &Acts,
-    (mean, local): (DVec2, Option<WindAt<'_>>),
+    (mean, local): (DVec2, Option<CellWind<'_>>),
     steps: usize,
 ) {
     for i in 0..steps {

@@ -21,8 +21,14 @@ const SAME_BITS: [&str; 14] = [
 ];
 
 /// Files of them that only draw or measure light, which is rounded before it decides a state.
-const LIGHT_ALONE: [&str; 5] =
-    ["scene/camera.rs", "scene/depth.rs", "scene/light.rs", "planet/spectral.rs", "planet/mod.rs"];
+const LIGHT_ALONE: [&str; 6] = [
+    "scene/camera.rs",
+    "scene/depth.rs",
+    "scene/light.rs",
+    "planet/spectral.rs",
+    "planet/spectra.rs",
+    "planet/model.rs",
+];
 
 /// Functions of the standard library and of glam whose last bits are the platform's.
 const PLATFORMS: [&str; 30] = [

@@ -247,7 +247,9 @@ impl<'a> Visit<'a> for Reader {
 
     /// Paths in the arguments of a macro, which are no tree yet.
     fn visit_macro(&mut self, call: &'a syn::Macro) {
-        let text = call.tokens.to_string().replace(" :: ", "::");
+        // Texts and comments stand between quotes there.
+        let code: String = call.tokens.to_string().split('"').step_by(2).collect();
+        let text = code.replace(" :: ", "::");
         let words = text.split(|c: char| !c.is_alphanumeric() && c != '_' && c != ':');
         for word in words.filter(|word| word.starts_with("crate::") || word.starts_with("super::")) {
             self.keep(word.split("::").map(str::to_string).collect());
