@@ -56,7 +56,7 @@ fn a_panic_inside_poisons_the_device_and_nothing_else() {
         abi::panic_in_next_call();
         assert_eq!(wk_device_get_status(sick), WK_ERROR_INTERNAL);
         let text = message();
-        assert!(text.contains("injected") && text.contains("boundary.rs"), "{text}");
+        assert!(text.contains("injected") && text.contains("call.rs"), "{text}");
         assert_eq!(wk_device_get_status(sick), WK_ERROR_POISONED);
         assert_eq!(wk_texture_write(child, null(), 0, 4), WK_ERROR_POISONED);
         assert_eq!(wk_device_get_status(healthy), WK_OK);

@@ -93,7 +93,7 @@ const SHARED_NAMES: [&str; 8] = ["Moment", "Place", "Ray", "Span", "Surface", "T
 
 /// Names of the types that a file defines outside of its tests and of text in quotes.
 fn types(text: &str) -> Vec<&str> {
-    let text = text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or(text);
+    let text = text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or(text);
     let mut in_quotes = false;
     let mut found = Vec::new();
     for line in text.lines() {

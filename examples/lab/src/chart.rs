@@ -69,11 +69,18 @@ pub fn shaders(what: &str) -> String {
         let mut paths: Vec<_> =
             std::fs::read_dir(root.join(folder)).into_iter().flatten().flatten().map(|f| f.path()).collect();
         paths.sort();
-        for byte in paths.iter().filter_map(|p| std::fs::read(p).ok()).flatten() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        for text in paths.iter().filter_map(|path| std::fs::read_to_string(path).ok()) {
+            for byte in text.lines().flat_map(|line| code(line).bytes()) {
+                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+            }
         }
     }
     format!("{:08x}", hash >> 32)
+}
+
+/// A line of a shader without its comment: a comment makes no chart old.
+fn code(line: &str) -> &str {
+    if line.starts_with("//!include") { line } else { line.split("//").next().unwrap_or_default().trim_end() }
 }
 
 /// The processor's model.
