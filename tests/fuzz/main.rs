@@ -54,7 +54,7 @@ fn play(seed: u64, judge: &Judge, tally: &mut Tally, aloud: bool) {
     // After a crash this file says which sequence to play again.
     fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz-sequence.txt"), seed.to_string()).expect("writable");
     let mut dice = Dice::new(seed);
-    let mut world = World::new();
+    let mut world = World::on_noop();
     for step in 0..LENGTH {
         let (function, call) = dice.pick(CALLS);
         if aloud {
@@ -132,7 +132,7 @@ fn damaged_texts_are_read_or_refused_by_name() {
         ("wk_view_load_plan", 2_000),
     ];
     let mut dice = Dice::new(1);
-    let mut world = World::new();
+    let mut world = World::on_noop();
     let call = |name: &str| CALLS.iter().find(|c| c.0 == name).expect("in the table").1;
     // Something worth damaging: a state and a plan that were saved in the middle of things.
     for _ in 0..300 {
@@ -165,7 +165,7 @@ fn a_lost_device_is_answered_by_every_call() {
     let judge = Judge;
     for seed in 0..4 {
         let mut dice = Dice::new(seed);
-        let mut world = World::new();
+        let mut world = World::on_noop();
         assert_eq!(world.lose(), WK_ERROR_DEVICE_LOST);
         for (function, call) in CALLS.iter().flat_map(|c| std::iter::repeat_n(c, 5)) {
             let answer = call(&mut dice, &mut world);
@@ -187,7 +187,7 @@ fn a_lost_device_is_answered_by_every_call() {
 fn threads_that_break_the_rules_are_answered() {
     let judge = Judge;
     for round in 0..if std::env::var_os("WELKIN_ACCEPT").is_some() { 40 } else { 6 } {
-        let mut world = World::new();
+        let mut world = World::on_noop();
         let worlds = std::thread::scope(|scope| {
             let start = |thread: u64| {
                 let (mut own, judge) = (world.shared(), &judge);

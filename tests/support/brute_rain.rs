@@ -59,11 +59,12 @@ pub fn speed_m_s(diameter_mm: f64) -> f64 {
     0.01 * (va + (vb - va) * ((diameter_mm - a) / (b - a)).min(1.0))
 }
 
-/// SplitMix64, [0, 1).
+/// Stream of chance: SplitMix64.
 pub struct Chance(pub u64);
 
 impl Chance {
-    pub fn next(&mut self) -> f64 {
+    /// Number in [0, 1), all alike.
+    pub fn even(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -73,7 +74,7 @@ impl Chance {
 
     /// A whole number whose mean is `mean`.
     fn count(&mut self, mean: f64) -> u64 {
-        (mean + self.next()) as u64
+        (mean + self.even()) as u64
     }
 }
 
@@ -163,7 +164,7 @@ impl Film {
             let y = SLICE_M * f64::from(i);
             let side = half * (y + SLICE_M) + margin;
             for _ in 0..chance.count(number * 4.0 * side.x * side.y * SLICE_M) {
-                let [u, v, w, d] = [0; 4].map(|_| chance.next());
+                let [u, v, w, d] = [0; 4].map(|_| chance.even());
                 let mm = spectrum.diameter_mm(self.from_mm, d);
                 all.push(Drop {
                     position_m: DVec3::new(side.x * (2.0 * u - 1.0), y + SLICE_M * v, side.y * (2.0 * w - 1.0)),

@@ -102,7 +102,7 @@ impl Host {
     ///
     /// # Errors
     /// GPU faults.
-    pub fn next(&mut self) -> Result<Picture> {
+    pub fn next_frame(&mut self) -> Result<Picture> {
         self.frame(FrameFlags(0))?;
         self.texels()
     }

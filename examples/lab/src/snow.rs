@@ -59,10 +59,10 @@ impl Air {
         for (row, number) in self.flakes.table.iter().zip(self.flakes.number_per_m3) {
             let (diameter, speed) = (f64::from(row[0]), f64::from(row[1]) * SPEED_UNIT);
             let way = (self.wind_m_s - DVec3::Z * speed - self.camera_m_s) * (0.5 * exposure_s);
-            for _ in 0..(number * volume + chance.next()) as u64 {
-                let y = FAR_M * chance.next().cbrt();
+            for _ in 0..(number * volume + chance.even()) as u64 {
+                let y = FAR_M * chance.even().cbrt();
                 let p =
-                    DVec3::new((2.0 * chance.next() - 1.0) * half[0], 1.0, (2.0 * chance.next() - 1.0) * half[1]) * y;
+                    DVec3::new((2.0 * chance.even() - 1.0) * half[0], 1.0, (2.0 * chance.even() - 1.0) * half[1]) * y;
                 let d = p.length();
                 let t = ((d - 0.5 * NEAREST_M) / (0.5 * NEAREST_M)).clamp(0.0, 1.0);
                 if d < FAR_M && t > 0.0 && way.y.abs() < 0.6 * y {

@@ -1,5 +1,8 @@
 //! One small scene through the C functions, for the tests of every kind of host: the same context, camera and picture.
 
+// Handles are live, and the library recognises those that are not.
+#![allow(clippy::not_unsafe_ptr_arg_deref)]
+
 pub mod cloud_shadows;
 pub mod ground;
 // The limit on a process's memory is Linux's.

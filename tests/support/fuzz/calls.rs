@@ -129,7 +129,8 @@ fn size_of_element<T>(dice: &mut Dice) -> u32 {
 }
 
 impl World {
-    pub fn new() -> Self {
+    /// New objects on a device of the backend that needs no GPU.
+    pub fn on_noop() -> Self {
         let (mut device, mut desc) = (null_mut(), Struct::plain("wk_device_desc"));
         desc.set("backends", WK_BACKEND_NOOP);
         // SAFETY: pointers to live locals.

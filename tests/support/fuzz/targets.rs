@@ -25,7 +25,7 @@ const MOST_MESSAGE: usize = 300;
 
 thread_local! {
     /// Objects for inputs that replace all that was before.
-    static WORLD: World = World::new();
+    static WORLD: World = World::on_noop();
 }
 
 /// Panics where a refusal is unfit for a host.
@@ -58,7 +58,7 @@ pub fn metar(data: &[u8]) {
         return;
     }
     assert_eq!([weather.not_finite(), metar.not_finite()].concat(), Vec::<&str>::new());
-    let world = World::new();
+    let world = World::on_noop();
     let (mut conditions, position) = (Struct::plain("wk_conditions"), [0.0_f64, 0.0, 2.0]);
     // SAFETY: a live handle and pointers to live locals.
     unsafe {
@@ -140,7 +140,7 @@ fn saved(context: *mut wk_context) -> Vec<u8> {
 pub fn states() -> Vec<Vec<u8>> {
     let changing = |f: &str| f.starts_with("wk_context_set") || f == "wk_context_update";
     let state = |seed| {
-        let (mut dice, mut world) = (Dice::new(seed), World::new());
+        let (mut dice, mut world) = (Dice::new(seed), World::on_noop());
         for (_, call) in (0..400).map(|_| dice.pick(CALLS)).filter(|c| changing(c.0)).collect::<Vec<_>>() {
             call(&mut dice, &mut world);
         }
@@ -151,7 +151,7 @@ pub fn states() -> Vec<Vec<u8>> {
 
 /// A plan as it is saved.
 pub fn saved_plan() -> Vec<u8> {
-    let (world, mut size) = (World::new(), 0);
+    let (world, mut size) = (World::on_noop(), 0);
     let mut bytes = vec![0_u8; 1 << 16];
     // SAFETY: a live handle, and room as long as is said.
     let status = unsafe { wk_view_save_plan(world.view(), bytes.as_mut_ptr().cast(), bytes.len(), &mut size) };

@@ -155,7 +155,7 @@ pub fn bases(lab: &Lab, _options: &Options) -> Result<Map> {
             moving.settle(CloudSettings::default())?;
             for frame in -BEFORE..=16 {
                 moving.look(height(frame), 0.0, FOV);
-                let drawn = moving.next()?;
+                let drawn = moving.next_frame()?;
                 if let Some(j) = y.values.iter().position(|at| *at == f64::from(frame)) {
                     by_itself.look(height(frame), 0.0, FOV);
                     cells[j * x.values.len() + i] = apart(&drawn, &by_itself.whole(DEFAULT)?)?;
