@@ -1,10 +1,10 @@
-//! A stream of chance, the same numbers for the same seed on every machine; quantiles of the normal distribution.
+//! Pseudorandom numbers, the same for the same seed on every machine; quantiles of the normal distribution.
 
-/// A stream of chance that any number may begin (Steele et al. 2014, "SplitMix").
+/// Stream of pseudorandom numbers; any number may be its seed (SplitMix64, Steele, Lea and Flood 2014).
 #[derive(Clone, Copy, Debug)]
 pub struct Chance(u64);
 
-/// Spreads the bits of a number over all of a word (the finalizer of SplitMix64, Steele, Lea and Flood 2014).
+/// Mixes the bits of a number over the whole word: a hash (the finalizer of SplitMix64, Steele, Lea and Flood 2014).
 pub(crate) fn mixed(v: u64) -> u64 {
     let v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -12,12 +12,12 @@ pub(crate) fn mixed(v: u64) -> u64 {
 }
 
 impl Chance {
-    /// Stream of a seed alone: SplitMix64 as published.
+    /// Creates the stream of a seed exactly as published for SplitMix64.
     pub(crate) fn seeded(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// Creates the stream of a seed for one use, `what`.
+    /// Creates the stream of a seed for one use: each `what` gives another stream of the same seed.
     pub fn new(seed: u64, what: u64) -> Self {
         let mut one = Self(seed);
         let first = one.bits();
@@ -29,17 +29,17 @@ impl Chance {
         mixed(self.0)
     }
 
-    /// Evenly spread over \[0, 1).
+    /// Next number with a uniform distribution over \[0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Evenly spread over (0, 1).
+    /// Next number with a uniform distribution over (0, 1), both ends left out.
     pub fn even(&mut self) -> f64 {
         ((self.bits() >> 11) as f64 + 0.5) / (1u64 << 53) as f64
     }
 
-    /// Normally spread about 0 (Box and Muller 1958).
+    /// Next number with the normal distribution of mean 0 and variance 1 (Box and Muller 1958).
     pub fn normal(&mut self) -> f64 {
         let (a, b) = (self.even(), self.even());
         (-2.0 * libm::log(a)).sqrt() * libm::cos(2.0 * std::f64::consts::PI * b)

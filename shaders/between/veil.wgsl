@@ -1,8 +1,10 @@
-// What lies between the eye and a place: air, clouds, fog. The one order of these.
+// Veil of air, clouds and fog between the eye and a place. The order in which the three are combined is set here.
 //!include "between/hung.wgsl"
 //!include "between/fog.wgsl"
 
-// `behind` is what air does over the ray's whole length, or the sky with its clouds, which lets nothing through.
+// Lays the clouds, then the fog, in front of `behind`. `behind` is the air along the whole ray or, where the host drew
+// nothing, the sky with its clouds at transmittance 0. `range` is the distance along the ray, `plane` that from the
+// camera's plane, m; `hung` has the clouds in this pixel.
 fn veil_before(ray: ViewRay, range: f32, plane: f32, behind: Veil, hung: Hung) -> Veil {
     var veil = behind;
     if range < RANGE_SKY {
@@ -11,7 +13,7 @@ fn veil_before(ray: ViewRay, range: f32, plane: f32, behind: Veil, hung: Hung) -
     return with_fog(ray, range, plane, veil);
 }
 
-// All of it before a place.
+// Air, clouds and fog in front of a place.
 fn veil_between(ray: ViewRay, range: f32, plane: f32, hung: Hung) -> Veil {
     return veil_before(ray, range, plane, air_between(ray.direction, range), hung);
 }

@@ -1,11 +1,13 @@
-// A picture's means over squares of texels, display values made linear: what a drop shows is that much smaller.
+// Shrinks a picture to means over squares of texels, in linear light. Drops on the glass show the scene much smaller
+// than it is, so lens.wgsl samples these means there.
 //!include "common/fullscreen.wgsl"
 //!include "common/tone.wgsl"
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 
-// Texels of the picture along an edge of one of ours.
+// Side of the square that becomes one texel of the result, texels of the picture.
 override FACTOR: i32 = 8;
+// Whether the texels of the picture are sRGB-encoded.
 override ENCODED: bool = false;
 
 @fragment
@@ -19,6 +21,6 @@ fn shrink(in: FullscreenVarying) -> @location(0) vec4f {
             sum += select(texel, srgb_decode(texel), ENCODED);
         }
     }
-    // The largest of rgba16float; a sun's disc may be brighter.
+    // 65504 is the largest number of rgba16float; the sun's disc may be brighter.
     return vec4f(clamp(sum / f32(FACTOR * FACTOR), vec3f(0.0), vec3f(65504.0)), 1.0);
 }

@@ -1,11 +1,12 @@
-// Which flakes of the lattice can be in the picture, and their number, for the draw: by their places among all, so near
-// shells first.
+// Finds and counts the flakes of the lattice that can be in the picture: only these are drawn. `mark` sets a bit for
+// each such flake, and `order` sums the bits. The list keeps the order of the flakes' numbers, in which near shells
+// come first.
 //!include "snow/flakes.wgsl"
 //!include "falling/order.wgsl"
 
 @group(1) @binding(1) var<storage, read_write> spots: array<Spot>;
 
-// A word of bits a thread.
+// Each thread writes one word: a bit for each of 32 flakes.
 @compute @workgroup_size(64)
 fn mark(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= WORDS * blocks_of(flakes.count) {
@@ -14,7 +15,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     let first = 32u * id.x;
     let last = min(first + 32u, flakes.count);
     var seen = 0u;
-    // Flakes lie in the order of their shells and classes.
+    // Flakes are numbered by shell, then by class. A run has the flakes of one class in one shell.
     for (var place = first; place < last;) {
         let s = shell_of(place);
         let begin = flakes.first[s];
@@ -28,6 +29,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     blocks[id.x / WORDS].seen[id.x % WORDS] = seen;
 }
 
+// One workgroup counts the marked flakes before each block, and the flakes to draw.
 @compute @workgroup_size(SUMS)
 fn order(@builtin(local_invocation_index) thread: u32) {
     order_blocks(thread, blocks_of(flakes.count), arrayLength(&spots));

@@ -1,39 +1,41 @@
-// What rain does not pass: boxes (the f64 twin is in src/surroundings/shelter.rs) and what the host has taken maps of.
+// Tests for shelter, which rain does not pass: the host's boxes (f64 twin in src/surroundings/shelter.rs) and the
+// surfaces in its occluder maps. Each test follows a drop's path back from where it is now.
 //!include "surroundings/occluders.wgsl"
 
-// Whether anything keeps rain off. Read by what is drawn in every pixel.
+// Whether there is any shelter. Shaders that run in every pixel read it to leave the tests out.
 override SHELTER: bool = false;
 
 const MAX_SHELTERS: u32 = 32u;
 const MAX_CUTS: u32 = 512u;
 
 struct Shelter {
-    // From camera-relative east-north-up into the box's own space, where it reaches from -1 to 1.
+    // Rows of the matrix from camera-relative east, north, up (m) to the box's own space, where it spans -1 to 1.
     rows: array<vec4f, 3>,
-    // m/s; not 0 in the last: it moves.
+    // Velocity, m/s; w is 1 for a box that moves, 0 for one that stands still.
     velocity: vec4f,
-    // Of the planes that cut it, the first and the one behind its last.
+    // x: index of the first plane that cuts the box; y: index after the last one.
     cuts: vec4u,
 }
 
 struct Shelters {
-    // Those that matter to drops near the camera, which come first, and all of them.
+    // Number of boxes that may shelter drops near the camera. These come first in the list.
     near: u32,
+    // Number of all boxes.
     count: u32,
     boxes: array<Shelter, MAX_SHELTERS>,
-    // In the own space of their boxes: outward normal, distance.
+    // Planes in their boxes' own space: outward normal, distance from the middle.
     cuts: array<vec4f, MAX_CUTS>,
 }
 
 @group(2) @binding(0) var<uniform> shelters: Shelters;
 
-// For how long what came to `p` with `velocity` was in box `i`, or in what planes leave of it, s; below 0: it has not
-// been, and how far it was from it.
+// Time, s, that a drop which came to `p` with `velocity` has spent inside box `i`, or inside what its planes leave of
+// it. Negative if the drop has not been inside: the further away it passed, the lower.
 fn time_within(i: u32, p: vec3f, velocity: vec3f) -> f32 {
     return time_nearby(i, p, velocity, 0.0);
 }
 
-// Likewise of a box with all its sides, and planes, so many metres further out.
+// `time_within` for a box whose sides and planes lie `margin` m further out.
 fn time_nearby(i: u32, p: vec3f, velocity: vec3f, margin: f32) -> f32 {
     let back = shelters.boxes[i].velocity.xyz - velocity;
     let rows = shelters.boxes[i].rows;
@@ -56,13 +58,13 @@ fn time_nearby(i: u32, p: vec3f, velocity: vec3f, margin: f32) -> f32 {
     return far - near;
 }
 
-// Whether what came to `p`, near the camera, with `velocity` met anything. Not looked for where it is not `wanted`: by
-// loops that are not begun, which is what a software driver leaves out.
+// Whether a drop near the camera that came to `p` with `velocity` met a box or a mapped surface on its way. False where
+// the answer is not `wanted`: the loops then start at their end, and a software driver skips such loops.
 fn sheltered(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     return sheltered_nearby(p, velocity, 0.0, wanted);
 }
 
-// Likewise with boxes so many metres wider to all sides.
+// `sheltered` for boxes whose sides lie `margin` m further out.
 fn sheltered_nearby(p: vec3f, velocity: vec3f, margin: f32, wanted: bool) -> bool {
     for (var i = select(MAX_SHELTERS, 0u, wanted); i < (shelters.near & 63u); i++) {
         if time_nearby(i, p, velocity, margin) >= 0.0 {
@@ -79,7 +81,8 @@ fn sheltered_nearby(p: vec3f, velocity: vec3f, margin: f32, wanted: bool) -> boo
     return false;
 }
 
-// Likewise for ground, which remembers: what only passes by does not keep it dry.
+// Whether a mapped surface that stands still keeps rain off the ground at `p`. Moving ones do not count: ground stays
+// wet when something only passes over it.
 fn mapped_ground(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     if MAPS {
         for (var i = select(MAX_MAPS, 0u, wanted); i < (occluders.count & 7u); i++) {
@@ -91,7 +94,7 @@ fn mapped_ground(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     return false;
 }
 
-// Longest time that what came to `p` was in a box that stands, as `time_within` has it.
+// Longest `time_within` among the boxes that stand still; negative if the drop met none of them.
 fn time_in_standing(p: vec3f, velocity: vec3f, wanted: bool) -> f32 {
     var time = -1e9;
     for (var i = select(MAX_SHELTERS, 0u, wanted); i < (shelters.count & 63u); i++) {

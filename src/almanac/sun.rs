@@ -1,4 +1,4 @@
-//! Where the sun stands: the almanac, refraction, and the flattening of the disc near the horizon.
+//! Position of the sun over a place, and the flattening of its disc by refraction near the horizon.
 
 use glam::DVec3;
 
@@ -13,20 +13,21 @@ use crate::{
     scene::{Place, turn_z},
 };
 
-/// The sun over a place.
+/// Position of the sun over a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunPosition {
-    /// Towards the sun, (east, north, up), without refraction: what scattering sees.
+    /// Unit vector towards the sun, (east, north, up), without refraction: the direction that scattering uses.
     pub direction: DVec3,
-    /// Degrees clockwise from true north.
+    /// Azimuth, degrees clockwise from true north.
     pub azimuth_deg: f64,
-    /// Degrees above the horizon, without refraction.
+    /// Elevation above the horizon, degrees, without refraction.
     pub elevation_deg: f64,
-    /// Distance from the Earth's centre, au.
+    /// Distance of the sun from the Earth's centre, au.
     pub distance_au: f64,
 }
 
-/// The sun over `place` at `utc`: NREL's solar position algorithm (Reda & Andreas 2004), topocentric, +-0.0005 degrees.
+/// Position of the sun over `place` at `utc`, seen from the place itself (topocentric), within 0.0005 degrees: NREL's
+/// solar position algorithm (Reda & Andreas 2004).
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
@@ -35,7 +36,7 @@ pub fn sun_position(utc: Utc, place: &Place) -> Result<SunPosition> {
     Ok(Turned::new(&Geocentric::at(utc)?, utc, place).sun())
 }
 
-/// Sun and moon as they stand over a place: turned with the Earth and seen from there, m.
+/// Sun and moon relative to a place (topocentric): vectors (east, north, up) from the place, m.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned {
     pub(super) sun_m: DVec3,
@@ -63,7 +64,8 @@ impl Turned {
     }
 }
 
-/// Vertical over horizontal diameter of a small disc at a true elevation: 1 + d(refraction)/d(elevation).
+/// Ratio of the vertical to the horizontal diameter of a small disc, as refraction flattens it at a true elevation: 1 +
+/// d(refraction)/d(elevation).
 pub fn disc_flattening(elevation_deg: f64, pressure_hpa: f64, temperature_c: f64) -> f64 {
     let h = 0.13;
     let rise = refraction_deg(elevation_deg + h, pressure_hpa, temperature_c)
@@ -78,7 +80,7 @@ mod tests {
 
     #[test]
     fn nrels_own_example() {
-        // Reda & Andreas 2004, table A5.1: zenith 50.11162 is refracted; azimuth 194.34024.
+        // Reda & Andreas 2004, table A5.1: zenith angle 50.11162 with refraction, azimuth 194.34024, degrees.
         let utc = Utc::from_calendar(2003, 10, 17, 19, 30, 30.0).unwrap();
         let place = Place { latitude_deg: 39.742_476, longitude_deg: -105.1786, altitude_m: 1830.14 };
         let sun = sun_position(utc, &place).unwrap();
@@ -89,7 +91,7 @@ mod tests {
 
     #[test]
     fn the_suns_place_agrees_with_other_almanacs() {
-        // Computed with XEphem's libastro (pressure 0): (utc, latitude, longitude, azimuth, elevation).
+        // Values of XEphem's libastro (pressure 0): (utc, latitude, longitude, azimuth, elevation).
         let cases = include!("testdata/sun.in");
         for (unix, latitude_deg, longitude_deg, azimuth, elevation) in cases {
             let place = Place { latitude_deg, longitude_deg, altitude_m: 0.0 };
@@ -101,20 +103,21 @@ mod tests {
 
     #[test]
     fn the_suns_catalogue_place_stands_where_the_almanac_has_it() {
-        // 2020-06-20 21:43:40 UT, the solstice: true longitude of date 90, so the equator of date has the sun at
-        // (90, obliquity).
+        // 2020-06-20 21:43:40 UT is the solstice. The sun's true longitude of date is then 90 degrees, so in the
+        // equator of date its right ascension is 90 degrees and its declination is the obliquity.
         let utc = Utc::from_calendar(2020, 6, 20, 21, 43, 40.0).unwrap();
         let place = Place { latitude_deg: 20.0, longitude_deg: -150.0, altitude_m: 0.0 };
         let (_, obliquity) = nutation_obliquity(utc.julian_centuries_tt());
         let seen = equator_of_date_to_world(utc, &place) * equatorial_direction(90.0, obliquity.to_degrees());
         let sun = sun_position(utc, &place).unwrap();
-        // Diurnal parallax is 0.0024 degrees at most, the instant is good to a minute: 0.0007.
+        // The diurnal parallax is at most 0.0024 degrees. The instant is good to a minute, which is 0.0007 degrees.
         assert!(seen.angle_between(sun.direction).to_degrees() < 0.004, "{seen} {:?}", sun.direction);
     }
 
     #[test]
     fn refraction_lifts_the_horizon_by_about_half_a_degree_and_flattens_the_disc() {
-        // Explanatory Supplement: 34' for a body seen on the horizon, whose true elevation is then -0.57 degrees.
+        // Explanatory Supplement: refraction lifts a body seen on the horizon by 34', from a true elevation of -0.57
+        // degrees.
         assert!((refraction_deg(-0.57, 1010.0, 10.0) * 60.0 - 34.0).abs() < 1.0);
         assert!(refraction_deg(90.0, 1010.0, 10.0).abs() < 1e-3);
         let f = disc_flattening(-0.3, 1013.0, 15.0);

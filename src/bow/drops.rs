@@ -1,4 +1,5 @@
-//! Drops of a weather that make bows.
+//! Drops that make bows: their extinction by class in rain, in the low air and in rain areas, and whether the light on
+//! them is direct enough.
 
 use glam::DVec3;
 
@@ -10,36 +11,39 @@ use crate::{
     weather::{Conditions, Falling, GroundLayer},
 };
 
-/// Direct light over all light on level ground below which no bow shows.
+/// Ratio of direct light to all light on level ground below which no bow shows.
 const LEAST_DIRECT: f64 = 1e-3;
 
-/// Returns the extinction of rain by each class of drops, 1/m, where drops fall faster by a factor.
+/// Returns the extinction of rain by each class of drops, 1/m, where drops fall `factor` times as fast as at sea level.
 pub(super) fn in_rain(falling: &Falling, factor: f64) -> [f64; CLASSES] {
     let sizes = DropSizes::new(falling, factor);
     let rain = |i: usize| sizes.extinction_between_per_m(RAIN_EDGES_MM[i - 1], RAIN_EDGES_MM[i]);
     std::array::from_fn(|i| if i == 0 { 0.0 } else { rain(i) })
 }
 
-/// Asymmetry of droplets, and how far from it, below and above, there are none: dust and sand have less, lifted snow
-/// more (`weather::particles`).
+/// Asymmetry of the phase function of fog droplets. Dust and sand have less, lifted snow has more
+/// (`weather::particles`).
 const DROPLETS: f64 = 0.85;
+/// Distance below [`DROPLETS`] at which a layer is dust or sand alone, without droplets.
 const DUST_BELOW: f64 = 0.05;
+/// Distance above [`DROPLETS`] at which a layer is lifted snow alone, without droplets.
 const SNOW_ABOVE: f64 = 0.03;
 
-/// Share of a low layer that is droplets: particles that tell colours apart, dust, sand and lifted snow make no bow.
+/// Share of droplets in a layer at the ground, 0 to 1. Dust, sand, lifted snow, and fine particles whose extinction
+/// changes with the wavelength make no bow.
 fn droplets(layer: &GroundLayer) -> f64 {
     let off = layer.asymmetry - DROPLETS;
     let round = 1.0 - if off > 0.0 { off / SNOW_ABOVE } else { -off / DUST_BELOW };
     round.max(0.0) * (1.0 - smoothstep(0.25, 0.75, layer.angstrom_exponent))
 }
 
-/// The bows of a weather's low air, of all that takes its light; `None` where there are no drops.
+/// Returns the bows of a weather's low air, relative to all extinction in it; `None` without drops.
 pub(crate) fn in_low_air(c: &Conditions) -> Option<Table> {
     low_air(c, in_rain).map(|shares| mixed(&shares))
 }
 
-/// Returns the share of each class of drops in the extinction of a weather's low air, fog and precipitation together.
-/// `rain`: [`in_rain`], or a cache of it.
+/// Returns the share of each class of drops in the extinction of a weather's low air, which is fog and precipitation
+/// together; `None` without drops. `rain` is [`in_rain`] or a cache of it.
 pub(super) fn low_air(c: &Conditions, rain: impl FnOnce(&Falling, f64) -> [f64; CLASSES]) -> Option<[f64; CLASSES]> {
     let mut classes = [0.0; CLASSES];
     let falling = FallingLayer::new(c);
@@ -54,7 +58,8 @@ pub(super) fn low_air(c: &Conditions, rain: impl FnOnce(&Falling, f64) -> [f64; 
     (classes.iter().sum::<f64>() > 0.0).then(|| classes.map(|v| v / all))
 }
 
-/// Returns the share of each class in the mean extinction of the rain areas' drops; `None` without any.
+/// Returns the share of each class of drops in the summed extinction of all rain areas; `None` without any. `rain` is
+/// [`in_rain`] or a cache of it.
 pub(super) fn areas(
     now: &SceneMoment<'_>,
     mut rain: impl FnMut(&Falling, f64) -> [f64; CLASSES],
@@ -70,7 +75,8 @@ pub(super) fn areas(
     (all > 0.0).then(|| classes.map(|v| v / all))
 }
 
-/// Whether sun or moon, whichever is brighter, lights drops so directly that a bow shows.
+/// Whether a bow shows: whether enough of the light above the fog comes directly from the sun or the moon, whichever is
+/// brighter.
 pub(crate) fn is_lit(scene: &Scene) -> bool {
     let of = |light: &Light, ground: &GroundLight| {
         let lux = if light == &scene.sun { ground.sun_lux } else { ground.moon_lux };
@@ -79,8 +85,8 @@ pub(crate) fn is_lit(scene: &Scene) -> bool {
     of(scene.brighter(), &scene.above_fog)
 }
 
-/// Whether some direction within `half_angle` of the middle of a picture may be within `reach` of the point opposite to
-/// the light, rad.
+/// Whether a picture may show the bows: whether a direction within `half_angle` of its middle may lie within `reach` of
+/// the point opposite to the light. Angles in rad.
 pub(super) fn is_within(middle: DVec3, half_angle: f64, to_light: DVec3, reach: f64) -> bool {
     middle.dot(-to_light).clamp(-1.0, 1.0).acos() < half_angle + reach
 }

@@ -1,28 +1,36 @@
-//! Rainbow and fogbow: what drops send back of the sun's or the moon's light in two bows about the point opposite to
-//! it.
+//! Rainbow and fogbow: two bows of light that drops send back from the sun or the moon, round the point opposite to it
+//! (the antisolar point).
 //!
 //! # Model
-//! A ray that is reflected k times inside a drop leaves it turned by D = k pi + 2 i - 2 (k + 1) r, with sin i = b and
-//! sin r = b / n for a ray that meets the drop at b radii from its middle (Descartes 1637). D has a least value, near
-//! which many rays leave: 138 degrees for k = 1, 42 from the point opposite to the light, and 231 for k = 2, 51 from
-//! that point. Between both is Alexander's dark band. Water bends blue more than red, so the primary bow is red outside
-//! and the secondary inside. Light is a wave: the two rays of a direction interfere, and near the least turn their
-//! light is Airy's (1838), wider the smaller the drop. [`mod@reference`] has that in f64, held against Mie's theory.
-//! Over the sizes of drops, the wavelengths and the disc of the light a [`Table`] of the angle follows.
+//! A ray meets a drop at b radii from the drop's middle and is reflected k times inside it. The drop turns the ray by
+//! D = k pi + 2 i - 2 (k + 1) r, where sin i = b, sin r = b / n, and n is the refractive index (Descartes 1637). D has
+//! a minimum, and many rays leave near it. For k = 1 the minimum is 138 degrees: the primary bow, 42 degrees from the
+//! antisolar point. For k = 2 it is 231 degrees: the secondary bow, 51 degrees from that point. Between the two lies
+//! Alexander's dark band. Water bends blue more than red, so the primary bow is red on its outside and the secondary on
+//! its inside.
 //!
-//! The veil's smooth phase functions hold the light of both bows already. So the table has the bows less a smooth
-//! function of the same sum over all directions: a bow moves light, and adds none. The composition adds it to what fog
-//! and rain scatter once, which they work out for their own light; columns under rain areas likewise. It follows that
-//! clouds, air and fog dim it as all else there.
+//! Light is a wave: the two rays that leave a drop in one direction interfere. Near the minimum their light follows
+//! Airy (1838): the smaller the drop, the wider the bow. [`mod@reference`] computes that in f64; tests compare it with
+//! Mie's theory. A [`Table`] over the angle from the antisolar point sums it over drop sizes, wavelengths and the disc
+//! of the sun or the moon.
 //!
-//! *Drops*: rain by its sizes ([`crate::falling::sizes`]), fog by droplets of 15 micrometres on the mean, whose bow is
-//! white and wide. Snow, hail and dust make none. *Settings*: none. *Cost*: one look-up a pixel, and nothing where no
-//! drops stand in direct light. The table is worked out for pictures that look at the bows. *Error*: within 0.2 degrees
-//! and 15 % of Mie's theory. Drops count as spheres: those beyond 1 mm are flat in nature and leave the top of a bow
-//! fainter. The light is that under the mean of clouds; none of it is in the cube map, where no fog is.
+//! The smooth phase functions of the veil already contain the light of both bows. The table therefore holds the bows
+//! less a smooth function with the same sum over all directions: a bow moves light and adds none. Fog and rain compute
+//! the light that they scatter once, before the phase function. The composition adds that light times the table's
+//! value, and the columns under rain areas do the same with their own light. Clouds, air and fog in front of a bow
+//! therefore dim it like everything else there.
 //!
-//! No `passes.rs`: it draws in the composition. No `candidates.rs`: there is one way, too cheap to be left out. No
-//! `held.rs`: no state.
+//! * *Drops*: rain by its drop sizes ([`crate::falling::sizes`]); fog by droplets of 15 micrometres on the mean, whose
+//!   bow is white and wide. Snow, hail and dust make no bow.
+//! * *Settings*: none.
+//! * *Cost*: one look-up a pixel, and nothing where no drops stand in direct light. The table is computed only for
+//!   pictures whose field of view reaches the bows.
+//! * *Error*: within 0.2 degrees and 15 % of Mie's theory. Drops count as spheres; in nature drops beyond 1 mm are flat
+//!   and leave the top of a bow fainter. The light on the drops is the mean under the clouds. The cube map shows no
+//!   bow, because it shows no fog.
+//!
+//! The room has no `passes.rs`, because the composition draws the bows; no `candidates.rs`, because there is one way to
+//! draw them, too cheap to be left out; and no `held.rs`, because a bow has no state.
 
 mod drops;
 pub mod reference;

@@ -1,28 +1,29 @@
-//! Falling snow, grains and ice crystals: how large flakes are, how many there are, how fast they fall, and how they
-//! swirl.
+//! Falling snow, snow grains and ice crystals: sizes, numbers and fall speeds of flakes, and their swirl.
 //!
-//! *Sizes*. Melted diameters are exponential, N0 exp(-lambda Dm) with lambda = 2.55 R^-0.48 per mm (Gunn and Marshall
-//! 1958, of aggregates close to the melting point); in colder air flakes are smaller: an exponential of the diameter
-//! has the slope 1220 x 10^(-0.0245 T) per m (Ryan 1996), of which the ratio is taken. A flake of density c / D has D^2
-//! = Dm^3 / c; c = 0.17 (Holroyd 1971; g/cm^3 and mm). So of all flakes the area that is hidden by melted diameters up
-//! to Dm is a gamma distribution of order 4, and the mean flake by area is 4 / lambda large when melted. Larger flakes
-//! than [`LARGEST_MM`] break up.
+//! *Sizes*. Melted diameters Dm are distributed as N0 exp(-lambda Dm), with lambda = 2.55 R^-0.48 per mm at the rate R,
+//! mm/h (Gunn and Marshall 1958, for aggregates close to the melting point). Flakes are smaller in colder air: the
+//! slope of the exponential over the diameter D is 1220 x 10^(-0.0245 T) per m at T degrees C (Ryan 1996). Only the
+//! ratio of this slope to that near the melting point is used. A flake of density c / D has D^2 = Dm^3 / c, with c =
+//! 0.17 g/cm^3 mm (Holroyd 1971). The area that flakes hide is therefore a gamma distribution of order 4 over Dm, and
+//! the area-weighted mean of Dm is 4 / lambda. Flakes larger than [`LARGEST_MM`] break up.
 //!
-//! *Number*. So many that they hide what the weather's snow hides (`weather::hydrometeors`): their discs, of which
-//! [`AREA_RATIO`] is ice, are half of its extinction, the rest is diffraction. Falling at their speeds they must also
-//! make the rate; c is what closes that ([`FlakeSizes::density_mm_g_cm3`]), and stays near Holroyd's where no report of
-//! visibility says otherwise.
+//! *Number*. The flakes have the extinction of the weather's snow (`weather::hydrometeors`). Half of it is the area of
+//! their discs, of which [`AREA_RATIO`] is ice; the other half is diffraction. At their fall speeds the flakes must
+//! also give the rate, and c is solved from that ([`FlakeSizes::density_mm_g_cm3`]). It stays near Holroyd's value
+//! unless a reported visibility sets the extinction.
 //!
-//! *Speeds*. a D^b m/s, D in mm: aggregates unrimed 0.8 D^0.16, rimed 0.69 D^0.41, densely rimed 0.79 D^0.27, graupel
-//! 1.3 D^0.66 (Locatelli and Hobbs 1974, table 1); plane crystals 0.31 (Nakaya and Terada 1935), whatever their size.
-//! Aggregates are densely rimed at the melting point and above, rimed 5 degrees below, and unrimed 12 degrees below.
+//! *Speeds*. The terminal speed is a D^b m/s, D in mm: unrimed aggregates 0.8 D^0.16, rimed 0.69 D^0.41, densely rimed
+//! 0.79 D^0.27, graupel 1.3 D^0.66 (Locatelli and Hobbs 1974, table 1). Plane crystals of any size fall at 0.31 m/s
+//! (Nakaya and Terada 1935). Aggregates are densely rimed at 0 C and above, rimed at -5 C, and unrimed at -12 C and
+//! below; between these temperatures the speed is interpolated.
 //!
-//! *Swirl*. Beyond a Reynolds number of 116.5 the wake of a disc is no longer the same on all sides (Natarajan and
-//! Acrivos 1993): the flake glides aside, and as it turns it falls on a helix, which stands for the lift of older
-//! systems' spirals. How steeply it glides grows from there as Landau's law has it, (1 - 116.5 / Re)^(1/2), to
-//! [`GLIDE`] of its fall speed: half of the 20 degrees that thin discs in air reach (Tinklenberg, Guala and Coletti
-//! 2023). How fast it turns no one has measured of flakes: [`TURN_STROUHAL`] fall speeds over diameters are chosen, a
-//! turn in a few tenths of a second, some centimetres wide.
+//! *Swirl*. Above a Reynolds number Re of 116.5 the wake of a disc loses its axial symmetry (Natarajan and Acrivos
+//! 1993). The flake then glides sideways and turns, so it falls on a helix. The helix replaces the lift force by which
+//! older snow systems make flakes spiral. The sideways speed grows with Re by Landau's law, (1 - 116.5 / Re)^(1/2),
+//! towards [`GLIDE`] times the fall speed. This limit is a slope of 10 degrees, half of the 20 degrees that thin discs
+//! in air reach (Tinklenberg, Guala and Coletti 2023). No one has measured how fast flakes turn. A rate of
+//! [`TURN_STROUHAL`] times the fall speed over the diameter is chosen: a turn takes a few tenths of a second and is
+//! some centimetres wide.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -31,28 +32,27 @@ use crate::weather::{
     hydrometeors::{hail_extinction_per_m, ice_pellet_extinction_per_m, snow_extinction_per_m},
 };
 
-/// Share of a flake's disc that is ice, as seen through it: what `weather::hydrometeors::snow_extinction_per_m` counts
-/// with.
+/// Share of a flake's disc that its ice covers. `weather::hydrometeors::snow_extinction_per_m` uses the same value.
 pub const AREA_RATIO: f64 = 0.6;
 /// Density of aggregates times their diameter, g/cm^3 mm (Holroyd 1971).
 pub const HOLROYD_MM_G_CM3: f64 = 0.17;
-/// Largest flakes, mm.
+/// Diameter of the largest flakes, mm.
 pub const LARGEST_MM: f64 = 15.0;
 /// Diameters of snow grains, mm: grains are below 1 mm (WMO).
 pub const GRAINS_MM: (f64, f64) = (0.2, 1.0);
 /// Diameters of single crystals, mm.
 pub const CRYSTALS_MM: (f64, f64) = (0.3, 3.0);
-/// Reynolds number at which a flake's wake begins to push it aside.
+/// Reynolds number above which a flake's wake pushes it sideways.
 pub const WAKE_REYNOLDS: f64 = 116.5;
-/// Most speed aside over fall speed: tan 10 degrees.
+/// Largest ratio of the sideways speed to the fall speed: tan 10 degrees.
 pub const GLIDE: f64 = 0.176;
-/// Turns of the helix in the time in which a flake falls its own diameter.
+/// Turns of the helix while a flake falls by its own diameter.
 pub const TURN_STROUHAL: f64 = 0.02;
 /// Kinematic viscosity of air at 0 C, m^2/s.
 const VISCOSITY_M2_S: f64 = 1.33e-5;
-/// Temperature at which Gunn and Marshall's sizes hold, C.
+/// Temperature for which Gunn and Marshall's sizes hold, C.
 const GUNN_MARSHALL_C: f64 = -1.0;
-/// Least rate that sizes know, mm/h: below it numbers alone go down.
+/// Rate, mm/h, below which sizes stay the same and only the number of flakes goes down.
 const LEAST_MM_H: f64 = 0.02;
 
 /// Kind of a flake, which decides its fall speed.
@@ -62,9 +62,9 @@ pub enum FlakeKind {
     Unrimed,
     /// Rimed aggregates.
     Rimed,
-    /// Densely rimed aggregates: what falls near the melting point.
+    /// Densely rimed aggregates, which fall near the melting point.
     DenselyRimed,
-    /// Graupel (snow pellets), of 0.1 to 0.2 g/cm^3; snow grains are small ones.
+    /// Graupel (snow pellets) of 0.1 to 0.2 g/cm^3. Snow grains fall as small graupel.
     Graupel,
     /// Single plane crystals.
     Crystal,
@@ -86,7 +86,7 @@ impl FlakeKind {
         Self::NAMES.iter().find(|(known, _)| same(known)).map(|(_, kind)| *kind)
     }
 
-    /// a and b of a D^b, m/s with D in mm.
+    /// Factor a and exponent b of the terminal speed a D^b, m/s with D in mm.
     const fn law(self) -> (f64, f64) {
         match self {
             Self::Unrimed => (0.8, 0.16),
@@ -97,14 +97,15 @@ impl FlakeKind {
         }
     }
 
-    /// Terminal speed, m/s, of a diameter, mm; 0 of none.
+    /// Terminal speed, m/s, of a flake of a diameter, mm; 0 for a diameter of 0.
     pub fn speed_m_s(self, diameter_mm: f64) -> f64 {
         let (a, b) = self.law();
         if diameter_mm > 0.0 { a * libm::pow(diameter_mm, b) } else { 0.0 }
     }
 }
 
-/// How aggregates of a temperature fall, m/s: between the laws of the kinds beside it.
+/// Terminal speed of aggregates in air of a temperature, m/s: interpolated between the laws of unrimed, rimed and
+/// densely rimed aggregates.
 pub fn aggregate_speed_m_s(diameter_mm: f64, temperature_c: f64) -> f64 {
     let between = |cold: FlakeKind, warm: FlakeKind, share: f64| {
         cold.speed_m_s(diameter_mm) * (1.0 - share) + warm.speed_m_s(diameter_mm) * share
@@ -116,17 +117,17 @@ pub fn aggregate_speed_m_s(diameter_mm: f64, temperature_c: f64) -> f64 {
     }
 }
 
-/// The helix that a flake falls on.
+/// Helix on which a flake falls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swirl {
-    /// Its radius, m; 0: the flake falls straight.
+    /// Radius of the helix, m; 0 where the flake falls straight.
     pub radius_m: f64,
-    /// Turns a second.
+    /// Turns per second.
     pub turns_per_s: f64,
 }
 
 impl Swirl {
-    /// Creates the swirl of a flake of a diameter, mm, and a fall speed, m/s.
+    /// Creates the swirl of a flake from its diameter, mm, and its fall speed, m/s.
     pub fn new(diameter_mm: f64, speed_m_s: f64) -> Self {
         let d = 1e-3 * diameter_mm.max(1e-3);
         let reynolds = speed_m_s * d / VISCOSITY_M2_S;
@@ -139,25 +140,25 @@ impl Swirl {
     }
 }
 
-/// Flakes of one way to fall.
+/// Flakes of one part: aggregates, grains or crystals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct FlakeMode {
     /// Extinction, 1/m.
     extinction_per_m: f64,
-    /// Slope of the exponential of melted diameters, 1/mm, as flakes of Holroyd's density have them; 0: evenly in the
-    /// logarithm of the diameter, by area.
+    /// Slope of the exponential distribution of melted diameters, 1/mm; Holroyd's density relates them to diameters. 0
+    /// spreads the hidden area evenly over the logarithm of the diameter.
     lambda: f64,
-    /// Diameters, mm.
+    /// Smallest and largest diameter, mm.
     range_mm: (f64, f64),
 }
 
-/// Share of a gamma distribution of order 4 below `x`.
+/// Cumulative gamma distribution of order 4 at `x`.
 fn gamma4(x: f64) -> f64 {
     1.0 - libm::exp(-x) * (1.0 + x * (1.0 + x * (0.5 + x / 6.0)))
 }
 
 impl FlakeMode {
-    /// Share of the area that flakes up to a diameter hide.
+    /// Share of the hidden area that flakes up to a diameter hide.
     fn area_below(&self, diameter_mm: f64) -> f64 {
         let (low, high) = self.range_mm;
         let d = diameter_mm.clamp(low, high);
@@ -169,7 +170,7 @@ impl FlakeMode {
     }
 }
 
-/// The flakes in a cubic metre. Plain data, any thread.
+/// Flakes in a cubic metre of air. Plain data; any thread may use it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlakeSizes {
     /// Aggregates, grains, crystals.
@@ -179,12 +180,12 @@ pub struct FlakeSizes {
     factor: f64,
 }
 
-/// Number of kinds of flakes, in the order of [`FlakeSizes`]'s parts.
+/// Number of parts in [`FlakeSizes`]: 0 is aggregates, 1 grains, 2 crystals.
 pub const PARTS: usize = 3;
 
 impl FlakeSizes {
-    /// Creates the sizes of snow in air of a temperature, where things fall `speed_factor` times as fast as at sea
-    /// level ([`super::drops::altitude_factor`]).
+    /// Creates the sizes of snow in air of a temperature. `speed_factor` is the ratio of fall speeds at this altitude
+    /// to those at sea level ([`super::drops::altitude_factor`]).
     pub fn new(falling: &Falling, temperature_c: f64, speed_factor: f64) -> Self {
         let of_snow = snow_extinction_per_m(falling.snow_mm_h);
         let solid =
@@ -193,7 +194,7 @@ impl FlakeSizes {
         let kinds = falling.snow_kinds_mm_h();
         let share = |i: usize| if falling.snow_mm_h > 0.0 { kinds[i] / falling.snow_mm_h } else { 0.0 };
         let colder = libm::exp10(0.0245 * (temperature_c - GUNN_MARSHALL_C).clamp(-40.0, 0.0));
-        // D goes with the power 3/2 of the melted diameter.
+        // D is proportional to Dm^(3/2), so a factor on the slope over D becomes its power 2/3 on the slope over Dm.
         let lambda = 2.55 * libm::pow(kinds[0].max(LEAST_MM_H), -0.48) / libm::pow(colder, 2.0 / 3.0);
         let part =
             |i: usize, lambda: f64, range_mm| FlakeMode { extinction_per_m: extinction * share(i), lambda, range_mm };
@@ -205,18 +206,17 @@ impl FlakeSizes {
         }
     }
 
-    /// Whether there are any.
+    /// Whether there are any flakes.
     pub fn is_any(&self) -> bool {
         self.parts.iter().any(|p| p.extinction_per_m > 0.0)
     }
 
-    /// Smallest and largest diameter, mm, between which flakes of a part hide all but a hundredth at either end of what
-    /// they hide.
+    /// Diameters, mm, below and above which flakes of a part hide a hundredth each of the area that the part hides.
     pub fn range_mm(&self, part: usize) -> (f64, f64) {
         (self.diameter_mm(part, 0.01), self.diameter_mm(part, 0.99))
     }
 
-    /// Diameter, mm, up to which flakes of a part hide a share of what they hide.
+    /// Diameter, mm, up to which flakes of a part hide `share` of the area that the part hides.
     pub fn diameter_mm(&self, part: usize, share: f64) -> f64 {
         let p = &self.parts[part];
         let (mut low, mut high) = p.range_mm;
@@ -227,7 +227,7 @@ impl FlakeSizes {
         (low * high).sqrt()
     }
 
-    /// Area of the discs' ice of flakes of a part between two diameters (mm), m^2 in a cubic metre: half of their
+    /// Area that the ice of a part's flakes between two diameters (mm) hides, m^2 per cubic metre: half of their
     /// extinction.
     pub fn area_between(&self, part: usize, a_mm: f64, b_mm: f64) -> f64 {
         let p = &self.parts[part];
@@ -239,7 +239,7 @@ impl FlakeSizes {
         self.parts.iter().map(|p| p.extinction_per_m).sum()
     }
 
-    /// Terminal speed here of a flake of a part, m/s.
+    /// Terminal speed at this altitude of a flake of a part, m/s.
     pub fn speed_m_s(&self, part: usize, diameter_mm: f64) -> f64 {
         self.factor
             * match part {
@@ -249,8 +249,8 @@ impl FlakeSizes {
             }
     }
 
-    /// Density times diameter with which the flakes make the rate, g/cm^3 mm; 0 without any. Of discs that hide a times
-    /// [`AREA_RATIO`] of a m^2 in a cubic metre, falling at v, the rate is (2/3) c a v.
+    /// Density times diameter, c, with which the flakes give the rate, g/cm^3 mm; 0 without flakes. If the area of the
+    /// discs is a (m^2 per cubic metre, of which [`AREA_RATIO`] is ice) and they fall at v, the rate is (2/3) c a v.
     pub fn density_mm_g_cm3(&self) -> f64 {
         const PANELS: usize = 64;
         let mut flux = 0.0;
@@ -260,14 +260,14 @@ impl FlakeSizes {
                 flux += self.speed_m_s(part, d) * 0.5 * self.parts[part].extinction_per_m / PANELS as f64;
             }
         }
-        // kg/(m^2 s) of a density of c kg/m^3 m: a sphere of density c / D weighs (pi / 6) c D^2, its disc is (pi / 4)
-        // D^2.
+        // Rate in kg/(m^2 s) for c = 1 kg/m^2. A sphere of density c / D has the mass (pi/6) c D^2 and a disc of (pi/4)
+        // D^2; the ratio is (2/3) c.
         let of_one = flux / AREA_RATIO * (2.0 / 3.0);
         if of_one > 0.0 { self.rate_mm_h / 3600.0 / of_one } else { 0.0 }
     }
 }
 
-/// Area of a flake's ice as it is seen, m^2, of a diameter in mm.
+/// Area that the ice of a flake hides, m^2; `diameter_mm` is the diameter of the flake.
 pub fn seen_area_m2(diameter_mm: f64) -> f64 {
     AREA_RATIO * FRAC_PI_4 * diameter_mm * diameter_mm * 1e-6
 }
@@ -279,7 +279,7 @@ mod tests {
     use crate::weather::{Precipitation, PrecipitationKind, Weather, derive};
     use glam::DVec3;
 
-    /// Returns the precipitation where no report of visibility says how much it hides.
+    /// Returns precipitation whose extinction follows from the rate, without a reported visibility.
     fn falling(kind: PrecipitationKind, rate: f64) -> Falling {
         let weather = Weather { precipitation: Precipitation::of(kind, rate), ..Weather::default() };
         let f = derive(&weather).unwrap().precipitation;

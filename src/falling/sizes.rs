@@ -1,8 +1,9 @@
-//! How many drops of which size there are, and what follows: water, extinction, flux through surfaces, the sizes that
-//! drawn drops get.
+//! Drop size distribution of rain and drizzle, and what follows from it: water in the air, extinction, flux onto
+//! surfaces, and random diameters for drops that are drawn.
 //!
-//! Each kind of rain is N(D) = N0 exp(-lambda D) from 0.1 to 6 mm. Lambda is the published one; N0 is set so that the
-//! drops, falling at Gunn and Kinzer's speeds, make the rate: a published N0 misses it by up to 18 %.
+//! Each kind of rain has an exponential distribution, N(D) = N0 exp(-lambda D) from 0.1 to 6 mm. Lambda is the
+//! published one. N0 is set so that the drops make the given rate at Gunn and Kinzer's fall speeds: with a published N0
+//! the rate is wrong by up to 18 %.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -16,55 +17,56 @@ use crate::{numerics::GAUSS_4, weather::Falling};
 pub const SMALLEST_MM: f64 = 0.1;
 /// Largest drop, mm.
 pub const LARGEST_MM: f64 = 6.0;
-/// Below this rate, mm/h, sizes stay and numbers alone go down.
+/// Rate, mm/h, below which lambda stays constant and only the number of drops falls.
 const LEAST_RATE_MM_H: f64 = 1e-6;
-/// Most distributions that lie over each other at a place: the weather's three and one of each area.
+/// Most distributions that overlap at a place: the three of the weather, and one for each rain area.
 const PARTS: usize = 3 + super::MAX_AREAS;
-/// Entries of [`DropSizes::diameter_table`].
+/// Number of entries in [`DropSizes::diameter_table`].
 pub const TABLE_LEN: usize = 64;
 
-/// Lambda = slope R^-0.21 per mm: widespread rain (Marshall and Palmer 1948), showers and drizzle (Joss, Thams and
-/// Waldvogel 1968).
+/// Slopes in lambda = slope R^-0.21, 1/mm, with the rate R in mm/h: widespread rain (Marshall and Palmer 1948), showers
+/// and drizzle (both by Joss, Thams and Waldvogel 1968).
 const SLOPES_PER_MM: [f64; 3] = [4.1, 3.0, 5.7];
 
 /// One exponential distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SizeMode {
-    /// At diameter 0, 1/(m^3 mm).
+    /// N0, the number density at diameter 0, 1/(m^3 mm).
     n0: f64,
-    /// 1/mm.
+    /// Decay with diameter, 1/mm.
     lambda: f64,
 }
 
-/// The drops in a cubic metre of rain and drizzle. Plain data, any thread.
+/// Drop size distribution of rain and drizzle in the air: a sum of exponential ones. Plain data, for any thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropSizes {
     parts: [SizeMode; PARTS],
+    /// Fall speeds over those at sea level.
     factor: f64,
 }
 
-/// By what a size counts.
+/// Quantity that weights the diameters of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weight {
-    /// By the drops in a volume of air.
+    /// Number of drops in a volume of air.
     Number,
-    /// By the drops that land on level ground.
+    /// Number of drops that land on level ground.
     Flux,
-    /// By the water that lands on level ground.
+    /// Water that lands on level ground.
     Water,
 }
 
-/// Flux of precipitation on a surface.
+/// Flux of precipitation onto a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceFlux {
-    /// Drops, 1/(m^2 s).
+    /// Number of drops, 1/(m^2 s).
     pub drops_per_m2_s: f64,
     /// Water, mm/h.
     pub rate_mm_h: f64,
 }
 
-/// Where integrals over all sizes are taken: diameter (mm), weight (mm), sea-level speed (m/s); four points of Gauss in
-/// each interval of Gunn and Kinzer's table.
+/// Nodes of integrals over all sizes: diameter (mm), weight (mm), terminal speed at sea level (m/s). Each interval of
+/// Gunn and Kinzer's table has four Gauss-Legendre nodes.
 static NODES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
     let inside = GUNN_KINZER.iter().map(|e| e.0).filter(|d| *d > SMALLEST_MM);
     let edges: Vec<f64> = std::iter::once(SMALLEST_MM).chain(inside).chain([LARGEST_MM]).collect();
@@ -75,11 +77,11 @@ static NODES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
     nodes.collect()
 });
 
-/// mm/h of drops of diameter 1 mm, one per m^3, falling at 1 m/s.
+/// Rain rate, mm/h, that one drop of 1 mm per m^3 makes when falling at 1 m/s.
 const RATE: f64 = PI / 6.0 * 3.6e-3;
 
 impl SizeMode {
-    /// Creates the part of `rate_mm_h` where speeds are `factor` times those at sea level.
+    /// Creates the distribution that makes `rate_mm_h` where drops fall `factor` times as fast as at sea level.
     fn new(slope_per_mm: f64, rate_mm_h: f64, factor: f64) -> Self {
         let lambda = slope_per_mm * libm::pow(rate_mm_h.max(LEAST_RATE_MM_H), -0.21);
         if rate_mm_h <= 0.0 {
@@ -89,7 +91,7 @@ impl SizeMode {
         Self { n0: rate_mm_h / (unit * factor), lambda }
     }
 
-    /// Integral of D^`power` N(D) from `a` to `b` mm: by parts, from power 0 up.
+    /// Integral of D^`power` N(D) from `a` to `b` mm, found by integration by parts from power 0 upward.
     fn moment(&self, power: u32, a: f64, b: f64) -> f64 {
         if self.n0 <= 0.0 {
             return 0.0;
@@ -111,13 +113,14 @@ fn filled(parts: [SizeMode; 3]) -> [SizeMode; PARTS] {
 }
 
 impl DropSizes {
-    /// Creates the sizes of rain and drizzle as they fall at the ground, where drops are `speed_factor` times as fast
-    /// as at sea level ([`super::drops::altitude_factor`]). Showers have fewer and larger drops of the same water. The
-    /// rate holds at every altitude: numbers go down as speeds go up.
+    /// Creates the distribution of the rain and drizzle in `falling`, where drops fall `speed_factor` times as fast as
+    /// at sea level ([`super::drops::altitude_factor`]). Showers have fewer and larger drops for the same water. The
+    /// rate does not change with altitude: where drops fall faster there are fewer.
     pub fn new(falling: &Falling, speed_factor: f64) -> Self {
         let showers = falling.showers.clamp(0.0, 1.0);
         let rates = [falling.rain_mm_h * (1.0 - showers), falling.rain_mm_h * showers, falling.drizzle_mm_h];
-        // What blends into another kind of rain keeps the sizes of the whole.
+        // Steady rain and showers share one rate, and each has the lambda of that whole rate: while one blends into the
+        // other only the numbers of drops change.
         let whole = [falling.rain_mm_h, falling.rain_mm_h, falling.drizzle_mm_h];
         let part = |i: usize| {
             let whole_part = SizeMode::new(SLOPES_PER_MM[i], whole[i], speed_factor);
@@ -127,14 +130,15 @@ impl DropSizes {
         Self { parts: filled([part(0), part(1), part(2)]), factor: speed_factor }
     }
 
-    /// Creates the sizes of steady rain of a rate, mm/h.
+    /// Creates the distribution of steady rain of `rate_mm_h`.
     pub fn of_rain(rate_mm_h: f64, speed_factor: f64) -> Self {
         let part = |i, rate| SizeMode::new(SLOPES_PER_MM[i], rate, speed_factor);
         Self { parts: filled([part(0, rate_mm_h), part(1, 0.0), part(2, 0.0)]), factor: speed_factor }
     }
 
-    /// The mixture of which `share` is that of a `region`, as far as it has `begun` to fall, and the rest these; both
-    /// where drops are as fast.
+    /// Mixes in the drops of a rain area: `share` (0 to 1) of the result is the area's distribution `region`, the rest
+    /// is this one. `begun` (0 to 1) is the part of the area's rain that has left its cloud. Both distributions must
+    /// have the same speed factor.
     pub fn covered(mut self, region: &Self, share: f64, begun: f64) -> Self {
         for part in &mut self.parts {
             part.n0 *= 1.0 - share;
@@ -152,7 +156,7 @@ impl DropSizes {
         self.parts.iter().map(f).sum()
     }
 
-    /// N(D), 1/(m^3 mm).
+    /// Number density N(D), 1/(m^3 mm); 0 outside of the range of sizes.
     pub fn density_per_m3_mm(&self, diameter_mm: f64) -> f64 {
         if !(SMALLEST_MM..=LARGEST_MM).contains(&diameter_mm) {
             return 0.0;
@@ -160,7 +164,7 @@ impl DropSizes {
         self.sum(|p| if p.n0 > 0.0 { p.n0 * libm::exp(-p.lambda * diameter_mm) } else { 0.0 })
     }
 
-    /// Drops of diameters from `a_mm` to `b_mm`, 1/m^3.
+    /// Number of drops with diameters from `a_mm` to `b_mm`, 1/m^3.
     pub fn number_between(&self, a_mm: f64, b_mm: f64) -> f64 {
         let (a, b) = (a_mm.max(SMALLEST_MM), b_mm.min(LARGEST_MM));
         if a < b { self.sum(|p| p.moment(0, a, b)) } else { 0.0 }
@@ -170,7 +174,7 @@ impl DropSizes {
         self.sum(|p| p.moment(power, SMALLEST_MM, LARGEST_MM))
     }
 
-    /// Drops, 1/m^3.
+    /// Number of drops, 1/m^3.
     pub fn number_per_m3(&self) -> f64 {
         self.moment(0)
     }
@@ -180,12 +184,12 @@ impl DropSizes {
         PI / 6.0 * 1e-3 * self.moment(3)
     }
 
-    /// Extinction, 1/m, any visible wavelength: geometric optics, Q = 2.
+    /// Extinction at any visible wavelength, 1/m, by geometric optics (Q = 2).
     pub fn extinction_per_m(&self) -> f64 {
         PI / 2.0 * 1e-6 * self.moment(2)
     }
 
-    /// Extinction, 1/m, by drops of diameters from `a_mm` to `b_mm`.
+    /// Extinction by the drops with diameters from `a_mm` to `b_mm`, 1/m.
     pub fn extinction_between_per_m(&self, a_mm: f64, b_mm: f64) -> f64 {
         let (a, b) = (a_mm.max(SMALLEST_MM), b_mm.min(LARGEST_MM));
         if a < b { PI / 2.0 * 1e-6 * self.sum(|p| p.moment(2, a, b)) } else { 0.0 }
@@ -197,7 +201,7 @@ impl DropSizes {
         if number > 0.0 { self.moment(1) / number } else { 0.0 }
     }
 
-    /// Diameter below which half of the water in the air is, mm; 0 without rain.
+    /// Median volume diameter, mm: half of the water in the air is in smaller drops. 0 without rain.
     pub fn median_volume_diameter_mm(&self) -> f64 {
         let half = 0.5 * self.moment(3);
         if half <= 0.0 {
@@ -217,25 +221,25 @@ impl DropSizes {
         self.factor * terminal_speed_m_s(diameter_mm)
     }
 
-    /// Fall speeds, m/s, of the drops in the middle of each third of the water.
+    /// Fall speeds, m/s, of three drops, each in the middle of a third of the water that lands, from small to large.
     pub(crate) fn thirds_m_s(&self) -> [f64; 3] {
         let sizes = self.diameters(Weight::Water, SMALLEST_MM, [1.0 / 6.0, 0.5, 5.0 / 6.0]);
         sizes.map(|d| self.speed_m_s(d))
     }
 
-    /// Returns the flux on level ground in still air; the rate is the one that the sizes were made for.
+    /// Returns the flux onto level ground in still air. Its rate is the one for which the distribution was made.
     pub fn on_level_ground(&self) -> SurfaceFlux {
         self.on_surface(DVec3::Z, DVec3::ZERO)
     }
 
-    /// Returns the flux on one side of a surface: the side that `normal` (unit, east, north, up) points away from, in
-    /// air that moves by `air_m_s` relative to the surface. Each size arrives along its own slant; those that come from
+    /// Returns the flux onto the front of a surface. `normal` is the unit vector out of that front (east, north, up);
+    /// `air_m_s` is the velocity of the air relative to the surface. Each size arrives at its own slant. Drops from
     /// behind do not count.
     pub fn on_surface(&self, normal: DVec3, air_m_s: DVec3) -> SurfaceFlux {
         self.on_surface_of(normal, air_m_s, |_| true)
     }
 
-    /// As [`DropSizes::on_surface`] of the drops whose fall speed, m/s, `comes` lets through.
+    /// Returns [`DropSizes::on_surface`] for only those drops whose fall speed, m/s, satisfies `comes`.
     pub(crate) fn on_surface_of(&self, normal: DVec3, air_m_s: DVec3, comes: impl Fn(f64) -> bool) -> SurfaceFlux {
         let carried = air_m_s.dot(normal);
         let (mut drops, mut water) = (0.0, 0.0);
@@ -260,14 +264,14 @@ impl DropSizes {
         }
     }
 
-    /// Diameter, mm, above which the share 1 - `u` lies of all drops larger than `smallest_mm`, for each `u` in
-    /// \[0, 1\], ascending: what a drop of the uniform random number `u` has. Within 1e-4 mm.
+    /// Diameters, mm, at the quantiles `u` (\[0, 1\], 0 is the smallest drop) of the drops above `smallest_mm`,
+    /// weighted by `weight`. A uniform random `u` gives a random drop. Within 1e-4 mm.
     pub fn diameters<const N: usize>(&self, weight: Weight, smallest_mm: f64, u: [f64; N]) -> [f64; N] {
         const CELLS: usize = 512;
         let smallest = smallest_mm.clamp(SMALLEST_MM, 0.99 * LARGEST_MM);
         let step = (LARGEST_MM - smallest) / CELLS as f64;
         let edge = |i: usize| smallest + i as f64 * step;
-        // What lies above each edge, summed from the top, where the shares are the smallest.
+        // The integral above each edge, summed from the top, where the terms are smallest.
         let mut above = [0.0; CELLS + 1];
         let mut upper = self.weighed(weight, LARGEST_MM);
         for i in (0..CELLS).rev() {
@@ -280,7 +284,7 @@ impl DropSizes {
             let wanted = above[0] * (1.0 - u);
             let i = above.partition_point(|a| *a > wanted);
             match i.checked_sub(1) {
-                // The share is nearly linear in a cell this small.
+                // In a cell this small the integral is nearly linear.
                 Some(i) if i < CELLS => edge(i) + step * (above[i] - wanted) / (above[i] - above[i + 1]),
                 Some(_) => LARGEST_MM,
                 None => smallest,
@@ -288,9 +292,9 @@ impl DropSizes {
         })
     }
 
-    /// [`DropSizes::diameters`] as a table for the GPU, mm: entry i belongs to u = 1 - (1 - i / 63)^4, so that the few
-    /// large drops get as many entries as the many small ones. Read by [`table_diameter_mm`]. Without rain every entry
-    /// is `smallest_mm`.
+    /// Table of [`DropSizes::diameters`] for the GPU, mm. Entry i is the diameter at u = 1 - (1 - i / 63)^4: the few
+    /// large drops get as many entries as the many small ones. [`table_diameter_mm`] reads the table. Without rain
+    /// every entry is `smallest_mm`.
     pub fn diameter_table(&self, weight: Weight, smallest_mm: f64) -> [f32; TABLE_LEN] {
         let u: [f64; TABLE_LEN] = std::array::from_fn(|i| {
             let left = 1.0 - i as f64 / (TABLE_LEN - 1) as f64;
@@ -300,9 +304,9 @@ impl DropSizes {
     }
 }
 
-/// Diameter, mm, of the uniform random number `u` in \[0, 1\]: linear between the entries at 63 (1 - (1 - u)^(1/4)).
-/// Off by at most 1 % from 0.5 mm on, by number and by flux (tested); no table for sizes by water; for shaders the
-/// fourth root is two square roots.
+/// Diameter, mm, at the quantile `u` (\[0, 1\]) of a [`DropSizes::diameter_table`], interpolated linearly at entry
+/// 63 (1 - (1 - u)^(1/4)). Wrong by at most 1 % for drops from 0.5 mm on, by [`Weight::Number`] and [`Weight::Flux`]
+/// (tested); not meant for [`Weight::Water`]. Shaders take the fourth root as two square roots.
 pub fn table_diameter_mm(table: &[f32; TABLE_LEN], u: f64) -> f64 {
     let x = (TABLE_LEN - 1) as f64 * (1.0 - (1.0 - u.clamp(0.0, 1.0)).sqrt().sqrt());
     let i = (x as usize).min(TABLE_LEN - 2);
@@ -323,7 +327,7 @@ mod tests {
         Falling { rain_mm_h: rain, drizzle_mm_h: drizzle, showers, ..dry }
     }
 
-    /// Integral of `f` times N over all sizes by 20 000 midpoints, which knows nothing of the nodes.
+    /// Integral of `f` times N(D) over all sizes by 20 000 midpoints, independent of the nodes.
     fn integral(sizes: &DropSizes, f: impl Fn(f64) -> f64) -> f64 {
         let n = 20_000;
         let h = (LARGEST_MM - SMALLEST_MM) / f64::from(n);
@@ -374,11 +378,11 @@ mod tests {
     fn published_numbers_miss_the_rate_by_the_published_factor() {
         for (r, factor) in [(1.0, 1.183), (10.0, 1.164), (25.0, 1.131), (100.0, 1.051)] {
             let raw = 8000.0 / DropSizes::of_rain(r, 1.0).parts[0].n0;
-            // The published factors reach beyond the 6 mm where the drops end.
+            // The published factors count drops beyond 6 mm too, where the distribution here ends.
             assert!((raw / factor - 1.0).abs() < 0.022, "{r}: {raw}");
         }
         let heavier = DropSizes::of_rain(25.0, 1.0).median_volume_diameter_mm();
-        // 3.67 / lambda, the median of an endless exponential distribution.
+        // 3.67 / lambda is the median volume diameter of an exponential distribution without limits.
         assert!((heavier * 4.1 * 25f64.powf(-0.21) / 3.67 - 1.0).abs() < 0.03, "{heavier}");
     }
 
@@ -397,7 +401,8 @@ mod tests {
         }
     }
 
-    /// The types of rain by kind and flag, with the diameters (mm) that an older system's types have.
+    /// Types of rain in an older system: the kind and the flag for showers that stand for each, and its range of
+    /// diameters, mm.
     #[test]
     fn types_of_rain_have_the_drops_of_their_kind() {
         use crate::weather::{Precipitation, PrecipitationKind, Weather, derive};
@@ -462,16 +467,16 @@ mod tests {
         let level = s.on_level_ground();
         let (up, east) = (DVec3::Z, DVec3::X);
         let wind = DVec3::new(-12.0, 5.0, 0.0);
-        // Wind along a surface changes nothing; a wall in still air stays dry, a ceiling always.
+        // Wind along a surface changes nothing. In still air a wall stays dry; a ceiling always does.
         assert!((s.on_surface(up, wind).rate_mm_h / level.rate_mm_h - 1.0).abs() < 1e-12);
         assert_eq!(s.on_surface(east, DVec3::ZERO).rate_mm_h, 0.0);
         assert_eq!(s.on_surface(-up, wind).drops_per_m2_s, 0.0);
-        // On a wall to windward the flux is the number times the wind: 12 m/s through a square metre.
+        // On a windward wall the flux is the drops in a cubic metre times the wind speed against the wall, 12 m/s.
         let wall = s.on_surface(east, wind);
         assert!((wall.drops_per_m2_s / (12.0 * s.number_per_m3()) - 1.0).abs() < 1e-4);
         assert!((wall.rate_mm_h / (12.0 * 3.6 * s.liquid_g_m3()) - 1.0).abs() < 1e-4);
         assert_eq!(s.on_surface(-east, wind).rate_mm_h, 0.0, "the lee wall is dry");
-        // A roof that leans away is reached by the fast drops only.
+        // On a roof that slopes away from the wind only the fast drops land.
         for tilt in [0.3f64, 0.7, 1.2, 1.5] {
             let normal = DVec3::new(-tilt.sin(), 0.0, tilt.cos());
             let towards = |d: f64| (s.speed_m_s(d) * normal.z - wind.dot(normal)).max(0.0);
@@ -480,7 +485,7 @@ mod tests {
             assert!((got.drops_per_m2_s - want.0).abs() < 2e-3 * level.drops_per_m2_s, "{tilt}: {got:?} {want:?}");
             assert!((got.rate_mm_h - want.1).abs() < 2e-3 * level.rate_mm_h, "{tilt}: {got:?} {want:?}");
         }
-        // A screen that drives at 25 m/s through still air meets what a wall in that wind does.
+        // A windscreen that drives at 25 m/s through still air gets as much as a wall in a wind of 25 m/s.
         let screen = s.on_surface(east, DVec3::new(-25.0, 0.0, 0.0));
         assert!((screen.drops_per_m2_s / (25.0 * s.number_per_m3()) - 1.0).abs() < 1e-4);
     }

@@ -1,4 +1,4 @@
-//! Layer of fog as it is set, and the law by which fog is drawn: such a layer, or one of the older simulators'.
+//! Settings of a fog layer, and the law by which fog is drawn: a physical layer, or a fog law of older simulators.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,21 +9,21 @@ use crate::{
     moment::MAX_EXTINCTION_PER_M,
 };
 
-/// How the layer's extinction changes with altitude. Altitudes in metres above mean sea level.
+/// Change of the layer's extinction with altitude. Altitudes are in metres above mean sea level.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Profile {
-    /// Constant between base and top with linear flanks, so that the optical depth has no kink.
+    /// Constant between base and top, with linear flanks at both, so that the optical depth has no kink.
     Slab {
-        /// Where the lower flank is half-way, m; far below the ground for fog that lies on it.
+        /// Altitude of the middle of the lower flank, m. Fog that lies on the ground has it far below the ground.
         base_m: f64,
-        /// Where the upper flank is half-way, m.
+        /// Altitude of the middle of the upper flank, m.
         top_m: f64,
-        /// Height of the lower flank, m, \[0, 1e5\].
+        /// Vertical extent of the lower flank, m, \[0, 1e5\].
         base_softness_m: f64,
-        /// Height of the upper flank, m, \[0, 1e5\]: dust thins out to twice its scale height, 40 km at most.
+        /// Vertical extent of the upper flank, m, \[0, 1e5\]. That of dust is twice its scale height, at most 40 km.
         top_softness_m: f64,
     },
-    /// Falls as exp(-(h - reference)/scale); not cut off above or below.
+    /// Proportional to exp(-(h - reference)/scale) at every altitude h; not cut off above or below.
     Exponential {
         /// Altitude at which the extinction has its stated value, m.
         reference_m: f64,
@@ -32,18 +32,18 @@ pub enum Profile {
     },
 }
 
-/// Horizontal patches (METAR BCFG): the extinction is multiplied by 1 + amount (s - 1), where s is a smooth pattern of
-/// mean 1, fixed to the world, that reaches 0 between the patches.
+/// Horizontal patches (METAR BCFG). The extinction is multiplied by 1 + amount (s - 1), where s is a smooth pattern
+/// with a mean of 1 that reaches 0 between the patches. The pattern is fixed to the world, shifted by `drift_m`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Patches {
-    /// 0 = even layer, 1 = clear gaps between patches.
+    /// Strength of the pattern: 0 is an even layer, 1 has clear gaps between patches.
     pub amount: f64,
     /// Typical distance between patches, m, \[5, 1e5\].
     pub size_m: f64,
-    /// Chooses the pattern.
+    /// Seed of the pattern.
     #[serde(with = "seed_text")]
     pub seed: u64,
-    /// How far the wind has carried the pattern (east, north), m.
+    /// Distance over which the wind has carried the pattern, (east, north), m.
     pub drift_m: [f64; 2],
 }
 
@@ -56,7 +56,7 @@ pub struct FogLayer {
     pub angstrom: f64,
     /// Single-scattering albedo per channel, \[0, 1\]; 1 for water.
     pub albedo: [f64; 3],
-    /// Shape in altitude.
+    /// Change of the extinction with altitude.
     pub profile: Profile,
     /// Phase function.
     pub phase: Phase,
@@ -65,7 +65,7 @@ pub struct FogLayer {
 }
 
 impl FogLayer {
-    /// Water fog with the extinction of a budget's layer, lying on everything below `top_m`; droplets of 15 um.
+    /// Water fog of this extinction that fills everything below `top_m`, with droplets of 15 um.
     pub fn ground_fog(extinction_per_m: f64, top_m: f64, top_softness_m: f64) -> Self {
         Self {
             extinction_per_m,
@@ -77,10 +77,10 @@ impl FogLayer {
         }
     }
 
-    /// Refuses what is not a layer, by name.
+    /// Checks that every field is within its range.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         check_range("fog.extinction_per_m", self.extinction_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
         check_range("fog.angstrom", self.angstrom, -1.0, 4.0, "")?;
@@ -119,22 +119,22 @@ impl FogLayer {
     }
 }
 
-/// Fog that is drawn.
+/// Law by which fog is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Law {
-    /// None.
+    /// No fog.
     Clear,
     /// A physical layer, lit by sun and sky.
     Layer(FogLayer),
-    /// One of the older simulators' laws.
+    /// A fog law of older simulators.
     Compatibility(CompatibilityLaw),
 }
 
 impl Law {
-    /// Refuses what is not a law, by name.
+    /// Checks the fields of the layer or of the fog law.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         match self {
             Self::Clear => Ok(()),
@@ -144,7 +144,7 @@ impl Law {
     }
 }
 
-/// A number of 64 bits as text: TOML's end at 63.
+/// A 64-bit number as text, because an integer in TOML has 63 bits and a sign.
 mod seed_text {
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
 

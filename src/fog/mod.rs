@@ -1,47 +1,58 @@
-//! Visibility and fog drawn into the host's picture from its depth.
+//! Fog and reduced visibility, drawn into the host's picture by the picture's depth.
 //!
 //! # Model
 //! A reported visibility V is the meteorological optical range: the distance at which a black target keeps 5 % of its
-//! contrast at 550 nm, so the **total** extinction at the station is -ln(0.05)/V = 2.996/V (Koschmieder 1924; WMO-No.
-//! 8, 2018, chapter 9). Air and tall haze have their own room; what they leave is a **layer** near the ground: fog or
-//! mist between a base and a soft top ([`Profile::Slab`]), or thinning exponentially ([`Profile::Exponential`]), and
-//! what **falls** through it from the clouds ([`FallingLayer`]), on a flat or curved planet.
+//! contrast at 550 nm. The **total** extinction at the station is therefore -ln(0.05)/V = 2.996/V (Koschmieder 1924;
+//! WMO-No. 8, 2018, chapter 9). A part of it is that of air and tall haze, which another room draws. This room draws
+//! the rest, on a flat or a curved planet, as two media:
 //!
-//! * Transmittance along a ray is closed form: path lengths between the layer's altitudes on a sphere
+//! * a **layer** near the ground: fog or mist between a base and a soft top ([`Profile::Slab`]), or a layer that thins
+//!   exponentially ([`Profile::Exponential`]);
+//! * what **falls** from the clouds, through the layer ([`FallingLayer`]).
+//!
+//! Methods:
+//!
+//! * The transmittance along a ray is a closed form: path lengths between the layer's altitudes on a sphere
 //!   ([`reference::layer_path`]), exact to f32.
-//! * Fog and what falls have heights and an optical depth of their own. What is drawn as drops, flakes or stones near
-//!   the camera is left out of the latter ([`reference::fog_beside_drops`]).
-//! * Light: the layer is lit by the direct sun and the sky above and the ground below. Multiple scattering is the
-//!   delta-Eddington solution (Joseph, Wiscombe and Weinman 1976) of the layer, solved per channel in f64 once a frame
-//!   ([`light`]); the first scattering keeps its true phase function (Nakajima and Tanaka 1988). Both are integrated
-//!   along the pixel's ray in closed form. So fog conserves energy: it neither glows nor blackens, is bright at noon,
-//!   brighter toward a low sun, dark at night, and everything far away converges to the same radiance, ground or sky.
-//! * Patches are waves whose mean along a ray is closed form too ([`patterns`]). They go with the air; where the wind
-//!   goes round something, a ray over that place takes the lag of the air there in eight parts (`wind/detour.rs`).
-//! * The compatibility laws of older simulators (linear, exponential, exponential squared, on range or plane
-//!   distance) are [`CompatibilityLaw`].
+//! * The layer and what falls each have their own heights and optical depth. Near the camera a share of what falls is
+//!   drawn as drops, flakes or stones; that share is subtracted from its optical depth
+//!   ([`reference::fog_beside_drops`]).
+//! * The direct sun, the sky above and the ground below light the layer. Multiple scattering is the delta-Eddington
+//!   solution (Joseph, Wiscombe and Weinman 1976) of the layer, solved per channel in f64 once a frame ([`light`]). The
+//!   first scattering keeps its true phase function (Nakajima and Tanaka 1988). Both are integrated along the pixel's
+//!   ray in closed form. Fog therefore conserves energy: it neither glows nor blackens. It is bright at noon, brighter
+//!   toward a low sun, and dark at night. With distance, ground and sky converge to the same radiance.
+//! * Patches are a sum of waves, whose mean along a ray is also a closed form ([`patterns`]). They drift with the air.
+//!   Air that flows round an obstacle lags behind (`wind/detour.rs`). The part of a ray over such a place is divided
+//!   into eight, each with the lag at its middle.
+//! * [`CompatibilityLaw`] has the fog laws of older simulators: linear, exponential or exponential squared, over the
+//!   distance from the camera or from its plane.
 //!
 //! # Error
-//! The shader follows [`mod@reference`] to f32. The light of [`mod@reference`] itself, against adding and doubling over
-//! optical depths from 0.3 to 16 and three heights of the sun, more than 8 degrees from the sun: median 4.5 %, 95th
-//! percentile 19 %, the mean over directions within 12 %, in haze and in droplets
-//! (`cargo test --test fog adding_and_doubling`). A layer's transmittance is exact. The mean of led patches along a ray
-//! is within 1.4 % of the layer's mean density of a fine sum at p95 (`cargo test --lib tests::detour -- --nocapture`).
+//! The shader agrees with [`mod@reference`] to f32. The transmittance of a layer is exact. Two errors are tested:
+//!
+//! * Radiance of [`mod@reference`] against adding and doubling, in haze and in droplets, for optical depths from 0.3 to
+//!   16, three heights of the sun, and directions more than 8 degrees from the sun. The median error is 4.5 %, the 95th
+//!   percentile 19 %; the mean over directions is within 12 % (`cargo test --test fog adding_and_doubling`).
+//! * Mean of patches along a ray past an obstacle to the wind, against a fine sum. For 95 % of the rays the error is at
+//!   most 1.4 % of the layer's mean density (`cargo test --lib tests::detour -- --nocapture`).
 //!
 //! # Cost
-//! One function call in the full-screen composition (`shaders/fog/lookup.wgsl`, `fog_along`): no loop, no texture, no
-//! table; about 12 exponentials and 12 square roots a pixel, fewer where light is neutral. On a software driver a frame
-//! in patches takes 25 copies of a picture, and 38 where the wind leads them (`cargo bench --bench speed -- copies`).
+//! Fog is one function call in the full-screen composition (`shaders/fog/lookup.wgsl`, `fog_along`), with no loop,
+//! texture or table. It takes about 12 exponentials and 12 square roots a pixel, fewer where all channels have the same
+//! extinction and albedo. On a software driver a frame in patches costs as much as 25 full-screen copies of the
+//! picture, and 38 where the patches flow round obstacles (`cargo bench --bench speed -- copies`).
 //!
 //! # Axes
-//! Rays and directions are (east, north, up) at the camera, as everywhere in a frame.
+//! Rays and directions are (east, north, up) at the camera, as in all of a frame.
 //!
 //! # What it needs of others
-//! [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo. [`Viewpoint`]: altitude of the
-//! camera, planet and ground. Extinctions of air, haze and what falls, by species, at the station.
+//! * [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo.
+//! * [`Viewpoint`]: altitude of the camera, planet and ground.
+//! * Extinctions at the station of air, of haze, and of each kind of precipitation.
 //!
 //! # What is not here
-//! No `passes.rs`: the composition draws the layer, which has no pass of its own.
+//! There is no `passes.rs`: the composition draws the layer, which has no pass of its own.
 
 #[cfg(not(feature = "lab"))]
 pub(crate) mod candidates;

@@ -1,20 +1,24 @@
-//! The fog along one ray in f64: the truth that tests and queries call, and the twin of `shaders/fog/lookup.wgsl`
-//! (same names, same order of parameters). A ray's way through the layer is in `path.rs`.
+//! Fog along one ray in f64. Tests and queries call it, and it is the twin of `shaders/fog/lookup.wgsl`, with the same
+//! names and the same order of parameters. `path.rs` has the ray's path through the layer.
 //!
 //! # Light along the ray
-//! The source J of scattered light (see [`super::light`]) depends on the depth below the layer's top only. Along the
-//! ray that depth is taken as linear in optical path (exact for flat layers), so each exponential of it integrates to
-//! an exponential. Of all scattering the share f is forward, about the ray, and leaves what arrives there; the transfer
-//! equation, whose extinction is the full one, becomes dI/dt = I - (1 - f) J - f K, with K the mean of the radiance
-//! over the forward lobe. A host's object is attenuated by the full depth, and what it hides is its share of the same
-//! field: a black target's contrast is e^-t.
+//! The source J of scattered light (see [`super::light`]) depends only on the optical depth below the layer's top.
+//! Along the ray this depth is taken as linear in optical path, which is exact for flat layers. Each exponential of the
+//! depth then integrates to an exponential.
 //!
-//! * **Steep rays**: the lobe is narrow beside the angle to the horizon, K is the field in the ray's own direction, and
-//!   the solution is the scaled one, L = integral of J e^(-t') dt' + I_behind (e^(-t') - e^-t), with scaled depth t'.
-//! * **Rays near the level**: the lobe sees the light of the fog above and the dark of the ground below. With s the
-//!   ray's cosine, w the lobe's spread and r = sqrt(s^2 + w^2), the share (1 + s/r)/2 of it looks up with the mean
-//!   cosine r (from E max(x, 0) = (s + r)/2 of a spread distribution), and each half is J, seen through to its edge
-//!   (sky or ground) by e^(-depth/r). Without this, dark ground shone through fog of any depth toward the horizon.
+//! The share f of the scattering goes forward, into a lobe. To the ray it adds the mean radiance K over the lobe about
+//! the ray. With the full (unscaled) optical depth t, the transfer equation is dI/dt = I - (1 - f) J - f K. The light
+//! of a host's object is attenuated by the full depth. The object hides the share e^-t of the light from behind it, so
+//! the contrast of a black target is e^-t.
+//!
+//! * **Steep rays**: the lobe is narrow compared with the ray's angle to the horizon, so K is the radiance in the ray's
+//!   own direction. The solution is the delta-scaled one, L = integral of J e^(-t') dt' + I_behind (e^(-t') - e^-t),
+//!   with the scaled depth t'.
+//! * **Rays near the level**: the lobe sees the bright fog above and the dark ground below. Let s be the ray's cosine
+//!   with the vertical, w the lobe's spread and r = sqrt(s^2 + w^2). The share (1 + s/r)/2 of the lobe looks up, with
+//!   the mean cosine r, because a distribution of cosines x about s with this spread has E max(x, 0) = (s + r)/2. Each
+//!   part of the lobe sees J and, behind it, the sky or the ground through the transmittance e^(-depth/r). Without
+//!   this, dark ground would show through fog of any depth toward the horizon.
 
 use glam::DVec3;
 
@@ -26,11 +30,13 @@ use super::patterns::patch_mean;
 use super::phase::{fog_phase_after, share_unscattered};
 use crate::{numerics::smooth, scene::depth::RANGE_SKY_M};
 
-/// A band of this height, rad, or more covers all of the sky: pi, less what f32 rounds away.
+/// Height of the compatibility laws' sky band, rad, from which on it covers all of the sky: pi less a margin for f32
+/// rounding.
 const WHOLE_SKY: f64 = 0.999 * std::f64::consts::PI;
 
-/// Spread of the forward lobe in elevation, rad: how far from the level a ray must be to see only ground or only sky
-/// through it. Fitted to adding and doubling (`tests/fog/light.rs`): .1 to .2 serve droplets and haze alike.
+/// Spread of the forward lobe in elevation, rad. The lobe of a ray much farther than this from the level sees only sky
+/// or only ground. Fitted to adding and doubling (`tests/fog/light.rs`); values from 0.1 to 0.2 suit both droplets and
+/// haze.
 pub(super) const FORWARD_SPREAD: f64 = 0.12;
 
 /// Effect of fog on one pixel: `colour * transmittance + radiance`.
@@ -38,19 +44,19 @@ pub(super) const FORWARD_SPREAD: f64 = 0.12;
 pub struct FogSample {
     /// Light scattered into the ray.
     pub radiance: DVec3,
-    /// Share of the object's light that is left.
+    /// Share of the light from behind the fog that is left, per channel.
     pub transmittance: DVec3,
-    /// Distance, m, up to which the air counts as before the fog. The mean from which the fog's light comes, less what
-    /// lies inside a layer that keeps the light from the air too.
+    /// Distance, m, up to which the air is drawn in front of the fog. It is the mean distance from which the fog's
+    /// light comes, shortened inside the layer, where less light reaches the air ([`FogModel::lit`]).
     pub distance: f64,
-    /// Share of the air's light between the eye and an object that is left inside a layer that keeps the light from it.
+    /// Share that is left of the air's light between the eye and an object: the layer shades the air inside it.
     pub shade: f64,
-    /// Light of sun or moon that is scattered once into the ray and no more, over the phase function.
+    /// Light of sun or moon that is scattered exactly once, into the ray, divided by the phase function.
     pub once: DVec3,
 }
 
-/// Integral of e^(-rate s) ds over [0, path], times `first`, where `last` = first e^(-rate path): in the form that does
-/// not divide by a small rate.
+/// Integral of first e^(-rate s) ds over [0, path], where `last` = first e^(-rate path). A series replaces the division
+/// by a small rate.
 fn attenuated(rate: DVec3, first: DVec3, last: DVec3, path: DVec3) -> DVec3 {
     let one = |rate: f64, first: f64, last: f64, path: f64| {
         let x = rate * path;
@@ -67,7 +73,7 @@ fn attenuated(rate: DVec3, first: DVec3, last: DVec3, path: DVec3) -> DVec3 {
     )
 }
 
-/// Mean of x over \[0, 1\] weighted by e^(-r x), within 2 % of 1/r - 1/(e^r - 1).
+/// Mean of x over \[0, 1\] with the weight e^(-r x): an approximation of 1/r - 1/(e^r - 1) within 2 %.
 fn mean_place(r: f64) -> f64 {
     let size = r.abs().min(1e6);
     let p = 1.0 + size * (1.0 / 3.0 + size / 5.7);
@@ -79,7 +85,7 @@ fn exp3(v: DVec3) -> DVec3 {
     DVec3::new(v.x.exp(), v.y.exp(), v.z.exp())
 }
 
-/// The source of scattered light at scaled depth `a` below the top, looking with cosine `mu`.
+/// Source of scattered light at the scaled depth `a` below the top, for a ray whose cosine with the vertical is `mu`.
 fn source_at(m: &FogModel, mu: f64, beam: DVec3, a: DVec3) -> DVec3 {
     let mut j = m.constant.at(mu) + m.slope.at(mu) * a + beam * exp3(-a * m.inverse_mu0);
     if m.absorbing {
@@ -89,8 +95,9 @@ fn source_at(m: &FogModel, mu: f64, beam: DVec3, a: DVec3) -> DVec3 {
     j
 }
 
-/// The source of scattered light, integrated over the optical `path` between the scaled depths `a` below the top, of
-/// which `transmitted` is left at its end; `slant` is the loss of depth per unit of path.
+/// Integral of the source of scattered light over the optical path `path`, whose ends lie at the scaled depths `a`
+/// below the top. `transmitted` is the transmittance of the path; `slant` is the decrease of the depth per unit of
+/// path.
 fn source_along(
     m: &FogModel,
     mu: f64,
@@ -116,11 +123,13 @@ fn source_along(
     l
 }
 
-/// Light scattered into a ray through the layer, looking with cosine `mu`, `entry_mu` where it enters; `versine` = 1 -
-/// cos of its angle with the sun, `ends` the depths above its ends at 550 nm, `depth` along it.
+/// Returns the light that is scattered into a ray, and [`FogSample::once`]. `mu` is the ray's cosine with the vertical
+/// at its start, `entry_mu` the cosine where it enters the layer; `versine` is 1 - cos of its angle with the sun.
+/// `ends` are the optical depths above the two ends of the ray, `depth` is the optical depth along it, both at 550 nm.
 ///
-/// Below the ground's level (a hollow of the host's terrain) the field is mirrored: it has fog below it, not the bare
-/// ground that is known at the level only. Answers the radiance, and what [`FogSample::once`] is.
+/// An end of the ray may lie below the ground's level, in a hollow of the host's terrain. Fog, not ground, lies below
+/// that level there, but the solution ends at the level. The light below the level is therefore taken as the mirror
+/// image of the light above it.
 fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64; 2], depth: f64) -> [DVec3; 2] {
     let mirrored = |a: f64| if a > m.depth_total { (2.0 * m.depth_total - a).max(0.5 * m.depth_total) } else { a };
     let above = ends.map(mirrored);
@@ -129,25 +138,25 @@ fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64
     let path = m.scaling * depth;
     let full = m.ratio * depth;
     let (through, left) = (exp3(-path), exp3(-full));
-    // Loss of depth below the top per path, where the light comes from: the mean cosine of a short path, that of the
-    // entry for one whose end is not seen.
+    // Decrease of the depth below the top per unit of path, where the light comes from: the mean over the path if it is
+    // optically thin, the value at the entry if it is so thick that its end is not seen.
     let mean = if depth > 1e-12 { ((ends[0] - ends[1]) / depth).clamp(-1.0, 1.0) } else { entry_mu };
     let slant = entry_mu + (mean - entry_mu) * 2.0 / (2.0 + depth);
     let level = DVec3::splat(slant);
-    // Optical path of the sunlight by way of the mean place where the ray scatters it: half of what is scattered
-    // forward counts as lost. All of it leaves a seam where rays pass from ground to sky; none, too bright an aureole
-    // in haze.
+    // Optical path of sunlight from the top to the mean place where it is scattered, and on to the eye. For that mean,
+    // half of the forward scattering counts as extinction. If all of it counted, a seam would show where rays pass from
+    // ground to sky; if none did, the aureole in haze would be too bright.
     let way = depth * mean_place((1.0 - slant * m.inverse_mu0) * (1.0 - 0.5 * m.forward) * depth);
     let sunlight = ((above[0] - slant * way) * m.inverse_mu0 + way).max(0.0);
     let [even, peak] = fog_phase_after(&m.lobes, m.forward, m.smooth, sunlight, versine);
     let beam = m.beam.at(mu) + m.first * even;
-    // The ray's way on, to the ground or out of the top.
+    // Continuation of the ray beyond its end, to the ground or out of the top.
     let toward_sky = (slant * 100.0 + 0.5).clamp(0.0, 1.0);
     let rest = (total - a[1]).lerp(a[1], toward_sky) / slant.abs().max(0.005);
     let edge = a[1] - level * rest;
     let clear = exp3(-rest);
 
-    // Sunlight scattered once, about the sun: its peak is as narrow as the scaling takes it to be.
+    // Aureole: the peak of sunlight scattered once. It is narrow enough for the delta-scaled solution at any elevation.
     let rate = DVec3::splat(1.0 - slant * m.inverse_mu0);
     let [b0, b1, b2] = [a[0], a[1], edge].map(|a| exp3(-a * m.inverse_mu0));
     let beyond = attenuated(rate, b1, b2 * clear, rest);
@@ -164,8 +173,9 @@ fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64
     [(wide.lerp(narrow, steep) + aureole).max(DVec3::ZERO), once]
 }
 
-/// Light in a ray near the level, whose forward lobe reaches up and down: every scattering on the way counts, the
-/// forward ones with the mean of what the lobe sees ([`FORWARD_SPREAD`]). `full`: the unscaled path and what it leaves.
+/// Light in a ray near the level, whose forward lobe reaches above and below the horizon. Extinction is unscaled, and
+/// forward scattering adds the mean radiance over the lobe ([`FORWARD_SPREAD`]). `full` is the unscaled optical path
+/// and its transmittance.
 fn grazing_light(m: &FogModel, mu: f64, beam: DVec3, a: [DVec3; 2], slant: f64, full: [DVec3; 2]) -> DVec3 {
     let [path, left] = full;
     let one = DVec3::ONE;
@@ -184,14 +194,15 @@ fn grazing_light(m: &FogModel, mu: f64, beam: DVec3, a: [DVec3; 2], slant: f64, 
     source_along(m, mu, beam, a, s, path, left) + (one - unforward) * edges
 }
 
-/// Returns the effect of fog on the pixel whose ray starts at `origin` (relative to the camera) along `direction`, with
-/// an object at `range` metres, or `plane` from the camera's plane; [`RANGE_SKY_M`] for sky.
+/// Returns the effect of fog on the pixel whose ray starts at `origin`, relative to the camera, along `direction`. The
+/// object that the pixel shows lies at the distance `range`, m, along the ray and `plane`, m, from the camera's plane.
+/// Both are [`RANGE_SKY_M`] for sky.
 pub fn fog_along(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, plane: f64) -> FogSample {
     fog_beside_drops(m, origin, direction, range, plane, 0.0)
 }
 
-/// As [`fog_along`], where `hidden` of the optical depth of what falls is drawn as drops, flakes and stones: that much
-/// of it is left out, and never more than all of it.
+/// Returns the effect of fog as [`fog_along`] does, where drops, flakes and stones are drawn one by one. `hidden` is
+/// their optical depth, which is subtracted from that of what falls, down to 0.
 pub fn fog_beside_drops(
     m: &FogModel,
     origin: DVec3,
@@ -209,15 +220,14 @@ pub fn fog_beside_drops(
     }
 }
 
-/// Returns what the layer and what falls show and let through: each has an optical depth of its own, both share their
-/// light.
+/// Returns the effect of the layer and of what falls. Each has its own optical depth; both are lit as one medium.
 fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, hidden: f64) -> FogSample {
     let mu = direction.z.clamp(-1.0, 1.0);
     let lift = origin.z;
     let h0 = m.altitude + lift + 0.5 * m.curvature * (origin.length_squared() - lift * lift);
     let mut t = range;
     if range >= RANGE_SKY_M && mu < 0.0 && h0 > m.ground {
-        // A ray without an object ends in the ground, if it meets it.
+        // A ray without an object ends at the ground if it meets the ground.
         let d = h0 - m.ground;
         let c = d * (2.0 - m.curvature * d);
         let disc = mu * mu - m.curvature * c;
@@ -245,8 +255,9 @@ fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, hidden: 
     let entry_mu = (mu + m.curvature * path.first).clamp(-1.0, 1.0);
     let [radiance, once] = layer_radiance(m, mu, entry_mu, versine, ends, depth);
     let transmittance = exp3(-m.ratio * depth);
-    // Mean distance of the scattered light, as in an even medium between entry and exit. The air is drawn as lit from a
-    // free sky: where the layer lets only a share down, only that share of the air inside counts.
+    // Mean distance from which scattered light comes, as in an even medium between entry and exit. The air is drawn as
+    // if lit by an open sky. Only the share `lit` of that light reaches the air inside the layer, so only that share of
+    // the distance inside the layer counts.
     let distance = path.first + (path.last - path.first) * mean_place(depth) * m.lit;
     let inside = if range >= RANGE_SKY_M { 0.0 } else { ((path.last - path.first) / range.max(1e-3)).min(1.0) };
     FogSample { radiance, transmittance, distance, shade: 1.0 - (1.0 - m.lit) * inside, once }

@@ -1,4 +1,4 @@
-//! Budget of a view for a picture, and how much the picture's parts matter.
+//! Budget for the pictures of a view: error, time, and the host's wishes for single parts.
 
 use super::parts::Part;
 use crate::error::{Error, Result, check_range};
@@ -6,36 +6,41 @@ use crate::error::{Error, Result, check_range};
 /// Wish of a host for one part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wish {
-    /// How much it matters to those who look, [0, 1]: what is left out first under a budget of time. Default `None`: as
-    /// its room says ([`Part::importance`]).
+    /// Importance of the part to viewers, [0, 1]. A budget of time leaves out the less important parts first. Default
+    /// `None`: the part's own [`Part::importance`].
     pub importance: Option<f64>,
-    /// Draw it at this rung, whatever the tolerance and the time, so that all channels of a simulator draw alike; what
-    /// of these that does not keep is still said ([`Plan::gave_way`](super::Plan::gave_way)). Default `None`: plan.
+    /// Rung at which the part is drawn whatever the tolerance and the time, so that all channels of a simulator draw it
+    /// alike. [`Plan::gave_way`](super::Plan::gave_way) still names the limit that the picture then breaks. Default
+    /// `None`: the plan chooses the rung.
     pub rung: Option<usize>,
 }
 
-/// Limits of a view's picture: the time that it may take, and how wrong it may be.
+/// Limits for a view's pictures: the time that one may take, and how wrong it may be.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Budget {
-    /// Largest error of what is left out, (0, 1]: 95th percentile over pixels of |Y' - Y| / (Y + 0.01 white) after
-    /// exposure, and ten times as much at the worst pixel. Default `None`: everything is drawn. 0.01 is not seen.
+    /// Largest error by what is left out, (0, 1]. The error of a pixel is |Y' - Y| / (Y + 0.01 white) after exposure,
+    /// where Y is the luminance with everything drawn and Y' that of the planned picture. The 95th percentile over
+    /// pixels must be at most this, and the worst pixel at most ten times this. 0.01 is not seen. Default `None`:
+    /// everything is drawn, unless `milliseconds` says otherwise.
     pub tolerance: Option<f64>,
-    /// Longest time of the weather in a frame, ms, (0, 1000]: parts are left out as the times reported by
-    /// [`View::report_time`](crate::frame::View::report_time) demand. It wins over the tolerance. Default `None`.
+    /// Longest time that the weather may take in a frame, ms, (0, 1000]. It wins over the tolerance. The times that the
+    /// host reports by [`View::report_time`](crate::frame::View::report_time) decide how many parts are left out.
+    /// Default `None`: no limit.
     pub milliseconds: Option<f64>,
-    /// Wishes for single parts, in the order of [`frame::PARTS`](crate::frame::PARTS); parts that it does not reach
-    /// have none. Default: empty.
+    /// Wishes for single parts, in the order of [`frame::PARTS`](crate::frame::PARTS). The list may be shorter: the
+    /// parts after its end have no wish. Default: empty.
     pub wishes: Vec<Wish>,
 }
 
 impl Budget {
-    /// Draws just these rungs, in the order of the list of parts.
+    /// Creates a budget that pins each part to its rung in `rungs`, in the order of
+    /// [`frame::PARTS`](crate::frame::PARTS).
     pub fn pinned(rungs: &[usize]) -> Self {
         let wishes = rungs.iter().map(|rung| Wish { rung: Some(*rung), ..Wish::default() }).collect();
         Self { wishes, ..Self::default() }
     }
 
-    /// Refuses what is out of range, by name.
+    /// Checks that all fields are in range; the error names the one that is not.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -68,7 +73,7 @@ impl Budget {
         Ok(())
     }
 
-    /// Whether it asks what pictures show.
+    /// Whether planning by this budget needs the gauge.
     pub(crate) fn gauges(&self) -> bool {
         self.tolerance.is_some() || self.milliseconds.is_some()
     }

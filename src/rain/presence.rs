@@ -1,11 +1,13 @@
-//! Presence of rain and ice before a picture, and what of the weather's own rain falls at an altitude.
+//! Presence of rain and ice that a view draws in front of its picture, and how much of the weather's own rain falls at
+//! an altitude.
 
 use crate::{
     particles::begun_in_steps,
     weather::{Conditions, Falling},
 };
 
-/// Returns what falls in a weather without rain areas, as much of it as has left its cloud at an altitude.
+/// Returns the weather's own precipitation (rain areas left out), reduced to the share that has left its cloud at an
+/// altitude.
 pub(super) fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
     let share = begun_in_steps(c.begun(altitude_m));
     let f = c.precipitation;
@@ -18,10 +20,10 @@ pub(super) fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
     }
 }
 
-/// Presence of rain and ice before a picture.
+/// Presence of rain and ice that a view draws in front of its picture.
 #[derive(Clone, Copy)]
 pub(super) struct RainPresence {
-    /// Drops near the camera, as streaks or cones.
+    /// Drops near the camera, drawn as streaks or cones.
     pub drops: bool,
     /// Hail and ice pellets near the camera.
     pub stones: bool,

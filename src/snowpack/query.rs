@@ -1,4 +1,4 @@
-//! Queries of the host about lying snow.
+//! Answers to a host's questions about lying snow.
 
 use glam::DVec3;
 
@@ -10,64 +10,65 @@ use super::{
 };
 use crate::{error::Result, surroundings::SnowHere, weather::snow_cover, world::World};
 
-/// How a wheel holds on the ground, as far as snow decides it.
+/// Class of the grip that snow leaves to a wheel. Conditions are tested in the order bare, slush, ice, packed; snow
+/// that meets none of them is loose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[repr(u32)]
 pub enum SnowFriction {
-    /// No snow, or too little to matter.
+    /// Snow covers less than 0.3 of the ground.
     #[default]
     Bare = 0,
     /// Loose, dry snow.
     Loose = 1,
-    /// Snow above 350 kg/m^3: pressed or packed by wind.
+    /// Snow denser than 350 kg/m^3: pressed, or packed by wind.
     Packed = 2,
-    /// Slush: more than half of the water that it can hold.
+    /// Slush: snow with more than half of the liquid water that it can hold.
     Slush = 3,
-    /// Above 650 kg/m^3: frozen hard.
+    /// Snow denser than 650 kg/m^3: frozen hard.
     Ice = 4,
 }
 
-/// Snow at a place.
+/// Lying snow at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct SnowAt {
     /// Depth, m.
     pub depth_m: f64,
-    /// Ice and water, kg/m^2.
+    /// Mass of ice and liquid water, kg/m^2.
     pub mass_kg_m2: f64,
-    /// kg/m^3; 0 without snow.
+    /// Density, kg/m^3; 0 without snow.
     pub density_kg_m3: f64,
-    /// Held water over what the snow can hold, 0 to 1.
+    /// Liquid water in the snow over the most that it can hold, 0 to 1.
     pub wetness: f64,
-    /// Albedo of visible light; 0 without snow.
+    /// Albedo for visible light; 0 without snow.
     pub albedo: f64,
-    /// Share of the ground that it covers.
+    /// Share of the ground that snow covers, 0 to 1.
     pub cover: f64,
-    /// The place above or below the one asked for on the snow's surface, in the host's world; off the host's terrain
-    /// the place itself.
+    /// Point of the snow's surface above or below the queried position, in the host's world. Off the host's terrain,
+    /// and more than 3 m above it, the queried position itself.
     pub surface: DVec3,
-    /// How a wheel holds.
+    /// Grip of a wheel.
     pub friction: SnowFriction,
 }
 
-/// Where the mass of the snow on the host's terrain came from and went since it began, kg: what began, fell and blew in
-/// is what lies, blew out, ran off, sublimated and was taken.
+/// Mass balance of the snow on the host's terrain since the snow began, kg:
+/// began + fallen + blown in = lying + blown out + ran off + sublimated + taken.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct SnowBooks {
-    /// Mass that lay when the terrain was set.
+    /// Snow that lay on a part of the terrain when the host set that part.
     pub began_kg: f64,
     /// Snow and ice that fell, and rain that fell on snow.
     pub fallen_kg: f64,
-    /// Came in over the terrain's border.
+    /// Snow that the wind blew in over the terrain's border.
     pub blown_in_kg: f64,
-    /// Left over the terrain's border.
+    /// Snow that the wind blew out over the terrain's border.
     pub blown_out_kg: f64,
-    /// Melted and ran to the ground.
+    /// Melt water and rain that ran off to the ground.
     pub ran_off_kg: f64,
-    /// Went to the air.
+    /// Snow that sublimated into the air.
     pub sublimated_kg: f64,
-    /// The host took away.
+    /// Snow that the host took away, with what lay on removed terrain and where standing boxes were set.
     pub taken_kg: f64,
-    /// Lies.
+    /// Snow that lies on the terrain now.
     pub lying_kg: f64,
 }
 
@@ -98,7 +99,8 @@ impl HeldSnow {
     /// Snow at a place; see [`Context::snow_at`](crate::context::Context::snow_at).
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place.
+    /// [`crate::Status::InvalidArgument`] if `position` is not finite, farther than 1e12 m from the world's origin, or
+    /// not at an altitude in \[-1e4, 1e9\] m.
     pub fn at(&self, world: &World, position: DVec3) -> Result<SnowAt> {
         world.frame.place_at("position", position)?;
         let country = self.country(world);
@@ -126,7 +128,7 @@ impl HeldSnow {
         Ok(SnowAt::of(here, mass, site.position(local)))
     }
 
-    /// Where the mass on the host's terrain came from and went; `None` without a terrain.
+    /// Mass balance of the snow on the host's terrain; `None` without a terrain.
     pub fn books(&self) -> Option<SnowBooks> {
         let (_, field) = self.field()?;
         let kg = |units: i64| units as f64 / UNITS * field.cell_m * field.cell_m;

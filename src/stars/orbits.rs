@@ -1,40 +1,42 @@
-//! Where the planets stand round the sun: the series of Simon, Bretagnon, Chapront, Chapront-Touze, Francou and Laskar
-//! (1994, A&A 282, 663, section 6): mean elements to the second order in time, and the largest periodic terms of the
-//! semi-major axis and the mean longitude.
+//! Positions of the planets relative to the sun, by the series of Simon, Bretagnon, Chapront, Chapront-Touze, Francou
+//! and Laskar (1994, A&A 282, 663, section 6). The series gives mean elements to the second order in time, and the
+//! largest periodic terms of the semi-major axis and the mean longitude.
 //!
-//! The authors give the greatest errors of the longitude over 1800 to 2050 as 4" for Mercury, 5" for Venus, 6" for the
-//! Earth, 17" for Mars, 71" for Jupiter, 81" for Saturn and 86" for Uranus, and half as much again over 1000 to 3000.
+//! The authors state the largest errors of the longitude between 1800 and 2050: 4" for Mercury, 5" for Venus, 6" for
+//! the Earth, 17" for Mars, 71" for Jupiter, 81" for Saturn and 86" for Uranus. Between 1000 and 3000 the errors are
+//! 1.5 times as large.
 
 use glam::{DMat3, DVec3};
 
-/// Rate of the arguments of the periodic terms, rad a millennium.
+/// Rate of the common argument of the periodic terms, rad per millennium. Each term takes an integer multiple of it.
 const ARGUMENT_RATE: f64 = 0.359_536_20;
-/// Size of a unit of the periodic terms' amplitudes, au or rad.
+/// Unit of the amplitudes of the periodic terms, au or rad.
 const AMPLITUDE: f64 = 1e-7;
 /// Obliquity of the ecliptic of J2000.0 (IAU 1976), arc seconds.
 const OBLIQUITY_AS: f64 = 84_381.448;
 
-/// One planet's elements: polynomials in millennia of terrestrial time since J2000.0, mean ecliptic and equinox of
-/// J2000.0.
+/// Orbital elements of one planet, referred to the mean ecliptic and equinox of J2000.0. Each element is a polynomial
+/// in millennia of terrestrial time since J2000.0; its coefficients are listed from the constant upwards.
 pub(super) struct Orbit {
     /// Semi-major axis, au.
     axis: [f64; 3],
-    /// Mean longitude, degrees, then arc seconds.
+    /// Mean longitude: the constant in degrees, the other coefficients in arc seconds.
     longitude: [f64; 3],
     eccentricity: [f64; 3],
-    /// Longitude of the perihelion, degrees, then arc seconds.
+    /// Longitude of the perihelion, in units as for `longitude`.
     perihelion: [f64; 3],
-    /// Inclination, degrees, then arc seconds.
+    /// Inclination, in units as for `longitude`.
     inclination: [f64; 3],
-    /// Longitude of the ascending node, degrees, then arc seconds.
+    /// Longitude of the ascending node, in units as for `longitude`.
     node: [f64; 3],
-    /// Multiples of the argument, cosines and sines of the axis; the last grows with time.
+    /// Periodic terms of the semi-major axis, one a column: multiple of the argument, amplitude of the cosine,
+    /// amplitude of the sine. The last term grows with time.
     axis_terms: [[f64; 9]; 3],
-    /// Multiples of the argument, cosines and sines of the longitude; the last two grow with time.
+    /// Periodic terms of the mean longitude, in rows as for `axis_terms`. The last two terms grow with time.
     longitude_terms: [[f64; 10]; 3],
 }
 
-/// The barycentre of Earth and moon; it lies within 4700 km of the Earth's centre.
+/// Orbit of the barycentre of Earth and moon, which lies within 4700 km of the Earth's centre.
 pub(super) static EARTH: Orbit = Orbit {
     axis: [1.000_001_017_8, 0.0, 0.0],
     longitude: [100.466_456_83, 1_295_977_422.834_29, -2.044_11],
@@ -54,7 +56,7 @@ pub(super) static EARTH: Orbit = Orbit {
     ],
 };
 
-/// Mercury, Venus, Mars, Jupiter, Saturn and Uranus.
+/// Orbits of Mercury, Venus, Mars, Jupiter, Saturn and Uranus, in this order.
 pub(super) static PLANETS: [Orbit; 6] = [
     Orbit {
         axis: [0.387_098_309_8, 0.0, 0.0],
@@ -166,7 +168,7 @@ pub(super) static PLANETS: [Orbit; 6] = [
     },
 ];
 
-/// Periodic terms of which those from number `steady` on grow with time.
+/// Sum of the periodic terms `t` millennia after J2000.0. Terms from index `steady` on are multiplied by `t`.
 fn periodic<const N: usize>(terms: &[[f64; N]; 3], t: f64, steady: usize) -> f64 {
     let [multiples, cosines, sines] = terms;
     let term = |k: usize| {
@@ -176,7 +178,7 @@ fn periodic<const N: usize>(terms: &[[f64; N]; 3], t: f64, steady: usize) -> f64
     AMPLITUDE * (0..N).map(term).sum::<f64>()
 }
 
-/// Eccentric anomaly of a mean one: Kepler's equation, by Newton's method.
+/// Eccentric anomaly for a mean anomaly, both in rad: solves Kepler's equation by Newton's method.
 fn eccentric_anomaly(mean: f64, eccentricity: f64) -> f64 {
     (0..8).fold(mean + eccentricity * mean.sin(), |e, _| {
         e - (e - eccentricity * e.sin() - mean) / (1.0 - eccentricity * e.cos())
@@ -184,8 +186,8 @@ fn eccentric_anomaly(mean: f64, eccentricity: f64) -> f64 {
 }
 
 impl Orbit {
-    /// Place from the sun's centre at `t` millennia of terrestrial time since J2000.0, au, in the mean equator and
-    /// equinox of J2000.0.
+    /// Position relative to the sun's centre, au, in the mean equator and equinox of J2000.0, at `t` millennia of
+    /// terrestrial time since J2000.0.
     pub fn heliocentric(&self, t: f64) -> DVec3 {
         let polynomial = |c: &[f64; 3]| c[0] + t * (c[1] + t * c[2]);
         let angle = |c: &[f64; 3]| (c[0] + t * (c[1] + t * c[2]) / 3600.0).to_radians();
@@ -193,7 +195,8 @@ impl Orbit {
         let longitude = angle(&self.longitude) + periodic(&self.longitude_terms, t, 8);
         let (eccentricity, perihelion) = (polynomial(&self.eccentricity), angle(&self.perihelion));
         let anomaly = eccentric_anomaly(longitude - perihelion, eccentricity);
-        // In the orbit's plane, x to the perihelion; then turned by its three angles, and to the equator.
+        // x and y lie in the orbit's plane, x towards the perihelion. Three rotations lead to the ecliptic, one more to
+        // the equator.
         let x = axis * (anomaly.cos() - eccentricity);
         let y = axis * (1.0 - eccentricity * eccentricity).sqrt() * anomaly.sin();
         let (inclination, node) = (angle(&self.inclination), angle(&self.node));
@@ -209,7 +212,7 @@ fn obliquity() -> f64 {
     (OBLIQUITY_AS / 3600.0).to_radians()
 }
 
-/// From the mean ecliptic to the mean equator, both of J2000.0.
+/// Rotation from the mean ecliptic to the mean equator, both of J2000.0.
 pub(super) fn ecliptic_to_equator() -> DMat3 {
     DMat3::from_rotation_x(obliquity())
 }

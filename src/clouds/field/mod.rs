@@ -1,19 +1,22 @@
-//! Field: where there is cloud. A map and solid noise, cut by the threshold that follows from a layer's cover, or from
-//! the cover that a host's map or a rain area gives a part of it; and the layers over a place.
+//! Cloud field: where there is cloud in a layer, and which layers are over a place. A threshold cuts the clouds out of
+//! a map and solid noise. The threshold follows from the layer's cover, or from the cover that a host's map or a rain
+//! area gives to a part of the layer.
 //!
 //! # Model
-//! A map over the plane says how strongly cloud grows at a place, as a number z that is spread normally about 0: two
-//! sheets of noise, each made normal by ranks, whose periods have no common multiple, so that no tile shows. Cloud is
-//! where z exceeds a threshold that follows from the cover ([`cover`]); how far it exceeds it says how high the
-//! cloud grows there. Solid noise frays its edges. The two sheets glide against each other, which makes clouds form and
-//! dissolve, without end and as a function of time alone.
+//! A horizontal map says how strongly cloud grows at each place, as a number z with a normal distribution about 0. The
+//! map is the sum of two sheets of noise, each made normal by its ranks. The periods of the sheets have no common
+//! multiple, so that no repetition shows. There is cloud where z exceeds a threshold that follows from the cover
+//! ([`cover`]). The excess e = z - threshold says how high the cloud grows there. Solid noise frays the cloud's edges.
+//! The two sheets glide against each other, so that clouds form and dissolve without end, as a function of time alone.
 //!
-//! Of a place with the excess e = z - threshold and the height h, 0 at the base to 1 at the top, the extinction is that
-//! of the layer times (e - dome(h) + rough (noise - 1/2)) / soft, held between 0 and 1. Over heaps the dome grows with
-//! e, so that no top is cut flat.
+//! At a place with excess e and height h, from 0 at the base to 1 at the top, the extinction is that of the layer times
+//! (e - dome(h) + rough (noise - 1/2)) / soft, clamped to 0 and 1. Here dome(h) is the excess that cloud needs at
+//! height h, rough and soft are fields of [`Shape`], and noise is the solid noise, scaled to about 0 to 1. In cumulus
+//! the dome also grows with e, so that no top is cut flat.
 //!
-//! Ice is drawn out along the wind that carries it, and leans with height: heads stand downwind of what falls from
-//! them. Cumulonimbus has an anvil, a sheet below the layer's top about its towers (`anvil_needs`).
+//! Ice cloud is stretched along the wind that carries it, and leans with height: the head of a fibre lies downwind of
+//! the crystals that have fallen from it. Cumulonimbus has an anvil, a sheet below the layer's top around its towers
+//! (`anvil_needs` in `shape.rs`).
 
 pub(crate) mod cells;
 pub mod cover;

@@ -1,5 +1,5 @@
-//! Light that a place in a cloud scatters towards an eye. Twin of `shaders/clouds/light.wgsl`; the model is told in the
-//! folder's `mod.rs`.
+//! Light that a place in a cloud scatters towards the eye. `shaders/clouds/light.wgsl` is the twin on the GPU; `mod.rs`
+//! of this folder describes the model.
 
 use std::sync::Arc;
 
@@ -7,53 +7,55 @@ use glam::DVec3;
 
 use super::transport::{Scattering, Table, Transport, leak_rate, table_at};
 
-/// How fast the faces' shares of the beam part, over the rate at which light turns: photons through the field ask for
-/// half as much (`lab photons`), photons through cubes for one and a half times as much.
+/// Steepness of the logistic function that divides the beam between top and side, in units of [`Scattering::turning`].
+/// Photons traced through the cloud field (`lab photons`) fit best with 0.5, photons through cubes with 1.5.
 const PART_RATE: f64 = 1.0;
 
-/// Scaled depths of cloud about a place.
+/// Scaled optical depths of cloud around a place; [`super::transport`] has the scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Depths {
     /// Straight up.
     pub above: f64,
     /// Straight down.
     pub below: f64,
-    /// Along the way to the sun.
+    /// Towards the sun.
     pub to_sun: f64,
-    /// Level, to the side where the sun stands.
+    /// Horizontally, to the side where the sun stands.
     pub near: f64,
-    /// Level, the other way.
+    /// Horizontally, away from the sun.
     pub far: f64,
-    /// Level, across the sun's direction, to the nearer side.
+    /// Horizontally, across the sun's direction, to the nearer edge of the cloud.
     pub left: f64,
-    /// Level, across the sun's direction, to the other side.
+    /// Horizontally, across the sun's direction, to the farther edge of the cloud.
     pub right: f64,
 }
 
-/// Source terms of one medium under one sun.
+/// Tables of source terms for one medium under one sun. The cloud around a place counts as a box.
 pub struct Sources {
-    /// The medium.
+    /// Scattering of the medium.
     pub scattering: Scattering,
-    /// Unit, towards the sun; (east, north, up).
+    /// Unit vector towards the sun, (east, north, up).
     pub to_sun: DVec3,
-    /// Under the beam on the top; on the underside where the sun is below the horizon.
+    /// Source terms under the beam on the top of the box, or on its underside if the sun is below the horizon.
     pub top: Table,
-    /// Under the beam on the side.
+    /// Source terms under the beam on the side of the box.
     pub side: Table,
-    /// Under a sky of radiance 1.
+    /// Source terms under a sky of radiance 1.
     pub sky: Arc<Table>,
 }
 
-/// Light that a place scatters: of the sun's irradiance, 1/sr; of the radiance of sky and ground, 1.
+/// Light that a place scatters into a direction per unit of scaled depth, as shares of the light that arrives at the
+/// cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scattered {
-    /// Scattered part of the sun's irradiance on what faces it.
+    /// Share of the sun's irradiance on a surface facing it, 1/sr, with all orders of scattering.
     pub sun: f64,
-    /// Part of that irradiance that is scattered for the first time, to be multiplied by the phase function.
+    /// Share of that irradiance that is scattered for the first time. Multiply it by the phase function for the light
+    /// that is scattered once.
     pub once: f64,
-    /// Scattered part of the sky's radiance.
+    /// Share of the sky's radiance.
     pub sky: f64,
-    /// Scattered part of the ground's radiance.
+    /// Share of the ground's radiance.
     pub ground: f64,
 }
 
@@ -61,15 +63,18 @@ fn legendre_sum(terms: [f64; 4], x: f64) -> f64 {
     terms[0] + x * terms[1] + (1.5 * x * x - 0.5) * terms[2] + (2.5 * x * x - 1.5) * x * terms[3]
 }
 
-/// Extent of a box from side to side as diffusing light has it: to where it would be dark.
+/// Extent of a box for diffusing light, in scaled depth: its width, and beyond each side the distance at which the
+/// extrapolated light would be 0.
 fn reach(near_depth: f64, far_depth: f64, turning: f64) -> f64 {
     (near_depth + far_depth).max(1e-3) + 1.42 / turning
 }
 
-/// Returns the profile of light from side to side of a box, of mean 1, and its slope along the axis. In a box no wider
-/// than it is high, a cosine; the wider the box, the more of its light leaves through top and base before it comes to a
-/// side, and the more even it is between them. At the face that the light falls on it is even too, however narrow the
-/// box: `entered` is the depth behind that.
+/// Returns the profile of light between two opposite sides of a box, and its slope along that axis. `near` and `far`
+/// are the depths from the place to the sides. The mean of the profile is 1.
+///
+/// The profile is a cosine in a box no wider than its `height`. In a wider box more of the light leaves through top and
+/// base before it reaches a side, so the profile is more even. It is also even near the face that the light falls on,
+/// in a box of any width; `entered` is the depth of the place behind this face.
 fn across([near, far]: [f64; 2], turning: f64, height: f64, entered: f64) -> (f64, f64) {
     let extent = reach(near, far, turning);
     let b = std::f64::consts::PI / extent;
@@ -82,7 +87,7 @@ fn across([near, far]: [f64; 2], turning: f64, height: f64, entered: f64) -> (f6
 }
 
 impl Sources {
-    /// Creates the source terms of a medium under a sun.
+    /// Creates the tables for a medium under a sun.
     pub fn new(medium: &Transport, to_sun: DVec3) -> Self {
         let (cosine, sine) = (to_sun.z.clamp(-1.0, 1.0).abs(), to_sun.truncate().length());
         Self {
@@ -94,14 +99,15 @@ impl Sources {
         }
     }
 
-    /// Returns the light that a place at these depths scatters into `direction` (the way light goes; (east, north,
-    /// up)), through the scaled depth `to_eye` of more cloud.
+    /// Returns the light that a place at these depths scatters into `direction`: the direction in which light travels,
+    /// (east, north, up). `to_eye` is the scaled depth of cloud between the place and the eye. It only lowers the
+    /// forward peak of the first scattering; the caller applies the extinction on that path.
     pub fn scattered(&self, depths: &Depths, direction: DVec3, to_eye: f64) -> Scattered {
         let of = &self.scattering;
         let turning = of.turning();
         let (sun, up) = (self.to_sun, direction.z);
         let (sine, cosine) = (sun.truncate().length(), sun.z.abs().max(0.01));
-        // Light goes away from the sun.
+        // Horizontal direction in which sunlight travels.
         let level = if sine > 1e-6 { -sun.truncate() / sine } else { glam::DVec2::X };
         let along = direction.truncate().dot(level);
         let sideways = direction.truncate().dot(glam::DVec2::new(-level.y, level.x));
@@ -109,7 +115,7 @@ impl Sources {
         let (above, below) = if sun.z >= 0.0 { (depths.above, depths.below) } else { (depths.below, depths.above) };
         let down = if sun.z >= 0.0 { -up } else { up };
 
-        // A box of which one axis is upright, one along the sun's level direction, one across.
+        // The box has a vertical axis, a horizontal axis along the sun's direction, and one across it.
         let (height, depth) = (reach(above, below, turning), reach(depths.near, depths.far, turning));
         let [sides_a, sides_c] = [(depths.near, depths.far, along), (depths.left, depths.right, sideways)]
             .map(|(near, far, x)| (across([near, far], turning, height, above), x));
@@ -120,7 +126,7 @@ impl Sources {
         let spread = 1.0 / turning * of.scaled_albedo() * of.moments[1] / (4.0 * std::f64::consts::PI);
         let through = |terms: [f64; 4], axis: f64, sides: [((f64, f64), f64); 2]| {
             let [((s1, d1), x1), ((s2, d2), x2)] = sides;
-            // The first term is the mean radiance times what of it is scattered.
+            // terms[0] is the mean radiance times the scaled albedo / (4 pi).
             let mean = terms[0] / of.scaled_albedo() * 4.0 * std::f64::consts::PI;
             legendre_sum(terms, axis) * s1 * s2 - spread * mean * (d1 * s2 * x1 + d2 * s1 * x2)
         };
@@ -128,8 +134,7 @@ impl Sources {
         let by_top = above / cosine;
         let by_side = if sine > 1e-6 { depths.near / sine } else { f64::INFINITY };
         let top_share = 1.0 / (1.0 + (PART_RATE * turning * (by_top - by_side)).min(80.0).exp());
-        // A way to the sun that is longer than the box's: light that has been scattered often falls off slowly along
-        // it.
+        // The path to the sun may be longer than in the box. Light that is scattered often falls off slowly along it.
         let aside = ((1.0 + turning * by_top.min(by_side)) / (1.0 + turning * depths.to_sun)).min(1.0).powi(2);
         let share = aside * top_share.max(1.0 - top_share);
         let top = through(table_at(&self.top, above, below, leak), down, [sides_a, sides_c]);
@@ -147,7 +152,7 @@ impl Sources {
             through(table_at(&self.sky, one, other, leak), axis, [sides_a, sides_c]).max(0.0)
         };
         let (sky, ground) = (from(depths.above, depths.below, -up), from(depths.below, depths.above, up));
-        // As much as leaves through the sides comes in there, half of it from above.
+        // Through the sides as much light comes in as leaves. Half of it comes from the sky, half from the ground.
         let by_sides = 0.5 * (of.scaled_albedo() - sky - ground);
         Scattered {
             sun: once + often + level_kept.clamp(-often, often),
@@ -163,7 +168,7 @@ mod tests {
     use super::*;
     use crate::light::{Phase, PhaseLobes};
 
-    /// The light in the middle of a box as wide as `width` heights.
+    /// Light in the middle of a box whose width is `width` times its height.
     fn in_the_middle(width: f64) -> Scattered {
         let transport = Transport::new(Scattering::new(PhaseLobes::new(&Phase::HenyeyGreenstein { g: 0.85 }), 1.0));
         let (sine, cosine) = (0.5, 0.75f64.sqrt());
