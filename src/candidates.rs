@@ -1,9 +1,9 @@
-//! The ways to draw each effect that are charted against each other, of all rooms.
+//! Candidates of all rooms: the ways to draw each effect that the lab compares.
 //!
 //! A [`Candidate`] is a model at a setting, with its [`Work`], a deterministic model of its cost in samples, texels and
-//! bytes. The lab (`examples/lab`) draws every candidate, and older systems' beside them, measures its cost and its
-//! [`Difference`](crate::plan::Difference) from the f64 reference, and charts them. Only those are worth a choice that
-//! no other beats in both.
+//! bytes. The lab (`examples/lab`) draws every candidate, and the methods of older systems beside them. It measures
+//! cost and [`Difference`](crate::plan::Difference) from the f64 reference, and charts both. A candidate is worth
+//! choosing only if no other is better in both.
 //!
 //! ```
 //! use welkin::candidates::{Effect, Method, candidate, candidates};
@@ -26,7 +26,7 @@ use crate::{
     stars::candidates::StarMethod,
 };
 
-/// Effects that can be drawn. The list grows with the rooms.
+/// Effects that can be drawn. New rooms add to the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Effect {
     /// Clear air with haze: the sky behind and the air in front of things.
@@ -54,7 +54,7 @@ impl Effect {
         ("clouds", Effect::Clouds),
     ];
 
-    /// The effect of that name.
+    /// Finds the effect of a name.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] with the known names.
@@ -64,13 +64,13 @@ impl Effect {
         found.map(|(_, e)| *e).ok_or_else(|| Error::range("effect", &format!("one of {known}"), name))
     }
 
-    /// Its name.
+    /// Returns the effect's name.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, e)| *e == self).map_or("", |(n, _)| n)
     }
 }
 
-/// Method that a candidate draws with: enough to build it.
+/// Method of a candidate, with all settings that are needed to build it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// Settings for [`crate::sky::SkyTables::new`].
@@ -92,16 +92,16 @@ pub enum Method {
 pub struct Candidate {
     /// Effect that it draws.
     pub effect: Effect,
-    /// Unique within the effect, lower case with hyphens.
+    /// Name, unique within the effect: lower case with hyphens.
     pub name: &'static str,
-    /// With what it is built.
+    /// Method with its settings.
     pub method: Method,
-    /// Work that it costs.
+    /// Work of drawing it.
     pub work: Work,
 }
 
 impl Candidate {
-    /// Whether a host that asks for nothing gets this one.
+    /// Whether the candidate is the default, which a host gets without asking.
     pub fn is_default(&self) -> bool {
         match self.method {
             Method::Sky(s) => s == SkySettings::default() && s.model == SkyModel::default(),
@@ -114,7 +114,7 @@ impl Candidate {
     }
 }
 
-/// All candidates of an effect.
+/// Returns all candidates of an effect.
 pub fn candidates(effect: Effect) -> Vec<Candidate> {
     fn all<M>(effect: Effect, listed: Vec<Listed<M>>, method: impl Fn(M) -> Method) -> Vec<Candidate> {
         let one = |l: Listed<M>| {
@@ -133,7 +133,7 @@ pub fn candidates(effect: Effect) -> Vec<Candidate> {
     }
 }
 
-/// The candidate of that name.
+/// Finds the candidate of a name.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] with the known names.

@@ -1,8 +1,8 @@
-//! The list of effects: what a context holds of each, what a view holds of each, in the order in which they are run.
+//! The list of effects: the state that a context holds for each, and the part of a view that draws each.
 //!
-//! Beside the front room and the C boundary this is the one place above their rooms that names them. A new effect adds
-//! a field to [`Effects`] with its line in [`Effects::each`] and [`Effects::all`], and its parts in [`PARTS`]; one with
-//! a state adds a field to [`Held`] likewise.
+//! Besides the front room and the C boundary, only this file may name the effects' rooms from above them. A new effect
+//! adds a field to [`Effects`], a line in [`Effects::each`] and [`Effects::all`], and its parts to [`PARTS`]. An effect
+//! with simulation state also adds a field to [`Held`], with a line in its two lists.
 
 #[cfg(test)]
 pub(crate) mod plane;
@@ -46,26 +46,26 @@ use crate::{
 /// Settings for a new context.
 #[derive(Clone, Debug)]
 pub struct ContextDesc {
-    /// How the host's world lies on the planet.
+    /// Mapping of the host's world onto the planet.
     pub world: WorldFrame,
     /// Air, ground and sun. Default the Earth.
     pub planet: Planet,
-    /// Seed of everything that chance decides.
+    /// Seed of everything random.
     pub seed: u64,
-    /// Exposure of frames that bring none.
+    /// Exposure of frames that set none.
     pub exposure: Exposure,
-    /// From luminance to the display.
+    /// Tone curve, from luminance to display values.
     pub tone: ToneCurve,
     /// Universal time at simulation time 0. Default 2026-06-21 10:00 UTC.
     pub utc_at_zero: Utc,
-    /// How the sky is drawn. Default the directional tables.
+    /// Settings of the sky. Default the directional tables.
     pub sky: SkySettings,
-    /// Where the wetness of the ground comes from. Default the weather of the moment.
+    /// Source of the ground's wetness. Default the weather of the moment.
     pub ground: GroundModel,
-    /// Where the lying snow comes from. Default the weather of the moment.
+    /// Source of the lying snow. Default the weather of the moment.
     pub lying_snow: LyingSnowModel,
-    /// A directory for the sky's finished tables, made if it is not there: the next start with the same planet,
-    /// settings and weather reads them. What goes wrong with its files is logged, never an error. Default none.
+    /// Directory that caches the sky's finished tables, created if it does not exist: the next start with the same
+    /// planet, settings and weather reads them. Faults of its files are logged and never an error. Default none.
     pub cache_dir: Option<PathBuf>,
 }
 
@@ -86,16 +86,16 @@ impl Default for ContextDesc {
     }
 }
 
-/// Couplings of the effects to every world.
+/// Functions by which the world asks effects for their influence, the same for every world.
 pub(crate) const COUPLINGS: Couplings =
     Couplings { dim: fog::dim, cloud_over_areas: clouds::cloud_over_areas, night_lux: stars::night_lux };
 
 /// Simulation state of the effects of a context, shared by all its views.
 pub(crate) struct Held {
     pub sky: Arc<Mutex<FollowedSky>>,
-    /// Before the others, which may ask for the wind.
+    /// Advanced before the others, which may ask for the wind.
     pub flow: HeldFlow,
-    /// Before the ground, which takes its meltwater.
+    /// Advanced before the ground, which takes its meltwater.
     pub snowpack: HeldSnow,
     pub fog: HeldFog,
     pub ground: HeldGround,
@@ -104,7 +104,7 @@ pub(crate) struct Held {
     pub lightning: HeldLightning,
 }
 
-/// State read from a saved one, not yet in use.
+/// State that was read from a saved one and is not yet in use.
 pub(crate) struct LoadedHeld {
     flow: HeldFlow,
     snowpack: LoadedSnow,
@@ -135,7 +135,7 @@ impl Held {
         })
     }
 
-    /// All effects with simulation state, in the order in which they are led.
+    /// Returns all effects with simulation state, in the order in which they are advanced.
     pub fn each(&mut self) -> [&mut dyn HeldEffect; 7] {
         [
             &mut self.flow,
@@ -153,12 +153,12 @@ impl Held {
         [&self.flow, &self.snowpack, &self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning]
     }
 
-    /// Takes what is theirs out of a saved state.
+    /// Takes the effects' entries out of a saved state and reads them.
     ///
     /// # Errors
-    /// [`crate::Status::Parse`] naming what does not fit.
+    /// [`crate::Status::Parse`] naming the entry that does not fit.
     pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedHeld> {
-        // Each takes out what is its own, even where another's is wrong.
+        // Each effect takes its own entries out, even if those of another are wrong.
         let flow = HeldFlow::read(world, state);
         let snowpack = self.snowpack.read(state);
         let fog = HeldFog::read(state);
@@ -177,7 +177,7 @@ impl Held {
         })
     }
 
-    /// Swaps a loaded state in; `other` holds the previous one then.
+    /// Swaps a loaded state in; `other` then holds the previous one.
     pub fn swap_in(&mut self, world: &mut World, other: &mut LoadedHeld) {
         std::mem::swap(&mut self.fog, &mut other.fog);
         world.set.undimmed = self.fog.law.is_some();
@@ -192,7 +192,7 @@ impl Held {
     }
 }
 
-/// The parts of the weather that a picture may do with less of, in the order of every list of them.
+/// Parts of the weather that a picture can reduce or leave out, in the order of all lists of parts.
 pub const PARTS: &[Part] = &[
     sky::candidates::AIR,
     fog::candidates::FOG,
@@ -203,20 +203,20 @@ pub const PARTS: &[Part] = &[
     snow::candidates::SNOW,
 ];
 
-/// Two parts, and extra work where both are drawn under the lamps of a scene.
+/// Returns two parts that cost extra work where both are drawn, and this work under the lamps of a scene.
 pub(crate) fn together(scene: &Scene) -> ([&'static Part; 2], StepWork) {
     ([&sky::candidates::AIR, &fog::candidates::FOG], sky::candidates::air_before_fog_work(scene.lamps()))
 }
 
-/// Sizes of the blocks by [`Block`](crate::stage::Block).
+/// Sizes of the uniform blocks, indexed by [`Block`](crate::stage::Block).
 pub(crate) const BLOCK_BYTES: [usize; 2] = [size_of::<LowAirUniform>(), size_of::<GroundUniform>()];
 
-/// Layout of the look-up tables of what lies behind and between.
+/// Creates the bind group layout of the look-up tables for the background and the air in front of objects.
 pub(crate) fn tables_layout(device: &Device) -> wgpu::BindGroupLayout {
     SkyVolume::view_layout(device)
 }
 
-/// Changes that the planner compares by closed forms, since its gauge cannot see them.
+/// Changes of a picture by streaks and flakes, in closed form: the planner's gauge cannot see them.
 #[derive(Clone, Copy)]
 pub(crate) struct UnseenChanges {
     rain: Option<Streaks>,
@@ -248,12 +248,12 @@ pub(crate) struct Effects {
     pub bow: BowView,
     #[cfg(test)]
     pub plane: plane::PlaneView,
-    /// Places in [`Effects::each`], in the order in which they gather, and in that in which they compose and draw.
+    /// Indices into [`Effects::each`]: the order in which effects gather, and the order in which they compose and draw.
     gathers: [usize; COUNT],
     composes: [usize; COUNT],
 }
 
-/// How many a view has.
+/// Number of effects of a view.
 const COUNT: usize = if cfg!(test) { 11 } else { 10 };
 
 impl Effects {
@@ -284,7 +284,8 @@ impl Effects {
         Ok(effects)
     }
 
-    /// All of them. What they give each other decides in which order they are run.
+    /// Returns all effects of a view. The order in which they run is not this one: it follows from the outputs that
+    /// they exchange.
     pub fn each(&mut self) -> [&mut dyn DrawnEffect; COUNT] {
         [
             &mut self.sky,
@@ -320,7 +321,7 @@ impl Effects {
         ]
     }
 
-    /// Lets each effect find what there is of it at a camera, in the order of what they give each other.
+    /// Lets each effect gather what exists of it around the camera, in the order of the outputs that they exchange.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -337,7 +338,7 @@ impl Effects {
         Ok(())
     }
 
-    /// Merges what all effects add to a draw, in the order of what they give each other.
+    /// Merges the contributions of all effects to a draw, in the order of the outputs that they exchange.
     ///
     /// # Errors
     /// A GPU fault.
@@ -347,7 +348,7 @@ impl Effects {
         for place in order {
             let effect = &mut effects[place];
             let exchange = effect.composes();
-            // Merged where it was returned: copies of ten contributions would cost a microsecond.
+            // Merged by reference: copying ten contributions would cost a microsecond.
             let mut outcome = effect.compose(context, &given.only(exchange.needs));
             let Ok(added) = &mut outcome else { return outcome.map(|_| ()) };
             given.take_layers(added, exchange.gives);
@@ -371,23 +372,23 @@ impl Effects {
         order.into_iter().try_for_each(|place| effects[place].draw(context, merged, recording))
     }
 
-    /// Returns what streaks and flakes are worth in a picture, if the plan decides about them.
+    /// Returns the changes of a picture by streaks and flakes, if the plan decides about either.
     pub fn unseen(&mut self, context: &DrawContext<'_>) -> Option<UnseenChanges> {
         let unseen = UnseenChanges { rain: self.rain.streaks(context), snow: self.snow.contrast(context) };
         (unseen.rain.is_some() || unseen.snow.is_some()).then_some(unseen)
     }
 
-    /// Whether the plan decides about anything that its gauge cannot see.
+    /// Whether the plan decides about a part that its gauge cannot see.
     pub fn weighs_unseen(&self) -> bool {
         self.rain.is_planned() || self.snow.is_planned()
     }
 
-    /// Work of building default tables, in pixels of a picture with these settings.
+    /// Returns the work of building the default tables, in units of one pixel of a picture with the view's settings.
     pub fn rebuild_work(&self) -> f64 {
         self.sky.rebuild_work()
     }
 
-    /// Returns the settings that a plan is saved with.
+    /// Returns the settings with which a plan is saved.
     pub fn saved_with(&self) -> plan::PlanSettings<'_> {
         let settings = self.sky.next_settings();
         plan::PlanSettings {

@@ -1,5 +1,5 @@
-//! Errors in one form everywhere: a stable status code, the field that it is about as a value, and a sentence that
-//! begins with the field and says what is accepted.
+//! Errors, all of one form: a stable status code, the path of the wrong field, and a sentence that begins with the
+//! field and says what is accepted.
 
 use std::{borrow::Cow, fmt};
 
@@ -17,7 +17,7 @@ pub enum Status {
     BadHandle = -2,
     /// A parent was destroyed while it has live children.
     InUse = -3,
-    /// This device, tier or build cannot do what was asked; the message names the feature.
+    /// This device, tier or build does not support the request; the message names the feature.
     Unsupported = -4,
     /// No adapter or driver serves the request.
     NoAdapter = -5,
@@ -35,7 +35,7 @@ pub enum Status {
     Io = -11,
     /// The surface must be configured again (resized or lost).
     SurfaceOutdated = -12,
-    /// Calls came in an order that the API forbids (stages of a frame, dates before the last update).
+    /// Calls came in an order that the API forbids (such as stages of a frame, or a time before the last update).
     WrongOrder = -13,
     /// The host aborted a long operation through its callback.
     Aborted = -14,
@@ -43,18 +43,18 @@ pub enum Status {
     Internal = -15,
 }
 
-/// A failed call: the status, the parameter or field that it is about, and a sentence for the person who reads the log.
+/// A failed call: the status, the parameter or field that is wrong, and a sentence for the reader of the log.
 ///
 /// `to_string()` gives the whole sentence: where the fault was found, the field, what is accepted, what was given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Error {
     /// Stable code.
     pub status: Status,
-    /// Where the field stands if not in a parameter (`saved state: `); mostly empty.
+    /// Place where the field was found, if not in a parameter (`saved state: `); mostly empty.
     place: String,
-    /// Path of the field; empty where the fault is no single field's.
+    /// Path of the field; empty if the error is about no single field.
     field: String,
-    /// Text that follows the field, its own blank or colon included; the whole sentence where there is no field.
+    /// Text that follows the field, with its own leading space or colon; the whole sentence if there is no field.
     rest: String,
 }
 
@@ -62,37 +62,37 @@ pub struct Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
-    /// An error that is no single field's, with its whole sentence. Not for [`Status::InvalidArgument`], which is
-    /// always some field's: [`Error::invalid`].
+    /// Creates an error about no single field, from its whole sentence. For [`Status::InvalidArgument`], which is
+    /// always about a field, use [`Error::invalid`].
     pub fn new(status: Status, sentence: impl Into<String>) -> Self {
         debug_assert!(status != Status::InvalidArgument, "an invalid argument has a name");
         Self { status, place: String::new(), field: String::new(), rest: sentence.into() }
     }
 
-    /// An error about a field; `rest` is the sentence without the field that it begins with.
+    /// Creates an error about a field. The sentence is the field, followed by `rest`.
     pub fn about(status: Status, field: impl Into<String>, rest: impl fmt::Display) -> Self {
         Self { status, place: String::new(), field: field.into(), rest: short_numerals(format!(" {rest}")) }
     }
 
-    /// [`Status::InvalidArgument`] about a field: `get_proc must not be NULL`.
+    /// Creates a [`Status::InvalidArgument`] about a field: `get_proc must not be NULL`.
     pub fn invalid(field: impl Into<String>, rest: impl fmt::Display) -> Self {
         Self::about(Status::InvalidArgument, field, rest)
     }
 
-    /// A field outside its range: `visibility_m must be in [1, 1e6] m, got -3`. Of what was given the beginning is
-    /// shown if it is long.
+    /// Creates the error of a field outside its range: `visibility_m must be in [1, 1e6] m, got -3`. Of a long value,
+    /// only the beginning is shown.
     pub fn range(field: &str, accepted: &str, got: impl fmt::Display) -> Self {
         let got = short_numerals(got.to_string());
         Self::invalid(field, format_args!("must be {accepted}, got {}", shown(&got)))
     }
 
-    /// A feature that this device, tier or build does not have.
+    /// Creates the error for a feature that this device, tier or build does not have.
     pub fn unsupported(what: impl Into<String>) -> Self {
         Self::new(Status::Unsupported, what)
     }
 
-    /// Path of the parameter or field that the error is about, such as `camera.view`, `shelters[2].half_size_m` or
-    /// `time_s`; `None` where it is about none. There is one for every [`Status::InvalidArgument`].
+    /// Returns the path of the parameter or field that the error is about, such as `camera.view`,
+    /// `shelters[2].half_size_m` or `time_s`; `None` if it is about none. Every [`Status::InvalidArgument`] has one.
     pub fn field(&self) -> Option<&str> {
         (!self.field.is_empty()).then_some(self.field.as_str())
     }
@@ -109,8 +109,8 @@ impl Error {
         self
     }
 
-    /// Returns the error with the segments `new` in place of `old` at the beginning of the field's path; as it is if it
-    /// does not begin so.
+    /// Returns the error with `old`, the first segments of the field's path, replaced by `new`. A path that does not
+    /// begin with `old` stays as it is.
     #[must_use]
     pub fn renamed(mut self, old: &str, new: &str) -> Self {
         if let Some(rest) = self.field.strip_prefix(old)
@@ -121,7 +121,7 @@ impl Error {
         self
     }
 
-    /// Returns the error with its field called as `name` says.
+    /// Returns the error with its field renamed by `name`.
     #[must_use]
     pub(crate) fn map_field(mut self, name: impl FnOnce(&str) -> String) -> Self {
         if !self.field.is_empty() {
@@ -130,8 +130,8 @@ impl Error {
         self
     }
 
-    /// Returns the error as one about the text or bytes that were given as `parameter`, in which it was found: what the
-    /// text says stays in the sentence and is no field.
+    /// Returns the error as one about the text or bytes in which it was found, which were given as `parameter`. The
+    /// field inside the text stays in the sentence only.
     #[must_use]
     pub fn in_text(self, parameter: &str) -> Self {
         let inner = self
@@ -149,16 +149,17 @@ impl Error {
         self
     }
 
-    /// Returns the error under another status.
+    /// Returns the error with another status.
     #[must_use]
     pub fn with_status(self, status: Status) -> Self {
         Self { status, ..self }
     }
 
-    /// All errors of a list in one, about the first one's field; `Ok` if there are none.
+    /// Joins a list of errors into one about the first one's field; `Ok` if there are none.
     ///
     /// # Errors
-    /// The first error, its sentence followed by the others', or by their number where they would make it long.
+    /// The first error. Its sentence is followed by those of the others, or by their number where these would make it
+    /// too long.
     pub fn all(errors: impl IntoIterator<Item = Self>) -> Result<()> {
         let mut errors = errors.into_iter();
         let Some(mut all) = errors.next() else { return Ok(()) };
@@ -186,14 +187,15 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Most characters of a host's text that an error repeats.
+/// Largest number of characters of a host's text that an error repeats.
 const MOST_SHOWN: usize = 120;
-/// Most bytes of a sentence that errors make together: all that a host's device or image lacks is named at once.
+/// Largest size of a sentence that several errors are joined into, bytes. Everything that a host's device or image
+/// lacks is named in one error.
 const MOST_JOINED: usize = 1500;
-/// Most characters of a numeral; the shortest form of a number of usual size has no more.
+/// Largest number of characters of a numeral; the shortest form of a number of usual size has no more.
 const MOST_NUMERAL: usize = 24;
 
-/// A sentence in which long numerals have an exponent: written out, the smallest number has 326 characters and the
+/// Rewrites long numerals of a sentence with an exponent: written out, the smallest number has 326 characters and the
 /// largest 309.
 fn short_numerals(sentence: String) -> String {
     let is_numeral = |c: char| c.is_ascii_digit() || c == '.';
@@ -211,10 +213,10 @@ fn short_numerals(sentence: String) -> String {
     short
 }
 
-/// Most bytes of accepted names that an error lists.
+/// Largest size of the accepted names that an error lists, bytes.
 const MOST_LISTED: usize = 110;
 
-/// Accepted names as an error lists them: all, or the first ones and the last where they are many.
+/// Returns a list of accepted names for an error: all names, or the first ones and the last one if they are many.
 pub(crate) fn listed(names: &[&str]) -> String {
     let all = names.join(", ");
     let [first @ .., last] = names else { return all };
@@ -233,17 +235,17 @@ pub(crate) fn listed(names: &[&str]) -> String {
     format!("{text}, {last}")
 }
 
-/// A number as an error shows it.
+/// Returns a number as an error shows it.
 pub(crate) fn number(v: f64) -> String {
     short_numerals(v.to_string())
 }
 
-/// A host's text as an error repeats it: its beginning, if it is long.
+/// Returns a host's text as an error repeats it: only its beginning if it is long.
 pub(crate) fn shown(text: &str) -> Cow<'_, str> {
     beginning(text, MOST_SHOWN)
 }
 
-/// A text up to so many characters.
+/// Returns the first `most` characters of a text, with dots if there are more.
 pub(crate) fn beginning(text: &str, most: usize) -> Cow<'_, str> {
     match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}...", &text[..end]).into(),
@@ -251,8 +253,8 @@ pub(crate) fn beginning(text: &str, most: usize) -> Cow<'_, str> {
     }
 }
 
-/// Describes what is wrong with a text that should be TOML: line, column and fault, without the line itself, which may
-/// be a whole state.
+/// Describes a syntax error in a TOML text: line, column and fault. The line itself is left out because it may hold a
+/// whole state.
 pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
     let Some(before) = e.span().and_then(|span| text.get(..span.start)) else {
         return format!("TOML parse error: {}", toml_message(e));
@@ -262,7 +264,7 @@ pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
     format!("TOML parse error at line {line}, column {column}: {}", toml_message(e))
 }
 
-/// Fault that the parser names, with the range where it names none.
+/// Returns the parser's message, with the accepted range where the parser's own has none.
 pub fn toml_message(e: &toml::de::Error) -> Cow<'_, str> {
     let says = |words: &str| e.message().contains(words);
     shown(if ["` as i128", "` as u128", "integer number overflowed"].into_iter().any(says) {
@@ -274,7 +276,7 @@ pub fn toml_message(e: &toml::de::Error) -> Cow<'_, str> {
     })
 }
 
-/// Checks that a parameter is finite and lies in `[lo, hi]`, or says so by name.
+/// Checks that a parameter is finite and lies in `[lo, hi]`.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] with the name, the range and the unit.

@@ -1,7 +1,7 @@
 //! Welkin: weather for simulators, drawn into the host's own picture.
 //!
-//! A Rust host says what the weather is and records it into its own [`wgpu`] textures, between its opaque world and its
-//! instruments. The sky of a weather report, whole:
+//! A Rust host sets the weather and records it into its own [`wgpu`] textures, after its opaque world and before its
+//! instruments. A whole program that draws the sky of a weather report:
 //!
 //! ```
 //! use std::sync::Arc;
@@ -46,24 +46,24 @@
 //! # }
 //! ```
 //!
-//! The nouns:
+//! The main types:
 //!
 //! | noun | what it is |
 //! |---|---|
-//! | [`gpu::Device`] | a GPU, a host's own or one of Welkin's; [`gpu`] has the kinds of host |
-//! | [`context::Context`] | weather, time and place, and what is simulated: the same on every channel |
-//! | [`weather::Weather`] | what the weather is, from a report, a preset or fields in SI units |
-//! | [`frame::View`] | one camera, with what it remembers from frame to frame |
-//! | [`frame::Frame`] | one picture: camera, the host's images, what colour and depth mean |
-//! | [`plan`] | what a view leaves out to keep a tolerance or a time |
+//! | [`gpu::Device`] | a GPU, the host's own or one that Welkin opens; [`gpu`] has the kinds of host |
+//! | [`context::Context`] | weather, time, place and simulated state: the same on every channel |
+//! | [`weather::Weather`] | description of the weather, from a report, a preset or fields in SI units |
+//! | [`frame::View`] | one camera, with the data that it keeps from frame to frame |
+//! | [`frame::Frame`] | one picture: camera, the host's images, meaning of colour and depth |
+//! | [`plan`] | choice of the parts that a view leaves out to keep a tolerance or a time |
 //! | [`error::Error`] | a status, and a sentence that names the parameter and what is accepted |
 //!
 //! Each effect has a room with its model, settings and cost: [`sky`], [`stars`], [`clouds`], [`fog`], [`rain`],
 //! [`snow`], [`snowpack`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`]. The manual is
-//! `docs/README.md`. C and C++ hosts use the same nouns and verbs through `include/welkin.h`, which [`capi`] implements
-//! as a thin shell.
+//! `docs/README.md`. C and C++ hosts use the same types and functions through `include/welkin.h`, which [`capi`]
+//! implements as a thin layer.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
-// What the lab alone calls is public under its feature, with which tests and clippy look at it.
+// Items that only the lab calls are public under its feature; tests and clippy check them with that feature.
 #![cfg_attr(not(feature = "lab"), allow(dead_code, unused_imports, unreachable_pub))]
 
 pub mod almanac;

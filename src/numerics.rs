@@ -1,6 +1,6 @@
-//! Numerical rules that several rooms use: nodes of Gauss and Legendre, the smooth step.
+//! Numerical rules that several rooms use: Gauss-Legendre nodes and the smooth step.
 
-/// Nodes and weights of Gauss and Legendre's rule of 4 points on \[-1, 1\] (Abramowitz and Stegun 1964, table 25.4).
+/// Nodes and weights of the Gauss-Legendre rule of 4 points on \[-1, 1\] (Abramowitz and Stegun 1964, table 25.4).
 pub(crate) const GAUSS_4: [(f64, f64); 4] = [
     (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
     (-0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
@@ -8,8 +8,8 @@ pub(crate) const GAUSS_4: [(f64, f64); 4] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
-/// Positive nodes and weights of Gauss and Legendre's rule of 8 points on \[-1, 1\] (Abramowitz and Stegun 1964, table
-/// 25.4); each stands for its negative too.
+/// Positive nodes and weights of the Gauss-Legendre rule of 8 points on \[-1, 1\] (Abramowitz and Stegun 1964, table
+/// 25.4). The negative nodes have the same weights.
 pub(crate) const GAUSS_8_HALF: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
@@ -17,12 +17,12 @@ pub(crate) const GAUSS_8_HALF: [(f64, f64); 4] = [
     (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
 ];
 
-/// Cubic that is 0 at 0 and 1 at 1, level at both: for `t` within \[0, 1\].
+/// Returns the cubic that rises from 0 at `t` = 0 to 1 at `t` = 1 with slope 0 at both ends, for `t` within \[0, 1\].
 pub(crate) fn smooth(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Smooth step from 0 at `a` to 1 at `b`, constant beyond either.
+/// Returns the smooth step from 0 at `a` to 1 at `b`, constant outside.
 pub(crate) fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
     smooth(((x - a) / (b - a)).clamp(0.0, 1.0))
 }

@@ -1,25 +1,25 @@
-// What the air between the eye and a point does.
+// Light and transmittance of the air between the eye and a place.
 //!include "common/frame.wgsl"
 //!include "sky/lookup.wgsl"
 
-// Whether the air between is drawn at all.
+// Whether the air is drawn at all.
 override AIR: bool = true;
 
 // Whether the clear sky above the horizon is drawn at all.
 override CLEAR_SKY: bool = true;
-// The deck hides all of the sky: no light of the clear sky is asked for above the horizon and in the air.
+// Whether the deck hides all of the sky. Light of the clear sky is then left out above the horizon and in the air.
 override DECK_CLOSED: bool = false;
 
-// Light in the air between, over that on the mean over places.
+// Light of the air, over its mean over places.
 var<private> air_lit: vec3f = vec3f(1.0);
 
-// Light that reaches the eye beside what comes from behind, and the share of the latter that gets through.
+// Light added on the way to the eye, and transmittance for the light from behind.
 struct Veil {
     light: vec3f,
     transmittance: vec3f,
 }
 
-// Mean luminance of an overcast sky over elevation (CIE S 011, the standard overcast sky), 1 at the zenith.
+// Luminance of an overcast sky by elevation (CIE S 011, the standard overcast sky), 1 at the zenith.
 fn overcast_gradation(sin_elevation: f32) -> f32 {
     return (1.0 + 2.0 * max(sin_elevation, 0.0)) / 3.0;
 }
@@ -33,7 +33,8 @@ fn air_on(path: SkyPath, d: vec3f) -> Veil {
         return Veil(vec3f(0.0), vec3f(1.0));
     }
     let transmittance = exp(-path.depth);
-    // No beam reaches the air below a deck: it is lit by the deck, and far things fade to the deck at the horizon.
+    // No direct light reaches the air below a deck. The deck lights it, and distant objects fade to the deck's
+    // luminance at the horizon.
     var light = frame.deck * overcast_gradation(0.0) * (1.0 - transmittance);
     if !DECK_CLOSED {
         light = mix(color_of(aerial_on(path, d).radiance) * frame.medium_share, light, frame.deck_cover);

@@ -1,18 +1,18 @@
-// Rainbow and fogbow in what drops scatter once. The model and the f64 twin are in src/bow.
+// Rainbow and fogbow in the light that drops scatter once. src/bow describes the model and has the f64 twin.
 //!include "common/frame.wgsl"
 
-// Whether any may show.
+// Whether any bow may be visible.
 override BOW: bool = false;
 
-// Entries of one table, and the angle between two of them, rad.
+// Number of entries in a table, and angle between two of them, rad.
 const BOW_ENTRIES: u32 = 160u;
 const BOW_STEP: f32 = 0.0069813170;
-// Which of the two tables: of fog and rain of the weather, and of columns under rain areas.
+// Indices of the two tables: for the weather's fog and rain, and for the columns under rain areas.
 const BOW_LOW_AIR: u32 = 0u;
 const BOW_COLUMNS: u32 = 1u;
 
-// What bows add to the phase function, 1/sr, in a direction from the eye. The angle from the point opposite to the
-// light has digits left there only by way of the chord.
+// Amount that bows add to the phase function, 1/sr, in a direction from the eye. The angle from the point opposite the
+// light is computed from the chord, since the cosine has too few digits there.
 fn bow_phase(table: u32, direction: vec3f, to_light: vec3f) -> vec3f {
     let place = 2.0 * asin(min(0.5 * length(direction + to_light), 1.0)) / BOW_STEP;
     if !BOW || place >= f32(BOW_ENTRIES - 1u) {

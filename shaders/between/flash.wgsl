@@ -1,24 +1,25 @@
-// What flashes make glow: the face of the clouds, and the air. The f64 twins are in src/lightning/glow.rs.
+// Glow of the clouds' face and of the air in the light of lightning flashes. The f64 twins are in
+// src/lightning/glow.rs.
 //!include "common/frame.wgsl"
 
 // Whether any flash shines.
 override FLASH: bool = false;
 
-// Asymmetry of what the air scatters of a flash: haze, fog and rain have 0.7 to 0.9.
+// Asymmetry of the scattering in air: haze, fog and rain have 0.7 to 0.9.
 const FLASH_ASYMMETRY: f32 = 0.75;
-// Share of the extinction that takes light away: what is scattered goes on nearly as before.
+// Share of the extinction that counts as loss: scattered light goes on nearly straight.
 const FLASH_TAKES: f32 = 0.2;
-// Farthest that the clouds' face is lit, m.
+// Farthest distance at which the clouds' face is lit, m.
 const FLASH_FARTHEST: f32 = 60000.0;
 
-// Along a ray to the level face of a deck, m; not above 0 where it does not meet it.
+// Distance along a ray to the level face of a deck, m; 0 or less if the ray does not meet it.
 fn flash_way(d: vec3f) -> f32 {
     return frame.flash_plane / select(d.z, 1e-6, abs(d.z) < 1e-6);
 }
 
-// Luminance of clouds where a ray meets their face. A source h from the face sends k h / R^3 to a place at distance R:
-// of light that wanders through a cloud, k is F s / (2 pi^2); of light that falls on it, I times its reflectance over
-// pi.
+// Luminance of clouds where a ray meets their face. A source at distance h from the face gives k h / R^3 at a place at
+// distance R. For light that diffuses through the cloud, k is F s / (2 pi^2); for light that falls on the cloud, it is
+// the intensity I times the reflectance over pi.
 fn flash_on_clouds(d: vec3f, way: f32) -> vec3f {
     if way <= 0.0 || way > FLASH_FARTHEST {
         return vec3f(0.0);
@@ -30,7 +31,7 @@ fn flash_on_clouds(d: vec3f, way: f32) -> vec3f {
         let h = source.height;
         sum += source.clouds * h * pow(max(dot(to, to), h * h), -1.5);
     }
-    // It ends softly where it is cut off.
+    // Fade out before the farthest distance.
     let left = exp(-frame.flash_haze * way) * (1.0 - smoothstep(0.5, 1.0, way / FLASH_FARTHEST));
     return frame.flash_color * (sum * left);
 }
@@ -42,9 +43,9 @@ fn flash_phase(cosine: f32) -> f32 {
     return 0.07957747 * (1.0 - g * g) / (d * sqrt(d));
 }
 
-// Light that the air before `range` scatters once towards the eye. With s along the ray from where it passes nearest to
-// a source, at distance h, and s = h tan u, the square of the distance falls out of the integral (Kulla and Fajardo
-// 2012, "equiangular").
+// Light that the air before `range` scatters once towards the eye. With s along the ray from its point nearest to a
+// source, at distance h, and s = h tan u, the square of the distance cancels in the integral (Kulla and Fajardo 2012,
+// "equiangular").
 fn flash_in_air(ray: ViewRay, range: f32) -> vec3f {
     let taken = FLASH_TAKES * frame.flash_scattering;
     var sum = 0.0;
@@ -57,7 +58,7 @@ fn flash_in_air(ray: ViewRay, range: f32) -> vec3f {
         let whole = atan((min(range, FLASH_FARTHEST) - along) / h) - first;
         var part = 0.0;
         for (var k = 0u; k < 4u; k++) {
-            // Denser at the near end, where light hardly turns.
+            // Samples are denser at the near end, where light is hardly turned.
             let t = 0.25 * (f32(k) + 0.5);
             let u = first + whole * t * t;
             let s = along + h * tan(u);

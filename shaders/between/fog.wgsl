@@ -1,4 +1,4 @@
-// The fog's share of what lies between the eye and a point. Where a pipeline draws none, fog_clear.wgsl stands here.
+// Fog between the eye and a place. fog_clear.wgsl replaces this file in pipelines without fog.
 //!include "between/air.wgsl"
 //!include "between/bow.wgsl"
 //!include "fog/lookup.wgsl"
@@ -6,13 +6,13 @@
 // Whether there is any fog.
 override FOG: bool = true;
 
-// `behind` is what air does over the ray's whole length (sky: its light, transmittance 0). A fog bank far away has air
-// before it, the fog round the camera lies before the air (fog/lookup.wgsl).
+// Lays the fog over `behind`, which is the air along the whole ray (sky: its light, transmittance 0). A fog bank far
+// away has air in front of it; fog around the camera is in front of the air (fog/lookup.wgsl).
 fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if !FOG || drawn.y == 0.0 {
         return behind;
     }
-    // What drops and flakes near the eye hide is drawn as such.
+    // Drops and flakes near the eye that are drawn one by one hide this share themselves.
     let hidden = drawn.w * depth_of_drawn(range);
     var f = fog_beside_drops(low_air.fog, ray.origin, ray.direction, range, plane, hidden);
     if BOW {

@@ -1,35 +1,36 @@
-// What hangs in the sky: clouds, and stars behind the sky's own light; in a pixel of the picture, or in any direction
-// from the camera.
+// Clouds in the sky, and stars behind the sky's own light: in a pixel of the picture, or in any direction from the
+// camera.
 //!include "between/hung_bare.wgsl"
 //!include "between/flash.wgsl"
 //!include "between/glow.wgsl"
 //!include "common/octahedron.wgsl"
 
-// Layers of the sky. The last is what stands behind the sky's own light, in the night floor's place: stars and the glow
-// between them. With clouds there are two before it (clouds/): their light with the exposure on it, and what they let
-// through; log2 of the distances between which they stand, m, the share of direct light that they let through to what
-// the host drew, and the difference of that in the air before it from the mean. Below the first one's picture lie the
-// clouds of all directions (clouds/round.wgsl), below the second one's their glow (between/glow.wgsl).
+// Layers of the sky. The last layer has what stands behind the sky's own light and replaces the night floor: stars and
+// the glow between them. With clouds there are two layers before it (clouds/). The first has their radiance times
+// exposure and their transmittance. The second has log2 of the distances between which they stand, m, the share of
+// direct light that they let through to the surface that the host drew, and the difference of that share in the air in
+// front from the mean. Below the picture, the first layer has the panorama (clouds/round.wgsl) and the second the
+// clouds' glow (between/glow.wgsl).
 @group(0) @binding(11) var sky_layers: texture_2d_array<f32>;
 
 override CLOUDS: bool = false;
-// A closed layer above them all is drawn as a deck.
+// Whether a closed layer above all clouds is drawn as a deck.
 override DECK_BEHIND: bool = false;
-// Clouds leave shafts of light in the air.
+// Whether clouds leave shafts of light in the air.
 override CLOUD_SHAFTS: bool = false;
-// Lamps or flashes light them.
+// Whether lamps or flashes light the clouds.
 override CLOUD_GLOW: bool = false;
 override STARS: bool = false;
 
-// How fast a texel of the glow counts less with the distance of its clouds from a pixel's, in octaves.
+// Rate at which a texel of the glow loses weight as the distance of its clouds differs from the pixel's, per octave.
 const GLOW_ALIKE: f32 = 12.0;
-// Texels along a side of the clouds of all directions.
+// Side of the panorama, texels.
 const ROUND_SIDE: f32 = 96.0;
 
-// Clouds where there are none: no light, and all let through.
+// No clouds: no radiance, transmittance 1.
 const NO_CLOUDS: vec4f = vec4f(0.0, 0.0, 0.0, 1.0);
 
-// With clouds drawn as a volume in the deck's place, as far as they are.
+// Replaces the deck with clouds drawn as a volume, by the share that is drawn.
 fn hung_with(clouds: vec4f) -> Hung {
     var hung = hung_bare();
     if CLOUDS {
@@ -40,8 +41,8 @@ fn hung_with(clouds: vec4f) -> Hung {
     return hung;
 }
 
-// The glow of clouds in a pixel whose clouds stand at this distance, log2 of m: of the texels about it those count
-// whose clouds do too.
+// Glow of the clouds in a pixel. `reach` is log2 of their distance, m. Of the texels around the pixel, those whose
+// clouds have a similar distance count.
 fn glow_in(pixel: vec2i, reach: f32) -> vec3f {
     let size = glow_size(frame.picture);
     let at = (vec2f(pixel) + 0.5) / frame.picture * size - 0.5;
@@ -59,7 +60,7 @@ fn glow_in(pixel: vec2i, reach: f32) -> vec3f {
     return sum.rgb / max(sum.a, 1e-9);
 }
 
-// In a pixel of the picture, or one of its samples, where something is seen at this range.
+// Sky in a pixel of the picture, or in one of its samples, in front of a surface at this range.
 fn hung_in(pixel: vec2i, range: f32) -> Hung {
     var clouds = NO_CLOUDS;
     if CLOUDS {
@@ -82,7 +83,7 @@ fn hung_in(pixel: vec2i, range: f32) -> Hung {
     return hung;
 }
 
-// In a direction, in or outside of the picture: clouds without their distance, and no stars.
+// Sky in a direction inside or outside the picture: clouds without their distance, and no stars.
 fn hung_toward(d: vec3f) -> Hung {
     var clouds = NO_CLOUDS;
     if CLOUDS {
@@ -93,12 +94,12 @@ fn hung_toward(d: vec3f) -> Hung {
     return hung_with(clouds);
 }
 
-// A deck hides all that is behind it.
+// Whether a deck hides all that is behind it.
 fn deck_hides_all() -> bool {
     return DECK_CLOSED && (DECK_BEHIND || !CLOUDS);
 }
 
-// Clouds before something at this range; as many of them as stand before it.
+// Lays the clouds in front of `behind` at this range, by the share of them that is in front.
 fn with_clouds(behind: Veil, hung: Hung, range: f32) -> Veil {
     if !CLOUDS {
         return behind;

@@ -1,27 +1,27 @@
-// What may hang in the sky in a direction, and how it is where nothing does but a deck.
+// Clouds, stars and deck in a direction of the sky, and their values where there is only a deck.
 //!include "between/air.wgsl"
 
-// How much of what hangs behind the sky's own light stands in the night floor's place.
+// Share of the light behind the sky's own (stars) that replaces the night floor.
 var<private> behind_share: f32;
 
 struct Hung {
-    // Of clouds: their light, with the exposure on it, and what they let through.
+    // Clouds: radiance times exposure, and transmittance.
     clouds: vec4f,
-    // log2 of the distances between which they stand, m, or 0; the share of direct light at what the host drew.
+    // log2 of the distances between which they stand, m, or 0; share of direct light at the surface that the host drew.
     reach: vec3f,
-    // By how much the share of direct light in the air before it differs from the mean over places.
+    // Difference of the share of direct light in the air in front from the mean over places.
     shafts: f32,
-    // Their light of lamps and flashes over their cover, with the exposure on it; whether that is known.
+    // Light of lamps and flashes in the clouds over their cover, times exposure; whether it is known.
     glow: vec3f,
     has_glow: bool,
-    // cd/m^2, behind the sky's own light.
+    // Light behind the sky's own, cd/m^2.
     behind: vec3f,
-    // How far the sky is a deck, and what it leaves of the discs of sun and moon.
+    // Share by which the sky is a deck, and transmittance for the discs of sun and moon.
     deck: f32,
     disc: f32,
 }
 
-// Without clouds but a deck.
+// Sky without clouds other than a deck.
 fn hung_bare() -> Hung {
     var hung: Hung;
     hung.clouds = vec4f(0.0, 0.0, 0.0, 1.0);

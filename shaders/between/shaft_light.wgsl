@@ -1,14 +1,13 @@
-// Light in the air where the share of direct light differs from its mean over places.
+// Factor of the light in the air where the share of direct light differs from its mean over places.
 //!include "common/frame.wgsl"
 //!include "sky/lookup.wgsl"
 
-// Radiance that a unit of air scatters of the sky's light, over the irradiance of that light on level ground, 1/sr: the
-// light comes evenly from half of all directions (1 / 2 pi), and 0.15 of it again from the ground.
+// Radiance of sky light that a unit of air scatters, over the irradiance of that light on level ground, 1/sr. The light
+// comes evenly from half of all directions (1 / 2 pi), and 0.15 of it again from the ground.
 const SHAFT_DIFFUSE: f32 = 0.18;
 
-// Radiance of the air in a direction over its mean, a channel, where the share of direct light is so much more than on
-// the mean. Of direct light the air scatters what its phase function says, of the sky's light as much in every
-// direction.
+// Returns the radiance of the air in a direction over its mean, for each channel, where the share of direct light
+// exceeds the mean by `differs`. Direct light is scattered by the phase function, sky light evenly in all directions.
 fn shaft_light(direction: vec3f, differs: f32) -> vec3f {
     let air = sky_view.air;
     let toward = select(sky_view.lamps[0].toward, sky_view.lamps[1].toward, sky_view.lamps[0].toward.z < 0.0);
@@ -17,7 +16,7 @@ fn shaft_light(direction: vec3f, differs: f32) -> vec3f {
     let scattering = vec2f(air.rayleigh_scattering.y * density.x, air.mie_scattering.y * density.y);
     let phases = vec2f(rayleigh_phase(nu), mie_phase(nu, air.asymmetry_g));
     let phase = dot(scattering, phases) / max(scattering.x + scattering.y, 1e-12);
-    // Light of the sky on level ground, over the direct light that faces the sun between clouds.
+    // Light of the sky on level ground, over the direct light on a surface that faces the sun between clouds.
     let mean = frame.cloud_shadow.w;
     let diffuse = toward.z * (1.0 / max(frame.cloud_shadow.rgb, vec3f(1e-4)) - mean);
     return max(1.0 + phase / (mean * phase + SHAFT_DIFFUSE * max(diffuse, vec3f(1e-3))) * differs, vec3f(0.0));

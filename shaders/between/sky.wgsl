@@ -1,11 +1,11 @@
-// The sky in a direction, fog left out: behind everything in the picture, in mirrors, in the cube map.
+// Sky in a direction, without fog: behind everything in the picture, in mirrors, and in the cube map.
 //!include "between/hung.wgsl"
 
 fn night_light(hung: Hung) -> vec3f {
     return mix(frame.night_floor, hung.behind, behind_share);
 }
 
-// Light of the sky's own air above the horizon, cd/m^2, without the discs of sun and moon.
+// Light of the air above the horizon, cd/m^2, without the discs of sun and moon.
 fn clear_sky_above(d: vec3f) -> vec3f {
     if !CLEAR_SKY || deck_hides_all() || drawn.z == 0.0 {
         return vec3f(0.0);
@@ -13,31 +13,32 @@ fn clear_sky_above(d: vec3f) -> vec3f {
     return color_of(sky_radiance_above(d));
 }
 
-// The sky above the horizon without what hangs before it: `clear` is its own light, with a disc that is seen in it.
+// Sky above the horizon without the clouds in front of it. `clear` is the light of the air, with a disc that is visible
+// in it.
 fn open_sky(d: vec3f, clear: vec3f, hung: Hung) -> vec3f {
     return mix(clear * drawn.z + night_light(hung), frame.deck * overcast_gradation(d.z), hung.deck);
 }
 
-// What is behind, with clouds before it, and what flashes make of them.
+// Lays the clouds in front of `behind`, with the light of flashes on them.
 fn before_sky(behind: vec3f, d: vec3f, hung: Hung) -> vec3f {
     var light = with_clouds(Veil(behind, vec3f(0.0)), hung, RANGE_SKY).light;
     if FLASH {
         let known = CLOUDS && hung.reach.y > 0.0;
         let way = select(flash_way(d), exp2(0.5 * (hung.reach.x + hung.reach.y)), known);
-        // What is drawn as a deck has no glow of its own.
+        // The deck has no glow of its own.
         let flat = select(cloud_cover(hung), hung.clouds.a * hung.deck, hung.has_glow);
         light += flash_on_clouds(d, way) * flat;
     }
     return light;
 }
 
-// The sky above the horizon, fog left out, without the discs of sun and moon.
+// Sky above the horizon, without fog and without the discs of sun and moon.
 fn sky_toward(d: vec3f) -> vec3f {
     let hung = hung_toward(d);
     return before_sky(open_sky(d, clear_sky_above(d), hung), d, hung);
 }
 
-// What flashes make of the air before something at this range: clouds hide what is behind them.
+// Light of flashes in the air in front of a surface at this range. Clouds hide the air behind them.
 fn flash_before(ray: ViewRay, range: f32, hung: Hung) -> vec3f {
     let all = flash_in_air(ray, range);
     if !CLOUDS || hung.reach.y == 0.0 {
@@ -46,7 +47,7 @@ fn flash_before(ray: ViewRay, range: f32, hung: Hung) -> vec3f {
     return mix(flash_in_air(ray, min(range, exp2(hung.reach.x))), all, hung.clouds.a);
 }
 
-// Share of what is behind that clouds hide.
+// Share of the background that clouds hide.
 fn cloud_cover(hung: Hung) -> f32 {
     return select(frame.flash_cover, 1.0 - hung.clouds.a * (1.0 - hung.deck), CLOUDS);
 }

@@ -1,49 +1,49 @@
-// What a ray finds of a cloud at a place, and how much cloud lies about it. In its place about_box.wgsl stands for a
-// box of even cloud.
+// Cloud at a place of a ray, and the depths of cloud around it. For the probe about_box.wgsl takes the place of this
+// file, with a box of even cloud.
 //!include "clouds/field.wgsl"
 //!include "clouds/light.wgsl"
 
-// Ends of the stretches of the way to the sun, in distances from cloud to cloud. On the first of them edges are frayed.
+// Ends of the intervals of the path to the sun, in distances from cloud to cloud. Edges are frayed in the first ones.
 const SUN_STEPS: u32 = 5u;
 const SUN_FRAYED: u32 = 3u;
 const SUN_WAY = array<f32, 5>(0.05, 0.15, 0.3, 0.8, 2.0);
-// Slope of the map, a distance from cloud to cloud, and of the solid noise, a side of it, by which rays skip: steeper
-// places are too small to be missed.
+// Slope of the map per distance from cloud to cloud, and of the solid noise per side of it, by which rays skip clear
+// air. Steeper places are too small to matter.
 const MAP_SKIP: f32 = 6.0;
 const SOLID_SKIP: f32 = 12.0;
 
 // A cloud at a place.
 struct CloudHere {
-    // How much strength is wanting for cloud, rounded base and frays left out.
+    // Strength that is missing for cloud, without rounded base and fraying.
     gap: f32,
-    // Excess over the threshold, frayed.
+    // Excess over the threshold, with fraying.
     excess: f32,
-    // 1/m.
+    // Extinction, 1/m.
     extinction: f32,
-    // The same less what is wanting under the dome: above 0 in cloud.
+    // Excess over threshold and dome, with fraying: above 0 in cloud.
     inside: f32,
-    // As `gap`, frayed.
+    // `gap` with fraying.
     frayed_gap: f32,
     // Excess at which the place reaches the layer's top.
     dome: f32,
-    // Distance within which the place's threshold stays, m, and how much it changes a metre beyond.
+    // Distance within which the place's threshold stays the same, m, and its change per metre beyond.
     steady: f32,
     slope: f32,
-    // How far there is no cloud whatever the map holds, m.
+    // Distance without cloud, whatever the map holds, m.
     clear: f32,
-    // Share of the place that is cloud: 1 unless the place is looked at coarsely. Excess and extinction are those of
-    // the cloudy share.
+    // Share of the place that is cloud: 1 unless clouds are blurred. Excess and extinction are those of the cloudy
+    // share.
     share: f32,
 }
 
-// Standard deviations below the mean from which on a place looked at coarsely counts as without cloud.
+// A place where clouds are blurred counts as clear if the mean lies this many standard deviations below the threshold.
 const CLOUD_RARE: f32 = 2.5;
 
-// Level distance over which a ray meets other clouds, cells.
+// Horizontal distance after which a ray meets other clouds, cells.
 const CLOUD_CELL: f32 = 0.3;
 
-// Share of a normal spread about `mean` that lies above 0, and the mean of that share; both by the logistic law closest
-// to the normal one.
+// Share of a normal distribution about `mean` that lies above 0, and the mean of that share. Both use the logistic
+// distribution closest to the normal one.
 fn cloud_share(mean: f32, spread: f32) -> vec2f {
     let a = 1.702 * mean / spread;
     let share = 1.0 / (1.0 + exp(-a));
@@ -59,7 +59,7 @@ fn cloud_here(whole: CloudLayer, at: CloudPlace) -> CloudHere {
     let frays = cloud_frays(layer, at);
     let excess = over - cloud_dome(layer, over, at.height);
     let dome = cloud_dome_over(layer, over);
-    // Rounded bases only take away, and an anvil may lie above.
+    // A rounded base only takes cloud away, and an anvil may lie above.
     let gap = min(dome * at.height * at.height, layer.lean.z) - over;
     let inside = excess + frays;
     let clear = select(0.0, local.steady, CLOUD_PLACED && layer.shape.x > CLOUD_CLEAR_FROM);
@@ -79,13 +79,13 @@ fn cloud_here(whole: CloudLayer, at: CloudPlace) -> CloudHere {
     return here;
 }
 
-// How far a place is in cloud, or out of it, below 0.
+// Excess by which a place is inside cloud; below 0 outside.
 fn cloud_inside(here: CloudHere) -> f32 {
     return here.inside;
 }
 
-// Distance along a ray from a place outside of clouds within which there is none, m: strength changes no faster than
-// map, noise and dome do, and noise adds no more than it can.
+// Distance along a ray from a place outside clouds within which there is no cloud, m. Strength changes no faster than
+// map, noise and dome do, and the noise adds no more than its largest value.
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     let leaning = 2.0 * layer.lean.w * layer.size.y * abs(direction.z);
     let level = length(direction.xy) + leaning;
@@ -95,24 +95,24 @@ fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f)
     if !CLOUD_PLACED {
         return skip;
     }
-    // Within some distance the threshold stays; beyond, it may change.
+    // The threshold stays the same within a distance and may change beyond.
     let near = max(min(skip, here.steady / max(level, 1e-3)), here.clear / max(level, 1e-3));
     return max(near, cloud_skip_by(layer, here, steep + here.slope * level));
 }
 
-// The same where what is wanting falls no faster than `steep` a metre, but for what the noise adds.
+// `cloud_skip` for a gap that falls by at most `steep` per metre, apart from what the noise adds.
 fn cloud_skip_by(layer: CloudLayer, here: CloudHere, steep: f32) -> f32 {
     let by_map = (here.gap - MOST_FRAYED * layer.shape.z) / (steep + 1e-6);
     let by_noise = here.frayed_gap / (steep + SOLID_SKIP * layer.shape.z * layer.medium.w);
     return max(by_map, by_noise);
 }
 
-// Farthest that a ray is followed through a layer, m, and length over which clouds fade before it: cut off, a cloud
-// would show a flat face.
+// Farthest distance that a ray is followed through a layer, and length over which clouds fade out before it, m. Without
+// it a cloud would end in a flat face.
 const CLOUD_FARTHEST: f32 = 60.0e3;
 const CLOUD_FADES: f32 = 15.0e3;
 
-// What is left of clouds so far within a layer, of 1.
+// Share of clouds left at a distance within a layer, 0 to 1.
 fn cloud_fades(within: f32) -> f32 {
     return clamp((CLOUD_FARTHEST - within) / CLOUD_FADES, 0.0, 1.0);
 }
@@ -126,26 +126,26 @@ fn cloud_altitude(direction: vec3f, t: f32) -> f32 {
 
 fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     let altitude = cloud_altitude(direction, t);
-    // Along the ground.
+    // Horizontal distance is measured along the ground.
     let level = cloud_origin.xy + direction.xy * t * (clouds.radius / (clouds.radius + altitude));
     return CloudPlace(level, (altitude - layer.size.x) * layer.size.y);
 }
 
-// Metres of full extinction in a column of this excess over a stretch of a ray that rises `rise` (of the thickness) a
-// metre.
+// Length of cloud at full extinction along an interval of a ray in columns of this excess, m. The ray rises by `rise`
+// thicknesses per metre.
 fn cloud_stretch(layer: CloudLayer, excess: f32, height: f32, rise: f32, length: f32) -> f32 {
     let to = height + rise * length;
     let low = clamp(min(height, to), 0.0, 1.0);
     let high = clamp(max(height, to), 0.0, 1.0);
-    // A level stretch has next to no height: that of a slab about it counts.
+    // A level interval has hardly any height, so a thin slab around it is taken.
     let top = max(high, min(low + 0.02, 1.0));
     let bottom = min(low, top - 0.02);
     let filled = cloud_filled(layer, excess, top) - cloud_filled(layer, excess, bottom);
     return length * filled / (top - bottom);
 }
 
-// Metres of full extinction along a direction, up to a distance. What frays a cloud is looked up on the nearer part of
-// the way; beyond it columns of even strength stand for the cloud.
+// Length of cloud at full extinction along a direction up to a distance, m. Fraying is looked up on the nearer part of
+// the path; columns of even strength stand for the cloud beyond.
 fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32 {
     let rise = select(min(toward.z, -1e-3), max(toward.z, 1e-3), toward.z >= 0.0) * layer.size.y;
     let way = min(select(at.height, 1.0 - at.height, rise > 0.0) / abs(rise), most);
@@ -172,8 +172,8 @@ fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32
     return depth;
 }
 
-// Scaled depths of the cloud about a place, which counts as it is there (cloud_local): above, below, level to the
-// nearer side and to the other.
+// Scaled depths of cloud around a place: above, below, horizontally to the nearer side and to the other. `here` is the
+// layer with the local cover of the place.
 fn cloud_box(here: CloudLayer, at: CloudPlace, excess: f32) -> vec4f {
     let about = cloud_about(here, excess, at.height) * (here.size.w * here.medium.y);
     let edge = max(about.z, 0.02);
@@ -188,7 +188,7 @@ fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     return CloudDepths(about.x, about.y, to_sun, near, about.w, about.z, about.w);
 }
 
-// Share of sunlight that other clouds let through to a place that is looked at coarsely. Elsewhere the way to the sun
+// Share of sunlight that other clouds let through to a place where clouds are blurred. Elsewhere the path to the sun
 // meets them itself.
 fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
     if !CLOUD_COARSE {
@@ -196,7 +196,7 @@ fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
     }
     let up = select(at.height, 1.0 - at.height, clouds.to_sun.z >= 0.0) / layer.size.y;
     let cells = up * length(clouds.to_sun.xy) / max(abs(clouds.to_sun.z), 0.05) * layer.size.z;
-    // Cloud cover falls with height.
+    // The share of cloud falls with height.
     let blocked = 1.0 - exp(-0.5 * here.share * cells / CLOUD_CELL);
     return 1.0 - min(cloud_blur.spread, 1.0) * blocked;
 }

@@ -1,5 +1,5 @@
-// In place of about.wgsl: a box of even cloud, for the probe. Its sides, in metres, are (width along x, width along y,
-// thickness of the layer); the ray starts at `box_origin` in it, from its corner at the base.
+// A box of even cloud for the probe; replaces about.wgsl. Its sides, m, are (width along x, width along y, thickness of
+// the layer). The ray starts at `box_origin`, measured from the corner at the base.
 //!include "clouds/box.wgsl"
 //!include "clouds/light.wgsl"
 
@@ -28,7 +28,7 @@ fn cloud_here(layer: CloudLayer, at: CloudPlace) -> CloudHere {
     return CloudHere(0.0, layer.size.w, 1.0);
 }
 
-// All of a box is cloud.
+// The whole box is cloud.
 fn cloud_inside(here: CloudHere) -> f32 {
     return 1.0;
 }
@@ -48,7 +48,7 @@ fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     return CloudPlace(at.xy, at.z * layer.size.y);
 }
 
-// A place in the box, m.
+// Position in the box, m.
 fn box_place(layer: CloudLayer, at: CloudPlace) -> vec3f {
     let sides = box_sides(layer);
     return clamp(vec3f(at.level, at.height * sides.z), vec3f(0.0), sides);
@@ -58,7 +58,7 @@ fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32
     return min(box_exit(box_place(layer, at), box_sides(layer), toward), most);
 }
 
-// It is the same all over.
+// The layer is the same everywhere.
 struct CloudLocal {
     layer: CloudLayer,
 }
@@ -80,7 +80,7 @@ fn cloud_box(layer: CloudLayer, at: CloudPlace, excess: f32) -> vec4f {
     return vec4f(high.z, low.z, edge, max(min(sides.x, sides.y) - edge, edge)) * scaled;
 }
 
-// The sun stands over the box's side x = 0.
+// The sun stands on the side x = 0.
 fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     let scaled = layer.size.w * layer.medium.y;
     let low = box_place(layer, at) * scaled;

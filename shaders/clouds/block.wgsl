@@ -1,59 +1,61 @@
-// What a frame knows of its clouds: CloudsUniform of src/clouds/drawn/uniforms.rs.
+// Clouds of a frame: CloudsUniform of src/clouds/drawn/uniforms.rs.
 
 const CLOUD_LAYERS: u32 = 16u;
 
 struct CloudLayer {
     // Altitude of the base, m; 1/thickness, 1/m; 1/distance from cloud to cloud, 1/m; extinction inside, 1/m.
     size: vec4f,
-    // Threshold of the map, dome, how far edges fray, 1/softness.
+    // Threshold of the map, dome, amplitude of the fraying, 1/softness.
     shape: vec4f,
-    // Where the camera stands on the map's first and second sheet, in their periods.
+    // Position of the camera on the map's first and second sheet, in their periods.
     sheets: vec4f,
-    // Where it stands in the solid noise, in its period (up: of the layer's base); share of the cellular pattern.
+    // Position of the camera in the solid noise, in its period (up: from the layer's base); share of the cellular
+    // pattern.
     solid: vec4f,
-    // Light of the lamp on what faces it, lux times exposure.
+    // Illuminance by the sun or moon on a surface that faces it, lux times exposure.
     sun: vec4f,
-    // Radiance of sky and higher clouds above it, cd/m^2 times exposure.
+    // Radiance of sky and higher clouds above the layer, cd/m^2 times exposure.
     above: vec4f,
-    // Radiance of ground and lower clouds below it; scaled width of a cloud from side to side.
+    // Radiance of ground and lower clouds below it, cd/m^2 times exposure; scaled width of a cloud from side to side.
     below: vec4f,
-    // Index of the medium that it is made of; scaled extinction over extinction; how much of the layer is drawn as a
-    // volume; 1/side of the solid noise, 1/m.
+    // Index of the medium; scaled extinction over extinction; share of the layer that is drawn as a volume; 1/side of
+    // the solid noise, 1/m.
     medium: vec4f,
-    // To a pattern that is not drawn out along the wind: xx, xy and yy; how domes of heaps grow with their place's
+    // Matrix to the pattern before its stretch along the wind: xx, xy and yy; growth of the domes of cumulus with the
     // excess.
     stretch: vec4f,
-    // How far the top lies downwind of the base (east, north), m; least excess with an anvil over it; length of the
-    // first two.
+    // Distance that the top lies downwind of the base (east, north), m; least excess that has an anvil above it; length
+    // of the first two, m.
     lean: vec4f,
-    // Of a host's map of it (placed.wgsl): where the camera stands, in cells from the middle of the first, 1/cell, 1/m,
-    // row of its first texels.
+    // Host's map of the layer (placed.wgsl): position of the camera (east, north), in cells from the middle of the
+    // first one; 1/side of a cell, 1/m; row of the map's first texels.
     mapped: vec4f,
-    // Cells of the map east and north, 0 without; held domes times dome squared; most change of threshold a metre.
+    // Number of the map's cells east and north, 0 without a map; growth of the domes times the dome squared; largest
+    // change of the threshold per metre.
     cells: vec4f,
-    // Where it is filled over rain areas: threshold, dome, extinction, 1/m; how many areas there are, 0 for other
+    // Threshold, dome and extinction, 1/m, where the layer is filled over rain areas; number of areas, 0 for other
     // layers.
     filled: vec4f,
 }
 
 // A cell of cloud over a rain area: an ellipse.
 struct CloudArea {
-    // Its middle, m east and north of the camera; the way to the right.
+    // Middle, m east and north of the camera; unit vector to the right.
     place: vec4f,
-    // Half its extent to the right and ahead, width over which it sets in, smaller half extent, m.
+    // Half extents to the right and ahead, width of the edge, smaller half extent, m.
     extent: vec4f,
 }
 
 struct CloudMedium {
     // Phase function: asymmetry of the Henyey-Greenstein lobe and of Draine's, Draine's alpha, weight of Draine's.
     lobes: vec4f,
-    // Share of scattering counted as straight on; 1/sr above which the phase function is cut off; 1 - asymmetry of the
-    // rest; albedo of the rest.
+    // Share of scattering that counts as straight on; value at which the phase function is cut off, 1/sr; 1 - asymmetry
+    // of the rest; single-scattering albedo of the rest.
     rest: vec4f,
 }
 
 struct CloudsUniform {
-    // Unit, towards the lamp that lights them, (east, north, up) at the camera; number of layers.
+    // Unit vector towards the sun or moon that lights the clouds, (east, north, up) at the camera; number of layers.
     to_sun: vec3f,
     layer_count: u32,
     // Altitude of the camera, m; radius of the planet's ground, m; jitter of the first step.
@@ -66,20 +68,20 @@ struct CloudsUniform {
     areas: array<CloudArea, 16>,
 }
 
-// Some places are looked at over widths in which clouds differ (field.wgsl).
+// Whether pixels at some places are wider than the structure of the clouds, which are then blurred (field.wgsl).
 override CLOUD_COARSE: bool = false;
 
 @group(0) @binding(1) var<uniform> clouds: CloudsUniform;
 
-// How many layers there are, as lights_binding.wgsl cuts a count.
+// Number of layers, limited as lights_binding.wgsl limits a count.
 fn cloud_layers() -> u32 {
     return clouds.layer_count & 31u;
 }
 
-// Where a ray begins, relative to the camera (east, north, up), m: at the camera, but for rays of parallel views.
+// Origin of a ray relative to the camera (east, north, up), m: the camera, except for rays of parallel views.
 var<private> cloud_origin: vec3f;
 
-// Height of that place above the planet's ground, m.
+// Height of the ray's origin above the planet's ground, m.
 fn cloud_eye() -> f32 {
     return clouds.altitude + cloud_origin.z;
 }

@@ -1,4 +1,4 @@
-// A box of even cloud, and where in it a ray of the probe starts.
+// A box of even cloud, and the origin of the probe's ray in it.
 //!include "clouds/block.wgsl"
 
 var<private> box_origin: vec3f;
@@ -7,7 +7,7 @@ fn box_sides(layer: CloudLayer) -> vec3f {
     return vec3f(layer.sheets.xy, 1.0 / layer.size.y);
 }
 
-// From a place in a box along a direction to its side.
+// Distance from a place in a box along a direction to the box's side.
 fn box_exit(at: vec3f, sides: vec3f, direction: vec3f) -> f32 {
     let to = select(at, sides - at, direction > vec3f(0.0)) / max(abs(direction), vec3f(1e-9));
     return max(min(min(to.x, to.y), to.z), 0.0);

@@ -1,39 +1,40 @@
-// Where there is cloud. Twin of src/clouds/field/extinction.rs, where the model is described.
+// Field of clouds: where there is cloud in a layer. Twin of src/clouds/field/extinction.rs, where the model is
+// described.
 //!include "clouds/block.wgsl"
 //!include "clouds/placed.wgsl"
 
-// Two sheets, each of an even and of a cellular kind.
+// Two sheets, each with even and cellular noise.
 @group(0) @binding(2) var cloud_map: texture_2d_array<f32>;
 @group(0) @binding(3) var cloud_solid: texture_3d<f32>;
 
 const MAP_CELLS: f32 = 16.0;
 const SECOND_PERIOD: f32 = 1.618034;
 const SECOND_TURN: vec2f = vec2f(0.62160997, 0.7833269);
-// Its mean, and one over the range of nearly all of it.
+// Mean of the solid noise, and the reciprocal of the range that nearly all of it has.
 const SOLID_MEAN: f32 = 0.47;
 const SOLID_GAIN: f32 = 2.2;
-// Most that it adds to the excess, over how far it frays.
+// Largest amount that it adds to the excess, in units of the fraying's amplitude.
 const MOST_FRAYED: f32 = 0.8;
-// Slope of the map, a cell.
+// Slope of the map per cell.
 const MAP_SLOPE: f32 = 4.0;
 
-// A place in a layer: metres east and north of the camera, and height, 0 at the base to 1 at the top.
+// A place in a layer: m east and north of the camera, and height, 0 at the base to 1 at the top.
 struct CloudPlace {
     level: vec2f,
     height: f32,
 }
 
-// Height over which a base is round at its edges: share of the thickness, and m at most.
+// Height over which the edges of a base are round: as a share of the thickness, and at most in m.
 const EDGE_SHARE: f32 = 0.08;
 const EDGE_M: f32 = 40.0;
-// Heights between which an anvil is whole, and over which its faces fade.
+// Heights between which an anvil is whole, and heights over which it fades out below and above.
 const ANVIL: vec2f = vec2f(0.84, 0.95);
 const ANVIL_FACES: vec2f = vec2f(0.2, 0.05);
-// How much smoother an anvil is than its towers.
+// Share by which an anvil's edges fray less than its towers'.
 const ANVIL_SMOOTHER: f32 = 0.65;
 
-// How coarsely a place is looked at: from far off a pixel holds many clouds. Mip levels of the map and of the solid
-// noise, and the standard deviation of the excess within the pixel; all 0 close by.
+// Blur of clouds in a pixel that spans several of them: mip levels of the map and of the solid noise, and standard
+// deviation of the excess within the pixel. All are 0 nearby.
 struct CloudBlur {
     map: f32,
     solid: f32,
@@ -42,27 +43,27 @@ struct CloudBlur {
 
 var<private> cloud_blur: CloudBlur;
 
-// Texels across a cell of the map, and across the solid noise; by how many mip levels the second sheet, whose cells are
-// larger, is finer.
+// Texels across a cell of the map, and across the solid noise; number of mip levels by which the second sheet is read
+// finer, as its cells are larger.
 const MAP_TEXELS: f32 = 16.0;
 const SOLID_TEXELS: f32 = 64.0;
 const SECOND_LEVEL: f32 = 0.694;
-// A mean over a width w takes the share 1 - exp(-(w / x)^y) of the variance: (x, y) of the even and of the cellular
-// sheets, w in cells, and of the solid noise, w in its sides; the standard deviation of that noise. Held by a test
-// (src/clouds/field/map.rs).
+// A mean over a width w removes the share 1 - exp(-(w / x)^y) of the variance. (x, y) for the even and the cellular
+// sheets, w in cells, and for the solid noise, w in its sides; standard deviation of that noise. A test holds these
+// numbers (src/clouds/field/map.rs).
 const EVEN_BLUR: vec2f = vec2f(2.12, 1.25);
 const CELLULAR_BLUR: vec2f = vec2f(0.84, 1.9);
 const SOLID_BLUR: vec2f = vec2f(0.14, 1.7);
 const SOLID_DEVIATION: f32 = 0.107;
 
-// Width, cells, up to which clouds are looked at as they are.
+// Width up to which clouds are not blurred, cells.
 const BLUR_FROM: f32 = 0.15;
 
 fn cloud_lost(width: f32, law: vec2f) -> f32 {
     return 1.0 - exp(-pow(width / law.x, law.y));
 }
 
-// For places that are looked at over a width, m.
+// Returns the blur for places that are averaged over a width, m.
 fn cloud_blur_over(layer: CloudLayer, width: f32) -> CloudBlur {
     var blur = CloudBlur(0.0, 0.0, 0.0);
     let cells = width * layer.size.z - BLUR_FROM;
@@ -79,29 +80,29 @@ fn cloud_blur_over(layer: CloudLayer, width: f32) -> CloudBlur {
     return blur;
 }
 
-// A place over the ground, as it is at the base: what is above that leans.
+// Horizontal place in the pattern that belongs to a place: the cloud leans with height.
 fn cloud_unleaned(layer: CloudLayer, at: CloudPlace) -> vec2f {
     return at.level - layer.lean.xy * (at.height * at.height);
 }
 
-// The same as the pattern has it: drawn out along the wind.
+// Horizontal place in the pattern, without lean and without stretch along the wind.
 fn cloud_upright(layer: CloudLayer, at: CloudPlace) -> vec2f {
     let level = cloud_unleaned(layer, at);
     return vec2f(dot(layer.stretch.xy, level), dot(layer.stretch.yz, level));
 }
 
-// Excess over the threshold, neither frayed nor under a dome.
+// Excess over the threshold, before dome and fraying.
 fn cloud_over(layer: CloudLayer, at: CloudPlace) -> f32 {
     return cloud_strength(layer, cloud_upright(layer, at)) - layer.shape.x;
 }
 
-// Excess at which a place of this excess reaches the layer's top.
+// Excess needed for cloud at the layer's top over a place of this excess.
 fn cloud_dome_over(layer: CloudLayer, excess: f32) -> f32 {
     let e = max(excess, 0.0);
     return layer.shape.y * sqrt(1.0 + layer.stretch.w * e * e);
 }
 
-// The map's number at a place of the pattern.
+// The map's number at a place in the pattern.
 fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
     let cell = level * (layer.size.z / MAP_CELLS);
     let turned = vec2f(SECOND_TURN.x * cell.x - SECOND_TURN.y * cell.y, SECOND_TURN.y * cell.x + SECOND_TURN.x * cell.y);
@@ -113,7 +114,8 @@ fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
     return ((first.x + second.x) * (1.0 - c) + (first.y + second.y) * c) * scale;
 }
 
-// Excess that a place of this excess needs at a height: a flat base with round edges, and a dome or an anvil.
+// Excess needed for cloud at a height over a place of this excess: a flat base with round edges, and a dome or an
+// anvil.
 fn cloud_dome(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     let share = min(EDGE_M * layer.size.y, EDGE_SHARE);
     let edge = max(1.0 - height / share, 0.0);
@@ -121,7 +123,7 @@ fn cloud_dome(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     return min(cloud_dome_over(layer, excess) * height * height + 0.25 * edge * edge * share * (1.0 / EDGE_SHARE), layer.lean.z + 3.0 * dot(off, off));
 }
 
-// What the solid noise adds to the excess.
+// Amount that the solid noise adds to the excess.
 fn cloud_frays(layer: CloudLayer, at: CloudPlace) -> f32 {
     let solid = vec3f(cloud_upright(layer, at), at.height / layer.size.y) * layer.medium.w + layer.solid.xyz;
     let within = clamp((at.height - ANVIL.x) * (1.0 / 0.14) + 1.0, 0.0, 1.0);
@@ -129,29 +131,29 @@ fn cloud_frays(layer: CloudLayer, at: CloudPlace) -> f32 {
     return layer.shape.z * smooth_share * SOLID_GAIN * (textureSampleLevel(cloud_solid, cloud_sampler, solid, cloud_blur.solid).r - SOLID_MEAN);
 }
 
-// Extinction, 1/m, of a frayed excess over threshold and dome.
+// Extinction, 1/m, for an excess over threshold and dome, with fraying.
 fn cloud_extinction(layer: CloudLayer, excess: f32) -> f32 {
     return layer.size.w * clamp(excess * layer.shape.w, 0.0, 1.0);
 }
 
-// Height of full extinction below a height in a column of this excess, of 1.
+// Height of cloud at full extinction below a height, in a column of this excess; the layer's thickness is 1.
 fn cloud_filled(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     let d = max(cloud_dome_over(layer, excess), 1e-3);
     let ends = min(sqrt(max(vec2f(excess - 1.0 / layer.shape.w, excess), vec2f(0.0)) / d), vec2f(1.0));
     let x = clamp(height, ends.x, ends.y);
     let ramp = (excess - d * vec2f(x * x, ends.x * ends.x) * (1.0 / 3.0)) * vec2f(x, ends.x) * layer.shape.w;
-    // What of an anvil lies above the dome.
+    // Part of an anvil that lies above the dome.
     let lowest = clamp(ends.y, ANVIL.x, ANVIL.y);
     let anvil = clamp((excess - layer.lean.z) * layer.shape.w, 0.0, 1.0) * (clamp(height, lowest, ANVIL.y) - lowest);
     return min(height, ends.x) + max(ramp.x - ramp.y, 0.0) + anvil;
 }
 
-// Metres of full extinction above and below a place of this excess over the threshold, and level to the edge of its
-// cloud.
+// Length of cloud at full extinction above and below a place of this excess over the threshold, and horizontal distance
+// to the edge of its cloud, m.
 fn cloud_about(layer: CloudLayer, excess: f32, height: f32) -> vec3f {
     let below = cloud_filled(layer, excess, height);
     let above = cloud_filled(layer, excess, 1.0) - below;
-    // An anvil reaches further than its tower.
+    // An anvil reaches farther out than its tower.
     let beyond = select(0.0, min(layer.lean.z, 0.0), height > ANVIL.x - 0.5 * ANVIL_FACES.x);
     return vec3f(vec2f(above, below) / layer.size.y, max(excess - beyond, 0.0) / (MAP_SLOPE * layer.size.z));
 }

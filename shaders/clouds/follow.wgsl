@@ -1,4 +1,5 @@
-// Of each square of pixels: how far it has come since the last frame, and between what its picture of then is held.
+// Reprojects each square of pixels: its movement since the last frame, and the range to which the last picture is
+// clamped.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/picture.wgsl"
 //!include "common/frame.wgsl"
@@ -10,17 +11,18 @@
 struct FollowedSquare {
     @location(0) least: vec4f,
     @location(1) most: vec4f,
-    // To where it was, in pixels; LOST where that was not in the picture. z: share of the marched picture in its place.
+    // Offset to its place in the last picture, pixels; LOST if that was outside. z: weight of the marched picture
+    // instead.
     @location(2) back: vec4f,
 }
 
-// Spread about a plane through neighbouring squares over their range at which a picture is smooth, and at which it has
-// shapes.
+// Deviation from a plane through neighbouring squares, over their range, up to which a picture counts as smooth, and
+// from which on it counts as structured.
 const SMOOTH: f32 = 0.03;
 const SHAPED: f32 = 0.1;
 
-// Share of luminance (x) and transmittance (y) that have no shapes finer than these squares: a picture between them is
-// that of the whole.
+// Share by which luminance (x) and transmittance (y) have no structure finer than these squares. Where it is 1, a
+// picture interpolated between squares shows all there is.
 fn smoothness(center: vec2f, near: array<vec2f, 4>, rounding: vec2f) -> f32 {
     let mean = 0.2 * (center + near[0] + near[1] + near[2] + near[3]);
     let range = max(max(near[0], near[1]), max(near[2], near[3])) - min(min(near[0], near[1]), min(near[2], near[3]));
@@ -54,12 +56,12 @@ fn follow(in: FullscreenVarying) -> FollowedSquare {
         return out;
     }
     if length(back) < 0.02 {
-        // At rest nothing is held, and nothing is blurred.
+        // At rest nothing is clamped, and nothing is blurred.
         out.most = vec4f(65504.0);
         return out;
     }
     let size = vec2i(textureDimensions(marched)) - 1;
-    // At an edge of the picture about the square next to it.
+    // At an edge of the picture the square next to it is the center.
     let about = clamp(vec2i(square), min(vec2i(1), size), max(size - 1, vec2i(0)));
     let center = textureLoad(marched, about, 0);
     var least = min(own, center);

@@ -1,19 +1,21 @@
-// The halo of 22 degrees that ice makes about the lamp. Twin of src/clouds/light/halo.rs, where the model is described.
+// Halo of 22 degrees that ice crystals make around the sun or moon. Twin of src/clouds/light/halo.rs, which describes
+// the model.
 //!include "clouds/light.wgsl"
 
-// Of red, green and blue: the least angle by which a prism turns light, rad, and the phase function there, 1/sr.
+// For red, green and blue: smallest deflection by a prism, rad, and the phase function there, 1/sr.
 const HALO_FROM: vec3f = vec3f(0.37984, 0.38249, 0.38779);
 const HALO_MOST: vec3f = vec3f(5.1095, 5.0817, 5.0272);
-// Angle over which it falls to 1/e, and radius of the disc that rounds its step, rad.
+// Angle over which the halo falls to 1/e, and radius of the disc that blurs its step, rad.
 const HALO_FALL: f32 = 0.0716;
 const HALO_DISC: f32 = 0.0047;
-// Share of what ice scatters.
+// Share of the light scattered by ice.
 const HALO_SHARE: f32 = 0.039;
 
-// What the halo adds to the phase function of a medium and takes from it elsewhere, 1/sr, in a direction from the eye.
+// Amount that the halo adds to the phase function of a medium, 1/sr, in a direction from the eye; negative away from
+// it.
 fn cloud_halo(medium_index: f32, direction: vec3f) -> vec3f {
     let cosine = dot(direction, clouds.to_sun);
-    // Droplets make none.
+    // Droplets make no halo.
     if medium_index < 1.0 {
         return vec3f(0.0);
     }

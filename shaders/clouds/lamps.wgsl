@@ -1,20 +1,20 @@
-// The lamps and flashes that light clouds: LampsUniform of src/clouds/light/lamps.rs.
+// Lamps and flashes that light clouds: LampsUniform of src/clouds/light/lamps.rs.
 //!include "common/light.wgsl"
 
 struct CloudLamp {
     light: HostLight,
-    // How far its light reaches about its place, m.
+    // Radius of the source, m.
     radius: f32,
-    // Mean of its light over all directions, of that in its middle.
+    // Mean intensity over all directions, over that in the middle of the beam.
     even: f32,
-    // Above 0 where it shines in a cloud, whatever lies on the way.
+    // Above 0 for a source inside a cloud, whatever lies on the path.
     buried: f32,
     pad: f32,
 }
 
 struct CloudLamps {
     count: u32,
-    // First row of the target, and its texels.
+    // First row of the glow in its target, and the glow's size, texels.
     row: f32,
     size: vec2f,
     lamps: array<CloudLamp, 16>,

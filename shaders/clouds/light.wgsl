@@ -1,8 +1,9 @@
-// What a place in a cloud scatters towards an eye. Twin of src/clouds/light/sources.rs, where the model is described.
+// Light that a place in a cloud scatters towards the eye. Twin of src/clouds/light/sources.rs, which describes the
+// model.
 //!include "clouds/block.wgsl"
 
-// Tables side by side: under the beam on the top, under that on the side, under the sky; a medium below the other;
-// leaks one behind the other.
+// Tables of source terms. Side by side: under the beam on the top, under the beam on the side, under the sky. The media
+// lie one below the other, and the leaks in the third dimension.
 @group(0) @binding(4) var cloud_tables: texture_3d<f32>;
 @group(0) @binding(6) var cloud_table_sampler: sampler;
 
@@ -12,7 +13,7 @@ const CLOUD_THINNEST: f32 = 0.05;
 const CLOUD_PI: f32 = 3.1415927;
 const PART_RATE: f32 = 1.0;
 
-// Scaled depths of cloud about a place.
+// Scaled depths of cloud around a place.
 struct CloudDepths {
     above: f32,
     below: f32,
@@ -23,45 +24,46 @@ struct CloudDepths {
     right: f32,
 }
 
-// A stretch of a ray that is looked at in one place.
+// Interval of a ray that one place stands for.
 struct CloudStretch {
     direction: vec3f,
-    // Distances at which it begins, how long it is, and of the place, m.
+    // Distance at which it begins (`begun`), its length, and the distance of the place (`at`), m.
     begun: f32,
     length: f32,
     at: f32,
-    // Scaled depth of cloud before it.
+    // Scaled depth of cloud between the interval and the eye.
     to_eye: f32,
 }
 
-// Per unit of the sun's irradiance facing it, of the sky's and of the ground's radiance.
+// Scattered light per unit of the sun's irradiance on a surface that faces it, and of the sky's and the ground's
+// radiance.
 struct CloudScattered {
     sun: f32,
-    // Of the sun's, what is scattered for the first time: times the phase function.
+    // Share of the sunlight that is scattered for the first time; the phase function is a factor to it.
     once: f32,
     sky: f32,
     ground: f32,
 }
 
-// Here and in field.wgsl: products with inverses of constants. Software drivers do not turn a division by a constant
-// into one.
+// Here and in field.wgsl, divisions by constants are written as products with inverses, because software drivers do not
+// make that change themselves.
 fn cloud_depth_place(depth: f32) -> f32 {
     let thin = depth * (1.0 / CLOUD_THINNEST);
     return clamp(select(1.0 + 2.0 * log2(max(thin, 1.0)), thin, thin < 1.0), 0.0, CLOUD_DEPTHS - 1.0);
 }
 
-// Place of a leak among those that there are tables for.
+// Position of a leak rate among the leaks of the tables.
 fn cloud_leak_place(leak: f32) -> f32 {
     return min(4.0 * log(1.0 + sqrt(leak) * (1.0 / 0.03)), CLOUD_LEAKS - 1.0);
 }
 
-// Rate at which light leaves a box from side to side along two axes.
+// Leak rate through the sides of a box along two axes.
 fn cloud_leak(widths: vec2f, turning: f32) -> f32 {
     let b = CLOUD_PI / (widths + 1.42 / turning);
     return dot(b, b) / (3.0 * turning);
 }
 
-// A table's source terms.
+// Looks up a table's source terms.
 fn cloud_table(table: f32, medium: f32, above: f32, below: f32, leak: f32) -> vec4f {
     let first = vec3f(table * CLOUD_DEPTHS, medium * CLOUD_DEPTHS, 0.0);
     let at = first + vec3f(cloud_depth_place(above), cloud_depth_place(below), cloud_leak_place(leak)) + 0.5;
@@ -73,12 +75,13 @@ fn cloud_legendre(terms: vec4f, x: f32) -> f32 {
     return dot(terms, vec4f(1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x));
 }
 
-// Extent of a box from side to side as diffusing light has it.
+// Extent of a box for diffusing light, from side to side.
 fn cloud_reach(near: f32, far: f32, turning: f32) -> f32 {
     return max(near + far, 1e-3) + 1.42 / turning;
 }
 
-// What light follows from side to side of a box, of mean 1, and its slope, so deep behind the face that it falls on.
+// Profile of light between two opposite sides of a box, with mean 1, and its slope. `entered` is the depth behind the
+// face that the light falls on.
 fn cloud_across(near: f32, far: f32, turning: f32, height: f32, entered: f32) -> vec2f {
     let extent = cloud_reach(near, far, turning);
     let b = CLOUD_PI / extent;
@@ -91,7 +94,7 @@ fn cloud_across(near: f32, far: f32, turning: f32, height: f32, entered: f32) ->
     return vec2f(1.0 + share * (cos(off) * over_mean - 1.0), -b * sin(off) * over_mean * set_in);
 }
 
-// The two lobes of a phase function, 1/sr, at the angle whose 1 - cos is `versine`.
+// Phase function of the two lobes, 1/sr, at the angle whose 1 - cos is `versine`.
 fn cloud_phase(medium: CloudMedium, versine: f32) -> f32 {
     let g = medium.lobes.xy;
     let d = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;
@@ -102,8 +105,9 @@ fn cloud_phase(medium: CloudMedium, versine: f32) -> f32 {
     return mix(lobe.x, draine, medium.lobes.w) / (4.0 * CLOUD_PI);
 }
 
-// What is scattered for the first time after so much cloud (scaled), with what is still to come to the eye, 1/sr: of
-// what counts as straight on, the part that is scattered at the angle.
+// Phase function of the first scattering, 1/sr. `gone` is the scaled depth of cloud on the whole path, with what is
+// between the place and the eye. Light that counts as straight on was partly scattered, and that part is added at its
+// angle.
 fn cloud_first_phase(medium: CloudMedium, versine: f32, gone: f32) -> f32 {
     let phase = cloud_phase(medium, versine);
     let forward = medium.rest.x * gone / (1.0 - medium.rest.x);
@@ -111,14 +115,15 @@ fn cloud_first_phase(medium: CloudMedium, versine: f32, gone: f32) -> f32 {
     return (min(phase, medium.rest.y) + max(phase - medium.rest.y, 0.0) * share_forward) / (1.0 - medium.rest.x);
 }
 
-// Terms of a table with what goes from side to side along two further axes: (cosine and slope, direction along the
-// axis) each.
+// Sums the terms of a table and the flux along two more axes. `one` and `other` have the profile, its slope, and the
+// component of the direction along the axis.
 fn cloud_through(terms: vec4f, axis: f32, one: vec3f, other: vec3f, spread: f32) -> f32 {
     let leaves = one.y * other.x * one.z + other.y * one.x * other.z;
     return cloud_legendre(terms, axis) * one.x * other.x - spread * terms.x * leaves;
 }
 
-// `direction` is the way that light goes, through so much more cloud (scaled) to the eye.
+// Computes the scattered light. Light goes along `direction`, and `to_eye` is the scaled depth of cloud between the
+// place and the eye.
 fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye: f32) -> CloudScattered {
     let medium = clouds.media[u32(medium_index)];
     let turning = medium.rest.z;
@@ -146,7 +151,7 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
     let by_top = above / cosine;
     let by_side = select(1e9, at.near / max(sine, 1e-6), sine > 1e-6);
     let top_share = 1.0 / (1.0 + exp(min(PART_RATE * turning * (by_top - by_side), 80.0)));
-    // A way to the sun that is longer than the box's: light that has been scattered often falls off slowly along it.
+    // The path to the sun may be longer than in the box. Light that is scattered often falls off slowly along it.
     let aside = min((1.0 + turning * min(by_top, by_side)) / (1.0 + turning * at.to_sun), 1.0);
     let share = aside * aside * max(top_share, 1.0 - top_share);
     let top = cloud_through(cloud_table(0.0, medium_index, above, below, leak), down, a, c, spread);
@@ -162,7 +167,7 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
     out.sun = once + often + clamp(level_kept, -often, often);
     let sky = max(cloud_through(cloud_table(2.0, medium_index, at.above, at.below, leak), -direction.z, a, c, spread), 0.0);
     let ground = max(cloud_through(cloud_table(2.0, medium_index, at.below, at.above, leak), direction.z, a, c, spread), 0.0);
-    // As much as leaves through the sides comes in there, half of it from above.
+    // Through the sides as much light comes in as leaves. Half of it comes from the sky, half from the ground.
     let by_sides = 0.5 * (albedo - sky - ground);
     out.sky = max(sky + by_sides, 0.0);
     out.ground = max(ground + by_sides, 0.0);

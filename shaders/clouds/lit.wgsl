@@ -1,8 +1,9 @@
-// What a place in a cloud sends to the eye of the light of sun or moon, sky and ground. In its place lit_lamps.wgsl has
-// that of lamps and flashes.
+// Light of sun or moon, sky and ground that a place in a cloud scatters to the eye. lit_lamps.wgsl replaces this file
+// for the light of lamps and flashes.
 //!include "clouds/about.wgsl"
 
-// cd/m^2 over exposure, for each unit of scaled depth. `halo`: what ice adds to the phase function, 1/sr.
+// Light that a place scatters to the eye, cd/m^2 over exposure, per unit of scaled depth. `halo` is the amount that ice
+// crystals add to the phase function, 1/sr.
 fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudStretch, halo: vec3f) -> vec3f {
     let depths = cloud_depths(layer, at, here.excess);
     let s = cloud_scattered(layer.medium.x, depths, -stretch.direction, stretch.to_eye);

@@ -1,24 +1,24 @@
-// In place of lit.wgsl: what a place in a cloud sends to the eye of the light of the host's lamps and of flashes. Twin
-// of src/clouds/light/lamp_light.rs, where the model is described.
+// Light of the host's lamps and of lightning flashes that a place in a cloud scatters to the eye; replaces lit.wgsl.
+// Twin of src/clouds/light/lamp_light.rs, which describes the model.
 //!include "clouds/about.wgsl"
 //!include "clouds/lamps.wgsl"
 
-// Extrapolation length, and the depth from which light comes back through the face that it fell on, over 1 / (1 - g').
+// Extrapolation length, and the depth from which light returns through the face that it fell on, over 1 / (1 - g').
 const DARK_AT: f32 = 0.71;
 const RETURNS_FROM: f32 = 0.5;
-// Shares of the way to a lamp that lie in cloud, between which it goes over from outside to inside.
+// Shares of the path to a lamp that lie in cloud, between which the lamp goes over from outside to inside.
 const INSIDE: vec2f = vec2f(0.5, 1.0);
-// Places along a stretch at which a beam is looked at.
+// Number of places along an interval at which a beam is sampled.
 const BEAM_PLACES: u32 = 4u;
 
-// A lamp as a place sees it; the distance in scaled depths of the cloud about it.
+// A lamp as seen from a place. Distances are scaled depths of the cloud around it.
 struct CloudShine {
     toward: vec3f,
     distance: f32,
     between: f32,
 }
 
-// A lamp `to` away from a place.
+// Creates the shine of a lamp at the offset `to` from a place, m.
 fn cloud_shine(layer: CloudLayer, at: CloudPlace, lamp: CloudLamp, to: vec3f, scaled: f32) -> CloudShine {
     let way = sqrt(dot(to, to) + lamp.radius * lamp.radius);
     let d = max(way * scaled, 1e-3);
@@ -28,7 +28,7 @@ fn cloud_shine(layer: CloudLayer, at: CloudPlace, lamp: CloudLamp, to: vec3f, sc
     return CloudShine(to / way, d, min(cloud_way(layer, at, to / way, way) * scaled, d));
 }
 
-// Distance from a lamp over that from its image behind a face, and how fast that grows along `direction`.
+// Distance from a lamp over that from its image behind a face, and the growth of this ratio along `direction`.
 fn cloud_mirrored(shine: CloudShine, direction: vec3f, place: f32, grows: f32, source: f32) -> vec2f {
     let d = shine.distance;
     let square = d * d + 4.0 * place * source;
@@ -37,15 +37,14 @@ fn cloud_mirrored(shine: CloudShine, direction: vec3f, place: f32, grows: f32, s
     return vec2f(d, toward - 2.0 * d * source * grows / square) * image;
 }
 
-// Of a lamp in the cloud, what has been scattered more than once; for a lamp of 1 cd a unit of scaled depth squared.
-// `within`: what lies above and below the lamp of the cloud's layer.
+// Light of a lamp inside the cloud that is scattered more than once, for 1 cd per unit of scaled depth squared.
+// `within` has the scaled depths of the layer's cloud above and below the lamp.
 fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: CloudShine, direction: vec3f) -> f32 {
     let turning = medium.rest.z;
     let dark = DARK_AT / turning;
     let d = shine.distance;
     let level = length(shine.toward.xy) * d;
-    // Of the sides no more is known than that one looks at the nearer one, and that the lamp lies beyond it in the same
-    // cloud.
+    // Little is known of the sides: the eye looks at the nearer one, and the lamp lies beyond it in the same cloud.
     let out = length(direction.xy);
     let half = 0.5 * max(about.z + about.w, d);
     let place = array<f32, 6>(about.x, about.y, about.z, max(about.w, level + half), half, half);
@@ -56,7 +55,7 @@ fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: Cloud
     var growing = dot(shine.toward, direction) / d;
     for (var i = 0u; i < 6u; i++) {
         let power = select(select(3.0, 2.0, i == (nearest ^ 1u)), 1.0, i == nearest);
-        // A cloud is round: where one face is near, the others are not.
+        // A cloud is round: where one face is near, the others are farther away.
         let depth = select(max(place[i], lamp[i]), place[i], i == nearest);
         let r = cloud_mirrored(shine, direction, depth + dark, grows[i], max(lamp[i], 0.0) + dark);
         let others = pow(r.x, power - 1.0);
@@ -67,7 +66,7 @@ fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: Cloud
     return medium.rest.w * 3.0 / (4.0 * CLOUD_PI) * mean * max(turning - (1.0 - turning) * growing, 0.0);
 }
 
-// Of a lamp outside of the cloud, likewise, all that is scattered.
+// Light of a lamp outside the cloud, with all orders of scattering, in the same units.
 fn cloud_shone_on(medium_index: f32, medium: CloudMedium, about: vec4f, shine: CloudShine, direction: vec3f) -> f32 {
     let turning = medium.rest.z;
     let to = shine.toward;
@@ -80,13 +79,13 @@ fn cloud_shone_on(medium_index: f32, medium: CloudMedium, about: vec4f, shine: C
     let often = max(cloud_legendre(cloud_table(2.0, medium_index, shine.between, behind, leak), x), 0.0) / CLOUD_PI;
     let momentum = exp(-turning * shine.between) - exp(-shine.between);
     let kept = medium.rest.w * 3.0 * (1.0 - turning) / (4.0 * CLOUD_PI) * momentum * x;
-    // What comes back to the face has been some way in.
+    // Light that returns through the face has first gone some way in.
     let d = shine.distance - shine.between + max(shine.between, RETURNS_FROM / turning);
     return (often + clamp(kept, -often, often)) / (d * d);
 }
 
-// Where a stretch of a ray is in a lamp's beam, m; empty where the second is not beyond the first. `to`: from the ray's
-// start to the lamp.
+// Part of a ray's interval inside a lamp's beam, m; empty if the second distance is not beyond the first. `to` is the
+// offset from the ray's start to the lamp.
 fn cloud_in_beam(lamp: CloudLamp, to: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
     if lamp.light.end <= 0.0 {
         return vec2f(first, last);
@@ -104,16 +103,16 @@ fn cloud_in_beam(lamp: CloudLamp, to: vec3f, direction: vec3f, first: f32, last:
     }
     let ends = (vec2f(-b) + vec2f(-1.0, 1.0) * sqrt(root) * sign(a)) / a;
     if a > 0.0 {
-        // Along the axis one gets in and stays, or gets out for good.
+        // A ray along the axis enters the beam and stays in it, or leaves it for good.
         return select(vec2f(first, min(last, ends.x)), vec2f(max(first, ends.y), last), on > 0.0);
     }
     let in_front = from_lamp + 0.5 * (ends.x + ends.y) * on > 0.0;
     return select(vec2f(first), vec2f(max(first, min(ends.x, ends.y)), min(last, max(ends.x, ends.y))), in_front);
 }
 
-// What droplets along a stretch scatter once of a lamp in the cloud, and the mean of its beam over the stretch.
-// `dense`: scaled depth on the way to the lamp a metre. Places lie evenly as seen from the lamp (Kulla and Fajardo
-// 2012, "equiangular").
+// Light of a lamp inside the cloud that droplets along an interval scatter once (x), and the mean of its beam over the
+// interval (y). `dense` is the scaled depth per metre on the path to the lamp. Sample places are evenly spaced in the
+// angle seen from the lamp (Kulla and Fajardo 2012, "equiangular").
 fn cloud_once(medium: CloudMedium, lamp: CloudLamp, to: vec3f, stretch: CloudStretch, dense: f32) -> vec2f {
     let within = cloud_in_beam(lamp, to, stretch.direction, stretch.begun, stretch.begun + stretch.length);
     if within.y <= within.x {
@@ -132,13 +131,13 @@ fn cloud_once(medium: CloudMedium, lamp: CloudLamp, to: vec3f, stretch: CloudStr
         let beam = light_beam(lamp.light, dot(way, lamp.light.direction));
         let gone = d * dense;
         let phase = cloud_first_phase(medium, 1.0 + dot(stretch.direction, way), gone + stretch.to_eye);
-        // Of ds = d^2 du / h.
+        // From ds = d^2 du / h.
         sum += beam * vec2f(phase * exp(-gone), d * d);
     }
     return sum * vec2f(medium.rest.w, 1.0) * (whole / (h * f32(BEAM_PLACES) * stretch.length));
 }
 
-// cd/m^2 over exposure, for each unit of scaled depth.
+// Light of all lamps that a place scatters to the eye, cd/m^2 over exposure, per unit of scaled depth.
 fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudStretch, halo: vec3f) -> vec3f {
     let local = cloud_local(layer, cloud_unleaned(layer, at)).layer;
     let about = cloud_box(local, at, here.excess);
@@ -154,7 +153,7 @@ fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudS
         let once = cloud_once(medium, lamp, from_origin, stretch, scaled * shine.between / shine.distance);
         var light = inside * once.x;
         if inside > 0.0 {
-            // A beam turns as far ahead of its lamp as light keeps its direction.
+            // A beam spreads from a point ahead of its lamp, where its light has lost its direction.
             let ahead = lamp.light.direction * ((1.0 - lamp.even) / (medium.rest.z * scaled));
             let to = from_origin + ahead - place;
             let way = sqrt(dot(to, to) + lamp.radius * lamp.radius);

@@ -1,36 +1,36 @@
-// A ray through the layers of cloud: what they send to the eye, what they let through, and how far away they are.
+// Marches a ray through the layers of cloud: their radiance, transmittance and distance.
 //!include "between/air.wgsl"
 //!include "clouds/about.wgsl"
 //!include "clouds/halo.wgsl"
 //!include "clouds/lit.wgsl"
 
-// How many steps a ray takes, over those of these: most steps through one layer; depth of a step in cloud, scaled, at
-// most; distance from which on steps grow with it.
+// Number of steps relative to the following values; largest number of steps in one layer; largest scaled depth of a
+// step in cloud; length of a step over its distance.
 override CLOUD_FINENESS: f32 = 1.0;
 override CLOUD_STEPS: u32 = 96u;
 override CLOUD_STEP_DEPTH: f32 = 0.4;
 override CLOUD_STEP_ANGLE: f32 = 0.0035;
-// Share of a layer's thickness that a step goes up or down at most.
+// Largest share of a layer's thickness by which a step goes up or down.
 const CLOUD_STEP_RISE: f32 = 0.08;
-// Scaled depth of a step from which on its light is looked up where it is seen, not half-way.
+// Scaled depth above which the light of a step is computed at its mean visible place, not half-way.
 const CLOUD_THICK_STEP: f32 = 0.7;
-// What is let through at which a ray ends.
+// Transmittance at which a ray ends.
 override CLOUD_LEAST: f32 = 0.01;
 
 struct CloudSeen {
-    // cd/m^2 over exposure; of what is behind, with what clouds scatter straight on.
+    // Radiance, cd/m^2 over exposure; transmittance for the light behind, which includes light scattered straight on.
     light: vec3f,
     transmittance: f32,
-    // Distances between which what is seen of them stands as good as evenly, m.
+    // Distances between which the visible cloud is nearly evenly spread, m.
     reach: vec2f,
 }
 
-// Distances at which a ray crosses a sphere `height` above the planet's ground, in order; both the same where it does
+// Distances at which a ray crosses a sphere `height` above the planet's ground, in order. Both are the same if it does
 // not.
 fn cloud_crossings(direction: vec3f, height: f32) -> vec2f {
     let r = clouds.radius + cloud_eye();
     let rise = height - cloud_eye();
-    // t^2 + 2 r mu t = rise (2 r + rise), solved without the difference of squares of large numbers.
+    // t^2 + 2 r mu t = rise (2 r + rise), solved without differences between squares of large numbers.
     let b = r * direction.z;
     let c = rise * (2.0 * r + rise);
     let root = b * b + c;
@@ -46,67 +46,67 @@ fn cloud_crossings(direction: vec3f, height: f32) -> vec2f {
 struct CloudMarch {
     light: vec3f,
     transmittance: f32,
-    // Distance, m, and its square, km^2, by how much is seen there.
+    // Distance, m, and its square, km^2, weighted by the visible cloud.
     distance: vec2f,
 }
 
-// Where the mean of what is seen of a step of this scaled depth lies, as a share of the step: extinction is even in it,
-// or rises evenly from the face where it begins (within 4 % of the integral).
+// Position of the mean visible place in a step of this scaled depth, as a share of the step. The extinction is even in
+// the step, or rises linearly from the cloud's face at its start (within 4 % of the integral).
 fn cloud_seen_at(depth: f32, at_face: bool) -> f32 {
     let left = exp(-depth);
     return select(1.0 / depth - left / (1.0 - left), 0.667 / sqrt(sqrt(1.0 + 0.32 * depth * depth)), at_face);
 }
 
-// Width over which a pixel looks, pixels: at one the map's texels still show as rings.
+// Width of a pixel's filter, pixels. With 1 the map's texels still show as rings.
 const PIXEL_BLUR: f32 = 1.4;
 
 // Angle of a pixel, rad.
 var<private> cloud_pixel: f32 = 0.0;
 
-// Width of a pixel on a layer, m: the geometric mean of that across and that along, less what the ray passes through of
-// the layer itself.
+// Width of a pixel on a layer, m: the geometric mean of the widths across and along the ray. What the ray passes of the
+// layer itself is taken off the second.
 fn cloud_pixel_width(layer: CloudLayer, t: f32, rise: f32) -> f32 {
     let across = PIXEL_BLUR * cloud_pixel * t / CLOUD_FINENESS;
     let along = max(across, (across - 1.0 / layer.size.y) / max(rise, 0.05));
     return sqrt(across * along);
 }
 
-// Share of a ray that is still open, in gaps (x) and in cloud (y), so many cells on from a place of one share of cloud
-// (shares.x) to a place of another (shares.y). Going up or down cloud stands over cloud; going level a ray meets clouds
-// anew.
+// Transmittance of a ray in gaps (x) and in cloud (y), `cells` cells beyond a place with the share of cloud shares.x,
+// at a place with the share shares.y. On the way up or down, cloud stands over cloud; on a level path a ray meets new
+// clouds.
 fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     let grown = open.x * (shares.y - shares.x) / max(1.0 - shares.x, 1e-6);
     let shrunk = open.y * (shares.y / max(shares.x, 1e-6) - 1.0);
     let stacked = open.y + select(shrunk, grown, shares.y > shares.x);
     let all = open.x + open.y;
-    // No more than all: rounded up it would leave gaps that take light away.
+    // Limited to the total: rounded up, it would leave gaps that take light away.
     let cloudy = clamp(mix(shares.y * all, stacked, exp(-cells / CLOUD_CELL)), 0.0, all);
     return vec2f(all - cloudy, cloudy);
 }
 
-// What the next place on a ray is looked up for.
+// Purposes for which the next place on a ray is looked up.
 // To find cloud.
 const CLOUD_SEEKS: u32 = 0u;
-// To begin a cloud that was found, by the first step from its face.
+// To begin the first step at the face of a cloud that was found.
 const CLOUD_AT_FACE: u32 = 1u;
-// For the light of a thick step, where that is seen.
+// For the light of a thick step, at its mean visible place.
 const CLOUD_WITHIN: u32 = 2u;
-// The step needs no further place.
+// The step needs no other place.
 const CLOUD_FOUND: u32 = 3u;
 
-// A step along a ray, and what is known of it.
+// State of a step along a ray.
 struct CloudStep {
     looks_for: u32,
     // Distance at which it begins, m.
     begun: f32,
-    // Distance of the place whose extinction stands for the whole step, m.
+    // Distance of the place whose extinction holds for the whole step, m.
     at: f32,
-    // Distance of the place that is looked up next, m.
+    // Distance of the next place to look up, m.
     next: f32,
     length: f32,
-    // It begins at the face of a cloud.
+    // Whether it begins at the face of a cloud.
     at_face: bool,
-    // Where its light is looked up, and the cloud there.
+    // Place at which its light is computed, and the cloud there.
     place: CloudPlace,
     here: CloudHere,
 }
@@ -115,8 +115,8 @@ fn cloud_step_depth(layer: CloudLayer, step: CloudStep) -> f32 {
     return step.here.extinction * layer.medium.y * step.length;
 }
 
-// The step after `next` was looked up, once cloud was found there or before. `clear`: the last place without cloud
-// since the last with some, and how much is wanting there, or 0.
+// Returns the step after the place at `next` was looked up, once cloud was found there or before. `clear` has the
+// distance of the last place without cloud since the last cloud, and the excess missing there or 0.
 fn cloud_looked(before: CloudStep, layer: CloudLayer, place: CloudPlace, here: CloudHere, clear: vec2f, jitter: f32) -> CloudStep {
     var step = before;
     if before.looks_for == CLOUD_WITHIN {
@@ -124,8 +124,7 @@ fn cloud_looked(before: CloudStep, layer: CloudLayer, place: CloudPlace, here: C
         step.here.excess = here.excess;
         step.looks_for = CLOUD_FOUND;
     } else {
-        // A ray that comes into a cloud begins its steps at the face, wherever they lie: else faces show where steps
-        // begin.
+        // Steps begin at the face of a cloud that a ray enters. Otherwise faces would show where steps begin.
         let face = clear.x + (before.at - clear.x) * clear.y / max(clear.y + cloud_inside(here), 1e-6);
         let at_face = before.looks_for == CLOUD_AT_FACE;
         if here.extinction > 0.0 {
@@ -146,7 +145,7 @@ fn cloud_looked(before: CloudStep, layer: CloudLayer, place: CloudPlace, here: C
     return step;
 }
 
-// One layer between two distances along a ray.
+// Marches one layer between two distances along a ray.
 fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32, seen: CloudMarch, jitter: f32) -> CloudMarch {
     var out = seen;
     let thickness = 1.0 / layer.size.y;
@@ -157,20 +156,20 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     let halo = cloud_halo(layer.medium.x, direction);
     var gone = first;
     var tried = 0u;
-    // The last place without cloud since the last with some, and how much is wanting there, or 0.
+    // Distance of the last place without cloud since the last cloud, and the excess missing there or 0.
     var clear = vec2f(first, 0.0);
-    // What of the ray has not ended yet, before gaps and before cloud, where it is looked at coarsely; share of cloud
-    // at the last place.
+    // Transmittance of the ray before gaps and before cloud, where clouds are blurred, and the share of cloud at the
+    // last place.
     var open = vec2f(out.transmittance, 0.0);
     var cloudy_share = 0.0;
     while out.transmittance > CLOUD_LEAST {
-        // To the next step with cloud in it. All rays of a wave look a place up at once, each for what it needs, and
-        // light for such steps alone.
+        // Go to the next step with cloud. All rays of a wave look up a place at the same time, each for its own
+        // purpose, and compute light only for steps with cloud.
         var step: CloudStep;
         while step.looks_for != CLOUD_FOUND && (step.looks_for != CLOUD_SEEKS || (tried < most && gone < last)) {
             if step.looks_for == CLOUD_SEEKS {
                 step.begun = gone;
-                // The less of a step is seen, the longer it may be; the power is the chart's (docs/lab/clouds.csv).
+                // The less of a step is visible, the longer it may be. The power is from a chart (docs/lab/clouds.csv).
                 let grown = select(inverseSqrt(sqrt(out.transmittance)), 1.0, clear.y > 0.0);
                 step.length = min(clamp(CLOUD_STEP_ANGLE / CLOUD_FINENESS * gone, fine, coarse) * grown, last - gone);
                 step.at = gone + jitter * step.length;
@@ -209,7 +208,7 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     return out;
 }
 
-// A layer of which only a part is drawn here: the rest of it is drawn as a deck.
+// Blends a layer of which only the share `share` is drawn as a volume; the rest is drawn as a deck.
 fn cloud_part(before: CloudMarch, after: CloudMarch, share: f32) -> CloudMarch {
     return CloudMarch(
         mix(before.light, after.light, share),
@@ -218,7 +217,7 @@ fn cloud_part(before: CloudMarch, after: CloudMarch, share: f32) -> CloudMarch {
     );
 }
 
-// All layers up to `range`.
+// Marches all layers up to `range`.
 fn clouds_along(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
     var seen = CloudMarch(vec3f(0.0), 1.0, vec2f(0.0));
     let lowest = -(clouds.radius + cloud_eye()) * direction.z;
@@ -245,17 +244,17 @@ fn clouds_along(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
     }
     let cover = max(1.0 - seen.transmittance, 1e-6);
     let middle = seen.distance.x / cover;
-    // An even stretch is sqrt(3) standard deviations long to either side.
+    // An even distribution reaches sqrt(3) standard deviations to either side.
     let half = 1e3 * sqrt(3.0 * max(seen.distance.y / cover - middle * middle * 1e-6, 0.0));
     return CloudSeen(seen.light, seen.transmittance, max(middle + vec2f(-half, half), vec2f(1.0)));
 }
 
-// Where what is seen of them stands, m.
+// Mean distance of the visible cloud, m.
 fn cloud_middle(seen: CloudSeen) -> f32 {
     return 0.5 * (seen.reach.x + seen.reach.y);
 }
 
-// With the air before that.
+// Adds the air in front of the clouds.
 fn clouds_behind(air: Veil, seen: CloudSeen) -> CloudSeen {
     let light = seen.light * air.transmittance + air.light * frame.exposure * (1.0 - seen.transmittance);
     return CloudSeen(light, seen.transmittance, seen.reach);

@@ -1,6 +1,6 @@
-// Clouds along the rays of some pixels of a picture. They are marched whether the host's things hide them or not: what
-// stands before a cloud and what stands in it is told apart by the composition, for every pixel and sample, and leaves
-// no trail where it moves.
+// Marches the clouds along the rays of some pixels of a picture, whether or not the host's objects hide them. The
+// composition decides for every pixel and sample which clouds are in front of an object, so moving objects leave no
+// trail.
 //!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"
@@ -13,7 +13,7 @@
 @group(0) @binding(9) var<uniform> shadows: CloudShadows;
 @group(0) @binding(10) var shadow_map: texture_2d<f32>;
 
-// The air before clouds has their shadows in it.
+// Whether the air before clouds shows their shadows.
 override SHAFTS: bool = false;
 
 fn air_before(ray: ViewRay, distance: f32, between: f32) -> Veil {
@@ -26,7 +26,7 @@ fn air_before(ray: ViewRay, distance: f32, between: f32) -> Veil {
 
 struct MarchedPixel {
     @location(0) seen: vec4f,
-    // log2 of the reach, m, times 1 - transmittance, so that a mean of texels is that of what is seen.
+    // log2 of the reach, m, times 1 - transmittance, so that a mean of texels is weighted by the visible cloud.
     @location(1) reach: vec4f,
 }
 
@@ -43,7 +43,7 @@ fn march(in: FullscreenVarying) -> MarchedPixel {
         let between = shaft_between(vec2f(pixel));
         seen = clouds_behind(air_before(ray, cloud_middle(seen), between), seen);
     }
-    // As the half floats of the picture round it: the reach is divided by it again.
+    // The cover is rounded as in the picture's half floats, because the reach is divided by it later.
     let cover = 1.0 - round(seen.transmittance * 2048.0) / 2048.0;
     return MarchedPixel(vec4f(capped(seen.light, 65504.0), seen.transmittance), vec4f(log2(seen.reach) * cover, 0.0, 0.0));
 }

@@ -1,26 +1,26 @@
-// Local cloud cover that overrides a layer's own. Twin of src/clouds/field/placed.rs, where the model is described.
+// Local cloud cover that overrides a layer's own. Twin of src/clouds/field/placed.rs, which describes the model.
 //!include "clouds/block.wgsl"
 
-// Of layers that a host's map is laid on: threshold, dome, extinction, distance within which the threshold stays; one
-// below the other.
+// Layers under a host's map, one below the other: threshold, dome, extinction, 1/m, distance within which the threshold
+// stays the same, m.
 @group(0) @binding(8) var cloud_maps: texture_2d<f32>;
 @group(0) @binding(5) var cloud_sampler: sampler;
 
-// There is a map, or a rain area.
+// Whether there is a map or a rain area.
 override CLOUD_PLACED: bool = false;
 
-// Threshold from which on there is no cloud: just below CLEAR of src/clouds/field/thresholds.rs.
+// Threshold above which there is no cloud: just below CLEAR of src/clouds/field/thresholds.rs.
 const CLOUD_CLEAR_FROM: f32 = 6.95;
 
-// A layer as it is at a place.
+// A layer with the local cover of a place.
 struct CloudLocal {
     layer: CloudLayer,
-    // Distance within which its threshold stays, m, and how much that changes a metre beyond.
+    // Distance within which its threshold stays the same, m, and its change per metre beyond.
     steady: f32,
     slope: f32,
 }
 
-// How far a place is filled over a rain area, and how far away all of that is, m.
+// Share by which a place is filled over a rain area, 0 to 1, and its distance from the area's cell, m.
 fn cloud_filled_over(area: CloudArea, level: vec2f) -> vec2f {
     let away = level - area.place.xy;
     let p = vec2f(dot(away, area.place.zw), dot(away, vec2f(-area.place.w, area.place.z)));
@@ -30,7 +30,7 @@ fn cloud_filled_over(area: CloudArea, level: vec2f) -> vec2f {
     return vec2f(clamp(depth / max(area.extent.z, 1e-6), 0.0, 1.0), max(k1 - 1.0, 0.0) * area.extent.w);
 }
 
-// `level`: metres east and north of the camera, of what the layer leans by taken off.
+// Returns the layer at `level`: m east and north of the camera, without the lean.
 fn cloud_local(layer: CloudLayer, level: vec2f) -> CloudLocal {
     var here = CloudLocal(layer, 1e9, layer.cells.w);
     if !CLOUD_PLACED {

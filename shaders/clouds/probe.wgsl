@@ -1,13 +1,13 @@
-// Light that leaves a box of even cloud through its sides, by the march of the picture (with about_box.wgsl in
-// about.wgsl's place). Six tiles side by side, one a face (x low, x high, y low, y high, base, top), of one ray a
-// pixel; directions are spread as the cosine.
+// Measures the light that leaves a box of even cloud through its sides, with the march of the picture (about_box.wgsl
+// replaces about.wgsl). Six tiles lie side by side, one for each face (x low, x high, y low, y high, base, top), with
+// one ray a pixel. Directions are distributed as the cosine.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"
 //!include "clouds/box.wgsl"
 
 const PROBE_SIDE: u32 = 64u;
 
-// A spread of points over the unit cube (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+// Quasirandom points in the unit cube (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 fn spread(i: u32) -> vec4f {
     return fract(vec4f(0.5) + f32(i) * vec4f(0.8566749, 0.7338919, 0.6287067, 0.5385973));
 }
@@ -22,7 +22,7 @@ fn box_probe(in: FullscreenVarying) -> @location(0) vec4f {
     let axis = face / 2u;
     let sine = sqrt(p.z);
     let azimuth = 2.0 * CLOUD_PI * p.w;
-    // Out of the face, and along it.
+    // Direction out of the face, and position on it.
     let out = vec3f(sine * cos(azimuth), sine * sin(azimuth), sqrt(1.0 - p.z) * select(-1.0, 1.0, face % 2u == 1u));
     let on = vec3f(p.xy, f32(face % 2u));
     var away = out;

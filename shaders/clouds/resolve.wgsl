@@ -1,5 +1,5 @@
-// The clouds of a whole picture, from the pixels that were marched in this frame and from the last frame's picture,
-// seen anew.
+// Resolves the clouds of a whole picture from the pixels that this frame marched and from the last frame's picture,
+// reprojected.
 //!include "common/host.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "common/frame.wgsl"
@@ -21,9 +21,9 @@
 @group(1) @binding(3) var repeating: sampler;
 
 override HISTORY: bool = true;
-// There are shadows, and a host's depth to cast them on.
+// Whether there are shadows, and a host's depth to cast them on.
 override SHADOWS: bool = true;
-// The air before that is told apart too.
+// Whether the air in front of the surfaces is shaded too.
 override SHAFTS: bool = false;
 
 // log2 of a distance beyond all clouds, m.
@@ -31,12 +31,12 @@ const NOWHERE: f32 = 24.0;
 
 struct ResolvedPixel {
     @location(0) seen: vec4f,
-    // log2 of the reach, m, the share of direct light at what the host drew, and by how much that in the air before it
-    // differs from the mean.
+    // log2 of the distances of the reach, m (x, y); share of direct light at the surface that the host drew (z);
+    // difference of that share in the air before it from the mean (w).
     @location(1) reach: vec4f,
 }
 
-// Where the depth has several samples a pixel, the first stands for all: shadows of clouds have no sharp edges.
+// If the depth has several samples a pixel, the first one is used: shadows of clouds have no sharp edges.
 fn shadow_on(pixel: vec2u, ndc: vec2f) -> vec2f {
     if !SHADOWS {
         return vec2f(1.0, 0.0);
@@ -56,7 +56,7 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     let pixel = vec2u(in.position.xy);
     let among = among_marched(picture, pixel) / vec2f(textureDimensions(marched));
     let now = textureSampleLevel(marched, linear, among, 0.0);
-    // What this frame's rays do not see, but the last picture held, stands far off: never before what the host drew.
+    // Clouds of the last picture that this frame's rays do not meet count as far away, behind all that the host drew.
     let cover = 1.0 - now.a;
     let stands = textureSampleLevel(marched_reach, linear, among, 0.0).rg / max(cover, 1e-4);
     let reach = vec4f(select(vec2f(NOWHERE), stands, cover > 1e-4), shadow_on(pixel, frame_ndc(in.uv)));
@@ -70,14 +70,14 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     let size = vec2f(picture.size);
     let lost = any(was < vec2f(0.0)) || any(was > size);
     let within = clamp(was, vec2f(0.5), size - 0.5) / vec2f(textureDimensions(last));
-    // At rest the texel itself: a filter's least error, rounded down from frame to frame, would darken the clouds until
-    // they are marched again.
+    // At rest the texel itself is taken. A filter rounds down a little in each frame, which would darken the clouds
+    // until they are marched again.
     let filtered = textureSampleLevel(last, linear, within, 0, 0.0);
     let texel = textureLoad(last, vec2i(pixel), 0, 0);
     let kept = select(filtered, texel, all(to == vec2f(0.0))) * vec4f(vec3f(picture.exposed), 1.0);
     let held = clamp(kept, textureLoad(least, vec2i(square), 0), textureLoad(most, vec2i(square), 0));
-    // How bright a cloud is depends on the direction too, which a picture seen anew does not follow: where it has no
-    // shapes, the marched picture holds all that there is to see.
+    // Reprojection does not change a cloud's brightness with the direction. Where the picture is smooth, the marched
+    // pixels have all there is to see, so they are used instead.
     let likely = mix(held, now, followed.z);
     let is_marched = all(marched_pixel(picture, square) == pixel);
     return ResolvedPixel(select(likely, now, lost || is_marched), reach);
@@ -88,7 +88,7 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     return resolved(in);
 }
 
-// Where shadows have a draw of their own, the one before it writes as depth on which pixels the host drew.
+// If shadows have their own draw, the draw before it marks in the depth target the pixels on which the host drew.
 struct ResolvedKind {
     @location(0) seen: vec4f,
     @location(1) reach: vec4f,
@@ -104,8 +104,8 @@ fn resolve_kind(in: FullscreenVarying) -> ResolvedKind {
     return ResolvedKind(pixel.seen, pixel.reach, select(0.0, KIND_DRAWN, depth < RANGE_SKY));
 }
 
-// The two components of the reach that the first draw leaves out. Nothing else is written, but both outputs are named:
-// virgl sends the output of a shader that has none at location 0 to the first image.
+// Writes the two components of `reach` that the first draw leaves out, and nothing else. Both outputs are declared,
+// because virgl sends the output of a shader without one at location 0 to the first target.
 @fragment
 fn resolve_shadow(in: FullscreenVarying) -> ResolvedPixel {
     let shadow = shadow_on(vec2u(in.position.xy), frame_ndc(in.uv));

@@ -1,4 +1,4 @@
-// Clouds in all directions from the camera, for what shows more than the picture: mirrors, cube maps.
+// Draws the panorama: clouds in all directions from the camera, for mirrors and cube maps.
 //!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "between/hung.wgsl"

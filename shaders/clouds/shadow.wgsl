@@ -1,18 +1,18 @@
-// A map of the shadows that clouds cast on a level plane: the share of the direct light that they let through. Twin of
-// src/clouds/light/shadow.rs. Its texels are fixed to the air that carries the clouds and repeat: each stands for the
-// place nearest to the camera.
+// Draws the clouds' shadow map: the share of the direct light that clouds let through to a level plane. Twin of
+// src/clouds/light/shadow.rs. The texels move with the air that carries the clouds, and the map repeats. Each texel
+// stands for the place nearest to the camera.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/about.wgsl"
 //!include "clouds/shadow_map.wgsl"
 
 @group(0) @binding(7) var<uniform> shadows: CloudShadows;
 
-// Along a side of the map.
+// Side of the map, texels.
 override SHADOW_TEXELS: f32 = 512.0;
 
 const SHADOW_STEPS: u32 = 12u;
 
-// Optical depth of a layer on the way of light to a place in the plane.
+// Optical depth of a layer on the path of light to a place in the plane.
 fn shadow_depth(layer: CloudLayer, level: vec2f) -> f32 {
     let slant = shadows.to_light.xy / shadows.to_light.z;
     let below = layer.size.x - shadows.plane;

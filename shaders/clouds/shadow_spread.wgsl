@@ -1,10 +1,10 @@
-// A map of shadows from a coarse one, until its own rows are made.
+// Fills the shadow map from a coarse one, until its own rows are drawn.
 //!include "common/fullscreen.wgsl"
 
 @group(0) @binding(2) var coarse: texture_2d<f32>;
 @group(0) @binding(5) var repeating: sampler;
 
-// Along a side of the map.
+// Side of the map, texels.
 override SHADOW_TEXELS: f32 = 512.0;
 
 @fragment

@@ -1,5 +1,5 @@
-// Counts how often a pixel of a layer is drawn, in place of a layer's own fragment shaders: with no cover, what is
-// blended adds up.
+// Counts how often each pixel of a layer is drawn, in place of the layer's own fragment shaders. The output has alpha
+// 0, so that blending adds up.
 
 @fragment
 fn count() -> @location(0) vec4f {

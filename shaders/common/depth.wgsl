@@ -1,41 +1,42 @@
-// From a depth sample and a pixel to a ray and metres along it. The f64 twin and the derivation are in
-// src/scene/depth.rs; the constants come from there, formed in f64.
+// Converts a depth sample and a pixel to a ray and a distance along it. src/scene/depth.rs has the f64 reference and
+// the derivation. It also computes the constants, in f64.
 
-// Stands for "nothing was drawn here".
+// Range of a pixel in which nothing was drawn.
 const RANGE_SKY: f32 = 1e12;
 
-// Kinds of depth that a pipeline must read: 1 perspective, 2 parallel rays, 4 logarithmic; for software drivers, which
-// execute all of them.
+// Kinds of depth that a pipeline must read, one bit each: 1 perspective, 2 parallel rays, 4 logarithmic. It serves
+// software drivers, which execute the code of all kinds in the shader.
 override DEPTH_KINDS: u32 = 7u;
 
 struct DepthUniform {
-    // Ray origin at the picture's centre and its change per unit of ndc, camera-relative world axes, m.
+    // Ray origin at the picture's centre and its change per unit of ndc, in camera-relative world axes, m.
     origin: vec3f,
-    // e = turn_offset + turn_scale * depth is 0 at the far end (logarithmic: at the near one).
+    // e = turn_offset + turn_scale * depth is 0 at the far end (for logarithmic depth, at the near end).
     turn_offset: f32,
     origin_dx: vec3f,
     turn_scale: f32,
     origin_dy: vec3f,
     // 0 perspective, 1 parallel rays, 2 logarithmic.
     kind: u32,
-    // Unnormalised ray direction, likewise; clip w counts along it.
+    // Unnormalised ray direction at the picture's centre and its change per unit of ndc; clip w is the distance in
+    // units of it.
     direction: vec3f,
     // Plane distance per unit of clip w.
     plane_scale: f32,
     direction_dx: vec3f,
-    // ln(c far + 1) of logarithmic depth.
+    // ln(c far + 1), for logarithmic depth.
     log_far: f32,
     direction_dy: vec3f,
-    // 1/c of logarithmic depth, m.
+    // 1/c, m, for logarithmic depth.
     inverse_c: f32,
-    // Affine in ndc: perspective w = scale / (e - pole), parallel t = (e - pole) * scale.
+    // The pole is affine in ndc: perspective w = scale / (e - pole), parallel t = (e - pole) * scale.
     pole: vec3f,
     scale: f32,
 }
 
 struct ViewRay {
     origin: vec3f,
-    // Unit.
+    // Unit vector.
     direction: vec3f,
     // Metres along the ray per unit of clip w.
     slant: f32,
@@ -48,7 +49,7 @@ fn view_origin(u: DepthUniform, ndc: vec2f) -> vec3f {
     return u.origin + ndc.x * u.origin_dx + ndc.y * u.origin_dy;
 }
 
-// The way along the ray per unit of what view_depth counts.
+// Step along the ray per unit of view_depth.
 fn view_step(u: DepthUniform, ndc: vec2f) -> vec3f {
     return u.direction + ndc.x * u.direction_dx + ndc.y * u.direction_dy;
 }
@@ -59,18 +60,18 @@ fn view_ray(u: DepthUniform, ndc: vec2f) -> ViewRay {
     return ViewRay(view_origin(u, ndc), step / slant, slant);
 }
 
-// e^x - 1 without cancellation at small x >= 0.
+// e^x - 1 for x >= 0, without cancellation at small x.
 fn depth_expm1(x: f32) -> f32 {
     let series = x * (1.0 + x * (0.5 + x * (0.16666667 + x * (0.041666667 + x * 0.008333333))));
     return select(exp(x) - 1.0, series, x < 0.125);
 }
 
 fn depth_is_nan(x: f32) -> bool {
-    // Compilers may assume that no NaN comes and fold x != x; the bits cannot be argued with.
+    // Compilers may assume that there is no NaN and fold x != x; a test of the bits is safe from that.
     return (bitcast<u32>(x) & 0x7fffffffu) > 0x7f800000u;
 }
 
-// Clip w, or metres if rays are parallel; RANGE_SKY for the far end, what lies beyond, and NaN.
+// Clip w, or metres for parallel rays. RANGE_SKY at the far end, beyond it, and for NaN.
 fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     let turned = u.turn_offset + u.turn_scale * depth;
     let pole = u.pole.x + ndc.x * u.pole.y + ndc.y * u.pole.z;
@@ -89,43 +90,43 @@ fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return clamp(w, 0.0, RANGE_SKY);
 }
 
-// Depth of a thing as view_depth counts it, by its clip w and its distance from the eye, `nearer` metres before its
-// place; and metres along its ray per unit of that depth.
+// Depth of an object as view_depth counts it, from its clip w and its distance from the eye, moved `nearer` metres
+// towards the eye; and metres along its ray per unit of that depth.
 fn depth_of(u: DepthUniform, clip_w: f32, distance: f32, nearer: f32) -> vec2f {
     let slant = distance / max(clip_w, 0.05 * distance);
     let parallel = (DEPTH_KINDS & 2u) != 0u && u.kind == 1u;
     return select(vec2f(clip_w - nearer / slant, slant), vec2f(distance - nearer, 1.0), parallel);
 }
 
-// Share of a thing that the host's picture leaves at a pixel: none from an eighth of a metre behind what it shows.
+// Share of an object that the host's picture leaves visible at a pixel: 0 from 1/8 m behind the shown surface on.
 fn share_before(shown: f32, depth: vec2f) -> f32 {
     return clamp((shown - depth.x) * (4.0 * depth.y) + 0.5, 0.0, 1.0);
 }
 
-// ln(1 + x) without cancellation at small x >= 0.
+// ln(1 + x) for x >= 0, without cancellation at small x.
 fn depth_ln_1p(x: f32) -> f32 {
     let series = x * (1.0 - x * (0.5 - x * (0.33333333 - x * (0.25 - x * (0.2 - x * 0.16666667)))));
     return select(log(1.0 + x), series, x < 0.125);
 }
 
-// What stands at clip w in a buffer whose depth is logarithmic: the inverse of view_depth, for the fragment shaders of
-// opaque things. The other kinds come from the projection. The f64 twin is ViewRays::depth_at.
+// Value in a logarithmic depth buffer for clip w: the inverse of view_depth, for the fragment shaders of opaque
+// objects. Other kinds of depth follow from the projection. The f64 reference is ViewRays::depth_at.
 fn written_depth(u: DepthUniform, w: f32) -> f32 {
     let e = depth_ln_1p(max(w, 0.0) / u.inverse_c) / u.log_far;
     return clamp((e - u.turn_offset) / u.turn_scale, 0.0, 1.0);
 }
 
-// The place at this depth, as view_depth counts it.
+// Position at this depth, as view_depth counts it.
 fn view_point(u: DepthUniform, depth: f32, ndc: vec2f) -> vec3f {
     return view_origin(u, ndc) + view_step(u, ndc) * depth;
 }
 
-// Metres along the pixel's ray.
+// Distance along the pixel's ray, m.
 fn view_range(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return min(view_depth(u, depth, ndc) * view_ray(u, ndc).slant, RANGE_SKY);
 }
 
-// Metres from the camera's plane.
+// Distance from the camera's plane, m.
 fn view_plane(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return min(view_depth(u, depth, ndc) * u.plane_scale, RANGE_SKY);
 }

@@ -1,6 +1,6 @@
-// One triangle that covers the target. `uv` has (0, 0) at the top left, as WebGPU's textures do.
+// One triangle that covers the target. `uv` is (0, 0) at the top left, as in WebGPU's textures.
 
-// Depth of the triangle, where there is a depth test.
+// Depth of the triangle, for a depth test.
 override FULLSCREEN_DEPTH: f32 = 0.0;
 
 struct FullscreenVarying {
@@ -8,8 +8,9 @@ struct FullscreenVarying {
     @location(0) uv: vec2f,
 }
 
-// As the vertex shader writes it: several programs draw where depth is equal, so theirs must be the same to the bit. A
-// struct of its own, since naga would write `invariant` before a fragment shader's input too, which OpenGL ES refuses.
+// Output of the vertex shader. Several programs draw at equal depth, so their positions must agree to the bit
+// (`invariant`). The fragment shaders have another struct: naga would mark their input as invariant too, which OpenGL
+// ES rejects.
 struct FullscreenVertex {
     @invariant @builtin(position) position: vec4f,
     @location(0) uv: vec2f,

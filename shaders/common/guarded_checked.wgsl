@@ -1,8 +1,8 @@
-// guarded.wgsl for builds with debug assertions: a value that is infinite or not a number passes all limits. A picture
-// in floats holds it, and reading it back fails; other pictures are magenta there.
+// Version of guarded.wgsl for builds with debug assertions: an infinite value or a NaN passes all limits. A float
+// picture then holds it, and reading the picture back fails; other pictures are magenta there.
 
 fn is_finite(v: vec3f) -> bool {
-    // Compilers may assume that no NaN comes; the bits cannot be argued with.
+    // Compilers may assume that there is no NaN; a test of the bits is safe from that.
     return all((bitcast<vec3u>(v) & vec3u(0x7f800000u)) != vec3u(0x7f800000u));
 }
 

@@ -1,4 +1,4 @@
-// Integers that look random: the same on every device and on the CPU (src/falling/mod.rs).
+// Integer hash, with the same results on every device and on the CPU (src/falling/mod.rs).
 
 // pcg3d (Jarzynski and Olano 2020, Hash Functions for GPU Rendering).
 fn random3(key: vec3u) -> vec3u {

@@ -1,3 +1,3 @@
-// The host's resolved picture, whose depth has several samples a pixel: the first stands for them.
+// Types of the host's resolved picture and of its depth with several samples per pixel, of which the first is used.
 alias HostColor = texture_2d<f32>;
 alias HostDepth = texture_multisampled_2d<f32>;

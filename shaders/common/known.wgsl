@@ -1,10 +1,10 @@
 //!include "common/fullscreen.wgsl"
-// Known answers, which an OpenGL driver must draw before anything else is asked of it. Twin: src/gpu/known.rs.
+// Known answers: the test that an OpenGL driver must pass before any other work. CPU side: src/gpu/known.rs.
 //
-// The blocks have the sizes and kinds of those that the sky's first tables read: where a driver delivers other bytes,
-// the loops that run to them would never end.
+// The blocks have the sizes and kinds of those that the sky's first tables read. If a driver delivered wrong bytes, the
+// loops whose bounds come from these blocks might never end.
 
-// 144 bytes, as `SkyAir`.
+// 144 bytes, like `SkyAir`.
 struct KnownRow {
     vector: vec3f,
     number: f32,
@@ -13,7 +13,7 @@ struct KnownRows {
     rows: array<KnownRow, 9>,
 }
 
-// 80 bytes, as `SkyDims`.
+// 80 bytes, like `SkyDims`.
 struct KnownCounts {
     a: u32, b: u32, c: u32, d: u32,
     e: u32, f: u32, g: u32, h: u32,
@@ -22,7 +22,7 @@ struct KnownCounts {
     q: u32, r: u32, s: u32, t: u32,
 }
 
-// 16 bytes, as `SkyJob`.
+// 16 bytes, like `SkyJob`.
 struct KnownJob {
     order: u32,
     last: u32,
@@ -32,10 +32,10 @@ struct KnownJob {
 
 @group(0) @binding(0) var<uniform> rows: KnownRows;
 @group(0) @binding(1) var<uniform> counts: KnownCounts;
-// 384 bytes, as the quadrature.
+// 384 bytes, like the quadrature.
 @group(0) @binding(2) var<uniform> rule: array<vec4f, 24>;
 @group(0) @binding(3) var<uniform> job: KnownJob;
-// Written by the queue into a part of a buffer, as the blocks of a view are.
+// Written by the queue into a part of a buffer, like the blocks of a view.
 @group(0) @binding(4) var<uniform> written: array<vec4u, 5>;
 
 const COUNTS_FROM: u32 = 9u;
@@ -53,7 +53,7 @@ fn known_counts(i: u32) -> vec4u {
     }
 }
 
-// All blocks one after the other, 16 bytes a texel, without a loop.
+// Draws all blocks one after the other, 16 bytes per texel, without a loop.
 @fragment
 fn blocks(in: FullscreenVarying) -> @location(0) vec4u {
     let x = u32(in.position.x);
@@ -72,11 +72,11 @@ fn blocks(in: FullscreenVarying) -> @location(0) vec4u {
     return written[min(x - WRITTEN_FROM, 4u)];
 }
 
-// Most turns of a loop here, whatever a block says.
+// Limit for the loops here, whatever a block contains.
 const MOST_TURNS: u32 = 24u;
 
-// One texel by two loops as in `norm` of sky/build.wgsl, whose bounds come from a block. Whole numbers, so the sum is
-// exact.
+// Draws one texel by two loops like those in `norm` of sky/build.wgsl, whose bounds come from a block. All numbers are
+// whole, so the sum is exact.
 @fragment
 fn turns(in: FullscreenVarying) -> @location(0) vec4u {
     var sum = 0.0;

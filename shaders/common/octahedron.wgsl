@@ -1,4 +1,4 @@
-// All directions on a square: the octahedron, its lower half folded out over the corners (Cigolle and others 2014).
+// Octahedral map of all directions to a square: the lower half is folded out over the corners (Cigolle et al. 2014).
 
 fn octahedron_place(d: vec3f) -> vec2f {
     let p = d.xy / (abs(d.x) + abs(d.y) + abs(d.z));

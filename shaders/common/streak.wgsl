@@ -1,38 +1,38 @@
-// What a small thing covers that moves while a picture is exposed.
+// Coverage of a small moving object during the exposure of a picture.
 
-// A streak is not drawn narrower than this many pixels; it gets fainter instead.
+// Least width of a streak, pixels; a narrower one is drawn fainter instead.
 const LEAST_PIXELS: f32 = 1.2;
-// A streak is drawn up to this share of its distance to either side.
+// Greatest length of a streak to either side, as a share of its distance.
 const LONGEST: f32 = 0.8;
 
-// Half of the way that is drawn of what moves by `half` to either side of a place at distance `d`, and what its cover
-// is multiplied by. A streak that nears the eye is cut there, to the part of the exposure in which it goes `LONGEST` of
-// `d` to either side, and hides as much in that part as in all of it. So places d (1 - c) to d (1 + c) along a ray are
-// darkened, by what is at d, where c is that part: atanh(c) / c times what is there, whatever way the camera looks. The
-// factor is its inverse.
+// xyz: half of the drawn path of an object that moves by `half` to either side of a position at distance `d`; w: factor
+// for its cover. A streak that comes near the eye is cut to the part of the exposure in which it moves `LONGEST` times
+// `d` to either side; in that part it hides as much as in the whole exposure. With c the drawn half length over d,
+// positions from d (1 - c) to d (1 + c) along a ray are darkened by the objects at d. That is atanh(c) / c times the
+// true amount, whatever the camera's direction. The factor is the inverse of this.
 fn part_drawn(half: vec3f, d: f32) -> vec4f {
     let whole = length(half) / d;
     let c = min(whole, LONGEST);
     let c2 = c * c;
-    // To 0.2 % of c / atanh(c).
+    // c / atanh(c) within 0.2 %.
     return vec4f(half * (c / max(whole, 1e-9)), 1.0 - c2 * (0.33333333 + c2 * (0.08888889 + 0.085 * c2)));
 }
 
-// The part of the exposure for which a disc of radius 1 that goes from -reach to reach along y lies before a place,
-// over the most that any place has: the photometric model of Garg and Nayar (2007), whose tau / T is 1 / reach on the
-// way of a disc's middle.
+// Time for which a disc of radius 1 that moves from -reach to reach along y covers a point, divided by the longest such
+// time of any point: the photometric model of Garg and Nayar (2007). Their tau / T is 1 / reach on the path of the
+// disc's middle.
 fn passing(at: vec2f, reach: f32) -> f32 {
     let chord = sqrt(max(1.0 - at.x * at.x, 0.0));
     let passed = min(reach, at.y + chord) - max(-reach, at.y - chord);
     return max(passed, 0.0) / (2.0 * min(reach, 1.0));
 }
 
-// The most of [`passing`] that any place has.
+// Greatest share of the exposure for which a point is covered.
 fn longest_passing(reach: f32) -> f32 {
     return min(1.0 / reach, 1.0);
 }
 
-// How far a disc of a radius goes in its own radii: what hardly moves has a way all the same.
+// Path of a disc in units of its radius, with a minimum for discs that hardly move.
 fn reach_of(stretch: f32, radius: f32) -> f32 {
     return max(stretch / radius, 1e-3);
 }

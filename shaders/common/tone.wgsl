@@ -1,4 +1,5 @@
-// From luminance to the display: exposure, tone curve, sRGB encoding, dither. The twin of src/light/tone.rs.
+// Conversion of luminance to display values: exposure, tone curve, sRGB encoding, dither. The CPU version is
+// src/light/tone.rs.
 
 alias Luminance = vec3f; // cd/m^2, linear Rec. 709
 alias Display = vec3f;   // 1 = display white, linear Rec. 709
@@ -10,12 +11,12 @@ const TONE_FILMIC: u32 = 2u;
 // Curves that a pipeline can draw, one bit each.
 override CURVES: u32 = 7u;
 
-// 1 - exp(-x) a channel (O'Neil 2005, eq. 4.1 of Elek 2008).
+// 1 - exp(-x) for each channel (O'Neil 2005, eq. 4.1 of Elek 2008).
 fn tone_exponential(x: Display) -> Display {
     return 1.0 - exp(-x);
 }
 
-// Hable's filmic curve (Hable 2010, white point 11.2), a channel.
+// Hable's filmic curve (Hable 2010, white point 11.2) for each channel.
 fn hable(x: Display) -> Display {
     return (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.0666666667;
 }
@@ -50,7 +51,7 @@ fn srgb_decode(v: vec3f) -> Display {
     return select(pow((c + 0.055) / 1.055, vec3f(2.4)), c / 12.92, c <= vec3f(0.04045));
 }
 
-// A hash of the pixel and the host's frame (PCG, Jarzynski & Olano 2020): three uniform numbers in [0, 1).
+// Hash of the pixel and the host's frame (PCG, Jarzynski & Olano 2020): three uniform numbers in [0, 1).
 fn pixel_noise(pixel: vec2u, frame: u32) -> vec3f {
     var v = vec3u(pixel, frame) * 1664525u + 1013904223u;
     v.x += v.y * v.z;
@@ -63,8 +64,8 @@ fn pixel_noise(pixel: vec2u, frame: u32) -> vec3f {
     return vec3f(v >> vec3u(8u)) / 16777216.0;
 }
 
-// Triangular dither of one quantisation step peak to peak either way: removes banding without bias. Values at the
-// ends keep clear of it, so that black stays black.
+// Triangular dither with an amplitude of one quantisation step to either side: it removes banding without bias. It is
+// limited near both ends of the range, so that black stays black.
 fn dither(encoded: vec3f, step: f32, pixel: vec2u, frame: u32) -> vec3f {
     let n = pixel_noise(pixel, frame) - pixel_noise(pixel, frame + 0x9e3779b9u);
     let room = min(encoded, 1.0 - encoded);

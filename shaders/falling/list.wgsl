@@ -1,19 +1,19 @@
-// The list of things that a picture shows, of all that fall round the camera: which they are stands in a bit each, in
-// the order of their numbers, so the list's order is that order and depends on no thread's haste.
-// src/particles/listing.rs describes the passes.
+// List of the things (drops, flakes, stones) that the picture shows, among all that fall around the camera. Each thing
+// has a bit, in the order of the things' numbers. The list has that order too, so that it does not depend on the
+// scheduling of threads. src/particles/listing.rs describes the passes.
 
-// Words of bits of a block.
+// Words of bits in a block.
 const WORDS: u32 = 4u;
 
 struct Block {
     seen: array<u32, WORDS>,
-    // Things that are seen in the blocks before.
+    // Number of seen things in all blocks before this one.
     before: u32,
 }
 
 @group(1) @binding(0) var<storage, read_write> blocks: array<Block>;
 
-// Blocks for so many things.
+// Number of blocks that hold `things` things.
 fn blocks_of(things: u32) -> u32 {
     return (things + 32u * WORDS - 1u) / (32u * WORDS);
 }
@@ -26,14 +26,14 @@ fn seen_in(block: u32) -> u32 {
     return sum;
 }
 
-// How many things the first `all` blocks have, where room is for `room`.
+// Number of things listed in the first `all` blocks, at most `room`.
 fn listed(all: u32, room: u32) -> u32 {
     return min(blocks[all - 1u].before + seen_in(all - 1u), room);
 }
 
-// Number of the thing that stands at a rank of the list, which has one there.
+// Number of the thing at position `rank` of the list. The list must have one there.
 fn thing_at(rank: u32, all: u32) -> u32 {
-    // The last block that begins here or before.
+    // Finds the last block that begins at `rank` or before.
     var block = 0u;
     var end = all;
     while end - block > 1u {
@@ -44,7 +44,7 @@ fn thing_at(rank: u32, all: u32) -> u32 {
             end = middle;
         }
     }
-    // The word in it, and the bit in that.
+    // Finds the word in that block, then the bit in the word.
     var left = rank - blocks[block].before;
     var word = 0u;
     var bits = blocks[block].seen[0];
@@ -53,7 +53,7 @@ fn thing_at(rank: u32, all: u32) -> u32 {
         word += 1u;
         bits = blocks[block].seen[word];
     }
-    // No word has more, whatever a list holds that nothing has filled.
+    // A word has at most 32 bits, which also bounds the loop for a list that nothing has filled.
     for (left = min(left, 31u); left > 0u; left--) {
         bits &= bits - 1u;
     }

@@ -1,10 +1,10 @@
-// Where each block's things begin in the list, and how many there are, by one workgroup.
+// Finds where each block's things begin in the list, and how many things there are in all. Runs in one workgroup.
 //!include "falling/list.wgsl"
 
 struct Found {
-    // Vertices, instances, first of either: of the draw.
+    // Arguments of the draw: vertices, instances, first vertex, first instance.
     draw: vec4u,
-    // Workgroups of the pass that makes what is drawn.
+    // Number of workgroups of the pass that prepares the things to be drawn.
     groups: vec3u,
 }
 
@@ -13,7 +13,7 @@ struct Found {
 const SUMS: u32 = 128u;
 var<workgroup> sums: array<u32, SUMS>;
 
-// Of `all` blocks, where room is for `room` things: a full list leaves out the last ones.
+// Orders `blocks_seen` blocks into a list with room for `room` things. A full list leaves out the last things.
 fn order_blocks(thread: u32, blocks_seen: u32, room: u32) {
     let all = min(blocks_seen, arrayLength(&blocks));
     let part = (all + SUMS - 1u) / SUMS;

@@ -1,11 +1,11 @@
-// A drop or flake that is stepped (falling/step.wgsl).
+// State of a drop or flake that is integrated step by step (falling/step.wgsl).
 
 struct State {
-    // Place in the cell, in 2^-32 of its side.
+    // Position in the cell, in units of 2^-32 of its side.
     place: vec3u,
-    // How often it came in, times 2^16; shell.
+    // Upper 16 bits: number of times that it has re-entered the cell; lower 16 bits: shell.
     word: u32,
-    // m/s.
+    // Velocity, m/s.
     velocity: vec3f,
     pad: f32,
 }

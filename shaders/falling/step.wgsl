@@ -1,9 +1,9 @@
-// One frame of what falls and is stepped; the model is explained in src/particles/stepping.rs.
+// Advances drops and flakes by one frame; src/particles/stepping.rs explains the model.
 //!include "common/hash.wgsl"
 //!include "falling/state.wgsl"
 //!include "surroundings/wind.wgsl"
 
-// Shells of the lattice.
+// Number of shells of the lattice.
 const STEPPED_SHELLS: u32 = 4u;
 
 struct StepUniform {
@@ -12,20 +12,20 @@ struct StepUniform {
     // Length of a step, s.
     dt: f32,
     wind: WindMap,
-    // What the camera has moved, m.
+    // Camera's displacement in the frame, m.
     moved: vec3f,
     steps: u32,
-    // Of each shell: things that fall in it, how many of them have a state, where their states begin, and the side of
-    // its cell, m.
+    // For each shell: number of things that fall in it, number of those that have a state already, index of its first
+    // state, and side of its cell, m.
     counts: vec4u,
     known: vec4u,
     begins: vec4u,
     sides: vec4f,
-    // Place of the camera in the cell of each shell, now (with where the shell's states begin) and before, in 2^-32 of
-    // its side.
+    // Position of the camera in each shell's cell, in units of 2^-32 of its side: now (w: index of the shell's first
+    // state), and before the frame.
     eye: array<vec4u, STEPPED_SHELLS>,
     before: array<vec4u, STEPPED_SHELLS>,
-    // What the places of those that come in are drawn by.
+    // Seed of the positions at which things re-enter.
     seed: u32,
 }
 
@@ -34,12 +34,12 @@ struct StepUniform {
 @group(1) @binding(2) var wind_values: texture_3d<f32>;
 @group(1) @binding(3) var wind_sampler: sampler;
 
-// Whether there is a wind that varies in space.
+// Whether the wind varies in space.
 override WIND: bool = false;
 
 const GRAVITY: f32 = 9.80665;
 
-// Velocity of the air at `p`, camera-relative.
+// Velocity of the air at `p`, which is relative to the camera.
 fn air_at(p: vec3f) -> vec3f {
     if !WIND {
         return stepping.air;
@@ -49,20 +49,20 @@ fn air_at(p: vec3f) -> vec3f {
     return wind_at(stepping.wind, place, found, stepping.air);
 }
 
-// A part of a cell as a number of 2^-32, wrapped.
+// Offset in units of the cell's side, wrapped around and converted to units of 2^-32.
 fn wrapped(cells: vec3f) -> vec3u {
     let part = clamp(cells - floor(cells + 0.5), vec3f(-0.5), vec3f(0.4999999));
     return bitcast<vec3u>(vec3i(part * 4294967296.0));
 }
 
-// One that begins: `away` from the camera where the lattice has it, in 2^-32 of the side; it falls at `terminal` m/s at
-// rest.
+// State of a thing that has none yet. Its position is the lattice's, `away` from the camera in units of 2^-32 of the
+// side. It falls at `terminal` m/s in still air.
 fn begun(s: u32, away: vec3u, terminal: f32) -> State {
     let p = vec3f(bitcast<vec3i>(away)) * (stepping.sides[s] / 4294967296.0);
     return State(away + stepping.eye[s].xyz, s, air_at(p) - vec3f(0.0, 0.0, terminal), 0.0);
 }
 
-// Number `index` of shell `s`, which falls at `terminal` m/s at rest, after the frame's steps.
+// State of thing `index` of shell `s` after the frame's steps. It falls at `terminal` m/s in still air.
 fn stepped(from_state: State, s: u32, index: u32, terminal: f32) -> State {
     var state = from_state;
     let side = stepping.sides[s];
@@ -82,9 +82,10 @@ fn stepped(from_state: State, s: u32, index: u32, terminal: f32) -> State {
         velocity -= difference * gone;
     }
     state.place += wrapped(way / side);
-    // Who leaves through one axis comes in again there, as far in as it got, and gets the other places by chance: any
-    // where it may have left too, but among those that stay along an axis that comes before. So evenly spread drops
-    // stay so.
+    // A thing that leaves the cell through the sides of an axis re-enters through the opposite side, as far inside as
+    // it had gone outside. Its coordinates on the axes after that one are random. Those on the axes before it are
+    // random too, but only where a thing with this motion does not leave along them. This keeps an even distribution
+    // even.
     let course = (way - stepping.moved) / side;
     let left = floor((away + way) / side + 0.5) != vec3f(0.0);
     if any(left) {

@@ -1,28 +1,28 @@
-// What fog does to a pixel, in closed form: no loop, no texture. The f64 twin and the derivations are in
+// Effect of fog on a pixel, in closed form: no loop, no texture. The f64 twin and the derivations are in
 // src/fog/reference.rs (ray and light), src/fog/light.rs (the layer's light, solved on the CPU) and src/fog/phase.rs.
 //
 // Axes: east, north, up at the camera. In the composition, with `behind` the pixel after the sky's aerial perspective
 // over its full distance:
 //     let fog = fog_along(u, ray.origin, ray.direction, range, plane);
 //     out = air_radiance + air_transmittance * fog.radiance + fog.transmittance * (fog.shade * behind - air_radiance)
-// where air_* are the sky's aerial perspective at fog.distance (0 and 1 if the fog is near or has no air before it) and
-// `behind` is that of the whole distance. So air lies in front of a far fog bank and behind the fog round the camera,
-// without a seam between.
+// where air_* are the sky's aerial perspective at fog.distance (0 and 1 if the fog is near or has no air in front of
+// it), and `behind` has that of the whole distance. Air therefore lies in front of a far fog bank and behind the fog
+// around the camera, without a seam between them.
 //!include "common/depth.wgsl"
 //!include "fog/patterns.wgsl"
 
-// What a pipeline can draw; FogVariant::constants() gives them. Real GPUs step over what the
-// uniform does not ask for, software drivers execute it: there a narrow pipeline is several times as fast.
-// Bit k: kind k of FogUniform.
+// Features that a pipeline can draw; FogVariant::constants() gives them. GPUs skip branches that the uniform does not
+// select. Software drivers execute them, so a pipeline with few features is several times as fast there.
+// Kinds of fog: bit k stands for kind k of FogUniform.
 override FOG_KINDS: u32 = 63u;
 override FOG_ABSORBING: bool = true;
 override FOG_PATCHES: bool = true;
-// Something falls.
+// Whether anything falls.
 override FOG_FALLING: bool = true;
 override FOG_CURTAINS: bool = true;
-// All channels have one extinction and one albedo (water).
+// Whether all channels have one extinction and one albedo (water).
 override FOG_NEUTRAL: bool = false;
-// The slab has a lower edge above the ground.
+// Whether the slab has a lower edge above the ground.
 override FOG_LIFTED: bool = true;
 
 const FOG_CLEAR: u32 = 0u;
@@ -31,7 +31,7 @@ const FOG_EXPONENTIAL: u32 = 2u;
 const FOG_LINEAR_LAW: u32 = 3u;
 const FOG_EXPONENTIAL_LAW: u32 = 4u;
 // 5: exponential-squared law.
-// A band of this height, rad, covers all of the sky.
+// Height of the sky band, rad, from which on it covers all of the sky.
 const FOG_WHOLE_SKY: f32 = 3.13845;
 
 fn fog_can(kind: u32) -> bool {
@@ -43,15 +43,15 @@ fn has_own_layer() -> bool {
     return (FOG_KINDS & 6u) != 0u;
 }
 
-// colour * transmittance + radiance.
+// Effect of fog on a colour: colour * transmittance + radiance.
 struct Fog {
     radiance: vec3f,
-    // Distance, m, up to which the air counts as before the fog.
+    // Distance, m, up to which the air is drawn in front of the fog.
     distance: f32,
     transmittance: vec3f,
-    // Of the air's light between the eye and an object, what is left inside a layer that keeps the light from it.
+    // Share that is left of the air's light between the eye and an object: the layer shades the air inside it.
     shade: f32,
-    // Light of sun or moon that is scattered once into the ray and no more, over the phase function.
+    // Light of sun or moon that is scattered exactly once, into the ray, divided by the phase function.
     once: vec3f,
 }
 
@@ -61,7 +61,7 @@ struct LayerPath {
     last: f32,
 }
 
-// Heights along a ray over the place where it is lowest: see the reference.
+// Altitudes along a ray, split at its lowest point: see the twin in src/fog/path.rs.
 struct RayCourse {
     end_altitude: f32,
     end_mu: f32,
@@ -76,15 +76,15 @@ struct RayCourse {
     bend: f32,
 }
 
-// Of sunlight that has travelled the optical path `slant`, the share of what counts as not scattered that has not been;
-// as share_unscattered of src/fog/phase.rs.
+// Returns the share of the delta-scaled beam that is really unscattered after the optical path `slant`, as
+// share_unscattered of src/fog/phase.rs.
 fn share_unscattered(forward: f32, slant: f32) -> f32 {
     let fs = min(forward * slant, 1e4);
     return select((1.0 - exp(-fs)) / max(fs, 1e-9), 1.0 - 0.5 * fs, fs < 1e-3);
 }
 
-// The phase function per steradian, at the angle whose 1 - cos is `versine`, for sunlight that has travelled the
-// optical path `slant`: the smooth part, and the peak above it; derivation in src/fog/phase.rs, fog_phase_after.
+// Returns the phase function per steradian for sunlight after the optical path `slant`, at the angle whose 1 - cos is
+// `versine`: the smooth part, and the peak above it. src/fog/phase.rs has the derivation (fog_phase_after).
 fn fog_phase_after(u: FogUniform, slant: f32, versine: f32) -> vec2f {
     let forward = u.scattering.z;
     let share = share_unscattered(forward, slant);
@@ -141,15 +141,15 @@ fn own_depth_above(u: FogUniform, h: f32) -> f32 {
     return u.extinction * (top + (k.z - clamp(h, k.y, k.z)) + base);
 }
 
-// Distances after which a ray that rises from its lowest point with cosine `mu` >= 0 is `lift` higher.
+// Returns the distances after which a ray that starts at its lowest point with cosine `mu` >= 0 is `lift` higher.
 fn layer_reach(curvature: f32, mu: f32, lift: vec2f) -> vec2f {
     let up = max(lift, vec2f(0.0));
     let c = up * (2.0 + curvature * up);
     return c / max(mu + sqrt(mu * mu + curvature * c), vec2f(1e-20));
 }
 
-// Optical depth over extinction of one flank and what lies within it, between the knots reached after `reach`; x: the
-// flank's length, y: the share of it that counts.
+// Returns the length of a flank, between the knots at the distances `reach`, and the mean share of the extinction in
+// it.
 fn flank(bend: f32, reach: vec2f, knots: vec2f, inverse: f32, low: f32, high: f32) -> vec2f {
     let l = reach.y - reach.x;
     let h = clamp(knots, vec2f(low), vec2f(high));
@@ -157,7 +157,7 @@ fn flank(bend: f32, reach: vec2f, knots: vec2f, inverse: f32, low: f32, high: f3
     return vec2f(l, clamp((mean - knots.x) * inverse, 0.0, 1.0));
 }
 
-// As slab_part of the reference; without a lower edge the ray is above it all the way.
+// Twin of slab_part in src/fog/path.rs. Without a lower edge the whole ray lies above that edge.
 fn slab_part(u: FogUniform, bend: f32, base: vec2f, top: vec2f, length: f32, low: f32, high: f32) -> f32 {
     let t = min(top, vec2f(length));
     let upper = flank(bend, t, u.knots.zw, u.pair.y, low, high);
@@ -169,7 +169,7 @@ fn slab_part(u: FogUniform, bend: f32, base: vec2f, top: vec2f, length: f32, low
     return lower.x * lower.y + (t.x - b.y) + upper.x * (1.0 - upper.y);
 }
 
-// e^(z^2) erfc(z), z >= 0.
+// Returns e^(z^2) erfc(z) for z >= 0.
 fn scaled_erfc(z: f32) -> f32 {
     let t = 1.0 / (1.0 + 0.5 * z);
     var p = 0.17087277;
@@ -231,8 +231,8 @@ fn ray_course(u: FogUniform, h0: f32, mu: f32, t: f32) -> RayCourse {
     return RayCourse(end_altitude, end_mu, level, passes, falls, low, low_mu, before, after, high, bend);
 }
 
-// Distances from the eye at which a ray enters and leaves a slab. `reach`: distances of the slab's lower and upper end
-// from the ray's lowest place.
+// Returns the distances from the eye at which a ray enters and leaves a slab. `reach` has the distances of the slab's
+// lower and upper edge from the ray's lowest point.
 fn slab_ends(c: RayCourse, t: f32, reach: vec2f) -> vec2f {
     let near = min(reach.x, c.before);
     let far = min(reach.y, c.before);
@@ -241,7 +241,7 @@ fn slab_ends(c: RayCourse, t: f32, reach: vec2f) -> vec2f {
     return vec2f(first, last);
 }
 
-// Optical depth over extinction of a part of a ray through what falls, which it is above all the way.
+// Returns the optical depth over the extinction for a part of a ray through what falls, which has no lower edge.
 fn falling_part(u: FogUniform, bend: f32, top: vec2f, length: f32, low: f32, high: f32) -> f32 {
     let t = min(top, vec2f(length));
     let upper = flank(bend, t, u.falling.yz, u.falling.w, low, high);
@@ -274,19 +274,19 @@ fn layer_path(u: FogUniform, c: RayCourse, h0: f32, mu: f32, t: f32) -> LayerPat
     return LayerPath(u.extinction * length, ends.x, ends.y);
 }
 
-// A ray's way through two media: the optical depth of both, and between their ends by what each has of it.
+// Returns the path of a ray through two media: the sum of their depths, and the means of their ends weighted by depth.
 fn both_paths(fog: LayerPath, falling: LayerPath) -> LayerPath {
     let depth = fog.depth + falling.depth;
     let share = select(1.0, falling.depth / max(depth, 1e-30), fog.depth > 0.0);
     return LayerPath(depth, mix(fog.first, falling.first, share), mix(fog.last, falling.last, share));
 }
 
-// 1 - e^-x, given e^-x.
+// Returns 1 - e^-x, given e^-x.
 fn filled_by(x: vec3f, through: vec3f) -> vec3f {
     return select(1.0 - through, x * (1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666667))), x < vec3f(0.03));
 }
 
-// One value a channel, or one for all.
+// Returns one value for each channel, or one for all.
 fn fog_channels(v: vec3f) -> vec3f {
     if FOG_NEUTRAL {
         return vec3f(v.x);
@@ -314,7 +314,7 @@ fn attenuated(rate: vec3f, first: vec3f, last: vec3f, path: vec3f) -> vec3f {
     return select((first - last) / select(rate, vec3f(1.0), small), series, small);
 }
 
-// Mean of x over [0, 1] weighted by e^(-r x), within 2 %.
+// Returns the mean of x over [0, 1] with the weight e^(-r x), within 2 %.
 fn mean_place(r: f32) -> f32 {
     let size = min(abs(r), 1e6);
     let p = 1.0 + size * (0.33333333 + size * 0.1754386);
@@ -335,7 +335,7 @@ fn source_at(u: FogUniform, mu: f32, beam: vec3f, a: vec3f) -> vec3f {
     return j;
 }
 
-// The source integrated over the optical `path` between the scaled depths a0 and a1 below the top.
+// Returns the integral of the source over the optical path `path` between the scaled depths a0 and a1 below the top.
 fn source_along(
     u: FogUniform, mu: f32, beam: vec3f, a0: vec3f, a1: vec3f, slant: vec3f, path: vec3f, transmitted: vec3f,
 ) -> vec3f {
@@ -356,7 +356,7 @@ fn source_along(
     return l;
 }
 
-// Light in a ray near the level: see the reference.
+// Returns the light in a ray near the level: see src/fog/reference.rs.
 fn grazing_light(
     u: FogUniform, mu: f32, beam: vec3f, a0: vec3f, a1: vec3f, slant: f32, path: vec3f, left: vec3f,
 ) -> vec3f {
@@ -377,7 +377,7 @@ fn grazing_light(
 
 struct LayerLight {
     radiance: vec3f,
-    // Of Fog.
+    // See Fog.once.
     once: vec3f,
 }
 
@@ -483,17 +483,18 @@ fn fog_compatible(u: FogUniform, direction: vec3f, range: f32, plane: f32) -> Fo
     return Fog(u.first * (1.0 - v), 0.0, vec3f(v), 1.0, vec3f(0.0));
 }
 
-// What fog does to the pixel whose ray starts at `origin` (relative to the camera) along `direction` (unit), with an
-// object at `range` metres, `plane` from the camera's plane; RANGE_SKY for sky.
+// Returns the effect of fog on the pixel whose ray starts at `origin` (relative to the camera) along `direction`
+// (unit), with an object at the distance `range`, m, along the ray and `plane`, m, from the camera's plane. Both are
+// RANGE_SKY for sky.
 fn fog_along(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: f32) -> Fog {
     return fog_beside_drops(u, origin, direction, range, plane, 0.0);
 }
 
-// As fog_along, where `hidden` of the optical depth of what falls is drawn as drops, flakes and stones: that much of it
-// is left out, and never more than all of it.
+// Returns the effect of fog as fog_along does, where drops, flakes and stones are drawn one by one. `hidden` is their
+// optical depth, which is subtracted from that of what falls, down to 0.
 fn fog_beside_drops(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: f32, hidden: f32) -> Fog {
     var fog = Fog(vec3f(0.0), 0.0, vec3f(1.0), 1.0, vec3f(0.0));
-    // A pipeline for one fog alone asks nothing.
+    // A pipeline for a single kind of fog needs no branch.
     let is_layer = FOG_KINDS == 2u || FOG_KINDS == 4u || (FOG_KINDS == 1u && FOG_FALLING);
     if is_layer || ((FOG_KINDS & 7u) != 0u && u.kind <= FOG_EXPONENTIAL && (u.kind != FOG_CLEAR || u.falling.x > 0.0)) {
         fog = fog_layer(u, origin, direction, range, hidden);
@@ -503,7 +504,7 @@ fn fog_beside_drops(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, 
     return fog;
 }
 
-// `behind` seen through the fog alone.
+// Returns `behind` seen through the fog alone.
 fn fog_apply(fog: Fog, behind: vec3f) -> vec3f {
     return behind * fog.transmittance + fog.radiance;
 }

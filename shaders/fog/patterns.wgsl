@@ -1,12 +1,12 @@
-// Patches of fog and curtains of rain, of the bound `low_air`: an index into a copy of it would copy all of it. The f64
-// twin and the derivation are in src/fog/patterns.rs.
+// Patches of fog and curtains of rain. They read the bound `low_air`, because indexing a copy of it would copy all of
+// it. src/fog/patterns.rs has the f64 twin and the derivation.
 //!include "fog/binding.wgsl"
 
-// Half of a path on which a wave of the pattern fades to a half, in its length / 2 pi.
+// Half-length of a path over which a wave of a pattern fades to one half, in units of its wavelength / (2 pi).
 const PATCH_ROW: f32 = 8.0;
-// Obstacles to the wind lead the patches.
+// Whether patches flow round obstacles to the wind.
 override FOG_DETOUR: bool = false;
-// Parts of a ray over a map of detours.
+// Number of parts of a ray over a map of detours.
 const DETOUR_PARTS: u32 = 8u;
 // Distance at which curtains of rain begin, m.
 const CURTAIN_START: f32 = 30.0;
@@ -16,11 +16,11 @@ fn wave_sinc(x: f32) -> f32 {
     return select(sin(x) / select(x, 1.0, near), 1.0 - x * x / 6.0, near);
 }
 
-// Mean of a wave along a ray, and the square of how large it may be there.
+// Returns the mean of a wave's cosine along a ray, and the square of the amplitude of this mean.
 fn wave_mean(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f32) -> vec2f {
     let along = dot(wave.xyz, direction);
     let x = along * half;
-    // No row goes on for ever: a ray along one meets others after some.
+    // Rows of the pattern do not go on for ever: a long ray along one row meets others, so the wave fades with length.
     let size = wave_sinc(x) * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * half);
     return vec2f(cos(wave.w + dot(wave.xyz, origin) + along * middle) * size, size * size);
 }
@@ -31,7 +31,7 @@ fn detour_node(x: u32, y: u32) -> vec2f {
     return select(two.zw, two.xy, node % 2u == 0u);
 }
 
-// How far the air at a place relative to the camera is behind, m.
+// Returns the lag of the air at a place relative to the camera, m.
 fn detour_lag(place: vec3f) -> vec2f {
     let last = f32(DETOUR_SIDE - 1u);
     let at = clamp(low_air.detour_camera + place.xy * low_air.detour_scale, vec2f(0.0), vec2f(last));
@@ -43,7 +43,7 @@ fn detour_lag(place: vec3f) -> vec2f {
     return mix(south, north, part.y) * (1.0 - smoothstep(0.0, 1.0, (place.z - low_air.detour_floor) * low_air.detour_fade));
 }
 
-// What the lags along a ray add to the sum of the patches' waves.
+// Returns what the lags along a ray add to the sum of the patches' waves.
 fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let at = low_air.detour_camera + origin.xy * low_air.detour_scale;
     let flat_way = direction.xy * low_air.detour_scale;
@@ -71,7 +71,7 @@ fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
         for (var n = 0u; n < DETOUR_PARTS; n++) {
             part += cos(phase + along * f32(2u * n + 1u) * h + dot(wave.xy, lags[n]));
         }
-        // Less what all parts have without detours. As long rows fade with all of a ray, so do they here.
+        // Subtracts the wave without detours. Waves fade with the length of the whole ray, as in wave_mean.
         let half = 0.5 * (end - start);
         let free = cos(phase + along * half) * wave_sinc(along * half) * f32(DETOUR_PARTS);
         sum += (part * wave_sinc(along * h) - free) * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * 0.5 * (last - first));
@@ -79,8 +79,9 @@ fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     return sum * 2.0 * h / (last - first);
 }
 
-// Both sums are loops whose ends no compiler knows: written out, their sines take a software driver longer to compile
-// than all the rest of a pixel.
+// Returns the mean of the patches' pattern along a ray. Here and in curtain_mean, no compiler can know the end of the
+// loop. If it unrolled the loop, a software driver would take longer to compile its sines than all the rest of the
+// shader.
 fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let m = 0.5 * (first + last);
     let h = 0.5 * (last - first);
@@ -94,7 +95,7 @@ fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     return max(1.0 + low_air.fog.patch_amount * 0.5 * sum, 0.0);
 }
 
-// What curtains add between two distances, over what an even layer has there, and the variance of that.
+// Returns what curtains add between two distances, relative to even rain, and the variance of this.
 fn curtain_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
     let start = max(first, CURTAIN_START);
     let m = 0.5 * (start + last);

@@ -1,4 +1,4 @@
-// The composition's fog over a synthetic depth buffer: white target, black target, transmittance.
+// Fog of the composition over a synthetic depth buffer: white target, black target, transmittance.
 //!include "common/fullscreen.wgsl"
 //!include "fog/lookup.wgsl"
 

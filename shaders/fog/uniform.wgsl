@@ -1,24 +1,24 @@
-// A frame's fog as shaders read it: FogUniform of src/fog/uniforms.rs.
+// Fog of a frame in the layout of shaders: FogUniform of src/fog/uniforms.rs.
 
 struct FogUniform {
     to_sun: vec3f,
-    // Of the camera, m.
+    // Altitude of the camera, m.
     altitude: f32,
-    // Slab: altitudes where the flanks begin and end; exponential: reference altitude, scale height.
+    // Slab: altitudes where the flanks begin and end, m. Exponential layer: reference altitude, scale height, m.
     knots: vec4f,
-    // Extinction of each channel over that at 550 nm.
+    // Ratio of each channel's extinction to that at 550 nm.
     ratio: vec3f,
-    // At 550 nm, 1/m; density of the compatibility laws.
+    // Extinction at 550 nm, 1/m; density of the compatibility laws.
     extinction: f32,
-    // Scaled optical depth over depth at 550 nm.
+    // Ratio of each channel's delta-scaled optical depth to the depth at 550 nm.
     scaling: vec3f,
-    // From the layer's top to the ground, at 550 nm.
+    // Optical depth from the layer's top to the ground, at 550 nm.
     depth_total: f32,
-    // Slab: 1/height of the lower and the upper flank, 1/m; linear law: start and end, m.
+    // Slab: 1/height of the lower and the upper flank, 1/m. Linear law: start and end, m.
     pair: vec2f,
-    // Band of sky that the compatibility laws cover, rad.
+    // Height of the band of sky that the compatibility laws cover, rad.
     sky_band: f32,
-    // 1 if they measure from the camera's plane.
+    // 1 if the compatibility laws measure from the camera's plane.
     plane_distance: u32,
     // Phase function: ln of Henyey-Greenstein g, ln of Draine g, Draine alpha, weight of Draine.
     lobes: vec4f,
@@ -38,10 +38,10 @@ struct FogUniform {
     sky_radiance: vec3f,
     kind: u32,
     ground_radiance: vec3f,
-    // Of the forward lobe in elevation, rad.
+    // Spread of the forward lobe in elevation, rad.
     spread: f32,
-    // ln(1 - weight of Draine), sign of the Henyey-Greenstein g, share of scattering counted as forward, asymmetry of
-    // the rest.
+    // ln(1 - weight of Draine); sign of the Henyey-Greenstein g; share of scattering that counts as forward; asymmetry
+    // of the rest.
     scattering: vec4f,
     // Source terms c(mu) = [0] + mu [1].
     constant: array<vec4f, 2>,
@@ -49,31 +49,32 @@ struct FogUniform {
     beam: array<vec4f, 2>,
     rise: array<vec4f, 2>,
     fall: array<vec4f, 2>,
-    // Wave vector and phase at the camera.
+    // Waves of the patches: wave vector, phase at the camera.
     patch_waves: array<vec4f, 6>,
-    // Of the curtains of rain (src/fog/patterns.rs), likewise.
+    // Waves of the curtains of rain (src/fog/patterns.rs): wave vector, phase at the camera.
     curtain_waves: array<vec4f, 8>,
-    // What falls: extinction at 550 nm, 1/m; altitudes between which it falls off to nothing, m; 1/their distance, 1/m.
+    // What falls: extinction at 550 nm, 1/m; altitudes between which it decreases to 0, m; 1/their difference, 1/m.
     falling: vec4f,
-    // Share of the light above the layer that reaches the camera: that of the air inside it.
+    // Share of the light above the layer that reaches the camera, by which the air inside the layer is lit.
     lit: f32,
-    // Amplitude of each wave of the curtains over the extinction of what falls.
+    // Amplitude of each wave of the curtains, relative to the extinction of all that falls.
     curtain_amount: f32,
-    // Waves of the patches and of the curtains, 0 where there are none.
+    // Numbers of waves of the patches and of the curtains; 0 if there are none.
     waves: vec2u,
 }
 
 const DETOUR_SIDE: u32 = 24u;
 
-// With how obstacles lead its patches (src/wind/detour.rs): LowAirUniform of src/fog/uniforms.rs.
+// Fog and the detours of its patches round obstacles (src/wind/detour.rs): LowAirUniform of src/fog/uniforms.rs.
 struct LowAir {
     fog: FogUniform,
-    // Cells a metre, and the cell of the camera: east, north.
+    // Cells of the map per metre, and the camera's position in cells: east, north.
     detour_scale: vec2f,
     detour_camera: vec2f,
-    // Height of the map's floor over the camera, m; 1/height over it at which nothing is left of a detour, 1/m.
+    // Altitude of the map's floor relative to the camera, m; 1/height above it at which detours end, 1/m.
     detour_floor: f32,
     detour_fade: f32,
-    // How far the air is behind at two nodes, m east and north: eastern neighbours beside each other, then northern.
+    // Lags of the air, m east and north. Each vector has two nodes; nodes are in order from west to east, then south to
+    // north.
     lags: array<vec4f, 288>,
 }

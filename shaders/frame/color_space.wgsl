@@ -1,4 +1,4 @@
-// What the numbers of the host's colour mean.
+// Conversion from the host's colour by its colour space.
 //!include "common/frame.wgsl"
 //!include "common/tone.wgsl"
 
@@ -6,9 +6,9 @@ const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
 
 // Colour spaces that a pipeline can draw, one bit each. A software driver computes every branch, so its pipelines have
-// only one.
+// only one bit.
 override COLOR_SPACES: u32 = 7u;
-// Whether it may encode by the sRGB curve, and whether it may dither.
+// Whether the pipeline may encode by the sRGB curve, and whether it may dither.
 override ENCODES: bool = true;
 override DITHERS: bool = true;
 
@@ -17,7 +17,7 @@ fn is_space(space: u32) -> bool {
     return COLOR_SPACES == bit || ((COLOR_SPACES & bit) != 0u && frame.color_space == space);
 }
 
-// The host's colour as luminance, or linear in the display's space.
+// Luminance from the colour of a scene-linear host, cd/m^2; for other hosts display-linear colour.
 fn linear_host(host: vec3f) -> vec3f {
     if is_space(SCENE_LINEAR) {
         return host * frame.cd_m2_per_unit;

@@ -1,5 +1,5 @@
-// One pixel of the frame: sky behind, water on surfaces, air and fog between, tone on top. Host colour x T + L
-// throughout.
+// Composition of one pixel: the sky behind, water on surfaces, air and fog in front, then the tone curve. Each layer is
+// a transmittance T and a light L: host colour x T + L.
 //!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "frame/color_space.wgsl"
@@ -11,11 +11,11 @@
 override TONE: bool = true;
 override PARTICLES: bool = false;
 
-// Clouds cast shadows on what the host drew.
+// Whether clouds cast shadows on what the host drew.
 override CLOUD_SHADOWS: bool = false;
 
-// What the shadow of clouds leaves of the light on what the host drew, of that on the mean over places, in which the
-// host lit it.
+// Factor for the light on what the host drew, by the shadow of clouds. The host has lit it by the mean over positions;
+// this is the light at the position over that mean.
 fn under_clouds(hung: Hung, range: f32) -> vec3f {
     if !CLOUD_SHADOWS || range >= RANGE_SKY {
         return vec3f(1.0);
@@ -23,18 +23,18 @@ fn under_clouds(hung: Hung, range: f32) -> vec3f {
     return 1.0 + frame.cloud_shadow.rgb * (hung.reach.z - frame.cloud_shadow.w);
 }
 
-// Display-linear value of scene luminance.
+// Display-linear value of a scene luminance.
 fn display(luminance: vec3f) -> vec3f {
-    // Saturated spectra lie outside of Rec. 709 and have negative parts there.
+    // Saturated spectral colours lie outside of Rec. 709 and have negative channels there.
     return tone_curve(frame.tone, max(luminance, vec3f(0.0)) * frame.exposure);
 }
 
-// Drops before everything (rain/drops.wgsl), on which the exposure is already.
+// Layer of drops in front of everything (rain/drops.wgsl); the exposure is already applied to it.
 @group(0) @binding(5) var drops: texture_2d<f32>;
 
 fn with_drops(veil: Veil, pixel: vec2i) -> Veil {
     let layer = textureLoad(drops, pixel, 0);
-    // Blended halves may round beyond 1.
+    // Blended half floats may round to more than 1.
     let clear = max(1.0 - layer.a, 0.0);
     return Veil(veil.light * clear + layer.rgb / frame.exposure, veil.transmittance * clear);
 }
@@ -57,7 +57,7 @@ fn compose(host: vec4f, seen: Seen) -> vec4f {
 }
 
 fn written(host: vec3f, veil: Veil, pixel: vec2u) -> vec3f {
-    // Of a host with luminances all is shown by the tone curve, of one with a display's colours only what weather adds.
+    // The tone curve applies to all light of a scene-linear host, and only to the weather's light of a display host.
     let behind = linear_host(host) * veil.transmittance;
     var light = veil.light;
     var shown = vec3f(0.0);

@@ -1,5 +1,4 @@
-// The frame's composition over a host's picture with several samples a pixel, each with its own depth: variant
-// `:multi`.
+// Composition over a host's picture with several samples per pixel, each with its own depth: variant `:multi`.
 //!include "frame/composite_view.wgsl"
 
 @fragment

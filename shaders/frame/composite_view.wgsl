@@ -1,9 +1,8 @@
-// The frame's composition over a host's picture; where its depth alone has several samples a pixel, the first stands
-// for them.
+// Composition over a host's picture. If only its depth has several samples per pixel, the first sample is used.
 //!include "frame/host_picture.wgsl"
 //!include "frame/composite.wgsl"
 
-// The pixel of `in`, or one sample of it.
+// Composes the pixel of `in`, or one sample of it.
 fn composed(in: FullscreenVarying, sample: i32) -> vec4f {
     let pixel = vec2i(in.position.xy);
     let ndc = frame_ndc(in.uv);

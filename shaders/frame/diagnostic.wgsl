@@ -1,13 +1,13 @@
-// One number of each pixel in false colours, in place of the picture: for developers (docs/diagnostics.md). Where the
-// picture has several samples a pixel, the first stands for them.
+// Draws one quantity of each pixel in false colours, in place of the picture: for developers (docs/diagnostics.md). If
+// the picture has several samples per pixel, the first is used.
 //!include "frame/host_picture.wgsl"
 //!include "frame/composite.wgsl"
 //!include "frame/exposed.wgsl"
 //!include "frame/false_colors.wgsl"
 
-// Which number: those of src/stage/diagnostic.rs.
+// Quantity to draw, numbered as in src/stage/diagnostic.rs.
 override DIAGNOSTIC: u32 = 1u;
-// What it is about is not in the frame.
+// Whether the frame lacks what the quantity is about.
 override ABSENT: bool = false;
 
 const DISTANCE: u32 = 1u;
@@ -16,14 +16,14 @@ const WETNESS: u32 = 3u;
 const PLAN_ERROR: u32 = 4u;
 const OVERDRAW: u32 = 5u;
 
-// Draws of a pixel a step.
+// Number of draws of a pixel for one step of the scale.
 const DRAWS_OF_STEP: f32 = 4.0;
 
 fn log10(x: f32) -> f32 {
     return log2(x) * 0.30103;
 }
 
-// Of all air, clouds and fog between the eye and what is seen, what drops hide among it.
+// Optical depth of all air, clouds and fog between the eye and the surface, including the part that is drawn as drops.
 fn optical_depth(ray: ViewRay, seen: Seen) -> f32 {
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let air = Veil(vec3f(0.0), exp(-sky_path(ray.direction, seen.range).depth));
@@ -31,7 +31,7 @@ fn optical_depth(ray: ViewRay, seen: Seen) -> f32 {
     return -log(max(dot(through, vec3f(0.2126, 0.7152, 0.0722)), 1e-9));
 }
 
-// Relative change of luminance over a hundredth of white by what the plan leaves out of air, fog and clear sky.
+// Relative change of luminance, over luminance plus 0.01 white, by what the plan leaves out of air, fog and clear sky.
 fn plan_error(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
     let hung = hung_in(seen.pixel, seen.range);
     drawn = vec4f(1.0, 1.0, 1.0, frame.drawn.w);
@@ -41,7 +41,7 @@ fn plan_error(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
     return abs(planned - all) / (all + 0.01);
 }
 
-// Place on the scale.
+// Position of the quantity on the scale, 0 to 1.
 fn measured(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
     if ABSENT {
         return 0.0;

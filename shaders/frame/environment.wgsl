@@ -1,10 +1,11 @@
-// One face of the cube map of what stands around the camera, for reflections in the host's own things: the sky of the
-// composition, its clouds and fog and the planet's ground, without the discs of sun and moon and without stars.
+// Draws one face of the cube map of the surroundings of the camera, for reflections in the host's own objects: the
+// composition's sky, clouds, fog and planet's ground, without the discs of sun and moon and without stars.
 //!include "common/guarded.wgsl"
 //!include "frame/composite.wgsl"
 
 struct EnvironmentFace {
-    // The face's middle and the ways to its right and lower edges, (east, north, up).
+    // The face's middle, and the vectors from there to its right and lower edges (`right`, `down`); axes are east,
+    // north, up.
     forward: vec3f,
     // Texels per cd/m^2.
     scale: f32,
@@ -16,7 +17,7 @@ struct EnvironmentFace {
 
 @group(3) @binding(0) var<uniform> face: EnvironmentFace;
 
-// For the host, and for the filter of the rougher levels.
+// Colour for the host, and for the filter of the rougher levels.
 struct EnvironmentTexel {
     @location(0) shown: vec4f,
     @location(1) source: vec4f,
@@ -24,12 +25,12 @@ struct EnvironmentTexel {
 
 @fragment
 fn environment(in: FullscreenVarying) -> EnvironmentTexel {
-    // All of it, whatever the plan leaves out of the picture; drops near the eye are part of the fog here.
+    // Draws everything, even what the plan leaves out of the picture. Drops near the eye are part of the fog here.
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let at = in.uv * 2.0 - 1.0;
     let direction = normalize(face.forward + at.x * face.right + at.y * face.down);
     let light = weather_over(ViewRay(vec3f(0.0), direction, 1.0), RANGE_SKY, RANGE_SKY, hung_toward(direction)).light;
-    // Half floats end at 65504.
+    // The greatest half float is 65504.
     let texel = vec4f(capped(light * face.scale, 65504.0), 1.0);
     return EnvironmentTexel(texel, texel);
 }

@@ -1,23 +1,24 @@
-// Rougher levels of the cube map: what a rough mirror shows when it is looked at along its normal (Karis 2013, Real
-// Shading in Unreal Engine 4, eq. 7 and "PrefilterEnvMap"), with samples that each stand for a part of the sphere as
-// large as theirs (Krivanek and Colbert 2008, Real-time Shading with Filtered Importance Sampling, eq. 13).
+// Filter of the cube map's rougher levels: the reflection in a rough mirror seen along its normal (Karis 2013, Real
+// Shading in Unreal Engine 4, eq. 7 and "PrefilterEnvMap"). Each sample reads the level whose texels are as large as
+// the sample's part of the sphere (Krivanek and Colbert 2008, Real-time Shading with Filtered Importance Sampling, eq.
+// 13).
 //!include "common/fullscreen.wgsl"
 
 struct FilterFace {
-    // As EnvironmentFace, in the cube's own axes.
+    // As in EnvironmentFace, but in the cube's own axes.
     forward: vec3f,
-    // Square of the roughness: alpha of the distribution of Trowbridge and Reitz (GGX). 0: the mean of four texels of a
-    // level.
+    // Square of the roughness: alpha of the distribution of Trowbridge and Reitz (GGX). 0 means to halve a level: the
+    // mean of four texels.
     alpha: f32,
     right: vec3f,
-    // How many directions stand for the lobe.
+    // Number of sample directions.
     samples: f32,
     down: vec3f,
     pad1: f32,
 }
 
 const PI: f32 = 3.14159265;
-// Texels of a face of level 0, and the coarsest level of the source.
+// Edge of a face of level 0 in texels, and the coarsest level of the source.
 const FACE: f32 = 64.0;
 const COARSEST: f32 = 4.0;
 
@@ -39,9 +40,9 @@ fn environment_filter(in: FullscreenVarying) -> @location(0) vec4f {
     var weight = 0.0;
     for (var i = 0u; i < (u32(face.samples) & 1023u); i++) {
         let x = (f32(i) + 0.5) / face.samples;
-        // Points of a lattice by the golden ratio.
+        // Lattice of points by the golden ratio.
         let turn = 2.0 * PI * fract(f32(i) * 0.61803399);
-        // A facet's normal h: cos^2 = (1 - x) / (1 + (a^2 - 1) x).
+        // Normal h of a facet: cos^2 = (1 - x) / (1 + (a^2 - 1) x).
         let cos2 = (1.0 - x) / (1.0 + (a2 - 1.0) * x);
         let c = sqrt(cos2);
         let s = sqrt(1.0 - cos2);
@@ -49,7 +50,8 @@ fn environment_filter(in: FullscreenVarying) -> @location(0) vec4f {
         let l = 2.0 * c * h - n;
         let facing = dot(n, l);
         if facing > 0.0 {
-            // Density of l, D (n h) / (4 (v h)), where v is n; and its share of the sphere in texels of level 0.
+            // Probability density of l, D (n h) / (4 (v h)) with v = n; then the sample's part of the sphere in texels
+            // of level 0.
             let d = cos2 * (a2 - 1.0) + 1.0;
             let density = a2 / (4.0 * PI * d * d);
             let texels = 6.0 * FACE * FACE / (4.0 * PI * face.samples * density);

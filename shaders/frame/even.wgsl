@@ -1,16 +1,16 @@
-// Sky, air and fog at every fourth pixel, for draws of pixels that are interpolated between them
+// Coarse grid: sky, air and fog at every fourth pixel, for draws of pixels that are interpolated from it
 // (src/frame/pixels/even.rs).
 
-// Pixels between texels of the grid. The first texel lies as much before the picture's first pixel, the last ones
-// beyond its last.
+// Distance of the grid's texels in pixels. The first texel lies by this much before the picture's first pixel; the last
+// texels lie beyond its last pixel.
 const EVEN_PIXELS: i32 = 4;
-// Light in the grid is multiplied by this and by frame.even_scale: white then lies in the middle of a half float's
+// Light in the grid is multiplied by this and by frame.even_scale, so that white lies in the middle of a half float's
 // range.
 const EVEN_WHITE: f32 = 64.0;
-// What is lighter is too light for halves.
+// Limit for light in the grid: greater values are too large for half floats.
 const EVEN_MOST: f32 = 60000.0;
 
-// The texel whose place is at a pixel or before it.
+// Last texel at or before a pixel.
 fn even_texel(pixel: vec2i) -> vec2i {
     return pixel / EVEN_PIXELS + 1;
 }

@@ -1,21 +1,22 @@
-// Finds where the weather is even between four texels of its grid: there the curves through it and its neighbours are
-// within a thousandth of straight lines. Output: log2 of the least and the greatest range of the four, m; for others
-// the least is the greater.
+// Finds the cells of the coarse grid in which the weather is even: linear interpolation between the four texels is
+// within a thousandth of the curves through them and their neighbours. Output: log2 of the least and the greatest range
+// of the four texels, m; for other cells the least is greater than the greatest.
 //!include "common/fullscreen.wgsl"
 //!include "frame/even.wgsl"
 
 @group(0) @binding(0) var even_weather: texture_2d_array<f32>;
 
-// Of light and a two-hundredth of white, and of what gets through.
+// Limits of the error: MOST_ERROR times the sum of the light and LEAST_LIGHT (1/200 of white); MOST_ERROR of
+// transmittance.
 const LEAST_LIGHT: f32 = 0.005 * EVEN_WHITE;
 const MOST_ERROR: f32 = 1e-3;
 
 struct Row {
-    // How far a line between the middle two texels is off, over what is allowed.
+    // Error of linear interpolation between the middle two texels, divided by the limit.
     bend: f32,
-    // Least and greatest range.
+    // Least and greatest range, log2 of m.
     reach: vec2f,
-    // Above 0 where it is next to a disc or too light.
+    // Above 0 next to a disc of sun or moon, or where the light is too great for the grid.
     disc: f32,
 }
 
@@ -25,17 +26,18 @@ fn texel(at: vec2i) -> array<vec4f, 2> {
     return array(textureLoad(even_weather, p, 0, 0), textureLoad(even_weather, p, 1, 0));
 }
 
-// Four texels in a row, from the one before `at`.
+// Reads four texels in a row, from the one before `at`.
 fn row(at: vec2i, along: vec2i) -> Row {
     let a = texel(at - along);
     let b = texel(at);
     let c = texel(at + along);
     let d = texel(at + 2 * along);
-    // A line through the middle two is off by an eighth of the second difference; over a step there are two that cancel
-    // each other.
+    // The error of a line between the middle two texels is 1/8 of the second difference. The greater of two second
+    // differences counts, because at a step in the light they have opposite signs and would cancel each other.
     let bent = max(abs(a[0].rgb - 2.0 * b[0].rgb + c[0].rgb), abs(b[0].rgb - 2.0 * c[0].rgb + d[0].rgb)) / 8.0;
     let dimmed = max(abs(a[1].rgb - 2.0 * b[1].rgb + c[1].rgb), abs(b[1].rgb - 2.0 * c[1].rgb + d[1].rgb)) / 8.0;
-    // What stands between the two at another range than the line's has the weather of any range between theirs.
+    // If the ranges of the two texels differ, a pixel between them may have any range between theirs, and the weather
+    // of that range.
     let apart = select(0.0, 0.5, abs(b[0].a - c[0].a) > 0.5);
     let light = max(bent, apart * abs(b[0].rgb - c[0].rgb));
     let through = max(dimmed, apart * abs(b[1].rgb - c[1].rgb));
@@ -52,7 +54,7 @@ fn even_cells(in: FullscreenVarying) -> @location(0) vec2f {
     let rows = array(row(cell, vec2i(1, 0)), row(cell + vec2i(0, 1), vec2i(1, 0)));
     let columns = array(row(cell, vec2i(0, 1)), row(cell + vec2i(1, 0), vec2i(0, 1)));
     let bend = max(rows[0].bend, rows[1].bend) + max(columns[0].bend, columns[1].bend);
-    // What is no number is not even.
+    // A NaN is not even.
     if !(bend <= 1.0) || rows[0].disc + rows[1].disc > 0.0 {
         return vec2f(1.0, -1.0) * 1000.0;
     }

@@ -1,15 +1,15 @@
-// Draws the grid of the weather.
+// Draws the coarse grid of the weather.
 //!include "frame/even.wgsl"
 //!include "frame/composite_view.wgsl"
 
 struct EvenTexel {
-    // By EVEN_WHITE * frame.even_scale; log2 of the range, m.
+    // Light times EVEN_WHITE * frame.even_scale; alpha is log2 of the range, m.
     @location(0) light: vec4f,
-    // And 1 next to a disc of sun or moon, which may fit between texels.
+    // Transmittance; alpha is 1 next to a disc of sun or moon, which may be small enough to fall between texels.
     @location(1) transmittance: vec4f,
 }
 
-// Whether the disc of a lamp is seen within this angle of a direction, rad.
+// Whether a direction is within `angle`, rad, of the disc of the sun or the moon.
 fn is_near_disc(d: vec3f, angle: f32) -> bool {
     let real = unrefracted(d);
     for (var i = 0u; i < SKY_DISCS; i++) {
@@ -36,7 +36,7 @@ fn even_grid(in: FullscreenVarying) -> EvenTexel {
     drawn = frame.drawn;
     behind_share = frame.behind_drawn;
     let ray = view_ray(frame.depth, ndc);
-    // Clouds change from pixel to pixel: each pixel lays its own over what it looks up.
+    // Clouds change from pixel to pixel; each pixel lays its own clouds over the interpolated value.
     let veil = weather_over(ray, seen.range, seen.plane, hung_with(NO_CLOUDS));
     let disc = BACKGROUND && DISCS && is_near_disc(ray.direction, 2.0 * f32(EVEN_PIXELS) * frame.pixel_angle);
     let light = min(veil.light * (EVEN_WHITE * frame.even_scale), vec3f(EVEN_MOST));

@@ -1,8 +1,8 @@
-// What error is measured in.
+// Quantity in which errors are measured.
 //!include "frame/color_space.wgsl"
 //!include "between/air.wgsl"
 
-// Exposed luminance, 1 = white, before a tone curve.
+// Exposed luminance, 1 = white. For a scene-linear host it is that before the tone curve.
 fn exposed(host: vec3f, veil: Veil) -> f32 {
     var light = veil.light * frame.exposure;
     var behind = linear_host(host);

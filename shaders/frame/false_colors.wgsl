@@ -1,16 +1,16 @@
-// Diagnostic pictures: a number of each pixel on a scale of colours, and how it lies over the host's picture.
+// Diagnostic pictures: a scale of colours for a quantity of each pixel, and its display over the host's picture.
 //!include "common/fullscreen.wgsl"
 //!include "common/frame.wgsl"
 //!include "common/tone.wgsl"
 //!include "frame/host_picture.wgsl"
 
-// The target holds display values by the sRGB curve.
+// Whether the target holds display values encoded by the sRGB curve.
 override ENCODED: bool = false;
 
-// Numbers of the scale's steps from one colour to the next.
+// Number of steps of the scale, from one colour to the next.
 const STEPS: f32 = 5.0;
 
-// The scale from 0 to 1, by the sRGB curve: black, blue, green, yellow, red, white.
+// Colours of the scale from 0 to 1, sRGB-encoded: black, blue, green, yellow, red, white.
 fn scale_color(share: f32) -> vec3f {
     var colors = array<vec3f, 6>(
         vec3f(0.0),
@@ -25,7 +25,7 @@ fn scale_color(share: f32) -> vec3f {
     return mix(colors[below], colors[below + 1u], at - f32(below));
 }
 
-// What the host's images say of a pixel; of several samples the first.
+// Reads the host's images at a pixel; of several samples the first.
 fn seen_at(in: FullscreenVarying) -> Seen {
     let pixel = vec2i(in.position.xy);
     let ndc = frame_ndc(in.uv);
@@ -41,7 +41,7 @@ fn seen_at(in: FullscreenVarying) -> Seen {
     return seen;
 }
 
-// The colour in place of the host's picture, except where the host's mask keeps the picture.
+// Puts the colour in place of the host's picture, except where the host's mask keeps the picture.
 fn over_host(shown: vec3f, host: vec4f, seen: Seen) -> vec4f {
     var color = shown;
     if !ENCODED {

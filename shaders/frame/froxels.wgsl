@@ -1,4 +1,4 @@
-// The veil for the host's own transparent shaders: air, clouds and fog.
+// Veil for the host's own transparent shaders: air, clouds and fog.
 //!include "frame/froxel.wgsl"
 
 @fragment

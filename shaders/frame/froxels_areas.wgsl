@@ -1,4 +1,4 @@
-// The veil for the host's own transparent shaders where there are rain areas: air and fog, and the columns before them.
+// Veil for the host's own transparent shaders if there are rain areas: air and fog, with the rain columns in front.
 //!include "frame/froxel.wgsl"
 //!include "rain/shaft.wgsl"
 
@@ -6,10 +6,10 @@
 fn froxels(in: FullscreenVarying) -> Froxel {
     let at = froxel_place(in.position.xy);
     var veil = froxel_veil(at);
-    // From far to near, as the pass before the picture blends them.
+    // In order from far to near, in which the pass before the picture also blends them.
     for (var k = 0u; k < column_count(); k++) {
         if shaft.rects[k].z <= shaft.rects[k].x {
-            // The rest is not in the picture.
+            // The other columns are not in the picture.
             break;
         }
         let column = shaft_veil(shaft.order[k / 4u][k % 4u], picture_pixel(at.ndc), at.ndc, at.distance);

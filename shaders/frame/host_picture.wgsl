@@ -1,4 +1,4 @@
-// The host's picture, its depth and its mask.
+// Host's picture with its depth and mask.
 //!include "common/host.wgsl"
 
 @group(0) @binding(1) var host_color: HostColor;
@@ -8,16 +8,16 @@
 override HAS_DEPTH: bool = true;
 override HAS_MASK: bool = false;
 
-// What the host's images say of a pixel, or of one sample of it.
+// Values of the host's images at a pixel, or at one sample of it.
 struct Seen {
     pixel: vec2i,
     sample: i32,
     ndc: vec2f,
-    // As the host wrote it, along the ray, and from the camera's plane; the latter two are RANGE_SKY where it drew
-    // nothing.
+    // Depth as the host wrote it, distance along the ray, and distance from the camera's plane. The two distances are
+    // RANGE_SKY where the host drew nothing.
     depth: f32,
     range: f32,
     plane: f32,
-    // Share of the picture that is left as the host drew it.
+    // Share of the pixel that stays as the host drew it.
     mask: f32,
 }

@@ -1,4 +1,5 @@
-// Which of the composition's draws a pixel belongs to, as a depth (src/frame/pixels/kinds.rs).
+// Writes the kind of each pixel as a depth; the kind says which draw of the composition covers the pixel
+// (src/frame/pixels/kinds.rs).
 //!include "common/host.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "common/frame.wgsl"

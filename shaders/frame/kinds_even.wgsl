@@ -1,19 +1,19 @@
-// As kinds.wgsl, where pixels between which the weather is even are kinds of their own.
+// Version of kinds.wgsl in which the pixels interpolated from the coarse grid are kinds of their own.
 //!include "frame/even.wgsl"
 //!include "frame/kinds.wgsl"
 
 @group(3) @binding(2) var even_cells: texture_2d<f32>;
 
-// Even pixels on which the host drew have a draw of their own.
+// Whether interpolated pixels on which the host drew have a draw of their own.
 override APART: bool = false;
 
-// Whether uneven pixels have a draw for each kind of what they show, or one for all.
+// Whether the other pixels have a draw for each kind, or one draw for all.
 override SPLITS: bool = true;
 
 const KIND_UNEVEN: f32 = 1.0;
 const KIND_EVEN: f32 = 0.25;
 const KIND_EVEN_DRAWN: f32 = 0.75;
-// Ranges so near those of a cell's texels, in octaves, are among them: halves hold no more of them.
+// Tolerance for a pixel's range beyond those of its cell's texels, octaves: half floats are no more precise.
 const REACH_SLACK: f32 = 0.02;
 
 @fragment

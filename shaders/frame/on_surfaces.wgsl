@@ -1,11 +1,11 @@
-// What lies on the surface that a pixel shows. Where a pipeline draws nothing there, on_surfaces_dry.wgsl stands here.
+// Water and snow on the surface in a pixel. A pipeline without surface effects uses on_surfaces_dry.wgsl instead.
 //!include "frame/color_space.wgsl"
 //!include "frame/host_picture.wgsl"
 //!include "ground/surface.wgsl"
 
 override SURFACE: bool = true;
 
-// What the host says of the surface that a pixel shows, where it does: its class in red, and its normal.
+// Host's data on the surface in a pixel, if it gives them: the surface class in red, and the normal.
 @group(0) @binding(9) var host_classes: texture_2d<f32>;
 @group(0) @binding(10) var host_normals: texture_2d<f32>;
 
@@ -24,7 +24,7 @@ fn host_surface(seen: Seen) -> HostSurface {
     return surface;
 }
 
-// Depths of the pixels to the left, right, above and below; the pixel's own beyond the picture's edge.
+// Depths of the pixels to the left, right, above and below. Beyond the picture's edge, the pixel's own depth.
 fn depth_around(pixel: vec2i, sample: i32) -> vec4f {
     let low = max(pixel - 1, vec2i(0));
     let high = min(pixel + 1, vec2i(textureDimensions(host_depth)) - 1);

@@ -1,4 +1,4 @@
-// What weather adds to a pixel: sky behind, air and fog between.
+// Weather's effect on a pixel: the sky behind, air and fog in front.
 //!include "common/guarded.wgsl"
 //!include "between/sky.wgsl"
 //!include "between/veil.wgsl"
@@ -7,25 +7,28 @@
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
 
-// Where nothing is drawn, the pixels of a pipeline may lie above the level of the eye, and below it.
+// Whether pixels in which the host drew nothing may lie above the level of the eye, and below it.
 override FAR_ABOVE: bool = true;
 override FAR_BELOW: bool = true;
-// Ratio of the optical depth of clouds to the delta-scaled one, in which light scattered straight on counts as not
-// scattered.
+// Ratio of the optical depth of clouds to their delta-scaled optical depth, in which light scattered straight on counts
+// as not scattered.
 const CLOUD_STRAIGHT: f32 = 1.8;
-// The discs of sun and moon: the host has their light otherwise where it asks for the sky alone.
+// Whether to draw the discs of sun and moon. The cube map leaves them out, because the host gets their light in another
+// way.
 override DISCS: bool = true;
 
-// The planet's own ground as far as it lies under a deck, whose light on it is that of an overcast sky: 7 pi / 9 of its
-// zenith's luminance (Moon and Spencer 1942). The air before it is lit by the deck too (air_on).
+// Planet's own ground, as far as it lies under a cloud deck. The deck lights it like an overcast sky, with an
+// illuminance of 7 pi / 9 times its zenith luminance (Moon and Spencer 1942). The deck also lights the air in front
+// (air_on).
 fn ground_under_deck(path: SkyPath) -> vec3f {
     let transmittance = exp(-path.depth);
     let ground = sky_view.air.ground_albedo * (7.0 / 9.0) * f32(path.ray.grounded);
     return frame.deck * mix(vec3f(overcast_gradation(0.0)), ground, transmittance);
 }
 
-// The discs of sun and moon behind clouds, which let through less of their light straight than all that they scatter
-// straight on. A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
+// Discs of sun and moon behind clouds. The clouds' transmittance for an image of the disc is lower than their
+// delta-scaled one, which includes light scattered straight on. Negative channels of a disc, whose red lies outside of
+// Rec. 709, are cut, so that it takes no light from the sky around it.
 fn disc_light(radiance: Radiance, hung: Hung) -> vec3f {
     if !DISCS {
         return vec3f(0.0);
@@ -34,7 +37,7 @@ fn disc_light(radiance: Radiance, hung: Hung) -> vec3f {
     return not_negative(color_of(radiance * (through * hung.disc)));
 }
 
-// What stands behind all that the host drew and behind clouds, above the level of the eye.
+// Light from behind all that the host drew and behind the clouds, above the level of the eye.
 fn behind_above(d: vec3f, hung: Hung) -> vec3f {
     if !CLEAR_SKY || deck_hides_all() || drawn.z == 0.0 {
         return open_sky(d, vec3f(0.0), hung);
@@ -43,8 +46,8 @@ fn behind_above(d: vec3f, hung: Hung) -> vec3f {
     return open_sky(d, color_of(sky_radiance_above(d)) * air_lit + disc, hung);
 }
 
-// The same below the level of the eye: the planet's own ground with the air before it; from high up also sky, down to
-// the horizon.
+// Light as in `behind_above`, below the level of the eye: the planet's own ground with the air in front of it and, from
+// high up, also the sky down to the horizon.
 fn behind_below(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
     if deck_hides_all() {
         return ground_under_deck(path) + night_light(hung);
@@ -58,14 +61,14 @@ fn behind_below(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
     return mix(clear, ground_under_deck(path), frame.deck_cover) + night_light(hung);
 }
 
-// What weather adds to a pixel. `range` along the ray and `plane` from the camera's plane are RANGE_SKY where the host
+// Weather's effect on a pixel. `range` along the ray and `plane` from the camera's plane are RANGE_SKY where the host
 // drew nothing.
 fn weather_over(ray: ViewRay, range: f32, plane: f32, hung: Hung) -> Veil {
     let sky = range >= RANGE_SKY;
     let above = FAR_ABOVE && (!FAR_BELOW || ray.direction.z >= 0.0);
     var veil = Veil(vec3f(0.0), vec3f(1.0));
-    // One path for ground and air: a driver that compiles both ways, and takes both, does its part once. The sky needs
-    // none.
+    // One path serves ground and air: a driver that compiles and executes both branches then computes it once. The sky
+    // needs none.
     var path: SkyPath;
     if !(sky && above) {
         path = sky_path(ray.direction, range);

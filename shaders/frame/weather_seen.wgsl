@@ -1,5 +1,5 @@
-// The weather before a pixel of the host's picture. Where a pipeline is for pixels between which it is even,
-// weather_seen_even.wgsl stands here.
+// Weather in front of a pixel of the host's picture. Pipelines for interpolated pixels use weather_seen_even.wgsl
+// instead.
 //!include "frame/weather.wgsl"
 //!include "frame/host_picture.wgsl"
 

@@ -1,11 +1,11 @@
-// In place of weather_seen.wgsl for pixels between which the weather is even: it is looked up in its grid, and the
-// pixel's clouds, which the grid does not have, are laid over it.
+// Version of weather_seen.wgsl for interpolated pixels: reads the weather from the coarse grid, and lays the pixel's
+// clouds, which the grid does not have, over it.
 //!include "between/air.wgsl"
 //!include "between/hung.wgsl"
 //!include "frame/even.wgsl"
 //!include "frame/host_picture.wgsl"
 
-// Light by EVEN_WHITE * frame.even_scale; transmittance.
+// Layer 0: light times EVEN_WHITE * frame.even_scale. Layer 1: transmittance.
 @group(3) @binding(0) var even_weather: texture_2d_array<f32>;
 @group(3) @binding(1) var even_sampler: sampler;
 

@@ -1,15 +1,14 @@
-// The wind over what the host drew, for developers (docs/diagnostics.md): its speed in false colours, and arrows along
-// it.
+// Wind over what the host drew, for developers (docs/diagnostics.md): its speed in false colours, and arrows along it.
 //!include "frame/false_colors.wgsl"
 //!include "surroundings/wind.wgsl"
 
 // WindUniform of src/frame/wind_picture.rs.
 struct WindPicture {
     map: WindMap,
-    // The weather's wind, which blows where none is known that varies in space, m/s (east, north, up).
+    // The weather's wind, used where no spatially varying wind is known, m/s (east, north, up).
     weathers: vec3f,
     varies: u32,
-    // The camera east and north of a place of the world that stays, m.
+    // Camera's position east and north of a fixed point of the world, m.
     eye: vec2f,
 }
 
@@ -17,18 +16,18 @@ struct WindPicture {
 @group(1) @binding(1) var wind_values: texture_3d<f32>;
 @group(1) @binding(2) var wind_sampler: sampler;
 
-// Height over a surface, m.
+// Height above the surface at which the wind is shown, m.
 const WIND_OVER: f32 = 2.0;
-// m/s from one colour of the scale to the next.
+// Wind speed for one step of the scale, m/s.
 const WIND_OF_STEP: f32 = 4.0;
-// Side of the squares with an arrow each over the distance: a power of two in metres.
+// Side of an arrow's square divided by its distance; the side is rounded to a power of two in metres.
 const ARROW_SQUARE: f32 = 0.06;
-// Place on the scale up to which it is dark: black, blue.
+// Position on the scale below which the picture is dark (black, blue), so that arrows are white.
 const DARK_SHARE: f32 = 0.3;
-// Slower air has a dot, m/s.
+// Speed below which a dot replaces the arrow, m/s.
 const CALM: f32 = 0.3;
 
-// At so much over a camera-relative place, m/s.
+// Wind at WIND_OVER above a camera-relative position, m/s.
 fn wind_over(surface: vec3f) -> vec3f {
     if wind_picture.varies == 0u {
         return wind_picture.weathers;
@@ -38,7 +37,7 @@ fn wind_over(surface: vec3f) -> vec3f {
     return wind_at(wind_picture.map, place, found, wind_picture.weathers);
 }
 
-// Whether the arrow of the square about a place covers it.
+// Whether the arrow in the square around a position covers the position.
 fn is_arrow(surface: vec3f, range: f32) -> bool {
     let side = exp2(round(log2(max(ARROW_SQUARE * range, 0.25))));
     let middle = (floor((surface.xy + wind_picture.eye) / side) + 0.5) * side - wind_picture.eye;

@@ -1,41 +1,41 @@
-// Beads on glass, one a cell at most, in integers: the same bits on every driver. The twin is src/glass/reference.rs,
-// the numbers of a step come from src/glass/step.rs.
+// Beads on glass, at most one for each cell, in integers: the same bits on every driver. The twin is
+// src/glass/reference.rs; the uniforms of a step come from src/glass/step.rs.
 //!include "common/fullscreen.wgsl"
 
 struct Step {
-    // Key of (seed, step), key of the seed, columns, rows.
+    // Hash of (seed, step), hash of the seed, columns, rows.
     key: vec4u,
-    // A cell gets at least 1, 2, 3 drops where its 32 random bits are below these; chance in 65536 that a fine bead
-    // dries.
+    // Limits of 32 random bits below which a cell gets at least 1, 2 or 3 drops; probability in 1/65536 that a fine
+    // bead dries.
     arrive: vec4u,
-    // Declared state: water a step in 1/256 unit, drops a step in 1/65536, the step, the largest bead that rests.
+    // Declared state: water per step in 1/256 unit, drops per step in 1/65536, number of the step, volume of the
+    // largest bead that rests.
     declared: vec4u,
-    // The largest volume of a cell; 1 where not all of the rain gets everywhere.
+    // Largest volume of a cell; 1 if some cells get less than all of the rain.
     limits: vec4u,
-    // Each arm: (pivot x, y, inner, outer radius), (direction before x, y, half way x, y), (now x, y, half width, is
-    // there).
+    // For each arm: (pivot x, y, inner radius, outer radius), (direction before x, y, direction half way x, y),
+    // (direction now x, y, half width, 1 if there is an arm).
     arms: array<vec4i, 6>,
     // Volumes of drops, from common to rare.
     drops: array<vec4u, 64>,
-    // Beads by volume: (radius + 1024 x loss to the air, motion x, y, 256 x drive over retention).
+    // Beads by class of volume: (radius + 1024 x evaporation, motion x, y, 256 x driving force over retention).
     beads: array<vec4i, 96>,
-    // Snow. A flake lands on a cell whose 32 random bits are below the first number. Then, in units of water: a flake,
-    // what melts in a step (in 1/4096), and the most that a cell holds.
+    // Snow: limit of 32 random bits below which a flake lands on a cell; then, in units of water, a flake, the melt per
+    // step (in 1/4096), and the largest amount in a cell.
     snow: vec4u,
-    // Shares of the rain that get to the nodes of a net over the pane, in 1/128, four a word, rows from the lower edge
-    // up.
+    // Shares of the rain that reach the nodes over the pane, in 1/128, four in a word, in rows from the lower edge up.
     reach: array<vec4u, 8>,
 }
 
-// Whether maps of the host's keep rain off the pane.
+// Whether the host's maps keep rain off the pane.
 override MAPPED: bool = false;
 
 @group(0) @binding(0) var<uniform> step: Step;
 // (volume, place x + 65536 y, speed + 65536 shape, hits + 4096 clearings + 65536 film).
 @group(0) @binding(1) var cells: texture_2d<u32>;
-// (volume that moves, its new place, speed + 65536 shape, 256 x volume left + 32 ran + 16 wiped + where to).
+// (volume that moves, its new place, speed + 65536 shape, 256 x volume left behind + 32 ran + 16 wiped + target cell).
 @group(0) @binding(2) var moves: texture_2d<u32>;
-// Of each node the share that maps let through, as `reach`.
+// Share that maps let through to each node, in the same unit as `reach`.
 @group(0) @binding(3) var mapped: texture_2d<u32>;
 
 // Snow on the cells, units of water.
@@ -43,13 +43,13 @@ override MAPPED: bool = false;
 
 const MOST_HITS: u32 = 4095u;
 const FULL_FILM: u32 = 65535u;
-// Film on which a bead glides as if it ran.
+// Film above which a bead glides as if it ran.
 const WET_FILM: u32 = 2048u;
 const WIPED: u32 = 16u;
 const RAN: u32 = 32u;
 const LIFE_STEPS: u32 = 2048u;
 
-// PCG of 32 bits (Jarzynski & Olano 2020).
+// 32-bit PCG hash (Jarzynski & Olano 2020).
 fn pcg(v: u32) -> u32 {
     let state = v * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -60,7 +60,7 @@ fn cell_hash(cell: vec2i, key: u32) -> u32 {
     return pcg(u32(cell.x) + pcg(u32(cell.y) + key));
 }
 
-// Place of the highest set bit; 0 for 0 and 1.
+// Position of the highest set bit; 0 for 0 and 1.
 fn octave(v: u32) -> u32 {
     var x = v;
     var n = 0u;
@@ -124,7 +124,7 @@ fn swept(point: vec2i) -> bool {
     return false;
 }
 
-// Nodes of the net along the pane's lower edge, and up the glass.
+// Number of nodes along the pane's lower edge, and up the glass.
 const NODES: vec2u = vec2u(16u, 8u);
 
 fn node(index: vec2u) -> u32 {
@@ -136,8 +136,8 @@ fn node(index: vec2u) -> u32 {
     return share;
 }
 
-// Share of the rain that gets to a cell, in 1/65536: between its nodes. A loop that is not begun is what a software
-// driver leaves out.
+// Share of the rain that reaches a cell, in 1/65536, interpolated between its nodes. The loop starts at its end where
+// all rain reaches all cells: a software driver skips such loops.
 fn reached(cell: vec2i) -> u32 {
     var share = 65536u;
     for (var i = select(0u, 1u, step.limits.y == 0u && !MAPPED); i < 1u; i++) {
@@ -151,12 +151,12 @@ fn reached(cell: vec2i) -> u32 {
     return share;
 }
 
-// A share of a number, of 65536.
+// The share `share` / 65536 of a number.
 fn part_of(number: u32, share: u32) -> u32 {
     return select((number >> 16u) * share + (((number & 0xffffu) * share) >> 16u), number, share > 65535u);
 }
 
-// What melts in a step of so much snow, chance deciding on the fraction of a unit.
+// Amount of snow that melts in a step. The fraction of a unit is rounded at random.
 fn melted(cell: vec2i, there: u32) -> u32 {
     let random = cell_hash(cell, step.key.x + 4u) & 4095u;
     return min(there, (step.snow.z >> 12u) + select(0u, 1u, random < (step.snow.z & 4095u)));

@@ -1,8 +1,9 @@
-// First half of a step: where each bead goes. A larger bead that touches it takes it in; else it runs if gravity and
-// air overcome what holds it, and leaves small beads behind.
+// First half of a step: decides where each bead goes. A larger bead that touches it takes it in. Otherwise it runs if
+// gravity and air overcome the retention, and leaves small beads behind.
 //!include "glass/cells.wgsl"
 
-// Whether `larger`, `offset` (1/256 cell) away, takes this bead in: it touches, and it does not run away from it.
+// Whether the bead `larger`, `offset` (1/256 cell) away, takes this bead in: the two touch, and `larger` does not run
+// away from this one.
 fn takes(larger: vec4u, offset: vec2i, radius: i32) -> bool {
     let other = bead(larger.x);
     let reach = ((radius + (other.x & 1023)) * 3) >> 2u;
@@ -19,7 +20,7 @@ fn film_at(cell: vec2i) -> i32 {
     return i32(textureLoad(cells, cell, 0).w >> 16u);
 }
 
-// Sideways share of a runner's way, in 1/256: the glass is uneven, and wet glass draws it.
+// Sideways share of a running bead's motion, in 1/256. The glass is uneven, and wet glass attracts the bead.
 fn steer(cell: vec2i, motion: vec2i) -> i32 {
     let size = abs(motion);
     let ahead = vec2i(select(0, sign(motion.x), 2 * size.x > size.y), select(0, sign(motion.y), 2 * size.y > size.x));

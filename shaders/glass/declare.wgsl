@@ -1,5 +1,5 @@
-// The declared state of a moment: a pure function of (seed, step, rain). Each cell collects water for some half a
-// minute, from a moment of its own on, and never so much that it runs.
+// Declared state of a moment: a pure function of (seed, step, rain). Each cell collects water for about half a minute,
+// starting at a random time, and never enough to run.
 //!include "glass/cells.wgsl"
 
 @fragment
@@ -9,7 +9,7 @@ fn declare(in: FullscreenVarying) -> @location(0) vec4u {
     let now = step.declared.z + (random & (LIFE_STEPS - 1u));
     let age = now % LIFE_STEPS;
     let life = pcg(random + now / LIFE_STEPS);
-    // Few cells get much, many little, as few drops are large.
+    // Few cells get much water and many get little, as few drops are large.
     let chance = life & 255u;
     let share = (chance * chance) >> 6u;
     let gets = reached(cell);

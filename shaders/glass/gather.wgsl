@@ -1,4 +1,4 @@
-// Second half of a step: what comes into a cell, what dries, what is wiped, and the drops that land.
+// Second half of a step: beads that move in, evaporation, wiping, and drops that land.
 //!include "glass/cells.wgsl"
 
 struct Cell {
@@ -8,7 +8,7 @@ struct Cell {
     motion: u32,
 }
 
-// The larger of two keeps its place and shape.
+// Joins water to a cell. The largest part keeps its place and shape.
 fn join(to: Cell, volume: u32, at: u32, motion: u32) -> Cell {
     var c = to;
     c.volume += volume;
@@ -45,7 +45,7 @@ fn gather(in: FullscreenVarying) -> @location(0) vec4u {
     }
     let wiped = (own.w & WIPED) != 0u;
     c = dried(cell, c);
-    // Melt water becomes a bead, or joins one. A blade takes the snow before it melts.
+    // Meltwater becomes a bead or joins one. A blade removes the snow before it melts.
     if step.snow.z > 0u && !wiped {
         let melt = melted(cell, textureLoad(snow, cell, 0).x);
         if melt > 0u {
@@ -56,7 +56,7 @@ fn gather(in: FullscreenVarying) -> @location(0) vec4u {
     return landed(cell, c, cleared(cell, before.w, ran, wiped));
 }
 
-// What the air takes of a bead, chance deciding on the fraction of a unit.
+// Evaporation of a bead. The fraction of a unit is rounded at random.
 fn dried(cell: vec2i, bead_there: Cell) -> Cell {
     var c = bead_there;
     if c.volume > 0u {
@@ -68,7 +68,7 @@ fn dried(cell: vec2i, bead_there: Cell) -> Cell {
     return c;
 }
 
-// Hits, clearings and film after what ran or was wiped, and after the air.
+// Hits, clearings and film after running and wiping, and after evaporation.
 fn cleared(cell: vec2i, packed_state: u32, ran: bool, wiped: bool) -> u32 {
     var hits = packed_state & MOST_HITS;
     var clearings = (packed_state >> 12u) & 15u;
@@ -88,7 +88,7 @@ fn cleared(cell: vec2i, packed_state: u32, ran: bool, wiped: bool) -> u32 {
 fn landed(cell: vec2i, bead_there: Cell, state: u32) -> vec4u {
     var c = bead_there;
     var random = cell_hash(cell, step.key.x + 3u);
-    // Two at once are as much rarer as one is, squared.
+    // With a share s of the rain, two drops at once are rarer by s^2, and three by s^3.
     let share = reached(cell);
     let one = part_of(step.arrive.x, share);
     let two = part_of(part_of(step.arrive.y, share), share);

@@ -1,52 +1,52 @@
-// What the glass does to the finished picture: each bead is a lens that shows the scene behind it upside down and
-// small, with a dark rim where light is thrown back; a film of water shakes the picture, mist on the inside blurs and
-// whitens it. Through snow comes light, but no picture. Axes: right and up along the glass, outwards from it; metres,
-// the eye behind the glass.
+// Draws the glass over the finished picture. Each bead is a lens that shows the scene behind it small and upside down,
+// with a dark rim where light is reflected inside. A film of water distorts the picture, and mist on the inside blurs
+// and whitens it. Snow lets light through, but no picture. Axes: right and up along the glass, and outwards from it, m;
+// the eye is behind the glass.
 //!include "common/fullscreen.wgsl"
 //!include "common/tone.wgsl"
 
 struct Lens {
-    // Ray direction in the picture's middle and its change per unit of clip x and y.
+    // Ray direction in the middle of the picture, and its change per unit of clip x and y.
     ray: vec3f,
-    // Cells a metre.
+    // Cells per metre.
     per_m: f32,
     ray_dx: vec3f,
-    // 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
+    // 1 if row 0 of the target is the picture's top, -1 if it is the bottom.
     y_sign: f32,
     ray_dy: vec3f,
-    // Contact radius in cells over the cube root of the volume.
+    // Contact radius, cells, over the cube root of the volume.
     radius: f32,
     eye: vec3f,
-    // A pixel on the glass, cells.
+    // Size of a pixel on the glass, cells.
     pixel: f32,
-    // Columns: from a direction to clip space.
+    // Columns of the matrix from a direction to clip space.
     clip_x: vec3f,
-    // Mist on the inside, and how far it is cleared.
+    // Mist on the inside, and the part of it that is cleared (`demist`).
     fogging: f32,
     clip_y: vec3f,
     demist: f32,
     clip_z: vec3f,
     // Height of the glass, m.
     height: f32,
-    // Inside of the pane: a u + b v + c >= 0.
+    // Edges of the pane; inside, a u + b v + c >= 0.
     edges: array<vec4f, 4>,
-    // Each wiper: pivot, inner and outer radius, cells; all 0 where there is none.
+    // For each wiper: pivot, inner and outer radius, cells; all 0 without a wiper.
     arms: array<vec4f, 2>,
-    // Where large beads run to, unit or 0.
+    // Direction in which large beads run, unit vector or 0.
     flow: vec2f,
-    // Columns and rows; key of the seed.
+    // Columns and rows; hash of the seed (`key`).
     size: vec2i,
     key: u32,
-    // 1 where there is water.
+    // 1 if there is water.
     wet: u32,
-    // Optical depth of snow a unit of its water on a cell; 0 where there is none.
+    // Optical depth of snow per unit of its water in a cell; 0 without snow.
     snow_depth: f32,
 }
 
 @group(0) @binding(0) var<uniform> lens: Lens;
 @group(0) @binding(1) var cells: texture_2d<u32>;
 @group(0) @binding(2) var picture: texture_2d<f32>;
-// The picture's means over 8 x 8 and 32 x 32 texels.
+// Means of the picture over 8 x 8 and 32 x 32 texels.
 @group(0) @binding(3) var smaller: texture_2d<f32>;
 @group(0) @binding(4) var smallest: texture_2d<f32>;
 @group(0) @binding(5) var linear_sampler: sampler;
@@ -71,7 +71,7 @@ fn hash(p: vec2i, key: u32) -> u32 {
     return pcg(u32(p.x) + pcg(u32(p.y) + key));
 }
 
-// Water at a point of the glass: slope of its surface, and how much of the pixel it covers.
+// Water at a point of the glass: slope of its surface, and the share of the pixel that it covers.
 struct Water {
     slope: vec2f,
     cover: f32,
@@ -80,7 +80,7 @@ struct Water {
     height: f32,
 }
 
-// A cap at rho of its contact radius, in the direction `to` from its middle.
+// Water of a spherical cap at the share `rho` of its contact radius, in the direction `to` from its middle.
 fn cap(to: vec2f, rho: f32, radius: f32, pixel: f32) -> Water {
     let r = min(rho, 0.995);
     let root = sqrt(1.0 - r * r * CONTACT_SINE * CONTACT_SINE);
@@ -90,10 +90,11 @@ fn cap(to: vec2f, rho: f32, radius: f32, pixel: f32) -> Water {
     return Water(to * slope, cover, radius, height);
 }
 
-// The bead of a cell as seen from `q`, cells from its middle: uneven in outline, hanging, drawn out while it runs.
+// Water of a cell's bead at `q`, cells from its middle. Its outline is uneven, hangs down, and is drawn out while the
+// bead runs.
 fn bead(cell: vec4u, q: vec2f) -> Water {
     let radius = lens.radius * pow(f32(cell.x), 0.33333333);
-    // As far as the longest tail of the most uneven one reaches, and half a pixel.
+    // Reach of the longest tail of the most uneven bead, plus half a pixel.
     let reach = 2.6 * radius + lens.pixel;
     if dot(q, q) > reach * reach {
         return Water(vec2f(0.0), 0.0, 0.0, 0.0);
@@ -108,15 +109,16 @@ fn bead(cell: vec4u, q: vec2f) -> Water {
     let two = vec2f(d.x * d.x - d.y * d.y, 2.0 * d.x * d.y);
     let three = vec2f(d.x * two.x - d.y * two.y, d.x * two.y + d.y * two.x);
     let turn = vec2f(cos(shape), sin(shape));
-    // No two are alike: how far an outline strays goes with its own shape.
+    // No two beads are alike: the unevenness of an outline depends on the bead's own shape.
     let stray = 0.6 + 0.8 * fract(shape * 2.7);
     let uneven = 1.0 + (1.0 - runs) * stray * (0.17 * dot(two, turn) + 0.09 * dot(three, turn.yx));
     return cap(d, far / (radius * uneven), radius, lens.pixel);
 }
 
-// Small beads that sit in squares of their own, `per_cell` along a cell's edge: more of them the more drops have hit.
+// Small beads in squares of their own, `per_cell` along a cell's edge. The more drops have hit, the more beads there
+// are.
 fn fine(straight: vec2f, per_cell: f32, key: u32, hits: f32, patience: f32) -> Water {
-    // The squares lie askew and bent, so that no rows show.
+    // The squares are turned and bent, so that no rows are visible.
     let s = straight * per_cell;
     let bent = 0.9 * vec2f(sin(0.83 * s.y + 0.29 * s.x), sin(0.71 * s.x - 0.37 * s.y));
     let c = (vec2f(0.8 * s.x - 0.6 * s.y, 0.6 * s.x + 0.8 * s.y) + 0.35 * bent) / per_cell;
@@ -134,14 +136,14 @@ fn fine(straight: vec2f, per_cell: f32, key: u32, hits: f32, patience: f32) -> W
     let far = max(length(q), 1e-6);
     let in_cells = radius / per_cell;
     var w = cap(q / far, far / radius, in_cells, lens.pixel);
-    // Out of the askew frame again.
+    // Turn the slope back out of the turned squares.
     w.slope = vec2f(0.8 * w.slope.x + 0.6 * w.slope.y, 0.8 * w.slope.y - 0.6 * w.slope.x);
-    // A bead below a pixel covers its share of it.
+    // A bead smaller than a pixel covers its share of the pixel.
     w.cover *= min(in_cells / lens.pixel * 2.0, 1.0);
     return w;
 }
 
-// Film and hits, blended between the four cells about a point.
+// Film and hits, interpolated between the four cells around a point.
 fn blended(c: vec2f) -> vec2f {
     let p = c - 0.5;
     let base = vec2i(floor(p));
@@ -162,8 +164,8 @@ fn texel(at: vec2i) -> vec3f {
     return select(c, srgb_decode(c), ENCODED);
 }
 
-// The scene over some 2^detail >= 32 pixels. Beyond the smallest copy's texels, four of them: a lamp must not flash in
-// one drop's pixel and miss the next.
+// Scene averaged over some 2^detail >= 32 pixels. Beyond the texels of the smallest copy, four of them are averaged, so
+// that a lamp does not flash in one pixel of a drop and miss the next.
 fn wide_scene(place: vec2f, detail: f32) -> vec3f {
     let apart = 0.25 * exp2(detail) / vec2f(textureDimensions(picture));
     if detail <= 5.0 {
@@ -177,7 +179,7 @@ fn wide_scene(place: vec2f, detail: f32) -> vec3f {
     return sum;
 }
 
-// The scene at a place of the picture, over about 2^detail pixels.
+// Scene at a position in the picture, averaged over about 2^detail pixels.
 fn scene(uv: vec2f, detail: f32) -> vec3f {
     let place = clamp(uv, vec2f(0.0), vec2f(1.0));
     if detail >= 5.0 {
@@ -195,35 +197,36 @@ fn scene(uv: vec2f, detail: f32) -> vec3f {
     return mix(sharp, middle, clamp(detail / 3.0, 0.0, 1.0));
 }
 
-// Where a direction lies in the picture, (0, 0) in its first row.
+// Position of a direction in the picture; (0, 0) is in its first row.
 fn picture_at(d: vec3f) -> vec2f {
     let clip = lens.clip_x * d.x + lens.clip_y * d.y + lens.clip_z * d.z;
     let ndc = clip.xy / max(clip.z, 1e-3 * length(clip) + 1e-20);
     return vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y * lens.y_sign);
 }
 
-// Light through water of this slope, towards the eye along -d: in at the outer surface, out through the glass.
+// Light through water of this slope that goes towards the eye along -d: in through the outer surface, out through the
+// glass.
 fn through(d: vec3f, w: Water, uv: vec2f) -> vec3f {
     let normal = normalize(vec3f(w.slope, 1.0));
     let inner = refract(d, vec3f(0.0, 0.0, -1.0), 1.0 / WATER_INDEX);
     let outer = refract(inner, -normal, WATER_INDEX);
-    // What is thrown back inside comes from the dim cab and from the glass beside.
+    // Light reflected inside comes from the dim cab and from the glass beside the bead.
     let dark = scene(uv, 5.0) * 0.08;
     let cosine_in = dot(inner, normal);
     let cosine_out = dot(outer, normal);
     if cosine_in <= 0.0 || cosine_out <= 1e-4 {
         return dark;
     }
-    // Fresnel's equations, unpolarised.
+    // Fresnel's equations for unpolarised light.
     let s = (WATER_INDEX * cosine_in - cosine_out) / (WATER_INDEX * cosine_in + cosine_out);
     let p = (cosine_in - WATER_INDEX * cosine_out) / (cosine_in + WATER_INDEX * cosine_out);
     let thrown_back = 0.5 * (s * s + p * p);
-    // A bead shows some 50 degrees: how many pixels of the picture lie in one of the drop's.
+    // A bead shows some 50 degrees. `spread` is the number of the picture's pixels in one pixel of the bead.
     let spread = 0.4 * abs(lens.eye.z) * lens.per_m / max(w.radius, 0.02);
     return mix(scene(picture_at(outer), log2(max(spread, 1.0))), dark, thrown_back);
 }
 
-// The water over a point of the glass, in cells: the highest of what overlaps there.
+// Highest water over a point of the glass, in cells.
 fn water_over(c: vec2f, hits: f32) -> Water {
     var best = Water(vec2f(0.0), 0.0, 0.0, -1.0);
     let base = vec2i(floor(c));
@@ -254,7 +257,7 @@ fn water_over(c: vec2f, hits: f32) -> Water {
     return best;
 }
 
-// From the pivot of the wiper that reaches a point, the nearer of two that do; 0 beyond their reach.
+// Vector from the pivot of the wiper that reaches a point, or of the nearer one if both do; 0 out of their reach.
 fn from_pivot(c: vec2f) -> vec2f {
     var best = vec2f(0.0);
     var nearest = 1e9;
@@ -270,8 +273,8 @@ fn from_pivot(c: vec2f) -> vec2f {
     return best;
 }
 
-// Streaks of a film: fine ridges along the blade's way, or along the flow. `arm` is the way from the wiper's pivot, or
-// 0.
+// Streaks of a film: fine ridges along the blade's path or along the flow. `arm` is the vector from the wiper's pivot,
+// or 0.
 fn streaks(c: vec2f, arm: vec2f) -> f32 {
     let across = dot(c, vec2f(lens.flow.y, -lens.flow.x));
     let at = 2.7 * select(across, length(arm), any(arm != vec2f(0.0)));
@@ -288,7 +291,7 @@ fn mist_at(v: f32) -> f32 {
     return lens.fogging * smoothstep(cleared - 0.3, cleared, height);
 }
 
-// Optical depth of the snow over a point of the glass: flakes are some cells wide, with ragged edges.
+// Optical depth of the snow over a point of the glass. Flakes are some cells wide, with ragged edges.
 fn snow_over(c: vec2f) -> f32 {
     if lens.snow_depth <= 0.0 {
         return 0.0;
@@ -300,7 +303,7 @@ fn snow_over(c: vec2f) -> f32 {
         for (var x = -1; x <= 1; x++) {
             let at = clamp(base + vec2i(x, y), vec2i(0), lens.size - 1);
             let h = hash(at, lens.key + 21u);
-            // No flake lies in the middle of its cell.
+            // Flakes lie off the middle of their cells.
             let middle = vec2f(at) + vec2f(f32(h & 255u), f32((h >> 8u) & 255u)) / 255.0;
             let off = c - middle;
             let weight = exp2(-2.5 * dot(off, off));
@@ -312,8 +315,8 @@ fn snow_over(c: vec2f) -> f32 {
     return lens.snow_depth * sum / max(weights, 1e-3) * (0.5 + grain);
 }
 
-// Light through snow: what comes from all over the picture, less what goes back (two streams, asymmetry 0.89 as of ice
-// spheres).
+// Light through snow: the light of the whole picture, less what is reflected (two-stream approximation, asymmetry 0.89
+// for ice spheres).
 fn through_snow(depth: f32) -> vec3f {
     let around = 0.25 * (scene(vec2f(0.25, 0.3), 5.0) + scene(vec2f(0.75, 0.3), 5.0) + 2.0 * scene(vec2f(0.5, 0.5), 5.0));
     return around / (1.0 + 0.75 * 0.11 * depth);

@@ -1,17 +1,18 @@
-// Which share of the rain the host's maps let through to each node of a net over the pane (src/glass/reach.rs).
+// Share of the rain that the host's maps let through to each node over the pane (src/glass/reach.rs).
 //!include "common/fullscreen.wgsl"
 //!include "surroundings/occluders.wgsl"
 
 const SIZES: u32 = 6u;
-// What a node has that all rain gets to.
+// Value of a node that all of the rain reaches.
 const ALL_OF_IT: f32 = 128.0;
 
 struct PaneUniform {
-    // Before the first node, and from there to the last along the lower edge and up the glass; camera-relative, m.
+    // Position in front of the first node, and the vectors from there to the last node along the lower edge and up the
+    // glass; relative to the camera, m.
     origin: vec4f,
     along: vec4f,
     up: vec4f,
-    // Velocities, m/s, and the share of the water that each brings.
+    // Velocities of drops, m/s, and the share of the water that each brings.
     drops: array<vec4f, SIZES>,
 }
 

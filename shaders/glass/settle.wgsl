@@ -1,8 +1,8 @@
-// Snow on glass, in units of its water a cell: flakes land, blades take it away, heat melts it. The twin is
+// Snow on glass, in units of its water for each cell: flakes land, blades remove snow, and heat melts it. The twin is
 // src/glass/reference.rs.
 //!include "glass/cells.wgsl"
 
-// A step's snow of a cell, from that before.
+// Snow of a cell after a step.
 fn settled(cell: vec2i) -> u32 {
     if swept(cell * 16 + 8) {
         return 0u;
@@ -20,7 +20,7 @@ fn settle(in: FullscreenVarying) -> @location(0) u32 {
     return settled(vec2i(in.position.xy));
 }
 
-// The declared state: what falls within some half a minute, less what melts meanwhile.
+// Declared state: the snow that falls in about half a minute, less what melts meanwhile.
 @fragment
 fn declare_snow(in: FullscreenVarying) -> @location(0) u32 {
     let cell = vec2i(in.position.xy);

@@ -1,9 +1,9 @@
-// Water on the ground.
+// Bindings of the ground: its uniform block and the textures of the host's terrain.
 //!include "ground/uniform.wgsl"
 
 @group(0) @binding(6) var<uniform> ground: GroundUniform;
-// Of the host's terrain, node by node (src/ground/texture.rs): its water; slopes to the east and the north, height over
-// the grid's origin in metres, class; and in as many rows more its snow: depth in m, density in kg/m^3, wetness,
-// albedo.
+// Terrain of the host, one texel per node (src/ground/texture.rs). `terrain_cells` has its water. `terrain_surface` has
+// the slopes to the east and the north, the height over the grid's origin in m, and the class; below, in as many rows
+// again, the snow: depth in m, density in kg/m^3, wetness, albedo.
 @group(0) @binding(7) var terrain_cells: texture_2d<f32>;
 @group(0) @binding(8) var terrain_surface: texture_2d<f32>;

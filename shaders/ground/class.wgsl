@@ -1,7 +1,7 @@
-// What the ground is made of, and how water shows on it. The table is src/ground/class.rs.
+// Look of water by the class of the ground. The table is in src/ground/class.rs.
 //!include "ground/normal.wgsl"
 
-// The look of vegetation (src/ground/class.rs).
+// Look of vegetation (src/ground/class.rs).
 const PLANTS: SurfaceLook = SurfaceLook(0.15, 0.0, 0.6, 50.0, 0.4, 0.0, 0.0, 1.0);
 
 fn mix_looks(a: SurfaceLook, b: SurfaceLook, share: f32) -> SurfaceLook {
@@ -17,14 +17,14 @@ fn mix_looks(a: SurfaceLook, b: SurfaceLook, share: f32) -> SurfaceLook {
     );
 }
 
-// Whether plants grow there, from the colour: excess green, (2 g - r - b) / (r + g + b) (Woebbecke et al. 1995), which
-// is 0 for grey and below 0 for soil.
+// Returns the share of plants in a colour, from its excess green, (2 g - r - b) / (r + g + b) (Woebbecke et al. 1995),
+// which is 0 for grey and below 0 for soil.
 fn plants(albedo: vec3f) -> f32 {
     let excess = (2.0 * albedo.g - albedo.r - albedo.b) / max(albedo.r + albedo.g + albedo.b, 1e-6);
     return smoothstep(0.08, 0.3, excess);
 }
 
-// Of the class of this number; `unspecified` where there is none.
+// Returns the look of the class of this number; `unspecified` if there is none.
 fn look_of(number: u32, unspecified: SurfaceLook) -> SurfaceLook {
     if number == 0u || number >= SURFACE_CLASSES {
         return unspecified;
@@ -32,7 +32,8 @@ fn look_of(number: u32, unspecified: SurfaceLook) -> SurfaceLook {
     return ground.looks[number];
 }
 
-// What the host's image says, else its terrain, else the context's default, of which green parts are plants.
+// Returns the look of a surface: by the host's image, else by its terrain, else the context's default, in which green
+// parts count as plants.
 fn surface_look(surface: HostSurface, here: TerrainPoint, albedo: vec3f) -> SurfaceLook {
     var look = mix_looks(ground.looks[0], PLANTS, plants(albedo));
     if TERRAIN {

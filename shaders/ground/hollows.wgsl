@@ -1,19 +1,19 @@
-// Hollows of a ground of which no heights are known, and rings of drops on the water in them. Both are functions of the
-// place in the host's world, which repeat every 10 km. The f64 twin of the hollows is src/ground/hollows.rs.
+// Hollows of a ground whose heights are unknown, and rings of drops on the water in them. Both are functions of the
+// place in the host's world that repeat every 10 km. The f64 twin of the hollows is src/ground/hollows.rs.
 //!include "ground/binding.wgsl"
 
-// Side of a cell of the rings' grid, m, cells to a period, seconds of a slot.
+// Grid of the rings: side of a cell, m; cells in a period; length of a time slot, s; number of layers.
 const RING_CELL: f32 = 0.2;
 const RING_CELLS: u32 = 50000u;
 const RING_SLOT: f32 = 0.6;
 const RING_LAYERS: u32 = 4u;
-// Share of a slot that a ring lives, its speed, its wavelength (m), its greatest slope.
+// Rings: lifetime as a share of a slot; speed, m/s; wavelength, m; largest slope.
 const RING_LIFE: f32 = 0.6;
 const RING_SPEED: f32 = 0.22;
 const RING_WAVE: f32 = 0.02;
 const RING_SLOPE: f32 = 0.35;
 
-// Sines of so many turns, within 2e-4: of an odd polynomial over a quarter turn.
+// Returns the sines of angles in turns, within 2e-4, by an odd polynomial over a quarter turn.
 fn sines(turns: vec4f) -> vec4f {
     let quarter = 2.0 * abs(2.0 * fract(turns + 0.75) - 1.0) - 1.0;
     let square = quarter * quarter;
@@ -40,24 +40,25 @@ const WAVES_AMPLITUDE: array<vec4f, 4> = array<vec4f, 4>(
     vec4f(0.3162278, 0.3162278, 0.3162278, 0.3162278),
 );
 
-// Depth by four waves, and the variance of it that a pixel keeps, whose sides on the ground are `across` and `along`.
+// Returns the depth of four waves, averaged over a pixel whose sides on the ground are `across` and `along`, and the
+// variance that is left by this averaging.
 fn four_waves(east: vec4f, north: vec4f, amplitude: vec4f, phases: vec4f, at: vec2f, across: vec2f, along: vec2f) -> vec2f {
     let x = east * across.x + north * across.y;
     let y = east * along.x + north * along.y;
-    // exp(-(2 pi)^2 x^2 / 24): a pixel's box has the variance 1/12.
+    // The average over the pixel is that of a Gaussian with the variance of a box, 1/12: exp(-(2 pi)^2 x^2 / 24).
     let q = (x * x + y * y) * 1.6449341;
     let keep = amplitude / (1.0 + q * (1.0 + 0.5 * q));
     return vec2f(dot(keep, sines(phases + east * at.x + north * at.y)), 0.5 * dot(keep, keep));
 }
 
-// Depth of the hollows below the mean ground in units of its root mean square, and how much of its variance is too
-// small for the pixel. Not found where nothing depends on it. Without a loop, whose masks cost a software driver more
-// than some of the waves.
+// Returns the depth of the hollows below the mean ground, in units of its root mean square, and the share of its
+// variance that is too small for the pixel; (0, 1) if not `wanted`. There is no loop: on a software driver its masks
+// cost more than some of the waves.
 fn hollow_depth(at: vec2f, across: vec2f, along: vec2f, wanted: bool) -> vec2f {
     if !wanted {
         return vec2f(0.0, 1.0);
     }
-    // By constant indices: a variable one would copy the tables.
+    // With constant indices: a variable index would copy the tables.
     let sum = four_waves(WAVES_EAST[0], WAVES_NORTH[0], WAVES_AMPLITUDE[0], ground.phases[0], at, across, along)
         + four_waves(WAVES_EAST[1], WAVES_NORTH[1], WAVES_AMPLITUDE[1], ground.phases[1], at, across, along)
         + four_waves(WAVES_EAST[2], WAVES_NORTH[2], WAVES_AMPLITUDE[2], ground.phases[2], at, across, along)
@@ -65,20 +66,20 @@ fn hollow_depth(at: vec2f, across: vec2f, along: vec2f, wanted: bool) -> vec2f {
     return vec2f(sum.x, max(1.0 - sum.y, 0.0));
 }
 
-// Normal distribution function within 3e-4 (Page 1977).
+// Returns the cumulative normal distribution within 3e-4 (Page 1977).
 fn normal_share(x: f32) -> f32 {
     let y = clamp(x, -6.0, 6.0);
     return 1.0 / (1.0 + exp(-1.5957691 * y * (1.0 + 0.044715 * y * y)));
 }
 
-// Beyond this many root mean squares there are no hollows.
+// Largest depth of the hollows, in units of their root mean square.
 const FARTHEST_LEVEL: f32 = 6.0;
-// A level deeper than any hollow: nothing lies in them.
+// Level that is deeper than any hollow: nothing lies in them.
 const NO_LEVEL: f32 = 1000.0;
 
-// Level above which the share `covered` of the hollows lies: the inverse of `normal_share`, y + 0.044715 y^3 = the
-// logarithm of the odds over 1.5957691, by the hyperbolic sine of a third of an angle, as cubics with one root are
-// solved.
+// Returns the level above which the share `covered` of the hollows lies: the inverse of `normal_share`. It solves the
+// cubic y + 0.044715 y^3 = log(odds) / 1.5957691, which has one real root, by the hyperbolic sine of a third of an
+// angle.
 fn level_of(covered: f32) -> f32 {
     let share = clamp(covered, 1e-6, 1.0 - 1e-6);
     let odds = log(share / (1.0 - share)) / 1.5957691;
@@ -86,16 +87,17 @@ fn level_of(covered: f32) -> f32 {
     return select(-y, -sign(covered - 0.5) * FARTHEST_LEVEL, share != covered);
 }
 
-// Width of the edge of a puddle and of a film, in units of the hollows' depth.
+// Widths of the edges of a puddle and of a film, in units of the hollows' depth.
 const PUDDLE_EDGE: f32 = 0.06;
 const FILM_EDGE: f32 = 0.5;
 
-// Share of a pixel under water that fills the hollows from `level` down. `hollow` is what `hollow_depth` gives.
+// Returns the share of a pixel in which the hollows are deeper than `level` and thus filled. `hollow` is a result of
+// `hollow_depth`, `edge` the width of the edge.
 fn covered_share(hollow: vec2f, level: f32, edge: f32) -> f32 {
     return normal_share((hollow.x - level) * inverseSqrt(edge * edge + hollow.y));
 }
 
-// Three uniform numbers of four integers (PCG, Jarzynski & Olano 2020).
+// Returns three uniform random numbers, 0 to 1, for a cell and a slot (PCG, Jarzynski & Olano 2020).
 fn ring_chances(cell: vec2u, slot: u32) -> vec3f {
     var v = vec3u(cell, slot) * 1664525u + 1013904223u;
     v.x += v.y * v.z;
@@ -108,11 +110,11 @@ fn ring_chances(cell: vec2u, slot: u32) -> vec3f {
     return vec3f(v >> vec3u(8u)) / 16777216.0;
 }
 
-// Slope of the water by the ring of one layer: each cell may have one drop in a slot of time.
+// Returns the slope of the water by one layer of rings. In each time slot at most one drop falls in a cell.
 fn ring_slope(at: vec2f, layer: u32) -> vec2f {
     let t = ground.slot_share + f32(layer) / f32(RING_LAYERS);
     let slot = (ground.slot + u32(t)) * RING_LAYERS + layer;
-    // The grid lies elsewhere in each slot, so that drops fall everywhere.
+    // The grid is shifted in each slot, so drops fall everywhere.
     let shift = ring_chances(vec2u(0x9e37u, 0x79b9u), slot).xy;
     let place = (at + vec2f(ground.place_u, ground.place_v)) / RING_CELL + shift;
     let low = floor(place);
@@ -124,7 +126,7 @@ fn ring_slope(at: vec2f, layer: u32) -> vec2f {
     if other.x >= ground.ring_chance || age <= 0.0 || age >= life {
         return vec2f(0.0);
     }
-    // No ring leaves its cell.
+    // Rings stay within their cell.
     let room = 0.5 * RING_CELL - RING_SPEED * life;
     let from_middle = (place - low - 0.5) * RING_CELL - (chance.xy * 2.0 - 1.0) * room;
     let r = length(from_middle);
@@ -134,7 +136,7 @@ fn ring_slope(at: vec2f, layer: u32) -> vec2f {
     return from_middle / max(r, 1e-4) * (height * sin(x * 6.28318531));
 }
 
-// Slope of standing water by the rings of drops. `layers`: RING_LAYERS, or 0 for none.
+// Returns the slope of standing water by rings. `layers` is RING_LAYERS, or 0 for no rings.
 fn ring_slopes(at: vec2f, layers: u32) -> vec2f {
     var slope = vec2f(0.0);
     for (var layer = 0u; layer < layers; layer++) {

@@ -1,28 +1,27 @@
-// Which way the ground that a pixel shows faces: as the host's image of normals says, else as its terrain lies, else by
-// its depth.
+// Normal of the ground that a pixel shows: from the host's image of normals, else from its terrain, else from depth.
 //!include "common/facing.wgsl"
 //!include "common/guarded.wgsl"
 //!include "ground/terrain.wgsl"
 
-// What is known of the surface that a pixel shows.
+// Host's data about the surface that a pixel shows.
 struct HostSurface {
-    // By its depth.
+    // Normal from the depth.
     facing: Facing,
-    // Of the class that the host's image has, 0 for none.
+    // Number of the class in the host's image, 0 for none.
     number: u32,
-    // Unit normal of the host's image; w is 0 where it has none.
+    // Unit normal in the host's image; w is 0 if it has none.
     normal: vec4f,
 }
 
-// Root mean square slope of ground that is marked as paved, where nothing says how it lies.
+// Root mean square slope that is assumed for paved ground whose slope is unknown.
 const LEVEL_SLOPE: f32 = 0.05;
 
-// `around`: depths to the left, right, above and below.
+// Returns the normal from depth. `around`: depths to the left, right, above and below.
 fn surface_facing(g: GroundUniform, u: DepthUniform, depth: f32, around: vec4f, ndc: vec2f) -> Facing {
     return facing_of(u, depth, around, ndc, g.pixel, vec2f(g.depth_step, g.depth_ulp));
 }
 
-// A normal of the host's image, from its axes and encoding; a cleared texel, of zeros or of ones, is none.
+// Decodes a normal of the host's image. w is 0 for a cleared texel (all zeros or all ones).
 fn given_normal(g: GroundUniform, texel: vec3f) -> vec4f {
     let n = texel * g.normal_x.w + g.normal_y.w;
     let size = length(n);
@@ -31,8 +30,8 @@ fn given_normal(g: GroundUniform, texel: vec3f) -> vec4f {
     return vec4f(local / max(size, 1e-6), select(0.0, 1.0, known));
 }
 
-// The normal in the host's words, else its terrain's where the surface lies on it and depth does not say that it is a
-// wall.
+// Returns the normal of the host's image. Without it, returns the terrain's normal where the surface lies on the
+// terrain and the depth does not show a wall.
 fn known_facing(surface: HostSurface, here: TerrainPoint) -> Facing {
     if surface.normal.w > 0.0 {
         return Facing(surface.normal.xyz, 1.0, 0.0);
@@ -46,8 +45,9 @@ fn known_facing(surface: HostSurface, here: TerrainPoint) -> Facing {
     return f;
 }
 
-// Ground that is marked as paved is taken for level, give or take LEVEL_SLOPE, so far as `f` does not tell better: the
-// mean of two guesses by the inverse squares of their errors, if they agree. `level`: how sure that is.
+// Returns the normal under the assumption that paved ground is level within LEVEL_SLOPE. If `f` and this assumption
+// agree, the result is their mean, weighted by the inverse squares of their errors. `level` is the confidence in the
+// assumption.
 fn settled_facing(f: Facing, up: vec3f, level: f32) -> Facing {
     let slack = LEVEL_SLOPE + f.error;
     let agrees = 1.0 - smoothstep(slack, 2.0 * slack, length(f.normal - up));
@@ -56,8 +56,8 @@ fn settled_facing(f: Facing, up: vec3f, level: f32) -> Facing {
     return Facing(normalize(mix(f.normal, up, share)), mix(f.sure, 1.0, share), f.error * (1.0 - share));
 }
 
-// What is left of a mirror of this slope where its normal may be off by `error`: all up to half of what its roughness
-// hides, nothing from twice as much on.
+// Returns the share of a reflection that is kept on a surface of this slope if its normal may be wrong by `error`:
+// everything up to half the slope, nothing from twice the slope on.
 fn mirror_left(error: f32, slope: f32) -> f32 {
     return 1.0 - smoothstep(0.5 * slope, 2.0 * slope, error);
 }

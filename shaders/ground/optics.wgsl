@@ -1,15 +1,14 @@
-// Light at a film of water: what it mirrors and how it darkens what lies below. The f64 twin is
-// src/ground/reference.rs.
+// Reflection by a film of water, and how the film darkens the ground below it. The f64 twin is src/ground/reference.rs.
 
-// Refractive index of water over that of air, visible light at 20 C (Hale & Querry 1973, rounded).
+// Refractive index of water relative to air, for visible light at 20 C (Hale & Querry 1973, rounded).
 const WATER_INDEX: f32 = 1.333;
-// Shares of diffuse light that a level surface of water sends back, from above and from below (Fresnel's law integrated
-// over the half space).
+// Shares of diffuse light that a level water surface reflects, from above and from below (Fresnel's law integrated over
+// the hemisphere).
 const WATER_OUTSIDE: f32 = 0.0664;
 const WATER_INSIDE: f32 = 0.4746;
 
-// Share of unpolarised light that water mirrors at an angle of incidence of this cosine (Fresnel 1823, in the form of
-// Cook & Torrance 1982, eq. 18).
+// Returns the share of unpolarised light that water reflects at an angle of incidence with this cosine (Fresnel 1823,
+// in the form of Cook & Torrance 1982, eq. 18).
 fn fresnel_water(cosine: f32) -> f32 {
     let c = clamp(cosine, 0.0, 1.0);
     let g = sqrt(WATER_INDEX * WATER_INDEX - 1.0 + c * c);
@@ -18,37 +17,38 @@ fn fresnel_water(cosine: f32) -> f32 {
     return 0.5 * a * a * (1.0 + b * b);
 }
 
-// What a film leaves of the light that a rough ground of this albedo sends up: light that enters is thrown back at the
-// surface from below and falls on the ground again (Angstrom 1925; Lekner & Dorf 1988, eq. 1 to 3). `entering` is the
-// share of the light from above that gets into the water.
+// Returns the factor by which a film dims the light that a rough ground of this albedo sends up. Light in the film is
+// reflected at the surface from below and falls on the ground again (Angstrom 1925; Lekner & Dorf 1988, eq. 1 to 3).
+// `entering` is the share of the light from above that enters the water.
 fn wet_share(albedo: vec3f, entering: f32) -> vec3f {
     return entering * (1.0 - WATER_INSIDE) / (1.0 - WATER_INSIDE * clamp(albedo, vec3f(0.0), vec3f(1.0)));
 }
 
-// Mean slope towards the eye of the facets that it sees on a rough surface whose slopes are spread normally by `slope`
-// (root mean square along one axis), at the tangent of its zenith angle: slope^2 tan for steep looks, the mean of a
-// half normal distribution for grazing ones.
+// Returns the mean slope, towards the eye, of the facets that the eye sees on a rough surface. `slope` is the root mean
+// square slope along one axis, normally distributed; `tangent` is that of the eye's zenith angle. For steep views the
+// mean is slope^2 tan; for grazing views it is the mean of a half-normal distribution.
 fn seen_slope(slope: f32, tangent: f32) -> f32 {
     let t = slope * tangent * 0.797884561;
     return slope * slope * tangent / sqrt(1.0 + t * t);
 }
 
-// Share of a unit of a rough surface that a direction of this zenith cosine sees of it: the cosine, and at grazing
-// looks the tilted facets' 0.4 slope.
+// Returns the projected area of a unit of rough surface in a direction with this zenith cosine: the cosine and, at
+// grazing views, the 0.4 slope of the tilted facets.
 fn seen_area(slope: f32, cosine: f32) -> f32 {
     let c = max(cosine, 0.0);
     return sqrt(c * c + 0.16 * slope * slope * (1.0 - c * c));
 }
 
-// Luminance that a lamp of illuminance 1 makes on rough water, per Fresnel share (Cox & Munk 1954, eq. 5, with the
-// shadows of facets on each other): `up` is the surface's normal, `facet` the one that mirrors the lamp's middle into
-// the eye. The lamp's disc, `disc2` = (radius / 4)^2, counts as slopes that mirror its middle: seen flat along the look
-// it takes a facet turned by half its radius, across it one turned by more.
+// Returns the luminance of the glitter of a lamp of illuminance 1 on rough water, divided by the Fresnel share (Cox &
+// Munk 1954, eq. 5, with the shadowing of facets by each other). `up` is the surface's normal, `facet` the normal of
+// the facet that reflects the lamp's centre into the eye.
+// The lamp's disc, `disc2` = (radius / 4)^2, adds to the variance of the slopes. To reflect the edge of the disc
+// instead of its centre, a facet must turn by half the radius along the view direction, and by more across it.
 fn glitter(slope: f32, disc2: f32, up: vec3f, facet: vec3f, to_eye: vec3f, to_lamp: vec3f) -> f32 {
     let c = dot(up, facet);
     let lit = dot(up, to_lamp);
     let seen = dot(up, to_eye);
-    // Of calm water, none is seen from its level or from below.
+    // Calm water has no visible area from its own level or from below.
     let area = seen_area(slope, seen) * seen_area(slope, lit);
     if c <= 0.0 || lit <= 0.0 || area <= 1e-6 {
         return 0.0;

@@ -1,4 +1,4 @@
-// A surface that a pixel shows: how it lies, what it is made of, and what of the rain and snow in the open gets to it.
+// Surface that a pixel shows: its normal, its class, and the share of the rain and snow in the open that reaches it.
 //!include "common/guarded.wgsl"
 //!include "between/sky.wgsl"
 //!include "ground/binding.wgsl"
@@ -8,7 +8,7 @@
 //!include "surroundings/lights_binding.wgsl"
 //!include "surroundings/shelter.wgsl"
 
-// Illuminance by the host's lamps.
+// Illuminance from the host's lamps.
 fn host_lamps(at: vec3f, normal: vec3f) -> vec3f {
     var lux = vec3f(0.0);
     if LAMPS {
@@ -21,25 +21,26 @@ fn host_lamps(at: vec3f, normal: vec3f) -> vec3f {
     return lux / frame.exposure;
 }
 
-// The ground's own colour, from its luminance and the light that falls on it.
+// Albedo of the ground, from its luminance and the light that falls on it.
 fn dry_albedo(luminance: vec3f, normal: vec3f, up: vec3f, lamps: vec3f) -> vec3f {
     let lamp = ground.lamp_lux * max(dot(normal, ground.to_lamp), 0.0);
     let light = lamp + ground.sky_lux * (0.5 + 0.5 * dot(normal, up)) + lamps;
     return luminance * SKY_PI / max(light, vec3f(1e-9));
 }
 
-// A point above a surface, by as much as the depth of `at` may be wrong.
+// Returns a point above the surface, raised by the possible error of the depth of `at`.
 fn off_surface(at: vec3f, normal: vec3f, range: f32) -> vec3f {
     return at + normal * (0.02 + 0.002 * range);
 }
 
-// Whether a map keeps a drop of this fall speed off `p`.
+// Returns 1 if an occluder map keeps a drop of this fall speed off `p`, else 0.
 fn kept_off(p: vec3f, fall: f32, wanted: bool) -> f32 {
     return select(0.0, 1.0, mapped_ground(p, ground.wind - vec3f(0.0, 0.0, fall), wanted));
 }
 
-// Of each twelfth of the water whether maps keep it off `p`. They are asked for the slowest and the fastest drops and
-// two between, and where two neighbours of these differ, by halves for the size from which on it is otherwise.
+// Returns for each twelfth of the water whether occluder maps keep it off `p`. The maps are tested for the slowest and
+// the fastest drops and for two speeds between. Where two of these neighbours differ, bisection finds the twelfth at
+// which the answer changes.
 fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
     let falls = ground.falls;
     let ends = vec4f(
@@ -71,9 +72,9 @@ fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
     );
 }
 
-// Share of the rain's water that gets to `p` past what keeps it off; `boxes`: past boxes too. Time in a box times fall
-// speed goes evenly with that speed, where a roof's underside and its edge bound it: asked for four drops, it says
-// which of all twelfths of the water come by.
+// Returns the share of the rain's water that reaches `p` past occluder maps and, if `boxes`, past boxes. Time in a box
+// times fall speed is linear in the fall speed where a roof's underside and its edge bound the path. So four tests,
+// interpolated, tell which twelfths of the water pass the boxes.
 fn rained_on(p: vec3f, boxes: bool) -> f32 {
     let falls = ground.falls;
     let asked = vec4f(falls[0].x, 0.5 * (falls[0].w + falls[1].x), 0.5 * (falls[1].w + falls[2].x), falls[2].w);
@@ -91,14 +92,14 @@ fn rained_on(p: vec3f, boxes: bool) -> f32 {
     return share;
 }
 
-// How a surface lies, what it is made of, and its own colour.
+// Surface of a spot: its normal, look and albedo.
 struct Wetted {
     facing: Facing,
     look: SurfaceLook,
     albedo: vec3f,
 }
 
-// `host`, `albedo_known`: as of `wet_surface`.
+// Returns the surface of a spot; `host` and `albedo_known` are those of `wet_surface`.
 fn wetted(host: vec3f, albedo_known: bool, at: vec3f, up: vec3f, surface: HostSurface, here: TerrainPoint) -> Wetted {
     let known = known_facing(surface, here);
     if albedo_known {
@@ -108,8 +109,8 @@ fn wetted(host: vec3f, albedo_known: bool, at: vec3f, up: vec3f, surface: HostSu
     let lamps = host_lamps(at, known.normal);
     let look = surface_look(surface, here, dry_albedo(host, up, up, lamps));
     let facing = settled_facing(known, up, look.level);
-    // The host lights natural ground by normals that go smoothly over its triangles: those of depth would show each of
-    // them. There gentle slopes count as level, an error of a tenth of the darkening at most.
+    // The host lights natural ground with normals that are smooth across its triangles; normals from depth would show
+    // each triangle. So gentle slopes of natural ground count as level, which changes the darkening by a tenth at most.
     let rough = smoothstep(0.0, 0.3, look.slope) * smoothstep(0.5, 0.8, dot(facing.normal, up));
     let by_depth = surface.normal.w == 0.0;
     let flat = select(0.0, max(rough, 1.0 - facing.sure) * (1.0 - here.share), by_depth);
@@ -117,29 +118,33 @@ fn wetted(host: vec3f, albedo_known: bool, at: vec3f, up: vec3f, surface: HostSu
     return Wetted(facing, look, clamp(albedo, vec3f(0.0), vec3f(look.most_albedo)));
 }
 
-// A pixel's place on a surface.
+// Place of a pixel on a surface.
 struct Spot {
-    // From the camera, upwards there, and towards the camera.
+    // Position relative to the camera, m.
     at: vec3f,
+    // Unit vector upwards at the place.
     up: vec3f,
+    // Unit vector towards the camera.
     to_eye: vec3f,
+    // Distance from the camera, m.
     range: f32,
     terrain: TerrainPoint,
     ground: Wetted,
-    // Cosine of its slope; 1 where depth does not tell.
+    // Cosine of the slope; 1 where the depth does not tell.
     level: f32,
-    // Width of the pixel across the ray, m; cosine between the ray and the surface's normal.
+    // Width of the pixel across the ray, m.
     side: f32,
+    // Cosine between the ray and the surface's normal.
     cosine: f32,
-    // On the ground's axes.
+    // Position on the axes of the pattern of hollows, m.
     place: vec2f,
-    // Share of the rain and snow in the open that gets here.
+    // Share of the rain and snow in the open that reaches the place.
     gets: f32,
-    // Depth of the pattern of hollows and what of its variance is too small to see.
+    // Depth of the pattern of hollows, and its variance that is too small for the pixel to show.
     pattern: vec2f,
 }
 
-// `host`, `albedo_known`: as of `wet_surface`.
+// Returns the spot that a pixel shows; `host` and `albedo_known` are those of `wet_surface`.
 fn spot_at(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: HostSurface) -> Spot {
     let at = ray.origin + ray.direction * range;
     let up = normalize(vec3f(at.xy * ground.curvature, 1.0));
@@ -149,10 +154,10 @@ fn spot_at(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: H
     }
     let lies = wetted(host, albedo_known, at, up, surface, here);
     let normal = lies.facing.normal;
-    // What depth does not tell is taken for level.
+    // Where the depth does not tell, the surface counts as level.
     let level = mix(1.0, dot(normal, up), lies.facing.sure);
 
-    // The pixel's sides on the ground.
+    // Sides of the pixel on the ground.
     let side = range * frame.pixel_angle;
     let cosine = max(-dot(normal, ray.direction), 0.02);
     let view = vec2f(dot(ground.axis_u, ray.direction), dot(ground.axis_v, ray.direction));
@@ -162,10 +167,10 @@ fn spot_at(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: H
 
     var gets = 1.0;
     if SHELTER {
-        // What falls past boxes the terrain's cells know.
+        // The terrain's cells already account for boxes; elsewhere, and for ice, boxes are tested here.
         gets = rained_on(off_surface(at, normal, range), here.share < 0.5 || ground.glaze > 0.0);
     }
-    // Hollows are those of paved ground; elsewhere a film lies as it does in the mean.
+    // Only paved ground has hollows; elsewhere the film is that of mean ground.
     let wanted = lies.look.hollows > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0);
     let pattern = hollow_depth(place, across, along * (side / cosine), wanted || SNOW);
     return Spot(at, up, -ray.direction, range, here, lies, level, side, cosine, place, gets, pattern);

@@ -1,12 +1,12 @@
-// A wet or snowy surface seen by the camera: the host's colour x through + light, before air and fog.
+// Water and snow on a surface seen by the camera: the host's colour times transmittance plus light, before air and fog.
 //!include "ground/snow.wgsl"
 //!include "ground/water.wgsl"
 
 // Whether there is water or clear ice on any surface.
 override WATER: bool = true;
 
-// `host` is the host's colour as luminance, or as display-linear colour where `albedo_known` says that it is all that
-// is known of the albedo.
+// Returns the veil of water and snow. `host` is the host's colour as luminance or, if `albedo_known`, as display-linear
+// colour, from which only the albedo is known.
 fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: HostSurface) -> Veil {
     let spot = spot_at(host, albedo_known, ray, range, surface);
     var veil = Veil(vec3f(0.0), vec3f(1.0));

@@ -1,63 +1,65 @@
-// What water on the ground needs to know of the frame.
+// Uniform block of the ground in a frame.
 
-// Classes of surface, and how water shows on one (src/ground/class.rs).
+// Number of surface classes, and the look of water on one (src/ground/class.rs).
 const SURFACE_CLASSES: u32 = 7u;
 
 struct SurfaceLook {
-    // Share of the darkening of wet ground.
+    // Share of the darkening of wet ground that the class shows.
     soaks: f32,
-    // Share of it that a closed film covers.
+    // Share of the ground that a closed film covers.
     film: f32,
-    // Root mean square slope of what the film lies on, beyond the film's own.
+    // Root mean square slope of the ground under the film, beyond the film's own slope.
     slope: f32,
-    // Depth at which standing water is level over most of it, mm; 0 keeps none.
+    // Depth at which standing water is level over most of the ground, mm; 0 keeps no standing water.
     relief_mm: f32,
-    // Largest albedo that its colour is taken for.
+    // Upper limit of the albedo estimated from the host's colour.
     most_albedo: f32,
-    // Share of the pattern's puddles that it has.
+    // Share of the pattern's puddles that the class has.
     hollows: f32,
-    // How sure it is that it lies level, where nothing else says how it lies.
+    // Confidence that the ground is level where nothing else gives its slope.
     level: f32,
-    // Share of it on which snow lies.
+    // Share of the ground on which snow lies.
     snow: f32,
 }
 
 struct GroundUniform {
-    // Unit, towards the lamp that lights the ground, as it appears.
+    // Unit vector towards the apparent position of the lamp that lights the ground (sun or moon).
     to_lamp: vec3f,
     // Share of the ground's pores that hold water.
     soaked: f32,
-    // Its illuminance on a surface that faces it, lux a channel.
+    // Illuminance of the lamp on a surface that faces it, lux per channel.
     lamp_lux: vec3f,
     // Level of standing water in the hollows, in units of their root mean square depth.
     level: f32,
-    // Sky, clouds and fog on level ground, lux a channel.
+    // Illuminance of sky, clouds and fog on level ground, lux per channel.
     sky_lux: vec3f,
-    // Share of that light that enters water.
+    // Share of the light on level ground that enters water.
     entering: f32,
-    // Luminance of the lit ground round about, cd/m^2 a channel: what mirrors that face down see.
+    // Luminance of the lit ground around, cd/m^2 per channel, which downward reflections show.
     ground_light: vec3f,
-    // As `level`, of a film: above it the ground is bare.
+    // Level of the film, as `level`: ground above it is bare.
     film_level: f32,
-    // Axes of the pattern of hollows, and where the camera stands in a cell of the rings' grid, m.
+    // Axes of the pattern of hollows; and the place of the camera in its cell of the rings' grid, m.
     axis_u: vec3f,
     place_u: f32,
     axis_v: vec3f,
     place_v: f32,
-    // That cell; the rings' slot of time, the share of it that has passed.
+    // Cell of the rings' grid in which the camera is.
     cell: vec2u,
+    // Time slot of the rings.
     slot: u32,
+    // Share of the slot that has passed.
     slot_share: f32,
-    // Of the film's and the standing water's slopes, root mean square along one axis.
+    // Root mean square slopes, along one axis, of the film and of standing water.
     film_slope: f32,
     water_slope: f32,
-    // Chance that a drop falls into a cell of the rings' grid in a slot of time.
+    // Chance that a drop falls into a cell of the rings' grid in a time slot.
     ring_chance: f32,
-    // Most light that is added, cd/m^2: what a half float holds.
+    // Limit of the light that is added, cd/m^2: what a half float holds.
     most: f32,
-    // Steps of ndc to the next pixel to the right and below.
+    // Steps in normalised device coordinates to the next pixel to the right and below.
     pixel: vec2f,
-    // Rounding of the host's depth: absolute, and over its value.
+    // Rounding error of the host's depth: absolute, and relative to the value.
     depth_step: f32,
     depth_ulp: f32,
     // 1/(planet radius + altitude), 1/m; 0 for a flat world.
@@ -68,32 +70,33 @@ struct GroundUniform {
     disc2: f32,
     // Share of level ground under clear ice.
     glaze: f32,
-    // Of the air that carries the rain, m/s.
+    // Velocity of the air that carries the rain, m/s.
     wind: vec3f,
     // Optical depth of the fog straight up.
     fog_depth: f32,
-    // Fall speeds of the drops in the middle of each twelfth of the water, m/s, slow ones first.
+    // Fall speeds of the drops in the middle of each twelfth of the water, m/s, from slow to fast.
     falls: array<vec4f, 3>,
-    // On the host's terrain: from camera-relative east, north and up to cells east and north of its first node and to
-    // metres above its origin.
+    // Rows that map camera-relative east, north and up to the host's terrain: cells east and north of its first node,
+    // and metres above its origin.
     terrain_x: vec4f,
     terrain_y: vec4f,
     terrain_z: vec4f,
-    // Its last node, cells from its border within which it gives way to the world's ground, and how far off it, m, a
-    // surface may lie that is still its own.
+    // Last node of the terrain.
     terrain_last: vec2f,
+    // Width of the border zone in which the terrain fades into the world's ground, cells.
     terrain_rim: f32,
+    // Largest distance from the terrain, m, of a surface that still belongs to it.
     terrain_near: f32,
-    // Rows that turn normals of the host's image to east, north, up; w: what its numbers are multiplied by, and added
-    // to that.
+    // Rows that turn normals of the host's image to east, north, up. w of `normal_x` is the scale and w of `normal_y`
+    // the offset that decode the stored numbers.
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
-    // Snow on level, open ground. x: level in the hollows up to which it covers them. y: wetness. z: albedo. w: depth,
-    // m; -1 where no cell of the terrain has snow of its own.
+    // Snow on level, open ground. x: level in the hollows up to which it covers the ground. y: wetness. z: albedo. w:
+    // depth, m; -1 if the terrain's cells have no snow of their own.
     snow: vec4f,
-    // Of each class; the first one is the context's default.
+    // Look of each class; the first one is the context's default.
     looks: array<SurfaceLook, SURFACE_CLASSES>,
-    // Of the waves of hollows at the camera, turns.
+    // Phases of the hollows' waves at the camera, turns.
     phases: array<vec4f, 4>,
 }

@@ -1,4 +1,4 @@
-// Water and clear ice on a surface, seen by the camera: the host's colour x through + light.
+// Water and clear ice on a surface seen by the camera: the host's colour times transmittance plus light.
 //!include "common/guarded.wgsl"
 //!include "between/sky.wgsl"
 //!include "ground/spot.wgsl"
@@ -6,8 +6,8 @@
 // Whether drops make rings in standing water.
 override RINGS: bool = true;
 
-// What a mirror on the ground sees in direction `d`: the sky through the fog that lies on it; the ground round about if
-// it faces down.
+// Returns the light that reaches the ground from direction `d` to be reflected: the sky, seen through the fog above the
+// ground, or the surrounding ground if `d` points down.
 fn mirrored_light(d: vec3f) -> vec3f {
     let up = normalize(vec3f(d.xy, max(d.z, 1e-3)));
     let through = exp(-ground.fog_depth / max(up.z, 0.02));
@@ -15,12 +15,12 @@ fn mirrored_light(d: vec3f) -> vec3f {
     return mix(ground.ground_light, sky, smoothstep(-0.1, 0.02, d.z));
 }
 
-// Share of the rain's water that a surface keeps: level ground all, walls less, undersides none.
+// Returns the share of the rain's water that a surface catches: 1 on level ground, less on walls, 0 on undersides.
 fn caught(up_cosine: f32) -> f32 {
     return clamp(up_cosine + 0.3, 0.0, 1.0);
 }
 
-// One kind of water on a surface: how it is turned, how rough it is, how much of it there is.
+// Water surface as a mirror: its normal, and its root mean square slope.
 struct Film {
     normal: vec3f,
     slope: f32,
@@ -38,27 +38,27 @@ fn mirror(film: Film, to_eye: vec3f) -> Mirror {
     let level = (to_eye - film.normal * cosine) / max(sine, 1e-4);
     let facet = normalize(film.normal + level * seen_slope(film.slope, sine / cosine));
     let share = fresnel_water(dot(facet, to_eye));
-    // The light falls along the look where both are opposite: no facet mirrors it.
+    // If eye and lamp lie in opposite directions there is no half-way vector, and no facet reflects the lamp.
     let middle = unit_or(to_eye + ground.to_lamp, film.normal);
     let pixel = 0.25 * frame.pixel_angle;
     let lamp = glitter(film.slope, ground.disc2 + pixel * pixel, film.normal, middle, to_eye, ground.to_lamp) * fresnel_water(dot(middle, to_eye));
     return Mirror(share, reflect(-to_eye, facet), ground.lamp_lux * lamp);
 }
 
-// Root mean square slopes of thin and closed films; their twins are in src/ground/uniform.rs.
+// Root mean square slopes of thin and closed films. Their twins are in src/ground/uniform.rs.
 const THIN_FILM_SLOPE: f32 = 0.3;
 const CLOSED_FILM_SLOPE: f32 = 0.15;
 
-// Slope of the clear ice that freezing rain leaves.
+// Root mean square slope of the clear ice that freezing rain leaves.
 const GLAZE_SLOPE: f32 = 0.04;
 
-// Slope up to which ground keeps the pattern's puddles for certain (`smoothstep` of its cosine).
+// Slope up to which ground surely holds the pattern's puddles (upper end of the `smoothstep` of its cosine).
 const POOL_SLOPE: f32 = 0.08;
 
-// Radius that a lamp of the host is taken to have, m.
+// Radius that is assumed for a lamp of the host, m.
 const LAMP_RADIUS: f32 = 0.1;
 
-// What a film mirrors of the host's lamps.
+// Returns the light of the host's lamps that a film reflects.
 fn mirrored_lamps(film: Film, at: vec3f, to_eye: vec3f) -> vec3f {
     var light = vec3f(0.0);
     if LAMPS {
@@ -75,22 +75,23 @@ fn mirrored_lamps(film: Film, at: vec3f, to_eye: vec3f) -> vec3f {
     return light / frame.exposure;
 }
 
-// Share of the surface under a film, standing water or clear ice, for the diagnostic picture of it.
+// Share of the surface under a film, standing water or clear ice, for the diagnostic picture.
 var<private> water_cover: f32;
 
-// Water as it lies on a surface: a film, and what stands in hollows and on the host's terrain.
+// Water on a surface: a film, and standing water in hollows and on the host's terrain.
 struct Water {
     film: Film,
     pool: Film,
-    // Share of the surface under standing water, and of the rest under the film.
+    // Share of the surface under standing water.
     pooled: f32,
+    // Share of the rest under the film.
     filmed: f32,
     // Share of the darkening of wet ground.
     soaked: f32,
 }
 
-// Standing water: `up` but for the rings of drops, which a pixel that is too long to show them sees as a rougher
-// surface.
+// Returns the surface of standing water. It is level except for the rings of drops. Where a pixel is too long to show
+// the rings, they make the surface rougher instead.
 fn pool_at(spot: Spot, pooled: f32) -> Film {
     var normal = spot.up;
     var slope2 = ground.water_slope * ground.water_slope;
@@ -116,7 +117,7 @@ fn water_at(spot: Spot) -> Water {
     var film_level = ground.film_level;
     var film_slope = ground.film_slope;
     if TERRAIN {
-        // Standing water is level, and shows where it covers the relief of the ground.
+        // Standing water is level, and visible where it covers the relief of the ground.
         let over = smoothstep(0.2 * look.relief_mm, 2.0 * look.relief_mm, here.water.standing);
         let stands = select(0.0, over, look.relief_mm > 0.0) * smoothstep(0.5, 0.8, spot.level);
         pool = mix(pool, stands, here.share);
@@ -125,8 +126,8 @@ fn water_at(spot: Spot) -> Water {
         film_slope = mix(film_slope, mix(THIN_FILM_SLOPE, CLOSED_FILM_SLOPE, here.water.film), here.share);
     }
     pool *= spot.gets;
-    // In the hollows the film is deeper and smoother; ice lies evenly over all of it, nearly as clear as water and as
-    // bright.
+    // In the hollows the film is deeper and smoother. Ice lies evenly on all of the ground; it is nearly as clear and
+    // as bright as water.
     let ice = ground.glaze * spot.gets;
     let own = mix(film_slope * (1.2 - 0.4 * normal_share(hollow.x)), GLAZE_SLOPE, ice);
     let film = Film(facing.normal, sqrt(own * own + look.slope * look.slope));
@@ -137,7 +138,8 @@ fn water_at(spot: Spot) -> Water {
     return Water(film, pool_at(spot, pool), pool, cover, soaked);
 }
 
-// Where a film lies on rough ground its facets look every way; through standing water the eye looks one way.
+// Returns light and transmittance of the water. Light from the ground leaves a film on rough ground through facets of
+// all directions; through standing water the eye looks in one direction, whose Fresnel share applies.
 fn water_on(spot: Spot) -> Veil {
     let water = water_at(spot);
     let pool = water.pooled;
@@ -147,11 +149,12 @@ fn water_on(spot: Spot) -> Veil {
     let thin_share = thin.share * water.filmed * (1.0 - pool);
     let deep_share = deep.share * pool;
     let both = max(thin_share + deep_share, 1e-6);
-    // A surface without water mirrors nothing, and its mirror points nowhere: then up, times a share of 0.
+    // Without water nothing is reflected and the mirror's direction is undefined; `up` is used, with a share of 0.
     let mirrored = unit_or(thin.direction * (thin_share / both) + deep.direction * (deep_share / both), spot.up);
     var sky = mirrored_light(mirrored);
     if SHELTER {
-        // What keeps rain off hides the sky too: its underside is as bright as the ground that it sees.
+        // Objects that keep rain off also hide the sky. Their undersides are taken to be as bright as the ground that
+        // they face.
         let shines = thin_share + deep_share > 1e-3;
         let p = off_surface(spot.at, spot.ground.facing.normal, spot.range);
         let hidden = time_in_standing(p, -mirrored, shines) >= 0.0 || mapped_ground(p, -mirrored, shines);

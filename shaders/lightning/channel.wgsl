@@ -1,19 +1,19 @@
-// Parts of the channels of flashes as lines of light before a host's picture; where that has several samples a pixel,
-// the first stands for them. A line is a point of light drawn out: each part sends what it sends, however many pixels
-// it covers.
+// Draws parts of lightning channels as lines of light in front of a host's picture. If the depth has several samples a
+// pixel, the first one is used. A line is a drawn-out point of light: each part gives the same total light, however
+// many pixels it covers.
 //!include "common/guarded.wgsl"
 //!include "common/host.wgsl"
 //!include "between/veil.wgsl"
 
 struct ChannelUniform {
-    // Camera-relative east-north-up to clip.
+    // Matrix from camera-relative (east, north, up), m, to clip space.
     clip: mat4x4f,
     color: vec3f,
-    // Solid angle of a pixel over the cube of a unit direction's clip w, sr; with parallel rays 0.
+    // Solid angle of a pixel over the cube of the clip w of a unit direction, sr; 0 for parallel rays.
     pixel_sr: f32,
-    // Of the target, pixels.
+    // Size of the target, pixels.
     size: vec2f,
-    // With parallel rays the area of a pixel, m^2.
+    // Area of a pixel for parallel rays, m^2.
     pixel_m2: f32,
     // Radius of a channel, m.
     radius: f32,
@@ -24,22 +24,22 @@ struct ChannelUniform {
 
 override HAS_DEPTH: bool = true;
 
-// Spread of a line across, pixels, and how many spreads it is drawn.
+// Spread (standard deviation) across a line, pixels, and number of spreads up to which it is drawn.
 const SPREAD: f32 = 0.6;
 const REACH: f32 = 3.5;
-// Nearest that a part is drawn, in clip w.
+// Smallest clip w at which a part is drawn.
 const NEAREST: f32 = 0.5;
 
 struct ChannelVarying {
     @builtin(position) position: vec4f,
     // One end, pixels from the target's first corner, and the line's spread, pixels.
     @location(0) @interpolate(flat) first: vec3f,
-    // Unit vector along it, and its length, pixels.
+    // Unit vector along the line, and its length, pixels.
     @location(1) @interpolate(flat) along: vec3f,
-    // Unit direction to its middle, and distance of that, m.
+    // Unit vector to its middle, and the middle's distance, m.
     @location(2) @interpolate(flat) middle: vec4f,
-    // Luminance of a pixel in which a pixel's length of it lies, with the exposure on it, and distance from the
-    // camera's plane, m.
+    // Luminance of a pixel that contains one pixel's length of the line, times exposure, and distance from the camera's
+    // plane, m.
     @location(3) @interpolate(flat) light: vec2f,
 }
 
@@ -48,8 +48,8 @@ fn pixel_of(clip: vec4f) -> vec2f {
     return (0.5 + 0.5 * ndc * vec2f(1.0, -1.0)) * channel.size;
 }
 
-// A corner of the pixels that a part lights: its ends, camera-relative, and its luminous intensity with the exposure on
-// it.
+// Places a corner of the quad that a part lights. Inputs are its ends, relative to the camera, and its luminous
+// intensity times exposure.
 @vertex
 fn channel_vertex(
     @builtin(vertex_index) corner: u32,
@@ -63,7 +63,7 @@ fn channel_vertex(
     if max(w.x, w.y) <= NEAREST {
         return out;
     }
-    // Only what lies before the camera.
+    // Keep only the part in front of the camera.
     let cut = clamp((NEAREST - w.x) / select(w.y - w.x, 1.0, w.x == w.y), 0.0, 1.0);
     let whole = length(b - a);
     if w.x < NEAREST {
@@ -79,7 +79,7 @@ fn channel_vertex(
     let range = max(length(middle), 0.1);
     let direction = middle / range;
     let middle_w = (channel.clip * vec4f(middle, 1.0)).w;
-    // Luminous intensity of what is kept.
+    // Luminous intensity of the part that is kept.
     let intensity = from_end.w * length(b - a) / max(whole, 1e-6);
     var luminance = intensity / max(channel.pixel_m2, 1e-12);
     var pixel_m = sqrt(channel.pixel_m2);
@@ -109,7 +109,7 @@ fn erf(x: f32) -> f32 {
     return tanh(y * (1.1283792 + 0.1009106 * y * y));
 }
 
-// Share of a line's light that falls on a pixel: parts that follow each other add up to one without a joint.
+// Share of a line's light that falls on a pixel. Consecutive parts add up to one line without a visible joint.
 fn line_share(in: ChannelVarying) -> f32 {
     let off = in.position.xy - in.first.xy;
     let spread = in.first.z;
@@ -119,7 +119,7 @@ fn line_share(in: ChannelVarying) -> f32 {
     return 0.5 * (erf(along) - erf(along - length)) * exp(-0.5 * across * across) * (0.3989423 / spread);
 }
 
-// Whether the host has drawn nothing before the part.
+// Whether the host has drawn nothing in front of the part.
 fn is_open(in: ChannelVarying) -> bool {
     if !HAS_DEPTH {
         return true;
@@ -131,7 +131,7 @@ fn is_open(in: ChannelVarying) -> bool {
     return view_range(frame.depth, depth, ndc) >= in.middle.w;
 }
 
-// Premultiplied with an alpha of 0: added to what is there.
+// Premultiplied with alpha 0: added to the picture.
 @fragment
 fn channel_fragment(in: ChannelVarying) -> @location(0) vec4f {
     drawn = frame.drawn;
@@ -139,6 +139,6 @@ fn channel_fragment(in: ChannelVarying) -> @location(0) vec4f {
     let ray = ViewRay(vec3f(0.0), in.middle.xyz, 1.0);
     let hung = hung_in(vec2i(in.position.xy), in.middle.w);
     let through = veil_between(ray, in.middle.w, in.light.y, hung).transmittance;
-    // Half of what a half float holds: two parts may fall on one pixel.
+    // Half of the largest half float, because two parts may fall on one pixel.
     return vec4f(capped(channel.color * through * (in.light.x * share), 3e4), 0.0);
 }

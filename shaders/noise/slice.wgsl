@@ -1,8 +1,9 @@
-// A slice of a texture of noise. The f64 twin is src/noise/reference.rs.
+// Draws one slice of a noise texture. The f64 reference is src/noise/reference.rs.
 //!include "common/fullscreen.wgsl"
 //!include "noise/lattice.wgsl"
 
-// Not in the block: a software driver makes another shader of each value that a loop's end has there, in every draw.
+// Not in the block: a software driver compiles another shader for each value of a loop's bound in a block, at every
+// draw.
 override OCTAVES: u32 = 1u;
 
 struct Slice {
@@ -14,10 +15,10 @@ struct Slice {
     pad0: u32,
     gradient_key: u32,
     cellular_key: u32,
-    // Of the first octave, and its ratio from one octave to the next.
+    // Amplitude of the first octave, and its ratio from one octave to the next.
     amplitude: f32,
     persistence: f32,
-    // What octaves too fine for the texels add: their mean.
+    // Mean of the octaves that are too fine for the texels.
     gradient_rest: f32,
     cellular_rest: f32,
     pad1: u32,
@@ -31,8 +32,8 @@ struct Place {
     at: vec3f,
 }
 
-// Where a texel's middle lies on a lattice with `period` cells to the texture: (2 i + 1) period / (2 size), in whole
-// numbers.
+// Position of a texel's middle on a lattice with `period` cells across the texture: (2 i + 1) period / (2 size),
+// computed in integers.
 fn place_of(texel: vec2f, period: vec3u) -> Place {
     let halves = slice.size_log2 + 1u;
     let parts = (2u * vec3u(vec2u(texel), slice.z) + 1u) * period;

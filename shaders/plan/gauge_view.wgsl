@@ -1,4 +1,4 @@
-// The gauge over a host's picture; where that has several samples a pixel, the first stands for them.
+// The gauge over a host's picture. In a picture with several samples a pixel, the first sample stands for the pixel.
 //!include "frame/host_picture.wgsl"
 //!include "plan/gauge.wgsl"
 

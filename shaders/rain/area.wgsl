@@ -1,43 +1,44 @@
-// Columns of rain under rain areas: where their rain is. The f64 twin and the derivation are in src/rain/shaft.rs.
+// Columns of rain under rain areas: the share of each column in the rain at a place. src/rain/shaft.rs has the f64 twin
+// and the derivation.
 
 const MAX_AREAS: u32 = 16u;
 const MAX_CORNERS: u32 = 8u;
 
-// Some columns may have places in common.
+// Whether columns may overlap.
 override OVERLAPS: bool = true;
-// Some have polygons for a plan.
+// Whether some areas are polygons.
 override POLYGONS: bool = true;
 
-// Axes: camera-relative east, north, up, m.
+// Column of an area. Axes are camera-relative east, north, up, m.
 struct Column {
     center: vec2f,
-    // How far the column moves aside a metre of height.
+    // Horizontal displacement of the column per metre of height.
     lean: vec2f,
-    // The way to the right on the plan, whose axes are right and ahead.
+    // Direction to the right in the plan, whose axes are right and ahead.
     right: vec2f,
-    // Of an ellipse: half its extent.
+    // Semi-axes of an ellipse.
     semi: vec2f,
-    // Width over which the rain fades inside the border.
+    // Width, inside the border, over which the rain fades out.
     rim: f32,
-    // Heights at which the plan holds, and of the cloud.
+    // Height at which the plan is given, and height of the cloud.
     ground: f32,
     top: f32,
-    // 1/m.
+    // Extinction, 1/m.
     extinction: f32,
-    // How far the pattern has fallen, what turns its waves, and how much finer than others it is.
+    // Distance that the pattern has fallen, phase offset of its waves, and factor by which it is finer.
     fallen: f32,
     turn: f32,
     fine: f32,
-    // What drops of it hide near the camera, 1/m.
+    // Extinction of the drops that are drawn near the camera, 1/m.
     near: f32,
-    // Of a polygon; 0 for an ellipse.
+    // Number of corners of a polygon; 0 for an ellipse.
     corners: u32,
-    // Later columns that may lie over it, a bit each.
+    // Later columns that may overlap it: bit `j` is set for column `j`.
     later: u32,
     radius: f32,
-    // Depth below the cloud within which the rain sets in.
+    // Depth below the cloud over which the rain sets in.
     soft: f32,
-    // Sides: inward normal, offset; depth inside is normal . p + offset.
+    // Sides: inward normal, offset. The depth inside a side is normal . p + offset.
     edges: array<vec4f, MAX_CORNERS>,
 }
 
@@ -48,24 +49,24 @@ struct Columns {
 
 @group(0) @binding(7) var<uniform> columns: Columns;
 
-// How many there are, cut as lights_binding.wgsl cuts a count.
+// Number of columns, masked as light_count in lights_binding.wgsl does.
 fn column_count() -> u32 {
     return columns.count & 31u;
 }
 
-// From east and north to right and ahead.
+// Turns (east, north) to (right, ahead).
 fn column_turned(i: u32, v: vec2f) -> vec2f {
     let right = columns.list[i].right;
     return vec2f(dot(v, right), dot(v, vec2f(-right.y, right.x)));
 }
 
-// A camera-relative place on the plan.
+// Returns the position in the plan of a camera-relative place.
 fn column_plan(i: u32, p: vec3f) -> vec2f {
     let away = p.xy - columns.list[i].center - columns.list[i].lean * (p.z - columns.list[i].ground);
     return column_turned(i, away);
 }
 
-// How deep inside the border a place of the plan is, m.
+// Returns the depth of a position in the plan inside the border, m.
 fn column_depth(i: u32, q: vec2f) -> f32 {
     let semi = columns.list[i].semi;
     let k = q / semi;
@@ -82,12 +83,12 @@ fn column_depth(i: u32, q: vec2f) -> f32 {
     return depth;
 }
 
-// Share of the rain at a place that is the column's.
+// Returns the share of the rain at a place that belongs to the column, regardless of other columns.
 fn column_share(i: u32, p: vec3f) -> f32 {
     return smoothstep(0.0, columns.list[i].rim, column_depth(i, column_plan(i, p)));
 }
 
-// That with what lies over it taken off.
+// Returns that share with the columns over it subtracted.
 fn column_left(i: u32, p: vec3f) -> f32 {
     var share = column_share(i, p);
     if OVERLAPS {

@@ -1,33 +1,33 @@
-// The block of rain on cones; src/rain/cones.rs explains the model.
+// Uniform block of rain on cones; src/rain/cones.rs explains the model.
 
 const CONES: u32 = 3u;
 const STRETCHES: u32 = 4u;
 
 struct ConeUniform {
-    // Where the drops go as seen from the camera, and two directions across.
+    // Direction of the drops' motion relative to the camera; `east` and `north` are two directions across it.
     axis: vec3f,
-    // Fall speed with which shelters are asked, m/s: the harmonic mean, since wind drives drops as far as they take
-    // time to fall.
+    // Fall speed for the tests of shelter, m/s: the harmonic mean, because wind carries drops over a distance
+    // proportional to the time of their fall.
     fall: f32,
     east: vec3f,
-    // Nearest cone that shows anything.
+    // Number of the innermost cone that shows anything.
     first: u32,
     north: vec3f,
-    // The cone that has two sets, if any has.
+    // Number of the cone with two sets, if one has.
     growing: u32,
     // Per cone: near end, far end and middle of its band, m; optical depth of its drops.
     bands: array<vec4f, CONES>,
     // Per cone, at right angles to the axis. x: tiles in a turn about the axis. y: tiles in a radian of Mercator's
     // latitude. z: drops per steradian. w: upper bound of y; above it streaks would be shorter than a pixel.
     shapes: array<vec4f, CONES>,
-    // Per cone: share of the light of its middle that what lies between lets through; level of detail at right angles
-    // to the axis; how often its tiles can be halved.
+    // Per cone. x: transmittance between the camera and the middle of the band. y: level of detail at right angles to
+    // the axis. z: number of times that the tiles can be halved.
     looks: array<vec4f, CONES>,
-    // Ends of the stretches along a ray of which it is asked what keeps rain off: a band each, the outermost in two
-    // halves, m.
+    // Stretches of a ray that are tested for shelter: near end and far end, m. One per band, and two halves of the
+    // outermost.
     stretches: array<vec4f, STRETCHES>,
-    // Per cone a set of streaks, and the one that grows in the place of one of them: how far it has come, in latitude;
-    // share of the drops; offset.
+    // A set of streaks for each cone, then the set that is growing. x: motion in latitude since its birth. y: share of
+    // the drops. z, w: offset.
     sets: array<vec4f, 4>,
 }
 

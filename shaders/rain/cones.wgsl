@@ -1,41 +1,41 @@
-// Rain on three nested cones about the camera; the model is explained in src/rain/cones.rs.
-// The entry points read the depth: cones_view.wgsl.
+// Rain on three nested cones around the camera; src/rain/cones.rs explains the model. The entry points read the depth
+// and are in cones_view.wgsl.
 //!include "common/fullscreen.wgsl"
 //!include "rain/drops.wgsl"
 //!include "rain/cone_block.wgsl"
 
-// Streaks of the texture's channels, and of all.
+// Number of streaks in each of the texture's channels, and in all.
 const STREAKS: vec4f = vec4f(48.0, 192.0, 768.0, 3072.0);
 const ALL_STREAKS: f32 = 4080.0;
-// Texels along either side of the texture.
+// Width and height of the texture, texels.
 const CONE_SIDE: f32 = 256.0;
 
 @group(1) @binding(1) var streaks: texture_2d<f32>;
 @group(1) @binding(2) var streaks_sampler: sampler;
-// A layer for each stretch: the share of each of its quarters that rain reaches (rain/open.wgsl).
+// One layer for each stretch: the open share of each of its quarters (rain/open.wgsl).
 @group(1) @binding(3) var open_parts: texture_2d_array<f32>;
 @group(1) @binding(4) var open_sampler: sampler;
 
-// Whether anything near keeps rain off, whether the innermost cone shows anything, and whether a set of streaks grows
-// in another's place.
+// Whether anything near keeps rain off, whether the innermost cone shows anything, and whether one set of streaks is
+// replacing another.
 override SHELTERED: bool = false;
 override INNERMOST: bool = true;
 override GROWING: bool = true;
 
-// A direction on the cones.
+// Direction in the cones' coordinates.
 struct OnCone {
-    // Turns of azimuth about the axis; Mercator's latitude.
+    // Azimuth about the axis in turns; Mercator's latitude.
     turn: f32,
     latitude: f32,
-    // The sine of the angle from the axis squared; minus the binary logarithm of that sine.
+    // Square of the sine of the angle from the axis; minus the binary logarithm of that sine.
     square: f32,
     halvings: f32,
-    // Times that the tiles about the axis are halved, and the share of their number that is left.
+    // Number of times that the tiles about the axis are halved, and the share of tiles that is left.
     octave: f32,
     left: f32,
 }
 
-// Columns about the axis, in each of which tiles are halved at another angle from it.
+// Number of sectors about the axis. In each the tiles are halved at another angle from the axis.
 const COLUMNS: f32 = 512.0;
 
 fn on_cone(d: vec3f) -> OnCone {
@@ -44,32 +44,32 @@ fn on_cone(d: vec3f) -> OnCone {
     let square = max(dot(across, across), 1e-8);
     let halvings = -0.5 * log2(square);
     let latitude = -0.6931472 * (halvings + log2(1.0 + abs(c)));
-    // The azimuth at the axis itself is any.
+    // At the axis itself any azimuth will do.
     let turn = 0.15915494 * atan2(across.y, select(across.x, 1e-4, square <= 1e-8));
-    // Each halving of the sine halves the tiles; where exactly differs from column to column, so that no ring shows.
+    // Each halving of the sine halves the tiles. The exact angle differs from sector to sector, so that no ring shows.
     let whole = floor(halvings);
     let left = exp2(-whole);
-    // Multiples of the golden ratio spread evenly, and those of neighbouring columns lie far apart.
+    // Multiples of the golden ratio are spread evenly, and those of neighbouring sectors lie far apart.
     let chance = fract(floor(turn * COLUMNS * left) * 0.61803399 + whole * 0.37);
     let halved = halvings - whole > 0.25 + 0.75 * chance;
     let octave = whole + select(0.0, 1.0, halved);
     return OnCone(turn, select(-latitude, latitude, c >= 0.0), square, halvings, octave, left * select(1.0, 0.5, halved));
 }
 
-// Where the texture is looked at for a cone, without what moves its sets.
+// Look-up in the texture for a cone, before its sets are moved.
 struct Look {
     uv: vec2f,
     // Tiles in a radian of latitude.
     along: f32,
     // Level of detail.
     level: f32,
-    // Drops in a tile.
+    // Number of drops in a tile.
     number: f32,
 }
 
 fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
     let tiles = max(round(shape.x * at.left), 1.0);
-    // With one tile left, texels become smaller than pixels: coarser levels keep them from aliasing.
+    // With one tile left, texels become smaller than pixels. Coarser levels keep them from aliasing.
     let beyond = max(at.octave - detail.z, 0.0);
     let level = detail.y + at.halvings - at.octave + beyond + min(beyond, 1.0);
     let along = min(shape.y, shape.w * at.left);
@@ -77,12 +77,13 @@ fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
     return Look(uv, along, max(level, 0.0), shape.z * at.square * 6.2831853 / (along * tiles));
 }
 
-// Optical depth over its mean of a set of so many drops a tile: how far it has come, its share, its offset.
+// Returns a set's optical depth over its mean. `moved` has the set's motion, share and offset, as in `ConeUniform`.
 fn pattern(look: Look, moved: vec4f) -> f32 {
     let uv = look.uv + vec2f(moved.z, moved.x * look.along + moved.w);
     let seen = textureSampleLevel(streaks, streaks_sampler, uv, look.level);
-    // Products with inverses of constants: software drivers do not turn a division by a constant into one.
-    // As many streaks as there are drops, and no fewer than would stand out near the ends of the axis.
+    // Products with inverses of constants: software drivers do not turn a division by a constant into a product.
+    // As many streaks are shown as there are drops, but never so few that single streaks stand out near the ends of the
+    // axis.
     let wanted = look.number * moved.y;
     let before = vec4f(0.0, STREAKS.x, STREAKS.x + STREAKS.y, ALL_STREAKS - STREAKS.w);
     let shown = clamp((wanted - before) * (1.0 / STREAKS), vec4f(1.0, 0.25, 0.0, 0.0), vec4f(1.0));
@@ -90,18 +91,19 @@ fn pattern(look: Look, moved: vec4f) -> f32 {
     return max(mix(1.0, over_mean, inverseSqrt(max(wanted * (1.0 / ALL_STREAKS), 1.0))), 0.0);
 }
 
-// Share of a stretch of the ray that rain reaches and that lies nearer than `range`, for the pixel at `uv`.
+// Returns the share of a stretch of the ray that rain reaches and that lies nearer than `range`, for the pixel at `uv`.
 fn open_share(uv: vec2f, j: u32, range: f32) -> f32 {
     let stretch = cones.stretches[j];
     let before = clamp((range - stretch.x) / (stretch.y - stretch.x), 0.0, 1.0);
     let open = textureSampleLevel(open_parts, open_sampler, uv, j, 0.0);
     let seen = clamp(4.0 * before - vec4f(0.0, 1.0, 2.0, 3.0), vec4f(0.0), vec4f(1.0));
-    // Of a quarter that ends behind what is at `range`, what was found there counts only as far as it lies before that.
+    // An open quarter behind a sheltered one is known to be open only from its middle, where it was tested. Where the
+    // surface at `range` cuts the quarter, it counts from that middle on.
     let sure = min(open, open.xxyz);
     return dot(sure * seen + (open - sure) * max(2.0 * seen - 1.0, vec4f(0.0)), vec4f(0.25));
 }
 
-// Likewise of a band: the outermost is two stretches, which are equally long.
+// Returns the open share of a band. The outermost band consists of two stretches of equal length.
 fn open_band(uv: vec2f, j: u32, range: f32) -> f32 {
     if !SHELTERED {
         let band = cones.bands[j];
@@ -113,7 +115,8 @@ fn open_band(uv: vec2f, j: u32, range: f32) -> f32 {
     return 0.5 * (open_share(uv, j, range) + open_share(uv, j + 1u, range));
 }
 
-// What a set of cone `j` has before what is at `range` along the ray `d` of the pixel at `uv`, as an optical depth.
+// Returns the optical depth of a set of cone `j` in front of the surface at `range`, along the ray `d` of the pixel at
+// `uv`.
 fn rain_on_cone(at: OnCone, d: vec3f, uv: vec2f, j: u32, moved: vec4f, range: f32) -> f32 {
     var fall = 1.0;
     if AREAS {
@@ -124,16 +127,16 @@ fn rain_on_cone(at: OnCone, d: vec3f, uv: vec2f, j: u32, moved: vec4f, range: f3
     return fall * open_band(uv, j, range) * cones.bands[j].w * moved.y * pattern(look, moved);
 }
 
-// Adds cone `j`, of an optical depth `hidden`, behind what is `seen` so far: premultiplied light, and what it hides.
+// Adds cone `j`, of optical depth `hidden`, behind the nearer cones in `seen`: premultiplied light, and opacity.
 fn before_others(d: vec3f, day: vec3f, j: u32, hidden: f32, seen: vec4f) -> vec4f {
     let cover = (1.0 - exp(-hidden)) * cones.looks[j].x;
-    // A lamp by the eye lights the band on the mean as it does there.
+    // A lamp at the eye lights the band as it would light its geometric middle: this is the mean over the band.
     let middle = sqrt(cones.bands[j].x * cones.bands[j].y);
     return seen + vec4f(day + lamp_light(d * middle, d), 1.0) * (cover * (1.0 - seen.a));
 }
 
-// All cones before what is at `range`: premultiplied light, and what they hide. Without a loop: software drivers take
-// twice as long for one.
+// Returns all cones in front of the surface at `range`: premultiplied light, and opacity. Unrolled by hand, because
+// software drivers take twice as long for a loop.
 fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
     let at = on_cone(d);
     let day = day_light(d);
@@ -147,8 +150,7 @@ fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
         hidden += select(vec3f(0.0), vec3f(more), vec3u(0u, 1u, 2u) == vec3u(cones.growing));
     }
     if !LAMPS {
-        // One light for all: what each hides of the next is of second order, and what is before them does not count
-        // there.
+        // All cones have the same light. How much each covers of the next is of second order and does not matter here.
         let clear = vec3f(cones.looks[0].x, cones.looks[1].x, cones.looks[2].x);
         return vec4f(day, 1.0) * (1.0 - exp(-dot(clear, hidden)));
     }

@@ -1,4 +1,4 @@
-// Rain on cones before a host's picture; where that has several samples a pixel, the first stands for them.
+// Entry points of rain on cones in front of a host's picture. Of several samples a pixel, only the first is read.
 //!include "common/host.wgsl"
 //!include "rain/cones.wgsl"
 

@@ -1,4 +1,4 @@
-// Which slots have a splash on a vertical that the picture shows, and their number, for the draw.
+// Finds and counts the slots of splashes whose vertical line may be in the picture: only these are drawn.
 //!include "rain/splash.wgsl"
 //!include "falling/order.wgsl"
 
@@ -8,7 +8,7 @@ fn all_slots() -> u32 {
     return splash.slots * splash.cells * splash.cells;
 }
 
-// A word of bits a thread.
+// Each thread writes one word: a bit for each of 32 slots.
 @compute @workgroup_size(64)
 fn mark(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= WORDS * blocks_of(all_slots()) {

@@ -1,4 +1,4 @@
-// The crowns of the slots that rain/crowns.wgsl has found, once each, before a host's picture.
+// Computes the crown of each slot that rain/crowns.wgsl has found, once, in front of a host's picture.
 //!include "rain/drops_view.wgsl"
 //!include "falling/list.wgsl"
 

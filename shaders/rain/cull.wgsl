@@ -1,9 +1,9 @@
-// Which drops of the lattice can be in the picture: a few in a hundred, but each must be asked. Then their number, for
-// the draw.
+// Finds and counts the drops of the lattice that can be in the picture. Only a few in a hundred are, but each must be
+// tested.
 //!include "rain/cull_list.wgsl"
 //!include "falling/order.wgsl"
 
-// A word of bits a thread.
+// Each thread writes one word: a bit for each of 32 drops.
 @compute @workgroup_size(64)
 fn mark(@builtin(global_invocation_id) id: vec3u) {
     let s = id.y;
@@ -13,7 +13,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     let first = 32u * id.x;
     let last = min(first + 32u, shell_drops());
     var seen = 0u;
-    // Drops lie in the order of their classes.
+    // Drops are numbered by class.
     for (var index = first; index < last;) {
         let in_shell = class_in_shell(s, class_of(index));
         let end = clamp(in_shell.end, index + 1u, last);

@@ -1,4 +1,4 @@
-// The list of drops that a picture shows, of all in the shells round the camera, near shells first.
+// List of the drops in the picture, out of all in the shells around the camera, near shells first.
 //!include "rain/drops.wgsl"
 //!include "falling/state.wgsl"
 //!include "falling/list.wgsl"
@@ -7,7 +7,8 @@
 override STEPPED: bool = false;
 
 @group(1) @binding(1) var<storage, read_write> streaks: array<Streak>;
-// Place of the camera in the cell of each shell, with where the shell's drops begin; and the stepped drops.
+// Per shell: place of the camera in its cell, and index of the shell's first drop in `states`, which has the stepped
+// drops.
 @group(3) @binding(0) var<uniform> eyes: array<vec4u, SHELLS>;
 @group(3) @binding(1) var<storage, read> states: array<State>;
 
@@ -16,7 +17,7 @@ struct Moving {
     velocity: vec3f,
 }
 
-// Drops of each shell.
+// Returns the number of drops in each shell.
 fn shell_drops() -> u32 {
     if STEPPED {
         return min(rain.per_shell, arrayLength(&states));
@@ -28,7 +29,7 @@ fn shell_blocks() -> u32 {
     return blocks_of(rain.per_shell);
 }
 
-// Drop `index` of its shell.
+// Returns drop `index` of its shell, and its velocity.
 fn moving(in_shell: ClassInShell, index: u32) -> Moving {
     if STEPPED {
         let state = states[min(eyes[in_shell.s].w + index, arrayLength(&states) - 1u)];

@@ -1,5 +1,5 @@
-// Drops without a state: where each is follows from (seed, id, time) alone, and one quad draws its streak.
-// The f64 twin and the derivation are in src/rain/lattice.rs.
+// Drops without a state: the place of each follows from (seed, id, time), and one quad draws its streak.
+// src/rain/lattice.rs has the f64 twin and the derivation.
 //!include "common/depth.wgsl"
 //!include "surroundings/lights_binding.wgsl"
 //!include "common/hash.wgsl"
@@ -11,20 +11,20 @@
 // Whether the rim of a rain area is near.
 override AREAS: bool = false;
 
-// Classes of diameter; shells of the lattice.
+// Number of classes of diameter.
 const CLASSES: u32 = 32u;
 
 struct RainUniform {
     depth: DepthUniform,
-    // From camera-relative east-north-up to clip space.
+    // Matrix from camera-relative east, north, up to clip space.
     clip: mat4x4f,
-    // Of the air, m/s.
+    // Velocity of the air, m/s.
     wind: vec3f,
-    // Time for which the picture is exposed, s.
+    // Exposure time of the picture, s.
     exposure: f32,
-    // Mean radiance above and below the horizon as a drop passes it on, display units a channel.
+    // Mean radiance above and below the horizon that a drop transmits, display units per channel.
     above: vec3f,
-    // Drops of one shell.
+    // Number of drops in one shell.
     per_shell: u32,
     below: vec3f,
     seed: u32,
@@ -33,45 +33,46 @@ struct RainUniform {
     // Angle of a pixel, rad.
     pixel_angle: f32,
     to_sun: vec3f,
-    // Extinction of what lies between the eye and a drop beside the rain, 1/m.
+    // Extinction between the eye and a drop by everything except rain, 1/m.
     extinction: f32,
-    // Drops that each drawn one of the innermost shell stands for.
+    // Number of drops that each drawn drop of the innermost shell stands for.
     weight: f32,
     // 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
     y_sign: f32,
-    // Shells of drops that are drawn.
+    // Number of drawn shells.
     shells: u32,
-    // By how much what falls stands out more than it does in nature; 1: as it does.
+    // Contrast gain: factor by which rain stands out more than in nature; 1 is as in nature.
     gain: f32,
-    // Of the camera, m/s.
+    // Velocity of the camera, m/s.
     camera: vec3f,
     pad2: f32,
-    // Per shell: place of the camera in the cell of the air, in 2^-32 of its side, and how far a drop of one speed unit
-    // has fallen, likewise.
+    // Per shell. x, y, z: place of the camera in the cell that moves with the air; w: distance fallen at a speed of one
+    // unit. Both are in 2^-32 of the cell's side.
     cell: array<vec4u, SHELLS>,
-    // Per shell: side of the cell, m; distance from which it begins to take over from the smaller one, from which it
-    // hands on itself, and at which it has taken over.
+    // Per shell. x: side of the cell, m. y: distance at which it begins to take over from the smaller shell; w:
+    // distance at which it has taken over. z: distance at which it begins to fade out.
     shell: array<vec4f, SHELLS>,
-    // Per class: diameter, m; fall speed, speed units; drops of the classes up to this one.
+    // Per class: diameter, m; fall speed, speed units; number of drops of the classes up to this one.
     classes: array<vec4f, CLASSES>,
 }
 
 const SHELLS: u32 = 4u;
-// Fall speeds are whole numbers of this, m/s: a drop's fall phase is a product of integers, exact at any time.
+// Unit of fall speeds, m/s. Speeds are integer multiples of it, so a drop's fall phase is a product of integers and
+// exact at any time.
 const SPEED_UNIT: f32 = 0.015625;
-// Drops nearer than this fade away: they would be blobs that no eye could focus on.
+// Drops nearer than this, m, fade out: they would be blobs on which no eye could focus.
 const NEAREST: f32 = 0.25;
 
 @group(0) @binding(0) var<uniform> rain: RainUniform;
 
 struct Drop {
-    // Camera-relative, m.
+    // Position relative to the camera, m.
     position: vec3f,
     diameter: f32,
     speed: f32,
     // Share of the drop that its shell shows.
     share: f32,
-    // Drops that it stands for.
+    // Number of drops that it stands for.
     weight: f32,
 }
 
@@ -83,15 +84,15 @@ fn class_of(index: u32) -> u32 {
     return low;
 }
 
-// What the drops of one class in one shell have in common.
+// Properties shared by the drops of one class in one shell.
 struct ClassInShell {
     s: u32,
     k: u32,
-    // Of the shell's drops, its first and the one behind its last.
+    // Numbers of its first drop in the shell, and of the one after its last.
     first: u32,
     end: u32,
     diameter: f32,
-    // Speed units.
+    // Fall speed, speed units.
     speed: u32,
     cell: vec4u,
     shell: vec4f,
@@ -103,13 +104,13 @@ fn class_in_shell(s: u32, k: u32) -> ClassInShell {
     return ClassInShell(s, k, first, u32(size.z), size.x, u32(size.y), rain.cell[s], rain.shell[s]);
 }
 
-// Drop `index` of its shell.
+// Returns drop `index` of its shell.
 fn drop_of(in_shell: ClassInShell, index: u32) -> Drop {
     let place = random3(vec3u(rain.seed, (in_shell.s << 8u) | in_shell.k, index - in_shell.first));
     return drop_at(in_shell, index, place - vec3u(0u, 0u, in_shell.speed * in_shell.cell.w) - in_shell.cell.xyz);
 }
 
-// The same, `away_units` from the camera in 2^-32 of the cell's side.
+// Returns drop `index` of its shell at `away_units` from the camera, in 2^-32 of the cell's side.
 fn drop_at(in_shell: ClassInShell, index: u32, away_units: vec3u) -> Drop {
     let shell = in_shell.shell;
     let p = vec3f(bitcast<vec3i>(away_units)) * (shell.x / 4294967296.0);
@@ -124,13 +125,13 @@ fn drop_at(in_shell: ClassInShell, index: u32, away_units: vec3u) -> Drop {
     return Drop(p, in_shell.diameter, f32(in_shell.speed) * SPEED_UNIT, share, here.y * f32(1u << in_shell.s));
 }
 
-// Radiance of a drop seen along `d` without lamps: it shows, small and upside down, most of the half space behind it,
-// and what the sun sends through it.
+// Returns the radiance of a drop seen along `d`, without lamps. The drop shows most of the half space behind it, small
+// and upside down, and the sunlight that passes through it.
 fn day_light(d: vec3f) -> vec3f {
     return mix(rain.below, rain.above, sky_share(d.z)) + rain.sun * (drop_phase(dot(d, rain.to_sun)) * 0.07957747);
 }
 
-// What lamps send through one at `p`.
+// Returns the radiance that lamps send through a drop at `p`.
 fn lamp_light(p: vec3f, d: vec3f) -> vec3f {
     var beams = vec3f(0.0);
     for (var i = 0u; i < light_count(); i++) {
@@ -147,12 +148,12 @@ fn drop_light(p: vec3f, d: vec3f) -> vec3f {
 
 struct RainVarying {
     @builtin(position) position: vec4f,
-    // Premultiplied.
+    // Premultiplied light.
     @location(0) light: vec4f,
-    // As depth_of has it.
+    // Depth from depth_of.
     @location(1) depth: vec2f,
-    // Across the streak, -1 to 1, and along it from its middle, in radii of the drop as it is drawn; how far the drop's
-    // middle goes to either side of that.
+    // Position across the streak, -1 to 1, and along it from its middle, in radii of the drawn drop; distance that the
+    // drop's middle moves to either side, in the same radii.
     @location(2) at: vec3f,
 }
 
@@ -166,37 +167,36 @@ fn in_picture(a: vec3f, b: vec3f) -> bool {
     return any(x < side) && any(-x < side) && any(y < side) && any(-y < side);
 }
 
-// The same of a drop of a `velocity`.
+// Returns `part_drawn` for a drop with a `velocity`.
 fn drop_part(drop: Drop, velocity: vec3f) -> vec4f {
     return part_drawn((velocity - rain.camera) * (0.5 * rain.exposure), max(length(drop.position), 1e-3));
 }
 
-// Whether a drop of a `velocity` can be in the picture, if nothing keeps it off.
+// Whether a drop with a `velocity` can be in the picture, if nothing keeps it off.
 fn may_show(drop: Drop, velocity: vec3f) -> bool {
     let half = drop_part(drop, velocity).xyz;
     return drop.share > 0.0 && in_picture(drop.position - half, drop.position + half);
 }
 
-// What a drop draws.
+// Streak that a drop draws.
 struct Streak {
-    // Its middle, camera-relative, m.
+    // Middle of the streak, camera-relative, m.
     middle: vec3f,
-    // m; 0: nothing is drawn.
+    // Width, m; 0 if nothing is drawn.
     width: f32,
-    // From the middle to its end, m.
+    // Vector from the middle to an end, m.
     half: vec3f,
-    // Where it hides most, premultiplied.
+    // Premultiplied light where the streak covers most.
     light: vec4f,
 }
 
-// What hides a share of a pixel's exposure, with the contrast's gain on it: as much as `gain` of it one before the
-// other would.
+// Returns `cover` raised by the contrast gain: the cover of `gain` such things, one in front of the other.
 fn gained(cover: f32) -> f32 {
     let most = min(cover, 1.0);
     return select(1.0 - pow(1.0 - most, rain.gain), most, rain.gain == 1.0);
 }
 
-// The streak of a drop of a `velocity`, if it `shows`.
+// Returns the streak of a drop with a `velocity`; an empty one unless the drop `shows` and no shelter keeps it off.
 fn streak_of(drop: Drop, velocity: vec3f, shows: bool) -> Streak {
     let part = drop_part(drop, velocity);
     let half = part.xyz;
@@ -207,7 +207,7 @@ fn streak_of(drop: Drop, velocity: vec3f, shows: bool) -> Streak {
     let toward = drop.position / d;
     let width = max(drop.diameter, max(rain.pixel_angle * d * LEAST_PIXELS, 1e-6));
     let stretch = max(length(half - toward * dot(half, toward)), 1e-6);
-    // Where it is drawn wider than it is, it hides as much less.
+    // A drop that is drawn wider than it is has a lower opacity in proportion.
     let thin = drop.diameter / width;
     let most = thin * thin * drop.weight * longest_passing(reach_of(stretch, 0.5 * width));
     let cover = gained(most) * (drop.share * part.w);
@@ -216,7 +216,7 @@ fn streak_of(drop: Drop, velocity: vec3f, shows: bool) -> Streak {
     return Streak(drop.position, width, half, light);
 }
 
-// Both ends of a streak, then its width across the picture.
+// Returns a corner of a streak's quad: bit 1 of `corner` selects the end, bit 0 the side.
 fn corner_of(streak: Streak, corner: u32) -> RainVarying {
     let d = max(length(streak.middle), 1e-3);
     let toward = streak.middle / d;
@@ -235,7 +235,7 @@ fn corner_of(streak: Streak, corner: u32) -> RainVarying {
     return RainVarying(position, streak.light, depth, vec3f(side, along * (reach + 1.0), reach));
 }
 
-// Every drop of the lattice, where there are no compute shaders.
+// Draws every drop of the lattice, on devices without compute shaders.
 @vertex
 fn rain_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> RainVarying {
     let index = instance % rain.per_shell;
@@ -250,13 +250,13 @@ struct Listed {
     @location(2) light: vec4f,
 }
 
-// Those that were found to be in the picture (rain/cull.wgsl).
+// Draws the drops that were found to be in the picture (rain/cull.wgsl).
 @vertex
 fn listed_vertex(@builtin(vertex_index) corner: u32, listed: Listed) -> RainVarying {
     return corner_of(Streak(listed.middle_width.xyz, listed.middle_width.w, listed.half, listed.light), corner);
 }
 
-// `shown`: depth of the host's picture.
+// Returns the premultiplied light of a pixel of a streak. `shown` is the depth of the host's picture.
 fn streak(in: RainVarying, shown: f32) -> vec4f {
     return in.light * (passing(in.at.xy, in.at.z) * share_before(shown, in.depth));
 }

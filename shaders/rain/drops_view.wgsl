@@ -1,4 +1,4 @@
-// Drops before a host's picture; where that has several samples a pixel, the first stands for them.
+// Entry points of drops and splashes in front of a host's picture. Of several samples a pixel, only the first is read.
 //!include "common/host.wgsl"
 //!include "rain/splash.wgsl"
 
@@ -11,7 +11,7 @@ fn depth_at(uv: vec2f) -> f32 {
     return textureLoad(host_depth, vec2i(clamp(uv * size, vec2f(0.0), size - 1.0)), 0).r;
 }
 
-// The visible surface below a landing, sought from a height on; 1 if it was found.
+// Returns the visible surface below a landing, searched for from the height `z`; w is 1 if it was found.
 fn ground_below(landing: Landing, z: f32) -> vec4f {
     var look = Look(search_from(landing, z), vec4f(0.0));
     for (var i = 0u; i < LOOKS && is_wanted(look); i++) {
@@ -21,7 +21,7 @@ fn ground_below(landing: Landing, z: f32) -> vec4f {
     return look.surface;
 }
 
-// The crown of a slot.
+// Returns the crown of a slot.
 fn splashed(slot: u32) -> Crown {
     let arrival = arrival_of(slot);
     let surface = ground_below(arrival.landing, splash.ground);
@@ -37,13 +37,13 @@ fn splashed(slot: u32) -> Crown {
     return crown_of(arrival, plane.w, plane.xyz);
 }
 
-// Every slot, where there are no compute shaders.
+// Draws every slot, on devices without compute shaders.
 @vertex
 fn splash_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) slot: u32) -> CrownVarying {
     return crown_corner(splashed(slot), corner);
 }
 
-// Depth of the host's picture at a pixel, as view_depth counts it.
+// Returns the depth of the host's picture at a pixel, as view_depth measures it.
 fn shown_at(position: vec4f) -> f32 {
     if HAS_DEPTH {
         let ndc = ndc_of(position.xy / vec2f(textureDimensions(host_depth)));

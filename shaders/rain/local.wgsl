@@ -1,25 +1,26 @@
-// How many drops of each class fall at a place near the rims of rain areas: a mixture of the counts of the weather and
-// of each area near (src/rain/local.rs).
+// Number of drops of each class at a place near the rims of rain areas: a mixture of the numbers of the weather and of
+// each nearby area (src/rain/local.rs).
 //!include "rain/area.wgsl"
 
-// Numbers for the weather and 16 areas, in fours.
+// Numbers for the weather and 16 areas, in groups of four.
 const LOCAL_ROWS: u32 = 5u;
 const LOCAL_COUNTS: u32 = 160u;
 
 struct Local {
-    // Of each class: drops of the weather, then of each column.
+    // Per class: number of drops of the weather, then of each column.
     counts: array<vec4f, LOCAL_COUNTS>,
-    // How many fall for each that is drawn.
+    // Number of drops that each drawn drop stands for.
     weights: array<vec4f, LOCAL_ROWS>,
     // Share of the splashes' slots that are taken.
     splashes: array<vec4f, LOCAL_ROWS>,
-    // Of the rain that the cones' block is made for, how much falls in each.
+    // Extinction relative to that of the rain for which the cones' block is made.
     cones: array<vec4f, LOCAL_ROWS>,
 }
 
 @group(0) @binding(8) var<uniform> local: Local;
 
-// Drops of a class that a camera-relative place keeps, and how many each of them stands for.
+// Returns the number of drops of a class that are kept at a camera-relative place, and the number that each of them
+// stands for.
 fn local_drops(k: u32, p: vec3f) -> vec2f {
     var kept = local.counts[k * LOCAL_ROWS].x;
     var standing = kept * local.weights[0].x;
@@ -33,7 +34,7 @@ fn local_drops(k: u32, p: vec3f) -> vec2f {
     return vec2f(kept, standing / max(kept, 1e-6));
 }
 
-// Share of the splashes' slots that are taken at a place.
+// Returns the share of the splashes' slots that are taken at a place.
 fn local_splashes(p: vec3f) -> f32 {
     var taken = local.splashes[0].x;
     for (var i = 0u; i < column_count(); i++) {
@@ -43,7 +44,7 @@ fn local_splashes(p: vec3f) -> f32 {
     return taken;
 }
 
-// Drops at a place over those that the cones' block is made for.
+// Returns the rain at a place relative to that for which the cones' block is made.
 fn local_cones(p: vec3f) -> f32 {
     var fall = local.cones[0].x;
     for (var i = 0u; i < column_count(); i++) {

@@ -1,11 +1,12 @@
-// What keeps rain off, asked for the cones on a coarse grid over the picture: what comes to a place along a ray hangs
-// on the ray and the distance alone, not on what the host drew there, so the cones look between the grid's rays
-// (rain/cones.wgsl) and to any depth.
+// Tests for the cones what keeps rain off, on a coarse grid over the picture. Whether rain reaches a place on a ray
+// depends only on the ray and the distance, not on what the host drew there. So the cones can interpolate between the
+// grid's rays (rain/cones.wgsl), up to any depth.
 //!include "common/fullscreen.wgsl"
 //!include "rain/drops.wgsl"
 //!include "rain/cone_block.wgsl"
 
-// Of each stretch the shares of its four quarters, near to far, that the mean drop comes to.
+// Per stretch: the open shares of its four quarters, near to far. 1 where the mean drop arrives, 0 where something
+// shelters the place.
 struct OpenParts {
     @location(0) first: vec4f,
     @location(1) second: vec4f,
@@ -13,17 +14,18 @@ struct OpenParts {
     @location(3) fourth: vec4f,
 }
 
-// `between` is the angle from one ray of the grid to the next.
+// Returns the open shares of stretch `j` along `d`. `between` is the angle from one ray of the grid to the next.
 fn open_quarters(j: u32, d: vec3f, between: f32) -> vec4f {
     let stretch = cones.stretches[j];
     let velocity = rain.wind - vec3f(0.0, 0.0, cones.fall);
     var open = vec4f(1.0);
     for (var i = select(0u, 4u, j < cones.first); i < 4u; i++) {
-        // The first at its near end: what it is asked for lies behind that.
+        // The first quarter is tested at its near end, because it stands for what lies behind that; the others in their
+        // middles.
         let at = select((f32(i) + 0.5) * 0.25, 0.0, i == 0u);
         let range = mix(stretch.x, stretch.y, at);
-        // Boxes are as much wider as rays lie apart: what pixels take from the rays round them is never more than comes
-        // to their own.
+        // Boxes are widened by the distance between rays. The rain that a pixel interpolates from the rays around it is
+        // then never more than arrives on its own ray.
         let shut = sheltered_nearby(d * range, velocity, range * between, true);
         open = select(open, vec4f(0.0), vec4u(select(4u, i, shut)) == vec4u(0u, 1u, 2u, 3u));
     }

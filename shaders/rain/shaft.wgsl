@@ -1,36 +1,38 @@
-// Columns of rain seen from afar: one quad over each, blended as a veil before the picture. The f64 twin of what a ray
-// meets is in src/rain/shaft.rs; the entry points read the depth: shaft_single.wgsl and shaft_multi.wgsl.
+// Columns of rain seen from afar: one quad over each, blended as a veil in front of the picture. src/rain/shaft.rs has
+// the f64 twin of the optical depth along a ray. The entry point, which reads the depth, is in
+// shaft_view.wgsl.
 //!include "between/veil.wgsl"
 //!include "between/bow.wgsl"
 //!include "rain/area.wgsl"
 //!include "rain/phase.wgsl"
 
 const SHAFT_WAVES: u32 = 12u;
-// Twins of the constants of src/rain/shaft.rs and area.rs.
+// Twins of the constants of src/rain/shaft.rs and src/falling/curtain.rs.
 const PATTERN_AMOUNT: f32 = 0.2;
 const PATTERN_FIRST: f32 = 30.0;
 const PATTERN_FULL: f32 = 300.0;
 const BELOW: f32 = 1000.0;
-// Way into a dense column from which most of its light comes, m, and how much of that light goes with the curtains
-// there.
+// Distance into a dense column from which most of its light comes, m, and the share of that light that varies with the
+// curtains there.
 const FRONT: f32 = 500.0;
 const FRONT_SHARE: f32 = 0.3;
 
 struct ShaftUniform {
-    // Of the sky and of the ground on the mean, cd/m^2 a channel.
+    // Mean radiance of the sky (`above`) and of the ground (`below`), cd/m^2 per channel.
     above: vec3f,
-    // Of the weather's own rain, which the fog's pass draws: extinction, 1/m.
+    // Extinction of the weather's own rain, which is drawn with the fog, 1/m.
     own: f32,
     below: vec3f,
-    // Its upper end, camera-relative, m, and the depth below it within which it sets in.
+    // Top of the weather's own rain, camera-relative, m, and the depth below it over which the rain sets in
+    // (`own_soft`).
     own_top: f32,
     // Illuminance of sun or moon, lux.
     sun: vec3f,
     own_soft: f32,
     to_sun: vec3f,
-    // What drops of it hide near the camera, 1/m.
+    // Extinction of the weather's own drops that are drawn near the camera, 1/m.
     own_near: f32,
-    // Columns from far to near, and the parts of the picture that they may be in: ndc.
+    // Columns from far to near, and the rectangles of the picture that contain them, ndc.
     order: array<vec4u, 4>,
     rects: array<vec4f, MAX_AREAS>,
     // Wave numbers and phases of the pattern.
@@ -49,7 +51,7 @@ struct Met {
     depth: f32,
     first: f32,
     last: f32,
-    // Pattern of what is seen first.
+    // Mean pattern of the column's front.
     front: f32,
 }
 
@@ -61,7 +63,8 @@ fn shaft_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) ins
     return ShaftVarying(vec4f(at.x, at.y * frame.y_sign, 0.0, 1.0), column, at);
 }
 
-// Between which distances the plan of a ray is at least `inset` inside; last < first where it is not.
+// Returns the interval of a ray in which its plan is at least `inset` inside the outline; last < first if there is
+// none.
 fn column_chord(i: u32, q: vec2f, u: vec2f, inset: f32) -> vec2f {
     let inner = columns.list[i].semi - inset;
     let e = q / max(inner, vec2f(1.0));
@@ -92,14 +95,14 @@ fn ramp_below(top: f32, soft: f32, z: f32) -> f32 {
     return (max(y - x, 0.0) + 0.5 * x * x) * soft;
 }
 
-// Mean of a ramp that is 1 from `soft` below `top` down and 0 above it, between two heights.
+// Returns the mean, between the heights `a` and `b`, of a ramp that is 0 above `top` and 1 below `top - soft`.
 fn ramp_mean(top: f32, soft: f32, a: f32, b: f32) -> f32 {
     let level = clamp((top - 0.5 * (a + b)) / soft, 0.0, 1.0);
     let flat = abs(b - a) < 0.01 * soft;
     return select((ramp_below(top, soft, a) - ramp_below(top, soft, b)) / select(b - a, 1.0, flat), level, flat);
 }
 
-// Mean of the pattern between two distances.
+// Returns the mean of the pattern between two distances along the ray.
 fn column_pattern(i: u32, q: vec2f, u: vec2f, z: f32, dz: f32, a: f32, b: f32) -> f32 {
     let middle = 0.5 * (a + b);
     let half = 0.5 * (b - a);
@@ -116,7 +119,8 @@ fn column_pattern(i: u32, q: vec2f, u: vec2f, z: f32, dz: f32, a: f32, b: f32) -
     return max(1.0 + PATTERN_AMOUNT * smoothstep(PATTERN_FIRST, PATTERN_FULL, middle) * sum, 0.0);
 }
 
-// Means over a piece of the ray, by Gauss's four points: the column's share, and what has begun to fall of that.
+// Returns two means over a piece of the ray, by four Gauss points: the column's share, and the same times the share of
+// its rain that has left the cloud.
 fn piece_mean(i: u32, origin: vec3f, d: vec3f, a: f32, b: f32) -> vec2f {
     let x = vec4f(0.06943184, 0.33000948, 0.66999052, 0.93056816) * (b - a) + a;
     let weights = vec4f(0.17392742, 0.32607258, 0.32607258, 0.17392742);
@@ -130,7 +134,7 @@ fn piece_mean(i: u32, origin: vec3f, d: vec3f, a: f32, b: f32) -> vec2f {
     return vec2f(dot(share, vec4f(1.0)), dot(share, begun));
 }
 
-// What a ray meets of a column before `range`; last <= first where nothing.
+// Returns what a ray meets of a column up to `range`; last <= first if nothing.
 fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let lean = columns.list[i].lean;
     let ground = columns.list[i].ground;
@@ -140,7 +144,7 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let chord = column_chord(i, q, u, 0.0);
     let up = select(d.z, select(-1e-6, 1e-6, d.z >= 0.0), abs(d.z) < 1e-6);
     let a = (ground - BELOW - origin.z) / up;
-    // The higher of both clouds: above its own it keeps the weather's rain away too.
+    // The higher of the two clouds: above its own cloud the column still replaces the weather's rain.
     let b = (max(top, shaft.own_top) - origin.z) / up;
     var end = min(min(range, max(a, b)), chord.y);
     if range >= RANGE_SKY && d.z < 0.0 && origin.z > ground {
@@ -170,7 +174,7 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
         fell += (e - s) * mean.y;
         s = e;
     }
-    // The curtains that show first, and the rest.
+    // Pattern of the front of the column, which shows most, and of the rest.
     let cut = min(begin + FRONT, end);
     let front = column_pattern(i, q, u, origin.z, d.z, begin, cut);
     let rest = column_pattern(i, q, u, origin.z, d.z, cut, end);
@@ -180,19 +184,20 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
         own += low_air.fog.falling.x * curtain_mean(origin, d, begin, end).x;
     }
     var depth = columns.list[i].extinction * fell - own * shared_own;
-    // What drops near the eye hide is drawn as drops.
+    // The part of the extinction that is drawn as drops near the eye is subtracted.
     let near = min(range, frame.drops.y);
     depth -= (columns.list[i].near - shaft.own_near) * near * column_left(i, origin + d * (0.5 * near));
     return Met(depth, begin, end, front);
 }
 
-// Light that rain of a column sends along `d` from a place, cd/m^2: drops show most of the half space behind them, of
-// which their own cloud hides what is overhead, and pass on what sun or moon sends in below it.
+// Returns the radiance that a column's rain sends along `d` from a place, cd/m^2. Drops show most of the half space
+// behind them, whose upper part their own cloud hides. They scatter the light of sun or moon that comes in below the
+// cloud.
 fn column_light(i: u32, p: vec3f, d: vec3f) -> vec3f {
     let top = columns.list[i].top;
     let radius = columns.list[i].radius;
     let under = max(top - p.z, 0.0);
-    // A rain cloud reaches twice as far as its rain, and its base sends a fifth of what the sky beside it does.
+    // A rain cloud extends twice as far as its rain, and its base has a fifth of the radiance of the sky beside it.
     let hidden = 0.8 * (1.0 - under / sqrt(under * under + 4.0 * radius * radius));
     let around = mix(shaft.below, shaft.above * (1.0 - hidden), 0.5 + 0.5 * d.z);
     let out = column_chord(i, column_plan(i, p), column_turned(i, shaft.to_sun.xy - columns.list[i].lean * shaft.to_sun.z), 0.0).y;
@@ -204,7 +209,7 @@ fn column_light(i: u32, p: vec3f, d: vec3f) -> vec3f {
     return around + beam * max(phase, vec3f(0.0));
 }
 
-// The veil of a column before the pixel at `ndc`, premultiplied, in the drops' units.
+// Returns the veil of a column in front of the pixel at `ndc`, premultiplied, in the units of the drops.
 fn shaft_veil(i: u32, pixel: vec2i, ndc: vec2f, range: f32) -> vec4f {
     drawn = frame.drawn;
     let ray = view_ray(frame.depth, ndc);

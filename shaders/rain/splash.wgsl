@@ -1,71 +1,71 @@
-// Splashes on what the host's picture shows: slots of a world-fixed grid in which drops land one after the other, as
-// many as the flux brings. Which slot splashes when follows from (seed, cell, slot, time). The entry points read the
+// Splashes on the surfaces in the host's picture: slots of a world-fixed grid in which drops land one after another, as
+// many as the flux brings. Slot and time of each splash follow from (seed, cell, slot, time). The entry points read the
 // depth: drops_view.wgsl.
 //!include "common/facing.wgsl"
 //!include "common/guarded.wgsl"
 //!include "rain/drops.wgsl"
 
-// Sizes of drops that splash, of which as many of each.
+// Number of groups of splashing drops; all groups have the same number of drops, and each has its size.
 const SIZES: u32 = 8u;
 
 struct SplashUniform {
     // Cell of the grid under the camera, and the camera's place in it, m.
     cell: vec2i,
     place: vec2f,
-    // Side of a cell, m; time that a splash lasts, s.
+    // Side of a cell, m; lifetime of a splash, s.
     side: f32,
     life: f32,
-    // Slots of a cell; cells along one side of the square round the camera.
+    // Number of slots in a cell; number of cells along one side of the square around the camera.
     slots: u32,
     cells: u32,
-    // How many times `life` has passed, and the part since.
+    // Number of times that `life` has passed since time 0, and the part since.
     tick: u32,
     part: f32,
     // Chance that a slot is taken.
     share: f32,
-    // Ground to start the search at, camera-relative, m.
+    // Height at which the search for the ground starts, camera-relative, m.
     ground: f32,
-    // Distance at which splashes have faded, m.
+    // Distance at which splashes have faded out, m.
     reach: f32,
-    // By how much the host's depth may be off: a step, and a part of it.
+    // Error of the host's depth: an absolute step, and a relative part.
     depth_grain: vec2f,
-    // Diameter, m, and fall speed, m/s.
+    // Per group: diameter, m, and fall speed, m/s.
     sizes: array<vec4f, SIZES>,
 }
 
 @group(0) @binding(3) var<uniform> splash: SplashUniform;
 
-// Most looks at the depth by which the place on the visible surface below a point is sought.
+// Largest number of reads of the depth in a search for the visible surface below a point.
 const LOOKS: u32 = 8u;
-// The steepest surface that a splash is drawn on: the upward part of its normal.
+// Steepest surface on which a splash is drawn, as the upward component of its normal.
 const STEEPEST: f32 = 0.3;
 
 struct Landing {
-    // Camera-relative east and north.
+    // Camera-relative east and north, m.
     xy: vec2f,
-    // 0 to 1 while the splash stands.
+    // Age, from 0 to 1 over the splash's lifetime.
     age: f32,
-    // Share of it that is drawn at its distance; 0: there is none.
+    // Share of the splash that is drawn at its distance; 0 if there is none.
     fade: f32,
 }
 
-// A drop that lands.
+// Drop that lands.
 struct Arrival {
     landing: Landing,
-    // Acceptance threshold: the share of what level ground gets from which on the drop lands.
+    // Acceptance threshold: the drop lands where the ground gets at least this share of the flux on level ground.
     chance: f32,
     diameter: f32,
     speed: f32,
     slot: u32,
 }
 
-// What lands in a slot at this moment, before it is known where its ground is.
+// Returns the drop that lands in a slot at this time, before the height of the ground is known.
 fn arrival_of(instance: u32) -> Arrival {
     let slot = instance % splash.slots;
     let index = instance / splash.slots;
     let cell = splash.cell + vec2i(i32(index % splash.cells), i32(index / splash.cells)) - i32(splash.cells / 2u);
     let key = bitcast<vec2u>(cell);
-    // Each slot begins at a moment of its own.
+    // Each slot has its own phase.
     let phase = random3(vec3u(key.x, key.y, rain.seed ^ slot)).x;
     let time = splash.part + f32(phase >> 8u) / 16777216.0;
     let turn = splash.tick + select(0u, 1u, time >= 1.0);
@@ -78,13 +78,13 @@ fn arrival_of(instance: u32) -> Arrival {
     if AREAS {
         share *= local_splashes(vec3f(xy, splash.ground));
     }
-    // Slopes to windward get more than level ground does: those of 45 degrees the most that is drawn.
+    // Slopes to windward get more than level ground. The bound is that of a slope of 45 degrees.
     let most = 1.0 + length(rain.wind.xy) / size.y;
     let landing = Landing(xy, fract(time), select(0.0, fade, value.z < share * most));
     return Arrival(landing, value.z / max(share, 1e-9), size.x, size.y, instance);
 }
 
-// Where in the picture a camera-relative point is: ndc, and 1 if it is in it.
+// Returns the position of a camera-relative point in the picture, ndc, and 1 if it is inside the picture.
 fn seen_at(p: vec3f) -> vec3f {
     let clip = rain.clip * vec4f(p, 1.0);
     let ndc = clip.xy / clip.w;
@@ -95,33 +95,34 @@ fn uv_of(ndc: vec2f) -> vec2f {
     return vec2f(ndc.x * 0.5 + 0.5, 0.5 - 0.5 * ndc.y * rain.y_sign);
 }
 
-// The point of the visible surface at `ndc`, camera-relative.
+// Returns the point of the visible surface at `ndc`, camera-relative.
 fn surface_of(ndc: vec2f, depth: f32) -> vec3f {
     return view_point(rain.depth, min(view_depth(rain.depth, depth, ndc), 1e5), ndc);
 }
 
-// Whether a surface is at the landing's own place: the search ends there where the picture shows the ground there.
+// Whether the visible surface is at the landing's own place. The search then ends: the picture shows the ground there.
 fn is_found(landing: Landing, surface: vec3f) -> bool {
     return length(surface.xy - landing.xy) < 0.03 + 0.01 * length(surface);
 }
 
-// A search for the height at which the vertical through a landing meets what the picture shows.
+// Search for the height at which the vertical line through a landing meets the visible surface.
 struct Search {
     z: f32,
-    // Between which it is.
+    // Bounds of the height, m.
     low: f32,
     high: f32,
-    // Height, and gap there, of the look before.
+    // Height of the previous read, and the gap there.
     before: vec2f,
-    // Gaps at `low` and `high`; 0: nobody has looked there.
+    // Gaps at `low` and `high`; 0 where none has been computed.
     ends: vec2f,
 }
 
-// From a height on; only what is in the picture is searched. There is nothing to search if `low` is above `high`.
+// Starts a search at the height `z`, bounded to the part of the vertical line inside the picture. If `low` is above
+// `high`, there is nothing to search.
 fn search_from(landing: Landing, z: f32) -> Search {
     let foot = rain.clip * vec4f(landing.xy, 0.0, 1.0);
     let up = rain.clip * vec4f(0.0, 0.0, 1.0, 0.0);
-    // Where those are above 0, a place is between the picture's edges.
+    // A place is between the picture's edges where all four are above 0.
     let at = vec4f(foot.w - foot.x, foot.w + foot.x, foot.w - foot.y, foot.w + foot.y);
     let rise = vec4f(up.w - up.x, up.w + up.x, up.w - up.y, up.w + up.y);
     let some = select(rise, vec4f(1e-7), abs(rise) < vec4f(1e-7));
@@ -131,21 +132,22 @@ fn search_from(landing: Landing, z: f32) -> Search {
     let low = max(max(lows.x, lows.y), max(lows.z, lows.w)) + 1e-3;
     let high = min(min(highs.x, highs.y), min(highs.z, highs.w)) - 1e-3;
     let begin = clamp(z, low, max(low, high));
-    // A level plane that far below the eye would have its gap -1 at the eye's height.
+    // The gap of a level plane at this depth below the eye would be -1 at the eye's height.
     let eye = clamp(-splash.ground, 0.5, 10.0);
     return Search(begin, low, select(-1e9, high, landing.fade > 0.0), vec2f(begin + eye, 1e9), vec2f(0.0));
 }
 
-// How far a point lies beyond what the picture shows on its ray, in parts of the latter's range. On a vertical before a
-// plane that is linear in the point's height, whatever the slope.
+// Returns how far a point lies beyond the visible surface on its ray, relative to the range of the surface. Along a
+// vertical line in front of a plane, the gap is linear in the point's height, whatever the slope.
 fn gap_of(p: vec3f, ndc: vec2f, surface: vec3f) -> f32 {
     let ray = view_ray(rain.depth, ndc);
     return dot(p - ray.origin, ray.direction) / max(dot(surface - ray.origin, ray.direction), 1e-3) - 1.0;
 }
 
-// After a look: by secants as long as the surface lies to one side of all looks, and by halves where they lead out of
-// the picture; then between the two that enclose it, by false position as Dowell and Jarratt 1971 (Illinois), who halve
-// the gap of an end that stays. Before a wall, whose gap is the same wherever one looks, by halves.
+// Returns the search after the gap at its height is known. While the surface lies to one side of all reads, the search
+// steps by secants, or by halving where a secant leaves the picture. Then it uses false position between the two reads
+// that enclose the surface, as in Dowell and Jarratt 1971 (Illinois), who halve the gap of an end that stays. In front
+// of a wall, where the gap does not change, it halves the interval.
 fn closer(search: Search, gap: f32) -> Search {
     let under = gap > 0.0;
     let low = select(search.low, search.z, under);
@@ -161,7 +163,7 @@ fn closer(search: Search, gap: f32) -> Search {
     return Search(select(0.5 * (low + high), z, z > low && z < high && !flat), low, high, vec2f(search.z, gap), ends);
 }
 
-// A search, and the visible surface where it has looked last: 1 if it is the landing's own.
+// Search, and the visible surface at its last read; w is 1 if that is at the landing's own place.
 struct Look {
     search: Search,
     surface: vec4f,
@@ -171,19 +173,19 @@ fn is_wanted(look: Look) -> bool {
     return look.surface.w == 0.0 && look.search.low < look.search.high;
 }
 
-// Where in the picture it looks next (ndc).
+// Returns the place in the picture of the next read, ndc.
 fn next_look(look: Look, landing: Landing) -> vec2f {
     return seen_at(vec3f(landing.xy, look.search.z)).xy;
 }
 
-// After the depth there is known.
+// Returns the look after the depth at `ndc` has been read.
 fn looked(look: Look, landing: Landing, ndc: vec2f, depth: f32) -> Look {
     let seen = surface_of(ndc, depth);
     let gap = gap_of(vec3f(landing.xy, look.search.z), ndc, seen);
     return Look(closer(look.search, gap), vec4f(seen, select(0.0, 1.0, is_found(landing, seen))));
 }
 
-// The middle of the picture's pixel that shows a point.
+// Returns the centre of the pixel that shows a point.
 fn pixel_of(p: vec3f, size: vec2f) -> vec2f {
     return (floor(uv_of(seen_at(p).xy) * size) + 0.5) / size;
 }
@@ -192,7 +194,7 @@ fn ndc_of(uv: vec2f) -> vec2f {
     return vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * rain.y_sign);
 }
 
-// The normal of the surface that a pixel shows, and the height of its plane above the place of a landing. `around`:
+// Returns the normal of the surface in a pixel, and the height of its plane at the place of a landing. `around` has the
 // depths to the left, right, above and below.
 fn plane_of(landing: Landing, uv: vec2f, size: vec2f, depth: f32, around: vec4f) -> vec4f {
     let ndc = ndc_of(uv);
@@ -203,36 +205,36 @@ fn plane_of(landing: Landing, uv: vec2f, size: vec2f, depth: f32, around: vec4f)
     return vec4f(normal, middle.z + rise);
 }
 
-// As far above a surface as its depth may be wrong.
+// Raises a point above a surface by the possible error of the surface's depth.
 fn above_ground(at: vec3f) -> vec3f {
     return at + vec3f(0.0, 0.0, 0.02 + 0.004 * length(at));
 }
 
-// What a splash draws.
+// Crown that a splash draws.
 struct Crown {
-    // Its foot, camera-relative, m.
+    // Foot of the crown, camera-relative, m.
     at: vec3f,
-    // Half of its width, m; 0: nothing is drawn.
+    // Half of its width, m; 0 if nothing is drawn.
     width: f32,
-    // Premultiplied.
+    // Premultiplied light.
     light: vec4f,
-    // East and north of the normal that it stands along.
+    // East and north components of the normal along which it stands.
     lean: vec2f,
-    // Of what is drawn, m.
+    // Drawn height, m.
     height: f32,
-    // 0 to 1.
+    // Age, 0 to 1.
     age: f32,
     slot: u32,
 }
 
-// How many drops land on a surface of a `normal` for each that lands on level ground of the same extent seen from
-// above.
+// Returns the number of drops that land on a surface with a `normal`, relative to level ground of the same horizontal
+// extent.
 fn landing_share(normal: vec3f, velocity: vec3f) -> f32 {
     return max(-dot(velocity, normal), 0.0) / max(-velocity.z * normal.z, 1e-6);
 }
 
-// The crown that stands on a surface of a `normal` at a height: it rises, opens and falls (sizes in drop diameters
-// after Yarin 2006, Drop Impact Dynamics).
+// Returns the crown on a surface with a `normal` at the height `z`: it rises, opens and falls. Sizes in drop diameters
+// after Yarin 2006, Drop Impact Dynamics.
 fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
     let landing = arrival.landing;
     let at = vec3f(landing.xy, z);
@@ -245,10 +247,10 @@ fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
     let d = max(length(at), 1e-3);
     let along = abs(dot(at, normal)) / d;
     let full = vec2f(2.0 + 5.0 * age, 20.0 * age * (1.0 - age) + 0.5) * arrival.diameter;
-    // From its side one sees a wall, from above a ring.
+    // Seen from the side the crown is a wall, from above a ring.
     let shown = vec2f(full.x, full.y * sqrt(max(1.0 - along * along, 0.0)) + full.x * along);
     let size = max(shown, vec2f(rain.pixel_angle * d * LEAST_PIXELS));
-    // The water of the crown is a thin sheet and droplets: a third of what the quad covers.
+    // The water of the crown is a thin sheet with droplets: it covers a third of the quad.
     let thin = (shown.x * shown.y) / (size.x * size.y) * exp(-rain.extinction * d);
     let cover = gained(0.35 * thin) * (landing.fade * (1.0 - age * age));
     return Crown(at, size.x, vec4f(drop_light(at, at / d) * cover, cover), normal.xy, size.y, age, arrival.slot);
@@ -256,13 +258,13 @@ fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
 
 struct CrownVarying {
     @builtin(position) position: vec4f,
-    // Premultiplied.
+    // Premultiplied light.
     @location(0) light: vec4f,
-    // As depth_of has it, and age.
+    // Depth from depth_of, and age.
     @location(1) depth_age: vec3f,
-    // Across, -1 to 1, and from the foot to the top, 0 to 1.
+    // Position across, -1 to 1, and from the foot to the top, 0 to 1.
     @location(2) at: vec2f,
-    // Of its own, 0 to 1.
+    // Random numbers of the crown, 0 to 1.
     @location(3) @interpolate(flat) chance: vec2f,
 }
 
@@ -273,30 +275,30 @@ fn crown_corner(crown: Crown, corner: u32) -> CrownVarying {
     let top = select(0.0, 1.0, (corner & 2u) != 0u);
     let normal = vec3f(crown.lean, sqrt(max(1.0 - dot(crown.lean, crown.lean), 0.0)));
     let across = unit_or(cross(toward, normal) + vec3f(1e-6, 0.0, 0.0), vec3f(1.0, 0.0, 0.0));
-    // Upwards in the picture, from the foot on: what is below it may be dry.
+    // The quad extends upwards in the picture from the foot, because the ground below it may be dry.
     let tall = cross(across, toward);
     let place = crown.at + across * (side * crown.width) + tall * (top * crown.height);
     var clip = rain.clip * vec4f(place, 1.0);
     clip.y *= rain.y_sign;
     let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), crown.width > 0.0);
     let chance = vec2f(random3(vec3u(crown.slot, rain.seed, 5u)).xy >> vec2u(8u)) / 16777216.0;
-    // A little nearer than its foot, which stands on what the picture shows.
+    // Slightly nearer than its foot, which stands on the visible surface.
     let depth = depth_of(rain.depth, (rain.clip * vec4f(crown.at, 1.0)).w, d, 0.2);
     return CrownVarying(position, crown.light, vec3f(depth, crown.age), vec2f(side, top), chance);
 }
 
-// Droplets of a crown.
+// Number of droplets of a crown.
 const DROPLETS: u32 = 3u;
 
-// The crown's sheet, which opens upwards and is seen thicker at its sides, and droplets off its rim on parabolas, over
-// the mean of the quad.
+// Returns the opacity of a crown relative to the mean of its quad: a sheet that opens upwards and looks thicker at its
+// sides, and droplets that leave its rim on parabolas.
 fn crown_profile(at: vec2f, age: f32, chance: vec2f) -> f32 {
     let y = at.y / 0.6;
     let x = at.x / (0.5 + 0.4 * min(y, 1.0));
     let sheet = (0.7 + 0.9 * x * x) * (1.0 - smoothstep(0.7, 1.0, abs(x))) * (1.0 - smoothstep(0.75, 1.0, y));
     var drops = 0.0;
     for (var i = 0u; i < DROPLETS; i++) {
-        // They leave the rim one after the other, to all sides.
+        // Droplets leave the rim one after another, in all directions.
         let turn = 6.2831853 * (chance.x + f32(i) * 0.381966);
         let t = max(age - 0.1 - 0.15 * fract(chance.y + f32(i) * 0.618034), 0.0);
         let foot = vec2f(cos(turn) * (0.6 + 0.35 * t), 0.55 + 1.5 * t - 2.4 * t * t);
@@ -306,13 +308,13 @@ fn crown_profile(at: vec2f, age: f32, chance: vec2f) -> f32 {
     return 1.85 * (sheet + 2.0 * drops);
 }
 
-// `shown`: depth of the host's picture; `pixel`: how much of the quad's height a pixel is. What is no larger than some
-// pixels has no shape, only its mean.
+// Returns the premultiplied light of a pixel of a crown. `shown` is the depth of the host's picture; `pixel` is the
+// height of a pixel relative to that of the quad. A crown of only a few pixels has no shape, only its mean.
 fn crown_color(in: CrownVarying, shown: f32, pixel: f32) -> vec4f {
     let soft = share_before(shown, in.depth_age.xy);
     let shape = min(crown_profile(in.at, in.depth_age.z, in.chance), 3.0);
     let profile = mix(shape, 1.0 - in.at.x * in.at.x, smoothstep(0.15, 0.4, pixel));
-    // Where it is thick it hides no more than all.
+    // The opacity is at most 1 where the crown is thick.
     return in.light * min(profile * soft, 1.0 / max(in.light.a, 1e-6));
 }
 
@@ -323,7 +325,7 @@ struct ListedCrown {
     @location(3) slot: u32,
 }
 
-// Those that the picture may show (rain/crowns.wgsl, crowns_view.wgsl).
+// Draws the crowns that may be in the picture (rain/crowns.wgsl, crowns_view.wgsl).
 @vertex
 fn crown_vertex(@builtin(vertex_index) corner: u32, listed: ListedCrown) -> CrownVarying {
     let more = listed.lean_height_age;

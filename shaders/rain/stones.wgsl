@@ -1,5 +1,6 @@
-// Stones of ice, falling in the drops' lattice, and hopping where they land: (seed, id, time) alone say where each is.
-// How many there are is in src/rain/stones.rs. The entry points read the depth: stones_view.wgsl.
+// Stones of ice (hail and ice pellets), falling in a lattice like the drops' and hopping where they land. The place of
+// each follows from (seed, id, time). src/rain/stones.rs has their numbers. The entry points read the depth:
+// stones_view.wgsl.
 //!include "common/guarded.wgsl"
 //!include "rain/splash.wgsl"
 
@@ -8,19 +9,20 @@ const STONE_CLASSES: u32 = 16u;
 const STONE_SHELLS: u32 = 4u;
 
 struct StoneUniform {
-    // Of the stones' own lattice, as `cell` and `shell` of `RainUniform` are of the drops'.
+    // The stones' own lattice, in the layout of `cell` and `shell` of `RainUniform`, but for
+    // the w of `shells`, which is 0.
     air: array<vec4u, STONE_SHELLS>,
     shells: array<vec4f, STONE_SHELLS>,
-    // Where each shell's stones begin among all.
+    // Number of the first stone of each shell.
     first: vec4u,
-    // Per class and shell: stones of the classes up to this one.
+    // Per class and shell: number of stones of the classes up to this one.
     upto: array<vec4u, STONE_CLASSES>,
     // Per class: diameter, m; fall speed, speed units; share of the landings of the classes up to this one; 1 for clear
     // ice.
     classes: array<vec4f, STONE_CLASSES>,
-    // Per class and shell: stones that each of them stands for.
+    // Per class and shell: number of stones that each drawn stone stands for.
     weight: array<vec4f, STONE_CLASSES>,
-    // The grid of landings, as `SplashUniform` has that of splashes.
+    // The grid of landings, in the layout of `SplashUniform`.
     cell: vec2i,
     place: vec2f,
     side: f32,
@@ -32,27 +34,27 @@ struct StoneUniform {
     share: f32,
     ground: f32,
     reach: f32,
-    // m/s^2.
+    // Gravity, m/s^2.
     gravity: f32,
 }
 
 @group(1) @binding(0) var<uniform> stones: StoneUniform;
 
-// Part of the light that milky ice gives back.
+// Albedo of milky ice.
 const ICE_ALBEDO: f32 = 0.75;
-// Part of its speed that a stone keeps when it first bounces: ice that is hit this hard cracks.
+// Range of the share of its speed that a stone keeps at its first bounce: ice that is hit this hard cracks.
 const FIRST_REBOUND: vec2f = vec2f(0.1, 0.32);
-// And every further time.
+// Share of the speed that it keeps at each further bounce.
 const REBOUND: f32 = 0.45;
 const HOPS: u32 = 3u;
 
 struct Stone {
-    // Camera-relative, m.
+    // Position relative to the camera, m.
     position: vec3f,
     velocity: vec3f,
     diameter: f32,
     clear: f32,
-    // Share of it that is drawn, and stones that it stands for.
+    // Share of the stone that is drawn, and number of stones that it stands for.
     share: f32,
     weight: f32,
 }
@@ -67,7 +69,7 @@ fn falling_stone(instance: u32) -> Stone {
     }
     let before = select(0u, stones.upto[max(k, 1u) - 1u][s], k > 0u);
     let class_row = stones.classes[k];
-    // Classes of drops come before those of stones.
+    // Numbers of the drops' classes come before those of stones.
     let place = random3(vec3u(rain.seed, (s << 8u) | (CLASSES + k), index - before));
     let fallen = u32(class_row.y) * stones.air[s].w;
     let away = bitcast<vec3i>(place - vec3u(0u, 0u, fallen) - stones.air[s].xyz);
@@ -82,19 +84,19 @@ fn falling_stone(instance: u32) -> Stone {
 
 struct Touch {
     landing: Landing,
-    // Three numbers from 0 to 1 of its own.
+    // Three random numbers of the landing, 0 to 1.
     chance: vec3f,
-    // Of the stone.
+    // Row of `classes` for the stone.
     kind: vec4f,
 }
 
-// The stone that landed in a slot, before it is known where its ground is.
+// Returns the stone that landed in a slot, before the height of the ground is known.
 fn touch_of(instance: u32) -> Touch {
     let slot = instance % stones.slots;
     let index = instance / stones.slots;
     let cell = stones.cell + vec2i(i32(index % stones.cells), i32(index / stones.cells)) - i32(stones.cells / 2u);
     let key = bitcast<vec2u>(cell);
-    // Each slot begins at a moment of its own.
+    // Each slot has its own phase.
     let phase = random3(vec3u(key.x, key.y, rain.seed + 0x51ed270bu + slot)).x;
     let time = stones.part + f32(phase >> 8u) / 16777216.0;
     let turn = stones.tick + select(0u, 1u, time >= 1.0);
@@ -112,7 +114,7 @@ fn touch_of(instance: u32) -> Touch {
     return Touch(landing, vec3f(more >> vec3u(8u)) / 16777216.0, stones.classes[k]);
 }
 
-// The stone where its hops have brought it: parabolas, each lower than the one before; then it lies.
+// Returns the stone at its place after its hops: parabolas, each lower than the one before. Then it lies.
 fn hopping_stone(touch: Touch, z: f32) -> Stone {
     let kind = touch.kind;
     let fall = kind.y * SPEED_UNIT;
@@ -137,15 +139,15 @@ fn hopping_stone(touch: Touch, z: f32) -> Stone {
     return Stone(p, flight.xyz, kind.x, kind.w, fade, 1.0);
 }
 
-// Mean over the disc of a matt sphere lit from where the cosine to the eye is `c`, over what a matt plane facing the
-// light sends (Russell 1916).
+// Returns the mean radiance over the disc of a matt sphere, relative to a matt plane that faces the light. `c` is the
+// cosine of the angle between the light and the eye, seen from the sphere (Russell 1916).
 fn sphere_phase(c: f32) -> f32 {
     let angle = acos(clamp(c, -1.0, 1.0));
     return (sin(angle) + (3.14159265 - angle) * c) * 0.21220659;
 }
 
-// Radiance of a stone at `p` seen along `d`: milky ice is matt and lit by what lies before it, clear ice shows what
-// lies behind.
+// Returns the radiance of a stone at `p` seen along `d`. Milky ice is matt and lit from the viewer's side; clear ice
+// shows what lies behind it.
 fn stone_light(p: vec3f, d: vec3f, clear: f32) -> vec3f {
     var beams = rain.sun * sphere_phase(-dot(d, rain.to_sun));
     for (var i = 0u; i < light_count(); i++) {
@@ -161,11 +163,12 @@ fn stone_light(p: vec3f, d: vec3f, clear: f32) -> vec3f {
 struct StoneVarying {
     @builtin(position) position: vec4f,
     @location(0) light: vec3f,
-    // How much it hides where it hides most.
+    // Opacity where the stone covers most.
     @location(1) cover: f32,
-    // As depth_of has it, and the share of its light that what lies between lets through.
+    // Depth from depth_of, and transmittance between the stone and the eye.
     @location(2) depth_clear: vec3f,
-    // Place in the quad in radii, across and along, and how far the middle's way reaches.
+    // Position in the quad in radii, across and along, and distance that the stone's middle moves to either side, in
+    // radii.
     @location(3) at: vec2f,
     @location(4) reach: f32,
 }
@@ -174,7 +177,7 @@ fn no_stone() -> StoneVarying {
     return StoneVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), 0.0, vec3f(0.0), vec2f(0.0), 0.0);
 }
 
-// A corner of what the stone covers while the shutter is open.
+// Returns a corner of the quad that the stone covers during the exposure.
 fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
     let d = max(length(stone.position), 1e-3);
     let toward = stone.position / d;
@@ -215,7 +218,7 @@ fn falling_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) i
     return stone_corner(stone, corner);
 }
 
-// The same of a stone that hops on a surface; 1 in its last if that was found.
+// Returns a corner of the quad of a stone that hops on `surface`, whose w is 1 if the surface was found.
 fn hopping_corner(touch: Touch, surface: vec4f, corner: u32) -> StoneVarying {
     let fall = rain.wind - vec3f(0.0, 0.0, touch.kind.y * SPEED_UNIT);
     if surface.w == 0.0 || sheltered(above_ground(vec3f(touch.landing.xy, surface.z)), fall, true) {
@@ -224,7 +227,7 @@ fn hopping_corner(touch: Touch, surface: vec4f, corner: u32) -> StoneVarying {
     return stone_corner(hopping_stone(touch, surface.z), corner);
 }
 
-// Premultiplied.
+// Returns the premultiplied light of a pixel of a stone.
 fn stone_color(in: StoneVarying, shown: f32) -> vec4f {
     let soft = share_before(shown, in.depth_clear.xy);
     let cover = min(in.cover * passing(in.at, in.reach), 1.0) * soft * in.depth_clear.z;

@@ -1,4 +1,4 @@
-// Stones before a host's picture.
+// Entry points of stones in front of a host's picture.
 //!include "rain/drops_view.wgsl"
 //!include "rain/stones.wgsl"
 

@@ -1,4 +1,4 @@
-// The air of a planet and what it does to light at one altitude. Twin: src/sky/reference/medium.rs.
+// Air of a planet and its optical properties at one altitude. Twin: src/sky/reference/medium.rs.
 //!include "common/guarded.wgsl"
 
 alias Length = f32;
@@ -9,10 +9,10 @@ alias Radiance = vec3f;
 const SKY_PI: f32 = 3.14159265;
 
 struct SkyAir {
-    // Altitude 0 and thickness of the air, m.
+    // Radius of altitude 0, and thickness of the air, m.
     bottom_m: f32,
     thickness_m: f32,
-    // Half the angle of the sun's disc, rad.
+    // Angular radius of the sun's disc, rad.
     sun_angular_radius: f32,
     asymmetry_g: f32,
     rayleigh_scattering: PerLength,
@@ -24,10 +24,10 @@ struct SkyAir {
     ozone_extinction: PerLength,
     ozone_half_width_m: f32,
     ground_albedo: vec3f,
-    // Edge of the planet's disc seen from the top of the air: the cosine of its zenith angle, negated.
+    // Negated cosine of the zenith angle of the planet's edge, seen from the top of the air.
     top_dip: f32,
-    // One triple of a set of wavelengths: what light at each of them adds to the three kept, and which of the triples
-    // it is.
+    // For one triple of a set of wavelengths: columns of the matrix that converts its light to the three kept
+    // transfers, the index of the triple, and the number of triples.
     part_a: vec3f,
     layer: f32,
     part_b: vec3f,
@@ -50,24 +50,24 @@ fn air_optical_depth(air: SkyAir, columns: vec3f) -> vec3f {
     return air.rayleigh_scattering * columns.x + air.mie_extinction * columns.y + air.ozone_extinction * columns.z;
 }
 
-// (1 - e^-x)/x for x >= 0, the share of a layer's light that leaves it.
+// (1 - e^-x)/x for x >= 0: the share of a layer's light that leaves it.
 fn air_escape(x: vec3f) -> vec3f {
     let series = 1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666667));
     return select((1.0 - exp(-x)) / max(x, vec3f(1e-6)), series, x < vec3f(0.05));
 }
 
-// 1 - e^-x for x >= 0 without cancellation.
+// 1 - e^-x for x >= 0, without cancellation.
 fn air_opacity(x: vec3f) -> vec3f {
     return x * air_escape(x);
 }
 
-// 3/(16 pi) (1 + nu^2), 1/sr (Rayleigh). nu: cosine between the directions to the light and of the view.
+// 3/(16 pi) (1 + nu^2), 1/sr (Rayleigh). nu: cosine of the angle between the directions to the light and of the view.
 fn rayleigh_phase(nu: Cosine) -> f32 {
     return 0.05968310 * (1.0 + nu * nu);
 }
 
-// 3/(8 pi) (1 - g^2)/(2 + g^2) (1 + nu^2)/(1 + g^2 - 2 g nu)^(3/2), 1/sr (Cornette and Shanks 1992, eq. 8), with the
-// denominator as (1 - |g|)^2 + 2 |g| (1 -+ nu), which does not cancel at the peak.
+// 3/(8 pi) (1 - g^2)/(2 + g^2) (1 + nu^2)/(1 + g^2 - 2 g nu)^(3/2), 1/sr (Cornette and Shanks 1992, eq. 8). The
+// denominator is written as (1 - |g|)^2 + 2 |g| (1 -+ nu), which does not suffer from cancellation at the peak.
 fn mie_phase(nu: Cosine, g: f32) -> f32 {
     let a = abs(g);
     let b = (1.0 - a) * (1.0 - a);
@@ -75,7 +75,7 @@ fn mie_phase(nu: Cosine, g: f32) -> f32 {
     return 0.11936621 * (1.0 - a) * (1.0 + a) / (2.0 + a * a) * (1.0 + nu * nu) / (d * sqrt(d));
 }
 
-// sqrt and back: how radiances are kept in fp16, so that twilight (1e-8 of the sun) survives.
+// Radiances are stored in fp16 as their square roots, so that twilight (1e-8 of the sun) is not lost.
 fn sky_encode(x: vec3f) -> vec4f {
     return vec4f(capped(sqrt(not_negative(x)), 65504.0), 1.0);
 }
@@ -84,7 +84,7 @@ fn sky_decode(x: vec4f) -> vec3f {
     return x.rgb * x.rgb;
 }
 
-// The same for what may be negative: three transfers that stand for a set of wavelengths.
+// Encoding of values that may be negative: the three transfers that stand for a set of wavelengths.
 fn sky_encode_signed(x: vec3f) -> vec4f {
     return vec4f(sign(x) * capped(sqrt(abs(x)), 65504.0), 1.0);
 }
@@ -93,12 +93,12 @@ fn sky_decode_signed(x: vec4f) -> vec3f {
     return x.rgb * abs(x.rgb);
 }
 
-// What a triple's light adds to the three kept.
+// Contribution of a triple's light to the three kept transfers.
 fn air_part(air: SkyAir, light: vec3f) -> vec3f {
     return air.part_a * light.x + air.part_b * light.y + air.part_c * light.z;
 }
 
-// arccos within 7e-5 rad (Abramowitz and Stegun 1964, 4.4.45), without the branches of the exact one.
+// Arc cosine within 7e-5 rad (Abramowitz and Stegun 1964, 4.4.45), without the branches of the exact function.
 fn sky_acos(x: f32) -> f32 {
     let a = min(abs(x), 1.0);
     let p = sqrt(1.0 - a) * (1.5707288 + a * (-0.2121144 + a * (0.0742610 - a * 0.0187293)));

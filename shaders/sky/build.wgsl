@@ -1,14 +1,14 @@
 //!include "common/fullscreen.wgsl"
 //!include "sky/march.wgsl"
-// Tables over the planet, order of scattering by order (the scheme of Bruneton and Neyret 2008, cut for fp16 render
-// targets): `gather` marches the radiance of one order along the directions of a quadrature at every sun angle and
-// altitude, `scatter` turns it into the next order's source with the phase functions, `light` into irradiance and
+// Tables over the planet, by orders of scattering (the scheme of Bruneton and Neyret 2008, divided for fp16 render
+// targets). `gather` marches the radiance of one order along the directions of a quadrature, at every sun angle and
+// altitude. `scatter` applies the phase functions and gives the source of the next order. `light` gives irradiance and
 // moments. Twin: src/sky/reference/source.rs.
 //
-// A table is an atlas of (sun angle, altitude) tiles, one tile a direction.
+// A table is an atlas of tiles, one for each direction; a tile covers (sun angle, altitude).
 
 struct SkyJob {
-    // The order that is gathered: 1 is light scattered once, and the sun on the ground.
+    // Order that is gathered. Order 1 is light scattered once, and sunlight on the ground.
     order: u32,
     // 1 on the last order: the orders after it are added as a geometric series.
     last: u32,
@@ -18,11 +18,11 @@ struct SkyJob {
 
 @group(0) @binding(0) var<uniform> air: SkyAir;
 @group(0) @binding(1) var<uniform> dims: SkyDims;
-// x: node on (0, 1), y: weight (Gauss and Legendre); z, w: cosine and sine of an azimuth.
+// x: node on (0, 1), y: weight (Gauss-Legendre); z, w: cosine and sine of an azimuth.
 @group(0) @binding(2) var<uniform> rule: array<vec4f, 24>;
 @group(0) @binding(3) var sky_sampler: sampler;
 @group(0) @binding(4) var<uniform> job: SkyJob;
-// The order's own source, radiance along the quadrature and light; sums of the orders before it.
+// Source, radiance along the quadrature, and light of the order; then sums over the orders before it.
 @group(1) @binding(0) var sky_sources: texture_2d<f32>;
 @group(1) @binding(1) var radiances: texture_2d<f32>;
 @group(1) @binding(2) var lights: texture_2d<f32>;
@@ -33,7 +33,7 @@ struct SkyJob {
 struct Place {
     altitude: Length,
     mu_s: Cosine,
-    // Texel in the tile, and the tile.
+    // Texel within the tile, and the tile.
     at: vec2u,
     tile: vec2u,
 }
@@ -47,14 +47,14 @@ fn place_of(position: vec4f) -> Place {
     return Place(altitude_from_coordinate(air, x.y), sun_from_coordinate(air, x.x), at, tile);
 }
 
-// Zenith cosine of row `m` of the quadrature and its weight for one azimuth of a mirrored pair.
+// Zenith cosine of row `m` of the quadrature, and the row's weight for one azimuth of a mirrored pair.
 fn rule_row(altitude: Length, m: u32) -> vec2f {
     let half_size = dims.rule_zeniths;
     let node = rule[select(m - half_size, m, m < half_size)].xy;
     return rule_direction(air, altitude, m, half_size, node) * vec2f(1.0, SKY_PI / f32(dims.rule_azimuths));
 }
 
-// Cosine and sine of azimuth `p` of the quadrature, even steps on (0, pi).
+// Cosine and sine of azimuth `p` of the quadrature; the azimuths are equally spaced on (0, pi).
 fn rule_azimuth(p: u32) -> vec2f {
     return rule[p].zw;
 }
@@ -63,8 +63,8 @@ fn cosine_between(mu_a: Cosine, mu_b: Cosine, cos_azimuth: f32) -> Cosine {
     return clamp(mu_a * mu_b + sqrt(max((1.0 - mu_a * mu_a) * (1.0 - mu_b * mu_b), 0.0)) * cos_azimuth, -1.0, 1.0);
 }
 
-// Sum of the haze's phase function over the quadrature about the sun: 1 for an endless rule. The gather divides by
-// it, so that a peak between two directions neither wins nor loses light.
+// Sum of the haze's phase function over the quadrature around the sun, which would be 1 for an infinitely fine
+// quadrature. The gather divides by it, so that a peak between two directions neither gains nor loses light.
 @fragment
 fn norm(in: FullscreenVarying) -> @location(0) vec4f {
     let here = place_of(in.position);
@@ -78,8 +78,8 @@ fn norm(in: FullscreenVarying) -> @location(0) vec4f {
     return vec4f(2.0 * sum, 0.0, 0.0, 1.0);
 }
 
-// Light that the ground sends up, per unit irradiance: albedo/pi (sun + sky). The sky of order n is the light of order
-// n - 1 as `lights` holds it; the sun's comes with order 1.
+// Light that the ground reflects, per unit irradiance: albedo/pi (sun + sky). The sky of order n is the light of order
+// n - 1 in `lights`; sunlight is added in order 1.
 fn ground_light(mu_s: Cosine) -> Radiance {
     if (job.order == 1u) {
         return air.ground_albedo / SKY_PI * max(mu_s, 0.0) * sun_transmittance(air, 0.0, mu_s);
@@ -88,7 +88,7 @@ fn ground_light(mu_s: Cosine) -> Radiance {
     return air.ground_albedo / SKY_PI * textureSampleLevel(lights, sky_sampler, at, 0.0).rgb / LIGHT_SCALE;
 }
 
-// Irradiances and moments may be negative, so they are kept as they are, times this.
+// Irradiances and moments may be negative, so they are stored without a square root, times this factor.
 const LIGHT_SCALE: f32 = 4096.0;
 
 @fragment
@@ -121,11 +121,12 @@ struct Sums {
     @location(1) sum: vec4f,
 }
 
-// What a geometric series adds to its last term. In thick haze two small neighbouring orders can have any ratio, which
-// a series near 1 would turn into colours out of nothing. The bound is measured against the f64 reference: with 0.8
-// haze of 7 km visibility erred by 17 % (95th percentile) and of 3 km by 41, with 0.55 by 6.0 and 11.5; with 0.5 white
-// ground under haze begins to lose light (3.1 to 4.6 %). Dust of many optical depths does pass most of an order on to
-// the next: held to 0.55 a dust storm's noon was black.
+// Sum of a geometric series after its last term. In thick haze two small successive orders can have any ratio, and a
+// series with a ratio near 1 would create colours from nothing; so the ratio is limited. The limit was chosen by
+// comparison with the f64 reference. With 0.8 the error was 17 % (95th percentile) in haze of 7 km visibility and 41 %
+// in haze of 3 km; with 0.55 it was 6.0 and 11.5 %. With 0.5, white ground under haze begins to lose light (3.1 to 4.6
+// %). Dust of many optical depths passes most of one order on to the next: with a limit of 0.55, noon in a dust storm
+// was black.
 fn tail(before: vec3f, term: vec3f) -> vec3f {
     let depth = air.mie_extinction.y * air.mie_scale_height_m;
     let limit = mix(0.55, 0.8, clamp(0.5 * (depth - 1.0), 0.0, 1.0));
@@ -150,7 +151,7 @@ fn scatter(in: FullscreenVarying) -> Sums {
         let turn = azimuth * (sine * sqrt(max(1.0 - d.x * d.x, 0.0)));
         for (var p = 0u; p < rule_azimuths(dims); p++) {
             let light = d.y * gathered(here, m, p);
-            // The direction and its mirror image.
+            // Adds the direction and its mirror image.
             let part = turn * rule_azimuth(p);
             let nu_a = base + part.x + part.y;
             let nu_b = base + part.x - part.y;
@@ -176,9 +177,9 @@ fn scatter(in: FullscreenVarying) -> Sums {
     return Sums(sky_encode(source), sky_encode(sum));
 }
 
-// Tile 0: irradiance of the sky on a level surface. Tiles 1 to 6: integrals of the sky's radiance, the ground's own
-// light with it, times the real spherical harmonics 00, 1z, 1x, 2zz, 2xz, 2xx-yy in the frame (towards the sun, left,
-// up); the others vanish by symmetry.
+// Tile 0: irradiance of the sky on a level surface. Tiles 1 to 6: integrals of the radiance of sky and ground, times
+// the real spherical harmonics 00, 1z, 1x, 2zz, 2xz, 2xx-yy in the frame (towards the sun, left, up). The others vanish
+// by symmetry.
 @fragment
 fn light(in: FullscreenVarying) -> Sums {
     let here = place_of(in.position);
@@ -215,7 +216,8 @@ fn light(in: FullscreenVarying) -> Sums {
     return Sums(vec4f(order, 1.0), vec4f(sum, 1.0));
 }
 
-// Hillaire 2020: light scattered twice, and what comes back of a field of light, both taken as alike in all directions.
+// Light scattered twice, and the share of a field of light that is scattered back; both are taken as equal in all
+// directions (Hillaire 2020).
 @fragment
 fn isotropic_gather(in: FullscreenVarying) -> Sums {
     let here = place_of(in.position);
@@ -245,7 +247,7 @@ fn isotropic_scatter(in: FullscreenVarying) -> @location(0) vec4f {
             back += weight * sky_decode(textureLoad(sky_sources, vec2i(texel), 0));
         }
     }
-    // Both mirrored azimuths, over 4 pi.
+    // Counts both mirrored azimuths, and divides by 4 pi.
     let share = 0.5 / SKY_PI;
     let all = twice * share / (1.0 - min(back * share, vec3f(0.98)));
     return sky_encode(all * f32(here.at.x > 0u));
@@ -256,8 +258,8 @@ struct Once {
     @location(1) haze: vec4f,
 }
 
-// Light scattered once over (altitude, view angle, sun angle) without the phase functions, in the sun's azimuth (Elek
-// 2008, 3.4).
+// Light scattered once as a function of (altitude, view angle, sun angle), without the phase functions, in the sun's
+// azimuth (Elek 2008, 3.4).
 @fragment
 fn once(in: FullscreenVarying) -> Once {
     let here = place_of(in.position);

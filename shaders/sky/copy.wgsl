@@ -1,21 +1,21 @@
 //!include "common/fullscreen.wgsl"
-// Copies a table; with a blending target, fades one into another.
+// Copies a table. With a blending target it fades one table into another.
 
 @group(0) @binding(0) var copied: texture_2d<f32>;
 
-// Texel by texel.
+// Copies texel by texel.
 @fragment
 fn copy(in: FullscreenVarying) -> @location(0) vec4f {
     return textureLoad(copied, vec2i(in.position.xy), 0);
 }
 
-// Sun angles and altitudes of the light that is drawn; those of the one that is read follow from its size.
+// Numbers of sun angles and altitudes in the target. Those of the table that is read follow from its size.
 override SUNS: u32 = 64u;
 override ALTITUDES: u32 = 22u;
 const LIGHT_TILES: u32 = 7u;
 
-// The table of light, tile by tile, from one of another size: between its texels as look-ups would read it. Of one of
-// the same size it is every texel itself.
+// Copies the table of light, tile by tile, from a table of another size. Values between its texels are interpolated as
+// in look-ups. A table of the same size is copied exactly.
 @fragment
 fn light(in: FullscreenVarying) -> @location(0) vec4f {
     let px = vec2u(in.position.xy);
@@ -23,7 +23,7 @@ fn light(in: FullscreenVarying) -> @location(0) vec4f {
     let tile = px.x / SUNS;
     let at = vec2u(px.x - tile * SUNS, px.y);
     let steps = vec2u(SUNS, ALTITUDES) - 1u;
-    // In whole numbers, so that a place on a texel has no part of its neighbours.
+    // Integer arithmetic, so that a position on a texel takes nothing of its neighbours.
     let scaled = at * (size - 1u);
     let first = min(scaled / steps, size - 2u);
     let part = vec2f(scaled - first * steps) / vec2f(steps);

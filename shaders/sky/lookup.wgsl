@@ -1,35 +1,34 @@
 //!include "sky/view.wgsl"
 //!include "sky/march.wgsl"
-// What other shaders ask of the sky. Bind group 1 is `SkyVolume::bind_group()`.
+// Look-ups of the sky for other shaders. Bind group 1 is `SkyVolume::bind_group()`.
 //
-// `dir` is a unit vector from the observer in its local level frame: z up, x and y any level axes, the same in which
-// the host gave the lamps' directions (`Lamp::toward`). Radiances are per the lamps' irradiance as given: W m^-2 sr^-1
+// `dir` is a unit vector from the observer in its local level frame: z up, x and y any level axes, in which the host
+// also gave the lamps' directions (`Lamp::toward`). Radiances are for the lamps' irradiance as given: W m^-2 sr^-1
 // nm^-1 with `Planet::solar_irradiance`. Distances are metres from the observer.
 
 struct SkyLamp {
-    // Unit, towards the lamp, geometric (not refracted).
+    // Unit vector towards the lamp, geometric (without refraction).
     toward: vec3f,
     angular_radius: f32,
     irradiance: vec3f,
     // 0: a sun; 1: a moon, lit from `lit_from`.
     kind: u32,
-    // Exponents of limb darkening (Hestroffer and Magnan 1998: I = mu^a), per wavelength; or the factor of a moon's
-    // law.
+    // Exponents of limb darkening per wavelength (Hestroffer and Magnan 1998: I = mu^a), or the factor of a moon's law.
     limb: vec3f,
-    // Of its angular radius.
+    // Reciprocal of the angular radius.
     inverse_radius: f32,
     lit_from: vec3f,
-    // First sine of elevation of which `depth` tells, and one over the stretch.
+    // First sine of elevation at which `depth` is valid; `depth_scale` is the reciprocal of the interval's length.
     depth_from: f32,
-    // Unit level direction under the lamp.
+    // Unit level direction below the lamp.
     level: vec2f,
-    // Where the tables of this lamp lie: first layer.
+    // First layer of this lamp's tables.
     layer: u32,
     unused_b: u32,
-    // Radiance of the disc where the law of its face is 1.
+    // Radiance of the disc where the law of its surface is 1.
     disc: vec3f,
     depth_scale: f32,
-    // Logarithm of the air's optical depth before the disc, a polynomial of the third degree, by wavelength.
+    // Logarithm of the optical depth of the air in front of the disc, per wavelength, as a cubic polynomial.
     depth: array<vec4f, 4>,
 }
 
@@ -37,29 +36,29 @@ struct SkyView {
     air: SkyAir,
     dims: SkyDims,
     edges: SkyEdges,
-    // Texture coordinates of the sky above the horizon: of the centre of its first texel, and from there to that of its
-    // last one.
+    // Texture coordinates of the sky above the horizon: the centre of its first texel, and the offset from there to the
+    // centre of its last texel.
     sky_above: vec4f,
     altitude: Length,
     lamp_count: u32,
-    // 0: no refraction; 1: the Earth's standard air.
+    // Strength of refraction: 0 is none, 1 that of the Earth's standard air.
     refraction: f32,
-    // Panels of a march per pixel.
+    // Number of panels in a pixel's march.
     march_panels: u32,
     lamps: array<SkyLamp, 2>,
 }
 
 @group(1) @binding(0) var<uniform> sky_view: SkyView;
-// The observer's sky and the air in front of things.
+// Observer's sky, and the air in front of things.
 @group(1) @binding(1) var sky_tables: texture_2d_array<f32>;
-// The planet's light, and below it the sources where pixels march.
+// Light of the planet; where pixels march, the sources lie below it.
 @group(1) @binding(2) var sky_lights: texture_2d<f32>;
 @group(1) @binding(3) var sky_sampler: sampler;
 
-// Set by `SkyTables::pipeline_constants` where the model marches every pixel.
+// Whether every pixel marches; set by `SkyTables::pipeline_constants` for that model.
 override SKY_MARCH: bool = false;
-// Lamps that a pipeline draws, all that there are if 2: what stands in a loop costs a software driver a turn more than
-// are taken.
+// Number of lamps that a pipeline draws; 2 means `lamp_count`. A software driver pays for one more turn of a loop than
+// are taken, so a smaller number is a constant.
 override SKY_LAMPS: u32 = 2u;
 
 fn sky_lamps() -> u32 {
@@ -72,11 +71,11 @@ fn sky_lamps() -> u32 {
 struct Aerial {
     // Radiance scattered into the ray between observer and distance.
     radiance: Radiance,
-    // Share of light from there that arrives.
+    // Transmittance from that distance to the observer.
     transmittance: vec3f,
 }
 
-// The ray of a direction, cut to the air; it ends on the ground below the horizon.
+// Ray in a direction, limited to the air. Below the horizon it ends on the ground.
 fn sky_view_ray(dir: vec3f) -> SkyRay {
     return sky_ray(sky_view.air, sky_view.altitude, dir.z, view_place(sky_view.edges, dir.z) < 0.0);
 }
@@ -98,7 +97,7 @@ fn lamp_light(lamp: SkyLamp, dir: vec3f, smooth_light: vec4f, haze_light: vec4f)
     return lamp.irradiance * (sky_decode_signed(smooth_light) + phase * sky_decode_signed(haze_light));
 }
 
-// The same by a march: the model that has no tables of its own but for light scattered more than once.
+// Light of a lamp along a ray by a march, for the model that has tables only of light scattered more than once.
 fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     let nu = dot(dir, lamp.toward);
     let r = sky_view.air.bottom_m + max(sky_view.altitude, 0.0);
@@ -110,16 +109,16 @@ fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     return lamp.irradiance * (once + light.more);
 }
 
-// A direction's ray, and the optical depth of what of it is looked through: several look-ups along one direction share
-// it.
+// Ray in a direction, and the optical depth along the part that is looked through. Several look-ups in one direction
+// share it.
 struct SkyPath {
     ray: SkyRay,
-    // Metres from the observer.
+    // Distance to the end of that part, m from the observer.
     distance: Length,
     depth: vec3f,
 }
 
-// To `distance`, or all the way if that is farther.
+// Path to `distance`, or to the end of the ray if that is nearer.
 fn sky_path(dir: vec3f, distance: Length) -> SkyPath {
     let ray = sky_view_ray(dir);
     let end = min(distance, ray.before + ray.length);
@@ -130,8 +129,8 @@ fn whole_path(dir: vec3f) -> SkyPath {
     return sky_path(dir, 1e30);
 }
 
-// Radiance that the air scatters into a whole ray: to space, or to the ground below the horizon. Discs and the ground's
-// own light are not in it.
+// Radiance that the air scatters into a whole ray: to space, or below the horizon to the ground. Discs and the ground's
+// own light are left out.
 fn sky_radiance(dir: vec3f) -> Radiance {
     return sky_radiance_on(whole_path(dir), dir);
 }
@@ -147,7 +146,7 @@ fn sky_radiance_on(path: SkyPath, dir: vec3f) -> Radiance {
     return sky_table_light(dir, at) * select(air_opacity(path.depth), vec3f(1.0), v >= 0.0);
 }
 
-// The same for directions above the horizon alone.
+// Radiance as `sky_radiance` gives it, for directions above the horizon only.
 fn sky_radiance_above(dir: vec3f) -> Radiance {
     if (SKY_MARCH) {
         return sky_radiance(dir);
@@ -163,12 +162,12 @@ fn marched_light(ray: SkyRay, dir: vec3f) -> vec3f {
     return out;
 }
 
-// Coordinate along x of place `v` above the horizon.
+// Texture coordinate x for coordinate `v` above the horizon.
 fn place_above(v: f32) -> f32 {
     return sky_view.sky_above.x + v * sky_view.sky_above.z;
 }
 
-// The table's light at coordinate `x`. Below the horizon it is kept divided by the opacity of the air.
+// Light from the table at texture coordinate `x`. Below the horizon it is stored divided by the opacity of the air.
 fn sky_table_light(dir: vec3f, x: f32) -> vec3f {
     var out = vec3f(0.0);
     for (var i = 0u; i < sky_lamps(); i++) {
@@ -181,7 +180,7 @@ fn sky_table_light(dir: vec3f, x: f32) -> vec3f {
     return out;
 }
 
-// Air between the observer and a point `distance` metres away in direction `dir`.
+// Radiance and transmittance of the air between the observer and a point `distance` metres away in direction `dir`.
 fn aerial(dir: vec3f, distance: Length) -> Aerial {
     return aerial_on(sky_path(dir, distance), dir);
 }
@@ -227,7 +226,7 @@ fn sky_transmittance_on(path: SkyPath) -> vec3f {
     return select(exp(-path.depth), vec3f(0.0), path.ray.grounded == 1u);
 }
 
-// Irradiance of all lamps' skies on a level surface facing up; sun angles are those at the observer's place.
+// Irradiance of all lamps' skies on a level surface facing up. The sun angles are those at the observer.
 fn sky_irradiance(altitude: Length) -> vec3f {
     var out = vec3f(0.0);
     for (var i = 0u; i < sky_lamps(); i++) {
@@ -249,7 +248,7 @@ fn sources_table_size() -> vec2f {
     return vec2f(f32(dims.azimuths * dims.suns), f32(dims.zeniths * dims.altitudes));
 }
 
-// Texels of `sky_lights`.
+// Size of `sky_lights`, texels.
 fn planet_table_size() -> vec2f {
     let light = light_table_size();
     if (!SKY_MARCH) {
@@ -270,15 +269,14 @@ fn diffuse_irradiance(altitude: Length, mu_s: Cosine) -> vec3f {
     return max(textureSampleLevel(sky_lights, sky_sampler, at, 0.0).rgb, vec3f(0.0)) / SKY_LIGHT_SCALE;
 }
 
-// Irradiance of a lamp on a surface that faces it, at `altitude` under the observer's sun angle.
+// Irradiance of a lamp on a surface facing it, at `altitude`, with the observer's sun angle.
 fn lamp_irradiance(index: u32, altitude: Length) -> vec3f {
     let lamp = sky_view.lamps[index];
     let h = clamp(altitude, 0.0, sky_view.air.thickness_m);
     return lamp.irradiance * sun_transmittance(sky_view.air, h, lamp.toward.z);
 }
 
-// Radiance of the planet's own ground (a Lambert surface lit by lamps and sky), seen through the air; 0 above the
-// horizon.
+// Radiance of the planet's ground (a Lambert surface lit by lamps and sky), seen through the air; 0 above the horizon.
 fn ground_radiance(dir: vec3f) -> Radiance {
     return ground_radiance_on(whole_path(dir), dir);
 }

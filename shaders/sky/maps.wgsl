@@ -1,19 +1,22 @@
 //!include "sky/ray.wgsl"
-// Where things lie in the tables. Every map has its inverse beside it; both are tested to be inverse.
+// Parametrisations of the tables. Each map stands beside its inverse; a test checks every pair.
 
 struct SkyDims {
-    // Nodes of the tables over the planet: sun angles, altitudes, and directions (zenith angle, azimuth) of a source.
+    // Numbers of nodes in the tables over the planet: sun angles, altitudes, and directions (zenith angle, azimuth) of
+    // a source.
     suns: u32,
     altitudes: u32,
     zeniths: u32,
     azimuths: u32,
-    // Directions of the quadrature over the sphere: zenith angles on each side of the horizon, azimuths on [0, pi].
+    // Numbers of directions in the quadrature over the sphere: zenith angles on each side of the horizon, azimuths on
+    // [0, pi].
     rule_zeniths: u32,
     rule_azimuths: u32,
-    // Panels of 4 nodes of a march.
+    // Numbers of panels (of 4 nodes) in a march.
     build_panels: u32,
     sky_panels: u32,
-    // Texels of an observer's tables: the sky above and below the horizon, and the volume likewise, with its slices.
+    // Sizes of an observer's tables, texels: the sky above and below the horizon; then the volume of air, with its
+    // slices.
     sky_azimuths: u32,
     sky_above: u32,
     sky_below: u32,
@@ -22,22 +25,22 @@ struct SkyDims {
     air_above: u32,
     air_below: u32,
     air_slices: u32,
-    // Both lie in one texture. The sky's first texel in it, and the texture's size: the sky is turned by a quarter,
-    // rows along x and azimuths along y, so that it is as high as the volume.
+    // Both lie in one texture: the sky's first texel in it, and the size of the texture. The sky is transposed (rows
+    // along x, azimuths along y), so that it is as high as the volume.
     sky_x: u32,
     sky_y: u32,
     tables_width: u32,
     tables_height: u32,
 }
 
-// Most directions and panels that the settings allow (src/sky/settings.rs): loops over them end whatever the block
-// holds.
+// Largest numbers of directions and panels that the settings allow (src/sky/settings.rs). They bound the loops whatever
+// the block contains.
 const MOST_RULE_ZENITHS: u32 = 16u;
 const MOST_RULE_AZIMUTHS: u32 = 24u;
 const MOST_BUILD_PANELS: u32 = 16u;
 const MOST_SKY_PANELS: u32 = 32u;
 const MOST_AIR_PANELS: u32 = 16u;
-// Of a march in the picture, whose cells the settings limit to 4096.
+// Largest number of panels in a pixel's march; the settings limit its cells to 4096.
 const MOST_MARCH_PANELS: u32 = 1024u;
 
 fn rule_zeniths(dims: SkyDims) -> u32 {
@@ -48,8 +51,9 @@ fn rule_azimuths(dims: SkyDims) -> u32 {
     return min(dims.rule_azimuths, MOST_RULE_AZIMUTHS);
 }
 
-// Sun angle: even steps where the sun is below the middle of the terminator as the air's top and bottom see it, and
-// coarser with height above it. Ends where the shadow reaches twice as high as the air: nothing is lit there.
+// Sun angle. Steps are even where the sun is below the middle of the terminator (between its positions for the bottom
+// and the top of the air), and grow with the sun's height above it. The range ends where the shadow reaches twice as
+// high as the air, so that nothing is lit.
 const SUN_SPREAD: f32 = 0.3;
 const SUN_BELOW: f32 = 0.22;
 
@@ -79,15 +83,15 @@ fn altitude_from_coordinate(air: SkyAir, coordinate: f32) -> Length {
     return air.thickness_m * coordinate * coordinate;
 }
 
-// Texel of a (sun angle, altitude) tile, counted from the tile's corner, for hardware interpolation.
+// Texel in a (sun angle, altitude) tile, counted from the tile's corner, for hardware interpolation.
 fn planet_texel(air: SkyAir, dims: SkyDims, altitude: Length, mu_s: Cosine) -> vec2f {
     let at = vec2f(sun_coordinate(air, mu_s), altitude_coordinate(air, altitude));
     return 0.5 + at * vec2f(f32(dims.suns - 1u), f32(dims.altitudes - 1u));
 }
 
-// Directions of a source: azimuth and elevation as shares of half and of a quarter of a turn, y = (1 + a) x/(a + x), so
-// that nodes are dense towards the light's azimuth and at the horizon, where the glow round a low sun is. Coordinates
-// in [0, 1]: x azimuth, y from nadir to zenith.
+// Directions of a source. Azimuth is a share of pi and elevation a share of pi/2, each mapped by y = (1 + a) x/(a + x).
+// Nodes are therefore dense towards the light's azimuth and at the horizon, where the glow around a low sun is.
+// Coordinates in [0, 1]: x azimuth, y from nadir to zenith.
 const SOURCE_SPREAD: vec2f = vec2f(3.0, 1.0);
 
 fn source_coordinate(mu: Cosine, cos_azimuth: f32) -> vec2f {
@@ -97,15 +101,15 @@ fn source_coordinate(mu: Cosine, cos_azimuth: f32) -> vec2f {
     return vec2f(y.x, 0.5 + 0.5 * select(y.y, -y.y, mu < 0.0));
 }
 
-// Azimuth and elevation, rad, at a coordinate.
+// Azimuth and elevation, rad, for a coordinate.
 fn source_direction(coordinate: vec2f) -> vec2f {
     let y = vec2f(coordinate.x, abs(2.0 * coordinate.y - 1.0));
     let x = SOURCE_SPREAD * y / (1.0 + SOURCE_SPREAD - y);
     return vec2f(x.x * SKY_PI, select(0.5, -0.5, coordinate.y < 0.5) * SKY_PI * x.y);
 }
 
-// A direction of the quadrature: zenith cosine and weight, so that sum of weight f = integral of f over mu. Nodes are
-// dense at the horizon of `altitude` and never lie on it; the first half is below.
+// Direction of the quadrature: zenith cosine and weight, so that the sum of weight times f is the integral of f over
+// mu. Nodes are dense at the horizon of `altitude` and never lie on it; the first half is below.
 fn rule_direction(air: SkyAir, altitude: Length, index: u32, half_size: u32, node: vec2f) -> vec2f {
     let horizon = horizon_mu(air, altitude);
     let y = node.x;
@@ -115,8 +119,8 @@ fn rule_direction(air: SkyAir, altitude: Length, index: u32, half_size: u32, nod
     return vec2f(horizon + (1.0 - horizon) * y * y, (1.0 - horizon) * 2.0 * y * node.y);
 }
 
-// The table of light scattered once holds 64 view angles as 8 x 8 tiles: 32 above the horizon and 32 below it, each
-// dense at it. A view angle is kept as in view.wgsl, by q = sin(angle/2).
+// The table of light scattered once has 64 view angles as 8 x 8 tiles, 32 above the horizon and 32 below it, dense at
+// the horizon on both sides. A view angle is given by q = sin(angle/2), as in view.wgsl.
 const ONCE_ROWS: u32 = 32u;
 
 fn once_mu(air: SkyAir, altitude: Length, row: u32) -> Cosine {
@@ -126,7 +130,7 @@ fn once_mu(air: SkyAir, altitude: Length, row: u32) -> Cosine {
     return clamp(1.0 - 2.0 * q * q, -1.0, 1.0);
 }
 
-// Row and fraction of a direction on the given side of the horizon.
+// Row of a direction on the given side of the horizon, and the fraction towards the next row.
 fn once_row(air: SkyAir, altitude: Length, mu: Cosine, below: bool) -> vec2f {
     let horizon = sqrt(0.5 - 0.5 * horizon_mu(air, altitude));
     let over = horizon - sqrt(max(0.5 - 0.5 * mu, 0.0));

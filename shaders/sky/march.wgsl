@@ -1,24 +1,25 @@
 //!include "sky/maps.wgsl"
-// Light along a piece of a ray, by a Gauss rule on nodes that are spread as the air is.
+// Light along an interval of a ray, by a Gauss rule with nodes that follow the density of the air.
 
 override DIRECTIONAL: bool = true;
 
 struct SkyLight {
-    // Scattered once by gas and by haze, the phase functions left out; scattered more often; per unit irradiance.
+    // Light per unit irradiance: scattered once by gas and by haze, without the phase functions; and scattered more
+    // often.
     gas: Radiance,
     haze: Radiance,
     more: Radiance,
-    // What would be scattered into the ray in a field of radiance 1.
+    // Light that would be scattered into the ray in a field of radiance 1.
     transfer: vec3f,
 }
 
-// Where the sources of one triple lie in their texture, in shares of it: xy the corner, zw the size. The triples of a
-// set lie one below the other.
+// Rectangle of the sources of one triple in their texture, as shares of its size: xy the corner, zw the size. The
+// triples of a set lie one below the other.
 fn sources_of(air: SkyAir) -> vec4f {
     return vec4f(0.0, air.layer / air.layers, 1.0, 1.0 / air.layers);
 }
 
-// Light scattered more than once into a direction, per unit of scattering coefficient and of sun: 1/sr.
+// Light scattered more than once into a direction, 1/sr, per unit of scattering coefficient and of sunlight.
 fn more_scattered(
     air: SkyAir, dims: SkyDims, sources: texture_2d<f32>, place: vec4f, smp: sampler,
     altitude: Length, mu_s: Cosine, mu: Cosine, nu: Cosine,
@@ -44,17 +45,17 @@ fn more_scattered(
     return sky_decode(mix(mix(a, b, f.x), mix(c, e, f.x), f.y));
 }
 
-// How the nodes of a march are spread over a stretch of a ray: s = spread (e^(k x) - 1) from its origin, so that they
-// are even in length within `spread` of it and in its logarithm beyond.
+// Distribution of a march's nodes over an interval of a ray: s = spread (e^(k x) - 1) from its origin. Nodes are even
+// in length within `spread` of the origin, and even in the logarithm of the length beyond.
 struct Stretch {
     origin: Length,
-    // 1: away from the ray's start, -1: towards it.
+    // 1: away from the ray's start; -1: towards it.
     sense: f32,
     spread: Length,
     k: f32,
 }
 
-// The origin is the low end, where the air is dense; or the near end, if the air there hides the rest.
+// The origin is the lower end, where the air is dense; or the near end, if the air there hides the rest.
 fn stretch_of(air: SkyAir, ray: SkyRay, a: Length, b: Length, mu_s: Cosine) -> Stretch {
     let near = altitude_along(ray.radius, ray.altitude, ray.mu, a);
     let far = altitude_along(ray.radius, ray.altitude, ray.mu, b);
@@ -75,23 +76,23 @@ fn stretch_of(air: SkyAir, ray: SkyRay, a: Length, b: Length, mu_s: Cosine) -> S
     return Stretch(origin, select(-1.0, 1.0, is_near), spread, log(1.0 + (b - a) / spread));
 }
 
-// Gauss and Legendre's rule of 4 nodes on (0, 1): node and weight.
+// Gauss-Legendre rule of 4 nodes on (0, 1): node and weight.
 fn gauss_4(i: u32) -> vec2f {
     let outer = i == 0u || i == 3u;
     let x = select(0.16999052, 0.43056816, outer);
     return vec2f(0.5 + select(x, -x, i < 2u), select(0.32607258, 0.17392742, outer));
 }
 
-// Marches from `start` to `end` metres along the ray. mu_s: the light's zenith cosine at the ray's start, nu: cosine of
-// the angle between ray and light. The ray is cut at its perigee and at the edges of the planet's shadow; each stretch
-// takes `panels` panels of 4 nodes, fewer if there are several.
+// Marches from `start` to `end` metres along the ray. mu_s is the light's zenith cosine at the ray's start, and nu the
+// cosine of the angle between ray and light. The ray is cut at its perigee and at the edges of the planet's shadow.
+// Each interval takes `panels` panels of 4 nodes, or fewer if there are several intervals.
 fn sky_march(
     air: SkyAir, dims: SkyDims, sources: texture_2d<f32>, place: vec4f, smp: sampler,
     ray: SkyRay, start: Length, end: Length, panels: u32, mu_s: Cosine, nu: Cosine,
 ) -> SkyLight {
     let t_ray = ray.radius * ray.mu;
     let shadow = shadow_stretch(air, ray, mu_s, nu);
-    // Cuts inside the ray in order; those outside are put at its end.
+    // Cuts inside the ray, in order. Cuts outside it are moved to its end.
     var cuts = vec3f(-t_ray, shadow);
     let margin = 1e-3 * (end - start);
     let known = vec3<bool>(true, vec2<bool>(shadow.y > shadow.x));

@@ -1,15 +1,15 @@
 //!include "common/fullscreen.wgsl"
 //!include "sky/march.wgsl"
 //!include "sky/view.wgsl"
-// An observer's tables: the sky by direction, and the air in front of things by direction and distance. They hold two
-// colours: light scattered by gas or more than once, complete; and light scattered once by haze, whose phase function
-// is left out and put on per pixel, so that the glow round the light is as sharp as it should be.
+// Tables of an observer: the sky by direction, and the air in front of things by direction and distance. They hold two
+// colours. One is light scattered by gas or more than once, which is complete. The other is light scattered once by
+// haze without its phase function. Pixels apply that function, so that the glow around the light is sharp.
 
 struct SkyObserver {
     altitude: Length,
     // Zenith cosine of the light.
     mu_s: Cosine,
-    // 1: the air in front of things is drawn, 0: the sky.
+    // 1 draws the air in front of things, 0 the sky.
     is_air: u32,
     unused: u32,
     edges: SkyEdges,
@@ -21,7 +21,7 @@ struct SkyObserver {
 @group(0) @binding(3) var sky_sampler: sampler;
 @group(0) @binding(4) var once_gas: texture_2d<f32>;
 @group(0) @binding(5) var once_haze: texture_2d<f32>;
-// The triples of a set of wavelengths; where the planet's own three are all, they are not read.
+// Airs of the triples of a set of wavelengths. Not read where the planet's own three are the only ones.
 @group(0) @binding(6) var<uniform> airs: array<SkyAir, 5>;
 @group(1) @binding(0) var<uniform> observer: SkyObserver;
 
@@ -42,7 +42,7 @@ fn view_texel(texel: vec2u, azimuths: u32, above: u32, below: u32) -> ViewTexel 
     let is_below = texel.y >= above;
     let row = select(texel.y, texel.y - above, is_below);
     let rows = select(above, below, is_below);
-    // From space, the row at the air's edge looks up: what lies beyond it is exactly dark.
+    // From space the row at the edge of the air looks straight up, because everything beyond the edge is exactly dark.
     let beyond = !is_below && row == rows - 1u && observer.edges.top > 0.0;
     let mu = select(view_mu(observer.edges, f32(row) / f32(rows - 1u), is_below), 1.0, beyond);
     let azimuth = SKY_PI * f32(texel.x) / f32(azimuths - 1u);
@@ -50,24 +50,24 @@ fn view_texel(texel: vec2u, azimuths: u32, above: u32, below: u32) -> ViewTexel 
     return ViewTexel(mu, clamp(mu * observer.mu_s + sines * cos(azimuth), -1.0, 1.0), is_below);
 }
 
-// The light's zenith cosine at the ray's start, which is not the observer if that is in space.
+// Zenith cosine of the light at the ray's start, which is not the observer if the observer is in space.
 fn mu_s_at_start(ray: SkyRay, nu: Cosine) -> Cosine {
     let r = air.bottom_m + max(observer.altitude, 0.0);
     return clamp((r * observer.mu_s + ray.before * nu) / ray.radius, -1.0, 1.0);
 }
 
-// Light over the opacity of the air it comes from: the mean source, which hardly varies with distance.
+// Light divided by the opacity of its air. This is the mean source, which hardly varies with distance.
 fn as_source(light: vec3f, depth: vec3f) -> vec4f {
     return sky_encode_signed(light / max(air_opacity(depth), vec3f(1e-30)));
 }
 
 struct KeptLight {
-    // Scattered by gas or more than once; once by haze, the phase function left out.
+    // Light scattered by gas or more than once; and light scattered once by haze, without the phase function.
     even: vec3f,
     haze: vec3f,
 }
 
-// Light from the ray's start to `end`, of all triples as the three that stand for them.
+// Light from the ray's start to `end`, summed over all triples into the three that stand for them.
 fn kept_light(ray: SkyRay, end: Length, panels: u32, nu: Cosine) -> KeptLight {
     let mu_s = mu_s_at_start(ray, nu);
     if (LAYERS == 1u) {
@@ -84,12 +84,12 @@ fn kept_light(ray: SkyRay, end: Length, panels: u32, nu: Cosine) -> KeptLight {
     return sum;
 }
 
-// Azimuth and row of the sky at a texel of an observer's tables.
+// Azimuth and row of the sky for a texel of an observer's tables.
 fn sky_texel(px: vec2u) -> vec2u {
     return px.yx - vec2u(dims.sky_y, dims.sky_x);
 }
 
-// Sky and air by one entry point: what they share, the march, is most of what a software driver compiles.
+// Draws both sky and air with one entry point. The march that they share is most of what a software driver compiles.
 @fragment
 fn observed(in: FullscreenVarying) -> SkyTexel {
     let is_air = observer.is_air == 1u;
@@ -100,7 +100,7 @@ fn observed(in: FullscreenVarying) -> SkyTexel {
         vec3u(dims.air_azimuths, dims.air_above, dims.air_below),
         is_air,
     );
-    // Sums, for Mesa 22.3's llvmpipe crashes where a choice turns the picture.
+    // Sums instead of a select: llvmpipe of Mesa 22.3 crashes where a select transposes the picture.
     let air_px = vec2u(px.x - slice * dims.air_azimuths, px.y);
     let texel = observer.is_air * air_px + (1u - observer.is_air) * sky_texel(px);
     let view = view_texel(texel, size.x, size.y, size.z);
@@ -120,7 +120,7 @@ struct TableLight {
     haze: vec3f,
 }
 
-// The table of light scattered once, at a point inside the air.
+// Light from the table of light scattered once, at a point inside the air.
 fn once_at(altitude: Length, mu: Cosine, mu_s: Cosine, below: bool) -> TableLight {
     let at = planet_texel(air, dims, altitude, mu_s);
     let row = once_row(air, altitude, mu, below);
@@ -133,7 +133,7 @@ fn once_at(altitude: Length, mu: Cosine, mu_s: Cosine, below: bool) -> TableLigh
     return TableLight(sky_decode(gas), sky_decode(haze));
 }
 
-// A whole ray. From space it is that of the point where it enters the air, under the sun angle there.
+// Light along a whole ray. From space it is that of the point where the ray enters the air, with the sun angle there.
 @fragment
 fn sky_from_table(in: FullscreenVarying) -> SkyTexel {
     let view = view_texel(sky_texel(vec2u(in.position.xy)), dims.sky_azimuths, dims.sky_above, dims.sky_below);
@@ -148,7 +148,7 @@ fn sky_from_table(in: FullscreenVarying) -> SkyTexel {
     return SkyTexel(sky_encode(even), sky_encode(haze));
 }
 
-// A part of a ray: the whole less what comes from behind the part's end, through the part.
+// Light along the first part of a ray: that of the whole ray less the light from beyond the part, dimmed by the part.
 @fragment
 fn volume_from_table(in: FullscreenVarying) -> SkyTexel {
     let px = vec2u(in.position.xy);

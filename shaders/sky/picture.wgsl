@@ -1,8 +1,8 @@
 //!include "common/fullscreen.wgsl"
 //!include "common/guarded.wgsl"
 //!include "sky/disc.wgsl"
-// A plain perspective picture of sky and planet at 90 degrees across, with aerial perspective on a plain of things 3 km
-// away below the horizon: what benchmarks time.
+// Plain perspective picture of sky and planet with a field of view of 90 degrees; below the horizon, aerial perspective
+// on a plane of things 3 km away. Benchmarks time it.
 
 struct PictureCamera {
     forward: vec3f,

@@ -1,6 +1,6 @@
 //!include "common/fullscreen.wgsl"
 //!include "sky/disc.wgsl"
-// Answers single questions by the look-ups that draw. One texel a question; answers leave as the bits of f32.
+// Answers queries with the look-ups that pictures use. Each query is one texel; results are the bits of f32.
 
 // xyz: direction (unit, the observer's frame), w: distance, m.
 @group(0) @binding(0) var questions: texture_2d<f32>;
@@ -27,7 +27,7 @@ fn probe_aerial(in: FullscreenVarying) -> Answer {
     return answer(seen.radiance, seen.transmittance);
 }
 
-// Direct light of the lamps and light of the sky on a level surface at the observer's altitude.
+// Direct light of the lamps, and light of the sky, on a level surface at the observer's altitude.
 @fragment
 fn probe_irradiance(in: FullscreenVarying) -> Answer {
     var direct = vec3f(0.0);
@@ -37,7 +37,7 @@ fn probe_irradiance(in: FullscreenVarying) -> Answer {
     return answer(direct, sky_irradiance(sky_view.altitude));
 }
 
-// The ground's own light, and the discs'.
+// Light of the ground, and light of the discs.
 @fragment
 fn probe_ground(in: FullscreenVarying) -> Answer {
     let dir = textureLoad(questions, vec2i(in.position.xy), 0).xyz;

@@ -1,16 +1,16 @@
 //!include "sky/air.wgsl"
-// Rays in a shell of air, in f32 from -100 m to 1e7 m: altitudes are never formed as a difference of radii, and lengths
-// that nearly cancel come from their conjugates. Twin: src/sky/reference/ray.rs.
+// Rays in a shell of air, in f32 from -100 m to 1e7 m. Altitudes are never computed as a difference of radii, and
+// lengths that nearly cancel are computed from their conjugates. Twin: src/sky/reference/ray.rs.
 
 struct SkyRay {
-    // Start, at most at the air's top, and the cosine of the zenith angle there.
+    // Start of the ray, at most at the top of the air, and the cosine of the zenith angle there.
     altitude: Length,
     mu: Cosine,
     radius: Length,
     // Radius and altitude of the point of the line that is closest to the planet's centre.
     perigee_radius: Length,
     perigee: Length,
-    // From the true start to the start, and from the start to where ray or air end.
+    // Distance from the true start to this start, and from this start to the end of the ray or of the air.
     before: Length,
     length: Length,
     // 1 if the ray ends on the ground.
@@ -23,14 +23,14 @@ fn horizon_mu(air: SkyAir, altitude: Length) -> Cosine {
     return -sqrt(h * (2.0 * air.bottom_m + h)) / (air.bottom_m + h);
 }
 
-// Altitude of the point `distance` along a ray.
+// Altitude of the point at `distance` along a ray.
 fn altitude_along(radius: Length, altitude: Length, mu: Cosine, distance: Length) -> Length {
     let s = distance * (distance + 2.0 * radius * mu);
     return altitude + s / (radius + sqrt(max(radius * radius + s, 0.0)));
 }
 
-// A ray from `altitude` at zenith cosine `mu`, cut to the air. `grounded` is the caller's word, not a root's sign, so
-// that both sides of the horizon are free of speckles.
+// Ray from `altitude` at zenith cosine `mu_start`, limited to the air. The caller decides `grounded`; the sign of a
+// root would cause speckles on both sides of the horizon.
 fn sky_ray(air: SkyAir, altitude: Length, mu_start: Cosine, grounded: bool) -> SkyRay {
     var h = max(altitude, 0.0);
     var mu = mu_start;
@@ -59,7 +59,7 @@ fn sky_ray(air: SkyAir, altitude: Length, mu_start: Cosine, grounded: bool) -> S
     return SkyRay(h, mu, r, r * sine, h - drop, before, len, u32(grounded));
 }
 
-// e^(z^2) erfc(z) for z >= 0 within 2e-6: t P(t), t = 1/(1 + 0.35 z), P fitted at Chebyshev nodes.
+// e^(z^2) erfc(z) for z >= 0 within 2e-6: t P(t), t = 1/(1 + 0.35 z), with P fitted at Chebyshev nodes.
 fn erfcx(z: vec2f) -> vec2f {
     let t = 1.0 / (1.0 + 0.35 * z);
     let p = 0.19746665 + t * (0.19742708 + t * (0.18628623 + t * (0.15254212 + t * (0.16876432
@@ -68,9 +68,10 @@ fn erfcx(z: vec2f) -> vec2f {
 }
 
 // Columns of gas and haze from the point at radius r straight out along the ray, in metres at the density of that
-// point, `rise` over the perigee p. With v^2 = r - p, ds = 2 (p + v^2)/sqrt(2p + v^2) dv is expanded to first order
-// round the point, which leaves integrals of e^(-v^2/H) and v^2 e^(-v^2/H): relative error 5e-7 for the Earth and 5e-3
-// where H is a sixth of the radius, at any angle. (Chapman 1931 is the function; the expansion is our own.)
+// point, which is `rise` above the perigee p. With v^2 = r - p, ds = 2 (p + v^2)/sqrt(2p + v^2) dv is expanded to first
+// order around the point. That leaves integrals of e^(-v^2/H) and v^2 e^(-v^2/H). The relative error is 5e-7 for the
+// Earth, and 5e-3 where H is a sixth of the radius, at any angle. (The function is that of Chapman 1931; the expansion
+// is our own.)
 fn chapman(air: SkyAir, rise: Length, r: Length, p: Length) -> vec2f {
     let scale_height = vec2f(air.rayleigh_scale_height_m, air.mie_scale_height_m);
     let z = sqrt(max(rise, 0.0) / scale_height);
@@ -81,7 +82,7 @@ fn chapman(air: SkyAir, rise: Length, r: Length, p: Length) -> vec2f {
     return sqrt(scale_height) * (g0 * e + g1 * scale_height * (0.5 * z + e * (0.5 - z * z)));
 }
 
-// Column of the ozone tent from the perigee up to `altitude`, with Simpson's rule in each half of the tent.
+// Column of the ozone tent from the perigee up to `altitude`, by Simpson's rule in each half of the tent.
 fn ozone_from_perigee(air: SkyAir, perigee: Length, p: Length, altitude: Length) -> Length {
     let edges = vec3f(-air.ozone_half_width_m, 0.0, air.ozone_half_width_m) + air.ozone_center_m;
     let h = clamp(edges, vec3f(perigee), vec3f(altitude));
@@ -94,12 +95,12 @@ fn ozone_from_perigee(air: SkyAir, perigee: Length, p: Length, altitude: Length)
     return (parts.x + parts.y) / 6.0;
 }
 
-// What the columns from a ray's start to any point of it share.
+// Values that the columns from a ray's start to any of its points share.
 struct SkyColumns {
-    // At the start: columns of gas and haze straight on, negative if the ray descends; of ozone from the perigee.
+    // Columns outwards from the start: of gas and haze, negative if the ray descends; and of ozone, from the perigee.
     gas_haze: vec2f,
     ozone: f32,
-    // Added once the perigee is passed.
+    // Columns added once the perigee is passed.
     turn: vec2f,
     side: f32,
 }
@@ -114,7 +115,7 @@ fn sky_columns(air: SkyAir, ray: SkyRay) -> SkyColumns {
 }
 
 // Columns of gas, haze and ozone from the ray's start to the point at `altitude` on the given side of the perigee, in
-// metres at density 1, in closed form; good to about 0.1 m at whatever distance.
+// metres at density 1. Closed form, with an error of about 0.1 m at any distance.
 fn columns_to(air: SkyAir, ray: SkyRay, start: SkyColumns, altitude: Length, side: f32) -> vec3f {
     let p = ray.perigee_radius;
     let here = side * air_density(air, altitude).xy * chapman(air, altitude - ray.perigee, air.bottom_m + altitude, p);
@@ -123,7 +124,8 @@ fn columns_to(air: SkyAir, ray: SkyRay, start: SkyColumns, altitude: Length, sid
     return max(vec3f(start.gas_haze - here + turn, ozone), vec3f(0.0));
 }
 
-// The same to `distance`, good to 1e-4 of itself: short columns come from Simpson's rule.
+// Columns from the ray's start to `distance`, with a relative error of 1e-4: short columns are computed by Simpson's
+// rule.
 fn columns_along(air: SkyAir, ray: SkyRay, distance: Length) -> vec3f {
     let h0 = ray.altitude;
     let h1 = clamp(altitude_along(ray.radius, h0, ray.mu, distance), 0.0, air.thickness_m);
@@ -137,8 +139,8 @@ fn columns_along(air: SkyAir, ray: SkyRay, distance: Length) -> vec3f {
     return vec3f(select(long.xy, short.xy, is_short), long.z);
 }
 
-// Share of the light's disc above the horizon of a point, and the zenith cosine of the middle of that share. x: height
-// of the disc's centre over the horizon in disc radii.
+// Share of the light's disc above the horizon of a point, and the zenith cosine of the middle of that share. x is the
+// height of the disc's centre above the horizon in disc radii.
 fn disc_above_horizon(air: SkyAir, altitude: Length, mu_s: Cosine) -> vec2f {
     let h = max(altitude, 0.0);
     let r = air.bottom_m + h;
@@ -146,7 +148,8 @@ fn disc_above_horizon(air: SkyAir, altitude: Length, mu_s: Cosine) -> vec2f {
     let radius = max(air.sun_angular_radius, 1e-5) * air.bottom_m / r;
     let x = clamp((mu_s - horizon) / radius, -1.0, 1.0);
     let y = 0.5 + 0.5 * x;
-    // The area of a disc cut by a chord, 1/2 + (x sqrt(1 - x^2) + asin x)/pi, as a series whose last term closes it.
+    // Area of a disc cut by a chord, 1/2 + (x sqrt(1 - x^2) + asin x)/pi, as a series whose last term makes it exact at
+    // the ends.
     let xx = x * x;
     let share = 0.5 + x * (0.63662 - xx * (0.10610 + xx * (0.01592 + xx * 0.01460)));
     let middle = horizon + radius * y * (0.7 + 0.3 * y);
@@ -161,15 +164,15 @@ fn sun_transmittance(air: SkyAir, altitude: Length, mu_s: Cosine) -> vec3f {
     return disc.x * exp(-air_optical_depth(air, columns));
 }
 
-// The stretch of a ray, from `x` to `y` metres along it, that lies in the planet's shadow; empty if y <= x. The shadow
-// is a cylinder behind the planet.
+// Interval of a ray in the planet's shadow, from `x` to `y` metres along it; empty if y <= x. The shadow is a cylinder
+// behind the planet.
 fn shadow_stretch(air: SkyAir, ray: SkyRay, mu_s: Cosine, nu: Cosine) -> vec2f {
     let r = ray.radius;
     let a = max(1.0 - nu * nu, 1e-9);
     let b = r * (ray.mu - mu_s * nu);
     let c = ray.altitude * (2.0 * air.bottom_m + ray.altitude) - r * r * mu_s * mu_s;
     let root = sqrt(max(b * b - a * c, 0.0));
-    // Of the cylinder's stretch, what is behind the plane through the planet's centre across the light.
+    // Part of the cylinder's interval behind the plane through the planet's centre that is perpendicular to the light.
     let plane = -r * mu_s / select(nu, 1e-9, abs(nu) < 1e-9);
     let enter = select((-b - root) / a, max((-b - root) / a, plane), nu < 0.0);
     let leave = select((-b + root) / a, min((-b + root) / a, plane), nu > 0.0);

@@ -1,13 +1,13 @@
-// For a host's own materials (GLSL 3.30, GLSL ES 3.00): the share of the direct light of sun or moon that clouds let
-// through to a place, from the map of shadows that Welkin hands over.
+// For a host's own materials (GLSL 3.30, GLSL ES 3.00): share of the direct light of sun or moon that clouds let
+// through to a position, from the shadow map that Welkin hands over.
 //   float share = welkin_cloud_shadow(shadow_map, uv, camera_uv, height, even);
-//   direct_light *= share / even.x; // where direct_light is that on the mean over places, as Welkin's queries have it
-// `uv` and `height`: the place in the host's world times the rows of uv_from_world and height_from_world. `even`:
-// mean_share, told and top_m. The sampler filters linearly and repeats.
+//   direct_light *= share / even.x; // if direct_light is the mean over positions, as Welkin's queries return it
+// `uv` and `height`: position in the host's world times the rows of uv_from_world and height_from_world. `even`:
+// mean_share, told and top_m. The sampler must filter linearly and repeat.
 
 float welkin_cloud_shadow(sampler2D map, vec2 uv, vec2 camera_uv, float height, vec3 even) {
     vec2 away = abs(uv - camera_uv);
-    // Far off, and within clouds, the mean counts.
+    // Far from the camera and inside clouds, the mean share is used.
     float far = max(away.x, away.y);
     float told = even.y * clamp((0.46 - far) / 0.06, 0.0, 1.0) * clamp((even.z - height) / 100.0, 0.0, 1.0);
     return mix(even.x, textureLod(map, uv, 0.0).r, told);

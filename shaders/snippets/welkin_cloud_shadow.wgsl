@@ -1,15 +1,15 @@
-// For a host's own materials: the share of the direct light of sun or moon that clouds let through to a place, from the
-// map of shadows that Welkin hands over.
+// For a host's own materials: share of the direct light of sun or moon that clouds let through to a position, from the
+// shadow map that Welkin hands over.
 //   let share = welkin_cloud_shadow(shadow_map, repeating, uv, camera_uv, height, even);
-//   direct_light *= share / even.x; // where direct_light is that on the mean over places, as Welkin's queries have it
-// `uv` and `height`: the place in the host's world times the rows of uv_from_world and height_from_world. `even`:
-// mean_share, told and top_m. `repeating`: filters linearly and repeats.
+//   direct_light *= share / even.x; // if direct_light is the mean over positions, as Welkin's queries return it
+// `uv` and `height`: position in the host's world times the rows of uv_from_world and height_from_world. `even`:
+// mean_share, told and top_m. `repeating` must filter linearly and repeat.
 
 fn welkin_cloud_shadow(
     map: texture_2d<f32>, repeating: sampler, uv: vec2f, camera_uv: vec2f, height: f32, even: vec3f,
 ) -> f32 {
     let away = abs(uv - camera_uv);
-    // Far off, and within clouds, the mean counts.
+    // Far from the camera and inside clouds, the mean share is used.
     let far = max(away.x, away.y);
     let told = even.y * clamp((0.46 - far) / 0.06, 0.0, 1.0) * clamp((even.z - height) / 100.0, 0.0, 1.0);
     return mix(even.x, textureSampleLevel(map, repeating, uv, 0.0).r, told);

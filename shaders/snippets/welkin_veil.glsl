@@ -1,8 +1,9 @@
-// For a host's own transparent shader (GLSL 3.30, GLSL ES 3.00): what Welkin's air and fog do to a fragment at
+// For a host's own transparent shader (GLSL 3.30, GLSL ES 3.00): effect of Welkin's air and fog on a fragment at
 // `distance` metres from the eye.
 //   vec3 through, light = welkin_veil(light_texture, through_texture, uv, distance, through);
 //   colour = colour * through + light * light_scale;
-// `uv` is the fragment's place in the picture, (0, 0) at the first texel of the target. The samplers filter linearly.
+// `uv` is the fragment's position in the picture, (0, 0) at the target's first texel. The samplers must filter
+// linearly.
 
 vec2 welkin_veil_uv(vec2 uv, float slice) {
     vec2 tile = vec2(slice - 8.0 * floor(slice / 8.0), floor(slice / 8.0));

@@ -1,7 +1,8 @@
-// For a host's own transparent shader: what Welkin's air and fog do to a fragment at `distance` metres from the eye.
+// For a host's own transparent shader: effect of Welkin's air and fog on a fragment at `distance` metres from the eye.
 //   let veil = welkin_veil(light_texture, through_texture, linear_clamp_sampler, uv, distance);
 //   colour = colour * veil.through + veil.light * light_scale;
-// `uv` is the fragment's place in the picture, (0, 0) at the first texel of the target. Blend colour with alpha after.
+// `uv` is the fragment's position in the picture, (0, 0) at the target's first texel. Blend colour with alpha
+// afterwards.
 
 struct WelkinVeil {
     light: vec3f,

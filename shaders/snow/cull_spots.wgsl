@@ -1,5 +1,5 @@
-// What draws the flakes that snow/cull.wgsl has found, the farthest first: once a flake what it costs to know whether
-// it got there, and in what light.
+// Computes the quads of the flakes that snow/cull.wgsl has found, the farthest first. The costly tests, for shelter and
+// for light, run once a flake here.
 //!include "snow/flakes.wgsl"
 //!include "falling/list.wgsl"
 

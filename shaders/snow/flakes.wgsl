@@ -1,6 +1,5 @@
-// Flakes without a state: where each is follows from (seed, id, time) alone, and one quad draws it. The f64 twin and
-// the derivation are in src/snow/lattice.rs and src/snow/reference.rs. The entry points read the depth:
-// flakes_view.wgsl.
+// Flakes without a state: the place of each follows from (seed, id, time), and one quad draws it. src/snow/lattice.rs
+// and src/snow/reference.rs have the f64 twin and the derivation. The entry points read the depth: flakes_view.wgsl.
 //!include "common/depth.wgsl"
 //!include "common/guarded.wgsl"
 //!include "common/hash.wgsl"
@@ -10,19 +9,19 @@
 //!include "surroundings/shelter.wgsl"
 //!include "snow/shape.wgsl"
 
-// Classes of diameter; shells of the lattice.
+// Numbers of classes of diameter, and of shells of the lattice.
 const CLASSES: u32 = 32u;
 const SHELLS: u32 = 4u;
 
 struct FlakesUniform {
     depth: DepthUniform,
-    // From camera-relative east-north-up to clip space.
+    // Matrix from camera-relative east, north, up to clip space.
     clip: mat4x4f,
-    // Of the air, m/s.
+    // Velocity of the air, m/s.
     wind: vec3f,
-    // Time for which the picture is exposed, s.
+    // Exposure time of the picture, s.
     exposure: f32,
-    // Mean radiance above and below the horizon, display units a channel.
+    // Mean radiance above and below the horizon, display units per channel.
     above: vec3f,
     seed: u32,
     below: vec3f,
@@ -30,79 +29,80 @@ struct FlakesUniform {
     pixel_angle: f32,
     // Irradiance of the sun or moon, display units.
     sun: vec3f,
-    // Extinction of what lies between the eye and a flake beside the snow, 1/m.
+    // Extinction between the eye and a flake by everything except snow, 1/m.
     extinction: f32,
     to_sun: vec3f,
     // 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
     y_sign: f32,
-    // Of the camera, m/s.
+    // Velocity of the camera, m/s.
     camera: vec3f,
-    // Share of the flakes' cover that is drawn.
+    // Share of the flakes' opacity that is drawn.
     share: f32,
-    // Where each shell's flakes begin among all.
+    // Number of the first flake of each shell.
     first: vec4u,
-    // Flakes of all shells.
+    // Number of flakes in all shells.
     count: u32,
-    // How far a flake of one turn unit has turned, in 2^-32 of a turn.
+    // Turn at a rate of one turn unit, in 2^-32 of a turn.
     turn: u32,
     pad: vec2u,
-    // Per shell: place of the camera in the cell of the air, in 2^-32 of its side, and how far a flake of one speed
-    // unit has fallen, likewise.
+    // Per shell. x, y, z: place of the camera in the cell that moves with the air; w: distance fallen at a speed of one
+    // unit. Both are in 2^-32 of the cell's side.
     cell: array<vec4u, SHELLS>,
-    // Per shell: place of the camera in the world's cell, in 2^-32 of its side. Read of flakes that are stepped.
+    // Per shell: place of the camera in the cell fixed to the world, in 2^-32 of its side. Used for stepped flakes.
     eye: array<vec4u, SHELLS>,
-    // Per shell: side of the cell, m; distance from which it begins to take over from the smaller one, from which it
-    // hands on itself, and at which it has taken over.
+    // Per shell. x: side of the cell, m. y: distance at which it begins to take over from the smaller shell; w:
+    // distance at which it has taken over. z: distance at which it begins to fade out.
     shell: array<vec4f, SHELLS>,
     // Per class: diameter, m; fall speed, speed units; radius of the helix, m; turns, turn units.
     classes: array<vec4f, CLASSES>,
-    // Per class and shell: flakes of the classes up to this one, and flakes that each of them stands for.
+    // Per class and shell: number of flakes of the classes up to this one, and number that each drawn flake stands for.
     upto: array<vec4u, CLASSES>,
     weight: array<vec4f, CLASSES>,
 }
 
-// Fall speeds and turns are whole numbers of these, m/s and 1/s: phases are products of integers, exact at any time.
+// Units of fall speeds, m/s, and of turns, 1/s. Both are integer multiples, so phases are products of integers and
+// exact at any time.
 const SPEED_UNIT: f32 = 0.0009765625;
 const TURN_UNIT: f32 = 0.00390625;
-// Flakes nearer than this fade away: they would be blobs that no eye could focus on.
+// Flakes nearer than this, m, fade out: they would be blobs on which no eye could focus.
 const NEAREST: f32 = 0.3;
-// What sets flakes apart from drops in the numbers that places are made of.
+// Offset that gives flakes other random numbers than drops.
 const SALT: u32 = 0x5e00000u;
-// Share of a flake's disc that is ice, as seen through it.
+// Share of a flake's disc that is covered by ice.
 const AREA_RATIO: f32 = 0.6;
 const TAU: f32 = 6.2831853;
 
 @group(0) @binding(0) var<uniform> flakes: FlakesUniform;
 
 struct Flake {
-    // Camera-relative, m.
+    // Position relative to the camera, m.
     position: vec3f,
     diameter: f32,
-    // m/s.
+    // Velocity, m/s.
     velocity: vec3f,
-    // Share of it that its shell shows.
+    // Share of the flake that its shell shows.
     share: f32,
-    // Of the way without its helix, m/s: what shelters it or not.
+    // Velocity without the helix, m/s, with which shelter is tested.
     mean_velocity: vec3f,
-    // Flakes that it stands for.
+    // Number of flakes that it stands for.
     weight: f32,
-    // Where on its helix it is, rad.
+    // Angle on its helix, rad.
     angle: f32,
-    // What its shape is made of.
+    // Seed of its shape.
     shape: u32,
 }
 
-// Units of a class as a flake of its own random word has them: up to an eighth more or less.
+// Returns the units of a class scattered by a flake's random word, up to an eighth up or down.
 fn scattered(units: i32, random: u32) -> i32 {
     return units + ((units * (i32(random & 255u) - 128)) >> 10u);
 }
 
-// What is a flake's own at any time.
+// Properties of a flake that do not change with time.
 struct Own {
     shell: u32,
     size_class: u32,
     random: vec3u,
-    // Fall speed in speed units.
+    // Fall speed, speed units.
     speed: i32,
 }
 
@@ -110,12 +110,12 @@ struct Own {
 struct Run {
     shell: u32,
     size_class: u32,
-    // Of the shell's flakes, its first and the one behind its last.
+    // Numbers of its first flake in the shell, and of the one after its last.
     first: u32,
     end: u32,
 }
 
-// That of flake `index` of a shell.
+// Returns the run that contains flake `index` of a shell.
 fn run_of(s: u32, index: u32) -> Run {
     var k = 0u;
     for (var step = CLASSES / 2u; step > 0u; step /= 2u) {
@@ -124,37 +124,38 @@ fn run_of(s: u32, index: u32) -> Run {
     return Run(s, k, select(0u, flakes.upto[max(k, 1u) - 1u][s], k > 0u), flakes.upto[k][s]);
 }
 
-// Flake `index` of its shell.
+// Returns the constant properties of flake `index` of its shell.
 fn own_of(run: Run, index: u32) -> Own {
     let random = random3(vec3u(flakes.seed, SALT | (run.shell << 8u) | run.size_class, index - run.first));
     return Own(run.shell, run.size_class, random, scattered(i32(flakes.classes[run.size_class].y), random.x));
 }
 
-// From the camera to where the lattice has it, without its helix, in 2^-32 of the cell's side.
+// Returns the place of a flake of the lattice relative to the camera, without its helix, in 2^-32 of the cell's side.
 fn lattice_place(own: Own) -> vec3u {
     let cell = flakes.cell[own.shell];
     return own.random - vec3u(0u, 0u, bitcast<u32>(own.speed) * cell.w) - cell.xyz;
 }
 
-// Shell of flake number `place` of all, the innermost shell's first.
+// Returns the shell of flake number `place` of all; those of the innermost shell come first.
 fn shell_of(place: u32) -> u32 {
     return u32(place >= flakes.first.y) + u32(place >= flakes.first.z) + u32(place >= flakes.first.w);
 }
 
-// Flake `index` of its shell, where the lattice has it.
+// Returns flake `index` of its shell at its place in the lattice.
 fn flake_in(run: Run, index: u32) -> Flake {
     let own = own_of(run, index);
     return flake_at(own, lattice_place(own), flakes.wind - vec3f(0.0, 0.0, f32(own.speed) * SPEED_UNIT));
 }
 
-// Flake number `place` of all.
+// Returns flake number `place` of all.
 fn flake_of(place: u32) -> Flake {
     let s = shell_of(place);
     let index = place - flakes.first[s];
     return flake_in(run_of(s, index), index);
 }
 
-// A flake so far from the camera, in 2^-32 of the cell's side, that goes with a velocity; both without its helix.
+// Returns a flake at `away` from the camera, in 2^-32 of the cell's side, with the velocity `mean`; both without its
+// helix.
 fn flake_at(own: Own, away: vec3u, mean: vec3f) -> Flake {
     let s = own.shell;
     let row = flakes.classes[own.size_class];
@@ -173,19 +174,20 @@ fn flake_at(own: Own, away: vec3u, mean: vec3f) -> Flake {
     return Flake(p + around * row.z, row.x, mean + aside, inner * outer, mean, flakes.weight[own.size_class][s], angle, shape);
 }
 
-// What a flake scatters of a beam, 4 pi on the whole: all that its ice stops and does not bend by diffraction. The
-// asymmetry of aggregates, 0.77 with diffraction, which is half of it and goes straight on, leaves 0.54.
+// Returns the phase function of a flake, whose integral is 4 pi: the scattering by its ice, without diffraction.
+// Aggregates have an asymmetry of 0.77 with diffraction. Diffraction is half of the scattering and goes straight on, so
+// the rest has an asymmetry of 0.54.
 fn flake_phase(c: f32) -> f32 {
     return henyey(0.54, c);
 }
 
-// Share of what surrounds a flake above the horizon in what it sends along a ray that rises by a sine `z`: flake_phase
-// over a half space, by its first three Legendre terms, 1/2 + 3/4 g z - 7/16 g^3 P3(z).
+// Returns the share of the light above the horizon in what a flake sends along a ray that rises with the sine `z`: the
+// integral of flake_phase over a half space, by its first three Legendre terms, 1/2 + 3/4 g z - 7/16 g^3 P3(z).
 fn flake_sky_share(z: f32) -> f32 {
     return 0.5 + z * (0.50835 - 0.17222 * z * z);
 }
 
-// Radiance of a flake at `p` seen along `d`.
+// Returns the radiance of a flake at `p` seen along `d`.
 fn flake_light(p: vec3f, d: vec3f) -> vec3f {
     var beams = flakes.sun * flake_phase(dot(d, flakes.to_sun));
     for (var i = 0u; i < light_count(); i++) {
@@ -199,14 +201,14 @@ fn flake_light(p: vec3f, d: vec3f) -> vec3f {
 struct FlakeVarying {
     @builtin(position) position: vec4f,
     @location(0) light: vec3f,
-    // Share of the flake's disc that hides what lies behind, where the streak hides most of it; and where its shape is
-    // drawn.
+    // Opacity of the flake where its streak covers most, and the factor of its shape.
     @location(1) cover: vec2f,
-    // As depth_of has it, and the share of its light that what lies between lets through.
+    // Depth from depth_of, and transmittance between the flake and the eye.
     @location(2) depth_clear: vec3f,
-    // Place in the quad in radii, across and along its way, and how far the middle's way reaches.
+    // Position in the quad in radii, across and along the motion, and distance that the flake's middle moves to either
+    // side, in radii.
     @location(3) at: vec3f,
-    // Place on the flake in radii, and how much of its shape shows, 0 to 1.
+    // Position on the flake in radii, and how much of its shape shows, 0 to 1.
     @location(4) own: vec3f,
     @location(5) @interpolate(flat) shape: u32,
 }
@@ -215,18 +217,18 @@ fn no_flake() -> FlakeVarying {
     return FlakeVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), vec2f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0u);
 }
 
-// Whether a disc of a radius about a line between two points can be in the picture.
+// Whether a disc of this radius that moves from `a` to `b` can be in the picture.
 fn in_picture(a: vec3f, b: vec3f, radius: f32) -> bool {
     let first = flakes.clip * vec4f(a, 1.0);
     let last = flakes.clip * vec4f(b, 1.0);
-    // No lens is longer than 20 times the picture's half height.
+    // The focal length of a lens is at most 20 times the picture's half height.
     let side = 0.01 + 20.0 * radius + 1.02 * vec2f(first.w, last.w);
     let x = vec2f(first.x, last.x);
     let y = vec2f(first.y, last.y);
     return any(x < side) && any(-x < side) && any(y < side) && any(-y < side);
 }
 
-// Half of the way that is drawn of a flake, and what its cover is multiplied by.
+// Returns `part_drawn` for a flake: half of its drawn motion, and the factor of its opacity.
 fn flake_part(flake: Flake) -> vec4f {
     return part_drawn((flake.velocity - flakes.camera) * (0.5 * flakes.exposure), max(length(flake.position), 1e-3));
 }
@@ -236,24 +238,24 @@ fn may_show(flake: Flake, half: vec3f) -> bool {
     return flake.share > 0.0 && in_picture(flake.position - half, flake.position + half, flake.diameter);
 }
 
-// What a flake draws.
+// Quad that a flake draws.
 struct Spot {
-    // Its middle, camera-relative, m.
+    // Middle of the flake, camera-relative, m.
     middle: vec3f,
-    // m; 0: nothing is drawn.
+    // Diameter, m; 0 if nothing is drawn.
     diameter: f32,
-    // From the middle to the end of its way, m.
+    // Vector from the middle to the end of its motion, m.
     half: vec3f,
-    // Where on its helix it is, rad.
+    // Angle on its helix, rad.
     angle: f32,
     light: vec3f,
-    // Flakes that it stands for, times the share of it that is drawn.
+    // Number of flakes that it stands for, times the share of it that is drawn.
     weight: f32,
-    // What its shape is made of.
+    // Seed of its shape.
     shape: u32,
 }
 
-// Of a flake, if it `shows`.
+// Returns the quad of a flake; an empty one unless the flake `shows` and no shelter keeps it off.
 fn spot_of(flake: Flake, part: vec4f, shows: bool) -> Spot {
     if !shows || sheltered(flake.position, flake.mean_velocity, shows) {
         return Spot();
@@ -263,7 +265,7 @@ fn spot_of(flake: Flake, part: vec4f, shows: bool) -> Spot {
     return Spot(flake.position, flake.diameter, part.xyz, flake.angle, light, weight, flake.shape);
 }
 
-// A corner of what it covers while the shutter is open.
+// Returns a corner of the quad that the flake covers during the exposure.
 fn flake_corner(spot: Spot, corner: u32) -> FlakeVarying {
     if spot.diameter <= 0.0 {
         return no_flake();
@@ -273,7 +275,8 @@ fn flake_corner(spot: Spot, corner: u32) -> FlakeVarying {
     let half = spot.half;
     var out = no_flake();
     let radius = 0.5 * max(spot.diameter, max(flakes.pixel_angle * d * LEAST_PIXELS, 1e-6));
-    // An axis of its own for each, turning as it falls: no direction of view is one along which all lose their sides.
+    // Each flake has its own axis, which turns as it falls. So there is no view direction in which all flakes look
+    // alike.
     let high = f32(spot.shape >> 16u) * (2.0 / 65535.0) - 1.0;
     let level = sqrt(max(1.0 - high * high, 0.0));
     let axis = vec3f(level * cos(spot.angle), level * sin(spot.angle), high);
@@ -294,7 +297,8 @@ fn flake_corner(spot: Spot, corner: u32) -> FlakeVarying {
     out.at = vec3f(side, end * (reach + 1.0), reach);
     let thin = 0.5 * spot.diameter / radius;
     out.cover = vec2f(thin * thin * AREA_RATIO * longest_passing(reach), 1.0) * spot.weight;
-    // Below some pixels a flake is a disc as faint as its ice is thin, and one that moves by more than itself a streak.
+    // A flake of less than some pixels is a disc whose opacity is its share of ice. One that moves by more than its
+    // size is a streak.
     let pixels = spot.diameter / (flakes.pixel_angle * d);
     out.own = vec3f(dot(off, right), dot(off, up), 0.0) / radius;
     out.own.z = smoothstep(3.0, 6.0, pixels) * (1.0 - smoothstep(0.5, 1.5, reach));
@@ -308,7 +312,7 @@ fn lone_corner(flake: Flake, corner: u32) -> FlakeVarying {
     return flake_corner(spot_of(flake, part, may_show(flake, part.xyz)), corner);
 }
 
-// Every flake, the outermost shell's first, where there are no compute shaders.
+// Draws every flake, those of the outermost shell first, on devices without compute shaders.
 @vertex
 fn flake_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> FlakeVarying {
     return lone_corner(flake_of(flakes.count - 1u - instance), corner);
@@ -321,7 +325,7 @@ struct ListedFlake {
     @location(3) shape: u32,
 }
 
-// Those that were found to be in the picture (snow/cull.wgsl).
+// Draws the flakes that were found to be in the picture (snow/cull.wgsl).
 @vertex
 fn listed_vertex(@builtin(vertex_index) corner: u32, listed: ListedFlake) -> FlakeVarying {
     let middle = listed.middle_diameter;
@@ -330,7 +334,7 @@ fn listed_vertex(@builtin(vertex_index) corner: u32, listed: ListedFlake) -> Fla
     return flake_corner(Spot(middle.xyz, middle.w, half.xyz, half.w, light.xyz, light.w, listed.shape), corner);
 }
 
-// One that is stepped: number `index` of its shell, with the place and velocity of its state (falling/state.wgsl).
+// Draws a stepped flake: number `index` of its shell, with the place and velocity of its state (falling/state.wgsl).
 @vertex
 fn stepped_vertex(
     @builtin(vertex_index) corner: u32,
@@ -343,7 +347,7 @@ fn stepped_vertex(
     return lone_corner(flake_at(own_of(run_of(s, index), index), place - flakes.eye[s].xyz, velocity), corner);
 }
 
-// Premultiplied.
+// Returns the premultiplied light of a pixel of a flake.
 fn flake_color(in: FlakeVarying, shown: f32) -> vec4f {
     let soft = share_before(shown, in.depth_clear.xy);
     let streak = in.cover.x * passing(in.at.xy, in.at.z);

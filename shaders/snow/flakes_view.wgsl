@@ -1,4 +1,4 @@
-// Flakes before a host's picture; where that has several samples a pixel, the first stands for them.
+// Entry points of flakes in front of a host's picture. Of several samples a pixel, only the first is read.
 //!include "common/host.wgsl"
 //!include "snow/flakes.wgsl"
 
@@ -6,7 +6,7 @@
 
 override HAS_DEPTH: bool = true;
 
-// Depth of the host's picture at a pixel, as view_depth counts it.
+// Returns the depth of the host's picture at a pixel, as view_depth measures it.
 fn shown_at(position: vec4f) -> f32 {
     if HAS_DEPTH {
         let uv = position.xy / vec2f(textureDimensions(host_depth));

@@ -1,22 +1,22 @@
-// The shape of a flake: a clump of crystals, of which no two are alike. A disc whose edge and inside are eaten by
-// noise, as older systems draw it (1 - exp(-5 W), W = noise - radius^2); src/snow/shape.rs has the same in f64, and
-// holds its mean over the disc to the share of it that is ice.
+// Shape of a flake: a clump of crystals, each different. A disc whose edge and inside are eroded by noise, as in older
+// systems (1 - exp(-5 W), W = noise - radius^2). src/snow/shape.rs has the same in f64; its tests hold the mean over
+// the disc to the flake's share of ice.
 //!include "common/hash.wgsl"
 
-// Octaves of the noise; each is twice as fine and half as strong as the last.
+// Number of octaves of the noise; each is twice as fine and half as strong as the last.
 const SHAPE_OCTAVES: u32 = 4u;
-// Of the noise, in cells a radius; what is added to it and what it counts for, which make the mean.
+// Cells of the noise in a radius, constant added to the noise, and weight of the noise. The last two set the mean.
 const SHAPE_CELLS: f32 = 2.2;
 const SHAPE_OFFSET: f32 = 0.8563;
 const SHAPE_NOISE: f32 = 2.0;
 
-// A number from -1 to 1 at a corner of the noise's cells.
+// Returns a random number from -1 to 1 at a corner of the noise's cells.
 fn shape_corner(cell: vec2i, seed: u32) -> f32 {
     let key = bitcast<vec2u>(cell);
     return f32(random3(vec3u(key.x, key.y, seed)).x >> 8u) * (2.0 / 16777215.0) - 1.0;
 }
 
-// Value noise (Lattice of numbers, between them cubics).
+// Returns value noise: random numbers on a grid, with cubic interpolation between them.
 fn shape_noise(p: vec2f, seed: u32) -> f32 {
     let cell = vec2i(floor(p));
     let t = fract(p);
@@ -26,7 +26,7 @@ fn shape_noise(p: vec2f, seed: u32) -> f32 {
     return mix(low, high, w.y);
 }
 
-// How much a flake hides at a place in radii; not looked for where it is not `wanted`, by a loop that is not begun.
+// Returns the opacity of a flake at a place, in radii. 0 where it is not `wanted`: the loop then starts at its end.
 fn flake_shape(at: vec2f, seed: u32, wanted: bool) -> f32 {
     var noise = 0.0;
     var strength = 0.5;

@@ -1,4 +1,4 @@
-// One frame of the flakes that are stepped. Their helix is none of it: it is drawn about the place where a flake is.
+// Steps the flakes by one frame. Their helix is left out; it is added around the stepped place when they are drawn.
 //!include "snow/flakes.wgsl"
 //!include "falling/step.wgsl"
 

@@ -1,15 +1,15 @@
-// Stars and planets as points of light: the f64 twin is in src/stars/reference.rs, same names.
+// Stars and planets as points of light; src/stars/reference.rs is the f64 twin, with the same names.
 //!include "common/guarded.wgsl"
 //!include "common/depth.wgsl"
 //!include "common/host.wgsl"
 
 struct StarUniform {
     depth: DepthUniform,
-    // Camera-relative east-north-up to clip.
+    // Matrix from camera-relative (east, north, up) to clip space.
     clip: mat4x4f,
-    // Columns of the rotation from J2000.0 to east-north-up.
+    // Columns of the rotation from J2000.0 to (east, north, up).
     to_world: array<vec4f, 3>,
-    // The Earth's velocity over that of light, in J2000.0.
+    // The Earth's velocity over the speed of light, in J2000.0.
     velocity: vec3f,
     // Units of the target per cd/m^2.
     scale: f32,
@@ -17,15 +17,15 @@ struct StarUniform {
     zenith_depth: vec3f,
     // Share of light that clouds and fog let through.
     transmittance: f32,
-    // Of the target, pixels.
+    // Size of the target, pixels.
     size: vec2f,
-    // Solid angle of a pixel over the cube of a unit direction's clip w, sr.
+    // Solid angle of a pixel divided by the cube of clip w of a unit direction, sr.
     pixel_sr: f32,
     // 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
     y_sign: f32,
-    // Stars of less illuminance at the eye are not drawn, lux.
+    // Illuminance at the eye of the faintest star to draw, lux.
     faintest: f32,
-    // Of the air over that of 1010 hPa and 10 C, for refraction.
+    // Density of the air relative to that at 1010 hPa and 10 C, for refraction.
     air_density: f32,
     // Sine of the lowest elevation that the planet does not hide.
     horizon: f32,
@@ -39,22 +39,23 @@ override HAS_DEPTH: bool = true;
 
 // Half the width of a star's footprint, pixels.
 const REACH: f32 = 2.0;
-// Stars fade in from the faintest drawn to this many times its light: half a magnitude.
+// Ratio of illuminance over which stars fade in, from the faintest drawn upwards: half a magnitude.
 const FADE: f32 = 1.585;
 
-// The cubic B-spline: its values at whole steps from any place on add up to 1.
+// Cubic B-spline; its values at unit steps from any offset add up to 1.
 fn spline(x: f32) -> f32 {
     let a = abs(x);
     let far = max(2.0 - a, 0.0);
     return select(far * far * far / 6.0, 2.0 / 3.0 - a * a * (1.0 - 0.5 * a), a < 1.0);
 }
 
-// Share of a star's light that falls on a pixel whose middle is `offset` pixels from it.
+// Share of a star's light that falls on a pixel whose centre is `offset` pixels from the star.
 fn weight(offset: vec2f) -> f32 {
     return spline(offset.x) * spline(offset.y);
 }
 
-// Lift by refraction, rad, at a true elevation, rad (Saemundsson 1986), as refraction_deg of src/almanac/celestial.rs.
+// Refraction's lift, rad, at a true elevation, rad (Saemundsson 1986); equal to refraction_deg of
+// src/almanac/celestial.rs.
 fn refraction(elevation: f32) -> f32 {
     let degrees = elevation * 57.29578;
     let h = max(degrees, -1.0);
@@ -62,7 +63,7 @@ fn refraction(elevation: f32) -> f32 {
     return max(arc_minutes * smoothstep(0.0, 1.0, (degrees + 4.0) / 3.0) * stars.air_density, 0.0) * 2.9088821e-4;
 }
 
-// A direction of east-north-up as the air lifts it.
+// Direction (east, north, up) after refraction.
 fn lifted(direction: vec3f) -> vec3f {
     let level = length(direction.xy);
     let elevation = atan2(direction.z, level);
@@ -71,7 +72,7 @@ fn lifted(direction: vec3f) -> vec3f {
     return select(up, direction, level < 1e-4);
 }
 
-// Relative air mass at the sine of an apparent elevation (Kasten and Young 1989).
+// Relative air mass for the sine of an apparent elevation (Kasten and Young 1989).
 fn air_mass(sine: f32) -> f32 {
     let s = max(sine, 0.0);
     return 1.0 / (s + 0.50572 * pow(asin(min(s, 1.0)) * 57.29578 + 6.07995, -1.6364));
@@ -79,13 +80,14 @@ fn air_mass(sine: f32) -> f32 {
 
 struct StarVarying {
     @builtin(position) position: vec4f,
-    // Radiance on a pixel that it fell on as a whole, the target's units.
+    // Radiance of a pixel that receives all of the star's light, in the target's units.
     @location(0) @interpolate(flat) light: vec3f,
-    // Where it stands, pixels from the target's first corner.
+    // Position of the star, pixels from the target's first corner.
     @location(1) @interpolate(flat) pixel: vec2f,
 }
 
-// A corner of the pixels that a star lights. Its direction is of J2000.0, its illuminance above the air in lux.
+// A corner of the square of pixels that a star lights. `direction` is in J2000.0; `lux` is the illuminance above the
+// air.
 @vertex
 fn star_vertex(
     @builtin(vertex_index) corner: u32,
@@ -112,7 +114,7 @@ fn star_vertex(
     return out;
 }
 
-// Whether the host has drawn nothing before the sky; of several samples the first stands for them.
+// Whether the host has drawn nothing in front of the sky. In a multisampled depth the first sample counts.
 fn is_open(position: vec2f) -> bool {
     if !HAS_DEPTH {
         return true;
@@ -124,10 +126,10 @@ fn is_open(position: vec2f) -> bool {
     return view_range(stars.depth, depth, ndc) >= RANGE_SKY;
 }
 
-// Premultiplied with an alpha of 0: added to what is there.
+// Premultiplied colour with alpha 0: it is added to the target.
 @fragment
 fn star_fragment(in: StarVarying) -> @location(0) vec4f {
     let share = select(0.0, weight(in.position.xy - in.pixel), is_open(in.position.xy));
-    // Half of what a half float holds: two of them may fall on one pixel.
+    // Limited to half the range of a half float, because two stars may fall on one pixel.
     return vec4f(capped(in.light * share, 3e4), 0.0);
 }

@@ -1,4 +1,4 @@
-// Copies a picture texel by texel onto a window's image that can only be drawn to.
+// Copies a picture texel by texel to a window's image that can only be drawn to.
 //!include "common/fullscreen.wgsl"
 
 @group(0) @binding(0) var picture: texture_2d<f32>;

@@ -1,7 +1,7 @@
-// The host's lamps round the camera.
+// The host's lamps around the camera.
 //!include "common/light.wgsl"
 
-// Whether there are any. Read by what is drawn in every pixel.
+// Whether there are any lamps. Shaders that run in every pixel read it to leave the loop out.
 override LAMPS: bool = false;
 
 struct Lights {
@@ -11,8 +11,8 @@ struct Lights {
 
 @group(2) @binding(3) var<uniform> lights: Lights;
 
-// How many there are. Counts of blocks are cut to the bits that the most of them needs, so that each loop ends whatever
-// its block holds; not by `min`, since a driver that knows the end of a loop may write it out.
+// Returns the number of lamps. Counts of blocks are masked to the bits that their maximum needs, so that each loop ends
+// whatever its block holds. `min` would not do: a driver that knows the end of a loop may unroll it.
 fn light_count() -> u32 {
     return lights.count & 127u;
 }

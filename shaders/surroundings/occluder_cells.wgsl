@@ -1,4 +1,4 @@
-// The range of distances in a cell of 8 x 8 finer ones.
+// Computes the range of distances of a cell from those of its 8 x 8 finer cells.
 //!include "common/fullscreen.wgsl"
 
 @group(0) @binding(0) var finer: texture_2d<u32>;

@@ -1,26 +1,26 @@
-// A map of the host's, made ready for shaders/surroundings/occluders.wgsl: of each texel the range of distances that
-// its surface spans.
+// Prepares a map of the host for shaders/surroundings/occluders.wgsl: computes for each texel the range of distances
+// that its surface spans.
 //!include "common/fullscreen.wgsl"
 //!include "common/depth.wgsl"
 
-// Neighbouring texels are one surface where it is not steeper than this against the map's plane (85 degrees).
+// Steepest slope against the map's plane (85 degrees) at which neighbouring texels count as one surface.
 const STEEPEST: f32 = 12.0;
-// A range that nothing meets.
+// Range of a texel without a surface, which no path crosses.
 const NOTHING: vec2f = vec2f(1e12, -1e12);
 
 struct MapUniform {
     depth: DepthUniform,
-    // The map's place in the table, texels, and its size.
+    // Origin of the map in the table, and its size, texels.
     origin: vec2f,
     size: vec2f,
-    // 1 where row 0 is the map's top, -1 where it is the bottom.
+    // 1 if row 0 is the map's top, -1 if it is the bottom.
     y_sign: f32,
 }
 
 @group(0) @binding(0) var<uniform> map: MapUniform;
 @group(0) @binding(1) var host_map: texture_2d<f32>;
 
-// Metres from the map's camera.
+// Returns the distance of a texel's surface from the map's camera, m.
 fn distance_at(texel: vec2f) -> f32 {
     let at = clamp(texel, vec2f(0.0), map.size - 1.0);
     let uv = (at + 0.5) / map.size;
@@ -28,7 +28,7 @@ fn distance_at(texel: vec2f) -> f32 {
     return view_plane(map.depth, textureLoad(host_map, vec2i(at), 0).r, ndc);
 }
 
-// Side of a texel at a distance, m.
+// Returns the side length of a texel at a distance, m.
 fn texel_side(distance: f32) -> f32 {
     let parallel = vec2f(length(map.depth.origin_dx), length(map.depth.origin_dy));
     let central = vec2f(length(map.depth.direction_dx), length(map.depth.direction_dy)) / map.depth.plane_scale;
@@ -53,6 +53,6 @@ fn occluder_map(in: FullscreenVarying) -> @location(0) vec2u {
     let joined = select(vec4f(0.0), steps, abs(steps) <= vec4f(STEEPEST * side));
     let low = min(min(joined.x, joined.y), min(min(joined.z, joined.w), 0.0));
     let high = max(max(joined.x, joined.y), max(max(joined.z, joined.w), 0.0));
-    // Half-way to its neighbours, and half a texel more for what the picture is too coarse to tell.
+    // The range reaches half-way to the neighbours, and half a texel further, because the map is too coarse to tell.
     return bitcast<vec2u>(d + 0.5 * vec2f(low - side, high + side));
 }

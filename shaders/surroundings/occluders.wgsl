@@ -1,55 +1,55 @@
-// Surfaces that a host has taken pictures of, from any direction: whether a path crosses one of them. Each texel holds
-// the range of distances that the surface in it spans, each cell of 8 and of 64 texels the range of all in it
-// (surroundings/occluder_map.wgsl). A path is led from cell to cell and only looks into those whose range it meets:
-// what lies before or behind all of a cell's surfaces crosses none of them. What a surface hides from the picture is
-// not known, so a path may pass behind an edge; the drops' own direction, along which nothing is hidden that matters,
-// is the best to take it from.
+// Surfaces in the host's occluder maps, taken from any direction, and the test whether a path crosses one of them. Each
+// texel holds the range of distances that its surface spans, each cell of 8 and of 64 texels the range of all texels in
+// it (surroundings/occluder_map.wgsl). The path is traced from cell to cell and descends only into cells whose range it
+// meets: a path before or behind all surfaces of a cell crosses none of them. A map does not contain what its surfaces
+// hide, so a path may pass behind an edge. It is best taken along the drops' own direction, in which nothing is hidden
+// that matters.
 
-// Whether there are any.
+// Whether there are any maps.
 override MAPS: bool = false;
 
 const MAX_MAPS: u32 = 4u;
-// Most looks at cells: a path through more is taken for free.
+// Maximum number of cells tested per path. A longer path counts as free.
 const MAP_STEPS: u32 = 192u;
 
 struct Occluder {
-    // Rows from camera-relative east-north-up to w times the place in the table of ranges, to w, and to the distance
-    // from the map's camera, m.
+    // Rows from camera-relative east, north, up to w times the position in the table of ranges, to w, and to the
+    // distance from the map's camera, m.
     x: vec4f,
     y: vec4f,
     w: vec4f,
     distance: vec4f,
-    // m/s; not 0 in the last: it moves.
+    // Velocity, m/s; w is not 0 for a map whose content moves.
     velocity: vec4f,
-    // The map's part of the table: its lowest and its highest corner.
+    // Part of the table that the map fills: its lowest and its highest corner.
     part: vec4f,
 }
 
 struct Occluders {
     count: u32,
     pad: u32,
-    // Where the cells of 64 and of 8 texels begin in the table.
+    // x: column at which the cells of 64 texels begin in the table; y: row at which all cells begin.
     cells: vec2u,
     maps: array<Occluder, MAX_MAPS>,
 }
 
 @group(2) @binding(1) var<uniform> occluders: Occluders;
-// The bits of floats: not all drivers draw into floats of 32 bits.
+// Bits of floats, because not all drivers can render to 32-bit floats.
 @group(2) @binding(2) var map_ranges: texture_2d<u32>;
 
-// `level` 0: a texel; 1: a cell of 8; 2: of 64.
+// Returns the range of distances of a cell. `level` 0: a texel; 1: a cell of 8 texels; 2: of 64.
 fn range_of(level: u32, cell: vec2f) -> vec2f {
     let row = select(0u, occluders.cells.y, level > 0u);
     let column = select(0u, occluders.cells.x, level > 1u);
     return bitcast<vec2f>(textureLoad(map_ranges, vec2i(vec2u(cell) + vec2u(column, row)), 0).xy);
 }
 
-// Whether the way that led to `p` with `velocity` crosses a surface of map `i`.
+// Whether the path that led to `p` with `velocity` crosses a surface of map `i`.
 fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
     let map = occluders.maps[i];
     let back = map.velocity.xyz - velocity;
     let at = vec4f(p, 1.0);
-    // Along the way all four are a + s b.
+    // Along the path all four components are a + s b.
     let a = vec4f(dot(map.x, at), dot(map.y, at), dot(map.w, at), dot(map.distance, at));
     let b = vec4f(dot(map.x.xyz, back), dot(map.y.xyz, back), dot(map.w.xyz, back), dot(map.distance.xyz, back));
     let sides = vec4f(a.xy - map.part.xy * a.z, map.part.zw * a.z - a.xy);
@@ -58,7 +58,7 @@ fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
     let meet = -sides / rate;
     let enter = select(vec4f(0.0), meet, rate > vec4f(0.0));
     let leave = select(vec4f(1e9), meet, rate < vec4f(0.0));
-    // Nothing is known behind the map's camera.
+    // The map contains nothing behind its camera.
     let near = (0.01 - a.w) / select(b.w, 1e-9, abs(b.w) < 1e-9);
     let begin = max(max(max(enter.x, enter.y), max(enter.z, enter.w)), select(0.0, near, b.w >= 0.0));
     let end = min(min(min(leave.x, leave.y), min(leave.z, leave.w)), select(1e9, near, b.w < 0.0));
@@ -72,7 +72,7 @@ fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
     var crossed = false;
     for (var k = select(MAP_STEPS, 0u, inside); k < MAP_STEPS; k++) {
         let size = f32(1u << (3u * level));
-        // A little further than the edge that it has come to.
+        // A point slightly beyond the edge that the path has reached.
         let place = (a.xy + s * b.xy) / (a.z + s * b.z) + sign(onward) * 0.004;
         let cell = floor(clamp(place, map.part.xy, map.part.zw - 0.004) / size);
         let edge = (cell + ahead) * size;
@@ -82,7 +82,8 @@ fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
         let distance = a.w + vec2f(s, next) * b.w;
         let range = range_of(level, cell);
         if level == 0u && s == 0.0 && a.w <= range.y {
-            // What lies on a surface must first get away from it: by the depth of the range of its own texel.
+            // A path that starts on a surface must first leave it: by as much as the range of the surface's own texel
+            // spans.
             s = max((a.w - 2.0 * range.x + range.y) * apart, 1e-6);
         } else if min(distance.x, distance.y) <= range.y && max(distance.x, distance.y) >= range.x {
             if level == 0u {
@@ -94,7 +95,7 @@ fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
             if next >= end {
                 break;
             }
-            // Larger cells again where one of them ends.
+            // Continue with larger cells where one of them ends.
             let beside = cell + select(vec2f(sign(onward.x), 0.0), vec2f(0.0, sign(onward.y)), until.y < until.x);
             level = select(level, min(level + 1u, 2u), any(floor(beside / 8.0) != floor(cell / 8.0)));
             s = next;

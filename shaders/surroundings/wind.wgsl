@@ -1,21 +1,22 @@
-// The wind that varies in space, as src/surroundings/wind.rs uploads it: a node a texel, velocity times share, and the
-// share of the weather's wind that it replaces. Look the texture up at `wind_place` with its sampler (linear, clamped),
-// and give `wind_at` what is there.
+// The wind that varies in space, as src/surroundings/wind.rs uploads it: one texel per node, with velocity times share,
+// and the share of the weather's wind that it replaces. Sample the texture at `wind_place` with its sampler (linear,
+// clamped), and pass the result to `wind_at`.
 
 struct WindMap {
-    // From camera-relative metres to the texture.
+    // Scale and offset from camera-relative metres to texture coordinates.
     scale: vec3f,
     offset: vec3f,
-    // The first node in the texture; the last is as far from its other end.
+    // Texture coordinates of the first node; the last is as far from the opposite end.
     first: vec3f,
 }
 
-// Where a camera-relative place lies in the texture.
+// Returns the texture coordinates of a camera-relative place.
 fn wind_place(map: WindMap, p: vec3f) -> vec3f {
     return p * map.scale + map.offset;
 }
 
-// Velocity of the air at a place in the texture, m/s, where the weather's is `weathers` and the texture has `found`.
+// Returns the velocity of the air at a place in the texture, m/s. `weathers` is the weather's wind there, `found` the
+// sample of the texture.
 fn wind_at(map: WindMap, place: vec3f, found: vec4f, weathers: vec3f) -> vec3f {
     let inside = all(place >= map.first) && all(place <= 1.0 - map.first);
     return select(weathers, found.xyz + weathers * (1.0 - found.w), inside);

@@ -1,7 +1,7 @@
-//! How the sky of the stars stands over a place: sidereal time, precession, nutation.
+//! Orientation of the starry sky over a place: sidereal time, precession, nutation.
 //!
-//! Angles come from the platform's sine and cosine: directions agree between machines to 1e-14, not bit for bit.
-//! Nothing that is simulated depends on them.
+//! Angles use the platform's sine and cosine, so directions agree between machines to 1e-14, not bit for bit. No
+//! simulated state depends on them.
 
 use glam::{DMat3, DVec3};
 
@@ -12,11 +12,11 @@ use crate::{
     scene::{Place, turn_x, turn_y, turn_z},
 };
 
-/// Arc seconds in degrees.
+/// One arc second, degrees.
 const ARC_SECOND_DEG: f64 = 1.0 / 3600.0;
 
-/// Nutation in longitude and true obliquity of the ecliptic, rad, at `t` centuries of TT since J2000 (Meeus,
-/// Astronomical Algorithms, chapter 22, the two leading terms: 0.5").
+/// Returns the nutation in longitude and true obliquity of the ecliptic, rad, at `t` centuries of TT since J2000
+/// (Meeus, Astronomical Algorithms, chapter 22, the two leading terms: 0.5").
 pub(crate) fn nutation_obliquity(t: f64) -> (f64, f64) {
     let node = (125.044_52 - 1_934.136_261 * t).to_radians();
     let sun = (280.466_5 + 36_000.769_8 * t).to_radians();
@@ -25,29 +25,30 @@ pub(crate) fn nutation_obliquity(t: f64) -> (f64, f64) {
     ((arc_seconds * ARC_SECOND_DEG).to_radians(), obliquity.to_radians())
 }
 
-/// Mean obliquity, degrees (Lieske et al. 1977, to the first order: 0.01" a century beside 1900 to 2100).
+/// Returns the mean obliquity, degrees (Lieske et al. 1977 to first order; outside 1900 to 2100 the error grows by
+/// 0.01" a century).
 fn mean_obliquity_deg(t: f64) -> f64 {
     23.439_291_1 - 0.013_004_2 * t
 }
 
-/// Mean sidereal time at Greenwich, rad in [0, 2 pi) (Aoki et al. 1982; Meeus eq. 12.4).
+/// Returns the mean sidereal time at Greenwich, rad in [0, 2 pi) (Aoki et al. 1982; Meeus eq. 12.4).
 pub fn mean_sidereal_time(utc: Utc) -> f64 {
     let days = utc.julian_date() - 2_451_545.0;
     let t = days / 36_525.0;
-    // The whole turns of the days are taken off first: 360 degrees a day would cost ten bits by now.
+    // Whole turns of the days are removed first: multiplying them by 360 degrees would cost ten bits by now.
     let turns = 360.0 * days.rem_euclid(1.0) + 0.985_647_366_29 * days;
     (280.460_618_37 + turns + t * t * (0.000_387_933 - t / 38_710_000.0)).rem_euclid(360.0).to_radians()
 }
 
-/// Apparent sidereal time at Greenwich, rad: the mean one and the equation of the equinoxes. May lie a hair outside
-/// [0, 2 pi).
+/// Returns the apparent sidereal time at Greenwich, rad: the mean one plus the equation of the equinoxes. May lie
+/// slightly outside [0, 2 pi).
 pub fn apparent_sidereal_time(utc: Utc) -> f64 {
     let (nutation, obliquity) = nutation_obliquity(utc.julian_centuries_tt());
     mean_sidereal_time(utc) + nutation * libm::cos(obliquity)
 }
 
-/// From the equator and equinox of J2000.0 to those of date: precession (Lieske 1977, IAU 1976; Meeus eq. 21.3) at `t`
-/// centuries of TT since J2000. Good to an arc second within two centuries of 2000.
+/// Returns the rotation from the equator and equinox of J2000.0 to those of date, at `t` centuries of TT since J2000:
+/// precession (Lieske 1977, IAU 1976; Meeus eq. 21.3). Accurate to an arc second within two centuries of 2000.
 fn precession(t: f64) -> DMat3 {
     let angle = |a: f64, b: f64, c: f64| (t * (a + t * (b + t * c)) * ARC_SECOND_DEG).to_radians();
     let zeta = angle(2306.2181, 0.301_88, 0.017_998);
@@ -56,23 +57,23 @@ fn precession(t: f64) -> DMat3 {
     turn_z(z) * turn_y(-theta) * turn_z(zeta)
 }
 
-/// From the mean equator and equinox of date to the true ones: nutation.
+/// Returns the rotation from the mean equator and equinox of date to the true ones: nutation.
 fn nutation(t: f64) -> DMat3 {
     let (longitude, obliquity) = nutation_obliquity(t);
     let mean = mean_obliquity_deg(t).to_radians();
     turn_x(obliquity) * turn_z(longitude) * turn_x(-mean)
 }
 
-/// From true equatorial axes of date to (east, north, up) at a place: the Earth's turning.
+/// Returns the rotation from true equatorial axes of date to (east, north, up) at a place, by the Earth's rotation.
 pub(crate) fn equator_of_date_to_world(utc: Utc, place: &Place) -> DMat3 {
     place.ecef_to_enu() * turn_z(-apparent_sidereal_time(utc))
 }
 
-/// From catalogue directions (equator and equinox J2000.0; x to the equinox, z to the north pole) to (east, north, up)
-/// at `place`: precession, nutation and the Earth's turning. A rotation; apply it to a star's unit vector
+/// Returns the rotation from catalogue directions (equator and equinox J2000.0; x to the equinox, z to the north pole)
+/// to (east, north, up) at `place`: precession, nutation and the Earth's rotation. Apply it to a star's unit vector
 /// ([`equatorial_direction`]).
 ///
-/// Good to 1": aberration (20") and refraction are not in it. UT1 is taken as UTC (at most 0.9 s: 14").
+/// Accurate to 1", without aberration (20") and refraction. UT1 is taken as UTC (at most 0.9 s: 14").
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
@@ -83,22 +84,23 @@ pub fn celestial_to_world(utc: Utc, place: &Place) -> Result<DMat3> {
     Ok(equator_of_date_to_world(utc, place) * nutation(t) * precession(t))
 }
 
-/// Unit vector of a right ascension and declination, degrees.
+/// Returns the unit vector of a right ascension and a declination, degrees.
 pub fn equatorial_direction(right_ascension_deg: f64, declination_deg: f64) -> DVec3 {
     let (sa, ca) = libm::sincos(right_ascension_deg.to_radians());
     let (sd, cd) = libm::sincos(declination_deg.to_radians());
     DVec3::new(ca * cd, sa * cd, sd)
 }
 
-/// Unit vector (east, north, up) of an azimuth (clockwise from north) and an elevation, degrees.
+/// Returns the unit vector (east, north, up) of an azimuth (clockwise from north) and an elevation, degrees.
 pub fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
     let (sa, ca) = libm::sincos(azimuth_deg.to_radians());
     let (se, ce) = libm::sincos(elevation_deg.to_radians());
     DVec3::new(sa * ce, ca * ce, se)
 }
 
-/// Lift of a body by refraction, degrees, at a true elevation: Saemundsson (1986), scaled by the air's density at the
-/// eye. Below -1 degree, where the formula ends and nothing is seen from the ground, it fades to 0 at -4 degrees.
+/// Returns the refraction of a body at a true elevation, degrees: Saemundsson (1986), scaled by the air's density at
+/// the eye. The formula ends at -1 degree, below which nothing is seen from the ground; from there refraction fades to
+/// 0 at -4 degrees.
 pub fn refraction_deg(elevation_deg: f64, pressure_hpa: f64, temperature_c: f64) -> f64 {
     let h = elevation_deg.max(-1.0);
     let arc_minutes = 1.02 / libm::tan((h + 10.3 / (h + 5.11)).to_radians());
@@ -126,7 +128,7 @@ mod tests {
 
     #[test]
     fn precession_of_meeus_example_21b() {
-        // Theta Persei with its motion applied, from J2000 to 2028-11-13.19 TD.
+        // Theta Persei with its proper motion applied, from J2000 to 2028-11-13.19 TD.
         let t = 0.288_670_500;
         let (ra, dec) = degrees(precession(t) * equatorial_direction(41.054_063, 49.227_750));
         assert!((ra - 41.547_214).abs() < 2e-6 && (dec - 49.348_483).abs() < 2e-6, "{ra} {dec}");
@@ -143,8 +145,8 @@ mod tests {
 
     #[test]
     fn venus_over_washington_in_meeus_example_13b() {
-        // Apparent place of date 23h 09m 16.641s, -6 43' 11.61": azimuth 68.0337 from the south, height 15.1249. His
-        // latitude is geographic and his site at sea level, as ours.
+        // Apparent place of date 23h 09m 16.641s, -6 43' 11.61": azimuth 68.0337 from the south, elevation 15.1249. As
+        // here, the latitude is geographic and the site is at sea level.
         let place = Place { latitude_deg: 38.921_389, longitude_deg: -77.065_556, altitude_m: 0.0 };
         let utc = Utc::from_calendar(1987, 4, 10, 19, 21, 0.0).unwrap();
         let venus = equatorial_direction(347.319_337_5, -6.719_891_7);

@@ -1,8 +1,8 @@
-//! Sun and moon from the Earth's centre, and a quick way to follow them through time.
+//! Positions of sun and moon relative to the Earth's centre, and fast interpolation of them in time.
 //!
-//! The published series cost some microseconds a call, and bodies move slowly: an [`Ephemeris`] evaluates them at knots
-//! half an hour apart and lays a cubic through the four nearest (Lagrange). What turns fast, the Earth, is not in
-//! it: that is a rotation a call.
+//! The published series cost some microseconds a call, but the bodies move slowly. An [`Ephemeris`] evaluates the
+//! series at knots half an hour apart and interpolates between the four nearest by a cubic (Lagrange). The fast
+//! rotation of the Earth is not interpolated: it is a rotation per call.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -17,19 +17,20 @@ use crate::{
 
 /// Astronomical unit, m (IAU 2012).
 pub(super) const AU_M: f64 = 1.495_978_707e11;
-/// Sun and moon from the Earth's centre in the true equator and equinox of date (x to the equinox, z to the pole).
+/// Sun and moon relative to the Earth's centre, in the true equator and equinox of date (x to the equinox, z to the
+/// pole).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geocentric {
-    /// Apparent place of the sun, m.
+    /// Apparent position of the sun, m.
     pub sun_m: DVec3,
-    /// Place of the moon, m.
+    /// Position of the moon, m.
     pub moon_m: DVec3,
-    /// Equation of the equinoxes: apparent less mean sidereal time, rad.
+    /// Equation of the equinoxes: apparent minus mean sidereal time, rad.
     pub equinoxes: f64,
 }
 
 impl Geocentric {
-    /// From the series themselves: NREL's solar position algorithm (Reda & Andreas 2004), and [`lunar_series`].
+    /// Evaluates the series: NREL's solar position algorithm (Reda & Andreas 2004), and [`lunar_series`].
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time out of range.
@@ -55,21 +56,22 @@ impl Geocentric {
     }
 }
 
-/// Distance of the knots, s. The remainder of a cubic is 9/384 h^4 f'''': for the moon, whose fastest large term turns
-/// by 2 pi in 9.6 days and its mean motion in 27.3, below 1e-8 degrees (tested).
+/// Distance of the knots, s. The remainder of a cubic is 9/384 h^4 f''''. For the moon, whose fastest large term has a
+/// period of 9.6 days and whose mean motion has one of 27.3, it is below 1e-8 degrees (tested).
 const STEP_S: f64 = 1800.0;
 
-/// [`Geocentric`] as a function of time, with the knots of the last call kept.
+/// Interpolated [`Geocentric`] as a function of time; keeps the knots of the last call.
 ///
-/// A pure function: knots lie at multiples of half an hour since 1970, whoever asked for what before. Any thread.
+/// The result depends only on the time: knots lie at multiples of half an hour since 1970, whatever was asked before.
+/// Any thread.
 #[derive(Debug, Default)]
 pub struct Ephemeris {
-    /// Number of the first knot, and four of them.
+    /// Number of the first knot, and the four knots from there on.
     knots: Mutex<Option<(f64, [Geocentric; 4])>>,
 }
 
 impl Ephemeris {
-    /// Sun and moon at `utc`. No allocation; the series are evaluated at most four times.
+    /// Returns sun and moon at `utc`. No allocation; the series are evaluated at most four times.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time out of range.
@@ -77,7 +79,7 @@ impl Ephemeris {
         if !(UTC_RANGE_S[0]..=UTC_RANGE_S[1]).contains(&utc.0) {
             return Err(utc.out_of_range());
         }
-        // At the ends of the range the knots stay inside it.
+        // Near the ends of the range the knots stay inside it.
         let (lowest, highest) = ((UTC_RANGE_S[0] / STEP_S).ceil(), (UTC_RANGE_S[1] / STEP_S).floor() - 3.0);
         let first = ((utc.0 / STEP_S).floor() - 1.0).clamp(lowest, highest);
         let x = utc.0 / STEP_S - first;
@@ -99,7 +101,7 @@ impl Ephemeris {
     }
 }
 
-/// The four knots from number `first` on, taken from those `kept` where they are among them.
+/// Returns the four knots from number `first` on, reusing those in `kept` that are among them.
 fn knots_from(kept: Option<&(f64, [Geocentric; 4])>, first: f64) -> Result<[Geocentric; 4]> {
     let knot = |i: usize| {
         let number = first + i as f64;
@@ -116,7 +118,7 @@ fn knots_from(kept: Option<&(f64, [Geocentric; 4])>, first: f64) -> Result<[Geoc
 mod tests {
     use super::*;
 
-    /// Times over three centuries, and one in the time of the pyramids.
+    /// Times over three centuries, one in the time of the pyramids, and one equally far ahead.
     fn times() -> impl Iterator<Item = Utc> {
         (0..400).map(|i| Utc(-3.0e9 + 2.345_678_9e7 * f64::from(i))).chain([Utc(-1.2e11), Utc(1.2e11)])
     }
@@ -128,7 +130,7 @@ mod tests {
             for minute in [0.0, 7.0, 15.0, 29.9] {
                 let utc = Utc(utc.0 + 60.0 * minute);
                 let (got, want) = (quick.at(utc).unwrap(), Geocentric::at(utc).unwrap());
-                // Angles in the tangent's form: `angle_between` has no digits left here.
+                // The angle from the chord: `angle_between` has no digits left at so small an angle.
                 let apart = |a: DVec3, b: DVec3| (a.normalize() - b.normalize()).length().to_degrees();
                 assert!(apart(got.sun_m, want.sun_m) < 1e-8, "{utc:?}: {got:?} {want:?}");
                 assert!(apart(got.moon_m, want.moon_m) < 1e-8, "{utc:?}: {got:?} {want:?}");

@@ -1,4 +1,4 @@
-//! Series for the moon's place from the Earth's centre.
+//! Series for the position of the moon relative to the Earth's centre.
 //!
 //! After Meeus, Astronomical Algorithms (2nd ed., 1998), chapter 47, with the leading terms of Chapront's ELP 2000-82;
 //! the terms left out add up to less than 0.01 degrees and 60 km.
@@ -93,7 +93,7 @@ const LATITUDE: [[f64; 5]; 32] = [
     [4.0, 0.0, -2.0, 1.0, 671.0],
 ];
 
-/// Ecliptic longitude and latitude of date (rad, nutation not included) and distance (m), from the Earth's centre.
+/// Returns ecliptic longitude and latitude of date (rad, without nutation) and distance (m) from the Earth's centre.
 fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
     let angle = |c: [f64; 4]| (c[0] + t * (c[1] + t * (c[2] + t * c[3]))).to_radians();
     let l = angle([218.316_447_7, 481_267.881_234_21, -0.001_578_6, 1.0 / 538_841.0]);
@@ -103,7 +103,7 @@ fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
     let f = angle([93.272_095_0, 483_202.017_523_3, -0.003_653_9, -1.0 / 3_526_000.0]);
     let [a1, a2, a3] = [(119.75, 131.849), (53.09, 479_264.290), (313.45, 481_266.484)]
         .map(|(a, b): (f64, f64)| (a + b * t).to_radians());
-    // Terms with the sun's anomaly shrink with the eccentricity of the Earth's orbit.
+    // Terms with the sun's anomaly scale with the eccentricity of the Earth's orbit.
     let e = 1.0 - 0.002_516 * t - 0.000_007_4 * t * t;
     let argument = |c: &[f64]| c[0] * d + c[1] * m + c[2] * mp + c[3] * f;
     let weight = |c: &[f64]| e.powi(c[1].abs() as i32);
@@ -128,8 +128,8 @@ fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
     )
 }
 
-/// The moon from the Earth's centre in the true equator and equinox of date, m, at `t` centuries of TT since J2000 with
-/// nutation in longitude and true obliquity, rad.
+/// Returns the moon's position relative to the Earth's centre in the true equator and equinox of date, m, at `t`
+/// centuries of TT since J2000 with nutation in longitude and true obliquity, rad.
 pub(super) fn geocentric_equatorial(t: f64, nutation: f64, obliquity: f64) -> DVec3 {
     let (longitude, latitude, distance) = geocentric_ecliptic(t);
     let (sb, cb) = libm::sincos(latitude);

@@ -1,5 +1,5 @@
-//! The almanac: universal time, where sun and moon stand over a place, how far, how bright, and how the sphere of the
-//! stars is turned.
+//! The almanac: universal time, the positions, distances and brightness of sun and moon over a place, and the
+//! orientation of the celestial sphere.
 
 pub mod celestial;
 pub(crate) mod ephemeris;

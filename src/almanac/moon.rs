@@ -1,4 +1,4 @@
-//! The moon over a place: where it stands, how it is lit, and how much light it gives.
+//! The moon over a place: its position, its phase, and the illuminance that it gives.
 
 use glam::DVec3;
 
@@ -12,20 +12,20 @@ use crate::{
 /// Radius of the moon, m (IAU 2015 mean).
 const MOON_RADIUS_M: f64 = 1.7374e6;
 
-/// The moon over a place.
+/// Position and light of the moon over a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoonPosition {
-    /// Towards the moon, (east, north, up), topocentric, without refraction.
+    /// Unit vector towards the moon, (east, north, up), topocentric, without refraction.
     pub direction: DVec3,
-    /// Degrees clockwise from true north.
+    /// Azimuth, degrees clockwise from true north.
     pub azimuth_deg: f64,
-    /// Degrees above the horizon, topocentric, without refraction.
+    /// Elevation above the horizon, degrees, topocentric, without refraction.
     pub elevation_deg: f64,
     /// Distance from the place, m.
     pub distance_m: f64,
     /// Angular radius, rad.
     pub angular_radius: f64,
-    /// Angle sun - moon - observer, rad: 0 full, pi new.
+    /// Angle sun - moon - observer, rad: 0 at full moon, pi at new moon.
     pub phase_angle: f64,
     /// Lit part of the disc, 0 to 1.
     pub illuminated: f64,
@@ -35,7 +35,7 @@ pub struct MoonPosition {
     pub illuminance_lux: f64,
 }
 
-/// The moon over `place` at `utc`, to 0.01 degrees.
+/// Returns the position and light of the moon over `place` at `utc`, within 0.01 degrees.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
@@ -44,7 +44,7 @@ pub fn moon_position(utc: Utc, place: &Place) -> Result<MoonPosition> {
     Ok(lit(&Turned::new(&Geocentric::at(utc)?, utc, place)))
 }
 
-/// The moon over a place, lit by the sun there.
+/// Returns the position of the moon over a place, with the light that it gets from the sun.
 pub(crate) fn lit(turned: &Turned) -> MoonPosition {
     let seen = turned.moon_m;
     let direction = seen.normalize();
@@ -66,9 +66,9 @@ pub(crate) fn lit(turned: &Turned) -> MoonPosition {
     }
 }
 
-/// Illuminance by the moon above the air, lux: V = -12.73 + 0.026 |a| + 4e-9 a^4 with a the phase angle in degrees
-/// (Krisciunas & Schaefer 1991, eq. 9 with Allen's magnitude of the full moon), at the mean distance; a lux is
-/// -14.18 magnitudes.
+/// Returns the illuminance by the moon above the air, lux. The magnitude is V = -12.73 + 0.026 |a| + 4e-9 a^4 with the
+/// phase angle a in degrees (Krisciunas & Schaefer 1991, eq. 9, with Allen's magnitude of the full moon), at the mean
+/// distance. A lux is -14.18 magnitudes.
 pub fn moon_illuminance_lux(phase_angle: f64, distance_m: f64) -> f64 {
     let a = phase_angle.abs().to_degrees();
     let magnitude = -12.73 + 0.026 * a + 4e-9 * a.powi(4);
@@ -82,15 +82,15 @@ mod tests {
 
     #[test]
     fn the_moons_place_and_phase_agree_with_another_almanac() {
-        // Computed with XEphem's libastro, topocentric, pressure 0:
-        // (utc, latitude, longitude, azimuth, elevation, lit percent).
+        // Values of XEphem's libastro, topocentric, pressure 0: (utc, latitude, longitude, azimuth, elevation, lit
+        // percent).
         let cases = include!("testdata/moon.in");
         for (unix, latitude_deg, longitude_deg, azimuth, elevation, percent) in cases {
             let place = Place { latitude_deg, longitude_deg, altitude_m: 0.0 };
             let moon = moon_position(Utc(unix), &place).unwrap();
             let apart = moon.direction.angle_between(super::super::sun::direction(azimuth, elevation)).to_degrees();
             assert!(apart < 0.02, "{unix}: {moon:?} is {apart} degrees from {azimuth} {elevation}");
-            // That almanac's phase is the one at the Earth's centre: up to 0.95 degrees of parallax, 0.8 %.
+            // That almanac gives the phase as seen from the Earth's centre: up to 0.95 degrees of parallax, 0.8 %.
             assert!((moon.illuminated * 100.0 - percent).abs() < 0.9, "{moon:?} {percent}");
         }
     }

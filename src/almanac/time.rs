@@ -7,24 +7,24 @@ use crate::error::{Error, Result, check_range};
 /// Julian date of 1970-01-01T00:00:00Z.
 const JD_UNIX_EPOCH: f64 = 2_440_587.5;
 
-/// Years of which the almanac knows where the sun stands.
+/// First and last year for which the almanac has the sun's position.
 const FIRST_YEAR: f64 = -2000.0;
 const LAST_YEAR: f64 = 6000.0;
 
-/// Seconds since 1970 of the years -2000 to 6000, as the sun's series has them; the last 16 hours are left to the
-/// difference between terrestrial and universal time, which is 57,245 s then.
+/// Range of the years -2000 to 6000 in seconds since 1970, as the sun's series has it. It ends 16 hours early, to leave
+/// room for the difference between terrestrial and universal time, which is 57,245 s then.
 pub(crate) const UTC_RANGE_S: [f64; 2] = [-125_281_123_200.0, 127_206_057_600.0];
 
-/// Years between which the difference of terrestrial and universal time is fitted to observations and simulations.
+/// Years between which the difference between terrestrial and universal time is fitted to observations and simulations.
 const FITTED_YEARS: [f64; 2] = [-500.0, 3000.0];
 
-/// TT - UT1 over millennia, s (Morrison and Stephenson 2004, as Espenak and Meeus 2006 have it).
+/// Returns TT - UT1 over millennia, s (Morrison and Stephenson 2004, in the form of Espenak and Meeus 2006).
 fn long_term_s(year: f64) -> f64 {
     let centuries = (year - 1820.0) / 100.0;
     -20.0 + 32.0 * centuries * centuries
 }
 
-/// Days of a month of the proleptic Gregorian calendar.
+/// Returns the number of days in a month of the proleptic Gregorian calendar.
 fn days_of(year: i32, month: u32) -> u32 {
     let leap = year.rem_euclid(4) == 0 && (year.rem_euclid(100) != 0 || year.rem_euclid(400) == 0);
     match month {
@@ -34,8 +34,8 @@ fn days_of(year: i32, month: u32) -> u32 {
     }
 }
 
-/// Days from 1970-01-01 to a date of the proleptic Gregorian calendar: years are counted from March, so that the day
-/// that comes every four years is a year's last (Richards 2013, Explanatory Supplement, section 15.11).
+/// Days from 1970-01-01 to a date of the proleptic Gregorian calendar. Years begin in March, so that the leap day is
+/// the last of a year (Richards 2013, Explanatory Supplement, section 15.11).
 fn days_since_1970(year: i32, month: u32, day: u32) -> i64 {
     let (month, day) = (i64::from(month), i64::from(day));
     let year = i64::from(year) - i64::from(month <= 2);
@@ -43,15 +43,15 @@ fn days_since_1970(year: i32, month: u32, day: u32) -> i64 {
     365 * year + year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400) + of_year - 719_468
 }
 
-/// Coordinated universal time, in seconds since 1970-01-01T00:00:00Z without leap seconds. UT1 is taken as UTC, which
-/// is 0.9 s at most: 0.004 degrees. Range: the years -2000 to 6000.
+/// Coordinated universal time, in seconds since 1970-01-01T00:00:00Z without leap seconds. UT1 is taken as UTC; they
+/// differ by at most 0.9 s, which is 0.004 degrees. Range: the years -2000 to 6000.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Utc(pub f64);
 
 impl Utc {
-    /// From a calendar date (proleptic Gregorian) and a time of day: a year in \[-2000, 6000\], and a second in
-    /// \[0, 61) of minute 59 of hour 23, else in \[0, 60). A leap second, 23:59:60, is the first of the next day, as
-    /// Unix time has it.
+    /// Creates a time from a calendar date (proleptic Gregorian) and a time of day: a year in \[-2000, 6000\], and a
+    /// second in \[0, 60), or in \[0, 61) in minute 59 of hour 23. A leap second, 23:59:60, is the first second of the
+    /// next day, as in Unix time.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -73,7 +73,7 @@ impl Utc {
         Ok(Self(days_since_1970(year, month, day) as f64 * 86_400.0 + of_day))
     }
 
-    /// Julian date, days (UT).
+    /// Returns the Julian date, days (UT).
     pub fn julian_date(self) -> f64 {
         self.0 / 86_400.0 + JD_UNIX_EPOCH
     }
@@ -83,15 +83,15 @@ impl Utc {
         (self.julian_date() + self.delta_t_s() / 86_400.0 - 2_451_545.0) / 36_525.0
     }
 
-    /// TT - UT1, s, without a step anywhere in the range: 69.1 s in 2026. The years -500 to 3000 are those of the crate
-    /// `solar-positioning`: the polynomials of Espenak and Meeus (2006, with Espenak's of 2014) until 2015, then a
-    /// quartic through the observations of IERS until the middle of 2026 and a quadratic through simulations (Agnew
-    /// 2026). Before and after them it goes on by the parabola of Morrison and Stephenson (2004), moved to where the
-    /// fit ends: tidal friction, 32 s per century squared.
+    /// Returns TT - UT1, s, without a step anywhere in the range: 69.1 s in 2026. For the years -500 to 3000 it comes
+    /// from the crate `solar-positioning`: the polynomials of Espenak and Meeus (2006, with Espenak's of 2014) until
+    /// 2015, then a quartic through the observations of IERS until the middle of 2026, and a quadratic through
+    /// simulations (Agnew 2026). Before and after these years it continues as the parabola of Morrison and Stephenson
+    /// (2004), 32 s per century squared for tidal friction, shifted to meet the fit.
     pub fn delta_t_s(self) -> f64 {
         let year = 2000.0 + (self.julian_date() - 2_451_544.5) / 365.2425;
         let fitted = year.clamp(FITTED_YEARS[0], FITTED_YEARS[1]);
-        // Inside of those years there is an estimate.
+        // The crate has an estimate for all of these years.
         solar_positioning::delta_t::estimate(fitted).unwrap_or_default() + long_term_s(year) - long_term_s(fitted)
     }
 
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn the_difference_of_times_has_no_step_in_all_the_range() {
-        // A day at a time: the parabola is steepest in the year 6000, 0.07 s a day; the polynomials meet within 0.4 s.
+        // Steps of one day. The parabola is steepest in the year 6000, 0.07 s a day; the polynomials meet within 0.4 s.
         let mut before = Utc(UTC_RANGE_S[0]).delta_t_s();
         for day in 1..=2_922_000 {
             let utc = Utc(UTC_RANGE_S[0] + 86_400.0 * f64::from(day));
@@ -130,8 +130,8 @@ mod tests {
             assert!(step.abs() < 1e-3, "{step} s at {border}");
         }
         for (year, expected, within) in
-            // Espenak and Meeus (2006): the table of the years -500 and 1000, IERS in 2026; and the parabola where it
-            // is alone.
+            // Espenak and Meeus (2006): their table for the years -500 and 1000, IERS in 2026, and years in which only
+            // the parabola holds.
             [
                 (-500.0, 17_190.0, 430.0),
                 (1000.0, 1570.0, 55.0),

@@ -25,9 +25,9 @@
 //! * *Settings*: none.
 //! * *Cost*: one look-up a pixel, and nothing where no drops stand in direct light. The table is computed only for
 //!   pictures whose field of view reaches the bows.
-//! * *Error*: within 0.2 degrees and 15 % of Mie's theory. Drops count as spheres; in nature drops beyond 1 mm are flat
-//!   and leave the top of a bow fainter. The light on the drops is the mean under the clouds. The cube map shows no
-//!   bow, because it shows no fog.
+//! * *Error*: angle within 0.25 degrees, light within 15 % and width within 25 % of Mie's theory. Drops count as
+//!   spheres; in nature drops beyond 1 mm are flat and leave the top of a bow fainter. The light on the drops is the
+//!   mean under the clouds. The cube map shows no bow, because it shows no fog.
 //!
 //! The room has no `passes.rs`, because the composition draws the bows; no `candidates.rs`, because there is one way to
 //! draw them, too cheap to be left out; and no `held.rs`, because a bow has no state.

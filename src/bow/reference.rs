@@ -1,72 +1,74 @@
-//! The bows of one drop in f64: rays, and the waves that go along them.
+//! The bows of one drop in f64: geometric optics, and the interference of the rays.
 
 use std::f64::consts::PI;
 
 use crate::light::spectrum::{REC709_FROM_XYZ, apply, cie_1931};
 
-/// Refractive index of pure water of 10 degrees (Quan and Fry 1995, equation 3), 400 to 700 nm.
+/// Returns the refractive index of pure water at 10 degrees Celsius (Quan and Fry 1995, equation 3), 400 to 700 nm.
 pub fn water_index(wavelength_nm: f64) -> f64 {
     let (t, w) = (10.0, wavelength_nm);
     1.31405 - 2.02e-6 * t * t + (15.868 - 0.00423 * t) / w - 4382.0 / (w * w) + 1.1455e6 / (w * w * w)
 }
 
-/// A ray through a drop of which it is reflected `inside` times.
+/// Rays of one wavelength that are reflected `inside` times in a drop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rays {
-    /// 1 makes the primary bow, 2 the secondary.
+    /// Number of internal reflections: 1 makes the primary bow, 2 the secondary.
     pub inside: u32,
     /// Refractive index.
     pub index: f64,
 }
 
-/// Amplitudes and path difference of the two rays of one direction.
+/// Amplitudes and path difference of the two rays that leave a drop in one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pair {
-    /// Amplitudes of the ray nearer to the drop's edge and of the other in both polarisations, such that their squares
-    /// are light over that on a square of the drop's radius, 1/sr.
+    /// Amplitudes in both polarisations of the ray nearer to the drop's edge and of the other. Their squares are the
+    /// scattered light over the light on a square whose side is the drop's radius, 1/sr.
     pub amplitudes: [[f64; 2]; 2],
-    /// By how much the optical path of the first is longer, in radii.
+    /// Optical path of the first ray less that of the second, in radii.
     pub ahead: f64,
 }
 
 impl Rays {
-    /// Sines of incidence and refraction are `b` and `b / index`; answers both cosines.
+    /// Returns the cosines of incidence and refraction of a ray at `b` radii from the middle; the sines are `b` and
+    /// `b / index`.
     fn cosines(&self, b: f64) -> [f64; 2] {
         [(1.0 - b * b).max(0.0).sqrt(), (1.0 - (b / self.index).powi(2)).sqrt()]
     }
 
-    /// By how much light is turned that meets the drop at `b` radii from its middle, rad.
+    /// Returns the angle, rad, by which a drop turns a ray that meets it at `b` radii from its middle.
     pub fn turn(&self, b: f64) -> f64 {
         let k = f64::from(self.inside);
         k * PI + 2.0 * b.asin() - 2.0 * (k + 1.0) * (b / self.index).asin()
     }
 
-    /// Its derivative by `b`.
+    /// Returns the derivative of the turn by `b`.
     fn slope(&self, b: f64) -> f64 {
         let [ci, cr] = self.cosines(b);
         2.0 / ci.max(1e-9) - 2.0 * (f64::from(self.inside) + 1.0) / (self.index * cr)
     }
 
-    /// Where light is turned least: cos^2 i = (n^2 - 1) / (k (k + 2)) (Descartes; van de Hulst 1957, section 12.31).
+    /// Returns the `b` at which the turn is least: cos^2 i = (n^2 - 1) / (k (k + 2)) (Descartes; van de Hulst 1957,
+    /// section 12.31).
     pub fn least(&self) -> f64 {
         let k = f64::from(self.inside);
         (1.0 - (self.index * self.index - 1.0) / (k * (k + 2.0))).sqrt()
     }
 
-    /// Half of the second derivative of the turn where it is least.
+    /// Returns half of the second derivative of the turn at its minimum.
     fn bend(&self) -> f64 {
         let h = 1e-4;
         (self.slope(self.least() + h) - self.slope(self.least() - h)) / (4.0 * h)
     }
 
-    /// Optical path over that through the middle of a drop of index 1, in radii; its derivative along the family of
-    /// rays is b dD.
+    /// Returns the optical path, in radii, relative to that through the middle of a drop of index 1. From one ray to
+    /// the next it changes by b dD, where D is the turn.
     fn path(&self, b: f64) -> f64 {
         let [ci, cr] = self.cosines(b);
         2.0 * (f64::from(self.inside) + 1.0) * self.index * cr - 2.0 * ci
     }
 
-    /// Returns the share of the amplitude that is left in both polarisations (Fresnel), with its sign.
+    /// Returns the share of the amplitude that a ray keeps in both polarisations (Fresnel), with its sign.
     fn passed(&self, b: f64) -> [f64; 2] {
         let [ci, cr] = self.cosines(b);
         let n = self.index;
@@ -74,20 +76,20 @@ impl Rays {
         reflected.map(|r| (1.0 - r * r) * (-r).powi(self.inside as i32))
     }
 
-    /// Amplitudes of a ray.
+    /// Returns the amplitudes of a ray in both polarisations, spread over the directions of its neighbours.
     fn amplitude(&self, b: f64, turned: f64) -> [f64; 2] {
         let spread = b / (turned.sin().abs().max(1e-6) * self.slope(b).abs());
         self.passed(b).map(|f| f * spread.sqrt())
     }
 
-    /// Angle from the point opposite to the light, rad, less that of the bow, on its bright side.
+    /// Returns how far an angle from the antisolar point, rad, lies beyond the bow on its bright side, rad.
     fn beyond(&self, angle: f64) -> f64 {
         let first = self.turn(self.least()) - PI;
         if self.inside == 1 { -first - angle } else { angle - first }
     }
 
-    /// Both rays that leave at an angle from the point opposite to the light, rad; `None` on the dark side of the bow
-    /// and within half a degree of it.
+    /// Returns both rays that leave at an angle from the antisolar point, rad; `None` on the dark side of the bow and
+    /// within half a degree of it.
     pub fn pair(&self, angle: f64) -> Option<Pair> {
         let beyond = self.beyond(angle);
         if beyond < NEAR_RAD {
@@ -107,7 +109,7 @@ impl Rays {
             let b = find(least, 1.0);
             high = (self.amplitude(b, turned), self.path(b));
         } else {
-            // Beyond the edge there is no such ray; the path of one at the edge goes on.
+            // Rays near the edge do not turn so far. The path continues linearly from that of the ray at the edge.
             high.1 += turned - most;
         }
         if turned < self.turn(0.0) {
@@ -117,11 +119,11 @@ impl Rays {
         Some(Pair { amplitudes: [high.0, low.0], ahead: high.1 - low.1 })
     }
 
-    /// Light that a drop of `size` (circumference over wavelength) sends to an angle from the point opposite to the
-    /// light, of what falls on a square of its radius, 1/sr. `pair` is [`Rays::pair`] of that angle.
+    /// Returns the light that a drop of `size` (circumference over wavelength) scatters to an angle from the antisolar
+    /// point, over the light on a square whose side is its radius, 1/sr. `pair` is [`Rays::pair`] of that angle.
     ///
-    /// On the bright side the uniform approximation of two rays that merge (Berry 1966, equation 28; Khare and
-    /// Nussenzveig 1974); about the bow and on its dark side Airy's (1838).
+    /// The bright side uses the uniform approximation of two rays that merge (Berry 1966, equation 28; Khare and
+    /// Nussenzveig 1974). Near the bow and on its dark side Airy's (1838) is used.
     pub fn intensity(&self, size: f64, angle: f64, pair: Option<&Pair>) -> f64 {
         let Some(pair) = pair else {
             let (b, bend) = (self.least(), self.bend());
@@ -139,11 +141,11 @@ impl Rays {
     }
 }
 
-/// So near to the bow Airy's own form holds, rad.
+/// Angle beyond the bow within which Airy's own form is used, rad.
 const NEAR_RAD: f64 = 0.0087;
 
-/// Airy's function and its derivative: its series about 0 (Abramowitz and Stegun 1964, 10.4.2), and beyond 5 what it
-/// tends to (10.4.59 to 10.4.62, two terms).
+/// Returns Airy's function and its derivative: the series about 0 (Abramowitz and Stegun 1964, 10.4.2), and beyond 5
+/// the asymptotic expansion (10.4.59 to 10.4.62, two terms).
 pub fn airy(x: f64) -> [f64; 2] {
     if x.abs() < 5.0 {
         let (c1, c2) = (0.355_028_053_887_817_2, 0.258_819_403_792_806_8);
@@ -171,10 +173,11 @@ pub fn airy(x: f64) -> [f64; 2] {
     [a / quarter * (s - 5.0 / (72.0 * zeta) * c), -a * quarter * (c - 7.0 / (72.0 * zeta) * s)]
 }
 
-/// Wavelengths that colours are made of, nm.
+/// Wavelengths over which colours are summed, nm.
 pub const WAVELENGTHS_NM: [f64; 11] = [420.0, 446.0, 472.0, 498.0, 524.0, 550.0, 576.0, 602.0, 628.0, 654.0, 680.0];
 
-/// Shares of the wavelengths in linear red, green and blue, 1 a channel: white stays white.
+/// Returns the shares of the wavelengths in linear red, green and blue. They sum to 1 in each channel: white stays
+/// white.
 pub fn colour_shares() -> [[f64; 3]; WAVELENGTHS_NM.len()] {
     let of = WAVELENGTHS_NM.map(|nm| apply(&REC709_FROM_XYZ, &cie_1931(nm)));
     let sum: [f64; 3] = std::array::from_fn(|c| of.iter().map(|v| v[c]).sum());

@@ -1,5 +1,4 @@
-//! Tables of the bows over the angle from the point opposite to the light, as shaders read them
-//! (`shaders/between/bow.wgsl`).
+//! Tables of the bows over the angle from the antisolar point, as shaders read them (`shaders/between/bow.wgsl`).
 
 use std::{
     f64::consts::PI,
@@ -12,40 +11,41 @@ use super::reference::{Pair, Rays, WAVELENGTHS_NM, colour_shares, water_index};
 
 use crate::numerics::smooth;
 
-/// Entries of a table.
+/// Number of entries of a table.
 pub const ENTRIES: usize = 160;
-/// Angle between two of them, rad: 0.4 degrees.
+/// Angle between neighbouring entries, rad: 0.4 degrees.
 pub const STEP_RAD: f64 = 0.4 * PI / 180.0;
-/// Addition by bows to the phase function of drops, 1/sr a channel, over the angle from the point opposite to the
-/// light.
+/// Difference that bows make to the phase function of drops, 1/sr a channel, over the angle from the antisolar point.
 pub type Table = [[f64; 3]; ENTRIES];
 
-/// Angles within two steps, before the light's disc smooths them.
+/// Number of angles in one step of a table before smoothing by the disc of the light.
 const FINE: usize = 2;
 const FINE_ENTRIES: usize = ENTRIES * FINE + 1;
-/// Radius of the disc of sun or moon, rad.
+/// Radius of the disc of the sun or the moon, rad.
 const DISC_RAD: f64 = 0.00465;
 /// Entries over which the bows fade at the end of a table.
 const FADE: usize = 24;
 
-/// Drops of nearly one size: the table's parts. Radii, micrometres, and their shares of the extinction.
+/// Drops of nearly one size. A table is a sum over classes. Radii are in micrometres; shares are those of the
+/// extinction.
 #[derive(Clone, Copy, Debug)]
 struct Class {
     radii_um: [f64; 5],
     shares: [f64; 5],
 }
 
-/// How many there are: droplets of fog, and rain by diameters.
+/// Number of classes: droplets of fog, and five classes of rain by diameter.
 pub(super) const CLASSES: usize = 6;
-/// Diameters between which the classes of rain lie, mm.
+/// Diameters that separate the classes of rain, mm.
 pub(super) const RAIN_EDGES_MM: [f64; CLASSES] = [0.1, 0.2, 0.4, 0.8, 1.6, 6.0];
 
-/// Fog of droplets of 15 micrometres on the mean by extinction, spread as a gamma distribution whose effective variance
-/// is 0.1; rain evenly over the logarithm of its class.
+/// Returns the drops of a class. Class 0 is fog with a mean diameter of 15 micrometres by extinction and a gamma
+/// distribution with effective variance 0.1. The others are rain, spread evenly over the logarithm of the class's
+/// diameters.
 fn class(i: usize) -> Class {
     if i == 0 {
         let radii_um = [4.0, 5.8, 7.5, 9.4, 12.0];
-        // n(r) goes with r^7 exp(-10 r / 7.5), extinction with r^2 n(r); dr with the distance of the radii.
+        // n(r) is proportional to r^7 exp(-10 r / 7.5), extinction to r^2 n(r), and dr to r (spacing of the radii).
         let weight = |r: f64| (r / 7.5).powi(9) * (-10.0 * r / 7.5).exp() * r;
         let all: f64 = radii_um.iter().map(|r| weight(*r)).sum();
         return Class { radii_um, shares: radii_um.map(|r| weight(r) / all) };
@@ -54,14 +54,14 @@ fn class(i: usize) -> Class {
     Class { radii_um: [0.1, 0.3, 0.5, 0.7, 0.9].map(|x| from * (to / from).powf(x)), shares: [0.2; 5] }
 }
 
-/// Rays of both bows in all directions of a fine table.
+/// Rays of both bows at one wavelength, in all directions of a fine table.
 struct RayTable {
     wavelength_nm: f64,
     bows: [(Rays, Vec<Option<Pair>>); 2],
 }
 
 fn fine_angle(j: usize) -> f64 {
-    // No ray to the very point opposite, where the sine is 0.
+    // The antisolar point itself is left out, because its sine is 0.
     (j as f64).max(0.25) * STEP_RAD / FINE as f64
 }
 
@@ -73,15 +73,15 @@ static RAYS: LazyLock<Vec<RayTable>> = LazyLock::new(|| {
     WAVELENGTHS_NM.iter().map(|nm| RayTable { wavelength_nm: *nm, bows: [of(*nm, 1), of(*nm, 2)] }).collect()
 });
 
-/// Phase function of the bows of drops of a radius, micrometres, at one wavelength, 1/sr, without the light's disc. Of
-/// all that drops take from light: half of it is bent round them.
+/// Returns the phase function of the bows of drops of a radius, micrometres, at one wavelength, 1/sr, without smoothing
+/// by the light's disc. It is relative to the whole extinction, half of which is diffraction.
 fn bows_of(rays: &RayTable, radius_um: f64, j: usize) -> f64 {
     let size = 2.0 * PI * radius_um * 1e3 / rays.wavelength_nm;
     let of = |(rays, pairs): &(Rays, Vec<Option<Pair>>)| rays.intensity(size, fine_angle(j), pairs[j].as_ref());
     rays.bows.iter().map(of).sum::<f64>() / (2.0 * PI)
 }
 
-/// Smooths by the light's disc, seen as its chords.
+/// Smooths a fine table over the disc of the light, weighted by the disc's chords.
 fn smoothed(fine: &[DVec3], i: usize) -> DVec3 {
     let step = STEP_RAD / FINE as f64;
     let reach = (DISC_RAD / step).ceil() as isize;
@@ -95,7 +95,7 @@ fn smoothed(fine: &[DVec3], i: usize) -> DVec3 {
     sum / all
 }
 
-/// The smooth function that bows are counted against, before it is scaled.
+/// Returns the smooth function that is subtracted from the bows, before it is scaled.
 fn smooth_at(i: usize) -> f64 {
     (0.5 * PI * i as f64 / ENTRIES as f64).cos().powi(2)
 }
@@ -117,7 +117,7 @@ fn class_table(i: usize) -> Table {
         let left = ((ENTRIES - 1 - j) as f64 / FADE as f64).min(1.0);
         smoothed(&fine, j) * smooth(left)
     });
-    // Less a smooth function of the same sum over the sphere.
+    // Subtract a smooth function with the same sum over the sphere.
     let sine = |j: usize| (j as f64 * STEP_RAD).sin();
     let all: DVec3 = (0..ENTRIES).map(|j| table[j] * sine(j)).sum();
     let smooth: f64 = (0..ENTRIES).map(|j| smooth_at(j) * sine(j)).sum();
@@ -125,7 +125,7 @@ fn class_table(i: usize) -> Table {
     table.map(|v| v.to_array())
 }
 
-/// The table of drops of which each class takes a share of the light.
+/// Returns the table of drops in which each class has a share of the extinction.
 pub(super) fn mixed(shares: &[f64; CLASSES]) -> Table {
     static TABLES: [OnceLock<Table>; CLASSES] = [const { OnceLock::new() }; CLASSES];
     let mut sum = [[0.0; 3]; ENTRIES];

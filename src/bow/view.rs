@@ -1,4 +1,4 @@
-//! The bows of a view.
+//! Bows of a view: the tables that its pictures need.
 
 use glam::DVec2;
 
@@ -19,14 +19,14 @@ const _: () = assert!(ENTRIES == BOW_ENTRIES);
 
 /// Bows of a view.
 pub(crate) struct BowView {
-    /// Shares of each class of drops in the extinction of the low air and of rain areas, where there are any.
+    /// Shares of each class of drops in the extinction of the low air and of rain areas; `None` without drops.
     drops: [Option<[f64; CLASSES]>; 2],
     is_lit: bool,
-    /// Extinction by class at the rates of the last frames, and (`tables`) the tables of shares: both are sums that
-    /// most frames have in common.
+    /// Cache of the extinctions by class, by rate. It and `tables`, the cache of tables by shares, save sums that most
+    /// frames have in common.
     rains: LruCache<(Falling, f64), [f64; CLASSES], RAINS>,
     tables: LruCache<[f64; CLASSES], BowTable, 2>,
-    /// The tables of the last draw.
+    /// Tables of the last draw: for the low air and for rain areas.
     shown: Box<[BowTable; 2]>,
 }
 
@@ -42,7 +42,7 @@ impl Default for BowView {
     }
 }
 
-/// Rates that are remembered: of the low air and of some areas.
+/// Number of rates that are cached: that of the low air and those of some areas.
 const RAINS: usize = 8;
 
 impl BowView {
@@ -51,7 +51,7 @@ impl BowView {
     }
 }
 
-/// Whether a picture looks at any place of a table.
+/// Whether a picture's field of view may reach the angles of a table.
 fn shows(context: &DrawContext<'_>) -> bool {
     let ray = |x: f64, y: f64| context.target.rays.view_ray(DVec2::new(x, y)).direction;
     let middle = ray(0.0, 0.0);
@@ -76,8 +76,8 @@ impl DrawnEffect for BowView {
 
     fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
-        // Not by where the picture looks: a pipeline of its own would be made when the camera turns to a bow, and that
-        // frame be late.
+        // The constants do not depend on where the picture looks. Otherwise a pipeline would be compiled when the
+        // camera turns to a bow, and that frame would be late.
         let is_lit = self.has_drops() && self.is_lit;
         to.between_and_veil("BOW", flag(self.has_drops()), flag(is_lit));
         if is_lit && shows(context) {

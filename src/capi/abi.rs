@@ -1,29 +1,30 @@
-//! Data that the tests of the binary interface compare with C's view and with the committed lists. Not part of the API.
+//! Data for the tests of the binary interface, which compare it with C's view and with the committed lists. Not part of
+//! the API.
 
 use super::boundary::{
     call,
     layout::{self, FUNCTIONS, FieldKind, STRUCTS},
 };
 
-/// The header as it should be committed.
+/// Text of the header, as it should be committed.
 pub const HEADER: &str = include_str!(concat!(env!("OUT_DIR"), "/welkin.h"));
 
-/// Every exported function.
+/// Returns the names of all exported functions.
 pub fn functions() -> &'static [&'static str] {
     FUNCTIONS
 }
 
-/// A field's name, offset and size.
+/// Name, offset and size of a field.
 pub type Span = (&'static str, usize, usize);
 
-/// Every struct of the header: name, size, alignment, and its fields' names, offsets and sizes.
+/// Returns every struct of the header: name, size, alignment, and its fields' names, offsets and sizes.
 pub fn structs() -> Vec<(&'static str, usize, usize, Vec<Span>)> {
     let fields =
         |s: &'static layout::StructInfo| s.fields.iter().map(|f| (f.name, f.offset, f.count * f.kind.size())).collect();
     STRUCTS.iter().map(|s| (s.name, s.size, s.align, fields(s))).collect()
 }
 
-/// Whether the header has a `WK_X_INIT` of the struct `name`.
+/// Whether the header has a `WK_X_INIT` for the struct `name`.
 pub fn has_init(name: &str) -> bool {
     STRUCTS.iter().any(|s| s.name == name && s.has_init)
 }
@@ -35,7 +36,7 @@ pub fn init(name: &str, bytes: &mut [u64], struct_size: u32) -> i32 {
     unsafe { layout::init_by_name(name, bytes.as_mut_ptr().cast(), struct_size) }
 }
 
-/// Every float of every struct: struct, field, its offset, whether it is 8 bytes wide, element count.
+/// Returns every float of every struct: struct, field, offset, whether it is 8 bytes wide, and element count.
 pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
     let mut found = Vec::new();
     for s in STRUCTS {
@@ -48,28 +49,29 @@ pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
     found
 }
 
-/// Status of the calling thread's last failed call, of which wk_last_error_message and wk_last_error_field tell; 0
-/// before the first.
+/// Returns the status of the calling thread's last failed call, the one that wk_last_error_message and
+/// wk_last_error_field describe; 0 before the first.
 pub fn last_status() -> i32 {
     call::last_status()
 }
 
-/// The next call of this thread that reaches a device panics there.
+/// Makes the next call of this thread that reaches a device panic there.
 pub fn panic_in_next_call() {
     call::inject(call::Injected::Panic);
 }
 
-/// The next call of this thread that reaches a device finds it lost, as after a driver's reset.
+/// Makes the next call of this thread that reaches a device find it lost, as after a reset of the driver.
 pub fn lose_in_next_call() {
     call::inject(call::Injected::Loss);
 }
 
-/// The next call of this thread that reaches a device logs a message there.
+/// Makes the next call of this thread that reaches a device log a message there.
 pub fn log_in_next_call() {
     call::inject(call::Injected::Message);
 }
 
-/// Every enumeration and every reserved field of every struct: struct, field, offset, whether it is 8 bytes wide.
+/// Returns every enumeration and every reserved field of every struct: struct, field, offset, whether it is 8 bytes
+/// wide.
 pub fn constants() -> Vec<(&'static str, &'static str, usize, bool)> {
     let mut found = Vec::new();
     for s in STRUCTS {
@@ -84,8 +86,8 @@ pub fn constants() -> Vec<(&'static str, &'static str, usize, bool)> {
     found
 }
 
-/// Every whole number of every struct but sizes, types and pointers: struct, field, offset, bytes of one, element
-/// count.
+/// Returns every integer of every struct except sizes, types and pointers: struct, field, offset, bytes of one element,
+/// element count.
 pub fn integers() -> Vec<(&'static str, &'static str, usize, usize, usize)> {
     let mut found = Vec::new();
     for s in STRUCTS {

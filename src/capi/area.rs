@@ -1,11 +1,12 @@
 //! Rain areas
 //!
 //! Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
-//! weather's rain and drizzle give way to the area's, smoothly over the rim inside its border. Where areas overlap, a
-//! later one in the list lies over the earlier ones. A camera inside sees drops of the rate at each drop's own place.
-//! From outside the rain is a shaft with falling curtains, which leans as the drops fall behind their cloud. All
-//! queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas. Where
-//! clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud over it. wk_context_save keeps them.
+//! area's rain replaces the weather's rain and drizzle; the change is smooth over the rim inside the region's border.
+//! Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside, the drops at each
+//! place follow the rain rate there. From outside, the rain is a shaft with falling curtains; it leans because the
+//! drops fall behind their cloud. All queries of rain and visibility include the areas, and so does the ground's
+//! wetness by the weather of the moment. Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud above it.
+//! wk_context_save keeps the areas.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -45,9 +46,9 @@ pub const WK_AREA_SNOW_PELLETS: wk_area_snow = 3;
 
 /// Motion of a rain area.
 pub type wk_area_motion = u32;
-/// The wind at 10 m with its gusts, by its displacement.
+/// Motion with the wind at 10 m, gusts included (its displacement).
 pub const WK_AREA_MOTION_WITH_WIND: wk_area_motion = 0;
-/// A velocity of its own.
+/// Motion at the area's own velocity.
 pub const WK_AREA_MOTION_OWN: wk_area_motion = 1;
 
 /// A region with rain of its own.
@@ -60,37 +61,37 @@ pub struct wk_rain_area {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Its centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height has no effect.
-    /// Default 0, 0, 0.
+    /// Centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height has no effect. Default
+    /// 0, 0, 0.
     pub center_m: [f64; 3],
-    /// Half the extent of an ellipse to the right of the heading and along it, m. Range [10, 1e6], default 2000, 2000.
+    /// Half extents of the ellipse to the right of the heading and along it, m. Range [10, 1e6], default 2000, 2000.
     pub semi_axes_m: [f64; 2],
-    /// Corners of a polygon in place of the ellipse, in either direction around it, two numbers each: distance from the
-    /// centre to the right of the heading and along it, m, within 1e6. The region must be convex and larger than 1 m^2.
-    /// Default 0.
+    /// Corners of a polygon that replaces the ellipse, in either direction around it. Each corner is two numbers: the
+    /// distance from the centre to the right of the heading, and along it, m, within 1e6. The region must be convex and
+    /// larger than 1 m^2. Default 0.
     pub corners_m: [f64; 16],
-    /// Corners of the polygon, [3, 8], or 0, the default, for the ellipse.
+    /// Number of corners of the polygon, [3, 8], or 0, the default, for the ellipse.
     pub corner_count: u32,
-    /// Default WK_AREA_RAIN_STEADY.
+    /// Kind of rain. Default WK_AREA_RAIN_STEADY.
     pub rain: wk_area_rain,
     /// Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0.
     pub heading_deg: f64,
-    /// Width inside of the border over which the rain fades, m. Range [1, 1e6], at most an ellipse's smaller half
-    /// extent, or the radius of the largest circle in a polygon. Default 500.
+    /// Width of the band inside the border over which the rain fades, m. Range [1, 1e6]; at most the smaller half
+    /// extent of an ellipse, or the radius of the largest circle in a polygon. Default 500.
     pub rim_m: f64,
     /// Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10.
     pub rate_mm_h: f64,
-    /// Altitude of the cloud base above mean sea level (not above the ground), m: above it falls neither the area's
-    /// rain nor the weather's. Range [-1000, 20 000], default 1500.
+    /// Altitude of the cloud base above mean sea level (not above the ground), m. Above it neither the area's rain nor
+    /// the weather's falls. Range [-1000, 20 000], default 1500.
     pub top_m: f64,
-    /// Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN.
+    /// Velocity to the east and north with WK_AREA_MOTION_OWN, m/s, each within [-200, 200]. Default 0, 0.
     pub velocity_m_s: [f64; 2],
-    /// Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10]. With WK_AREA_MOTION_WITH_WIND not
-    /// before what the timeline still knows, except 0, from which the wind's displacement counts. Default 0.
+    /// Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10]. With WK_AREA_MOTION_WITH_WIND a time
+    /// that the timeline still knows, or 0, from which the wind's displacement counts. Default 0.
     pub at_s: f64,
-    /// Default WK_AREA_MOTION_WITH_WIND.
+    /// Motion of the area. Default WK_AREA_MOTION_WITH_WIND.
     pub motion: wk_area_motion,
-    /// Snow that falls in place of the rain. Default WK_AREA_SNOW_NONE, the only one in this version.
+    /// Snow that falls in place of the rain. Default WK_AREA_SNOW_NONE, the only value that this version accepts.
     pub snow: wk_area_snow,
 }
 
@@ -143,8 +144,8 @@ impl wk_rain_area {
     }
 }
 
-/// Sets the rain areas, in place of those before. They move by themselves: set them again only to change them. count 0
-/// removes all. At most 16. Unchanged after an error.
+/// Replaces the list of rain areas; count 0 removes all. At most 16. Areas move by themselves: set them again only to
+/// change them. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range; WK_ERROR_UNSUPPORTED for snow.
 #[unsafe(no_mangle)]

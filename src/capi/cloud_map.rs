@@ -1,7 +1,7 @@
 //! Cloud map
 //!
-//! Where over the ground layers of cloud stand: a storm ahead of the runway, a clearing over the harbour. The map holds
-//! in pictures, shadows, the light of a place and all questions about clouds. docs/clouds.md has an example.
+//! A map of where cloud layers stand over the ground: a storm ahead of the runway, a clearing over the harbour. The map
+//! applies to pictures, shadows, the light at a place and all queries about clouds. docs/clouds.md has an example.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -19,10 +19,10 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_cloud_map.rs"));
 
-/// How much of the cover that layers have in the weather they have over each part of the ground. Give a layer cover 1,
-/// and the map says its cover. The map is level, aligned to true north and stands still over the ground; clouds go
-/// through it with their wind, and grow and dissolve as it says. Linear between the middles of cells; beyond the
-/// outermost middles theirs hold on.
+/// Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. Give a
+/// layer cover 1, and the map is its cover. The map is level, aligned to true north and fixed to the ground. Clouds
+/// drift through it with their wind, and grow and dissolve as the map says. Values are linear between the middles of
+/// cells; beyond the outermost middles they stay constant.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_map {
@@ -32,17 +32,16 @@ pub struct wk_cloud_map {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Middle of the cell farthest to the south-west, east and north of the world's origin, m. Range [-1e7, 1e7],
-    /// default 0, 0.
+    /// Middle of the south-western cell: metres east and north of the world's origin. Range [-1e7, 1e7], default 0, 0.
     pub first_m: [f64; 2],
     /// Side of a cell, m. Range [100, 50 000], default 1000.
     pub cell_m: f64,
     /// Number of cells east and north. Range [1, 128], default 1, 1.
     pub cells: [u32; 2],
-    /// Layers whose base above the station lies between these follow the map, m. Range [-1000, 20 000], the lower one
-    /// first, default -1000, 20 000: all layers.
+    /// Lowest and highest base of the layers that follow the map, above the station, m. Range [-1000, 20 000], the
+    /// lower one first, default -1000, 20 000: all layers.
     pub base_m: [f64; 2],
-    /// A number for each cell in [0, 1]: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows
+    /// Numbers in [0, 1], one for each cell: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows
     /// from south to north. Copied by the call.
     pub cover: *const f32,
     /// Number of cells in `cover`: the product of `cells`.
@@ -66,8 +65,8 @@ impl wk_cloud_map {
     };
 }
 
-/// Lays a map on layers of cloud, in place of the one before; NULL takes it off. Clouds change at once. Part of the
-/// saved state. With WK_CLOUD_MODEL_DECK it holds for light alone. Unchanged after an error. Thread: exclusive. Errors:
+/// Sets the map of cloud cover, in place of the one before; NULL removes it. Clouds change at once. Part of the saved
+/// state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error. Thread: exclusive. Errors:
 /// WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_cloud_map(

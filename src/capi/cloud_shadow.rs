@@ -1,7 +1,7 @@
 //! Shadows of clouds as a texture
 //!
-//! For the host's own materials: the share of the direct light of sun or moon that broken clouds let through, as one
-//! native texture for all places about the camera. The published sampling function, GLSL and WGSL, looks it up.
+//! A native texture for the host's own materials: the share of the direct light of the sun or moon that broken clouds
+//! let through, for all places around the camera. The published sampling function, in GLSL and WGSL, looks it up.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -27,8 +27,8 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_cloud_shadow.rs"));
 
-/// The map of the clouds' shadows, and how it lay in the view's last frame: a plane at the station's height, fixed to
-/// the air that carries the clouds, which repeats every 20 km.
+/// Map of the clouds' shadows, and its placement in the view's last frame. The map is a plane at the station's height.
+/// It moves with the air that carries the clouds, and repeats every 20 km.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_shadows {
@@ -38,27 +38,28 @@ pub struct wk_cloud_shadows {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Share of the direct light of sun or moon, whichever is brighter, that clouds let through: one channel of 8 bits,
-    /// an OpenGL texture name (GL_TEXTURE_2D, GL_R8) or a VkImage (VK_FORMAT_R8_UNORM). Sample it with a linear filter
-    /// that repeats.
+    /// Share of the direct light of the sun or the moon, whichever is brighter, that clouds let through. One channel of
+    /// 8 bits: an OpenGL texture name (GL_TEXTURE_2D, GL_R8) or a VkImage (VK_FORMAT_R8_UNORM). Sample it with a linear
+    /// filter and a repeating wrap mode.
     pub texture: u64,
-    /// Texels of both sides.
+    /// Width, texels; equal to the height.
     pub width: u32,
-    /// Texels of both sides.
+    /// Height, texels; equal to the width.
     pub height: u32,
     /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
     /// Single precision is enough once the fourth column includes the camera's position.
     pub uv_from_world: [[f64; 4]; 2],
-    /// Row of a matrix, used as uv_from_world: it gives the height of a place over the plane, m.
+    /// Row of a matrix, used like uv_from_world: it gives the height of a place above the plane, m.
     pub height_from_world: [f64; 4],
-    /// u and v of the place in the plane that the camera of the last frame stood over.
+    /// u and v of the point of the plane below the camera of the last frame.
     pub camera_uv: [f64; 2],
-    /// Share of the direct light on the mean over places: wk_context_get_light has that light.
+    /// Mean share of the direct light over all places: wk_context_get_light returns that mean light.
     pub mean_share: f64,
-    /// How far shadows are told apart, 0 to 1: 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and under a light
-    /// near the horizon. The texture means nothing then.
+    /// Weight of the texture against mean_share, 0 to 1. It is 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and
+    /// with the light near the horizon: the texture is then meaningless.
     pub told: f64,
-    /// Height over the plane, m, from which on shadows are not told apart: 100 m above the base of the lowest clouds.
+    /// Height above the plane, m, from which on mean_share replaces the texture: 100 m above the base of the lowest
+    /// clouds.
     pub top_m: f64,
 }
 
@@ -80,11 +81,11 @@ impl wk_cloud_shadows {
 }
 
 /// Gets the native texture of the clouds' shadows. From the first call on, the first wk_view_record of each frame
-/// brings it up to date, and WK_STAGE_SURFACE lays no shadows of clouds any more: your materials do. It belongs to the
-/// view and stays the same until that is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
-/// calls. Call this after each frame for how the map lies. If you draw before Welkin, use that of the last frame, or
-/// record WK_STAGE_PREPARE first. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own device, which
-/// has no shaders of the host's.
+/// updates it, and WK_STAGE_SURFACE no longer draws cloud shadows: your materials do. The texture belongs to the view
+/// and stays the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
+/// calls. Call this after each frame for the placement of the map. If you draw before Welkin, use the placement of the
+/// last frame, or record WK_STAGE_PREPARE first. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own
+/// device, where the host has no shaders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_cloud_shadows(
     view: *mut wk_view,

@@ -1,12 +1,13 @@
 //! Clouds
 //!
-//! Layers of cloud come with the weather: wk_cloud_layer, a report, a preset. wk_context_set_cloud_model says how views
-//! draw them. Conditions, what falls and light on the mean are the same either way. docs/clouds.md has costs and
-//! errors.
+//! Cloud layers come with the weather: from wk_cloud_layer, a report or a preset. wk_context_set_cloud_model sets how
+//! views draw them. Conditions, precipitation and the mean light are the same for both models. docs/clouds.md has costs
+//! and errors.
 //!
-//! Volumes cast shadows: the stage SURFACE darkens and brightens what the host drew from its depth, in the ratio of the
-//! light at each pixel's place to the light on the mean, in which the host lit it (wk_context_get_light). A host that
-//! lights a thing of its own by itself, such as the view out of a cab, asks for the share at its place.
+//! Clouds drawn as a volume cast shadows. The host lights its picture by the mean light (wk_context_get_light). From
+//! the host's depth, the stage SURFACE multiplies each pixel by the ratio of the light at its place to the mean light.
+//! A host that lights an object separately, such as the view out of a cab, can query the share at the object's place
+//! (wk_context_get_sun_share).
 
 use std::{ffi::c_void, ptr::null};
 
@@ -31,8 +32,9 @@ pub type wk_cloud_model = u32;
 /// A grey deck where more than half of the sky is covered; broken clouds only dim the light. It costs no more than a
 /// clear sky.
 pub const WK_CLOUD_MODEL_DECK: wk_cloud_model = 0;
-/// Layers of a volume that one can fly through, lit by sun or moon, sky and ground. A closed layer seen from below is
-/// drawn as a deck. A sixteenth of the pixels is computed in a frame: count wk_frame.frame_id up by one.
+/// Layers of a volume that one can fly through, lit by the sun or moon, the sky and the ground. A closed layer seen
+/// from below is drawn as a deck. Each frame computes a sixteenth of the pixels, in turn by wk_frame.frame_id: count it
+/// up by one.
 pub const WK_CLOUD_MODEL_VOLUME: wk_cloud_model = 1;
 
 /// Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS).
@@ -51,10 +53,11 @@ pub unsafe extern "C" fn wk_context_set_cloud_model(
     })
 }
 
-/// Gets the share of the direct light of sun or moon, whichever is brighter, that clouds let through to a place, in
-/// [0, 1]: in the shadow of a cloud, or between two. wk_ground_light.sun_lux times this over wk_celestial.direct_share
-/// is the sun's light at the very place. With WK_CLOUD_MODEL_DECK it is the mean, wk_celestial.direct_share. The first
-/// question makes the field that clouds are cut out of, in some tenths of a second.
+/// Gets the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to a
+/// place, in [0, 1]: low in the shadow of a cloud, high between two. wk_ground_light.sun_lux times this over
+/// wk_celestial.direct_share is the sun's light at that very place. With WK_CLOUD_MODEL_DECK it is the mean,
+/// wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some tenths
+/// of a second.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -77,15 +80,15 @@ pub unsafe extern "C" fn wk_context_get_sun_share(
     })
 }
 
-/// Effects of clouds that a view draws beside the clouds.
+/// Optional effects of clouds that a view draws.
 pub type wk_clouds_flags = u32;
-/// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows.
-/// Drawn with WK_STAGE_SURFACE where the host gives depth and does not read the map of shadows itself
-/// (wk_view_get_cloud_shadows), up to 10 km away; 24 look-ups a pixel. Without it the air is as bright as on the mean
-/// over places.
+/// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in the clouds'
+/// shadows. Drawn with WK_STAGE_SURFACE, up to 10 km away, where the host gives depth and does not read the shadow map
+/// itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without it the air has the mean brightness over
+/// places.
 pub const WK_CLOUDS_SHAFTS: wk_clouds_flags = 1;
 
-/// How finely a view draws clouds that are a volume.
+/// Quality of clouds that a view draws as a volume.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_clouds {
@@ -95,10 +98,10 @@ pub struct wk_clouds {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// How many steps a ray takes: twice the value, twice as many. Range [0.125, 32], default 2.
+    /// Relative number of steps a ray takes: twice the value, twice as many steps. Range [0.125, 32], default 2.
     pub fineness: f64,
-    /// One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier
-    /// frames: 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
+    /// Side of a square of pixels, of which each frame computes one and takes the others from earlier frames: 1, 2 or
+    /// 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
     pub square_side: u32,
     /// WK_CLOUDS_* flags. Default 0.
     pub flags: wk_clouds_flags,
@@ -115,8 +118,8 @@ impl wk_clouds {
     };
 }
 
-/// Sets how finely the view draws clouds; NULL returns to the default. Unchanged after an error. docs/lab/README.md has
-/// cost and error of some choices.
+/// Sets the quality of the clouds in a view; NULL returns to the default. Unchanged after an error. docs/lab/README.md
+/// has the cost and error of some choices.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

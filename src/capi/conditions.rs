@@ -36,13 +36,13 @@ pub struct wk_conditions {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Total extinction at 550 nm, 1/m: air, particles and fog at station height, and what falls at the position.
+    /// Total extinction at 550 nm, 1/m: air, particles and fog at station height, and precipitation at the position.
     pub extinction_per_m: f64,
-    /// Meteorological optical range of that extinction, m; at most 1e9, as without any air.
+    /// Meteorological optical range of that extinction, m; at most 1e9, which stands for no air at all.
     pub visibility_m: f64,
     /// Air temperature at 2 m, degrees Celsius.
     pub temperature_c: f64,
-    /// Fraction.
+    /// Relative humidity, a fraction.
     pub relative_humidity: f64,
     /// Pressure reduced to sea level, hPa.
     pub pressure_hpa: f64,
@@ -60,23 +60,23 @@ pub struct wk_conditions {
     pub aerosol_extinction_per_m: f64,
     /// Exponent of the particles' extinction: (wavelength / 550 nm)^-exponent.
     pub aerosol_angstrom_exponent: f64,
-    /// At 550 nm.
+    /// Single-scattering albedo of the particles at 550 nm.
     pub aerosol_single_scattering_albedo: f64,
-    /// Mean cosine of the phase function.
+    /// Mean cosine of the particles' phase function.
     pub aerosol_asymmetry: f64,
     /// Scale height of the particles: density falls by 1/e over it, m.
     pub aerosol_scale_height_m: f64,
     /// Extinction inside the layer at the ground, at 550 nm, 1/m; 0 if there is none.
     pub fog_extinction_per_m: f64,
-    /// Base of the layer, m.
+    /// Base of the layer at the ground, m.
     pub fog_base_m: f64,
-    /// Top of the layer, m.
+    /// Top of the layer at the ground, m.
     pub fog_top_m: f64,
-    /// Depth of its soft upper edge, m.
+    /// Depth of the layer's soft upper edge, m.
     pub fog_softness_m: f64,
     /// Fraction of the ground that the layer covers.
     pub fog_coverage: f64,
-    /// Fraction of the sky hidden by all layers together. During a change it stays between the values at both ends.
+    /// Fraction of the sky that all layers together hide. During a change it stays between the values at both ends.
     pub cloud_cover: f64,
     /// Rain, mm/h.
     pub rain_mm_h: f64,
@@ -90,9 +90,9 @@ pub struct wk_conditions {
     pub hail_mm_h: f64,
     /// Fraction of rain and drizzle that freezes where it lands.
     pub freezing: f64,
-    /// How convective it is: 0 steady, 1 showers.
+    /// Convectiveness of the precipitation: 0 steady, 1 showers.
     pub showers: f64,
-    /// Whether there is thunder: 0 to 1.
+    /// Presence of thunder, 0 to 1.
     pub thunder: f64,
     /// Extinction by all precipitation, at 550 nm, 1/m.
     pub precipitation_extinction_per_m: f64,
@@ -114,13 +114,13 @@ pub struct wk_conditions {
     pub significant_wave_height_m: f64,
     /// Height of the swell, m; 0 without swell.
     pub swell_height_m: f64,
-    /// Its peak period, s.
+    /// Peak period of the swell, s.
     pub swell_period_s: f64,
-    /// Its direction of travel: east component of the unit vector.
+    /// Direction in which the swell travels: east component of the unit vector.
     pub swell_east: f64,
-    /// Its direction of travel: north component of the unit vector.
+    /// Direction in which the swell travels: north component of the unit vector.
     pub swell_north: f64,
-    /// Water, degrees Celsius.
+    /// Sea temperature, degrees Celsius.
     pub sea_temperature_c: f64,
     /// Wetness of the ground: 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
@@ -128,7 +128,7 @@ pub struct wk_conditions {
     pub puddles: f64,
     /// Fraction of the ground under ice or frost.
     pub ice: f64,
-    /// Lying snow, m.
+    /// Depth of lying snow, m.
     pub snow_depth_m: f64,
     /// Ozone column, Dobson units.
     pub ozone_du: f64,
@@ -257,7 +257,7 @@ impl wk_conditions {
     }
 }
 
-/// A horizontally mixed layer of cloud; plain values of a list.
+/// Horizontally uniform layer of cloud; plain values of a list.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_slab {
@@ -294,14 +294,14 @@ impl wk_cloud_slab {
     }
 }
 
-/// Gets the conditions at a position and a past or future simulation time. What falls is what falls at the position
-/// itself: that of the rain areas there (wk_context_set_rain_areas), mixed by their rims, and nothing above the cloud
-/// that it falls from. rain_mm_h and drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at.
-/// precipitation_extinction_per_m, extinction_per_m and visibility_m go with what falls there. All other fields are the
-/// weather's, the same everywhere, at the station's height unless they say otherwise.
+/// Gets the conditions at a position and a past or future simulation time. Precipitation is that at the position
+/// itself: it includes the rain areas there (wk_context_set_rain_areas), weighted by their rims, and is zero above the
+/// cloud that it falls from. rain_mm_h and drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at.
+/// precipitation_extinction_per_m, extinction_per_m and visibility_m include that precipitation. All other fields are
+/// the weather's: the same everywhere, at the station's height unless they say otherwise.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: before
-/// the end of the last change that was over at the last update.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
+/// before the end of the last change that was over at the last update.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_conditions(
     context: *const wk_context,
@@ -320,9 +320,10 @@ pub unsafe extern "C" fn wk_context_get_conditions(
     })
 }
 
-/// Gets the cloud layers at a position and time, low ones first; position and time as in wk_context_get_conditions.
-/// `*out_count` gets their number, at most 16, even if `capacity` is too small (then nothing else is written and the
-/// call fails) or 0 (then it succeeds). `slab_size` is sizeof(wk_cloud_slab) of your header.
+/// Gets the cloud layers at a position and time, low ones first; position and time are as in wk_context_get_conditions.
+/// `*out_count` gets their number, at most 16. With capacity 0 nothing else is written, and the call succeeds. If
+/// `capacity` is too small, the call writes only the number and fails. `slab_size` is sizeof(wk_cloud_slab) of your
+/// header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_cloud_slabs(

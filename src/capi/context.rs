@@ -1,15 +1,16 @@
 //! Contexts
 //!
 //! A wk_context has the weather, the time and the place that all views of a simulator share. It is a function of its
-//! description, its timeline and its time: two contexts with the same input answer the same, on every machine.
+//! description, its timeline and its time: two contexts with the same input give the same answers on every machine.
 //!
-//! The world. FLAT: the ground is a plane, altitude is the up coordinate. TANGENT: east-north-up at the origin's place,
-//! with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat and tangent worlds
-//! are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world). Directions in answers are
-//! unit vectors (east, north, up) at the place asked for; azimuths are degrees clockwise from true north.
+//! The kind of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT: east-north-up at the
+//! origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat
+//! and tangent worlds are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world).
+//! Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are degrees clockwise from
+//! true north.
 //!
-//! Altitudes count from mean sea level everywhere in this header. In an ECEF world that lies geoid_height_m of
-//! wk_context_desc above the ellipsoid; with the default of 0 heights above the ellipsoid are taken for altitudes.
+//! Altitudes count from mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m
+//! of wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
 
 use std::{
     ffi::{c_char, c_void},
@@ -45,12 +46,12 @@ include!(concat!(env!("OUT_DIR"), "/init_context.rs"));
 
 /// How the host's world is placed on the planet.
 pub type wk_world_kind = u32;
-/// A plane: up is the same everywhere, altitude is the up coordinate plus the origin's.
+/// A plane: up is the same everywhere. Altitude is the up coordinate plus the origin's altitude.
 pub const WK_WORLD_FLAT: wk_world_kind = 0;
-/// East-north-up at the origin's place, the curved planet below.
+/// East-north-up at the origin's place, with the curved planet below.
 pub const WK_WORLD_TANGENT: wk_world_kind = 1;
-/// Earth-centred, Earth-fixed (WGS 84); axes and grid bearing have no effect, and the origin only affects the sunlight
-/// that dries a simulated ground (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
+/// Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect; the origin only affects the sunlight that
+/// dries a simulated ground (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
 pub const WK_WORLD_ECEF: wk_world_kind = 2;
 
 /// Directions of the host's axes in flat and tangent worlds.
@@ -62,20 +63,20 @@ pub const WK_AXES_Y_UP: wk_axes = 1;
 
 /// Source of the exposure: one value for all channels of a simulator, never measured from a view.
 pub type wk_exposure_mode = u32;
-/// From the light that falls on level ground; exposure_value is a compensation in stops, [-20, 20].
+/// Automatic, from the light that falls on level ground; exposure_value is a compensation in stops, [-20, 20].
 pub const WK_EXPOSURE_AUTO: wk_exposure_mode = 0;
-/// exposure_value is an exposure value at ISO 100, [-20, 30]: 15 a sunny day, -4 a moonlit night.
+/// Exposure value at ISO 100: exposure_value, [-20, 30], is 15 for a sunny day, -4 for a moonlit night.
 pub const WK_EXPOSURE_EV100: wk_exposure_mode = 1;
-/// exposure_value is display units per cd/m^2, (0, 1e6].
+/// Factor: exposure_value is display units per cd/m^2, (0, 1e6].
 pub const WK_EXPOSURE_FACTOR: wk_exposure_mode = 2;
-/// In a wk_frame: the context's exposure; exposure_value is not used.
+/// Exposure of the context, for a wk_frame; exposure_value is not used.
 pub const WK_EXPOSURE_OF_CONTEXT: wk_exposure_mode = 3;
 
 /// Curve from exposed luminance to display values.
 pub type wk_tone_curve = u32;
-/// Clamp.
+/// Identity, clamped to the display's range.
 pub const WK_TONE_LINEAR: wk_tone_curve = 0;
-/// 1 - exp(-x) a channel: bright skies never burn out.
+/// 1 - exp(-x) in each channel: bright skies never clip to white.
 pub const WK_TONE_EXPONENTIAL: wk_tone_curve = 1;
 /// Hable's filmic curve, white at 11.2.
 pub const WK_TONE_FILMIC: wk_tone_curve = 2;
@@ -90,9 +91,9 @@ pub struct wk_context_desc {
     pub struct_type: wk_struct_type,
     /// NULL (the default), or a chain of wk_sky_settings and wk_simulation_desc.
     pub next: *const c_void,
-    /// Default WK_WORLD_FLAT.
+    /// Placement of the host's world on the planet. Default WK_WORLD_FLAT.
     pub world_kind: wk_world_kind,
-    /// Default WK_AXES_Z_UP.
+    /// Directions of the host's axes. Default WK_AXES_Z_UP.
     pub axes: wk_axes,
     /// Latitude of the host's (0, 0, 0), degrees north. Range [-90, 90], default 50.
     pub latitude_deg: f64,
@@ -104,28 +105,28 @@ pub struct wk_context_desc {
     pub grid_bearing_deg: f64,
     /// Seed of everything random. Default 0.
     pub seed: u64,
-    /// A planet file's text (TOML, UTF-8; docs/planets.md), read during the call. Default NULL: the Earth.
+    /// Text of a planet file (TOML, UTF-8; docs/planets.md), read during the call. Default NULL: the Earth.
     pub planet_toml: *const c_char,
-    /// Exposure of frames that have none of their own. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused
-    /// here.
+    /// Source of the exposure for frames that set none of their own. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT
+    /// is refused here.
     pub exposure_mode: wk_exposure_mode,
-    /// Default WK_TONE_EXPONENTIAL.
+    /// Curve from exposed luminance to display values. Default WK_TONE_EXPONENTIAL.
     pub tone_curve: wk_tone_curve,
-    /// See wk_exposure_mode. Default 0.
+    /// Value of the exposure, as wk_exposure_mode says. Default 0.
     pub exposure_value: f64,
     /// Universal time at simulation time 0, seconds since 1970-01-01T00:00:00Z without leap seconds (Unix time).
     /// Range: the years -2000 to 6000. Default 2026-06-21 10:00.
     pub utc_at_zero_s: f64,
-    /// A directory, UTF-8, for the sky's finished tables; Welkin makes it if needed. A later start with the same
+    /// Path of a directory, UTF-8, for finished sky tables; Welkin creates it if needed. A later start with the same
     /// planet, sky settings and weather reads the tables instead of building them. Welkin keeps the tables of the first
     /// drawn weather and those of wk_context_build_sky: the newest 32 of all programs that name the directory (2 MB
     /// each). If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read during the call.
     /// Default NULL: no files.
     pub cache_dir: *const c_char,
     /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation),
-    /// m: 47.8 at Frankfurt, -30 at New York. One number for the context; it varies by some metres over 100 km. For
-    /// WK_WORLD_ECEF, whose coordinates know the ellipsoid alone: altitudes, the tops of fog and the bases of clouds
-    /// among them, count from mean sea level. Without effect in other worlds. Range [-120, 120], default 0.
+    /// m: 47.8 at Frankfurt, -30 at New York. One number holds for the whole context; in nature it varies by some
+    /// metres over 100 km. Only WK_WORLD_ECEF uses it, because its coordinates refer to the ellipsoid, while altitudes,
+    /// tops of fog and bases of clouds count from mean sea level. Range [-120, 120], default 0.
     pub geoid_height_m: f64,
 }
 
@@ -151,7 +152,7 @@ impl wk_context_desc {
     };
 }
 
-/// An exposure as a context or a frame states it; `None` for WK_EXPOSURE_OF_CONTEXT.
+/// Converts an exposure of a context or frame; `None` for WK_EXPOSURE_OF_CONTEXT.
 pub(super) fn exposure(mode: wk_exposure_mode, value: f64) -> Option<Exposure> {
     match mode {
         WK_EXPOSURE_AUTO => Some(Exposure::Auto { compensation_ev: value }),
@@ -161,7 +162,7 @@ pub(super) fn exposure(mode: wk_exposure_mode, value: f64) -> Option<Exposure> {
     }
 }
 
-/// A tone curve that was checked.
+/// Converts a tone curve that has been checked.
 pub(super) fn tone(curve: wk_tone_curve) -> ToneCurve {
     match curve {
         WK_TONE_LINEAR => ToneCurve::Linear,
@@ -170,7 +171,7 @@ pub(super) fn tone(curve: wk_tone_curve) -> ToneCurve {
     }
 }
 
-/// The planet of a file's text; NULL is the Earth.
+/// Reads the planet from a file's text; NULL is the Earth.
 ///
 /// # Safety
 /// `text` is NULL or a string.
@@ -182,11 +183,13 @@ pub(super) unsafe fn planet(param: &str, text: *const c_char) -> Result<Planet> 
     }
 }
 
-/// An exposure's error as one of the struct `param`, whose exposure_value it is.
+/// Renames an exposure's error to the field exposure_value of the struct `param`.
 pub(super) fn exposure_in(param: &str, e: Error) -> Error {
     e.map_field(|_| format!("{param}.exposure_value"))
 }
 
+/// Converts the description to the Rust side's.
+///
 /// # Safety
 /// `desc.planet_toml` and `desc.cache_dir` are NULL or strings, and the chain is checked.
 unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
@@ -221,7 +224,7 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, sky, ground, lying_snow, cache_dir })
 }
 
-/// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
+/// Creates a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
 /// `wk_context_destroy`. The weather is a clear standard day at noon until you set another.
 /// Thread: exclusive on the device.
 /// Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field.
@@ -252,10 +255,9 @@ pub unsafe extern "C" fn wk_context_create(
 }
 
 /// Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
-/// call; NULL means the Earth. Light and queries are those of the new planet at once; nothing is blended. The sky's
-/// tables follow as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the
-/// radius, the top or the wavelengths differ, the next frame shows a draft of the new planet at once
-/// (docs/planets.md).
+/// call; NULL means the Earth. Light and queries use the new planet at once, without blending. The sky's tables follow
+/// as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the radius, the
+/// top or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
 /// Thread: exclusive.
 /// Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet
 /// stays as it was.
@@ -270,7 +272,7 @@ pub unsafe extern "C" fn wk_context_set_planet(context: *mut wk_context, planet_
     })
 }
 
-/// Sets the curve from luminance to the display for the next frames, as tone_curve of wk_context_desc did.
+/// Sets the curve from luminance to display values for the next frames, in place of tone_curve of wk_context_desc.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_tone_curve(context: *mut wk_context, curve: wk_tone_curve) -> wk_status {
@@ -282,19 +284,19 @@ pub unsafe extern "C" fn wk_context_set_tone_curve(context: *mut wk_context, cur
     })
 }
 
-/// Receives how much of a long operation is done, from 0 to 1, never less than before. Return 0 to go on; anything else
-/// ends the operation with WK_ERROR_ABORTED. It must not call Welkin and must not unwind. It may draw with the host's
-/// own means, an OpenGL context included.
+/// Receives the completed share of a long operation, from 0 to 1, never less than before. Return 0 to go on; anything
+/// else ends the operation with WK_ERROR_ABORTED. The function must not call Welkin and must not unwind. It may draw by
+/// the host's own means, also with an OpenGL context.
 pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: f64) -> i32>;
 
-/// Builds the sky's tables for the context's planet and the weather of its present time completely, so that no frame
-/// has to. Call it at load time, behind a progress bar. It takes tables that another context of the device already
-/// shows or that lie in the context's cache_dir, and writes new ones there. Without this call the first frame shows a
-/// draft of the sky, within 3 of 255 of the whole one, and 120 frames refine it without a visible step.
-/// WK_FRAME_NO_HISTORY in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else
-/// it is called about sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no
-/// file. Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's
-/// own again while `progress` runs. Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
+/// Builds the sky's tables completely for the context's planet and present weather, so that no frame has to. Call it at
+/// load time, behind a progress bar. It reuses tables that another context of the device already shows or that lie in
+/// the context's cache_dir, and writes new ones there. Without this call the first frame shows a draft of the sky,
+/// within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY in a frame
+/// builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about sixteen
+/// times, the last time with 1. An aborted build leaves the context as it was and writes no file. Thread: exclusive on
+/// the context. For a device on an OpenGL context the rule of wk_view_record applies; while `progress` runs, Welkin has
+/// given that context back to the host. Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_build_sky(
     context: *mut wk_context,
@@ -313,7 +315,7 @@ pub unsafe extern "C" fn wk_context_build_sky(
 }
 
 /// Destroys a context. NULL does nothing.
-/// Thread: any; the GPU's part is released at the device's next call if it must be.
+/// Thread: any. GPU objects that need the host's OpenGL context are released at the device's next call.
 /// Errors: WK_ERROR_IN_USE while it has views.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_destroy(context: *mut wk_context) -> wk_status {

@@ -1,14 +1,14 @@
 //! Devices
 //!
 //! A wk_device is one native queue or OpenGL context, with everything that its contexts share: pipelines, tables,
-//! caches. Make one here (below), from the host's OpenGL context, from the host's Vulkan device, or, in Rust, from the
-//! host's wgpu device. All later calls are the same for all four.
+//! caches. Create one here (below), from the host's OpenGL context, from the host's Vulkan device, or, in Rust, from
+//! the host's wgpu device. All later calls are the same for all four.
 //!
-//! Make one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
-//! (driver reset, unplugged) every call that needs it answers WK_ERROR_DEVICE_LOST: those that create, build, draw,
-//! read or write what lies on it, and wk_context_get_ambient. A context's weather, time, settings, other queries and
-//! state need no GPU and go on: save the state with wk_context_save, destroy the views, contexts and the device, create
-//! them again, and load the state.
+//! Create one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
+//! (driver reset, unplugged), every call that needs it answers WK_ERROR_DEVICE_LOST: calls that create, build or draw,
+//! calls that read or write GPU resources, and wk_context_get_ambient. A context's weather, time, settings, state and
+//! other queries need no GPU and go on working. To recover, save the state with wk_context_save, destroy the views, the
+//! contexts and the device, create them again, and load the state.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -32,7 +32,7 @@ include!(concat!(env!("OUT_DIR"), "/init_device.rs"));
 
 /// Native graphics interfaces.
 pub type wk_backend_flags = u32;
-/// Draws nothing and needs no GPU: for tests of your own code.
+/// No graphics: draws nothing and needs no GPU, for tests of your own code.
 pub const WK_BACKEND_NOOP: wk_backend_flags = 1;
 /// Vulkan.
 pub const WK_BACKEND_VULKAN: wk_backend_flags = 2;
@@ -42,12 +42,12 @@ pub const WK_BACKEND_METAL: wk_backend_flags = 4;
 pub const WK_BACKEND_DX12: wk_backend_flags = 8;
 /// OpenGL or OpenGL ES.
 pub const WK_BACKEND_GL: wk_backend_flags = 16;
-/// Any that works, the best first.
+/// Any interface that works, the best one first.
 pub const WK_BACKEND_ANY: wk_backend_flags = 30;
 
 /// Flags of an own device.
 pub type wk_device_flags = u32;
-/// Use no compute shaders, even where the device has them: draws as on an OpenGL 3.3 machine.
+/// Use no compute shaders, even where the device has them. Welkin then draws as on an OpenGL 3.3 machine.
 pub const WK_DEVICE_FORCE_TIER0: wk_device_flags = 1;
 /// Use the software driver.
 pub const WK_DEVICE_FORCE_SOFTWARE: wk_device_flags = 2;
@@ -64,7 +64,7 @@ pub struct wk_device_desc {
     pub next: *const c_void,
     /// Native interfaces that may be used. Default WK_BACKEND_ANY.
     pub backends: wk_backend_flags,
-    /// Default 0.
+    /// Flags of the device. Default 0.
     pub flags: wk_device_flags,
 }
 
@@ -88,10 +88,10 @@ pub struct wk_caps {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The native interface that it uses.
+    /// Native interface that the device uses.
     pub backend: wk_backend_flags,
-    /// 0: no compute (OpenGL 3.3 to 4.2, OpenGL on macOS). 1: compute. Features that need tier 1 answer
-    /// WK_ERROR_UNSUPPORTED by name on tier 0.
+    /// Tier of features: 0 without compute shaders (OpenGL 3.3 to 4.2, OpenGL on macOS), 1 with them. On tier 0
+    /// features that need tier 1 answer WK_ERROR_UNSUPPORTED by name.
     pub tier: u32,
     /// 1 for a software driver, which draws on the CPU, else 0.
     pub software: u32,
@@ -99,11 +99,11 @@ pub struct wk_caps {
     pub max_texture_size: u32,
     /// Most cloud layers in a wk_weather.
     pub max_cloud_layers: u32,
-    /// Most places or rays in one batch query.
+    /// Most positions or rays in one batch query.
     pub max_batch: u32,
-    /// The adapter's own name, UTF-8; lives as long as the device.
+    /// Name that the adapter reports, UTF-8; lives as long as the device.
     pub adapter_name: *const c_char,
-    /// The driver's own name and version, UTF-8; lives as long as the device.
+    /// Name and version that the driver reports, UTF-8; lives as long as the device.
     pub driver: *const c_char,
 }
 
@@ -131,10 +131,10 @@ pub(super) fn issue(gpu: Arc<Device>, host: Host) -> Result<*mut wk_device> {
     handles::insert::<_, DeviceObject>(Arc::new(DeviceObject { cell, adapter_name, driver }), None)
 }
 
-/// Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle,
-/// which you destroy with `wk_device_destroy`; else it stays untouched. Thread: any. Errors: WK_ERROR_NO_ADAPTER if no
-/// driver fits the request, or an OpenGL driver draws a few known texels wrong or does not finish them within 6 s;
-/// WK_ERROR_INVALID_ARGUMENT by name.
+/// Creates an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out_device` is a new
+/// handle, which you destroy with `wk_device_destroy`; else it stays untouched. Thread: any. Errors:
+/// WK_ERROR_NO_ADAPTER if no driver fits the request, or if an OpenGL driver draws a few known test texels wrong or
+/// does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT by name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create(desc: *const wk_device_desc, out_device: *mut *mut wk_device) -> wk_status {
     guard("wk_device_create", |_| {
@@ -168,8 +168,8 @@ pub(super) fn options(desc: &wk_device_desc) -> DeviceOptions {
 }
 
 /// Destroys a device. NULL does nothing.
-/// Thread: for a device on an OpenGL context, one where that context is (or can be made) current; elsewhere, or when
-/// the context is already gone, its objects are abandoned. For other devices any.
+/// Thread: any, except for a device on an OpenGL context. Destroy that on a thread where the context is (or can be
+/// made) current; elsewhere, or when the context is already gone, its GPU objects are abandoned.
 /// Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status {
@@ -184,7 +184,7 @@ pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status 
     })
 }
 
-/// WK_OK while the device works, WK_ERROR_DEVICE_LOST or WK_ERROR_POISONED when it no longer does.
+/// Returns WK_OK while the device works, WK_ERROR_DEVICE_LOST or WK_ERROR_POISONED when it no longer does.
 /// Thread: any, at any time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_get_status(device: *const wk_device) -> wk_status {

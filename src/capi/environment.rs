@@ -1,14 +1,15 @@
 //! A cube map of what stands around the camera
 //!
-//! For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its
-//! clouds, fog and rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the
-//! host lights by those itself), stars and the host's objects; the night's glow is even. Its axes are those of the
-//! host's world: a shader looks it up by the reflected direction as it is. Level m of the 7 is what a mirror of
-//! roughness m/6 shows (the distribution of Trowbridge and Reitz, alpha = roughness^2; Karis 2013, Real Shading in
-//! Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the specular light before the surface's
-//! reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their filters by a sampler object. Welkin
-//! draws one face a frame, in turn; all six in the first frame, in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and
-//! where light or weather leap. Views whose hosts do not ask have none of it.
+//! For reflections in the host's own objects: paint, water, windows. Six faces of 64 x 64 texels show the sky with its
+//! clouds, fog and rain as far as the horizon, and the planet's ground below. They leave out the discs of the sun and
+//! the moon (the host lights its objects by those itself), the stars and the host's objects; the night's glow is
+//! uniform. The axes are those of the host's world: a shader samples with the reflected direction as it is. Level m of
+//! the 7 levels is prefiltered for a mirror of roughness m/6 (the distribution of Trowbridge and Reitz, alpha =
+//! roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the
+//! specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their
+//! filters by a sampler object. Welkin draws one face a frame, in turn. It draws all six in the first frame, in frames
+//! with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather jump. Views whose hosts never ask for the cube
+//! map do not draw it.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -38,14 +39,14 @@ pub struct wk_environment {
     /// RGBA half floats: an OpenGL texture name (GL_TEXTURE_CUBE_MAP), or a VkImage of six layers with
     /// VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT (VK_FORMAT_R16G16B16A16_SFLOAT).
     pub texture: u64,
-    /// Texels of a face's edge.
+    /// Edge of a face, texels.
     pub size: u32,
-    /// Levels, down to one texel.
+    /// Number of mip levels, down to one texel.
     pub level_count: u32,
-    /// Multiply texels by this to get cd/m^2; 0 before the first frame. It changes only where all faces are drawn.
+    /// Factor from texels to cd/m^2; 0 before the first frame. It changes only in frames that draw all faces.
     pub cd_m2_per_unit: f64,
-    /// Multiply texels by this to get units of the last frame's colour of a scene-linear host, else display values
-    /// before the tone curve.
+    /// Factor from texels to units of the last frame's colour for a scene-linear host, or else to display values before
+    /// the tone curve.
     pub light_scale: f64,
 }
 
@@ -63,10 +64,10 @@ impl wk_environment {
 }
 
 /// Gets the native texture of the cube map. From the first call on, the first call of each frame with
-/// WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws what is due of it. It belongs to the view and stays the same until that
-/// is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such wk_view_record call. Call
-/// this after each frame for its scales. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own device,
-/// which has no shaders of the host's.
+/// WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays the
+/// same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
+/// wk_view_record call. Call this after each frame for its scales. Thread: exclusive on the view. Errors:
+/// WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_environment(
     view: *mut wk_view,

@@ -1,7 +1,7 @@
 //! Fog laws of older simulators
 //!
-//! Fog follows from the weather and is lit by sun and sky. For pictures that must look as before, Welkin can draw the
-//! laws of older systems instead: linear, exponential, exponential squared, on range or plane distance.
+//! Normally fog follows from the weather and is lit by sun and sky. For pictures that must look as before, Welkin can
+//! draw the laws of older systems instead: linear, exponential or exponential squared, by range or by plane distance.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -22,7 +22,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_fog_law.rs"));
 
-/// Curve of the fog: V is the share of an object's colour that is left at distance d, 1 clear, 0 all fog.
+/// Curve of the fog: V is the share of an object's colour that is left at distance d. V = 1 is clear, V = 0 is all fog.
 pub type wk_fog_curve = u32;
 /// No fog at all, whatever the weather.
 pub const WK_FOG_CURVE_CLEAR: wk_fog_curve = 0;
@@ -35,9 +35,9 @@ pub const WK_FOG_CURVE_EXPONENTIAL_SQUARED: wk_fog_curve = 3;
 
 /// Measure of distance.
 pub type wk_fog_distance = u32;
-/// From the camera's centre: turning the camera changes nothing.
+/// Distance from the camera's centre: turning the camera changes nothing.
 pub const WK_FOG_DISTANCE_RANGE: wk_fog_distance = 0;
-/// From the camera's plane, as in the oldest systems.
+/// Distance from the camera's plane, as in the oldest systems.
 pub const WK_FOG_DISTANCE_PLANE: wk_fog_distance = 1;
 
 /// Flags of the optional fields of a wk_fog_law that are set.
@@ -55,25 +55,25 @@ pub struct wk_fog_law {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Default WK_FOG_CURVE_CLEAR.
+    /// Curve of the fog. Default WK_FOG_CURVE_CLEAR.
     pub curve: wk_fog_curve,
-    /// Default WK_FOG_DISTANCE_RANGE.
+    /// Measure of distance. Default WK_FOG_DISTANCE_RANGE.
     pub distance: wk_fog_distance,
     /// Flags of the optional fields that are set. Default 0.
     pub has: wk_fog_law_has_flags,
     /// Must be 0.
     pub reserved0: u32,
-    /// Linear: distance where fog begins, m. Range [0, 1e9], default 0.
+    /// Distance where linear fog begins, m. Range [0, 1e9], default 0.
     pub start_m: f64,
-    /// Linear: distance where all is fog, m. Above start_m, at most 1e9; default 1000.
+    /// Distance where linear fog is complete, m. Above start_m, at most 1e9; default 1000.
     pub end_m: f64,
-    /// Exponential and squared: density, 1/m. Range [0, 10], default 0.003.
+    /// Density of exponential and exponential squared fog, 1/m. Range [0, 10], default 0.003.
     pub density_per_m: f64,
-    /// Optional: radiance that the picture fades into, cd/m^2 a channel. Range [0, 1e12]; else that of deep fog under
-    /// the present light.
+    /// Optional: radiance into which the picture fades, cd/m^2 a channel. Range [0, 1e12]. Without it Welkin uses the
+    /// radiance of deep fog under the present light.
     pub color: [f64; 3],
-    /// Elevation above the horizon up to which sky pixels fade, rad: fully at the horizon, not at all here. Range [0,
-    /// pi], default 0.2. 0 leaves the sky as it is, pi covers all of it.
+    /// Elevation above the horizon up to which sky pixels fade, rad. The fade is full at the horizon and ends at this
+    /// elevation. Range [0, pi], default 0.2. 0 leaves the sky as it is, pi covers all of it.
     pub sky_band: f64,
 }
 
@@ -94,6 +94,8 @@ impl wk_fog_law {
     };
 }
 
+/// Reads and checks a fog law.
+///
 /// # Safety
 /// `p` is NULL or a `wk_fog_law`.
 unsafe fn law(p: *const wk_fog_law) -> Result<Law> {
@@ -105,7 +107,7 @@ unsafe fn law(p: *const wk_fog_law) -> Result<Law> {
         WK_FOG_CURVE_LINEAR => Curve::Linear { start_m: c.start_m, end_m: c.end_m },
         WK_FOG_CURVE_EXPONENTIAL => Curve::Exponential { density_per_m: c.density_per_m },
         WK_FOG_CURVE_EXPONENTIAL_SQUARED => Curve::ExponentialSquared { density_per_m: c.density_per_m },
-        // No curve at all, but what is given beside it must be what it could be.
+        // The clear law draws no curve. Its unused figures must still be in range.
         _ => Curve::Exponential { density_per_m: c.density_per_m },
     };
     let plane = c.distance == WK_FOG_DISTANCE_PLANE;
@@ -120,15 +122,15 @@ unsafe fn law(p: *const wk_fog_law) -> Result<Law> {
     Ok(if c.curve == WK_FOG_CURVE_CLEAR { Law::Clear } else { Law::Compatibility(law) })
 }
 
-/// Figures of the curves that `law` does not name: nothing of them is drawn, but a host that sets one out of its range
-/// is mistaken.
+/// Checks the figures of the curves that `law` does not name. They are not drawn, but a host that sets one out of range
+/// has made a mistake.
 fn check_unused(law: &wk_fog_law) -> Result<()> {
     check_range("fog.start_m", law.start_m, 0.0, 1e9, "m")?;
     check_range("fog.end_m", law.end_m, 0.0, 1e9, "m")?;
     check_range("fog.density_per_m", law.density_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")
 }
 
-/// The header's names for the fields of a law.
+/// Renames a law's errors to the header's field names.
 fn in_law(e: Error) -> Error {
     e.renamed("fog.colour", "fog_law.color").renamed("fog", "fog_law")
 }
@@ -147,7 +149,7 @@ pub unsafe extern "C" fn wk_context_set_fog_law(context: *mut wk_context, fog_la
 }
 
 /// Gets the distance beyond which a fog law leaves less than 1/255 of an object's colour, m: you need not draw anything
-/// farther away. It uses the law's measure of distance, and is infinite if the law never reaches that.
+/// farther away. The distance is measured as the law measures it, and infinite if the law always leaves more.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_fog_law_cull_distance(fog_law: *const wk_fog_law, out_distance_m: *mut f64) -> wk_status {
@@ -164,8 +166,8 @@ pub unsafe extern "C" fn wk_fog_law_cull_distance(fog_law: *const wk_fog_law, ou
     })
 }
 
-/// Gets the distance beyond which air of a visibility (meteorological optical range, m, [1, 1e6]) leaves less than
-/// 1/255 of an object's contrast, m: about 1.85 times the visibility.
+/// Gets the distance beyond which air of a given visibility leaves less than 1/255 of an object's contrast, m: about
+/// 1.85 times the visibility. visibility_m is the meteorological optical range, m, [1, 1e6].
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_visibility_cull_distance(visibility_m: f64, out_distance_m: *mut f64) -> wk_status {

@@ -4,12 +4,12 @@
 //! the images. All matrices are column-major with column vectors (OpenGL, Vulkan, glm): m[4 * column + row].
 //!
 //! position_m gives the camera's position in double precision; Welkin ignores the translation of `view`. Any projection
-//! works: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far, reversed depth.
+//! works: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far plane, reversed depth.
 //!
 //! Welkin reads depth as the projection gives it, z / w mapped to the depth buffer's 0 to 1. With WK_DEPTH_LOGARITHMIC
 //! the host's shaders must have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
 //!
-//! `target` points to the images, in the struct for the kind of device: wk_own_target, wk_opengl_target,
+//! `target` points to the images, in the struct for the kind of device: wk_own_target, wk_opengl_target or
 //! wk_vulkan_target.
 
 use std::{ffi::c_void, ptr::null};
@@ -49,45 +49,48 @@ pub const WK_CLIP_MINUS_ONE_TO_ONE: wk_clip_space = 1;
 
 /// Meaning of the numbers in the host's colour.
 pub type wk_color_space = u32;
-/// Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which WK_STAGE_TONE does anything.
+/// Linear Rec. 709, proportional to luminance (cd_m2_per_unit). WK_STAGE_TONE has an effect only in this space.
 pub const WK_COLOR_SCENE_LINEAR: wk_color_space = 0;
 /// Already tone-mapped, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly.
 pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
 /// Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
 pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
 
-/// Access of Welkin to the target's depth. Nothing that this version draws is opaque, so both give the same picture;
-/// sea and terrain will be.
+/// Access of Welkin to the target's depth. This version draws nothing opaque, so both values give the same picture. The
+/// sea and terrain of later versions will be opaque.
 pub type wk_depth_access = u32;
-/// Read it: not a bit of it changes, and Welkin draws nothing opaque of its own.
+/// Read it: Welkin leaves every bit as it is, and draws nothing opaque of its own.
 pub const WK_DEPTH_ACCESS_READ: wk_depth_access = 0;
 /// Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays.
 /// Needs depth that can be attached: a depth format, as many samples as the colour, and in Vulkan
-/// DEPTH_STENCIL_ATTACHMENT among its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an
-/// own device, whose depth is WK_FORMAT_R32_FLOAT.
+/// DEPTH_STENCIL_ATTACHMENT among its usage. Not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, nor on
+/// an own device, whose depth is WK_FORMAT_R32_FLOAT.
 pub const WK_DEPTH_ACCESS_READ_WRITE: wk_depth_access = 1;
 
-/// A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over
-/// blue, green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw
-/// nothing. Masked pixels stay yours. Where nothing of what it shows is in the frame, all is black.
+/// A false-colour picture that replaces a frame's picture, for developers. It shows one quantity per pixel on a scale
+/// from black over blue, green, yellow and red to white. The call with the quantity's stage draws it; other calls of
+/// the frame draw nothing. Masked pixels stay the host's. If the frame contains nothing of the quantity, all is black.
 pub type wk_diagnostic = u32;
 /// The picture itself.
 pub const WK_DIAGNOSTIC_NONE: wk_diagnostic = 0;
-/// Distance along the ray, by decades: black 1 m or less, white 100 km and more, and the sky. Stage MEDIUM.
+/// Distance along the ray, on a scale by decades: black for 1 m or less, white for 100 km or more, and for the sky.
+/// Stage MEDIUM.
 pub const WK_DIAGNOSTIC_DISTANCE: wk_diagnostic = 1;
-/// Optical depth of air, fog and what falls between the eye and what is seen: black 0, 1 a step, white 5 and more. The
-/// columns of rain areas are left out. Stage MEDIUM.
+/// Optical depth of air, fog and precipitation between the eye and the visible surface: black 0, 1 a step, white 5 or
+/// more. The columns of rain areas are left out. Stage MEDIUM.
 pub const WK_DIAGNOSTIC_OPTICAL_DEPTH: wk_diagnostic = 2;
 /// Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE.
 pub const WK_DIAGNOSTIC_WETNESS: wk_diagnostic = 3;
-/// Error by what the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white,
-/// by decades: black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
-pub const WK_DIAGNOSTIC_PLAN_ERROR: wk_diagnostic = 4;
-/// How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
-pub const WK_DIAGNOSTIC_OVERDRAW: wk_diagnostic = 5;
-/// The wind that carries what falls, 2 m over what you drew: black a calm, 4 m/s a step, white 20 m/s and more. Each
-/// square of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The sky is black. Stage
+/// Error due to the air, fog and clear sky that the plan leaves out: the relative change of luminance over a hundredth
+/// of white, on a scale by decades. Black is 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage
 /// MEDIUM.
+pub const WK_DIAGNOSTIC_PLAN_ERROR: wk_diagnostic = 4;
+/// Number of times that drops, flakes or stones were drawn over a pixel: black 0, 4 a step, white 20 or more. Stage
+/// PARTICLES.
+pub const WK_DIAGNOSTIC_OVERDRAW: wk_diagnostic = 5;
+/// Speed of the wind that carries the precipitation, 2 m above the host's surfaces: black a calm, 4 m/s a step, white
+/// 20 m/s or more. Each square of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The
+/// sky is black. Stage MEDIUM.
 pub const WK_DIAGNOSTIC_WIND: wk_diagnostic = 6;
 
 /// Flags of a frame.
@@ -96,15 +99,15 @@ pub type wk_frame_flags = u32;
 /// builds them, as with WK_FRAME_NO_HISTORY.
 pub const WK_FRAME_CUT: wk_frame_flags = 1;
 /// Draw a picture that depends on seed, time and view alone, without any history. If the sky's tables are not complete
-/// yet, this frame builds them, which takes as long as many frames: use it for stills and comparisons, not for every
+/// yet, this frame builds them, which takes as long as many frames. Use it for stills and comparisons, not for every
 /// frame of a changing weather.
 pub const WK_FRAME_NO_HISTORY: wk_frame_flags = 2;
 /// Depth is reversed: 1 is near, 0 is far.
 pub const WK_FRAME_DEPTH_REVERSED: wk_frame_flags = 4;
-/// The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with
-/// a viewport of positive height. Without it the first row lies at clip y = +1.
+/// The first row of the images lies at clip y = -1. This is always so in OpenGL (there the flag need not be set), and
+/// in Vulkan with a viewport of positive height. Without the flag the first row lies at clip y = +1.
 pub const WK_FRAME_FIRST_ROW_AT_MINUS_Y: wk_frame_flags = 8;
-/// Measure what each effect costs: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for each,
+/// Measure the cost of each effect: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for each,
 /// so the frame is slower and its picture may differ by rounding. Use it now and then, not in every frame.
 /// WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
 pub const WK_FRAME_MEASURE: wk_frame_flags = 16;
@@ -126,39 +129,39 @@ pub struct wk_frame {
     pub frame_id: u64,
     /// Position of the camera in the host's world, m. Default 0, 0, 0.
     pub position_m: [f64; 3],
-    /// World to eye; only its rotation counts. Default identity.
+    /// Matrix from world to eye; only its rotation counts. Default identity.
     pub view: [f64; 16],
-    /// Eye to clip, invertible. Default identity.
+    /// Matrix from eye to clip space; it must be invertible. Default identity.
     pub projection: [f64; 16],
-    /// Default WK_DEPTH_PROJECTION.
+    /// Relation of depth to distance. Default WK_DEPTH_PROJECTION.
     pub depth_kind: wk_depth_kind,
-    /// Default WK_CLIP_ZERO_TO_ONE.
+    /// Range of clip-space z. Default WK_CLIP_ZERO_TO_ONE.
     pub clip_space: wk_clip_space,
-    /// C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is LOGARITHMIC. Default 1.
+    /// Constant C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is LOGARITHMIC. Default 1.
     pub logarithmic_c: f64,
     /// Distance at depth 1 of logarithmic depth, m. Range [1e-3, 1e12] where depth_kind is LOGARITHMIC. Default 1e7.
     pub logarithmic_far_m: f64,
-    /// Default 0.
+    /// Flags of the frame. Default 0.
     pub flags: wk_frame_flags,
-    /// Default WK_COLOR_SCENE_LINEAR.
+    /// Colour space of the host's colour. Default WK_COLOR_SCENE_LINEAR.
     pub color_space: wk_color_space,
     /// Luminance of the value 1 in a scene-linear colour image, cd/m^2. Range [1e-9, 1e9], default 1.
     pub cd_m2_per_unit: f64,
-    /// Default WK_EXPOSURE_OF_CONTEXT.
+    /// Source of the exposure. Default WK_EXPOSURE_OF_CONTEXT.
     pub exposure_mode: wk_exposure_mode,
     /// Must be 0.
     pub reserved0: u32,
-    /// See wk_exposure_mode. Default 0.
+    /// Value of the exposure, as wk_exposure_mode says. Default 0.
     pub exposure_value: f64,
     /// The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, by the kind of device. May be NULL for
     /// PREPARE alone.
     pub target: *const c_void,
-    /// Velocity of the camera in the host's world, m/s, at most 2000 in all. Streaks of rain lean against it. Default
-    /// 0, 0, 0.
+    /// Velocity of the camera in the host's world, m/s; its length is at most 2000. Rain streaks lean against it.
+    /// Default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
-    /// Default WK_DEPTH_ACCESS_READ.
+    /// Access of Welkin to the target's depth. Default WK_DEPTH_ACCESS_READ.
     pub depth_access: wk_depth_access,
-    /// Default WK_DIAGNOSTIC_NONE.
+    /// False-colour picture to draw in place of the frame's. Default WK_DIAGNOSTIC_NONE.
     pub diagnostic: wk_diagnostic,
 }
 
@@ -200,19 +203,19 @@ pub struct wk_own_target {
     pub next: *const c_void,
     /// The image to draw into. Default NULL.
     pub color: *const wk_texture,
-    /// If `color` is NULL: the surface whose acquired image is drawn into. Default NULL.
+    /// Surface to draw into if `color` is NULL: Welkin draws into its acquired image. Default NULL.
     pub surface: *const wk_surface,
-    /// The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel.
+    /// Depth of the host's picture, as large as `color`; with NULL (the default) every pixel shows the sky.
     pub depth: *const wk_texture,
-    /// A mask: where it is 1, the host's pixel stays (cab, HUD); where it is 0, Welkin draws weather. As large as
+    /// Mask: where it is 1, the host's pixel stays (cab, HUD); where it is 0, Welkin draws weather. As large as
     /// `color`. Default NULL.
     pub mask: *const wk_texture,
-    /// Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
+    /// Surface class of each pixel: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
     /// default. R8_UNORM or the like, as large as `color`. Default NULL.
     pub surface_classes: *const wk_texture,
     /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
-    /// formats, n in float formats. Where a pixel is no unit vector (a cleared pixel), Welkin uses the host's terrain
-    /// or depth. As large as `color`. Default NULL.
+    /// formats, n in float formats. Where a pixel holds no unit vector (a cleared pixel), Welkin uses the normal of the
+    /// host's terrain or depth. As large as `color`. Default NULL.
     pub normals: *const wk_texture,
 }
 
@@ -230,13 +233,14 @@ impl wk_own_target {
     };
 }
 
-/// Light for the host's own shading of a frame, in the numbers of its color_space. A surface of colour c with normal n
-/// shows c * (ambient + direct * max(dot(n, direction), 0)).
+/// Light for the host's own shading of a frame, in the units of the frame's color_space. A surface of colour c with
+/// normal n shows c * (ambient + direct * max(dot(n, direction), 0)).
 ///
-/// Scene-linear: exact for matt surfaces. Display spaces: the light includes the tone curve at the frame's exposure, so
-/// one pair of lights cannot be right for every surface. It is right for a grey card of 18 %, in shade and facing the
-/// sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer) encodes the result. With
-/// WK_COLOR_DISPLAY_SRGB both are encoded numbers, as fixed-function OpenGL multiplies them.
+/// In scene-linear space this is exact for matt surfaces. In display spaces the light includes the tone curve at the
+/// frame's exposure, so one pair of lights cannot be right for every surface. It is right for a grey card of 18 %, both
+/// in shade and facing the sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer)
+/// encodes the result. With WK_COLOR_DISPLAY_SRGB c and the light are both encoded numbers, as fixed-function OpenGL
+/// multiplies them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_frame_light {
@@ -248,9 +252,9 @@ pub struct wk_frame_light {
     pub next: *const c_void,
     /// Unit vector in the host's world towards the sun, or towards the moon where that is brighter.
     pub direction: [f64; 3],
-    /// Its direct light on a surface that faces it, after air, clouds and fog; 0 below the horizon.
+    /// Direct light from that direction on a surface that faces it, after air, clouds and fog; 0 below the horizon.
     pub direct: [f64; 3],
-    /// Light of sky, clouds and fog on level ground.
+    /// Light from sky, clouds and fog on level ground.
     pub ambient: [f64; 3],
     /// Light from the ground on a surface that faces down, for hosts with one ambient light above and one below.
     pub ambient_below: [f64; 3],
@@ -271,8 +275,8 @@ impl wk_frame_light {
     };
 }
 
-/// Gets the light with which the host should light its own objects in a frame; call it before you draw them. Of `frame`
-/// the camera's position, the color_space with cd_m2_per_unit, and the exposure count; its target is ignored.
+/// Gets the light with which the host should light its own objects in a frame; call it before you draw them. It reads
+/// the camera's position, color_space, cd_m2_per_unit and the exposure of `frame`, and ignores the target.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field.
 #[unsafe(no_mangle)]
@@ -300,19 +304,19 @@ pub unsafe extern "C" fn wk_context_get_frame_light(
     })
 }
 
-/// The images of a frame as the Rust side takes them.
+/// Images of a frame for the Rust side.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Images<'a> {
     pub(super) color: Option<&'a wgpu::Texture>,
     pub(super) depth: Option<&'a wgpu::Texture>,
     pub(super) mask: Option<&'a wgpu::Texture>,
-    /// Layers of the images within their textures.
+    /// Array layers of the images in their textures.
     pub(super) layers: ImageLayers,
     pub(super) surface_classes: Option<&'a wgpu::Texture>,
     pub(super) normals: Option<&'a wgpu::Texture>,
 }
 
-/// A checked C frame with its images, as the Rust side takes it.
+/// Converts a checked C frame with its images to the Rust side's frame.
 ///
 /// # Errors
 /// The first field that is out of range, named as in the header.
@@ -376,12 +380,12 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
     })
 }
 
-/// A projection whose w does not depend on the point: parallel rays.
+/// Whether the w of a projection does not depend on the point, so that rays are parallel.
 fn is_orthographic(m: &[f64; 16]) -> bool {
     m[3] == 0.0 && m[7] == 0.0 && m[11] == 0.0
 }
 
-/// The header's names for what the Rust side calls a frame's fields, in the order in which they are tried.
+/// Names of a frame's fields on the Rust side and in the header, in the order in which they are tried.
 const NAMES: [(&str, &str); 15] = [
     ("frame.camera.position", "frame.position_m"),
     ("camera.position", "frame.position_m"),
@@ -400,7 +404,7 @@ const NAMES: [(&str, &str); 15] = [
     ("normals", "frame.target.normals"),
 ];
 
-/// A frame's error with the field's name in the header.
+/// Renames a frame's error to the header's field name.
 pub(super) fn in_frame(e: Error) -> Error {
     NAMES.iter().fold(e, |e, (from, to)| e.renamed(from, to))
 }

@@ -1,13 +1,13 @@
 //! Wet ground
 //!
-//! The stage SURFACE reads the host's depth and draws water onto its picture. Wet ground is darker and mirrors the sky,
-//! paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in the display
-//! spaces Welkin takes the shown colour for the ground's own. Ground without a wk_surface_class is natural and hardly
-//! mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky; of objects only shelters and occluder
-//! maps appear in them, as dark shapes.
+//! The stage SURFACE reads the host's depth and draws water onto the host's picture. Wet ground is darker and mirrors
+//! the sky, paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in
+//! the display spaces Welkin takes the shown colour as the ground's own. Ground without a wk_surface_class is natural
+//! and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky. Of the host's objects,
+//! only shelters and occluder maps appear in them, as dark shapes.
 //!
 //! Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
-//! wk_context_desc.next it is a state that fills, drains and dries over time, and wk_context_save keeps it.
+//! wk_context_desc.next it is instead a state that fills, drains and dries over time, and that wk_context_save keeps.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -31,45 +31,45 @@ include!(concat!(env!("OUT_DIR"), "/init_ground.rs"));
 
 /// Source of the ground's wetness.
 pub type wk_ground_model = u32;
-/// The weather of the moment: as reported, or as wet as the rain of the moment keeps it. When the rain ends, the ground
-/// is dry.
+/// The weather of the moment: the ground is as wet as reported, or as the present rain keeps it. It is dry as soon as
+/// the rain ends.
 pub const WK_GROUND_REPORTED: wk_ground_model = 0;
-/// A state that begins at simulation time 0 as wet as the weather has the ground then. Rain fills pores, film and
-/// hollows; they drain and dry by wind, sun and humidity (Penman 1948) in steps of 10 s. A leap of more than a day is
-/// simulated over its last day, which begins as wet as the weather has the ground then. See wk_context_update for leaps
-/// that take more than one call.
+/// A simulated state. At simulation time 0 it starts with the wetness of the weather at that time. Rain fills pores,
+/// film and hollows; they drain and dry by wind, sun and humidity (Penman 1948) in steps of 10 s. After a leap of more
+/// than a day only the last day is simulated, which starts with the wetness of the weather at that time. See
+/// wk_context_update for leaps that take more than one call.
 pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
 
 /// Source of the lying snow.
 pub type wk_lying_snow_model = u32;
-/// The weather of the moment: as deep as it reports (wk_conditions.snow_depth_m), everywhere.
+/// The weather of the moment: snow as deep as it reports (wk_conditions.snow_depth_m), everywhere.
 pub const WK_LYING_SNOW_REPORTED: wk_lying_snow_model = 0;
-/// A state that begins as deep as the weather reports. Snowfall fills it; it settles, drifts, slides, melts and
-/// refreezes in steps of 60 s, on level, open ground and on each cell of the host's terrain
-/// (wk_context_set_ground_grid). An update that moves time by more than a day is fast-forward
-/// (wk_context_accumulate); of one of more than 30 days the last 30 count.
+/// A simulated state that starts with the reported depth. Snowfall fills it; the snow settles, drifts, slides, melts
+/// and refreezes in steps of 60 s. It is simulated on level, open ground and on each cell of the host's terrain
+/// (wk_context_set_ground_grid). An update that moves time by more than a day runs as a fast-forward
+/// (wk_context_accumulate); after one of more than 30 days only the last 30 are simulated.
 pub const WK_LYING_SNOW_SIMULATED: wk_lying_snow_model = 1;
 
-/// Material of the ground. An image of the target (the byte of red) counts first, then the wk_ground_grid or the tiles
-/// of the wk_terrain, then the context's default.
+/// Material of the ground. The first source that names one decides: an image of the target (the byte of red), then the
+/// wk_ground_grid or the tiles of the wk_terrain, then the context's default.
 pub type wk_surface_class = u32;
-/// In an image or a grid: the next source decides. As the context's default: natural ground, which is vegetation where
-/// the host's colour is green and soil elsewhere.
+/// No material. In an image or a grid the next source then decides. As the context's default it means natural ground:
+/// vegetation where the host's colour is green, soil elsewhere.
 pub const WK_SURFACE_CLASS_UNSPECIFIED: wk_surface_class = 0;
 /// Earth, sand, gravel: darkens and hardly mirrors.
 pub const WK_SURFACE_CLASS_SOIL: wk_surface_class = 1;
-/// Bare rock: darkens, and shines in parts.
+/// Bare rock: darkens, and shines in places.
 pub const WK_SURFACE_CLASS_ROCK: wk_surface_class = 2;
 /// Asphalt, concrete, paving: darkens, gets a film that mirrors, and puddles.
 pub const WK_SURFACE_CLASS_PAVED: wk_surface_class = 3;
 /// Grass, crops, shrubs, trees: hardly changes.
 pub const WK_SURFACE_CLASS_VEGETATION: wk_surface_class = 4;
-/// Water that the host draws: rain leaves it as it is.
+/// Water that the host draws: Welkin leaves it as it is.
 pub const WK_SURFACE_CLASS_WATER: wk_surface_class = 5;
 /// Roofs and walls: darken and shine, without puddles.
 pub const WK_SURFACE_CLASS_BUILDING: wk_surface_class = 6;
 
-/// Simulated state of a context. An extension: put it into wk_context_desc.next.
+/// Settings of a context's simulated state. An extension: put it into wk_context_desc.next.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_simulation_desc {
@@ -79,11 +79,11 @@ pub struct wk_simulation_desc {
     pub struct_type: wk_struct_type,
     /// The next extension. Default NULL.
     pub next: *const c_void,
-    /// Default WK_GROUND_REPORTED.
+    /// Source of the ground's wetness. Default WK_GROUND_REPORTED.
     pub ground_model: wk_ground_model,
     /// Must be 0.
     pub reserved0: u32,
-    /// Default WK_LYING_SNOW_REPORTED.
+    /// Source of the lying snow. Default WK_LYING_SNOW_REPORTED.
     pub lying_snow_model: wk_lying_snow_model,
     /// Must be 0.
     pub reserved1: u32,
@@ -100,7 +100,7 @@ impl wk_simulation_desc {
         reserved1: 0,
     };
 
-    /// As the Rust side takes it.
+    /// Converts the model of lying snow to the Rust side's.
     pub(super) fn lying_snow(&self) -> LyingSnowModel {
         if self.lying_snow_model == WK_LYING_SNOW_SIMULATED {
             LyingSnowModel::Simulated
@@ -109,7 +109,7 @@ impl wk_simulation_desc {
         }
     }
 
-    /// As the Rust side takes it.
+    /// Converts the ground's model to the Rust side's.
     pub(super) fn ground(&self) -> GroundModel {
         if self.ground_model == WK_GROUND_SIMULATED { GroundModel::Simulated } else { GroundModel::Reported }
     }
@@ -125,21 +125,21 @@ pub struct wk_ground {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Depth of water there, mm, as tyres meet it: the film, plus standing water in a hollow.
+    /// Depth of the water, mm, as tyres meet it: the film, plus standing water in a hollow.
     pub water_mm: f64,
-    /// Film on level ground outside hollows, mm; on the host's terrain the film at the place.
+    /// Depth of the film on level ground outside hollows, mm; on the host's terrain, that of the film at the place.
     pub film_mm: f64,
-    /// Wetness of all the ground, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
+    /// Wetness of the ground everywhere, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
-    /// Share of all the ground, or of the host's terrain, under standing water.
+    /// Share of all ground, or of the host's terrain, that is under standing water.
     pub puddles: f64,
     /// 1 where standing water covers the place, else 0. Off the host's terrain only paved ground has puddles.
     pub in_puddle: u32,
-    /// 0.
+    /// Always 0.
     pub reserved0: u32,
-    /// Material of the ground there, by the host's terrain, else by the context's default.
+    /// Material of the ground at the place, from the host's terrain or else from the context's default.
     pub surface_class: wk_surface_class,
-    /// 0.
+    /// Always 0.
     pub reserved1: u32,
 }
 
@@ -172,8 +172,8 @@ impl wk_ground {
 }
 
 /// Gets the water on the ground at a place of the host's world, as of wk_context_get_state_time. On the host's terrain
-/// (wk_context_set_ground_grid, wk_context_set_terrain) and up to 3 m above it, the answer is that of its cells.
-/// Elsewhere it is that of level, open ground with the hollows that are drawn, a pattern fixed to the world by the
+/// (wk_context_set_ground_grid, wk_context_set_terrain) and up to 3 m above it, the answer is for the terrain's cell.
+/// Elsewhere it is for level, open ground with the hollows that Welkin draws: a pattern fixed to the world by the
 /// context's seed.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
@@ -194,7 +194,7 @@ pub unsafe extern "C" fn wk_context_get_ground(
     })
 }
 
-/// Sets the class of ground for which neither the target's image nor the host's terrain has one. Default
+/// Sets the surface class of ground that has none from the target's image or the host's terrain. Default
 /// WK_SURFACE_CLASS_UNSPECIFIED: natural ground. Part of the saved state.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown class.

@@ -1,10 +1,10 @@
 //! Water on the host's terrain
 //!
 //! Give the heights of your terrain on a grid, and Welkin computes wetness and puddles cell by cell. Rain areas and
-//! standing boxes (wk_context_set_shelters) decide what falls where. Water runs off and fills the terrain's hollows
-//! until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the water, and
+//! standing boxes (wk_context_set_shelters) determine the rain that each cell receives. Water runs off and fills the
+//! terrain's hollows until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the water, and
 //! wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a state, which
-//! wk_context_save keeps together with the heights; else it is the weather's wetness, spread over the hollows.
+//! wk_context_save keeps together with the heights. Otherwise it is the weather's wetness, spread over the hollows.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -26,8 +26,8 @@ use crate::{
 include!(concat!(env!("OUT_DIR"), "/init_ground_grid.rs"));
 
 /// Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square
-/// cell around it; water is linear between nodes. Outside lies the world's ground; the picture blends into it over two
-/// cells.
+/// cell around it; water is linear between nodes. Outside the grid lies the world's ground, into which the picture
+/// blends over two cells.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_grid {
@@ -37,8 +37,8 @@ pub struct wk_ground_grid {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The node farthest to the south-west, in the host's world, m, within 1e12 m of the origin; heights count from its
-    /// own. Default 0, 0, 0.
+    /// Position of the south-western node in the host's world, m, within 1e12 m of the origin; the heights count from
+    /// its height. Default 0, 0, 0.
     pub origin_m: [f64; 3],
     /// Distance between nodes, m. Range [0.01, 10 000], default 1. Puddles need several cells.
     pub cell_m: f64,
@@ -47,14 +47,14 @@ pub struct wk_ground_grid {
     /// Heights above the origin, m, within 1e5. Nodes run from west to east, rows from south to north. Copied by the
     /// call.
     pub heights_m: *const f32,
-    /// Numbers in heights_m: the product of `nodes`.
+    /// Number of values in heights_m: the product of `nodes`.
     pub height_count: u32,
     /// Must be 0.
     pub reserved0: u32,
     /// Class of each cell, in the order of the heights: a wk_surface_class, or 0 to use the context's default. Copied
     /// by the call. Default NULL: 0 for all cells.
     pub surface_classes: *const u8,
-    /// Numbers in surface_classes: 0 (the default), or height_count.
+    /// Number of values in surface_classes: 0 (the default), or height_count.
     pub surface_class_count: u32,
     /// Must be 0.
     pub reserved1: u32,
@@ -77,18 +77,19 @@ impl wk_ground_grid {
     };
 }
 
-/// Water of a cell of the host's terrain; plain values of a list. Packed, the list can be uploaded as a texture of four
-/// floats.
+/// Water of a cell of the host's terrain; plain values of a list. A packed list can be uploaded as a texture of four
+/// floats per texel.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_cell {
     /// Film: water between and on the grains, mm; 0 under standing water.
     pub film_mm: f32,
-    /// Water in the pores, as a share of what they can hold.
+    /// Water in the pores, as a share of their capacity, 0 to 1.
     pub soaked: f32,
     /// Standing water, mm.
     pub standing_mm: f32,
-    /// Share under ice, by the weather of the moment; freezing rain leaves none where standing boxes keep it off.
+    /// Share of the cell under ice, by the weather of the moment; freezing rain leaves no ice where standing boxes keep
+    /// it off.
     pub ice: f32,
 }
 
@@ -99,8 +100,8 @@ impl wk_ground_cell {
 }
 
 /// Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. Setting the
-/// same grid again keeps its water, even with other classes; another grid begins as wet as level ground is. May take
-/// some tenths of a second for the largest grids. Unchanged after an error.
+/// same grid again keeps its water, even with other classes; a different grid starts as wet as level ground is. May
+/// take some tenths of a second for the largest grids. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -146,7 +147,7 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
     })
 }
 
-/// Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights; `cell_size` is
+/// Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights. `cell_size` is
 /// sizeof(wk_ground_cell) of your header. `out_revision` gets a number that changes whenever the cells change, at most
 /// once every 10 s of simulation time. With capacity 0 the call returns only this number, so you can skip uploads when
 /// nothing has changed. Thread: concurrent. Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT

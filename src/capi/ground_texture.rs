@@ -1,9 +1,10 @@
 //! Water on the host's terrain as a texture
 //!
-//! For the host's own materials: the water of the terrain's cells as one native texture, of a grid
-//! (wk_context_set_ground_grid) uploaded once for the host and for the stage SURFACE, of tiles (wk_context_set_terrain)
-//! those about a place. One texel for each cell, the first one south-west, rows to the north, in every graphics
-//! interface. Published functions, GLSL and WGSL, compute how it looks.
+//! A native texture for the host's own materials, with the water of the terrain's cells. A grid
+//! (wk_context_set_ground_grid) is uploaded once for both the host and the stage SURFACE; of tiles
+//! (wk_context_set_terrain) the texture has those around a place. Each cell is one texel; the first one is the
+//! south-western cell, and rows go north, in every graphics interface. Published functions, in GLSL and WGSL, compute
+//! how the wet surface looks.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -31,7 +32,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_ground_texture.rs"));
 
-/// The water of the terrain's cells on the GPU, of a grid or about a place on tiles.
+/// Texture of the water of the terrain's cells: of a whole grid, or of the tiles around a place.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_texture {
@@ -41,25 +42,28 @@ pub struct wk_ground_texture {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// RGBA half floats, an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT): film_mm,
-    /// soaked, standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing water up to 65 504 mm.
-    /// Where none stands, standing_mm is negative: the depth of its hollow's level below the ground, mm, or -50 where
-    /// the hollow is dry. So a shore between texels lies where it crosses 0.
+    /// RGBA half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT). The
+    /// channels are film_mm, soaked, standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing
+    /// water up to 65 504 mm. Where no water stands, standing_mm is negative: it is the depth of the hollow's water
+    /// level below the ground, mm, or -50 where the hollow is dry. A shore between texels therefore lies where
+    /// standing_mm crosses 0.
     pub texture: u64,
-    /// Changes whenever `texture` becomes another object, whatever its name: after another grid was set or loaded.
+    /// Number that changes whenever `texture` becomes another object, even one of the same name: after another grid was
+    /// set or loaded.
     pub generation: u64,
     /// Revision of the texture's contents, as in wk_context_get_ground_cells.
     pub revision: u64,
-    /// Texels: the grid's nodes east and north.
+    /// Width, texels: the grid's number of nodes east.
     pub width: u32,
-    /// Texels: the grid's nodes east and north.
+    /// Height, texels: the grid's number of nodes north.
     pub height: u32,
     /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
     /// (0, 0) is the south-western corner of the first texel. Single precision is enough once the fourth column
     /// includes the camera's position.
     pub uv_from_world: [[f64; 4]; 2],
-    /// The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of
-    /// wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.
+    /// Texture of the snow on the same grid, an object like `texture`; its channels are depth_m, density_kg_m3, wetness
+    /// and albedo of wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation
+    /// time.
     pub snow_texture: u64,
 }
 
@@ -79,12 +83,12 @@ impl wk_ground_texture {
 }
 
 /// Gets the native texture of the terrain's water, up to date: call it after each wk_context_update. It costs nothing
-/// if nothing has changed. Changes come at most once every 10 s of simulation time; this call, or a wk_view_record with
+/// if nothing has changed. Changes come at most once every 10 s of simulation time. This call, or a wk_view_record with
 /// SURFACE, uploads them in order with the host's work on the device's queue or context. The texture belongs to the
-/// context and stays the same until another grid, or none, is set or loaded: wait for the GPU's work that samples it
-/// before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It
-/// has no mipmaps; choose filter and wrap yourself. Thread: exclusive. Errors: WK_ERROR_WRONG_ORDER without a terrain;
-/// WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+/// context and stays the same until another grid, or none, is set or loaded; before that, wait for GPU work that
+/// samples the texture. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy
+/// from it. It has no mipmaps; choose filter and wrap yourself. Thread: exclusive. Errors: WK_ERROR_WRONG_ORDER without
+/// a terrain; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ground_texture(
     context: *mut wk_context,
@@ -103,13 +107,13 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
     })
 }
 
-/// Gets the native textures of the tiles about a place, up to date, as wk_context_get_ground_texture does those of a
-/// grid: a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at a time.
-/// `uv_from_world` is where it is now; where no tile has ground there is neither water nor snow. Call it after each
-/// wk_context_update, and for several cameras before you draw each. It costs nothing if nothing has changed; all of it
-/// is uploaded where the window has moved. Both textures stay the same as long as the context lives. Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for a place that is none; WK_ERROR_WRONG_ORDER where no tile reaches into the
-/// window; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+/// Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
+/// The textures cover a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at
+/// a time. `uv_from_world` is its present placement; where no tile has ground there is neither water nor snow. Call it
+/// after each wk_context_update; with several cameras, call it before you draw each one. It costs nothing if nothing
+/// has changed; after a move the whole window is uploaded. Both textures stay the same as long as the context lives.
+/// Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile
+/// reaches into the window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_texture(
     context: *mut wk_context,
@@ -146,8 +150,8 @@ fn native(object: &ContextObject, ground: &GroundTexture) -> Result<wk_ground_te
     })
 }
 
-/// Gets the text of the functions that compute how a place of the texture looks: how dark, how much of it mirrors, how
-/// rough. NUL-terminated UTF-8 that lives as long as the process.
+/// Gets the text of the functions that compute how a texel's surface looks: how dark it is, how much of it mirrors, and
+/// how rough it is. NUL-terminated UTF-8 that lives as long as the process.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_get_ground_snippet(

@@ -1,7 +1,7 @@
 //! Lamps
 //!
 //! Head lights, work lights, search lights: the host's lamps light what Welkin draws in their beams (rain, snow, hail,
-//! splashes and clouds) and shine in wet ground. The host lights its own world itself.
+//! splashes and clouds) and are reflected in wet ground. The host lights its own world itself.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -33,10 +33,10 @@ pub struct wk_light {
     pub next: *const c_void,
     /// Position in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0.
     pub position_m: [f64; 3],
-    /// Direction that it shines in, in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0.
+    /// Direction of the beam, in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0.
     pub direction: [f64; 3],
     /// Luminous intensity in the middle of the beam, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000
-    /// each. A low beam has about 10 000, a work light 2000 to 5000.
+    /// each. A low beam has about 10 000 cd, a work light 2000 to 5000 cd.
     pub intensity_cd: [f64; 3],
     /// Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10.
     pub inner_deg: f64,
@@ -57,7 +57,7 @@ impl wk_light {
     };
 }
 
-/// Sets the host's lamps, in place of those before; set moving ones again in every frame. count 0 removes all. At
+/// Sets the host's lamps and replaces those set before; set moving ones again in every frame. count 0 removes all. At
 /// most 64. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.

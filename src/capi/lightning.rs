@@ -1,10 +1,10 @@
 //! Lightning
 //!
-//! A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20
+//! A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes three times a minute in each square of 20
 //! km, or as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the
-//! storm cells: all channels see the same ones, and any time can be shown again. Views draw channels, the glow of
-//! clouds and air, and light rain and wet ground by them. The host asks for events to play thunder, and for light to
-//! light its own scene:
+//! storm cells: all channels see the same flashes, and any time can be shown again. Views draw the lightning channels,
+//! the glow of clouds and air, and the light of flashes on rain and wet ground. The host queries flashes to play
+//! thunder, and their light to light its own scene:
 //!
 //! ```c
 //! wk_flash flashes[16];
@@ -14,8 +14,8 @@
 //!     play_thunder_at(flashes[i].time_s + flashes[i].thunder_delay_s, flashes[i].distance_m);
 //! ```
 //!
-//! A frame has the light from the view's frame before it to its own time: a flash is neither missed nor doubled,
-//! however many frames a second there are.
+//! A frame has the light of flashes from the time of the view's previous frame to its own: no flash is missed or
+//! doubled, whatever the frame rate.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -37,7 +37,7 @@ include!(concat!(env!("OUT_DIR"), "/init_lightning.rs"));
 
 /// Flags of the settings in a wk_lightning.
 pub type wk_lightning_flags = u32;
-/// flashes_per_minute: the host's rate in place of the weather's.
+/// flashes_per_minute: the host's rate replaces the weather's.
 pub const WK_LIGHTNING_RATE: wk_lightning_flags = 1;
 
 /// How flashes flicker in a picture.
@@ -45,17 +45,17 @@ pub type wk_flicker = u32;
 /// As in nature: many changes of luminance a second.
 pub const WK_FLICKER_AS_IN_NATURE: wk_flicker = 0;
 /// At most three changes of luminance a second, for viewers whom flicker may harm: each drawn flash rises once and
-/// fades, and the next one comes a second later at the earliest. Events and light that are asked for stay.
+/// fades, and the next one comes a second later at the earliest. Queries of flashes and of their light do not change.
 pub const WK_FLICKER_LIMITED: wk_flicker = 1;
 
-/// Where a flash goes.
+/// Place where a flash ends.
 pub type wk_flash_kind = u32;
 /// To the ground.
 pub const WK_FLASH_KIND_TO_GROUND: wk_flash_kind = 0;
 /// Within the cloud.
 pub const WK_FLASH_KIND_IN_CLOUD: wk_flash_kind = 1;
 
-/// How often it flashes, where, and how views draw it.
+/// Rate and places of flashes, and how views draw them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_lightning {
@@ -69,18 +69,18 @@ pub struct wk_lightning {
     pub flags: wk_lightning_flags,
     /// Default WK_FLICKER_AS_IN_NATURE.
     pub flicker: wk_flicker,
-    /// With WK_LIGHTNING_RATE: flashes a minute of each square of 20 km, whatever the weather. Range [0, 60], default
-    /// 0.
+    /// With WK_LIGHTNING_RATE: flashes a minute in each square of 20 km, whatever the weather. Range [0, 60],
+    /// default 0.
     pub flashes_per_minute: f64,
-    /// Storm cells in `cells`, at most 16, in place of the weather's. Default 0.
+    /// Number of storm cells in `cells`, at most 16; they replace the weather's. Default 0.
     pub cell_count: u32,
-    /// Tall things in `masts`, at most 64. Default 0.
+    /// Number of tall objects in `masts`, at most 64. Default 0.
     pub mast_count: u32,
-    /// Five numbers a cell: its middle in the host's world, m (the height does not matter); the distance from it within
-    /// which two of three flashes start, m, in [0, 1e5]; flashes a minute in [0, 60]. Copied. Default NULL.
+    /// Five numbers for each cell: its middle in the host's world, m (the height does not matter); the distance from it
+    /// within which two of three flashes start, m, in [0, 1e5]; flashes a minute in [0, 60]. Copied. Default NULL.
     pub cells: *const f64,
-    /// Three numbers each: the tip in the host's world, m. Masts draw ground flashes; so do the tops of shelters.
-    /// Copied. Default NULL.
+    /// Three numbers for each mast: its tip in the host's world, m. Masts attract ground flashes; so do the tops of
+    /// shelters. Copied. Default NULL.
     pub masts: *const f64,
 }
 
@@ -109,16 +109,16 @@ pub struct wk_flash_trigger {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// When its first stroke comes, s of simulation time, not before the present. Range [-1e10, 1e10], default 0.
+    /// Simulation time of its first stroke, s, not before the present. Range [-1e10, 1e10], default 0.
     pub time_s: f64,
-    /// Where it strikes in the host's world, m; one within the cloud passes over it. A shelter in its way ends it.
-    /// Default 0, 0, 0.
+    /// Place where it strikes in the host's world, m; a flash within the cloud passes over it. A shelter in its path
+    /// ends it. Default 0, 0, 0.
     pub position_m: [f64; 3],
-    /// Largest peak current of its strokes, kA. Range [0, 500], default 0: by chance. At least 1 otherwise.
+    /// Largest peak current of its strokes, kA. Range [1, 500], or 0, the default: random.
     pub peak_ka: f64,
     /// Default WK_FLASH_KIND_TO_GROUND.
     pub kind: wk_flash_kind,
-    /// Strokes. Range [0, 26], default 0: by chance.
+    /// Number of strokes. Range [0, 26], default 0: random.
     pub strokes: u32,
 }
 
@@ -135,28 +135,28 @@ impl wk_flash_trigger {
     };
 }
 
-/// A flash as a place has it; plain values of a list.
+/// A flash as seen and heard from a place; plain values of a list.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_flash {
-    /// Number of its own among the flashes of the context.
+    /// Number that identifies the flash within the context.
     pub id: u64,
-    /// When its first stroke comes, s of simulation time.
+    /// Simulation time of its first stroke, s.
     pub time_s: f64,
-    /// Where it goes.
+    /// Place where it ends.
     pub kind: wk_flash_kind,
-    /// Strokes, or steps of the light of one within the cloud.
+    /// Number of strokes; for a flash within the cloud, number of steps of its light.
     pub strokes: u32,
     /// Largest peak current of its strokes, kA.
     pub peak_ka: f64,
-    /// Position of what it struck, or of the middle of its way in the cloud, in the host's world, m.
+    /// Position of what it struck, or of the middle of its path in the cloud, in the host's world, m.
     pub position_m: [f64; 3],
-    /// Distance of the nearest point of its channel, m.
+    /// Distance to the nearest point of its channel, m.
     pub distance_m: f64,
     /// Direction to position_m.
     pub direction: [f64; 3],
-    /// Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, 331.3 m/s and 0.606
-    /// m/s for each degree Celsius.
+    /// Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, which is 331.3 m/s
+    /// plus 0.606 m/s for each degree Celsius.
     pub thunder_delay_s: f64,
 }
 
@@ -189,11 +189,11 @@ pub struct wk_flash_light {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Illuminance on surfaces that face the sources, all together, lux a channel.
+    /// Illuminance on surfaces that face the sources, summed over all sources, lux a channel.
     pub facing_lux: [f64; 3],
     /// Illuminance on level ground, lux.
     pub level_lux: f64,
-    /// Direction to the middle of the light; straight up where there is none.
+    /// Direction to the middle of the light; straight up where there is no light.
     pub direction: [f64; 3],
 }
 
@@ -223,7 +223,7 @@ unsafe fn settings(p: *const wk_lightning) -> Result<LightningSettings> {
             input::slice("lightning.masts", c.masts.cast(), masts, MAX_MASTS)?,
         )
     };
-    // A host finds a number by its place in the list.
+    // Errors name a number by its index in the host's list.
     let place = |list: &str, first: usize, p: [f64; 3]| {
         let within =
             |(k, v): (usize, &f64)| check_range(&format!("lightning.{list}[{}]", first + k), *v, -1e12, 1e12, "m");
@@ -245,8 +245,8 @@ unsafe fn settings(p: *const wk_lightning) -> Result<LightningSettings> {
     })
 }
 
-/// Sets how often it flashes, where, and how views draw it; NULL returns to the default. Part of the saved state.
-/// Unchanged after an error.
+/// Sets how often it flashes, where, and how views draw the flashes; NULL returns to the default. Part of the saved
+/// state. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -289,11 +289,12 @@ pub unsafe extern "C" fn wk_context_trigger_flash(
     })
 }
 
-/// Gets the flashes that begin from `from_s` on until `until_s`, 3600 s at most, within `most_distance_m` of a place of
-/// the host's world (on the map; at most 50000 m), in order of time: past or to come. `*out_count` gets their number
-/// even if `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds).
-/// `flash_size` is sizeof(wk_flash) of your header. Where the timeline has forgotten the weather of then, the first
-/// that it knows counts. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+/// Gets the flashes that begin from `from_s` on until `until_s`, at most 3600 s later, within `most_distance_m` of a
+/// place of the host's world (horizontal distance; at most 50000 m), in order of time, past or future. `*out_count`
+/// gets their number even if `capacity` is too small (then nothing else is written and the call fails) or 0 (then it
+/// succeeds). `flash_size` is sizeof(wk_flash) of your header. For times whose weather the timeline has dropped, the
+/// earliest weather that it still has applies. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the
+/// parameter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_flashes(
     context: *const wk_context,
@@ -327,9 +328,9 @@ pub unsafe extern "C" fn wk_context_get_flashes(
     })
 }
 
-/// Gets the light of flashes at a place of the host's world, on the mean of `exposure_s`, [0, 1], before `time_s`; with
-/// 0 that of the very moment. A host lights its own scene by it, with the time from its last frame as exposure. Thread:
-/// concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+/// Gets the light of flashes at a place of the host's world, averaged over the `exposure_s`, [0, 1], before `time_s`;
+/// with 0, at that instant. Use it to light the host's own scene, with the time since its last frame as exposure.
+/// Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_flash_light(
     context: *const wk_context,

@@ -19,56 +19,57 @@
 //!
 //! OWNERSHIP
 //!
-//! wk_x_create writes a new handle to its out-parameter, on success only. wk_x_destroy(handle) ends it; NULL does
-//! nothing. Destroy children before parents: a device has contexts, surfaces and textures, a context has views. A
-//! parent with live children answers WK_ERROR_IN_USE. A handle looks like a pointer but is a number, and Welkin never
-//! dereferences it: a handle that is dead, foreign or of another kind gives WK_ERROR_BAD_HANDLE. Structs, texts and
-//! lists that you pass in stay yours; Welkin reads them during the call only. Texts that come back live as long as
-//! their function says. Native objects (windows, OpenGL names, Vulkan handles) stay the host's.
+//! wk_x_create writes a new handle to its out-parameter, on success only. wk_x_destroy(handle) destroys the object;
+//! NULL does nothing. Destroy children before parents: a device has contexts, surfaces and textures, a context has
+//! views. Destroying a parent with live children gives WK_ERROR_IN_USE. A handle looks like a pointer but is a number,
+//! and Welkin never dereferences it: a handle that is dead, foreign or of another kind gives WK_ERROR_BAD_HANDLE.
+//! Structs, texts and lists that you pass in stay yours; Welkin reads them during the call only. How long a returned
+//! text stays valid is stated at its function. Native objects (windows, OpenGL names, Vulkan handles) stay the host's.
 //!
 //! ERRORS
 //!
-//! Every call answers a wk_status: 0 or more is an answer, less than 0 a failure. A failed call writes no output,
-//! changes nothing and draws nothing. wk_last_error_message() has the calling thread's message, which names the
+//! Every call returns a wk_status: 0 and positive values mean success, negative ones failure. A failed call writes no
+//! output, changes nothing and draws nothing. wk_last_error_message() has the calling thread's message, which names the
 //! parameter and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`;
-//! wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or throws. It catches a fault of
-//! its own and answers WK_ERROR_INTERNAL. The device then answers WK_ERROR_POISONED, and only destroying works.
+//! wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or throws. If a fault in Welkin
+//! itself is caught, the call returns WK_ERROR_INTERNAL. After that, every call on the device returns
+//! WK_ERROR_POISONED, except those that destroy.
 //!
 //! STRUCTS
 //!
 //! Structs begin with struct_size, struct_type and next. Start from WK_X_INIT (or wk_x_init, which writes the same
-//! bytes) and change fields. Later versions append fields whose zero means "as before". So a library takes structs of
-//! older headers and fills in defaults, and structs of newer headers if the fields that it does not know are zero.
-//! `next` leads to extension structs where a call names them; an unknown one is refused. Reserved fields must be 0.
-//! Zero is a value (0 degrees, north, calm), never "default". What you may leave out has a bit in `has`. Lists are
-//! (pointer, count, stride): stride is the size of an element in your header. Reals are doubles and must be finite.
-//! Texts are NUL-terminated UTF-8. Sizes are in bytes.
+//! bytes) and change fields. Later versions append fields for which zero means "as before". A library therefore accepts
+//! structs of older headers, whose missing fields get their defaults, and structs of newer headers if the fields that
+//! it does not know are zero. `next` points to extension structs where a call names them; an unknown one is refused.
+//! Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An optional field has a bit in
+//! `has`. Lists are (pointer, count, stride): stride is the size of an element in your header. Reals are doubles and
+//! must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
 //!
 //! THREADS
 //!
-//! You may call functions from any thread. `const T *` is shared: any number of calls with it at the same time. `T *`
-//! is exclusive: one call at a time with that handle, and none with its `const` at the same time. Calls that break this
-//! rule wait for each other. Welkin starts no threads. With an OpenGL host make all calls that draw, create or destroy
-//! on the thread where its context is (or can be made) current; what you destroy on another thread is released at the
-//! device's next call. Call no Welkin function inside a callback: it would answer WK_ERROR_WRONG_ORDER.
+//! You may call functions from any thread. `const T *` is shared: any number of calls may use the handle at the same
+//! time. `T *` is exclusive: one call at a time with that handle, and no `const` call with it at the same time. Calls
+//! that break this rule wait for each other. Welkin starts no threads. With an OpenGL host make all calls that draw,
+//! create or destroy on the thread where its context is (or can be made) current; what you destroy on another thread is
+//! released at the device's next call. Call no Welkin function inside a callback: it would return WK_ERROR_WRONG_ORDER.
 //!
 //! UNITS AND COORDINATES
 //!
-//! Units are SI. A field's name ends in its unit, except for metres, seconds and radians. Angles that people use by
-//! name are in degrees (_deg). Azimuths are clockwise from true north; wind direction is where the wind comes from.
-//! Positions are in the host's world, in double precision, however far from its origin. See Contexts for world frames
-//! and Frames for matrices, depth and clip space. Colours are linear Rec. 709 unless they say otherwise.
+//! Units are SI. A field's name ends in its unit, except for metres, seconds and radians. Angles that people usually
+//! state in degrees are in degrees (_deg). Azimuths are clockwise from true north; wind direction is where the wind
+//! comes from. Positions are in the host's world, in double precision, however far from its origin. See Contexts for
+//! world frames and Frames for matrices, depth and clip space. Colours are linear Rec. 709 unless they say otherwise.
 //!
 //! DETERMINISM
 //!
-//! The same description, timeline, seed and time give the same world on every machine. Channels of one simulator with
-//! the same input agree, and wk_context_state_hash lets them compare. Changes of weather carry absolute times. Pictures
-//! are bit-identical from run to run on one driver; drivers differ in the last bits.
+//! On every machine, the same description, timeline, seed and time give the same world. Channels of one simulator with
+//! the same input agree; wk_context_state_hash lets them check that. Changes of weather have absolute times. Pictures
+//! are bit-identical from run to run on one driver; between drivers the last bits differ.
 //!
 //! WHAT COMES LATER, AND HOW
 //!
 //! Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a
-//! major version, and later versions add new ones. Settled for what is planned, so that a host can prepare:
+//! major version, and later versions add new ones. Settled for planned features, so that a host can prepare:
 //! - The sea is drawn by new functions of the context. It tests and writes the host's depth, which a frame lends with
 //!   wk_frame.depth_access.
 //! - Soil materials of the terrain's tiles are new functions of the context.
@@ -80,4 +81,4 @@
 //!
 //! CONTENTS
 //!
-//! Each section begins with its name in brackets, which stays from version to version: search for it.
+//! Each section begins with its name in brackets. The name stays the same from version to version: search for it.

@@ -1,15 +1,15 @@
 //! Maps of what keeps rain off
 //!
-//! For everything that boxes cannot describe, give up to four depth images of your world, of standing or moving things,
-//! from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
+//! For shelter that boxes cannot describe, give up to four depth images of your world, of standing or moving objects,
+//! from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
 //!
-//! A map knows nothing of what its surfaces hide. Draw it along wk_rainfall.fall_velocity_m_s: then it hides nothing
-//! that matters for half of the rain, and little for the rest. Where things stand below others (a pier below a deck),
-//! add maps along slower drops: the same wind with fall speeds of 3.4 and 2.1 m/s. What a map shows is exact to two
-//! texels.
+//! A map does not show what is hidden behind its surfaces. Render it along wk_rainfall.fall_velocity_m_s: then what is
+//! hidden does not matter for half of the rain, and little for the rest. Where objects stand below others (a pier below
+//! a deck), add maps along slower drops: the same wind with fall speeds of 3.4 and 2.1 m/s. The edges of mapped
+//! surfaces are exact to two texels.
 //!
-//! Welkin copies a map during the call. Work that you submitted to the queue before (or, with OpenGL, issued) is
-//! included. Afterwards the image is yours again.
+//! Welkin copies a map during the call. The copy includes work that you submitted to the queue (or, with OpenGL,
+//! issued) before the call. Afterwards the image is yours again.
 
 pub use super::occluder_map::*;
 use super::{
@@ -26,8 +26,8 @@ use crate::{error::Status, rain::MAX_OCCLUDER_MAPS};
 
 include!(concat!(env!("OUT_DIR"), "/init_occluder.rs"));
 
-/// Sets the maps of things that keep rain off, in place of those before. count 0 removes them. At most 4. After an
-/// error the maps before stay. They are not part of a saved state, because each channel may have its own.
+/// Sets the maps of objects that keep rain off and replaces those set before. count 0 removes them. At most 4. After an
+/// error the previous maps stay. They are not part of a saved state, because each channel may have its own.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
 /// WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.

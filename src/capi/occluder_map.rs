@@ -16,10 +16,10 @@ use crate::{rain::Taken, scene::ClipSpace};
 pub type wk_occluder_map_flags = u32;
 /// Its depth is reversed: 1 is near, 0 is far.
 pub const WK_OCCLUDER_MAP_DEPTH_REVERSED: wk_occluder_map_flags = 1;
-/// The first row of the image lies at clip y = -1: always so in OpenGL (there it need not be set).
+/// The first row of the image lies at clip y = -1. In OpenGL this is always so, and the flag need not be set.
 pub const WK_OCCLUDER_MAP_FIRST_ROW_AT_MINUS_Y: wk_occluder_map_flags = 2;
 
-/// A depth image of things that keep rain off: one sample, from 8 to 4096 texels along either side.
+/// A depth image of objects that keep rain off: one sample, from 8 to 4096 texels along either side.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_occluder_map {
@@ -36,22 +36,22 @@ pub struct wk_occluder_map {
     pub flags: wk_occluder_map_flags,
     /// Default WK_CLIP_ZERO_TO_ONE.
     pub clip_space: wk_clip_space,
-    /// Simulation time of what it shows, s. Default 0.
+    /// Simulation time at which the objects stood as the map shows them, s. Default 0.
     pub time_s: f64,
-    /// Velocity of what it shows, m/s, at most 2000 in all, so that a truck's own map need not be drawn in every frame.
-    /// Default 0, 0, 0.
+    /// Velocity of the objects in the map, m/s, at most 2000 in all. With it, the map of a moving truck need not be
+    /// rendered in every frame. Default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
-    /// The image on an own device. Default NULL.
+    /// The image on one of Welkin's own devices. Default NULL.
     pub texture: *const wk_texture,
     /// The image of a Vulkan host. Default NULL.
     pub vulkan: *const wk_vulkan_image,
     /// The image of an OpenGL host: a depth texture or renderbuffer. Default none.
     pub opengl: wk_opengl_image,
-    /// Texels of an OpenGL host's image; must be its own. Default 0.
+    /// Width of an OpenGL host's image, texels; must equal the image's own. Default 0.
     pub width: u32,
-    /// Texels of an OpenGL host's image; must be its own. Default 0.
+    /// Height of an OpenGL host's image, texels; must equal the image's own. Default 0.
     pub height: u32,
-    /// For an OpenGL host's image: raise it when you make an object again under an old name. Default 0.
+    /// For an OpenGL host's image: increase it when you create an object again under an old name. Default 0.
     pub generation: u64,
 }
 
@@ -73,7 +73,7 @@ impl wk_occluder_map {
         generation: 0,
     };
 
-    /// From where it was taken, as the Rust side says it.
+    /// Returns the map's camera and time as the Rust API's struct.
     pub(super) fn taken(&self, bottom_left: bool) -> Taken {
         Taken {
             clip_from_world: DMat4::from_cols_array(&self.clip_from_world),

@@ -8,7 +8,7 @@
 //! sample what Welkin drew into it, as OpenGL requires between contexts.
 //!
 //! HOST_CONTEXT: Welkin draws in the host's own context. It saves every piece of state that it touches, sets it, and
-//! puts it back. Any framebuffer can be a target, the window's (0) too, by copies in and out.
+//! restores it. Any framebuffer can be a target, also the window's (0), by copies in and out.
 //!
 //! In SHARED mode one device serves all windows whose contexts share objects, with one view for each. In HOST_CONTEXT
 //! mode a device belongs to one context.
@@ -36,9 +36,10 @@ include!(concat!(env!("OUT_DIR"), "/init_opengl.rs"));
 /// `wk_device_destroy`; call that while the contexts live. Welkin never deletes the host's objects.
 /// Thread: the one on which the host's context is current.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or return NULL; WK_ERROR_WRONG_ORDER if no context
-/// is current, or the wrong one, or conditional rendering or a query that counts is active in WK_OPENGL_HOST_CONTEXT;
-/// WK_ERROR_UNSUPPORTED if it is too old; WK_ERROR_ALREADY_WRAPPED if it has a wk_device; WK_ERROR_NO_ADAPTER, with the
-/// driver's name, if its driver draws a few known texels wrong or does not finish them within 6 s.
+/// or the wrong one is current, or, in WK_OPENGL_HOST_CONTEXT, if conditional rendering or a query that counts samples
+/// or primitives is active; WK_ERROR_UNSUPPORTED if the context's version is too old; WK_ERROR_ALREADY_WRAPPED if it
+/// has a wk_device; WK_ERROR_NO_ADAPTER, with the driver's name, if its driver draws a few known texels wrong or does
+/// not finish them within 6 s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create_opengl(
     desc: *const wk_opengl_host_desc,

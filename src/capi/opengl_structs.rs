@@ -11,9 +11,9 @@ use super::{
 };
 
 /// Returns the address of an OpenGL function, or NULL, as glfwGetProcAddress, SDL_GL_GetProcAddress, eglGetProcAddress
-/// or glXGetProcAddress do. With WGL, ask wglGetProcAddress, then GetProcAddress of opengl32.dll, which exports what
-/// OpenGL 1.1 had. Welkin reads 1, 2, 3 and -1 as NULL: some drivers' wglGetProcAddress returns them. Called with the
-/// host's or Welkin's context current.
+/// or glXGetProcAddress do. With WGL, call wglGetProcAddress, then GetProcAddress of opengl32.dll, which exports the
+/// functions of OpenGL 1.1. Welkin treats 1, 2, 3 and -1 as NULL: some drivers' wglGetProcAddress returns them. Welkin
+/// calls this function while the host's or its own context is current.
 pub type wk_opengl_get_proc_fn = Option<unsafe extern "C" fn(user: *mut c_void, name: *const c_char) -> *const c_void>;
 
 /// Makes a context current on the calling thread: `which` is WK_OPENGL_CONTEXT_HOST or WK_OPENGL_CONTEXT_WELKIN.
@@ -22,7 +22,7 @@ pub type wk_opengl_make_current_fn = Option<unsafe extern "C" fn(user: *mut c_vo
 
 /// A context that Welkin asks for.
 pub type wk_opengl_context = u32;
-/// The context that the host draws in. With several windows: the one that was current when the call came (remember it
+/// The context that the host draws in. With several windows: the one that was current when Welkin was called (store it
 /// for each thread).
 pub const WK_OPENGL_CONTEXT_HOST: wk_opengl_context = 0;
 /// The context that the host made for Welkin, sharing objects with its own.
@@ -32,7 +32,7 @@ pub const WK_OPENGL_CONTEXT_WELKIN: wk_opengl_context = 1;
 pub type wk_opengl_mode = u32;
 /// Its own context, which shares objects with the host's.
 pub const WK_OPENGL_SHARED: wk_opengl_mode = 0;
-/// The host's context, whose state it puts back.
+/// The host's context, whose state Welkin restores.
 pub const WK_OPENGL_HOST_CONTEXT: wk_opengl_mode = 1;
 
 /// Order of the two contexts' commands in shared mode.
@@ -42,7 +42,7 @@ pub const WK_OPENGL_FENCE: wk_opengl_handover = 0;
 /// By a flush alone: enough, and cheaper, where one queue serves both contexts. Measure before you rely on it.
 pub const WK_OPENGL_FLUSH: wk_opengl_handover = 1;
 
-/// The host's OpenGL.
+/// Access to a host's OpenGL: its functions, contexts and options.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_opengl_host_desc {
@@ -92,10 +92,10 @@ pub const WK_OPENGL_NONE: wk_opengl_image_kind = 0;
 pub const WK_OPENGL_TEXTURE: wk_opengl_image_kind = 1;
 /// A renderbuffer.
 pub const WK_OPENGL_RENDERBUFFER: wk_opengl_image_kind = 2;
-/// The attachments of a framebuffer, 0 being the window's; only in the host's own context.
+/// The attachments of a framebuffer; 0 is the window's. Only in the host's own context.
 pub const WK_OPENGL_FRAMEBUFFER: wk_opengl_image_kind = 3;
 
-/// A host's image, embedded in wk_opengl_target.
+/// A host's image, embedded in wk_opengl_target and wk_occluder_map.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_opengl_image {
@@ -138,11 +138,11 @@ pub struct wk_opengl_target {
     pub depth: wk_opengl_image,
     /// A mask of one sample: where red is 1, the host's pixel stays; where it is 0, Welkin draws weather. Default none.
     pub mask: wk_opengl_image,
-    /// Pixels; must equal the images' size, and a window's present size. Default 0; must be given.
+    /// Width, pixels; must equal the images' width, and a window's present width. Default 0; must be given.
     pub width: u32,
-    /// Pixels; must equal the images' size, and a window's present size. Default 0; must be given.
+    /// Height, pixels; must equal the images' height, and a window's present height. Default 0; must be given.
     pub height: u32,
-    /// Raise this number when you make an object again under an old name. It must never fall. Default 0.
+    /// Increase this number when you create an object again under an old name. It must never fall. Default 0.
     pub generation: u64,
     /// Default WK_OPENGL_MULTISAMPLE_EACH.
     pub multisample: wk_opengl_multisample,

@@ -1,18 +1,19 @@
 //! Plan and budget of a view
 //!
-//! With a tolerance, a view gauges its own pictures. In every eighth frame it composes a grid of 64 x 36 of its pixels
-//! with everything and without each part of the weather, and reads the differences back some frames later without
-//! waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
-//! Under a budget of time, parts also fade out as the reported times demand, starting with those whose loss is
-//! perceived least for the time that they save. They come back when there is time again. After a jump of camera, sun or
+//! With a tolerance, a view gauges its own pictures. In every eighth frame it draws a grid of 64 x 36 of its pixels
+//! with everything and without each part of the weather, and reads the differences back some frames later, without
+//! waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again when they
+//! matter. Under a budget of time, further parts fade out until the reported times fit, starting with those whose loss
+//! is least visible for the time that it saves. They come back when there is time again. After a jump of camera, sun or
 //! weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
 //!
-//! A part has a number (WK_PART_), a name and rungs. Rung 0 is all of it; the last is nothing of it, or the cheapest
-//! that stands for it. Later versions have more parts, at the end: wk_plan.part_count says how many,
-//! wk_view_get_part_plan what they are called.
+//! A part has a number (WK_PART_), a name and rungs, which are its levels of detail. Rung 0 draws all of it; the last
+//! rung draws nothing, or the cheapest substitute. Later versions append parts: wk_plan.part_count has their number,
+//! wk_view_get_part_plan their names.
 //!
-//! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
-//! percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
+//! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white), where Y' and Y are luminances after exposure
+//! with and without parts left out, as the 95th percentile over the picture's pixels. A tolerance also limits the error
+//! of the worst pixel, to ten times the tolerance.
 //!
 //! Leaving parts out changes no simulation: time, weather and state stay the same on all channels of a simulator.
 //! Channels that must also leave out the same parts pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or with one
@@ -39,24 +40,23 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_plan.rs"));
 
-/// A part of the weather that a picture may do with less of, by its number.
+/// A part of the weather that a picture can reduce or leave out, by its number.
 pub type wk_part = u32;
 /// Air and haze between the camera and what the host drew. Rungs: all, none.
 pub const WK_PART_AIR: wk_part = 0;
-/// Fog, mist, dust and what falls, as a layer. Rungs: all, none.
+/// Fog, mist, dust and precipitation, as a layer. Rungs: all, none.
 pub const WK_PART_FOG: wk_part = 1;
 /// The clear sky above the horizon, behind clouds. Rungs: all, none.
 pub const WK_PART_SKY: wk_part = 2;
-/// Streaks and splashes of rain, where the view has no rain model of the host's choice. Rungs: drops (each near the
-/// camera by itself), cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it
-/// is drawn).
+/// Streaks and splashes of rain, unless the host chose the view's rain model. Rungs: drops (single ones near the
+/// camera), cones (in place of drops), none (all rain is a veil; without WK_PART_FOG no rain is drawn at all).
 pub const WK_PART_RAIN: wk_part = 3;
-/// Stars, planets and the glow of the night between them. Rungs: all, none (an even sky of the same light).
+/// Stars, planets and the glow of the night sky between them. Rungs: all, none (a uniform sky of the same light).
 pub const WK_PART_STARS: wk_part = 4;
 /// Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK).
 pub const WK_PART_CLOUDS: wk_part = 5;
-/// Flakes of falling snow, where the view has no snow model of the host's choice. Rungs: flakes, none (all snow is a
-/// veil, and without WK_PART_FOG too nothing of it is drawn).
+/// Flakes of falling snow, unless the host chose the view's snow model. Rungs: flakes, none (all snow is a veil;
+/// without WK_PART_FOG no snow is drawn at all).
 pub const WK_PART_SNOW: wk_part = 6;
 
 /// Flags of the optional fields of a wk_part_wish that are set.
@@ -79,25 +79,25 @@ pub type wk_plan_reason = u32;
 pub const WK_PLAN_REASON_EVERYTHING_ASKED: wk_plan_reason = 0;
 /// This picture has not been gauged yet, or must not depend on earlier ones: everything is drawn.
 pub const WK_PLAN_REASON_NOT_GAUGED: wk_plan_reason = 1;
-/// The weather has none of it, or the recorded stages do not draw it.
+/// The weather does not have this part, or the recorded stages do not draw it.
 pub const WK_PLAN_REASON_ABSENT: wk_plan_reason = 2;
-/// With less of it the error would be beyond the tolerance.
+/// With less of the part the error would exceed the tolerance.
 pub const WK_PLAN_REASON_NEEDED: wk_plan_reason = 3;
-/// The error with less of it is within the tolerance.
+/// The error with less of the part is within the tolerance.
 pub const WK_PLAN_REASON_WITHIN_TOLERANCE: wk_plan_reason = 4;
-/// The host pinned it.
+/// The host pinned the part.
 pub const WK_PLAN_REASON_PINNED: wk_plan_reason = 5;
-/// The time allows no more.
+/// The budget of time allows no more of the part.
 pub const WK_PLAN_REASON_OUT_OF_TIME: wk_plan_reason = 6;
 
-/// Part of a budget that could not be kept, by the estimates.
+/// Limit of a budget that could not be kept, by the estimates.
 pub type wk_gave_way = u32;
 /// Nothing had to give way.
 pub const WK_GAVE_WAY_NOTHING: wk_gave_way = 0;
-/// The tolerance: the time allows no better picture.
+/// The tolerance: a better picture would take longer than the budget.
 pub const WK_GAVE_WAY_TOLERANCE: wk_gave_way = 1;
-/// Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes longer
-/// than the budget.
+/// Time and the tolerance: even with every part left out, or with the pinned parts, the picture takes longer than the
+/// budget.
 pub const WK_GAVE_WAY_TIME: wk_gave_way = 2;
 
 /// Wish of a host for one part.
@@ -115,13 +115,13 @@ pub struct wk_part_wish {
     /// Part that the wish is about.
     pub part: wk_part,
     /// Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the
-    /// same. Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says what of a tolerance and a
-    /// time is not kept.
+    /// same. Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says whether the tolerance or the
+    /// time is exceeded.
     pub rung: u32,
     /// 0.
     pub reserved: u32,
-    /// Optional: how much the part matters to those who look, which says what is left out first under a budget of time.
-    /// Range [0, 1], default wk_part_plan.importance.
+    /// Optional: importance of the part to viewers. A budget of time leaves out the less important parts first. Range
+    /// [0, 1], default wk_part_plan.importance.
     pub importance: f64,
 }
 
@@ -138,7 +138,7 @@ impl wk_part_wish {
     };
 }
 
-/// How wrong a view's pictures may be, and how long they may take.
+/// Limits for a view's pictures: how wrong they may be, and how long they may take.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_budget {
@@ -150,18 +150,18 @@ pub struct wk_budget {
     pub next: *const c_void,
     /// Flags of the optional fields that are set. Default 0: everything is drawn.
     pub has: wk_budget_has_flags,
-    /// Length of `wishes`. Default 0: parts that are not in it are planned, and matter as by default.
+    /// Length of `wishes`. Default 0. Parts that are not in the list are planned with their default importance.
     pub wish_count: u32,
     /// sizeof(wk_part_wish) of your header.
     pub wish_stride: u32,
     /// 0.
     pub reserved: u32,
-    /// Wishes for single parts, each of them once.
+    /// Wishes for single parts, at most one for each part.
     pub wishes: *const wk_part_wish,
-    /// Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen.
+    /// Optional: largest error by leaving parts out. Range (0, 1]; 0.01 is not visible.
     pub tolerance: f64,
-    /// Optional: longest time of the weather in a frame, ms; wins over the tolerance. Range (0, 1000]. The plan knows
-    /// only the times of wk_view_report_time.
+    /// Optional: longest time that the weather may take in a frame, ms; wins over the tolerance. Range (0, 1000]. The
+    /// plan knows times only from wk_view_report_time.
     pub milliseconds: f64,
 }
 
@@ -180,7 +180,8 @@ impl wk_budget {
     };
 }
 
-/// Parts that a view's last frame left out. Errors are estimates from the gauged pixels.
+/// Plan of a view's last frame: the errors by what it left out, and its cost. Errors are estimates from the gauged
+/// pixels.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_plan {
@@ -190,7 +191,7 @@ pub struct wk_plan {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// How many parts there are: their numbers are below it.
+    /// Number of parts. Parts are numbered from 0.
     pub part_count: u32,
     /// Limit of the budget that could not be kept.
     pub gave_way: wk_gave_way,
@@ -200,11 +201,11 @@ pub struct wk_plan {
     pub error_bound: f64,
     /// Error of the worst gauged pixel.
     pub worst: f64,
-    /// Work of the picture as planned, in units of a pixel with none of the parts; 0 before the first gauge.
+    /// Work of the picture as planned, in units of one pixel without any part; 0 before the first gauge.
     pub work: f64,
     /// Work of the picture with everything, in the same units.
     pub work_of_everything: f64,
-    /// Predicted time of the picture from the times reported so far, ms; 0 before the first.
+    /// Time of the picture predicted from the times reported so far, ms; 0 before the first report.
     pub milliseconds: f64,
 }
 
@@ -234,30 +235,30 @@ pub struct wk_part_plan {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Why it is drawn as it is.
+    /// Why the part is drawn as it is.
     pub reason: wk_plan_reason,
-    /// The rung at which it is drawn once it has faded; 0, all of it, if there is none of it.
+    /// Rung at which the part is drawn once fading is over; 0, all of it, if the weather does not have the part.
     pub rung: u32,
-    /// How many rungs it has.
+    /// Number of its rungs.
     pub rung_count: u32,
     /// 0.
     pub reserved: u32,
-    /// Its name in saved plans and messages, UTF-8; lives as long as the process, as the other texts do.
+    /// Name of the part in saved plans and messages, UTF-8. This text and the other two live as long as the process.
     pub name: *const c_char,
-    /// That of the rung.
+    /// Name of the rung.
     pub rung_name: *const c_char,
-    /// The reason in a few words of English.
+    /// Reason in a few words of English.
     pub reason_text: *const c_char,
-    /// How much it matters where a budget does not say.
+    /// Importance of the part where a budget does not set it.
     pub importance: f64,
-    /// How much of it is drawn: 1 all, 0 its last rung, between while it fades or on another.
+    /// Share of the part that is drawn: 1 all of it, 0 its last rung, between them while it fades or on a rung between.
     pub share: f64,
-    /// Error of the picture with this part alone at its last rung, as last gauged.
+    /// Error of the picture with this part alone at its last rung, as of the last gauge.
     pub error: f64,
-    /// Error of the worst gauged pixel with this part alone at its last rung, as last gauged.
+    /// Error of the worst gauged pixel with this part alone at its last rung, as of the last gauge.
     pub worst: f64,
-    /// Work that all of it adds to this picture with everything, or would add, in units of a pixel with none of the
-    /// parts.
+    /// Work that the whole part adds, or would add, to this picture with everything, in units of one pixel without any
+    /// part.
     pub work: f64,
 }
 
@@ -308,7 +309,7 @@ impl wk_part_plan {
     }
 }
 
-/// Sets the tolerance and the time of the view's pictures; NULL draws everything again. Unchanged after an error.
+/// Sets the limits for the view's pictures: tolerance and time. NULL draws everything again. Unchanged after an error.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -347,7 +348,7 @@ pub unsafe extern "C" fn wk_view_report_time(view: *mut wk_view, milliseconds: f
     })
 }
 
-/// Gets what the view's last frame left out.
+/// Gets the plan of the view's last frame.
 /// Thread: exclusive on the view.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_plan) -> wk_status {
@@ -376,8 +377,8 @@ pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_
     })
 }
 
-/// Says of one part how much of it the view's last frame drew, and why; and what the part is called, before any frame
-/// too. Thread: exclusive on the view. Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
+/// Gets how much of one part the view's last frame drew, and why. The part's name can be read before any frame too.
+/// Thread: exclusive on the view. Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_part_plan(
     view: *mut wk_view,
@@ -398,8 +399,8 @@ pub unsafe extern "C" fn wk_view_get_part_plan(
 /// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing
 /// else is written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
 /// Thread: exclusive on the view.
-/// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: some frames follow each
-/// jump of camera, sun or weather.
+/// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet, which is so for some
+/// frames after each jump of camera, sun or weather.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_save_plan(
     view: *mut wk_view,
@@ -416,10 +417,10 @@ pub unsafe extern "C" fn wk_view_save_plan(
     })
 }
 
-/// Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part; the rest of the view's
-/// budget stays, and wk_view_set_budget ends it. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes that
-/// are no such plan or of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT naming the
-/// setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
+/// Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
+/// budget stays; wk_view_set_budget removes the pins. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes
+/// that are no such plan or of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT naming
+/// the setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_void, size: usize) -> wk_status {
     guard("wk_view_load_plan", |call| {
@@ -439,7 +440,7 @@ static NAMES: LazyLock<Vec<(CString, Vec<CString>)>> = LazyLock::new(|| {
     PARTS.iter().map(|p| (text(&p.name), p.rungs.iter().map(text).collect())).collect()
 });
 
-/// The Rust side counts wishes by part, the header by their place in the list.
+/// Renames the wish in an error: the Rust API numbers wishes by part, the header by their index in the list.
 fn in_list(parts: &[usize], e: Error) -> Error {
     let of = |i: usize| format!("budget.wishes[{i}]");
     let place = parts.iter().position(|part| e.field().is_some_and(|f| f.starts_with(&of(*part))));

@@ -1,10 +1,11 @@
 //! Queries: light and visibility
 //!
-//! These answer at any place of the host's world, for the present or (functions that end in _at) for any past or future
-//! simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or moon that
-//! the host has placed stands there at all times. Only wk_context_get_ambient and wk_context_get_ambient_at read the
-//! sky's tables. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and cd/m^2,
-//! three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric value.
+//! These functions answer at any place of the host's world, for the present or (functions that end in _at) for any past
+//! or future simulation time that the timeline still knows. The answers are in closed form and need no device. If the
+//! host has placed the sun or the moon, it stands there at all times. Only wk_context_get_ambient and
+//! wk_context_get_ambient_at read the sky's tables. Directions are unit vectors (east, north, up) at the queried place.
+//! Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722)
+//! is the photometric value.
 //!
 //! Lists are (pointer, count, size of an element in your header). Welkin checks everything before it writes anything.
 
@@ -37,27 +38,27 @@ pub struct wk_celestial {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Direction towards it, without refraction, as scattering uses it.
+    /// Direction to the body, without refraction, as scattering uses it.
     pub direction: [f64; 3],
-    /// Direction towards it as it appears, lifted by refraction.
+    /// Direction to the body as it appears, lifted by refraction.
     pub apparent: [f64; 3],
-    /// Direction in the disc's plane towards the middle of the lit limb (moon).
+    /// For the moon: direction in the disc's plane towards the middle of the lit limb.
     pub bright_limb: [f64; 3],
     /// Illuminance above the air on a surface facing it, lux a channel.
     pub illuminance_lux: [f64; 3],
-    /// Degrees clockwise from true north, [0, 360).
+    /// Azimuth, degrees clockwise from true north, [0, 360).
     pub azimuth_deg: f64,
-    /// Degrees above the horizon, without refraction.
+    /// Elevation above the horizon, degrees, without refraction.
     pub elevation_deg: f64,
-    /// Degrees above the horizon as it appears.
+    /// Elevation above the horizon as it appears, degrees.
     pub apparent_elevation_deg: f64,
     /// Angular radius, rad.
     pub angular_radius: f64,
-    /// Lit fraction of the face.
+    /// Lit fraction of the disc.
     pub lit: f64,
-    /// Vertical over horizontal diameter of the disc.
+    /// Ratio of the disc's vertical to its horizontal diameter.
     pub flattening: f64,
-    /// Share of its direct light that clouds above the place let through, on the mean over places at its height.
+    /// Share of the body's direct light that passes the clouds above the place, averaged over all places at its height.
     pub direct_share: f64,
 }
 
@@ -99,8 +100,8 @@ impl wk_celestial {
     }
 }
 
-/// Light that arrives at a place, after air, clouds and fog; plain values of a list. Light scattered forward once by
-/// fog counts as the sun's or the moon's.
+/// Light that arrives at a place, after air, clouds and fog; plain values of a list. Light that fog has scattered
+/// forward once counts as direct light of the sun or the moon.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_light {
@@ -124,7 +125,7 @@ impl wk_ground_light {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_segment {
-    /// Position of the eye.
+    /// Position of the observer.
     pub from_m: [f64; 3],
     /// Position of the object, at least a millimetre away.
     pub to_m: [f64; 3],
@@ -134,10 +135,10 @@ pub struct wk_segment {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_between {
-    /// Share of light that gets through, per channel (wavelengths of the planet, 620, 550 and 450 nm for the Earth).
+    /// Transmittance, per channel (wavelengths of the planet; 620, 550 and 450 nm for the Earth).
     pub transmittance: [f64; 3],
     /// Meteorological optical range along the segment, m: the distance at which 550 nm light would fall to 5 % if the
-    /// air were everywhere as on this segment. Infinite if nothing stops light.
+    /// air were everywhere as on this segment. Infinite if nothing attenuates light.
     pub visibility_m: f64,
 }
 
@@ -147,7 +148,7 @@ impl wk_between {
     }
 }
 
-/// The sky's light on surfaces of any slope.
+/// Light of the sky on surfaces of any orientation.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ambient {
@@ -224,7 +225,7 @@ pub unsafe extern "C" fn wk_context_get_moon_at(
     unsafe { celestial("wk_context_get_moon_at", point, "out_moon", out_moon, |l| l.moon) }
 }
 
-/// Context, place, and time if it is not the present, of a query.
+/// Context, place and time of a query; no time means the present.
 #[derive(Clone, Copy)]
 pub(super) struct QueryPoint {
     pub(super) context: *const wk_context,
@@ -259,9 +260,9 @@ pub(super) fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64>
     Ok(time_s)
 }
 
-/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Clouds count by
-/// what of them lies above a place, as the mean over places at its height. `position_size` and `light_size` are the
-/// bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header. Thread: concurrent.
+/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
+/// a place count, by their mean effect over all places at its height. `position_size` and `light_size` are the bytes
+/// from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header. Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(
     context: *const wk_context,
@@ -326,9 +327,9 @@ unsafe fn light(
     })
 }
 
-/// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog,
-/// precipitation and clouds drawn as a volume count, a deck and the host's objects do not. `segment_size` and
-/// `between_size` are the sizes of an element in your header. Thread: concurrent.
+/// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. They include air,
+/// haze, fog, precipitation and clouds drawn as a volume, but neither clouds drawn as a deck nor the host's objects.
+/// `segment_size` and `between_size` are the sizes of an element in your header. Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_between(
     context: *const wk_context,
@@ -397,11 +398,11 @@ unsafe fn way(
     })
 }
 
-/// Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction,
-/// a vector (east, north, up) at the place, of length 1 within 0.001. There the air, fog, rain, snow and clouds drawn
-/// as a volume before it leave 5 % of the light of 550 nm, and so 5 % of its contrast. Infinite where more is left at
-/// the end of the air or on the planet's ground. Thread: concurrent. Errors: as wk_context_get_conditions;
-/// WK_ERROR_INVALID_ARGUMENT naming the direction.
+/// Gets the slant visual range from a place at a simulation time, m: the distance up to which a black object is seen
+/// along a direction, a vector (east, north, up) at the place, of length 1 within 0.001. At that distance the air, fog,
+/// rain, snow and clouds drawn as a volume in front of the object leave 5 % of its contrast, that is 5 % of light at
+/// 550 nm. Infinite if more is left at the end of the air or at the planet's ground. Thread: concurrent. Errors: as
+/// wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_visibility_at(
     context: *const wk_context,
@@ -424,8 +425,8 @@ pub unsafe extern "C" fn wk_context_get_visibility_at(
     })
 }
 
-/// Gets the sky's light on surfaces of any slope at a place. It reads the sky's tables: it builds them if no frame has
-/// done so yet, and waits for the GPU once after every change of the air.
+/// Gets the sky's light on surfaces of any orientation at a place. It reads the sky's tables: it builds them if no
+/// frame has done so yet, and waits for the GPU once after every change of the air.
 /// Thread: as wk_view_record.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the position.
 #[unsafe(no_mangle)]
@@ -438,8 +439,8 @@ pub unsafe extern "C" fn wk_context_get_ambient(
     unsafe { ambient("wk_context_get_ambient", context, position_m, None, out_ambient) }
 }
 
-/// As wk_context_get_ambient, at a simulation time. The clear sky's pattern is that of the air that the tables show;
-/// how bright all of it is, and clouds and fog, are those of `time_s`. Thread: as wk_view_record. Errors: as
+/// As wk_context_get_ambient, at a simulation time. The clear sky's distribution is that of the air in the present
+/// tables; its brightness, clouds and fog are those of `time_s`. Thread: as wk_view_record. Errors: as
 /// wk_context_get_ambient and wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ambient_at(

@@ -1,14 +1,15 @@
 //! Queries: the sky's light by direction
 //!
-//! For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as
-//! the picture shows it where the host drew nothing. It has the clear air, clouds as the model draws them, fog with
-//! what falls in it, the night's glow, and below the horizon the planet's own ground. It has no discs of sun and moon
-//! (wk_context_get_light has their light), no stars and planets, no rain areas, and nothing that the host drew.
+//! For sensors, reflections and lighting that the host computes itself: the radiance of the sky in a direction, as the
+//! picture shows it where the host drew nothing. It includes the clear air, clouds as the model draws them, fog with
+//! precipitation, the glow of the night sky, and below the horizon the planet's own ground. It excludes the discs of
+//! sun and moon (wk_context_get_light has their light), stars and planets, rain areas, and everything that the host
+//! drew.
 //!
-//! The double-precision reference of the sky answers on the calling thread; no device is asked. The first question in a
-//! new air solves the reference (a second or two; weather in transition is a new air at every time), and other threads
-//! that ask meanwhile wait. The last four airs are kept for all contexts of a device. docs/reflections.md has what a
-//! direction costs and how far pictures may be off.
+//! The double-precision reference of the sky computes the answers on the calling thread, without the device. The first
+//! query in a new air solves the reference, which takes a second or two; other threads that query meanwhile wait.
+//! Weather in transition is a new air at every time. The solutions of the last four airs are kept for all contexts of a
+//! device. docs/reflections.md has the cost of a direction and the difference from pictures.
 
 use glam::DVec3;
 
@@ -27,11 +28,11 @@ use crate::error::{Error, Status};
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_sky_radiance {
-    /// cd/m^2, three channels of linear Rec. 709, none below 0.
+    /// Radiance, cd/m^2, three channels of linear Rec. 709, none below 0.
     pub radiance_cd_m2: [f64; 3],
 }
 
-/// Gets the sky's radiance at a place towards directions now, at most wk_caps.max_batch of them. A direction is a
+/// Gets the sky's radiance at a place in several directions now, at most wk_caps.max_batch of them. A direction is a
 /// vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the bytes
 /// from one element to the next: 24 or more, and sizeof(wk_sky_radiance) of your header. Thread: concurrent. Errors:
 /// WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.

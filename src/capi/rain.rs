@@ -1,14 +1,14 @@
 //! Rain
 //!
 //! WK_STAGE_PARTICLES draws rain wherever the weather has it. The rate decides how many drops fall and how fast. Near
-//! drops have places of their own, farther ones are streaks on cones. Both follow from seed and time alone, so all
-//! channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops, the host's
-//! depth hides them, sky, ground, sun and lamps light them, and they splash on what the picture shows within ten
-//! metres.
+//! drops are drawn one by one, farther ones as streaks on cones around the camera. Both depend only on seed and time,
+//! so all channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops; the
+//! host's depth hides them; sky, ground, sun and lamps light them. They splash on the surfaces that the picture shows
+//! within ten metres.
 //!
-//! Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is gone,
-//! whatever the wind. So it is wet on the windward side of a box, dry on its lee side and dry inside. Planes cut a box
-//! to any convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
+//! Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is not
+//! drawn, whatever the wind. The windward side of a box is therefore wet; its lee side and its inside are dry. Planes
+//! cut a box to any convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -28,32 +28,32 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
 
-/// How a view draws rain; what falls is the same.
+/// How a view draws rain. The rain that falls does not depend on it.
 pub type wk_rain_model = u32;
-/// Welkin chooses: single drops to 1.9 m and cones to 14.8 m; with a wk_budget less, where the picture does not need it
-/// or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
-/// wk_context_set_wind_field) the drops follow it, on devices with compute shaders.
+/// Welkin chooses: single drops to 1.9 m and cones to 14.8 m. With a wk_budget it draws less where the picture does not
+/// need it or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
+/// wk_context_set_wind_field) the drops follow that wind, on devices with compute shaders.
 pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
 /// No drops: all rain is extinction in the air.
 pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
 /// Streaks on three nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
 /// rain without compute shaders (wk_caps.tier 0). No splashes.
 pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
-/// Single drops to 4 m, each where seed and time put it; cones beyond only where lamps light the rain.
+/// Single drops to 4 m, each at a place that seed and time give; cones beyond only where lamps light the rain.
 pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
 /// Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1).
 pub const WK_RAIN_MODEL_INTEGRATED: wk_rain_model = 4;
 
-/// wk_rain.shutter_s of an eye, which adds up light over about this time by day. Streaks are long and faint.
+/// wk_rain.shutter_s for the eye, which integrates light over about this time by day. Streaks are long and faint.
 pub const WK_RAIN_SHUTTER_EYE_S: f64 = 0.05;
-/// wk_rain.shutter_s of a video camera whose shutter is open for a whole frame of 60 a second: the default.
+/// wk_rain.shutter_s for a video camera at 60 frames a second with its shutter open for a whole frame: the default.
 pub const WK_RAIN_SHUTTER_CAMERA_60_S: f64 = 0.016_666_666_666_666_666;
-/// wk_rain.shutter_s of a camera in good light. Streaks are short.
+/// wk_rain.shutter_s for a camera in good light. Streaks are short.
 pub const WK_RAIN_SHUTTER_CAMERA_500_S: f64 = 0.002;
-/// wk_rain.contrast_gain for trainers: on a display of eight bits rain by day is as visible as in a film.
+/// wk_rain.contrast_gain for trainers: on an 8-bit display rain by day is then as visible as in a film.
 pub const WK_RAIN_GAIN_TRAINER: f64 = 4.0;
 
-/// How a view draws what falls: rain, hail and splashes. What falls does not depend on it.
+/// How a view draws rain, hail and splashes. The precipitation itself does not depend on it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain {
@@ -66,15 +66,15 @@ pub struct wk_rain {
     /// Exposure time of a picture, s. Longer exposure makes streaks longer and fainter (WK_RAIN_SHUTTER_ constants).
     /// Range [1e-4, 0.1], default 1/60.
     pub shutter_s: f64,
-    /// Most drops to draw; if more fall, each drawn drop stands for several. Range [1000, 8 000 000], or 0, the
-    /// default: 400 000, and 100 000 on a software driver.
+    /// Largest number of drops to draw; if more fall, each drawn drop stands for several. Range [1000, 8 000 000], or
+    /// 0, the default: 400 000, and 100 000 on a software driver.
     pub most_drops: u32,
     /// A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose.
     pub model: wk_rain_model,
-    /// Contrast of rain, over that in nature. Range [1, 16], or 0, the default: 1, as in nature. Beyond 1 a streak,
-    /// stone or splash hides as much as that many of them one before the other. This departs from physics, for displays
-    /// on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water and queries do
-    /// not depend on it. Set the same value on all channels of a simulator.
+    /// Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain above 1, a
+    /// streak, stone or splash hides as much as that many of them in a row. This departs from physics, for displays on
+    /// which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water and queries do not
+    /// depend on it. Set the same value on all channels of a simulator.
     pub contrast_gain: f64,
 }
 
@@ -123,7 +123,7 @@ impl wk_shelter {
 }
 
 /// Planes that cut a wk_shelter to another convex shape; put it into the shelter's chain. The part of the box beyond
-/// any plane keeps nothing off. Describe a convex shape by the box around it and the planes of its faces.
+/// any plane does not keep rain off. Describe a convex shape by the box around it and the planes of its faces.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_shelter_shape {
@@ -168,8 +168,8 @@ impl wk_shelter_shape {
 }
 
 /// Sets how the view draws rain; NULL returns to the default. Unchanged after an error. Thread: exclusive on the view.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model, or more drops of
-/// it, than the device can draw.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model that the device
+/// cannot draw, or for more drops than it can draw with the model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_rain) -> wk_status {
     guard("wk_view_set_rain", |call| {
@@ -196,8 +196,8 @@ pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_ra
     })
 }
 
-/// Sets the boxes that keep rain off, in place of those before; set moving ones again in every frame. count 0 removes
-/// all. At most 32. Unchanged after an error.
+/// Sets the boxes that keep rain off and replaces those set before; set moving ones again in every frame. count 0
+/// removes all. At most 32. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
 #[unsafe(no_mangle)]

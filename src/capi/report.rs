@@ -1,12 +1,13 @@
 //! Weather reports and presets
 //!
-//! Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads what is there, in any order up
-//! to the pressure. Fields that the report leaves out or marks as missing keep their defaults, or what the rest of the
-//! report makes likely, and have a bit in wk_metar.assumed; words that are no group of the code change nothing and are
-//! counted. So a calm wind (00000KT) and one that nobody measured (/////KT) differ by WK_METAR_ASSUMED_WIND.
+//! Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads the groups that are present, in
+//! any order up to the pressure. Fields that the report leaves out or marks as missing keep their defaults, or get
+//! values that the rest of the report makes likely; each has a bit in wk_metar.assumed. A calm wind (00000KT) and one
+//! that nobody measured (/////KT) thus differ by WK_METAR_ASSUMED_WIND. Words that are no group of the code change
+//! nothing and are counted.
 //!
-//! No report says how high its station lies: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up in
-//! your list of airports and set it, because cloud bases, visibility and temperature refer to that height.
+//! No report contains the altitude of its station: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up
+//! in your list of airports and set the altitude, because cloud bases, visibility and temperature refer to that height.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -38,20 +39,20 @@ pub const WK_METAR_SPECIAL: wk_metar_flags = 1;
 pub const WK_METAR_AUTOMATIC: wk_metar_flags = 2;
 /// A correction (COR).
 pub const WK_METAR_CORRECTED: wk_metar_flags = 4;
-/// The report says only that visibility is at least so much (CAVOK, 9999, 10SM).
+/// The report gives only a lower limit of the visibility (CAVOK, 9999, 10SM).
 pub const WK_METAR_VISIBILITY_IS_MINIMUM: wk_metar_flags = 8;
 
 /// Fields that a report leaves out or marks as missing.
 pub type wk_metar_assumed_flags = u32;
-/// wind_speed_m_s, with all of the wind: calm is assumed.
+/// wind_speed_m_s and the rest of the wind: calm is assumed.
 pub const WK_METAR_ASSUMED_WIND: wk_metar_assumed_flags = 0x1;
 /// wind_from_deg: 0 is assumed.
 pub const WK_METAR_ASSUMED_WIND_DIRECTION: wk_metar_assumed_flags = 0x2;
-/// visibility_m: what humidity and what falls leave, at most 1 km in fog and 5 km in mist or haze.
+/// visibility_m: as humidity and precipitation allow, at most 1 km in fog and 5 km in mist or haze.
 pub const WK_METAR_ASSUMED_VISIBILITY: wk_metar_assumed_flags = 0x4;
-/// The present weather (`//`): neither precipitation nor fog nor haze is assumed.
+/// Present weather (`//`): neither precipitation nor fog nor haze is assumed.
 pub const WK_METAR_ASSUMED_PRECIPITATION: wk_metar_assumed_flags = 0x8;
-/// The clouds (`//////`, or no group at all): none are assumed beside those that are reported.
+/// Clouds (`//////`, or no group at all): none are assumed besides those that are reported.
 pub const WK_METAR_ASSUMED_CLOUDS: wk_metar_assumed_flags = 0x10;
 /// base_m of a layer (`BKN///`): 600 m is assumed.
 pub const WK_METAR_ASSUMED_CLOUD_BASE: wk_metar_assumed_flags = 0x20;
@@ -59,8 +60,8 @@ pub const WK_METAR_ASSUMED_CLOUD_BASE: wk_metar_assumed_flags = 0x20;
 pub const WK_METAR_ASSUMED_CLOUD_COVER: wk_metar_assumed_flags = 0x40;
 /// vertical_visibility_m (`VV///`): 60 m is assumed.
 pub const WK_METAR_ASSUMED_VERTICAL_VISIBILITY: wk_metar_assumed_flags = 0x80;
-/// temperature_c: 15, at most -1 where it snows or drops freeze, at most 1 where rain and snow fall together or what
-/// falls is unknown; from the dew point at 70 % if only that is there.
+/// temperature_c: 15; at most -1 in snow or freezing precipitation; at most 1 where rain and snow fall together or the
+/// precipitation is unknown. If only the dew point is reported, the temperature for 70 % relative humidity.
 pub const WK_METAR_ASSUMED_TEMPERATURE: wk_metar_assumed_flags = 0x100;
 /// relative_humidity: 0.7, or what a dew point gives at the assumed temperature.
 pub const WK_METAR_ASSUMED_HUMIDITY: wk_metar_assumed_flags = 0x200;
@@ -69,18 +70,19 @@ pub const WK_METAR_ASSUMED_PRESSURE: wk_metar_assumed_flags = 0x400;
 /// wk_metar.day, hour and minute: 0.
 pub const WK_METAR_ASSUMED_TIME: wk_metar_assumed_flags = 0x800;
 
-/// How the amounts of cloud groups count. Nations differ, and a report does not say which practice it follows.
+/// Meaning of the amounts in cloud groups. Nations differ, and a report does not say which practice it follows.
 pub type wk_cloud_amount_rule = u32;
-/// By the station's first letters: sums in the United States with its territories and in Canada (K, C; P but for PC and
-/// PL; TI, TJ, NSTU, MUGM), layers elsewhere. American bases abroad report sums under the host country's letters: set
-/// the rule for them.
+/// By the first letters of the station: sums in the United States with its territories and in Canada (K, C; P except PC
+/// and PL; TI, TJ, NSTU, MUGM), layers elsewhere. American bases abroad report sums under the host country's letters:
+/// set the rule for them.
 pub const WK_CLOUD_AMOUNT_BY_STATION: wk_cloud_amount_rule = 0;
-/// Each group counts what its layer and all lower ones hide (Federal Meteorological Handbook No. 1, 9.4.2 b and 9.5.2).
+/// The amount of a group is the cover of its layer and all lower ones together (Federal Meteorological Handbook No. 1,
+/// 9.4.2 b and 9.5.2).
 pub const WK_CLOUD_AMOUNT_SUMS: wk_cloud_amount_rule = 1;
-/// Each group counts its layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2).
+/// The amount of a group is the cover of its layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2).
 pub const WK_CLOUD_AMOUNT_LAYERS: wk_cloud_amount_rule = 2;
 
-/// How a report is read.
+/// Options for reading a report.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_metar_options {
@@ -90,7 +92,7 @@ pub struct wk_metar_options {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// How the amounts of cloud groups count. Default WK_CLOUD_AMOUNT_BY_STATION.
+    /// Meaning of the amounts in cloud groups. Default WK_CLOUD_AMOUNT_BY_STATION.
     pub cloud_amounts: wk_cloud_amount_rule,
     /// Must be 0.
     pub reserved0: u32,
@@ -106,8 +108,8 @@ impl wk_metar_options {
     };
 }
 
-/// Place and time of a report, and what of it the weather does not hold. Offsets and lengths are bytes in the text that
-/// you passed; 0 and 0 where the report has no such part.
+/// Place and time of a report, and the parts of it that wk_weather has no fields for. Offsets and lengths are bytes in
+/// the text that you passed; 0 and 0 where the report has no such part.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_metar {
@@ -131,22 +133,22 @@ pub struct wk_metar {
     pub assumed: wk_metar_assumed_flags,
     /// Rule by which the amounts of clouds were read: WK_CLOUD_AMOUNT_SUMS or WK_CLOUD_AMOUNT_LAYERS.
     pub cloud_amounts: wk_cloud_amount_rule,
-    /// Lowest visibility in some direction, m, where the report states one beside the prevailing one (`4000 1500NE`,
-    /// `9999 3100`), else 0. For information: the weather has the prevailing one.
+    /// Lowest visibility in some direction, m, where the report states one besides the prevailing visibility
+    /// (`4000 1500NE`, `9999 3100`), else 0. For information: the weather has the prevailing visibility.
     pub lowest_visibility_m: f64,
-    /// Where the runway visual ranges begin.
+    /// Offset of the runway visual ranges.
     pub runways_offset: u32,
     /// Bytes from the first to the last of them.
     pub runways_length: u32,
-    /// Where the trend forecast begins, its first word (NOSIG, BECMG, TEMPO) included.
+    /// Offset of the trend forecast, whose first word (NOSIG, BECMG, TEMPO) is included.
     pub trend_offset: u32,
     /// Bytes of the trend forecast.
     pub trend_length: u32,
-    /// Where the remarks begin, after RMK.
+    /// Offset of the remarks, after RMK.
     pub remarks_offset: u32,
     /// Bytes of the remarks.
     pub remarks_length: u32,
-    /// Where the first word stands that is no group of the code.
+    /// Offset of the first word that is no group of the code.
     pub unread_offset: u32,
     /// Bytes of that word.
     pub unread_length: u32,
@@ -219,12 +221,12 @@ impl wk_metar {
 }
 
 /// Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`, with cloud amounts by
-/// the station's rule. Its cloud layers go to `layers`, which has room for `layer_capacity` of `layer_size` bytes
-/// (sizeof(wk_cloud_layer) of your header; 16 always suffice), and out_weather->clouds leads there: keep it as long as
-/// the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it from a list of airports. Thread:
-/// any. Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the
-/// weather, with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers
-/// do not fit.
+/// the station's rule. Its cloud layers are written to `layers`, which has room for `layer_capacity` elements of
+/// `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 elements always suffice). out_weather->clouds points
+/// there: keep `layers` as long as the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it
+/// from a list of airports. Thread: any. Errors: WK_ERROR_PARSE for a text without a station, without an observation
+/// (NIL) or without any group of the weather, with line and column, what was expected there and what was found;
+/// WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_weather_from_metar(
     report: *const c_char,
@@ -243,7 +245,7 @@ pub unsafe extern "C" fn wk_weather_from_metar(
     })
 }
 
-/// Reads a report as wk_weather_from_metar does, and as `options` say. NULL is every default.
+/// Reads a report as wk_weather_from_metar does, with `options`. NULL means all defaults.
 /// Thread: any.
 /// Errors: as wk_weather_from_metar; WK_ERROR_INVALID_ARGUMENT for an unknown rule.
 #[unsafe(no_mangle)]
@@ -270,16 +272,16 @@ pub unsafe extern "C" fn wk_weather_from_metar_with(
     })
 }
 
-/// The caller's room for a report.
+/// Output structs of the caller for a report.
 type ReportRoom = (WeatherOut, Option<layout::OutStruct<wk_metar>>);
 
-/// Checks the caller's room for a report.
+/// Checks the output structs of the caller for a report.
 ///
 /// # Safety
 /// As `weather_out`; `out_metar` is NULL or a `wk_metar`.
 ///
 /// # Errors
-/// The wrong parameter by name.
+/// Names the wrong parameter.
 unsafe fn places(
     layers: *mut wk_cloud_layer,
     layer_capacity: u32,
@@ -296,7 +298,7 @@ unsafe fn places(
     Ok((weather, Some(unsafe { layout::out_struct(&"out_metar", out_metar)? })))
 }
 
-/// Reads the report and writes what it says.
+/// Reads the report and writes the results to the caller's structs.
 ///
 /// # Errors
 /// As [`Weather::from_metar`], about the parameter `report`; too little room for the layers.
@@ -309,7 +311,7 @@ fn answer(text: &str, options: &MetarOptions, (weather, metar): ReportRoom) -> R
     Ok(Status::Ok)
 }
 
-/// Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the
+/// Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset gives the
 /// names.
 /// Thread: any.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for a name that is not listed; the message lists them.

@@ -1,8 +1,8 @@
 //! How the sky is drawn
 //!
-//! Four models share the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
-//! scattering in clear air and haze. The others are for comparison and for slow machines. A wk_sky_settings goes into
-//! wk_context_desc.next, or to wk_context_set_sky_settings later.
+//! Four models use the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
+//! scattering in clear air and haze. The others are for comparison and for slow machines. Put a wk_sky_settings into
+//! wk_context_desc.next, or pass it to wk_context_set_sky_settings later.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -21,18 +21,18 @@ include!(concat!(env!("OUT_DIR"), "/init_sky.rs"));
 
 /// Model of the sky.
 pub type wk_sky_model = u32;
-/// Light scattered more than once keeps its direction, order by order. The default.
+/// Multiple scattering keeps its dependence on direction, order by order. The default.
 pub const WK_SKY_DIRECTIONAL: wk_sky_model = 0;
-/// Light scattered more than once is the same in all directions (Hillaire 2020); less accurate and quicker to build.
-/// docs/lab charts both.
+/// Multiple scattering is the same in all directions (Hillaire 2020); less accurate and quicker to build. docs/lab
+/// charts both.
 pub const WK_SKY_ISOTROPIC: wk_sky_model = 1;
-/// Light scattered once, from a table over altitude, view angle and sun angle (Elek 2008), as in older systems; light
-/// scattered more often is missing.
+/// Single scattering alone, from a table over altitude, view angle and sun angle (Elek 2008), as in older systems;
+/// multiple scattering is missing.
 pub const WK_SKY_TABLE_3D: wk_sky_model = 2;
-/// As the default, but light scattered once is marched in every pixel: a reference for the tables.
+/// As the default, but single scattering is ray-marched in every pixel: a reference for the tables.
 pub const WK_SKY_BRUTE_FORCE: wk_sky_model = 3;
 
-/// Sizes of the sky's tables. An extension: put it into wk_context_desc.next. Or set it later by
+/// Model of the sky and sizes of its tables. An extension: put it into wk_context_desc.next. Or set it later by
 /// wk_context_set_sky_settings, with `next` NULL.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -45,27 +45,28 @@ pub struct wk_sky_settings {
     pub next: *const c_void,
     /// Model of the sky. Default WK_SKY_DIRECTIONAL.
     pub model: wk_sky_model,
-    /// Orders of scattering computed one by one; a geometric series stands for the rest. Range [3, 16], default 5.
+    /// Orders of scattering that are computed one by one; a geometric series stands for the higher ones. Range [3, 16],
+    /// default 5.
     pub orders: u32,
-    /// Sun angles of the planet's tables. Range [16, 128], default 64.
+    /// Number of sun angles in the planet's tables. Range [16, 128], default 64.
     pub suns: u32,
-    /// Altitudes of the planet's tables. Range [8, 64], default 22.
+    /// Number of altitudes in the planet's tables. Range [8, 64], default 22.
     pub altitudes: u32,
-    /// Azimuths on [0, pi] of an observer's sky. Range [8, 256], default 40.
+    /// Number of azimuths over [0, pi] in an observer's sky table. Range [8, 256], default 40.
     pub sky_azimuths: u32,
-    /// Rows of an observer's sky above the horizon. Range [8, 256], default 80.
+    /// Rows above the horizon in an observer's sky table. Range [8, 256], default 80.
     pub sky_above: u32,
-    /// Rows of an observer's sky below the horizon. Range [8, 256], default 40.
+    /// Rows below the horizon in an observer's sky table. Range [8, 256], default 40.
     pub sky_below: u32,
-    /// Distances of the air in front of things. Range [4, 64], default 16.
+    /// Number of distances in the table of the air in front of objects. Range [4, 64], default 16.
     pub air_slices: u32,
-    /// Cells of a march per pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64.
+    /// Steps of the ray march in each pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64.
     pub march_cells: u32,
-    /// Wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean the
-    /// planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel over the
-    /// luminance is 6 % with 3, 2.4 % with 9, and 15 are within 1 % of 40. The time to build tables grows in
-    /// proportion, for a change of air as for a moving sun: five times with 15. Pixels cost the same.
-    /// WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
+    /// Number of wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean
+    /// the planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel over
+    /// the luminance is 6 % with 3 wavelengths and 2.4 % with 9; with 15 it is within 1 % of the result with 40. The
+    /// time to build tables grows in proportion, both for a change of air and for a moving sun: five times with 15. The
+    /// cost of a pixel stays the same. WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
     pub wavelengths: u32,
 }
 
@@ -86,7 +87,7 @@ impl wk_sky_settings {
         wavelengths: 3,
     };
 
-    /// As the Rust side takes it.
+    /// Converts to the Rust API's settings.
     pub(super) fn to_rust(self) -> SkySettings {
         SkySettings {
             model: match self.model {
@@ -104,17 +105,17 @@ impl wk_sky_settings {
             sky_below: self.sky_below,
             air_slices: self.air_slices,
             march_cells: self.march_cells,
-            // The rest are the sky's own affair, and change with how it is computed.
+            // The remaining settings are internal to the sky and may change with its method.
             ..SkySettings::default()
         }
     }
 }
 
 /// Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
-/// WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on, and that frame shows a draft of the sky as
-/// a first frame does; wk_context_build_sky after this call makes the final picture ready. Pipelines of another model
-/// are compiled in that frame. The same settings again change nothing. Thread: exclusive. Errors:
-/// WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. The settings stay as they were.
+/// WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on. That frame shows a draft of the sky, as a
+/// first frame does, unless wk_context_build_sky has prepared the final picture after this call. Pipelines of another
+/// model are compiled in that frame. Setting the same values again changes nothing. Thread: exclusive. Errors:
+/// WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. After an error the settings stay as they were.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_sky_settings(
     context: *mut wk_context,

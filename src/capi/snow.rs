@@ -1,9 +1,9 @@
 //! Snow
 //!
-//! WK_STAGE_PARTICLES draws falling snow wherever the weather has it: flakes of the sizes and speeds that rate, kind
-//! and temperature give, each at a place that follows from seed and time alone, so all channels of a simulator draw the
-//! same flakes. The wind carries them, the host's depth hides them, shelters and occluder maps keep them off, sky,
-//! ground, sun and lamps light them. What is farther than the flakes is extinction in the air.
+//! WK_STAGE_PARTICLES draws falling snow wherever the weather has it. Rate, kind and temperature give the sizes and
+//! speeds of the flakes; seed and time alone give their places, so all channels of a simulator draw the same flakes.
+//! The wind carries them; the host's depth hides them; shelters and occluder maps keep them off; sky, ground, sun and
+//! lamps light them. Beyond the distance of the flakes, snow is extinction in the air.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -20,17 +20,17 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_snow.rs"));
 
-/// How a view draws falling snow; what falls is the same.
+/// How a view draws falling snow. The snow that falls does not depend on it.
 pub type wk_snow_model = u32;
-/// Flakes near the camera; with a wk_budget none, where the picture does not need them or the time does not allow them
-/// (WK_PART_SNOW).
+/// Flakes near the camera. With a wk_budget there are none where the picture does not need them or the time does not
+/// allow them (WK_PART_SNOW).
 pub const WK_SNOW_MODEL_AUTOMATIC: wk_snow_model = 0;
 /// No flakes: all snow is extinction in the air.
 pub const WK_SNOW_MODEL_VEIL: wk_snow_model = 1;
 /// Flakes, whatever a budget says.
 pub const WK_SNOW_MODEL_FLAKES: wk_snow_model = 2;
 
-/// How a view draws falling snow. What falls does not depend on it.
+/// How a view draws falling snow. The snow that falls does not depend on it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_snow {
@@ -40,11 +40,12 @@ pub struct wk_snow {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Exposure time of a picture, s: flakes that move by more than their size in it are streaks. Range [1e-4, 0.1],
-    /// default 1/250, at which flakes in a light wind show their shapes.
+    /// Exposure time of a picture, s: flakes that move farther than their own size in this time become streaks. Range
+    /// [1e-4, 0.1], default 1/250, at which flakes in a light wind show their shapes.
     pub shutter_s: f64,
-    /// Most flakes to draw. The more, the farther they reach, up to 16 m; of what there is no room for some stand for
-    /// others. Range [1000, 8 000 000], or 0, the default: 1 000 000, and 60 000 on a software driver.
+    /// Largest number of flakes to draw. The more, the farther they reach, up to 16 m. If there are too many, each
+    /// drawn flake stands for several. Range [1000, 8 000 000], or 0, the default: 1 000 000, and 60 000 on a software
+    /// driver.
     pub most_flakes: u32,
     /// A WK_SNOW_MODEL_ constant; 0, the default, lets Welkin choose.
     pub model: wk_snow_model,

@@ -1,10 +1,11 @@
 //! Lying snow
 //!
-//! The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it (wk_surface.snow_depth_m):
-//! patches first, then whole, on what faces up. With WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a
-//! state: it falls, settles, drifts, slides, melts into the ground's water and refreezes, on level, open ground and on
-//! each cell of the host's terrain (wk_context_set_ground_grid, wk_context_set_terrain), and wk_context_save keeps it.
-//! Standing boxes (wk_context_set_shelters) keep it off and cast drifts.
+//! The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it
+//! (wk_weather.surface_snow_depth_m), on surfaces that face up: first in patches, then everywhere. With
+//! WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a simulated state: it falls, settles, drifts, slides,
+//! melts into the ground's water and refreezes. The state covers level, open ground and each cell of the host's terrain
+//! (wk_context_set_ground_grid, wk_context_set_terrain), and wk_context_save keeps it. Standing boxes
+//! (wk_context_set_shelters) keep snow off the ground and cause drifts.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -24,7 +25,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_snowpack.rs"));
 
-/// How a wheel holds on the ground, as far as snow decides it.
+/// Class of the grip that snow leaves to a wheel.
 pub type wk_snow_friction = u32;
 /// No snow, or too little to matter.
 pub const WK_SNOW_FRICTION_BARE: wk_snow_friction = 0;
@@ -43,20 +44,20 @@ pub const WK_SNOW_FRICTION_ICE: wk_snow_friction = 4;
 pub struct wk_lying_snow {
     /// Depth, m.
     pub depth_m: f64,
-    /// Ice and water, kg/m^2: millimetres of water.
+    /// Mass of ice and liquid water, kg/m^2 (millimetres of water).
     pub mass_kg_m2: f64,
-    /// kg/m^3; 0 without snow.
+    /// Density, kg/m^3; 0 without snow.
     pub density_kg_m3: f64,
-    /// Held water over what the snow can hold, 0 to 1.
+    /// Liquid water in the snow over the most that it can hold, 0 to 1.
     pub wetness: f64,
-    /// Albedo of visible light; 0 without snow.
+    /// Albedo for visible light; 0 without snow.
     pub albedo: f64,
-    /// Share of the ground that it covers.
+    /// Share of the ground that snow covers, 0 to 1.
     pub cover: f64,
-    /// The place above or below the one asked for on the snow's surface, in the host's world: the terrain's height
-    /// raised by the snow. Off the host's terrain the place itself.
+    /// Point of the snow's surface above or below the queried position, in the host's world: at the terrain's height
+    /// plus the snow's depth. Off the host's terrain, the queried position itself.
     pub surface_m: [f64; 3],
-    /// How a wheel holds.
+    /// Grip of a wheel.
     pub friction: wk_snow_friction,
     /// 0.
     pub reserved0: u32,
@@ -88,14 +89,14 @@ pub struct wk_snow_strip {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The path's points in the host's world, m, within 1e12 m of the origin; their heights do not matter. The path's
-    /// ends are cut straight, its bends are round. Read during the call.
+    /// Points of the path in the host's world, m, within 1e12 m of the origin; their heights do not matter. The path
+    /// has square ends and round bends. Read during the call.
     pub points_m: *const [f64; 3],
     /// Number of points. Range 2 to 1024.
     pub point_count: u32,
     /// Must be 0.
     pub reserved0: u32,
-    /// From side to side, m. Range [0.01, 1000], default 1.
+    /// Width of the strip, m. Range [0.01, 1000], default 1.
     pub width_m: f64,
 }
 
@@ -129,9 +130,9 @@ unsafe fn strip_of(strip: *const wk_snow_strip) -> Result<SnowStrip> {
 }
 
 /// Gets the snow at places of the host's world, at most wk_caps.max_batch of them, as of wk_context_get_state_time. On
-/// the host's terrain and up to 3 m above it, the answer is that between its cells, elsewhere that of level, open
-/// ground. `position_size` and `snow_size` are the bytes from one element to the next: 24 or more, and
-/// sizeof(wk_lying_snow) of your header.
+/// the host's terrain and up to 3 m above it, the answer is interpolated between the terrain's cells; elsewhere it is
+/// that of level, open ground. `position_size` and `snow_size` are the bytes from one element to the next: 24 or more,
+/// and sizeof(wk_lying_snow) of your header.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
 #[unsafe(no_mangle)]
@@ -160,8 +161,8 @@ pub unsafe extern "C" fn wk_context_get_lying_snow(
     })
 }
 
-/// Takes the snow of a strip of the host's terrain away, but for the lowest `left_m` (range [0, 100]): a plough, a
-/// shovel. `out_mass_kg` gets what was taken and may be NULL.
+/// Removes the snow of a strip of the host's terrain except the lowest `left_m` (range [0, 100]), as a plough or a
+/// shovel does. `out_mass_kg` gets the removed mass and may be NULL.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without a terrain or without
 /// WK_LYING_SNOW_SIMULATED, and while steps of an update remain.
@@ -186,7 +187,7 @@ pub unsafe extern "C" fn wk_context_take_snow(
     })
 }
 
-/// Presses the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense: a wheel's track.
+/// Compacts the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense: a wheel's track.
 /// Thread: exclusive.
 /// Errors: as wk_context_take_snow.
 #[unsafe(no_mangle)]
@@ -200,10 +201,10 @@ pub unsafe extern "C" fn wk_context_press_snow(context: *mut wk_context, strip: 
     })
 }
 
-/// Moves time on by `hours`, in (0, 720], and lays the snow of that time by steps of ten minutes, so that a lesson may
-/// begin after a night's snowfall. The laws are those of ordinary steps; the state differs from theirs by up to some
-/// percent and remembers that it was laid so (wk_context_state_hash). All else is led as by wk_context_update, to the
-/// end: with the largest terrain this may take some seconds.
+/// Advances time by `hours`, in (0, 720], and simulates the snow of that time in steps of ten minutes, so that a lesson
+/// can begin after a night's snowfall. The laws are those of ordinary steps. The resulting state differs from theirs by
+/// up to some percent, and records that it was made in this way (wk_context_state_hash). Everything else is advanced as
+/// by wk_context_update, to the end: with the largest terrain this may take some seconds.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the range; WK_ERROR_WRONG_ORDER while steps of an update remain.
 #[unsafe(no_mangle)]

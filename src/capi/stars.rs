@@ -1,8 +1,8 @@
 //! Stars
 //!
 //! At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the
-//! zodiacal light and the Milky Way behind its sky, where they stand over the context's place by its clock; by day, in
-//! fog and under closed clouds there is nothing of it. A budget may leave them out (WK_PART_STARS).
+//! zodiacal light and the Milky Way behind its sky, at their positions over the context's place and time. By day, in
+//! fog and under closed clouds none of them is drawn. A budget may leave them out (WK_PART_STARS).
 
 use std::{ffi::c_void, ptr::null};
 
@@ -24,9 +24,9 @@ include!(concat!(env!("OUT_DIR"), "/init_stars.rs"));
 
 /// Flags of the settings in a wk_stars.
 pub type wk_stars_flags = u32;
-/// stars and star_count: the host's own stars in place of the catalogue's.
+/// stars and star_count: the host's own stars replace the catalogue's.
 pub const WK_STARS_OWN: wk_stars_flags = 1;
-/// celestial_to_world: the host turns the heavens itself.
+/// celestial_to_world: the host orients the celestial sphere itself.
 pub const WK_STARS_TURNED: wk_stars_flags = 2;
 /// No planets.
 pub const WK_STARS_NO_PLANETS: wk_stars_flags = 4;
@@ -41,18 +41,18 @@ pub struct wk_stars {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Default 0: the catalogue's stars and the planets, where they stand over the Earth.
+    /// Default 0: the catalogue's stars and the planets, at their positions over the Earth.
     pub flags: wk_stars_flags,
-    /// Stars in `stars`, at most 1 000 000. Default 0.
+    /// Number of stars in `stars`, at most 1 000 000. Default 0.
     pub star_count: u32,
-    /// With WK_STARS_OWN: four numbers a star: right ascension, degrees, declination, degrees in [-90, 90], both in the
-    /// equator and equinox of J2000.0; visual magnitude in [-30, 30]; temperature of its colour as a black body, K, in
-    /// [1000, 100000]. Copied. Default NULL.
+    /// With WK_STARS_OWN: four numbers for each star: right ascension, degrees, and declination, degrees in [-90, 90],
+    /// both in the equator and equinox of J2000.0; visual magnitude in [-30, 30]; colour temperature of a black body,
+    /// K, in [1000, 100000]. Copied. Default NULL.
     pub stars: *const f64,
     /// With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole)
-    /// to (east, north, up), column after column. Default the identity.
+    /// to (east, north, up), column-major. Default the identity.
     pub celestial_to_world: [f64; 9],
-    /// Strength of the airglow. Range [0, 10], default 1: near the sun's least activity; 1.7 at the greatest.
+    /// Strength of the airglow. Range [0, 10], default 1, as near the minimum of solar activity; 1.7 at the maximum.
     pub airglow: f64,
 }
 
@@ -80,7 +80,7 @@ unsafe fn settings(p: *const wk_stars) -> Result<StarSettings> {
         input::slice("stars.stars", c.stars.cast(), Named("stars.star_count", c.star_count as usize), MAX_STARS)?
     };
     let star = |(i, [right_ascension, declination, magnitude, temperature]): (usize, &[f64; 4])| {
-        // A host finds the number by its place in the list.
+        // Errors name a number by its index in the host's list.
         let number = |k: usize| format!("stars.stars[{}]", 4 * i + k);
         check_range(&number(0), *right_ascension, -1e6, 1e6, "deg")?;
         check_range(&number(1), *declination, -90.0, 90.0, "deg")?;
@@ -100,8 +100,8 @@ unsafe fn settings(p: *const wk_stars) -> Result<StarSettings> {
     Ok(settings)
 }
 
-/// Sets how the night sky is drawn; NULL returns to the default. All but the list of stars is part of the saved state:
-/// a context that loads one keeps its own list. Unchanged after an error. Thread: exclusive. Errors:
+/// Sets how the night sky is drawn; NULL returns to the default. Part of the saved state, except the list of stars: a
+/// context that loads a state keeps its own list. Unchanged after an error. Thread: exclusive. Errors:
 /// WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *const wk_stars) -> wk_status {
@@ -115,8 +115,9 @@ pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *
 }
 
 /// Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at
-/// a simulation time. It falls with the sky's light, and with what air, fog and clouds take of the star's. Minus
-/// infinity where nothing comes through. Thread: concurrent. Errors: as wk_context_get_conditions.
+/// a simulation time. It falls with the brightness of the sky, and with the extinction of the star's light in air, fog
+/// and clouds. Minus infinity where no starlight gets through. Thread: concurrent. Errors: as
+/// wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_limiting_magnitude_at(
     context: *const wk_context,

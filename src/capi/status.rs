@@ -1,6 +1,6 @@
 //! Status, versions, messages
 //!
-//! Every call answers a wk_status. 0 and positive values are answers, negative ones failures. A failed call writes no
+//! Every call returns a wk_status: 0 and positive values mean success, negative ones failure. A failed call writes no
 //! output. wk_last_error_message() then says which parameter was wrong and what is accepted, and wk_last_error_field()
 //! gives that parameter or field alone.
 
@@ -10,32 +10,33 @@ pub use super::boundary::numbers::*;
 use super::boundary::{call, guard, input, layout, log_sink};
 use crate::error::Status;
 
-/// The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
+/// Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never
+/// freed.
 #[unsafe(no_mangle)]
 pub extern "C" fn wk_status_name(status: wk_status) -> *const c_char {
     NAMES.iter().find(|n| n.0 == status).map_or(c"unknown status", |n| n.1).as_ptr()
 }
 
-/// The message of the calling thread's last failed call: one sentence that begins with the function's name and names
-/// the parameter and the accepted range. Empty before the first failure; successful calls leave it alone. Never NULL;
-/// valid until the next failing call of this thread.
+/// Returns the message of the calling thread's last failed call: one sentence that begins with the function's name and
+/// names the parameter and the accepted range. Empty before the first failure; successful calls do not change it. Never
+/// NULL; valid until the next failing call of this thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn wk_last_error_message() -> *const c_char {
     call::last_error()
 }
 
-/// The parameter or field that the calling thread's last failed call was about, as a path of names in this header that
-/// begins at the function's parameter or at a struct's name: `frame.projection`, `shelters[2].half_size_m`,
-/// `wk_sky_settings.suns`, `time_s`. A host's editor can mark a control by it. The last failure with
-/// WK_ERROR_INVALID_ARGUMENT always has one; empty where a failure is about no field, and before the first failure.
+/// Returns the parameter or field that the calling thread's last failed call was about, as a path of names in this
+/// header that begins at the function's parameter or at a struct's name: `frame.projection`, `shelters[2].half_size_m`,
+/// `wk_sky_settings.suns`, `time_s`. A host's editor can use it to mark a control. A failure with
+/// WK_ERROR_INVALID_ARGUMENT always has one. Empty where a failure is about no field, and before the first failure.
 /// Never NULL; valid until the next failing call of this thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn wk_last_error_field() -> *const c_char {
     call::last_error_field()
 }
 
-/// The library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the major
-/// version is equal and its minor version is at least the header's. Each of the three may be NULL.
+/// Gets the library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the
+/// major versions are equal and its minor version is at least the header's. Each of the three pointers may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_version(major: *mut u32, minor: *mut u32, patch: *mut u32) -> wk_status {
     guard("wk_version", |_| {
@@ -57,7 +58,7 @@ pub unsafe extern "C" fn wk_version(major: *mut u32, minor: *mut u32, patch: *mu
 
 /// Sends Welkin's messages, and its graphics layer's warnings and errors, to `callback` from now on; NULL stops them.
 /// They are off by default, and Welkin never prints. There is one callback in a process. `max_level` is the least
-/// severe level that is sent. If `callback` fails, it must return normally; Welkin ignores the failure.
+/// severe level that is sent. `callback` must always return normally, even if it fails; Welkin ignores its failures.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown level; WK_ERROR_IN_USE in a Rust program that has its own logger.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_set_log_callback(
@@ -72,7 +73,7 @@ pub unsafe extern "C" fn wk_set_log_callback(
     })
 }
 
-/// Names by number; a test holds it against the constants above.
+/// Names by number; a test compares them with the constants above.
 static NAMES: &[(wk_status, &CStr)] = &[
     (WK_OK, c"WK_OK"),
     (WK_PENDING, c"WK_PENDING"),

@@ -1,8 +1,8 @@
 //! Windows
 //!
-//! For hosts without graphics of their own: Welkin presents to a window that the host names by its native handle. The
-//! host makes the window, keeps its event loop, and tells Welkin when its size changes. Resized, hidden, minimised and
-//! lost windows give a status and never a fault.
+//! For hosts without graphics of their own: Welkin presents to a window that the host identifies by its native handle.
+//! The host makes the window, runs its event loop, and tells Welkin when its size changes. Resized, hidden, minimised
+//! and lost windows give a status and never a fault.
 //!
 //!   wk_device_create_for_window, wk_surface_create, wk_surface_configure
 //!   each frame: wk_surface_acquire, wk_view_record (wk_own_target.surface), wk_surface_present
@@ -47,7 +47,7 @@ pub const WK_WINDOW_WIN32: wk_window_kind = 4;
 pub const WK_WINDOW_APPKIT: wk_window_kind = 5;
 
 /// A native window. Welkin ignores fields that its kind does not use. The window must outlive the surface, and its
-/// connection the device.
+/// display connection must outlive the device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_window {
@@ -147,7 +147,7 @@ unsafe fn native(p: *const wk_window) -> Result<NativeWindow> {
     })
 }
 
-/// The header's names for the handles of a window.
+/// Renames the handles of a window in an error as the header does.
 fn in_window(e: Error) -> Error {
     e.map_field(|name| match name {
         "display" | "connection" | "hinstance" => "window.display".into(),
@@ -222,8 +222,9 @@ pub unsafe extern "C" fn wk_surface_destroy(surface: *mut wk_surface) -> wk_stat
     })
 }
 
-/// Configures a surface, the first time or after its window changed. An acquired image is given back undrawn. With a
-/// width or height of 0 the call succeeds, and acquire answers WK_ERROR_SURFACE_OUTDATED until there is an area.
+/// Configures a surface, the first time or after its window changed. An acquired image is returned undrawn. With a
+/// width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the surface is
+/// configured with an area.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if it is gone.
 #[unsafe(no_mangle)]
@@ -250,8 +251,8 @@ pub unsafe extern "C" fn wk_surface_configure(surface: *mut wk_surface, config: 
 
 /// Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
 /// Thread: exclusive.
-/// Answers WK_PENDING if the window shows nothing now: skip this frame.
-/// Errors: WK_ERROR_SURFACE_OUTDATED: configure again, also while it is minimised.
+/// Returns WK_PENDING if the window shows nothing now: skip this frame.
+/// Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while it is minimised.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_surface_acquire(surface: *mut wk_surface) -> wk_status {
     guard("wk_surface_acquire", |call| {

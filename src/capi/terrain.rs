@@ -1,14 +1,15 @@
 //! Terrain in tiles
 //!
 //! The host's terrain as a lattice of equal cells, level and aligned to true north at its origin, cut into square tiles
-//! with keys. Each cell has a height and a class of surface, or is a hole. Tiles are added, removed, and changed by
-//! rectangles, in time that grows with the rectangle: a bucket may dig in every frame. Water, the wind field and
-//! queries read the tiles. With WK_GROUND_SIMULATED each cell has water of its own, and hollows join across the borders
-//! of tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has tiles or one wk_ground_grid.
+//! with keys. Each cell has a height and a class of surface, or is a hole. Tiles can be added and removed, and
+//! rectangles of their cells changed. The time of a change grows with the rectangle, so a bucket may dig in every
+//! frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell has its own water, and
+//! hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has
+//! either tiles or one wk_ground_grid.
 //!
-//! Heights belong to the host: wk_context_save keeps the water of the tiles, and wk_context_load wants the same tiles
-//! set before. wk_context_set_terrain and the functions of tiles may be called between updates at any time; while steps
-//! remain (WK_PENDING) they act after these.
+//! Heights belong to the host: wk_context_save saves only the water of the tiles, and wk_context_load requires that the
+//! same tiles have been set before. wk_context_set_terrain and the functions of tiles may be called between updates at
+//! any time; while steps remain (WK_PENDING) they take effect after these.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -32,7 +33,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_terrain.rs"));
 
-/// In surface_classes of wk_terrain_cells: a cell without ground. Water beside it runs off.
+/// Value in surface_classes of wk_terrain_cells for a cell without ground. Water beside it runs off.
 pub const WK_TERRAIN_HOLE: u32 = 255;
 
 /// The lattice of a terrain in tiles.
@@ -45,13 +46,13 @@ pub struct wk_terrain {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin; heights count from
-    /// its own. Default 0, 0, 0.
+    /// Position of the south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin. Heights
+    /// of cells count from its height. Default 0, 0, 0.
     pub origin_m: [f64; 3],
     /// Distance between cells, m. Range [0.01, 10 000], default 1. Puddles need several cells.
     pub cell_m: f64,
-    /// Cells along each side of a tile: a power of two from 32 to 1024. Default 256. The tiles of a terrain may have
-    /// 16 777 216 cells together.
+    /// Number of cells along each side of a tile: a power of two from 32 to 1024. Default 256. The tiles of a terrain
+    /// may have 16 777 216 cells together.
     pub tile_cells: u32,
     /// Must be 0.
     pub reserved0: u32,
@@ -80,34 +81,35 @@ pub struct wk_terrain_cells {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Key of the tile: how many tiles it lies east and north of the origin, each within 1 000 000; negative to the
-    /// west and south. Default 0, 0.
+    /// Key of the tile: its position east and north of the origin in tiles, each within 1 000 000; negative to the west
+    /// and south. Default 0, 0.
     pub tile: [i32; 2],
-    /// The rectangle's south-western cell in the tile, east and north. Default 0, 0.
+    /// Position of the rectangle's south-western cell in the tile, cells east and north. Default 0, 0.
     pub first_cell: [u32; 2],
-    /// Cells of the rectangle east and north. Default 0, 0: all of the tile.
+    /// Size of the rectangle, cells east and north. Default 0, 0: the whole tile.
     pub cells: [u32; 2],
-    /// Heights above the terrain's origin, m, within 1e5. Copied by the call. NULL with a count of 0 leaves them as
-    /// they are; a new tile needs them. That of a hole may be anything, also NaN: what is no height is not read.
+    /// Heights above the terrain's origin, m, within 1e5. Copied by the call. NULL with a count of 0 leaves the heights
+    /// unchanged; a new tile needs them. The height of a hole is not read and may be anything, also NaN.
     pub heights_m: *const f32,
-    /// Numbers in heights_m, at least as many as the rectangle reaches over.
+    /// Length of heights_m: at least the rectangle's extent with its stride.
     pub height_count: u32,
-    /// Numbers from the beginning of a row in heights_m to that of the next. Default 0: rows follow without a gap.
+    /// Distance between the beginnings of neighbouring rows in heights_m, numbers. Default 0: rows follow without a
+    /// gap.
     pub height_stride: u32,
     /// Class of each cell: a wk_surface_class, 0 to use the context's default, or WK_TERRAIN_HOLE. Copied by the call.
-    /// NULL with a count of 0 leaves them as they are; in a new tile 0.
+    /// NULL with a count of 0 leaves the classes unchanged; in a new tile they are then 0.
     pub surface_classes: *const u8,
-    /// Numbers in surface_classes, at least as many as the rectangle reaches over.
+    /// Length of surface_classes: at least the rectangle's extent with its stride.
     pub surface_class_count: u32,
-    /// Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a
-    /// gap.
+    /// Distance between the beginnings of neighbouring rows in surface_classes, numbers. Default 0: rows follow without
+    /// a gap.
     pub surface_class_stride: u32,
-    /// 1 where no_data_m counts, else 0, the default: every number in heights_m is a height.
+    /// 1 if no_data_m is used; 0, the default, if every number in heights_m is a height.
     pub has_no_data: u32,
-    /// Stands in heights_m for cells of which there are no data, and NaN then does too: -9999, -32768, or what your
-    /// source has. These cells become holes, whatever surface_classes says of them but a class of ground; a hole
-    /// becomes ground again by its class. Must be no height in use: of no cell to which surface_classes gives a class
-    /// other than 0, and of no cell with ground beside the rectangle in its tile. Default 0.
+    /// Number in heights_m for cells without data, such as -9999, -32768, or your source's own; NaN then also means no
+    /// data. These cells become holes. A hole becomes ground again when surface_classes gives it a class. The number
+    /// must not be a height in use: neither that of a cell to which surface_classes gives a class other than 0, nor
+    /// that of a cell with ground in the same tile outside the rectangle. Default 0.
     pub no_data_m: f32,
 }
 
@@ -130,17 +132,17 @@ impl wk_terrain_cells {
     };
 }
 
-/// The terrain under a place; plain values of a list.
+/// Terrain at a queried place; plain values of a list.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_terrain_point {
-    /// Height of the ground above the terrain's origin, m, linear between cells; 0 where there is none.
+    /// Height of the ground above the terrain's origin, m, interpolated linearly between cells; 0 where there is none.
     pub height_m: f64,
-    /// Revision of the nearest cell's tile: the terrain's when it changed last. 0 where there is no ground.
+    /// Revision of the terrain at the last change of the nearest cell's tile. 0 where there is no ground.
     pub revision: u64,
-    /// Key of that tile.
+    /// Key of the nearest cell's tile.
     pub tile: [i32; 2],
-    /// Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED where none is given.
+    /// Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED if it has none.
     pub surface_class: wk_surface_class,
     /// 1 on the ground of a tile, else 0.
     pub has_ground: u32,
@@ -159,8 +161,8 @@ impl wk_terrain_point {
     }
 }
 
-/// Sets the lattice of a terrain in tiles, still without any, in place of the tiles or the wk_ground_grid before; NULL
-/// leaves no tiles. The lattice that is set already stays with its tiles. Unchanged after an error.
+/// Sets the lattice of a terrain in tiles, at first without tiles. It replaces all tiles or the wk_ground_grid set
+/// before; NULL leaves no tiles. Setting the present lattice again keeps its tiles. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -184,7 +186,7 @@ pub unsafe extern "C" fn wk_context_set_terrain(context: *mut wk_context, terrai
     })
 }
 
-/// The lists of a rectangle of cells.
+/// Lists of heights and classes of a rectangle of cells.
 struct CellLists<'a> {
     cells: wk_terrain_cells,
     heights_m: &'a [f32],
@@ -237,8 +239,8 @@ fn named(e: Error) -> Error {
         .renamed("terrain_cells.surface_classes_stride", "terrain_cells.surface_class_stride")
 }
 
-/// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is; one
-/// that is there keeps its water. Takes some tens of milliseconds for 256 x 256 cells. Unchanged after an error.
+/// Adds a tile, or replaces the values of all cells of an existing tile. A new tile begins as wet as level ground; an
+/// existing one keeps its water. Takes some tens of milliseconds for 256 x 256 cells. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT naming the field, or for more
 /// cells than a terrain may have.
@@ -256,8 +258,8 @@ pub unsafe extern "C" fn wk_context_set_terrain_tile(
     })
 }
 
-/// Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the
-/// ground lets it: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water
+/// Changes the heights, the classes, or both, of a rectangle of a tile's cells. Water that stands there flows as the
+/// new ground allows: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water
 /// that it touches, not with the tile or the terrain. Unchanged after an error. Thread: exclusive. Errors: as
 /// wk_context_set_terrain_tile, and for the key of no tile.
 #[unsafe(no_mangle)]
@@ -274,7 +276,7 @@ pub unsafe extern "C" fn wk_context_update_terrain(
     })
 }
 
-/// Takes a tile away with the water on it. Where it was, water of the other tiles runs off.
+/// Removes a tile and the water on it. Where it was, water of the other tiles runs off.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for the key of no tile.
 #[unsafe(no_mangle)]

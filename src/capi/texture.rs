@@ -1,7 +1,7 @@
 //! Textures of an own device
 //!
 //! For hosts without graphics of their own: programs that want pictures in memory, or that draw with Welkin only. Hosts
-//! with OpenGL, Vulkan or wgpu hand over their own images instead and need none of this.
+//! with OpenGL, Vulkan or wgpu pass their own images instead and do not need these textures.
 
 use std::{
     ffi::c_void,
@@ -36,7 +36,7 @@ pub const WK_FORMAT_BGRA8_UNORM: wk_format = 3;
 pub const WK_FORMAT_BGRA8_SRGB: wk_format = 4;
 /// Half floats, 8 bytes: scene-linear colour.
 pub const WK_FORMAT_RGBA16_FLOAT: wk_format = 5;
-/// Floats, 16 bytes: scene-linear colour. Not on every driver as a target.
+/// Floats, 16 bytes: scene-linear colour. Some drivers do not support it as a target.
 pub const WK_FORMAT_RGBA32_FLOAT: wk_format = 6;
 /// One float, 4 bytes: depth as the host's projection gives it.
 pub const WK_FORMAT_R32_FLOAT: wk_format = 7;
@@ -53,9 +53,9 @@ pub struct wk_texture_desc {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Pixels. Range [1, wk_caps.max_texture_size], default 1.
+    /// Width, pixels. Range [1, wk_caps.max_texture_size], default 1.
     pub width: u32,
-    /// Pixels. Range [1, wk_caps.max_texture_size], default 1.
+    /// Height, pixels. Range [1, wk_caps.max_texture_size], default 1.
     pub height: u32,
     /// Default WK_FORMAT_RGBA8_UNORM.
     pub format: wk_format,
@@ -75,12 +75,12 @@ impl wk_texture_desc {
     };
 }
 
-/// The header's name of a checked constant.
+/// Returns the header's name of a checked constant.
 pub(super) fn name_of(format: wk_format) -> &'static str {
     layout::WK_FORMAT.values.iter().find(|v| v.1 == u64::from(format)).map_or("?", |v| v.0)
 }
 
-/// The wgpu format of a checked constant.
+/// Returns the wgpu format of a checked constant.
 fn format(format: wk_format) -> wgpu::TextureFormat {
     match format {
         WK_FORMAT_RGBA8_SRGB => wgpu::TextureFormat::Rgba8UnormSrgb,
@@ -128,7 +128,7 @@ fn create(cell: &DeviceCell, desc: &wk_texture_desc) -> Result<wgpu::Texture> {
     let format = format(desc.format);
     let mut usage =
         wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
-    // What WebGPU promises is not what every driver has: OpenGL's need not draw into floats of 32 bits.
+    // WebGPU guarantees more than some drivers support: OpenGL drivers need not draw into 32-bit float textures.
     let mut allowed = format.guaranteed_format_features(gpu.device.features()).allowed_usages;
     if !gpu.adapter.get_downlevel_capabilities().is_webgpu_compliant() {
         allowed &= gpu.adapter.get_texture_format_features(format).allowed_usages;
@@ -157,7 +157,7 @@ fn create(cell: &DeviceCell, desc: &wk_texture_desc) -> Result<wgpu::Texture> {
     Ok(texture)
 }
 
-/// Destroys a texture. NULL does nothing. Views that use it keep it alive for as long as they need it.
+/// Destroys a texture. NULL does nothing. Views that use the texture keep it alive for as long as they need it.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_texture_destroy(texture: *mut wk_texture) -> wk_status {
@@ -200,8 +200,8 @@ pub unsafe extern "C" fn wk_texture_write(
 }
 
 /// Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, the first row the
-/// picture's top. `data_size` is the room at `data`: at least `bytes_per_row` times the height. Slow: do not call it in
-/// every frame.
+/// picture's top. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the height.
+/// Slow: do not call it in every frame.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_UNSUPPORTED for WK_FORMAT_R8_UNORM.
 #[unsafe(no_mangle)]
@@ -229,7 +229,7 @@ pub unsafe extern "C" fn wk_texture_read(
     })
 }
 
-/// `bytes_per_row` holds a row, and `data_size` all of them.
+/// Checks that `bytes_per_row` holds a row, and `data_size` all rows.
 fn check_rows(texture: &wgpu::Texture, data_size: usize, bytes_per_row: u32) -> Result<()> {
     let texel = u64::from(texture.format().block_copy_size(None).unwrap_or(1));
     let row = u64::from(texture.width()) * texel;

@@ -1,12 +1,12 @@
 //! Weather over time
 //!
-//! The host owns simulation time: seconds in double precision, moved forward by wk_context_update. Weather is a
-//! timeline of changes, each with an absolute start and a duration; between changes it stays. A change that begins
-//! during another one is laid over it, so neither the weather nor its rate of change jumps. The same calls in the same
+//! The host owns simulation time: seconds in double precision, advanced by wk_context_update. Weather is a timeline of
+//! changes, each with an absolute start and a duration; between changes it is constant. A change that begins during
+//! another one is superimposed on it, so neither the weather nor its rate of change jumps. The same calls in the same
 //! order give the same weather on every machine.
 //!
-//! Sun and moon follow from place and universal time, which is tied to simulation time, or stand where the host puts
-//! them.
+//! The positions of sun and moon follow from place and universal time, which is tied to simulation time, unless the
+//! host sets them.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -30,7 +30,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_timeline.rs"));
 
-/// A direction to the sun or moon, given by the host in place of the almanac.
+/// Direction to the sun or moon that the host sets in place of the almanac's.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_given_direction {
@@ -40,9 +40,9 @@ pub struct wk_given_direction {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Degrees clockwise from true north. Range [-360, 360], default 180.
+    /// Azimuth, degrees clockwise from true north. Range [-360, 360], default 180.
     pub azimuth_deg: f64,
-    /// Degrees above the horizon, without refraction. Range [-90, 90], default 45.
+    /// Elevation above the horizon, degrees, without refraction. Range [-90, 90], default 45.
     pub elevation_deg: f64,
 }
 
@@ -77,16 +77,16 @@ pub unsafe extern "C" fn wk_context_set_weather(
     })
 }
 
-/// Moves simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame before
-/// the views record. Weather and light are functions of time and follow at once. A simulated ground
-/// (WK_GROUND_SIMULATED) takes one step for every 10 s. One call steps for at most 50 ms, and at least once. If steps
-/// remain, as after a leap of hours, the call answers WK_PENDING: call it again with the same time, in a loop or once a
-/// frame, until it answers WK_OK. Until then water on the ground is drawn and answered as of wk_context_get_state_time,
-/// settings take effect only after the remaining steps, and a later time is taken up when these are done. So the state
-/// is the same however many calls it takes. A leap of more than a day starts the ground a day before its end, as wet as
-/// the weather reports it then.
-/// Thread: exclusive. Answers WK_PENDING, which is no error, while steps remain.
-/// Errors: WK_ERROR_WRONG_ORDER if it lies before the present.
+/// Advances simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame
+/// before the views record. Weather and light are functions of time and change at once. A simulated ground
+/// (WK_GROUND_SIMULATED) takes one step for every 10 s. One call computes steps for at most 50 ms, and at least one
+/// step. If steps remain, as after a leap of hours, the call returns WK_PENDING: call it again with the same time, in a
+/// loop or once a frame, until it returns WK_OK. Until then, water on the ground is drawn and queried as of
+/// wk_context_get_state_time, settings take effect only after the remaining steps, and a later time counts only when
+/// these are done. The state therefore does not depend on the number of calls. A leap of more than a day starts the
+/// ground a day before its end, as wet as the weather reports it then.
+/// Thread: exclusive. Returns WK_PENDING, which is no error, while steps remain.
+/// Errors: WK_ERROR_WRONG_ORDER if `time_s` is before the present.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64) -> wk_status {
     guard("wk_context_update", |call| {
@@ -94,8 +94,8 @@ pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64
     })
 }
 
-/// Simulation time of the state, s: that of the last wk_context_update, or earlier while that answers WK_PENDING. The
-/// difference is how far the state lags behind. It never goes back, except by wk_context_load.
+/// Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while that
+/// returns WK_PENDING. The difference is how far the state lags behind. It never decreases, except by wk_context_load.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_state_time(
@@ -113,7 +113,8 @@ pub unsafe extern "C" fn wk_context_get_state_time(
 }
 
 /// Ties universal time to simulation time: universal time is `utc_s` (Unix time, seconds without leap seconds) at
-/// simulation time `time_s`. Before the first call it is wk_context_desc.utc_at_zero_s at simulation time 0.
+/// simulation time `time_s`. Before the first call, universal time is wk_context_desc.utc_at_zero_s at simulation
+/// time 0.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_clock(context: *mut wk_context, utc_s: f64, time_s: f64) -> wk_status {
@@ -125,9 +126,9 @@ pub unsafe extern "C" fn wk_context_set_clock(context: *mut wk_context, utc_s: f
     })
 }
 
-/// Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in
-/// [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as
-/// Unix time has it. Thread: any.
+/// Gets the Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000];
+/// `second` in [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the
+/// next day, as in Unix time. Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_utc_from_calendar(
     year: i32,
@@ -147,7 +148,7 @@ pub unsafe extern "C" fn wk_utc_from_calendar(
     })
 }
 
-/// Puts the sun into a given direction; NULL returns it to the almanac.
+/// Sets the direction of the sun; NULL returns to the almanac.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_sun(
@@ -163,7 +164,7 @@ pub unsafe extern "C" fn wk_context_set_sun(
     })
 }
 
-/// Puts the moon into a given direction (its phase follows from the sun's place); NULL returns it to the almanac.
+/// Sets the direction of the moon (its phase follows from the sun's direction); NULL returns to the almanac.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_moon(
@@ -192,8 +193,7 @@ unsafe fn given_direction(p: *const wk_given_direction) -> Result<Option<GivenDi
     Ok(Some(GivenDirection { azimuth_deg: c.azimuth_deg, elevation_deg: c.elevation_deg }))
 }
 
-/// Sets the exposure of frames that have none of their own; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused
-/// here.
+/// Sets the exposure of frames that do not set their own; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused here.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_exposure(
@@ -213,14 +213,14 @@ pub unsafe extern "C" fn wk_context_set_exposure(
 }
 
 /// Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
-/// weather, time, clock, given sun and moon, planet, exposure, tone curve, fog law, shelters, lamps, rain areas, wind
-/// grid, the terrain with its water, and the world, place, seed and ground model that it belongs to. Of the tiles of a
-/// wk_terrain it has the water alone. Not included:
-/// how it is drawn (sky settings, views, plans), and the images of wk_context_set_occluder_maps, because each channel
-/// may have its own. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing else is written
-/// and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
+/// weather, time, clock, directions of sun and moon that the host set, planet, exposure, tone curve, fog law, shelters,
+/// lamps, rain areas, wind grid, the terrain with its water, and the world, place, seed and ground model that it
+/// belongs to. For the tiles of a wk_terrain it has only the water. Not included: how the state is drawn (sky settings,
+/// views, plans), and the images of wk_context_set_occluder_maps, because each channel may have its own. `*out_size`
+/// gets the bytes needed, even if `capacity` is too small (then nothing else is written and the call fails) or `buffer`
+/// is NULL with `capacity` 0 (then it succeeds).
 /// Thread: concurrent.
-/// Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
+/// Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_save(
     context: *const wk_context,
@@ -238,12 +238,12 @@ pub unsafe extern "C" fn wk_context_save(
 }
 
 /// Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
-/// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF instead of
-/// these two geoid_height_m), seed and ground_model. A state of an earlier version that holds no planet and tone curve
-/// needs the same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state,
-/// as they were when it was saved, before. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that are no saved state,
-/// are cut short, have even one byte changed, or have another format, which the message names (this version reads
-/// format 2; save states of format 1 again, because they did not say what place they were of);
+/// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF
+/// geoid_height_m in place of the last two), seed and ground_model. A state of an earlier version without planet and
+/// tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before
+/// the call, set them as they were when the state was saved. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that
+/// are no saved state, are truncated, differ from the saved ones in even one byte, or have another format, which the
+/// message names (this version reads format 2; save states of format 1 again, because they did not record their place);
 /// WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const c_void, size: usize) -> wk_status {
@@ -257,10 +257,10 @@ pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const
     })
 }
 
-/// Gets a hash of what wk_context_save writes. It is equal on two channels whose contexts show the same world from now
-/// on.
+/// Gets a hash of the state that wk_context_save writes. It is equal on two channels whose contexts show the same world
+/// from now on.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
+/// Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_state_hash(context: *const wk_context, out_hash: *mut u64) -> wk_status {
     guard("wk_context_state_hash", |call| {

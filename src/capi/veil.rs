@@ -1,8 +1,8 @@
 //! Textures for the host's transparent things
 //!
 //! Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
-//! the light that air, fog and rain add on the way to a point, and the share of the light behind it that gets through.
-//! The published sampling functions, GLSL and WGSL, map clip coordinates and distance to texels.
+//! the light that air, fog and rain add on the way to a point, and the transmittance up to it. The published sampling
+//! functions, GLSL and WGSL, map clip coordinates and distance to texels.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -39,13 +39,13 @@ pub struct wk_frame_textures {
     pub next: *const c_void,
     /// Light that air and fog add, RGB half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage.
     pub light: u64,
-    /// Share of the light behind that gets through, RGB half floats: as `light`.
+    /// Transmittance: share of the light from behind that passes, RGB half floats: as `light`.
     pub through: u64,
-    /// Pixels of both.
+    /// Width of both textures, pixels.
     pub width: u32,
-    /// Pixels of both.
+    /// Height of both textures, pixels.
     pub height: u32,
-    /// Multiply `light` by this to get units of the host's colour.
+    /// Factor that converts `light` to units of the host's colour.
     pub light_scale: f64,
 }
 

@@ -7,7 +7,7 @@
 //!   BACKGROUND  the sky behind everything; before or after the opaque things
 //!   SURFACE     water on surfaces: darker, with the sky in it; after the opaque things, needs depth, free where it is dry
 //!   MEDIUM      fog and aerial perspective on all that was drawn so far
-//!   PARTICLES   what falls and flies
+//!   PARTICLES   particles that fall and fly
 //!   LENS        water on the windscreen
 //!   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
 //!
@@ -79,17 +79,17 @@ impl wk_view_desc {
         Self { struct_size: struct_size::<Self>(), struct_type: WK_STRUCT_TYPE_VIEW_DESC, next: null() };
 }
 
-/// Flags of a report's optional fields that are set.
+/// Flags of the optional fields of a wk_report that are set.
 pub type wk_report_flags = u32;
 /// wk_report.ms.
 pub const WK_REPORT_HAS_MS: wk_report_flags = 1;
 /// wk_report.predicted_ms: the view has a budget, its picture was gauged and a time was reported.
 pub const WK_REPORT_HAS_PREDICTED_MS: wk_report_flags = 2;
-/// wk_report.reported_ms: wk_view_report_time was called since the frame.
+/// wk_report.reported_ms: wk_view_report_time was called after the frame.
 pub const WK_REPORT_HAS_REPORTED_MS: wk_report_flags = 4;
 /// wk_report.predicted_error and predicted_error_bound: the view has a budget and its picture was gauged.
 pub const WK_REPORT_HAS_PREDICTED_ERROR: wk_report_flags = 8;
-/// wk_report.checked_error_bound and checked_error: it was gauged again since.
+/// wk_report.checked_error_bound and checked_error: the picture was gauged again afterwards.
 pub const WK_REPORT_HAS_CHECKED_ERROR: wk_report_flags = 16;
 
 /// Costs and contents of a view's last frame.
@@ -104,14 +104,14 @@ pub struct wk_report {
     pub next: *const c_void,
     /// The host's frame number; UINT64_MAX before the first frame.
     pub frame_id: u64,
-    /// Full-screen draws recorded for this frame so far.
+    /// Number of full-screen draws recorded for this frame so far.
     pub passes: u32,
-    /// Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final
-    /// quality.
+    /// Number of tables built, refined or blended for this frame so far; 0 when only the camera turned and the sky has
+    /// its final quality.
     pub tables_rebuilt: u32,
     /// Display units per cd/m^2 that were applied; 0 if nothing was drawn.
     pub exposure: f64,
-    /// Bytes of GPU memory that the view holds for itself.
+    /// GPU memory that the view uses for itself, bytes.
     pub bytes: u64,
     /// Flags of the following fields that are set.
     pub has: wk_report_flags,
@@ -122,30 +122,30 @@ pub struct wk_report {
     pub ms: f64,
     /// Predicted time of the weather in this frame, ms, from the times reported before it.
     pub predicted_ms: f64,
-    /// Time that the host reported for it, ms.
+    /// Time that the host reported for this frame, ms.
     pub reported_ms: f64,
     /// Estimated error of what this frame left out, without parts that still fade: 95th percentile over the gauged
     /// pixels.
     pub predicted_error: f64,
     /// Upper end of the 95 % confidence interval of that percentile over all pixels.
     pub predicted_error_bound: f64,
-    /// For the newest gauge's picture: the bound predicted for what it left out ...
+    /// Error of the last gauged picture: the bound that was predicted for the parts left out ...
     pub checked_error_bound: f64,
-    /// ... and the error that was found.
+    /// ... and the error that was measured.
     pub checked_error: f64,
-    /// Drops and stones around the camera; those in the picture were drawn.
+    /// Number of drops and stones around the camera; those in the picture were drawn.
     pub drops: u32,
-    /// Flakes around the camera; those in the picture were drawn. 0 if none were.
+    /// Number of flakes around the camera; those in the picture were drawn. 0 if none were.
     pub flakes: u32,
     /// Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any.
     pub drop_weight: f64,
-    /// Splashes, 1/(m^2 s) on level ground, that were left out for lack of room: those of the smallest drops.
+    /// Splashes left out for lack of room, 1/(m^2 s) on level ground: those of the smallest drops.
     pub splashes_left_out_per_m2_s: f64,
-    /// Stones, 1/(m^2 s), that did not bounce for lack of room: the smallest ones.
+    /// Stones that did not bounce for lack of room, 1/(m^2 s): the smallest ones.
     pub stones_left_out_per_m2_s: f64,
-    /// The contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
+    /// Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
     pub contrast_gain: f64,
-    /// Distance up to which flakes were drawn, m; farther snow is extinction alone. 0 if none were.
+    /// Distance up to which flakes were drawn, m; farther away snow is extinction alone. 0 if no flakes were drawn.
     pub flakes_to_m: f64,
 }
 
@@ -194,9 +194,9 @@ pub const WK_EFFECT_TONE: wk_effect = 4;
 pub const WK_EFFECT_COMPOSITION: wk_effect = 5;
 /// Textures for the host's own shaders.
 pub const WK_EFFECT_VEIL: wk_effect = 6;
-/// Taking the host's context and images, and giving them back.
+/// Acquiring the host's context and images, and returning them.
 pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
-/// Rain.
+/// Rain, hail and snow near the camera.
 pub const WK_EFFECT_PARTICLES: wk_effect = 8;
 /// Water on surfaces.
 pub const WK_EFFECT_SURFACE: wk_effect = 9;
@@ -211,9 +211,9 @@ pub struct wk_effect_cost {
     pub effect: wk_effect,
     /// 0.
     pub reserved0: u32,
-    /// Its name in English; lives as long as the library.
+    /// Name of the effect in English; lives as long as the library.
     pub name: *const c_char,
-    /// Wall time around a submission that is waited for, the CPU's part included, ms. 0 if it did not run.
+    /// Wall time around a submission that is waited for, including the CPU's part, ms. 0 if the effect did not run.
     pub ms: f64,
 }
 
@@ -259,8 +259,8 @@ pub unsafe extern "C" fn wk_view_destroy(view: *mut wk_view) -> wk_status {
 /// Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty. Welkin checks
 /// the frame before any work: after an error nothing is drawn, built or changed.
 /// Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
-/// Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT
-/// naming the field; WK_ERROR_DEVICE_LOST.
+/// Errors: WK_ERROR_WRONG_ORDER if a stage is repeated or out of order; WK_ERROR_UNSUPPORTED and
+/// WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_record(
     view: *mut wk_view,
@@ -334,10 +334,10 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
     })
 }
 
-/// Gets the cost of each effect of the view's last frame, in the order in which they happen. `*out_count` gets their
-/// number, 0 if the frame was not measured (WK_FRAME_MEASURE), even if `capacity` is too small (then nothing else is
+/// Gets the cost of each effect of the view's last frame, in the order in which they run. `*out_count` gets their
+/// number (0 if the frame was not measured, WK_FRAME_MEASURE), even if `capacity` is too small (then nothing else is
 /// written and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later
-/// versions may know more effects.
+/// versions may have more effects.
 /// Thread: exclusive on the view.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_costs(

@@ -1,9 +1,9 @@
 //! Vulkan hosts
 //!
 //! Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits its own work: when
-//! wk_view_record returns, the work is on the queue. Only one thread at a time may use a VkQueue. So either keep other
+//! wk_view_record returns, the work is on the queue. Only one thread at a time may use a VkQueue. Either keep other
 //! threads away from the queue during Welkin's calls on this device, or pass lock_queue and unlock_queue, which Welkin
-//! calls around every submission. Call no Welkin function inside them.
+//! calls around every submission. Call no Welkin function inside these two.
 //!
 //! Welkin takes an image in the layout in which the host left it and returns it in the layout that the host asks for.
 //! On one queue no semaphores are needed: Welkin's work waits for what the host submitted before, and what the host
@@ -70,8 +70,8 @@ pub unsafe extern "C" fn wk_device_create_vulkan(
 /// Waits until the GPU no longer uses a VkImage, and forgets it. Call it for each image that you handed over, before or
 /// after you destroy it (an engine may rebuild its swapchain inside a call), but before you hand over a new one: Vulkan
 /// may give the new image the old handle, and Welkin would draw into the dead image. As always, destroy an image only
-/// when the GPU has finished with it: after the signals of its last wk_view_record, or after vkDeviceWaitIdle. An
-/// unknown image is no error. Slow: do not call it in every frame.
+/// when the GPU has finished with it: after the semaphores that its last wk_view_record signals, or after
+/// vkDeviceWaitIdle. An unknown image is no error. Slow: do not call it in every frame.
 /// Thread: exclusive on the device.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_forget_vulkan_image(device: *mut wk_device, image: u64) -> wk_status {

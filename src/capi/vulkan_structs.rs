@@ -51,11 +51,11 @@ pub struct wk_vulkan_host_desc {
     /// The features that the host enabled: the VkDeviceCreateInfo that it gave to vkCreateDevice, or a chain of
     /// VkPhysicalDevice..Features structs. Read during the call. NULL (the default): no feature is enabled.
     pub enabled_features: *const c_void,
-    /// Takes the host's queue lock. Give it together with unlock_queue, or leave both NULL (the default).
+    /// Function that takes the host's queue lock. Set it together with unlock_queue, or leave both NULL (the default).
     pub lock_queue: wk_vulkan_queue_fn,
-    /// Releases it.
+    /// Function that releases the lock.
     pub unlock_queue: wk_vulkan_queue_fn,
-    /// Passed to both. Default NULL.
+    /// Pointer that is passed to both functions. Default NULL.
     pub user: *mut c_void,
 }
 
@@ -97,24 +97,26 @@ pub struct wk_vulkan_image {
     pub image: u64,
     /// VkFormat that it was created with. Default 0; must be given.
     pub format: u32,
-    /// Pixels. Default 0; must be given.
+    /// Width, pixels. Default 0; must be given.
     pub width: u32,
-    /// Pixels. Default 0; must be given.
+    /// Height, pixels. Default 0; must be given.
     pub height: u32,
-    /// Samples of a pixel. Default 1. Colour with several needs sampleRateShading in enabled_features of the
+    /// Samples of a pixel. Default 1. Colour with several samples needs sampleRateShading in enabled_features of the
     /// wk_vulkan_host_desc.
     pub samples: u32,
-    /// VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is
-    /// read, DEPTH_STENCIL_ATTACHMENT too for depth with WK_DEPTH_ACCESS_READ_WRITE.
+    /// VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for images
+    /// that are read, and also DEPTH_STENCIL_ATTACHMENT for depth with WK_DEPTH_ACCESS_READ_WRITE.
     pub usage: u32,
     /// Array layers that it was created with. Default 1. For an occluder map it must be 1.
     pub array_layers: u32,
-    /// The layer handed over, such as one eye of a stereo or multiview host; the others stay untouched. Default 0.
+    /// Array layer that is handed over, such as one eye of a stereo or multiview host; the others stay untouched.
+    /// Default 0.
     pub layer: u32,
-    /// VkImageLayout in which the host left that layer. Default 0 (UNDEFINED: its content may be dropped; colour only).
+    /// VkImageLayout in which the host left that layer. Default 0 (UNDEFINED: its content may be discarded; colour
+    /// only).
     pub layout: u32,
-    /// VkImageLayout in which the host wants it back. Default 0; must be given. PRESENT_SRC_KHR, here and in `layout`,
-    /// needs VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
+    /// VkImageLayout in which Welkin returns the layer. Default 0; must be given. PRESENT_SRC_KHR, here and in
+    /// `layout`, needs VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
     pub final_layout: u32,
     /// Must be 0.
     pub reserved0: u32,
@@ -158,7 +160,7 @@ pub struct wk_vulkan_semaphore {
     pub next: *const c_void,
     /// VkSemaphore. Default 0; must be given.
     pub semaphore: u64,
-    /// Value to wait for or to signal, of a timeline semaphore. Default 0.
+    /// Value of a timeline semaphore to wait for or to signal. Default 0.
     pub value: u64,
     /// Default WK_VULKAN_SEMAPHORE_BINARY.
     pub kind: wk_vulkan_semaphore_kind,
@@ -200,13 +202,13 @@ pub struct wk_vulkan_target {
     pub wait_semaphores: *const wk_vulkan_semaphore,
     /// Semaphores to signal when all is drawn and the images are in their final layouts. At most 16.
     pub signal_semaphores: *const wk_vulkan_semaphore,
-    /// Number of waits. Default 0.
+    /// Number of wait_semaphores. Default 0.
     pub wait_count: u32,
-    /// Bytes from one wait to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
+    /// Bytes from one wait semaphore to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
     pub wait_stride: u32,
-    /// Number of signals. Default 0.
+    /// Number of signal_semaphores. Default 0.
     pub signal_count: u32,
-    /// Bytes from one signal to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
+    /// Bytes from one signal semaphore to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
     pub signal_stride: u32,
     /// Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
     /// default. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.

@@ -1,9 +1,9 @@
 //! Weather
 //!
 //! A wk_weather describes the weather: plain data in SI units, which every call copies. Start from WK_WEATHER_INIT (a
-//! clear standard day), a METAR report or a preset, and change what you know better. Zero is a value everywhere (0
-//! degrees, north, calm, 0 %). What may be unknown has a bit in `has`: where the bit is clear, Welkin ignores the field
-//! and derives the value by a named physical law. All reals are doubles.
+//! clear standard day), a METAR report or a preset, and change the fields that you know better. Zero is a value
+//! everywhere (0 degrees, north, calm, 0 %). A field that may be unknown has a bit in `has`: where the bit is clear,
+//! Welkin ignores the field and derives the value by a named physical law. All reals are doubles.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -94,7 +94,7 @@ pub struct wk_cloud_layer {
     pub has: wk_cloud_layer_has_flags,
     /// Kind of cloud. Default WK_CLOUD_UNKNOWN.
     pub kind: wk_cloud_kind,
-    /// Fraction of the sky that it covers (eighths / 8). Range [0, 1], default 0.
+    /// Fraction of the sky that the layer covers (eighths / 8). Range [0, 1], default 0.
     pub cover: f64,
     /// Base above the station, m. Range [0, 20000], default 0.
     pub base_m: f64,
@@ -105,13 +105,14 @@ pub struct wk_cloud_layer {
     /// Optional: effective radius of droplets or crystals, um. Range [1, 500]; else by kind.
     pub droplet_radius_um: f64,
     /// Optional: speed of the wind that carries the layer, m/s. Range [0, 150]; else that of the weather's wind at the
-    /// middle of the layer, which grows and veers with height (docs/clouds.md). A change of it moves no cloud at once.
+    /// middle of the layer, which grows and veers with height (docs/clouds.md). Changing it does not displace any
+    /// cloud.
     pub wind_m_s: f64,
-    /// Optional, with the field before: where that wind comes from, degrees clockwise from true north. Range [0, 360].
+    /// Optional, with wind_m_s: direction that this wind comes from, degrees clockwise from true north. Range [0, 360].
     pub wind_from_deg: f64,
-    /// Distance from cloud to cloud, m. Range [50, 200000]; 0, the default, by kind and thickness.
+    /// Typical distance between clouds, m. Range [50, 200000]; 0, the default, by kind and thickness.
     pub spacing_m: f64,
-    /// Time in which its clouds come and go, s. Range [60, 1e6]; 0, the default, is 1200.
+    /// Lifetime of the layer's clouds, s. Range [60, 1e6]; 0, the default, is 1200.
     pub life_s: f64,
 }
 
@@ -147,8 +148,8 @@ pub struct wk_weather {
     /// Flags of the optional fields that are set. Default 0.
     pub has: wk_weather_has_flags,
 
-    /// Meteorological optical range at the station, m: where 550 nm light falls to 5 % (the reported visibility). It is
-    /// total: air, haze, fog, rain and snow together. Range [1, 1e6], default 40000.
+    /// Meteorological optical range at the station, m: the distance at which 550 nm light falls to 5 % (the reported
+    /// visibility). It is the total of air, haze, fog, rain and snow together. Range [1, 1e6], default 40000.
     pub visibility_m: f64,
     /// Optional: vertical visibility into an obscured sky, m. Range [0, 10000]; else the sky is not obscured. With fog
     /// it sets the fog's depth.
@@ -170,21 +171,22 @@ pub struct wk_weather {
     pub aerosol_kind: wk_aerosol_kind,
     /// Fog or mist. Default WK_FOG_NONE.
     pub fog_kind: wk_fog_kind,
-    /// Optional: exponent with which extinction falls, wavelength^-exponent. Range [-1, 4]; else by kind.
+    /// Optional: Angstrom exponent: extinction falls as wavelength^-exponent. Range [-1, 4]; else by kind.
     pub aerosol_angstrom_exponent: f64,
     /// Optional: single scattering albedo at 550 nm. Range [0, 1]; else by kind and humidity.
     pub aerosol_single_scattering_albedo: f64,
     /// Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity.
     pub aerosol_asymmetry: f64,
-    /// Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. At least the
-    /// station's altitude over 4.6 is used (435 m at 2000 m), because the sky counts densities from the sea.
+    /// Optional: scale height of the particles, over which their density falls to 1/e, m. Range [10, 20000]; else by
+    /// kind. The value used is at least the station's altitude over 4.6 (435 m at 2000 m), because the sky counts
+    /// densities from sea level.
     pub aerosol_scale_height_m: f64,
     /// Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility.
     pub fog_top_m: f64,
     /// Optional: fraction of the ground under fog. Range [0, 1]; else by kind.
     pub fog_coverage: f64,
-    /// Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog
-    /// that the reported visibility looks over or past.
+    /// Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog,
+    /// where the observer reports the visibility over or past the fog.
     pub fog_visibility_inside_m: f64,
 
     /// Kind of precipitation. Default WK_PRECIPITATION_NONE.
@@ -193,7 +195,7 @@ pub struct wk_weather {
     pub precipitation_flags: wk_precipitation_flags,
     /// Precipitation rate, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls.
     pub precipitation_rate_mm_h: f64,
-    /// Optional: liquid fraction of it. Range [0, 1]; else by kind.
+    /// Optional: liquid fraction of the precipitation. Range [0, 1]; else by kind.
     pub precipitation_liquid_fraction: f64,
 
     /// Mean wind at 10 m above ground, m/s. Range [0, 120], default 0.
@@ -202,8 +204,8 @@ pub struct wk_weather {
     pub wind_from_deg: f64,
     /// Optional: highest 3-second gust, m/s. Range [wind_speed_m_s, 150]; else from the turbulence.
     pub wind_gust_m_s: f64,
-    /// Optional, together with the next field: start of the range of varying direction, degrees; the range runs
-    /// clockwise. Range [0, 360].
+    /// Optional, together with the next field: start of the range within which the direction varies, degrees; the range
+    /// runs clockwise. Range [0, 360].
     pub wind_variable_from_deg: f64,
     /// End of that range, degrees. Range [0, 360]. 0 to 360 means all directions (VRB).
     pub wind_variable_to_deg: f64,
@@ -320,7 +322,7 @@ pub const WK_OVERRIDE_WAVE_HEIGHT: wk_override_flags = 0x200;
 /// wetness
 pub const WK_OVERRIDE_WETNESS: wk_override_flags = 0x400;
 
-/// Your own values in place of the laws that couple the parts of the weather. An extension: put it into
+/// Your own values in place of the laws that derive one part of the weather from another. An extension: put it into
 /// wk_weather.next.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -331,22 +333,23 @@ pub struct wk_weather_overrides {
     pub struct_type: wk_struct_type,
     /// The next extension. Default NULL.
     pub next: *const c_void,
-    /// Flags of the fields that are set; laws give the others. Default 0.
+    /// Flags of the fields that are set; the laws give the others. Default 0.
     pub set: wk_override_flags,
-    /// Must be 0.
+    /// Aerosol extinction at 550 nm and station height, 1/m, in place of the share that visibility gives. Range [0,
+    /// 10].
     pub reserved0: u32,
-    /// Aerosol extinction at 550 nm and station height, 1/m, in place of the share of the visibility. Range [0, 10].
+    /// Extinction inside the ground layer, 1/m, in place of the rest that visibility gives. Range [0, 10].
     pub aerosol_extinction_per_m: f64,
-    /// Extinction inside the ground layer, 1/m, in place of the rest of the visibility. Range [0, 10].
+    /// Extinction inside the ground layer, 1/m, in place of the rest of the visibility's. Range [0, 10].
     pub fog_extinction_per_m: f64,
     /// Extinction of precipitation, 1/m, in place of what the drop and flake spectra give. Range [0, 10].
     pub precipitation_extinction_per_m: f64,
     /// Visibility in the air above a mist or fog, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
     pub visibility_above_fog_m: f64,
-    /// Growth factor of particles by humidity, over their size at 80 %. Range [0.1, 20]; law: Haenel's; 1 switches
-    /// growth off.
+    /// Growth factor of particles by humidity, relative to their size at 80 %. Range [0.1, 20]; law: Haenel's; 1
+    /// switches growth off.
     pub humidity_growth: f64,
-    /// Air density at sea level over the standard's. Range [0, 10].
+    /// Ratio of the air density at sea level to the standard's. Range [0, 10].
     pub rayleigh_density_ratio: f64,
     /// Scale height of the air, m. Range [100, 50000].
     pub rayleigh_scale_height_m: f64,

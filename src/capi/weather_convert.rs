@@ -1,4 +1,4 @@
-//! Between `wk_weather` and [`Weather`]: the flat struct with its `has` bits, and the nested one with its options.
+//! Conversion between `wk_weather`, a flat struct with `has` bits, and [`Weather`], a nested struct with options.
 
 use std::ptr::null;
 
@@ -24,7 +24,7 @@ use crate::{
 /// `p` is NULL or points to a `wk_weather` with readable cloud layers.
 ///
 /// # Errors
-/// The first wrong field, named as in the header.
+/// Names the first wrong field as in the header.
 pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&param, p)? };
@@ -50,13 +50,13 @@ pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather
     Ok(weather)
 }
 
-/// The overrides in a weather's chain, which [`from_c`] has checked; none set if there are none.
+/// Returns the overrides in a weather's chain, which [`from_c`] has checked; none set if there are none.
 ///
 /// # Safety
 /// As [`from_c`].
 ///
 /// # Errors
-/// The first wrong field, named as in the header.
+/// Names the first wrong field as in the header.
 pub(super) unsafe fn overrides(param: &str, p: *const wk_weather) -> Result<Overrides> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&param, p)? };
@@ -87,7 +87,7 @@ pub(super) unsafe fn overrides(param: &str, p: *const wk_weather) -> Result<Over
     Ok(overrides)
 }
 
-/// `wind.speed_m_s` of the Rust side is `weather.wind_speed_m_s` in the header.
+/// Renames a field in an error: `wind.speed_m_s` of the Rust API is `weather.wind_speed_m_s` in the header.
 fn flat_name(param: &str, e: Error) -> Error {
     let flat = |field: &str| match field {
         "wind.variable_deg.0" => "wind_variable_from_deg".into(),
@@ -206,7 +206,7 @@ impl HasBits<u32> {
     }
 }
 
-/// The flat struct of a weather, without its clouds.
+/// Returns the flat struct of a weather, without its clouds.
 pub(super) fn to_c(w: &Weather) -> wk_weather {
     let mut has = HasBits(0_u64);
     let variable = w.wind.variable_deg;
@@ -263,7 +263,7 @@ pub(super) fn to_c(w: &Weather) -> wk_weather {
     c
 }
 
-/// A caller's room for a weather and its layers, checked before anything is written.
+/// Output structs of a caller for a weather and its layers, checked before anything is written.
 pub(super) struct WeatherOut {
     weather: layout::OutStruct<wk_weather>,
     layers: *mut wk_cloud_layer,
@@ -271,13 +271,13 @@ pub(super) struct WeatherOut {
     stride: usize,
 }
 
-/// Checks the caller's room for an answer.
+/// Checks a caller's output structs.
 ///
 /// # Safety
 /// `answer` is NULL or a `wk_weather`; `layers` is NULL or has `capacity` elements of `stride` bytes.
 ///
 /// # Errors
-/// The wrong parameter by name.
+/// Names the wrong parameter.
 pub(super) unsafe fn weather_out(
     layers: *mut wk_cloud_layer,
     capacity: u32,
@@ -295,10 +295,10 @@ pub(super) unsafe fn weather_out(
 }
 
 impl WeatherOut {
-    /// Writes a weather; its clouds go to the caller's layers.
+    /// Writes a weather; its clouds are written to the caller's layers.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] if there are more layers than room; then nothing is written.
+    /// [`Status::InvalidArgument`] if there are more layers than `capacity`; then nothing is written.
     pub(super) fn set(self, w: &Weather) -> Result<()> {
         if w.clouds.len() > self.capacity {
             let accepted = format!("at least {} here (16 always suffice)", w.clouds.len());

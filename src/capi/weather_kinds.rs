@@ -1,6 +1,6 @@
 //! Kinds of weather
 //!
-//! Kinds that a report names by words. The numbers never change.
+//! Kinds that a report names by words. Their numbers never change.
 
 /// Kind of the air's dry particles.
 pub type wk_aerosol_kind = u32;
@@ -27,11 +27,11 @@ pub const WK_AEROSOL_ARCTIC: wk_aerosol_kind = 9;
 
 /// Fog and mist: suspended droplets at the ground.
 pub type wk_fog_kind = u32;
-/// No fog: the aerosol takes what visibility lacks.
+/// No fog: all extinction that the reported visibility requires beyond the air's is aerosol.
 pub const WK_FOG_NONE: wk_fog_kind = 0;
 /// Mist (METAR BR): droplets, 1 to 5 km.
 pub const WK_FOG_MIST: wk_fog_kind = 1;
-/// Shallow fog (METAR MIFG): below 2 m, clear above.
+/// Shallow fog (METAR MIFG): up to 2 m, clear above.
 pub const WK_FOG_SHALLOW: wk_fog_kind = 2;
 /// Patches of fog (METAR BCFG).
 pub const WK_FOG_PATCHES: wk_fog_kind = 3;
@@ -42,7 +42,7 @@ pub const WK_FOG_FOG: wk_fog_kind = 5;
 /// Freezing fog (METAR FZFG): supercooled droplets.
 pub const WK_FOG_FREEZING: wk_fog_kind = 6;
 
-/// Cloud genera, and the two that METAR names.
+/// Cloud genera, and the two kinds that METAR names.
 pub type wk_cloud_kind = u32;
 /// Not known: Welkin chooses by height, cover and precipitation.
 pub const WK_CLOUD_UNKNOWN: wk_cloud_kind = 0;
@@ -69,9 +69,9 @@ pub const WK_CLOUD_CIRROSTRATUS: wk_cloud_kind = 10;
 /// High ripples of ice.
 pub const WK_CLOUD_CIRROCUMULUS: wk_cloud_kind = 11;
 
-/// Kind of precipitation. For the types of rain choose: frontal (stratiform): RAIN, usually 1 to 10 mm/h; convective:
-/// RAIN with WK_PRECIPITATION_SHOWERS, 10 to 100 mm/h; relief (orographic), with many small drops: DRIZZLE, 0.5 to 3
-/// mm/h; drizzle: DRIZZLE, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each.
+/// Kind of precipitation. For the types of rain choose: frontal (stratiform) rain: RAIN, usually 1 to 10 mm/h;
+/// convective rain: RAIN with WK_PRECIPITATION_SHOWERS, 10 to 100 mm/h; relief (orographic) rain, with many small
+/// drops: DRIZZLE, 0.5 to 3 mm/h; drizzle: DRIZZLE, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each.
 pub type wk_precipitation_kind = u32;
 /// Nothing falls; the rate must be 0.
 pub const WK_PRECIPITATION_NONE: wk_precipitation_kind = 0;
@@ -129,7 +129,7 @@ pub const WK_SURFACE_STANDING_WATER: wk_surface_state = 3;
 pub const WK_SURFACE_FROST: wk_surface_state = 4;
 /// Ice.
 pub const WK_SURFACE_ICE: wk_surface_state = 5;
-/// Lying snow; see snow_depth_m.
+/// Lying snow; see surface_snow_depth_m.
 pub const WK_SURFACE_SNOW: wk_surface_state = 6;
 
 #[cfg(test)]

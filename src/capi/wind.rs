@@ -1,8 +1,8 @@
 //! Queries: wind and rain
 //!
-//! How the air moves and how far it has moved, what falls through it, and what lands on a surface, at any place and any
-//! simulation time that the timeline still knows. The answers are in closed form and need no device. Vectors are (east,
-//! north, up) at the place. Only wk_context_get_rain_on_at knows shelters.
+//! Velocity and displacement of the air, precipitation, and rain on surfaces, at any place and any simulation time that
+//! the timeline still knows. The answers are in closed form and need no device. Vectors are (east, north, up) at the
+//! place. Only wk_context_get_rain_on_at takes shelters into account.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -36,11 +36,11 @@ pub struct wk_wind {
     pub velocity_m_s: [f64; 3],
     /// Mean velocity, without gusts, m/s.
     pub mean_m_s: [f64; 3],
-    /// Displacement of the air at 10 m since simulation time 0, gusts included, m; the same at every place. Move what
-    /// the air carries by differences of this, never by velocity times time: it is continuous whatever the weather
-    /// does, and the same to the last bit on every channel.
+    /// Displacement of the air at 10 m since simulation time 0, gusts included, m; the same at every place. Move
+    /// objects that the air carries by differences of this displacement, never by velocity times time: it stays
+    /// continuous through all changes of the weather, and is equal to the last bit on every channel.
     pub displacement_m: [f64; 3],
-    /// Standard deviation of gusts along the mean wind, m/s.
+    /// Standard deviation of the wind speed along the mean wind, by gusts, m/s.
     pub gust_deviation_m_s: f64,
 }
 
@@ -68,10 +68,10 @@ pub struct wk_rainfall {
     pub next: *const c_void,
     /// Rate of rain and drizzle on level ground, mm/h.
     pub rate_mm_h: f64,
-    /// Drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al. 1968; scaled
-    /// so that they give the rate).
+    /// Number of drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al.
+    /// 1968; scaled so that they give the rate).
     pub number_per_m3: f64,
-    /// Water in the air, g/m^3.
+    /// Liquid water in the air, g/m^3.
     pub liquid_g_m3: f64,
     /// Extinction by the drops, 1/m.
     pub extinction_per_m: f64,
@@ -79,22 +79,22 @@ pub struct wk_rainfall {
     pub mean_diameter_mm: f64,
     /// Median volume diameter, mm: half of the water in the air is in smaller drops.
     pub median_volume_diameter_mm: f64,
-    /// Drops that land on level ground, 1/(m^2 s).
+    /// Number of drops that land on level ground, 1/(m^2 s).
     pub drops_per_m2_s: f64,
-    /// Velocity of the median drop of the falling water, m/s: half of the water falls steeper, the other half flatter.
-    /// Draw occluder maps along its direction. It falls at Gunn and Kinzer's (1949) speed and moves with the wind at 10
-    /// m.
+    /// Velocity of the median drop of the falling water, m/s: half of the water falls more steeply, the other half
+    /// less. Render occluder maps along its direction. The drop falls at the speed of Gunn and Kinzer (1949) and moves
+    /// with the wind at 10 m.
     pub fall_velocity_m_s: [f64; 3],
     /// Hail, small hail and ice pellets on level ground, mm/h of melted water.
     pub ice_mm_h: f64,
-    /// Stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), pellets of 0.5 to 5 mm, which are frozen
-    /// raindrops.
+    /// Number of stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), or pellets of 0.5 to 5 mm,
+    /// which are frozen raindrops.
     pub stones_per_m3: f64,
     /// Extinction by the stones, 1/m.
     pub stone_extinction_per_m: f64,
     /// Mean diameter of the stones in the air, mm.
     pub stone_diameter_mm: f64,
-    /// Stones that land on level ground, 1/(m^2 s).
+    /// Number of stones that land on level ground, 1/(m^2 s).
     pub stones_per_m2_s: f64,
 }
 
@@ -144,11 +144,11 @@ impl wk_rainfall {
 pub struct wk_rain_surface {
     /// Position in the host's world, m.
     pub position_m: [f64; 3],
-    /// Normal of its wet side, (east, north, up) of the place; of any length but 0.
+    /// Normal of the surface's wet side, (east, north, up) at the place; of any length but 0.
     pub normal: [f64; 3],
-    /// Its velocity, m/s (east, north, up). Range [-1000, 1000] each.
+    /// Velocity of the surface, m/s (east, north, up). Range [-1000, 1000] each.
     pub velocity_m_s: [f64; 3],
-    /// Its area, m^2. Range [0, 1e6].
+    /// Area of the surface, m^2. Range [0, 1e6].
     pub area_m2: f64,
 }
 
@@ -156,7 +156,7 @@ pub struct wk_rain_surface {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain_on {
-    /// Water, mm/h, which is litres for each square metre and hour.
+    /// Water, mm/h, which is litres per square metre and hour.
     pub rate_mm_h: f64,
     /// Drops of 0.1 to 6 mm on the whole surface, 1/s.
     pub drops_per_s: f64,
@@ -169,11 +169,11 @@ impl wk_rain_on {
 }
 
 /// Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
-/// the ground's roughness up to 100 m, and above grows and veers to the geostrophic wind (docs/clouds.md). Gusts have
-/// Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the station's
-/// altitude above mean sea level, and reported wind holds 10 m above it. A host with terrain asks at the station's
-/// altitude plus the height above its own ground. At and below the roughness length there is no wind. Thread:
-/// concurrent. Errors: as wk_context_get_conditions.
+/// the ground's roughness up to 100 m; above that it grows and veers to the geostrophic wind (docs/clouds.md). Gusts
+/// have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the
+/// station's altitude above mean sea level; the reported wind is the wind 10 m above it. A host with terrain should
+/// query the station's altitude plus the height above its own ground. At and below the roughness length there is no
+/// wind. Thread: concurrent. Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_wind_at(
     context: *const wk_context,
@@ -198,9 +198,9 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
     })
 }
 
-/// Gets what falls at a place of the host's world and a simulation time. What falls begins in the lower half of the
-/// clouds, at most 500 m above their bases, averaged over what covers the sky; above that nothing falls. Thread:
-/// concurrent. Errors: as wk_context_get_conditions.
+/// Gets the precipitation at a place of the host's world and a simulation time. It begins in the lower half of the
+/// clouds, at most 500 m above their bases, averaged over the clouds that cover the sky; above that nothing falls.
+/// Thread: concurrent. Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_rainfall_at(
     context: *const wk_context,
@@ -219,13 +219,13 @@ pub unsafe extern "C" fn wk_context_get_rainfall_at(
     })
 }
 
-/// Gets what lands on surfaces at a simulation time, at most wk_caps.max_batch of them. Every size of drop comes along
-/// its own slant, in the wind at 10 m with its gusts and in the wind that the surface makes by moving. A windscreen at
-/// 25 m/s meets far more than the ground. Boxes (wk_context_set_shelters) keep rain off where they shelter a point 5 cm
-/// before the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
+/// Gets the rain on surfaces at a simulation time, at most wk_caps.max_batch of them. Drops of each size arrive along
+/// their own slant, in the wind at 10 m with its gusts and relative to the moving surface. A windscreen at 25 m/s meets
+/// far more than the ground. Boxes (wk_context_set_shelters) keep rain off where they shelter a point 5 cm in front of
+/// the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
 /// sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
 /// Thread: concurrent.
-/// Errors: as wk_context_get_conditions; the field of a surface by name and range.
+/// Errors: as wk_context_get_conditions; the wrong field of a surface with its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_rain_on_at(
     context: *const wk_context,

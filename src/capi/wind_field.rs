@@ -1,10 +1,10 @@
 //! Wind round terrain and buildings
 //!
-//! A context can solve for the wind in a box of air about a place: it goes round the terrain of
-//! wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too,
-//! comes in as the weather's wind and leaves behind. It acts where a wind grid of your own would
-//! (wk_context_set_wind_grid): in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on drops and
-//! flakes near a camera. Nothing is solved unless you ask for it.
+//! A context can solve for the wind in a box of air about a place. The wind enters the box as the weather's, flows
+//! round the terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of
+//! wk_context_set_shelters, including moving ones, and leaves on the downwind side. The field has effect where a wind
+//! grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in the rain on surfaces and
+//! windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -23,24 +23,24 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_wind_field.rs"));
 
-/// How a wind field is led through time.
+/// Time dependence of a wind field.
 pub type wk_wind_field_mode = u32;
-/// The mean wind: solved for over the first moments after the wind or an obstacle has changed, then it rests at no
-/// cost. Gusts are as strong, against the weather's, as the mean is there.
+/// The mean wind. It is solved for over the first moments after the wind or an obstacle has changed; after that it
+/// rests at no cost. The weather's gusts are scaled in proportion to the local mean wind.
 pub const WK_WIND_FIELD_STEADY: wk_wind_field_mode = 0;
-/// The wind with gusts, the whirls that come in with it and those that obstacles shed, stepped all the time.
-/// docs/wind-field.md says what sizes a core keeps up with.
+/// The wind with gusts, with the eddies that it brings and those that obstacles shed, stepped all the time.
+/// docs/wind-field.md has the sizes that a CPU core can keep up with.
 pub const WK_WIND_FIELD_RUNNING: wk_wind_field_mode = 1;
 
-/// Effect of terrain and boxes on air that passes along them.
+/// Friction of terrain and boxes on air that flows along them.
 pub type wk_wind_walls = u32;
-/// They slow it, by the weather's roughness length.
+/// Terrain and boxes slow the air, by the weather's roughness length.
 pub const WK_WIND_WALLS_ROUGH: wk_wind_walls = 0;
-/// It slides.
+/// Air slides along them without friction.
 pub const WK_WIND_WALLS_SMOOTH: wk_wind_walls = 1;
 
 /// A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and
-/// top it goes over into the weather's wind.
+/// top it blends into the weather's wind.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_wind_field {
@@ -50,8 +50,8 @@ pub struct wk_wind_field {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Middle of the field's floor, in the host's world, m, within 1e12 m of the origin: no higher than the lowest
-    /// ground that matters. Where it moves the field follows by whole cells. Default 0, 0, 0.
+    /// Middle of the field's floor, in the host's world, m, within 1e12 m of the origin; no higher than the lowest
+    /// ground that matters. When it moves, the field follows by whole cells. Default 0, 0, 0.
     pub floor_center_m: [f64; 3],
     /// Size of a cell east, north and up, m, the longest at most 8 times the shortest. Range [0.05, 1000], default 4,
     /// 4, 4.
@@ -64,8 +64,8 @@ pub struct wk_wind_field {
     pub walls: wk_wind_walls,
     /// Must be 0.
     pub reserved0: u32,
-    /// Memory that the field may take, bytes; more is refused, and the message says how much is needed. Range [1048576,
-    /// 17179869184], default 1073741824.
+    /// Largest memory for the field, bytes. A field that needs more is refused, and the message says how much it needs.
+    /// Range [1048576, 17179869184], default 1073741824.
     pub most_bytes: u64,
 }
 
@@ -95,7 +95,7 @@ impl wk_wind_field {
     }
 }
 
-/// How a wind field stands.
+/// State of a wind field.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_wind_field_report {
@@ -105,23 +105,23 @@ pub struct wk_wind_field_report {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// 1: there is a field. 0: none is set, its time has not come, or its first steady state is still being solved for;
-    /// all else is 0 then.
+    /// 1: there is a field. 0: none is set, its start time has not come, or its first steady state is still being
+    /// solved for; all other fields are 0 then.
     pub present: u32,
-    /// 1: it is steady and rests; nothing is stepped.
+    /// 1: the field is steady and rests; nothing is stepped.
     pub rests: u32,
     /// Simulation time of the field, s: the present, or up to one step before it.
     pub time_s: f64,
-    /// Simulation time at which it last began from a steady field, s: when it was first set, after a leap of more than
-    /// 60 s, or far off.
+    /// Simulation time at which the field last began from a steady state, s: when it was first set, after a leap of
+    /// more than 60 s, or after a move too far for its cells to follow.
     pub begun_s: f64,
-    /// Length of its steps, s.
+    /// Length of the field's steps, s.
     pub step_s: f64,
-    /// Its lowest corner, farthest to the south-west, in the host's world, m.
+    /// Lowest, south-western corner of the field, in the host's world, m.
     pub corner_m: [f64; 3],
-    /// The largest component of the wind anywhere in it, m/s.
+    /// Largest component of the wind anywhere in the field, m/s.
     pub fastest_m_s: f64,
-    /// Memory that it may take, bytes.
+    /// Memory that the field may use, bytes.
     pub bytes: u64,
 }
 
@@ -155,11 +155,12 @@ impl wk_wind_field_report {
     }
 }
 
-/// Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. The
-/// same size, mode and walls at another place move it by whole cells; anything else begins it anew. wk_context_update
-/// leads it in steps on a grid anchored at time 0, whatever is drawn: the same on every channel. It begins with the
-/// steady field of its first moment. Part of the saved state. Unchanged after an error. Thread: exclusive. Errors:
-/// WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
+/// Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. A
+/// field with the same size, mode and walls at another place moves there by whole cells; any other field begins anew.
+/// wk_context_update advances it in steps on a grid anchored at time 0, whatever is drawn, so it is the same on every
+/// channel. It begins with the steady field of its first moment. Part of the saved state. Unchanged after an error.
+/// Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time
+/// that has passed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_wind_field(
     context: *mut wk_context,
@@ -181,9 +182,9 @@ pub unsafe extern "C" fn wk_context_set_wind_field(
     })
 }
 
-/// How the wind field stands now.
+/// Gets the state of the wind field now.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for a structure that is none.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid output struct.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_wind_field_report(
     context: *const wk_context,

@@ -1,9 +1,9 @@
 //! Wind that varies in space
 //!
 //! If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
-//! They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, on patches of fog and dust, and on
-//! drops and flakes near a camera, in place of a wind field's (wk_context_set_wind_field). Everything else follows the
-//! weather's wind.
+//! They act in wk_context_get_wind_at, in the rain on surfaces and windscreens, on patches of fog and dust, and on
+//! drops and flakes near a camera, in place of those of a wind field (wk_context_set_wind_field). Everything else
+//! follows the weather's wind.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -30,8 +30,8 @@ pub const WK_WIND_GRID_WHOLE: wk_wind_grid_kind = 0;
 /// A difference: added to the weather's wind.
 pub const WK_WIND_GRID_ADDED: wk_wind_grid_kind = 1;
 
-/// Velocities of the air at the nodes of a grid that is level and aligned to true north, linear between nodes along
-/// each axis. Outside the grid the weather's wind blows: make the grid large enough for the flow to have become that
+/// Velocities of the air at the nodes of a grid that is level and aligned to true north, interpolated linearly between
+/// nodes along each axis. Outside the grid the weather's wind blows: make the grid so large that the flow equals that
 /// wind at its border.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -42,16 +42,16 @@ pub struct wk_wind_grid {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The lowest node farthest to the south-west, in the host's world, m, within 1e12 m of the origin. Default 0, 0,
-    /// 0.
+    /// Position of the lowest, south-western node, in the host's world, m, within 1e12 m of the origin. Default 0,
+    /// 0, 0.
     pub origin_m: [f64; 3],
     /// Distance between nodes east, north and up, m. Range [0.01, 10 000], default 1, 1, 1.
     pub cell_m: [f64; 3],
-    /// Number of nodes east, north and up. Range 2 to 64, 64 and 32, default 2, 2, 2.
+    /// Number of nodes east, north and up. Range 2 to 64 east and north, 2 to 32 up; default 2, 2, 2.
     pub nodes: [u32; 3],
     /// A WK_WIND_GRID_ constant, default WK_WIND_GRID_WHOLE.
     pub kind: wk_wind_grid_kind,
-    /// Three numbers for each node (east, north, up), m/s, of at most 300 m/s together. Nodes run from west to east,
+    /// Three numbers for each node (east, north, up), m/s, each vector of at most 300 m/s. Nodes run from west to east,
     /// rows from south to north, layers upwards. Copied by the call.
     pub velocities_m_s: *const f32,
     /// Number of nodes in velocities_m_s: the product of `nodes`.
@@ -75,7 +75,7 @@ impl wk_wind_grid {
     };
 }
 
-/// Sets a wind that varies in space, in place of the one before; NULL removes it. Unchanged after an error.
+/// Sets a wind that varies in space and replaces the one set before; NULL removes it. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

@@ -1,15 +1,15 @@
 //! Water on the windscreen
 //!
-//! A view may look through a window. Rain lands on it at the rate and speed at which the window meets it. Beads merge,
-//! run down by gravity or up by the air, are wiped, and bend the picture behind them. Mist on the inside blurs the
-//! picture. Snow lies on it until wipers take it or heat melts it. The stage LENS draws this over everything drawn so
-//! far, inside the window only; pixels of the mask stay. In a call with TONE the glass lies before the tone curve if
-//! the target is a float one, else after it.
+//! A view may look through a window. Rain lands on it at the rate and speed with which the window meets the drops.
+//! Beads merge, run down by gravity or up with the air, are wiped, and refract the picture behind them. Mist on the
+//! inside blurs the picture. Snow lies on the window until wipers remove it or heat melts it. The stage LENS draws this
+//! over everything drawn so far, inside the window only; pixels of the mask stay. In a call with TONE, the glass is
+//! drawn before the tone curve if the target is a float one, else after it.
 //!
 //! The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
-//! WK_STAGE_PREPARE or the first stage after it. The frame rate changes nothing, and views of one seed and history
-//! agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a frame comes more than half a second after the
-//! one before, the water takes the declared state of that moment: a function of seed, time and rain. With
+//! WK_STAGE_PREPARE or the first stage after it. The water does not depend on the frame rate, and views of one seed and
+//! history agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a frame comes more than half a second
+//! after the one before, the water takes the default state of that moment: a function of seed, time and rain. With
 //! WK_FRAME_NO_HISTORY it always has that state. Without a windscreen, or where it is dry and clear, LENS costs
 //! nothing.
 
@@ -48,8 +48,8 @@ pub struct wk_wiper_arm {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Pivot, m right of and above the pane's lower left corner (that of its bounds), along the glass. Range [-4, 12]
-    /// each. Default 0, 0.
+    /// Position of the pivot along the glass, m right of and above the lower left corner of the pane or of its bounds.
+    /// Range [-4, 12] each. Default 0, 0.
     pub pivot_m: [f64; 2],
     /// Distance from the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6.
     pub length_m: f64,
@@ -60,7 +60,8 @@ pub struct wk_wiper_arm {
     pub parked_deg: f64,
     /// Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90.
     pub far_deg: f64,
-    /// Position of the blade in this frame: 0 parked, 1 at the far end. Between two frames it moves evenly. Default 0.
+    /// Position of the blade in this frame: 0 parked, 1 at the far end. Between two frames it moves at constant speed.
+    /// Default 0.
     pub position: f64,
     /// Width of the rubber on the glass, m. Range [0, 0.1], default 0.006.
     pub blade_width_m: f64,
@@ -97,24 +98,24 @@ pub struct wk_windscreen {
     pub arm_count: u32,
     /// Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower
     /// left, lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex,
-    /// edges in [0.05, 8] m, within 20 m. Its slope against gravity follows from the frame's view matrix. Default 1 m x
-    /// 0.6 m across the view, 0.7 m away.
+    /// edges in [0.05, 8] m, within 20 m. Its slope relative to gravity follows from the frame's view matrix. Default 1
+    /// m x 0.6 m across the view, 0.7 m away.
     pub corners_m: [f64; 12],
     /// Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6.
     pub distance_m: f64,
-    /// Velocity of the glass relative to the air (the vehicle's minus the wind's) in the camera's axes, m/s: decides
-    /// how many drops it meets. Range [-400, 400] each, default 0, 0, 0.
+    /// Velocity of the glass relative to the air (the vehicle's minus the wind's) in the camera's axes, m/s; it decides
+    /// how many drops the glass meets. Range [-400, 400] each, default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
-    /// Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the
+    /// Speed of the air along the glass at the drops' height, upwards, m/s; it drives the beads. About 0.7 of the
     /// vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
     pub airflow_m_s: f64,
-    /// Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as
+    /// Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as a
     /// shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box does
-    /// not count: one that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
+    /// not count: a box that holds the camera and ends within 3 m in front of the glass. Range [0, 1], default 1.
     pub exposed: f64,
-    /// Mist on the inside. Range [0, 1], default 0.
+    /// Amount of mist on the inside. Range [0, 1], default 0.
     pub fogging: f64,
-    /// How far the blower has cleared the mist, from the lower edge upwards. Range [0, 1], default 0.
+    /// Share of the pane that the blower has cleared of mist, from the lower edge upwards. Range [0, 1], default 0.
     pub demist: f64,
     /// The wipers; may be NULL if there are none. Read during the call only.
     pub arms: *const wk_wiper_arm,
@@ -122,8 +123,8 @@ pub struct wk_windscreen {
     pub arm_stride: u32,
     /// Must be 0.
     pub reserved0: u32,
-    /// Heat that the glass gets from wires in it or from a blower, W/m^2: melts snow, once it outweighs what cold air
-    /// takes. A heated windscreen has some 600. Range [0, 3000], default 0.
+    /// Heat that wires in the glass or a blower give to it, W/m^2. It melts snow once it exceeds the loss to cold air.
+    /// A heated windscreen has about 600. Range [0, 3000], default 0.
     pub heat_w_m2: f64,
 }
 
@@ -158,17 +159,17 @@ pub struct wk_windscreen_report {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Drops that hit the pane in a second (rain from 0.1 mm of diameter).
+    /// Number of drops that hit the pane in a second (rain drops from 0.1 mm in diameter).
     pub drops_per_s: f64,
-    /// Water that hits it, mm/h on its area.
+    /// Rate of the water that hits the pane, mm/h on its area.
     pub water_mm_h: f64,
     /// Share of the pane under water, 0 to 1.
     pub covered: f64,
-    /// Water on it, kg.
+    /// Mass of the water on the pane, kg.
     pub water_kg: f64,
     /// Simulation time of the state, s.
     pub state_time_s: f64,
-    /// Water in the snow on it, kg.
+    /// Mass of the water in the snow on the pane, kg.
     pub snow_kg: f64,
 }
 
@@ -187,7 +188,7 @@ impl wk_windscreen_report {
 }
 
 /// # Safety
-/// `p` is a `wk_windscreen` with the arms it names.
+/// `p` is a `wk_windscreen` with the arms that it counts.
 unsafe fn windscreen(p: *const wk_windscreen) -> Result<Windscreen> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&"windscreen", p)? };
@@ -235,7 +236,7 @@ unsafe fn windscreen(p: *const wk_windscreen) -> Result<Windscreen> {
 
 /// Sets the window that the view looks through; NULL removes it. If you drive, wipe or turn the camera, set it again
 /// before each frame: the water stays on the glass as long as the glass keeps its size. Unchanged after an error. With
-/// a window the stage LENS answers WK_ERROR_UNSUPPORTED for multisampled colour and for projections of parallel rays.
+/// a window, recording the stage LENS gives WK_ERROR_UNSUPPORTED for multisampled colour and for parallel projections.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -251,8 +252,8 @@ pub unsafe extern "C" fn wk_view_set_windscreen(view: *mut wk_view, windscreen: 
 }
 
 /// Gets how much water is on the view's windscreen as of its last frame, and how much lands on it. Reads the state back
-/// and waits for the GPU: call it now and then, not in every frame. All 0 without a windscreen or before its first
-/// frame.
+/// and waits for the GPU: call it now and then, not in every frame. All 0 without a windscreen or before the view's
+/// first frame.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]

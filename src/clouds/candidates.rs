@@ -1,4 +1,4 @@
-//! The ways to draw clouds that are charted against each other, with what they cost.
+//! Candidates for drawing clouds, which the lab charts against each other, and their cost.
 
 use super::{model::CloudModel, settings::CloudSettings};
 use crate::plan::{
@@ -6,19 +6,19 @@ use crate::plan::{
     parts::{Part, Worth},
 };
 
-/// Clouds, at two rungs: layers of a volume, or the grey deck in their place. How much they matter: 0.4 in the
-/// machinery trainer's experiment.
+/// Clouds as a part of the plan, with two rungs: layers drawn as volumes, or the grey deck in their place. The
+/// importance of 0.4 is from the machinery trainer's experiment.
 pub const CLOUDS: Part =
     Part { name: "clouds", rungs: &["volume", "deck"], importance: 0.4, worth: Worth::Estimated(4) };
 
-/// Work of the volume in a pixel that looks towards it, and in any pixel, in units of a pixel with none of the parts,
-/// measured on a software driver (`cargo bench --bench speed -- clouds`): 34 copies beyond a clear sky, whose frame has
-/// 20.
+/// Work of the volume in a pixel that looks towards clouds (`MARCHED`) and in any pixel (`LAID`). The unit is the work
+/// of a pixel with none of the parts. Measured on a software driver (`cargo bench --bench speed -- clouds`): the volume
+/// adds 34 copies to a clear sky, whose frame has 20.
 const MARCHED: f64 = 2.0;
 const LAID: f64 = 0.3;
 
-/// Work of the step from the volume to the deck in a picture of so many pixels, a share of which looks towards the
-/// clouds.
+/// Returns the work of the step from the volume to the deck in a picture of `pixels` pixels. `share` is the share of
+/// them that look towards clouds.
 pub(crate) fn clouds_work(pixels: u64, share: f64) -> StepWork {
     StepWork { fixed: pixels as f64 * (LAID + share * MARCHED), ..StepWork::default() }
 }
@@ -28,13 +28,13 @@ pub(crate) fn clouds_work(pixels: u64, share: f64) -> StepWork {
 pub struct CloudMethod {
     /// Model that is drawn.
     pub model: CloudModel,
-    /// How finely.
+    /// Settings of the volume.
     pub settings: CloudSettings,
 }
 
-/// Work of a ray: steps, of which each reads the map and the noise, and the light where there is cloud.
+/// Work of a ray: each step reads the map and the noise, and the light where there is cloud.
 const RAY: Units = Units { samples: 60.0, texels: 120.0, bytes: 0.0 };
-/// Work of a pixel that is followed back and laid over the sky.
+/// Work of a pixel that is reprojected from the frame before and laid over the sky.
 const FOLLOWED: Units = Units { samples: 3.0, texels: 10.0, bytes: 32.0 };
 
 /// Work of a pixel of the deck.
@@ -50,7 +50,7 @@ impl CloudMethod {
     }
 }
 
-/// All candidates.
+/// Returns all candidates.
 pub fn candidates() -> Vec<Listed<CloudMethod>> {
     let volume = |fineness, square_side| CloudMethod {
         model: CloudModel::Volume,

@@ -1,4 +1,4 @@
-//! State of the clouds that a context holds: how they are drawn, and where they grow, for questions.
+//! Clouds of a context: the model that draws them, and the noise that says where they grow, for the host's questions.
 
 use std::sync::{Arc, OnceLock};
 
@@ -20,19 +20,19 @@ use crate::{
 #[derive(Clone, Default)]
 pub(crate) struct HeldClouds {
     pub model: CloudModel,
-    /// Noise that clouds are cut out of: made when it is first asked for.
+    /// Noise that clouds are cut out of, created at first use.
     grown: Arc<OnceLock<CloudNoise>>,
 }
 
-/// Where they are in a saved state.
+/// Keys of the model in a saved state.
 const TABLE: &str = "settings";
 const KEY: &str = "clouds";
 
 impl HeldClouds {
-    /// Takes its part out of a saved state.
+    /// Takes the clouds' part out of a saved state.
     ///
     /// # Errors
-    /// [`crate::Status::Parse`] for what is no model.
+    /// [`crate::Status::Parse`] for a value that is no model.
     pub fn read(state: &mut toml::Table) -> Result<Self> {
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
         let Some(value) = settings.and_then(|s| s.remove(KEY)) else { return Ok(Self::default()) };
@@ -40,12 +40,12 @@ impl HeldClouds {
         Ok(Self { model, ..Self::default() })
     }
 
-    /// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place: of a
-    /// volume through the clouds that it draws there, of a deck the mean over all places. `eye` is the place in the
-    /// host's world.
+    /// Returns the share of the direct light of the brighter of sun and moon that clouds let through to a scene's
+    /// place. A volume is evaluated along the ray to the light; a deck answers the mean over all places. `eye` is the
+    /// place in the host's world.
     ///
     /// # Errors
-    /// As [`super::field::Solid::new`], and for a time that the weather does not know.
+    /// As [`super::field::Solid::new`], and for a time outside the weather.
     pub fn sun_share(
         &self,
         seed: u64,
@@ -77,7 +77,8 @@ impl HeldClouds {
         Ok(self.grown.get_or_init(|| grown))
     }
 
-    /// The clouds about a scene's place, which is `eye` in the host's world, where the model draws them as a volume.
+    /// Returns the clouds around a scene's place where the model draws them as a volume. `eye` is the place in the
+    /// host's world.
     ///
     /// # Errors
     /// As [`HeldClouds::sun_share`].
@@ -89,7 +90,7 @@ impl HeldClouds {
         radius_m: f64,
     ) -> Result<Option<CloudRays<'_>>> {
         let query = LayersQuery { scene, eye, weather, time_s };
-        // Nothing is made for a sky that has no clouds.
+        // A clear sky needs no noise.
         if query.is_clear() {
             return Ok(None);
         }

@@ -1,32 +1,33 @@
-//! Clouds: layers of a volume that one can fly through, or the grey deck in their place.
+//! Clouds: layers drawn as volumes that one can fly through, or the grey deck in their place.
 //!
 //! # Model
-//! * Where there is cloud, [`field`]: a map that says how strongly cloud grows, fixed to the air that carries it, and
-//!   solid noise that frays its edges; [`cover`] finds how much of the map is cloud where a cover is asked for.
-//! * What light does in it, [`light`] with the tables of [`transport`]: scattered once as it is, more often as in a box
-//!   of the depths about a place. Ice makes a [`halo`]. [`mod@reference`] follows photons through boxes, [`traced`]
-//!   through the field itself.
-//! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the
-//!   frame before.
-//! * What mirrors and cube maps show of it: `maps::panorama`, a small map of all directions.
-//! * A host's map of where clouds stand, and cloud over rain areas: `field::placed`, `field::layer_map`,
-//!   `field::cells`.
-//! * What lamps and flashes make of it: [`lamp_light`], a small picture of its own (`light::lamps`).
-//! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures and for a host's own
-//!   materials (`maps::handed`).
+//! * [`field`] says where there is cloud. A map fixed to the moving air says how strongly cloud grows at each place,
+//!   and solid noise frays the edges. [`cover`] finds the threshold at which the clouds of the map have the cover that
+//!   is asked for.
+//! * [`light`] computes the light in clouds, with the tables of [`transport`]. Light scattered once keeps the true
+//!   phase function. Light scattered more often is that in a box with the depths of cloud around the place. Ice cloud
+//!   makes a [`halo`]. [`mod@reference`] traces photons through boxes, [`traced`] through the field itself.
+//! * A picture marches the ray of one pixel in sixteen in each frame and takes the other pixels over from the frame
+//!   before.
+//! * Mirrors and cube maps show clouds from `maps::panorama`, a small map of all directions.
+//! * A host's map of cover and the cloud over rain areas: `field::placed`, `field::layer_map`, `field::cells`.
+//! * Lamps and lightning flashes light clouds by [`lamp_light`], in a small picture of its own (`light::lamps`).
+//! * [`shadow`]: the light that clouds let through to a place. Pictures and a host's own materials read it from a map
+//!   (`maps::handed`).
 //!
 //! The deck is drawn with the sky (`shaders/between/sky.wgsl`).
 //!
 //! # Folders
-//! Each uses those before it. [`field`] says where cloud is: shape, threshold, cells and maps of cover, and
-//! `field::overhead`, the one query of the layers over a place. [`light`] says how bright cloud is. `drawn` marches
-//! rays and holds what a picture is drawn with. `maps` has the map of shadows and that of all directions. `view` and
-//! `passes` put them together for a frame, `held` for a host's questions.
+//! Each folder uses only those before it. [`field`] says where cloud is: shape, threshold, cells and maps of cover, and
+//! `field::overhead`, the one query for the layers over a place. [`light`] says how bright cloud is. `drawn` marches
+//! rays and holds the GPU resources of a picture. `maps` has the shadow map and the panorama. `view` and `passes`
+//! combine them for a frame, `held` for a host's questions.
 //!
 //! # Error
-//! Of the drawn light: even slabs within 5 % or 0.01 of discrete ordinates, each face of a cube within 15 % or 0.03 of
-//! what falls on the cube (`cargo test --lib clouds::drawn::probe -- --nocapture`); along rays through the field,
-//! against photons, what `lab photons` prints, most under a low sun. Of the cover that is seen: 3 points ([`cover`]).
+//! Drawn light: even slabs within 5 % or 0.01 of discrete ordinates; each face of a cube within 15 % or 0.03 of the
+//! light that falls on the cube (`cargo test --lib clouds::drawn::probe -- --nocapture`). Rays through the field are
+//! compared with photons by `lab photons`; the error is largest under a low sun. Cover as seen: 3 percentage points
+//! ([`cover`]).
 
 #[cfg(not(feature = "lab"))]
 pub(crate) mod candidates;

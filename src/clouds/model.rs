@@ -2,20 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How clouds are drawn.
+/// Model by which clouds are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CloudModel {
     /// A grey deck in closed form where more than half of the sky is covered; broken clouds only dim the light. The
-    /// cheapest.
+    /// cheapest model.
     Deck,
-    /// Layers of a volume, marched ray by ray; a closed one seen from below is a deck. The default.
+    /// Layers drawn as volumes, marched ray by ray. A closed layer seen from below is drawn as a deck. The default.
     #[default]
     Volume,
 }
 
 impl CloudModel {
-    /// Its name in saved states.
+    /// Returns its name in saved states.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Deck => "deck",

@@ -1,5 +1,6 @@
-//! The passes of a picture's clouds: some pixels are marched, each square of them is followed back to the last frame,
-//! and the whole picture is made of both. Beside it the clouds of all directions are made, where anything shows them.
+//! Passes of a picture's clouds: march the rays of some pixels, reproject each square of pixels from the last frame,
+//! and resolve the whole picture from both. The panorama of clouds in all directions is drawn too where something shows
+//! it.
 
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ use crate::{
     },
 };
 
-/// The passes of a view.
+/// Passes of a view, with their resources.
 pub(super) struct CloudPasses {
     pub tables: CloudTables,
     pages: Blocks,
@@ -34,34 +35,35 @@ pub(super) struct CloudPasses {
     picture_block: UniformBlock,
     pipelines: Option<Pipelines>,
     picture: Option<Picture>,
-    /// Key and bind group of the march: the tables of the sky, whether the map of shadows is bound, and the group.
+    /// Key and bind group of the march. The key is the bind group of the sky's tables and whether the shadow map is
+    /// bound.
     marched_of: Option<(wgpu::BindGroup, bool, wgpu::BindGroup)>,
     shadows: Option<ShadowMap>,
     round: Option<CloudPanorama>,
-    /// Key and bind group of what shadows fall on: the host's depth image and its layer, and the group.
+    /// Key and bind group of the shadows. The key is the host's depth texture and its layer.
     shaded: Option<(Option<(wgpu::Texture, u32)>, wgpu::BindGroup)>,
     none: wgpu::TextureView,
     no_layers: wgpu::TextureView,
     no_block: UniformBlock,
     lamps_block: UniformBlock,
-    /// Some clouds are elsewhere than their layer's cover says ([`super::field::placed`]).
+    /// Whether some clouds have local cover ([`super::field::placed`]).
     is_placed: bool,
 }
 
-/// Projection of the shadows, and the depth that they fall on.
+/// Projection of the shadows, and the depth of the surfaces that they fall on.
 pub(super) struct Shaded<'a> {
     pub lie: ShadowProjection,
     pub depth: Layer<'a>,
 }
 
-/// Passes that this frame still needs, beside those that an earlier call of it has drawn.
+/// Passes that this frame still needs, after those that its earlier calls have drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Wanted {
-    /// An earlier call has begun the frame.
+    /// Whether an earlier call has begun the frame.
     pub is_begun: bool,
     pub march: bool,
     pub resolve: bool,
-    /// The clouds of all directions are to be made, and shown.
+    /// Whether to draw the panorama (`round`), and whether the picture shows it (`shows_round`).
     pub round: bool,
     pub shows_round: bool,
 }
@@ -71,23 +73,23 @@ pub(super) struct CloudFrame<'a> {
     pub wanted: Wanted,
     pub clouds: CloudsUniform,
     pub picture: PictureUniform,
-    /// The frame's block, and the sky's tables with their layout.
+    /// Uniform block of the frame, and the sky's tables with their layout.
     pub frame: &'a BlockView,
     pub sky: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
-    /// Texture of what stands behind the sky's own light.
+    /// Texture of what stands behind the sky's own light: the stars.
     pub behind: Option<&'a wgpu::Texture>,
     pub shaded: Option<Shaded<'a>>,
-    /// Whether the air before that is shaded too.
+    /// Whether the air in front of the surfaces is shaded too.
     pub has_shafts: bool,
-    /// Lamps and flashes that light them.
+    /// Lamps and flashes that light the clouds.
     pub lamps: Option<LampsUniform>,
-    /// Inputs of the clouds of all directions.
+    /// Inputs of the panorama.
     pub around: PanoramaInputs,
     /// Fineness of the march ([`super::CloudSettings`]).
     pub fineness: f64,
     pub is_coarse: bool,
     pub past: HistoryUse,
-    /// The host's depth has several samples a pixel, and which kinds of depth there are.
+    /// Whether the host's depth has several samples a pixel, and which kinds of depth there are (`depth_kinds`).
     pub is_multisampled: bool,
     pub depth_kinds: f64,
 }
@@ -128,12 +130,12 @@ impl CloudPasses {
         Ok(())
     }
 
-    /// A map of shadows in a texture.
+    /// Creates the shadow map in a texture.
     fn shadow_map(&self, device: &Device, texture: &wgpu::Texture) -> Result<ShadowMap> {
         ShadowMap::new((device, &self.pages), &self.tables, (&self.block, self.is_placed), texture)
     }
 
-    /// Makes textures for a picture of this size, and answers whether the last one's are kept.
+    /// Creates textures for a picture of this size. Returns whether the earlier ones are kept.
     pub fn hold(&mut self, device: &Device, size: (u32, u32), side: u32) -> bool {
         if self.picture.as_ref().is_some_and(|p| p.of == (size, side)) {
             return true;
@@ -142,19 +144,19 @@ impl CloudPasses {
         false
     }
 
-    /// Lets go what is of a picture's size.
+    /// Drops the textures that depend on the picture's size.
     pub fn forget(&mut self) {
         self.picture = None;
     }
 
-    /// The layers that the composition reads: those that this draw writes, or else those that were written last.
+    /// Returns the layers that the composition reads: those that this draw writes, or the last that were written.
     pub fn layers(&self, wanted: &Wanted) -> Option<wgpu::TextureView> {
         let picture = self.picture.as_ref()?;
         let which = if wanted.resolve { picture.to_make(wanted.is_begun) } else { picture.newest };
         Some(picture.whole[which].layers.clone())
     }
 
-    /// Bytes of GPU memory.
+    /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
         let shadows = self.shadows.as_ref().map_or(0, |_| ShadowMap::BYTES);
         let round = self.round.as_ref().map_or(0, |_| CloudPanorama::BYTES);
@@ -198,8 +200,8 @@ impl CloudPasses {
         group
     }
 
-    /// Creates the bind groups of the passes after the march: the one that follows squares, and the one that makes a
-    /// whole picture of each of the two last ones.
+    /// Creates the bind groups of the passes after the march: one for the pass that reprojects squares, and one for
+    /// resolving into each of the two whole pictures.
     fn picture_groups(
         &self,
         device: &Device,
@@ -209,17 +211,17 @@ impl CloudPasses {
     ) -> [wgpu::BindGroup; 3] {
         let none = self.no_past();
         let [least, most, back] = &picture.followed;
-        // All layers: OpenGL finds nothing in a single one.
+        // Bind all layers: on OpenGL a view of a single layer reads nothing.
         let from = |i: usize| [&picture.whole[i].layers, least, most, back];
         [none, from(0), from(1)].map(|past| self.picture_group(device, layout, frame, (&picture.marched, past)))
     }
 
-    /// Returns the textures that stand for the past where there is none.
+    /// Returns placeholder textures for a frame without history.
     fn no_past(&self) -> [&wgpu::TextureView; 4] {
         [&self.no_layers, &self.none, &self.none, &self.none]
     }
 
-    /// Creates the bind group of a pass after the march: the marched pixels, and the past.
+    /// Creates the bind group of a pass after the march, from the marched pixels and the last frame's textures.
     fn picture_group(
         &self,
         device: &Device,
@@ -244,7 +246,7 @@ impl CloudPasses {
         })
     }
 
-    /// Makes the map of shadows, if there is none.
+    /// Creates the shadow map if there is none.
     fn hold_shadows(&mut self, device: &Device) -> Result<()> {
         if self.shadows.is_none() {
             let map = self.shadow_map(device, &ShadowMap::texture(device))?;
@@ -253,8 +255,8 @@ impl CloudPasses {
         Ok(())
     }
 
-    /// Brings the map of shadows up to the frame. Answers the bind group of the depth that they fall on and of the map,
-    /// empty where there are no shadows, and the number of passes.
+    /// Updates the shadow map for the frame. Returns the bind group of the map and of the depth that shadows fall on,
+    /// with placeholders where there are no shadows, and the number of passes.
     fn shade(
         &mut self,
         device: &Device,
@@ -288,12 +290,12 @@ impl CloudPasses {
         Ok((group, passes))
     }
 
-    /// The texture of the map of shadows, if there is one.
+    /// Returns the texture of the shadow map, if there is one.
     pub fn shadow_texture(&self) -> Option<&wgpu::Texture> {
         self.shadows.as_ref().map(|map| map.view.texture())
     }
 
-    /// Brings the map of shadows up to a frame, in a texture that a host's own materials read.
+    /// Updates the shadow map for a frame, in a texture that a host's own materials read.
     pub fn draw_shadows(
         &mut self,
         device: &Device,
@@ -312,7 +314,7 @@ impl CloudPasses {
         Ok(())
     }
 
-    /// Makes what is wanted of a frame. Answers the passes that it took.
+    /// Draws the wanted passes of a frame. Returns their number.
     pub fn draw(
         &mut self,
         device: &Device,
@@ -353,8 +355,8 @@ impl CloudPasses {
         Ok(passes + of_shadows)
     }
 
-    /// Marches a frame's pixels, and makes the picture of them. Answers the passes that took, and those of the map of
-    /// shadows.
+    /// Marches a frame's pixels and resolves its picture. Returns the number of passes, and that of the shadow map's
+    /// passes.
     fn draw_picture(
         &mut self,
         device: &Device,
@@ -367,7 +369,7 @@ impl CloudPasses {
         let has_shadows = inputs.shaded.is_some();
         let is_multisampled = has_shadows && inputs.is_multisampled;
         let has_shafts = has_shadows && inputs.has_shafts;
-        // Shafts stand before the sky too.
+        // Shafts are drawn in front of the sky too.
         let kinds = picture.kinds.as_ref().filter(|_| has_shadows && !has_shafts && !is_multisampled);
         let (depth_kinds, shades_apart) = (inputs.depth_kinds, kinds.is_some());
         let resolve = Resolve { has_history, has_shadows, has_shafts, is_multisampled, depth_kinds, shades_apart };
@@ -379,7 +381,7 @@ impl CloudPasses {
             None => self.picture_groups(device, &pipelines.picture_layout, inputs.frame, picture),
         };
         let mut passes = 1;
-        // A picture begins with more pixels than later frames march.
+        // A picture's first frame marches more pixels than later frames.
         let begins = inputs.picture.side < picture.of.1;
         if !begins {
             picture.begun = None;
@@ -427,7 +429,7 @@ impl CloudPasses {
     }
 }
 
-/// Copies what stands behind the sky's own light into its layer.
+/// Copies the texture of what stands behind the sky's own light into its layer.
 fn copy_layer(encoder: &mut wgpu::CommandEncoder, source: &wgpu::Texture, target: &wgpu::Texture) {
     let origin = wgpu::Origin3d { x: 0, y: 0, z: BEHIND };
     let size = wgpu::Extent3d { depth_or_array_layers: 1, ..source.size() };

@@ -1,8 +1,9 @@
-//! Light in clouds by following photons: the truth that tables and shaders are held against.
+//! Light in clouds by tracing photons: the reference for the tables and shaders.
 //!
-//! Free paths through a cloud of any shape by null collisions (Woodcock et al. 1965): steps of the largest extinction,
-//! of which as many count as the extinction at their end is of it. Nothing is scaled or cut off. The error of a share p
-//! of n photons is sqrt(p (1 - p) / n).
+//! Free paths through a cloud of any shape are sampled by null collisions (Woodcock et al. 1965). Step lengths are
+//! drawn for the largest extinction, and a step's end counts as a collision with the probability of the extinction
+//! there over the largest. Nothing is scaled or cut off. The standard error of a share p of n photons is sqrt(p (1 - p)
+//! / n).
 
 use std::f64::consts::PI;
 
@@ -10,7 +11,7 @@ use glam::{DMat3, DVec3};
 
 use crate::{chance::Chance, light::phase::PhaseLobes};
 
-/// Cosine of a scattering angle of Henyey and Greenstein's function.
+/// Draws the cosine of a scattering angle of Henyey and Greenstein's phase function.
 fn lobe_cosine(g: f64, chance: &mut Chance) -> f64 {
     let u = chance.even();
     if g.abs() < 1e-6 {
@@ -20,13 +21,13 @@ fn lobe_cosine(g: f64, chance: &mut Chance) -> f64 {
     ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
 }
 
-/// The way on after a droplet of this phase function.
+/// Draws a photon's direction after a droplet with this phase function has scattered it.
 pub fn scattered(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> DVec3 {
     turned(lobes, direction, chance).0
 }
 
-/// Returns the way on after a droplet of this phase function, and whether the Draine lobe turned the photon. Its angle
-/// is drawn by rejection from Henyey and Greenstein's lobe of the same g.
+/// Draws the direction after scattering, and returns whether the Draine lobe was used. The angle in that lobe is drawn
+/// by rejection from Henyey and Greenstein's lobe of the same g.
 pub(super) fn turned(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> (DVec3, bool) {
     let by_draine = chance.even() < lobes.w_draine;
     let cosine = if by_draine {
@@ -49,19 +50,19 @@ pub(super) fn turned(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) 
 pub struct Box<'a> {
     /// Far corner; a side may be infinite.
     pub sides: DVec3,
-    /// Extinction at a place.
+    /// Extinction at a place, 1/m if `sides` is in metres.
     pub extinction: &'a dyn Fn(DVec3) -> f64,
-    /// The largest there is.
+    /// Largest extinction in the box.
     pub most: f64,
-    /// How droplets scatter.
+    /// Phase function of the droplets.
     pub lobes: PhaseLobes,
-    /// Share that they scatter.
+    /// Single-scattering albedo.
     pub albedo: f64,
 }
 
 impl Box<'_> {
-    /// Follows a photon from a place on the way to `direction`: the face through which it leaves (low and high x, y,
-    /// z), if it does.
+    /// Traces a photon from a place along `direction`. Returns the face through which it leaves (low and high x, y, z),
+    /// or `None` if it is absorbed.
     pub fn leaves_by(&self, mut position: DVec3, mut direction: DVec3, chance: &mut Chance) -> Option<usize> {
         loop {
             let mut exit = (f64::INFINITY, 0);
@@ -87,8 +88,8 @@ impl Box<'_> {
         }
     }
 
-    /// Shares of the sun's light on the box that leave it through each face. The sun stands over the side of low x,
-    /// `cosine` from the zenith; high z is the top.
+    /// Returns the shares of the sunlight on the box that leave through each face. The sun stands on the side of low x,
+    /// and `cosine` is that of its zenith angle. High z is the top.
     pub fn fluxes(&self, cosine: f64, photons: u32, seed: u64) -> [f64; 6] {
         let sine = (1.0 - cosine * cosine).sqrt();
         let is_slab = self.sides.x.is_infinite();
@@ -103,7 +104,7 @@ impl Box<'_> {
                 DVec3::new(0.0, y, self.sides.z * chance.even())
             };
             let way = DVec3::new(sine, 0.0, -cosine);
-            // A slab has no sides to leave by.
+            // A slab has no sides to leave through.
             let at = if is_slab { at.with_x(1e150).with_y(1e150) } else { at };
             if let Some(face) = self.leaves_by(at, way, &mut chance) {
                 out[face] += 1.0 / f64::from(photons);
@@ -123,7 +124,7 @@ pub(super) mod tests {
         Box { sides, extinction: &|_| 1.0, most: 1.0, lobes, albedo }.fluxes(cosine, photons, 7)
     }
 
-    /// Reflectance and transmittance of slabs by discrete ordinates (PythonicDISORT), Henyey-Greenstein g = 0.85.
+    /// Reflectance and transmittance of slabs from discrete ordinates (PythonicDISORT), Henyey-Greenstein g = 0.85.
     #[test]
     fn photons_meet_the_published_slabs() {
         let slab =

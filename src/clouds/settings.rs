@@ -1,20 +1,20 @@
-//! How finely a view draws clouds.
+//! Detail with which a view draws clouds.
 
 use crate::error::{Error, Result, check_range};
 
-/// How finely a view draws clouds that are a volume.
+/// Detail with which a view draws clouds as volumes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudSettings {
-    /// How many steps a ray takes: twice the value, twice as many. Range \[0.125, 32\], default 2; of half of them
-    /// `lab chart clouds` says that they err more than twice as much and cost hardly less.
+    /// Number of steps along a ray: twice the value takes twice as many. Range \[0.125, 32\], default 2. Half the
+    /// default errs more than twice as much and costs hardly less (`lab chart clouds`).
     pub fineness: f64,
-    /// One pixel of a square of so many on a side is marched in a frame, the others are taken over from earlier frames:
-    /// 1, 2 or 4, default 4. Frames without history march all.
+    /// Side of the square of pixels of which one is marched in each frame; the others are taken over from earlier
+    /// frames. 1, 2 or 4, default 4. Frames without history march all pixels.
     pub square_side: u32,
-    /// Whether the air between clouds and ground is drawn brighter where the sun shines through and darker in their
-    /// shadows: shafts of light. Default false: on the mean over places. It takes 24 look-ups a pixel, and is drawn
-    /// with [`crate::frame::Stages::SURFACE`] where the host gives depth and does not read the map of shadows itself
-    /// ([`crate::frame::View::cloud_shadows`]).
+    /// Whether shafts of light are drawn: the air between clouds and ground is brighter where the sun shines through,
+    /// and darker in the clouds' shadows. Default false: the air has the mean light of all places. Shafts take 24
+    /// look-ups a pixel. They are drawn with [`crate::frame::Stages::SURFACE`] where the host gives depth and does not
+    /// read the shadow map itself ([`crate::frame::View::cloud_shadows`]).
     pub shafts: bool,
 }
 
@@ -25,7 +25,7 @@ impl Default for CloudSettings {
 }
 
 impl CloudSettings {
-    /// Whether a view can draw by them.
+    /// Checks that a view can draw with these settings.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range.

@@ -1,5 +1,4 @@
-//! Clouds as a view draws them: a layer of what they send and let through, which the composition lays between sky and
-//! fog.
+//! Clouds of a view: a layer of radiance and transmittance, which the composition lays between sky and fog.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -30,12 +29,12 @@ use crate::{
     wind::LayerDrifts,
 };
 
-/// The order of the pixels of a square: each is far from those before it.
+/// Order in which the pixels of a square are marched. Each is far from those before it.
 const ORDER: [u32; 16] = [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12];
-/// Stages whose draws show them as they are.
+/// Stages whose draws show clouds directly.
 const SHOWN: Stages = Stages::BACKGROUND.with(Stages::MEDIUM);
 
-/// How the last frame was seen.
+/// Camera and clouds of the last frame.
 #[derive(Clone, Copy)]
 struct Before {
     clip: DMat4,
@@ -44,46 +43,46 @@ struct Before {
     exposure: f64,
 }
 
-/// Parts of a frame that its calls have made so far.
+/// Parts of a frame that its calls have drawn so far.
 #[derive(Clone, Copy)]
 struct FrameProgress {
     frame_id: u64,
     is_marched: bool,
     is_shaded: bool,
     is_round: bool,
-    /// How its picture follows from the last frame's.
+    /// Reprojection from the last frame to this frame's picture.
     picture: PictureUniform,
 }
 
-/// The clouds of a view.
+/// Clouds of a view.
 #[derive(Default)]
 pub(crate) struct CloudsView {
     pub settings: CloudSettings,
     overhead: Option<CloudLayers>,
-    /// Shapes of the layers, which most frames have in common with the last one.
+    /// Shapes of the layers; most frames have the same ones as the last.
     shapes: LruCache<CloudSlab, Shape, MAX_CLOUD_LAYERS>,
-    /// Maps of the layers that a host's map is laid on.
+    /// Cache of layers under a host's map.
     maps: LayerMaps,
     passes: Option<Box<CloudPasses>>,
     before: Option<Before>,
     made: Option<FrameProgress>,
-    /// Passes that the draw being composed is to make.
+    /// Passes of the draw that is being composed.
     wanted: Option<Wanted>,
-    /// Lamps and flashes that light the clouds of it.
+    /// Lamps and flashes that light the clouds in that draw.
     lamps: Option<LampsUniform>,
-    /// The picture before this call holds the last frame's clouds.
+    /// Whether the picture holds the last frame's clouds.
     kept: bool,
-    /// The map of shadows, once a host's own materials read it.
+    /// Shadow map, from when a host's own materials read it.
     handed: Option<HostShadowTexture>,
-    /// The layer of stars that shine between them.
+    /// Layer of stars, which is seen between the clouds.
     behind: Option<wgpu::Texture>,
 }
 
 impl CloudsView {
-    /// Whether some clouds leave places in the light and others not, and the host drew what shadows may fall on.
+    /// Whether some clouds cast shadows and others leave gaps, and the host drew surfaces for shadows to fall on.
     fn casts_shadows(&self, context: &DrawContext<'_>, stages: Stages) -> bool {
         let light_is_up = context.now.scene.brighter().direction.z > LOWEST;
-        // A host that reads the map lays the shadows itself.
+        // A host that reads the shadow map applies it itself.
         light_is_up
             && self.handed.is_none()
             && stages.has(Stages::SURFACE)
@@ -91,7 +90,7 @@ impl CloudsView {
             && self.overhead.as_ref().is_some_and(CloudLayers::is_broken)
     }
 
-    /// Share of a picture's rays that lead towards the clouds.
+    /// Returns the share of a picture's rays that lead towards clouds.
     fn share_of_rays(&self, context: &DrawContext<'_>) -> f64 {
         const SIDE: u32 = 8;
         let Some(overhead) = &self.overhead else { return 0.0 };
@@ -103,18 +102,18 @@ impl CloudsView {
         count.count() as f64 / f64::from(SIDE * SIDE)
     }
 
-    /// Returns the parts that earlier calls of a frame have made.
+    /// Returns the parts that earlier calls of a frame have drawn.
     fn made_of(&self, frame: &Frame<'_>) -> Option<FrameProgress> {
         self.made.filter(|made| made.frame_id == frame.frame_id)
     }
 
-    /// Whether a draw of these stages shows any of them: their light, their shadows, or their mirrors.
+    /// Whether a draw of these stages shows clouds: their light, their shadows or their mirror images.
     fn is_there(&self, frame: &Frame<'_>, stages: Stages) -> bool {
         let shown = SHOWN.with(Stages::SURFACE).0 & stages.0 != 0;
         self.overhead.is_some() && (shown || self.made_of(frame).is_some_and(|made| made.is_marched))
     }
 
-    /// Returns the passes of a frame that are still to be made for a draw of these stages.
+    /// Returns the passes of a frame that a draw of these stages still needs.
     fn wanted(&self, context: &DrawContext<'_>) -> Wanted {
         let made = self.made_of(context.frame);
         let march = SHOWN.0 & context.stages.0 != 0 && !made.is_some_and(|m| m.is_marched);
@@ -128,8 +127,8 @@ impl CloudsView {
     }
 }
 
-/// Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that
-/// share.
+/// Returns the direct light without clouds over the mean of all light on level ground, for each channel. w is the mean
+/// share of the direct light that clouds let through.
 fn shadow_strength(scene: &Scene) -> [f32; 4] {
     let light = scene.brighter();
     let (ground, share) = (&scene.ground, light.direct_share.max(1e-3));
@@ -141,8 +140,8 @@ fn shadow_strength(scene: &Scene) -> [f32; 4] {
 }
 
 impl CloudsView {
-    /// The map of shadows for a host's own materials: from the first call on each frame's first call brings it up to
-    /// date.
+    /// Returns the shadow map for a host's own materials. From the first call on, the first call of each frame updates
+    /// it.
     pub fn shadows(&mut self, device: &Device) -> CloudShadows {
         let made = self.passes.as_ref().and_then(|passes| passes.shadow_texture().cloned());
         let handed = self
@@ -157,13 +156,13 @@ impl CloudsView {
         }
     }
 
-    /// Side of the squares of pixels of which one is marched a frame: a pure function of view and time has no history
-    /// to wait for.
+    /// Returns the side of the squares of pixels of which one is marched in a frame. 1 without history, since earlier
+    /// frames must not count then.
     fn side(&self, frame: &Frame<'_>) -> u32 {
         if frame.flags.has(crate::stage::FrameFlags::NO_HISTORY) { 1 } else { self.settings.square_side }
     }
 
-    /// How a picture's clouds follow from the last frame's.
+    /// Returns the reprojection from the last frame's clouds to this picture, and this frame's camera.
     fn picture(&self, context: &DrawContext<'_>) -> (PictureUniform, Before) {
         let (frame, now) = (context.frame, context.now);
         let drifts = self.overhead.as_ref().map_or(LayerDrifts::ZERO, |o| o.drifts);
@@ -171,7 +170,7 @@ impl CloudsView {
         let last = self.before.filter(|_| self.kept && !frame.is_pure());
         let size = context.picture().size();
         let side = self.side(frame);
-        // Without a past a picture begins finer.
+        // A picture without history begins with smaller squares.
         let side = if last.is_none() { side.min(BEGUN_SIDE) } else { side };
         let moved = last.map_or(DVec3::ZERO, |b| {
             let carried = self.overhead.as_ref().map_or(DVec2::ZERO, |o| o.carried_since(&b.drifts));
@@ -229,7 +228,7 @@ impl DrawnEffect for CloudsView {
         let has_shadows = cosine > LOWEST && overhead.is_broken();
         let lie = has_shadows.then(|| ShadowProjection::new(context.now, overhead));
         if let (Some(lie), Some(handed)) = (&lie, &self.handed) {
-            // Shadows do not ask for the exposure.
+            // Shadows do not depend on the exposure.
             let clouds = overhead.uniform(context.now, 1.0, &passes.tables.light.media);
             let (past, texture) = (HistoryUse::of(context.frame), &handed.shadows.texture);
             passes.draw_shadows(recording.device, recording.encoder, &clouds, lie, past, texture)?;

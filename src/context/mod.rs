@@ -1,8 +1,8 @@
-//! A context: the weather, the time and the place that all views of a simulator share, and what effects hold for all of
-//! them.
+//! A context: the weather, the time and the place that all views of a simulator share, and the state of effects that is
+//! common to them.
 //!
-//! It leads the world (`src/world`) and the list of effects (`src/effects.rs`) through time, saves and loads them, and
-//! names no effect itself: what a host asks by their names is in the front room.
+//! It advances the world (`src/world`) and the list of effects (`src/effects.rs`) through time, and saves and loads
+//! them. It names no single effect: the queries and settings of single effects are in `src/front`.
 
 mod shared_world;
 mod state;

@@ -1,4 +1,4 @@
-//! Context: the weather, the time and the place that all views of a simulator share, as a host sets and asks them.
+//! The context's settings and queries that concern the world: weather, time, place, light and surroundings.
 
 use std::sync::Arc;
 
@@ -17,12 +17,12 @@ use crate::{
     world::{GivenDirection, KeptScene, Settings, World, WorldDesc},
 };
 
-/// Light at a place.
+/// Light of the sun, the moon and the sky at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightAt {
-    /// The sun, in (east, north, up) of the place.
+    /// Sun, with directions in (east, north, up) of the place.
     pub sun: Light,
-    /// The moon.
+    /// Moon, likewise in (east, north, up).
     pub moon: Light,
     /// Light that arrives, after air, clouds and fog.
     pub arriving: GroundLight,
@@ -36,12 +36,12 @@ pub struct Context {
     pub(super) shared: Arc<Shared>,
     pub(crate) world: World,
     pub(crate) held: Held,
-    /// Settings when an update was called that has left steps for another call.
+    /// Settings as they were when an update began that still has steps to do; `None` without such an update.
     pub(super) behind: Option<Box<Settings>>,
 }
 
 impl Context {
-    /// Makes a context on `device`, with the default weather, at time 0. Contexts of one device share `shared`.
+    /// Creates a context on `device`, with the default weather, at time 0. Contexts of one device share `shared`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field of `desc`.
@@ -59,27 +59,27 @@ impl Context {
         Ok(Self { device, shared, world, held, behind: None })
     }
 
-    /// The device it was made on.
+    /// Returns the device of the context.
     pub fn device(&self) -> &Arc<Device> {
         &self.device
     }
 
-    /// Pipelines and tables it shares with other contexts of the device.
+    /// Returns the pipelines and tables that all contexts of the device share.
     pub fn shared(&self) -> &Arc<Shared> {
         &self.shared
     }
 
-    /// Where the host's world lies.
+    /// Returns the placement of the host's world on the planet.
     pub fn world(&self) -> &WorldFrame {
         &self.world.frame
     }
 
-    /// Exposure of frames that bring none.
+    /// Returns the exposure of frames that set none of their own.
     pub fn exposure(&self) -> Exposure {
         self.world.exposure
     }
 
-    /// Sets the exposure of frames that bring none.
+    /// Sets the exposure of frames that set none of their own.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -89,12 +89,12 @@ impl Context {
         Ok(())
     }
 
-    /// From luminance to the display.
+    /// Returns the curve from luminance to display values.
     pub fn tone_curve(&self) -> ToneCurve {
         self.world.tone
     }
 
-    /// Sets the curve from luminance to the display, from the next frame on.
+    /// Sets the curve from luminance to display values, from the next frame on.
     pub fn set_tone_curve(&mut self, tone: ToneCurve) {
         self.world.tone = tone;
     }
@@ -109,7 +109,7 @@ impl Context {
         self.refresh()
     }
 
-    /// As [`Context::set_weather`], with the host's own figures in place of some couplings.
+    /// Changes the weather as [`Context::set_weather`] does, with the host's own figures in place of some couplings.
     ///
     /// # Errors
     /// As [`derive_with`] and [`Timeline::change`](crate::weather::Timeline::change); the weather stays as it was.
@@ -124,7 +124,7 @@ impl Context {
         self.refresh()
     }
 
-    /// Sets what keeps rain off, in place of what did before: roofs, bridges, cabs. A moving box is set anew every
+    /// Sets the boxes that keep rain off (roofs, bridges, cabs), in place of those before. Set a moving box again every
     /// frame.
     ///
     /// # Errors
@@ -146,10 +146,11 @@ impl Context {
         self.refresh()
     }
 
-    /// Sets what keeps rain off, as depth textures of the host's own, in place of those before; an empty list takes
-    /// them away. What they show is taken over in a submission of its own, after what is submitted already: the host
-    /// may then draw into them again. At most [`MAX_OCCLUDER_MAPS`](crate::surroundings::MAX_OCCLUDER_MAPS). Best taken
-    /// along [`RainAt::fall_velocity_m_s`](crate::rain::RainAt::fall_velocity_m_s). Not part of a saved state: each
+    /// Sets the occluder maps, in place of those before: depth textures of the host with the surfaces that keep rain
+    /// off. An empty list removes them. Their content is copied in a submission of its own, after everything that is
+    /// submitted already; the host may then draw into the textures again. At most
+    /// [`MAX_OCCLUDER_MAPS`](crate::surroundings::MAX_OCCLUDER_MAPS). Maps work best if drawn along
+    /// [`RainAt::fall_velocity_m_s`](crate::rain::RainAt::fall_velocity_m_s). They are not part of a saved state: each
     /// channel may have its own.
     ///
     /// # Errors
@@ -165,7 +166,7 @@ impl Context {
         device.check()
     }
 
-    /// As [`Context::set_occluder_maps`], into an encoder that is submitted before the next frame.
+    /// Records [`Context::set_occluder_maps`] into an encoder that is submitted before the next frame.
     pub(crate) fn record_occluder_maps(
         &mut self,
         maps: &[OccluderMap<'_>],
@@ -182,8 +183,8 @@ impl Context {
         outcome
     }
 
-    /// The host's lamps, in place of those before: they light what Welkin draws in their beams (today rain). A moving
-    /// lamp is set anew every frame.
+    /// Sets the host's lamps, in place of those before. They light what Welkin draws in their beams (today rain). Set a
+    /// moving lamp again every frame.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_LIGHTS`], or naming the field; nothing changes then.
@@ -199,7 +200,7 @@ impl Context {
         Ok(())
     }
 
-    /// The host's lamps.
+    /// Returns the host's lamps.
     pub fn lights(&self) -> &[HostLight] {
         &self.world.lights
     }
@@ -209,17 +210,17 @@ impl Context {
         &self.world.set.shelters
     }
 
-    /// Seed of everything that chance decides.
+    /// Returns the seed of everything random.
     pub fn seed(&self) -> u64 {
         self.world.seed
     }
 
-    /// Radius of the planet's ground, m.
+    /// Returns the radius of the planet's ground, m.
     pub fn planet_radius_m(&self) -> f64 {
         self.world.set.planet.bottom_radius_m
     }
 
-    /// Ties universal time to simulation time: it is `utc` at simulation time `at_s`.
+    /// Sets the clock: universal time is `utc` at simulation time `at_s`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for times out of range.
@@ -227,7 +228,7 @@ impl Context {
         self.world.set_clock(utc, at_s)
     }
 
-    /// Puts the sun where the host says; `None` returns it to the almanac.
+    /// Places the sun at the host's direction; `None` returns it to the almanac.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the angle.
@@ -237,7 +238,8 @@ impl Context {
         Ok(())
     }
 
-    /// Puts the moon where the host says (its phase follows from the sun's place); `None` returns it to the almanac.
+    /// Places the moon at the host's direction; `None` returns it to the almanac. The moon's phase follows from the
+    /// sun's direction.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the angle.
@@ -247,30 +249,30 @@ impl Context {
         Ok(())
     }
 
-    /// Simulation time, s.
+    /// Returns the simulation time, s.
     pub fn time_s(&self) -> f64 {
         self.world.time_s
     }
 
-    /// Universal time at simulation time `time_s`.
+    /// Returns the universal time at simulation time `time_s`.
     pub fn utc_at(&self, time_s: f64) -> Utc {
         self.world.utc_at(time_s)
     }
 
-    /// The conditions at `position` and simulation time `time_s`, past or to come. What falls is what falls at the
-    /// position itself: that of the rain areas there ([`Context::set_rain_areas`]), mixed by their rims, and nothing
-    /// above the cloud that it falls from; rain and drizzle are those of [`Context::rain_at`]. The extinction of all
-    /// that falls and the total, and so the visibility, go with it. Everything else is the weather's, the same over all
-    /// of the world, at the station's height (each field says so).
+    /// Returns the conditions at `position` and a past or future simulation time `time_s`. Precipitation is that at the
+    /// position itself: it includes the rain areas there ([`Context::set_rain_areas`]), weighted by their rims, and is
+    /// zero above the cloud that it falls from. Rain and drizzle are those of [`Context::rain_at`]. The extinction of
+    /// the precipitation, the total extinction and the visibility include it. Everything else is the weather's: the
+    /// same everywhere, at the station's height (each field says so).
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place, or the time is not finite, out of range, or
+    /// [`crate::Status::InvalidArgument`] if the position is invalid, or if the time is not finite, out of range, or
     /// before what the timeline still knows ([`Timeline::known_from_s`](crate::weather::Timeline::known_from_s)).
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
         self.world.conditions_at(position, time_s)
     }
 
-    /// Refuses a time of which the weather is not known.
+    /// Checks that the weather at a time is known.
     ///
     /// # Errors
     /// As [`Context::conditions_at`].
@@ -278,8 +280,8 @@ impl Context {
         self.world.over().check_time(time_s)
     }
 
-    /// Returns the moment at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an
-    /// earlier call, taken again where nothing has changed since.
+    /// Returns the moment at a camera at `eye`; `name` is the host's name for this position in errors. `kept` is the
+    /// scene of an earlier call, which is reused if nothing has changed since.
     ///
     /// # Errors
     /// As [`Context::scene_at`].
@@ -287,26 +289,27 @@ impl Context {
         self.world.moment(name, eye, kept)
     }
 
-    /// Returns the scene from which a camera at `position` draws at simulation time `time_s`, past or to come. Closed
-    /// form: no device is asked.
+    /// Returns the scene from which a camera at `position` draws at a past or future simulation time `time_s`. It is a
+    /// closed form and needs no device.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet; for times as
+    /// [`crate::Status::InvalidArgument`] if the position does not lie on or above the planet; for times as
     /// [`Context::conditions_at`].
     pub fn scene_at(&self, position: DVec3, time_s: f64) -> Result<Scene> {
         self.world.scene_named("position", position, time_s)
     }
 
-    /// Sun, moon and sky at `position` and simulation time `time_s`, with the clouds' and the air's share taken off.
+    /// Returns the sun, the moon and the sky's light at `position` and simulation time `time_s`, dimmed by clouds and
+    /// air.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
+    /// [`crate::Status::InvalidArgument`] if the position is invalid; for times as [`Context::conditions_at`].
     pub fn light_at(&self, position: DVec3, time_s: f64) -> Result<LightAt> {
         let scene = self.scene_at(position, time_s)?;
         Ok(LightAt { sun: scene.sun, moon: scene.moon, arriving: scene.ground })
     }
 
-    /// Updates what effects make of weather and surroundings.
+    /// Updates the state that effects derive from weather and surroundings.
     pub(crate) fn refresh(&mut self) -> Result<()> {
         let world = &self.world;
         self.held.each().into_iter().try_for_each(|effect| effect.refresh(world))

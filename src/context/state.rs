@@ -1,9 +1,9 @@
-//! Saving a context and loading it again, and a number by which channels compare theirs.
+//! Saving and loading of a context, and a hash by which channels compare their contexts.
 //!
-//! A state is text: a line with the format and a checksum of all that follows, then TOML. What the description of a
-//! context fixes is compared on load; everything that can be set or that has come about since is restored, by the world
-//! and by each effect that holds a part of it. Keys may be added without another format if a state without them means
-//! what it did; a key whose meaning changes makes another format.
+//! A state is text: a line with the format and a checksum of everything after it, then TOML. Settings that the
+//! description of a context fixes are compared on load. Everything that was set or simulated since is restored, by the
+//! world and by each effect that holds a part of it. New keys may be added within a format if a state without them
+//! keeps its meaning. A key whose meaning changes requires a new format.
 
 use super::shared_world::Context;
 use crate::{
@@ -12,13 +12,13 @@ use crate::{
     world::{LoadedWorld, SavedWorld, parse_error},
 };
 
-/// The format that is written, and the only one that is read. Format 1 did not say of which place and ground a state
-/// was.
+/// Number of the format that is written, and the only one that is read. Format 1 did not contain the place and the
+/// ground model.
 const FORMAT: u32 = 2;
 /// Beginning of the first line.
 const MAGIC: &str = "welkin state ";
 
-/// FNV-1a, 64 bits: never the same for two texts that differ in one byte.
+/// Computes FNV-1a, 64 bits: it differs for any two texts that differ in one byte.
 fn checksum(text: &str) -> u64 {
     let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
     text.bytes().fold(0xcbf2_9ce4_8422_2325, fold)
@@ -28,7 +28,7 @@ fn sealed(body: &str) -> String {
     format!("{MAGIC}{FORMAT} {:016x}\n{body}", checksum(body))
 }
 
-/// Returns the text below the first line, if that fits.
+/// Returns the text below the first line, if the checksum there is right.
 fn unsealed(bytes: &[u8]) -> Result<&str> {
     let text = std::str::from_utf8(bytes).map_err(|_| parse_error("the bytes are no UTF-8 text"))?;
     let (head, body) = text.split_once('\n').ok_or_else(|| parse_error("the first line is missing"))?;
@@ -42,14 +42,14 @@ fn unsealed(bytes: &[u8]) -> Result<&str> {
             "it is of format {format}, this version of Welkin reads format {FORMAT} alone: save it anew"
         )));
     }
-    // A text that was cut may still be TOML, and so may one with another digit.
+    // A truncated text may still be TOML, and so may one with a changed digit.
     if sealed(body) != text {
         return Err(parse_error("it is cut short or changed, its checksum does not fit"));
     }
     Ok(body)
 }
 
-/// A state that can be shown.
+/// State that was read and checked, ready to be swapped in.
 struct Loaded {
     world: LoadedWorld,
     held: LoadedHeld,
@@ -63,7 +63,7 @@ impl Context {
         table
     }
 
-    /// `for_hash`: to be hashed, never loaded.
+    /// Writes the state as text. `for_hash`: the text is only hashed, never loaded.
     fn saved(&self, for_hash: bool) -> Result<String> {
         if self.behind.is_some() {
             let wanted = "a state comes after wk_context_update has answered WK_OK: steps of the simulation remain";
@@ -75,10 +75,10 @@ impl Context {
         toml::to_string(&table).map_err(fault)
     }
 
-    /// Everything that decides what this context shows from now on, as UTF-8 text: weather, time, clock, lights, water,
-    /// areas, shelters, lamps, wind grid, fog law, planet, exposure and tone curve, and of which place, seed and ground
-    /// model it is. Not in it: how it is drawn (sky settings, views), and the images of [`Context::set_occluder_maps`],
-    /// which are each channel's own.
+    /// Saves everything that decides what this context shows from now on, as UTF-8 text: weather, time, clock, lights,
+    /// water, areas, shelters, lamps, wind grid, fog law, planet, exposure and tone curve, and the place, seed and
+    /// ground model for which the state is valid. Not saved are the way it is drawn (sky settings, views) and the
+    /// images of [`Context::set_occluder_maps`], of which each channel has its own.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] while [`Context::update_within`] has steps to do; [`Status::Internal`] if a number cannot
@@ -87,13 +87,14 @@ impl Context {
         Ok(sealed(&self.saved(false)?).into_bytes())
     }
 
-    /// Loads a state that [`Context::save`] wrote, in place of all that it holds, on a context that was created alike:
-    /// the same world, place, seed and ground model; for a state without planet and tone curve, as earlier versions
-    /// wrote them, the same of these too. Occluder maps stay as they are.
+    /// Loads a state that [`Context::save`] wrote, in place of the present one. The context must have been created with
+    /// the same world, place, seed and ground model. A state from an earlier version without planet and tone curve also
+    /// needs a context with the same planet and tone curve. Occluder maps stay as they are.
     ///
     /// # Errors
-    /// [`Status::Parse`] for bytes that are no such state, cut short, changed, or of another format, which it names;
-    /// [`Status::InvalidArgument`] naming what was created otherwise. The context stays as it was.
+    /// [`Status::Parse`] for bytes that are not a state, are truncated or changed, or have another format, which the
+    /// message names; [`Status::InvalidArgument`] naming the setting with which this context was created differently.
+    /// The context stays as it was.
     pub fn load(&mut self, bytes: &[u8]) -> Result<()> {
         let mut loaded = self.read_state(unsealed(bytes)?)?;
         let behind = self.behind.take();
@@ -106,7 +107,7 @@ impl Context {
         shown
     }
 
-    /// A state that fits this context.
+    /// Reads a state that fits this context.
     fn read_state(&self, body: &str) -> Result<Loaded> {
         let mut table: toml::Table = toml::from_str(body).map_err(|e| parse_error(toml_fault(body, &e)))?;
         let held = self.held.read(&self.world, &mut table);
@@ -114,14 +115,15 @@ impl Context {
         Ok(Loaded { world: self.world.read(saved, &self.created())?, held: held? })
     }
 
-    /// Shows a state, and leaves the one before in its place.
+    /// Swaps the loaded state in; `other` then holds the previous one.
     fn swap_in(&mut self, other: &mut Loaded) {
         self.world.swap_in(&mut other.world);
         self.held.swap_in(&mut self.world, &mut other.held);
     }
 
-    /// A number that is equal on two channels whose contexts show the same world from now on: a hash of what
-    /// [`Context::save`] writes, in which the water of each tile stands by a hash that is kept until it changes.
+    /// Returns a hash that is equal on two channels whose contexts show the same world from now on. It covers
+    /// everything that [`Context::save`] writes; for the water of each terrain tile it uses a hash that is kept until
+    /// the water changes.
     ///
     /// # Errors
     /// As [`Context::save`].

@@ -1,7 +1,7 @@
-//! Moving time: at once for all that is a function of it, step by step for what has state.
+//! Advancing time: at once for everything that is a function of time, step by step for simulated state.
 //!
-//! What an update leaves for another call is done under what the host had set when it was called, so that a state
-//! does not depend on how many calls it took.
+//! Steps that an update leaves for a later call run with the host's settings as they were when that update was called.
+//! The state therefore does not depend on the number of calls.
 
 use std::time::{Duration, Instant};
 
@@ -12,29 +12,31 @@ use crate::{
     world::Within,
 };
 
-/// Steps that one update does in one go before it looks whether more remain.
+/// Longest time of one batch of steps, after which [`Context::update`] checks whether more remain.
 pub(crate) const UPDATE_TIME: Duration = Duration::from_millis(50);
 
 impl Context {
-    /// Moves simulation time to `time_s`, [-1e10, 1e10], and all state with it, however long that takes: with
-    /// [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) and the largest terrain some seconds after a
-    /// leap of a day ([`Context::update_within`] takes its time by parts). The same time again changes nothing.
+    /// Advances simulation time to `time_s`, [-1e10, 1e10], and all state with it, however long that takes. A leap of a
+    /// day takes some seconds with the largest terrain and
+    /// [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated); [`Context::update_within`] can spread them
+    /// over several calls. The same time again changes nothing.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] if it is not finite or out of range, [`Status::WrongOrder`] if it lies before the
-    /// present; the state stays as it was.
+    /// [`Status::InvalidArgument`] if the time is not finite or out of range, [`Status::WrongOrder`] if it lies before
+    /// the present; the state stays as it was.
     pub fn update(&mut self, time_s: f64) -> Result<()> {
         while self.update_within(time_s, UPDATE_TIME)? == Status::Pending {}
         Ok(())
     }
 
-    /// As [`Context::update`], with steps of the simulated ground for about as long as `most`, one at least, or of a
-    /// terrain in tiles a part of one. [`Status::Pending`] says that steps remain: call it again with the same time,
-    /// now or after a frame, until it answers [`Status::Ok`].
+    /// Advances time as [`Context::update`] does, but runs steps of the simulated ground only for about as long as
+    /// `most`: at least one step, or for terrain in tiles a part of one. [`Status::Pending`] says that steps remain:
+    /// call it again with the same time, now or after a frame, until it answers [`Status::Ok`].
     ///
-    /// Until then weather and light are of the new time, water is shown and answered as of [`Context::state_time_s`],
-    /// and a time that is later still is not taken. What is set meanwhile acts after the steps that remain. So the
-    /// state is the same for any `most`, and there is none to save until the last step is done ([`Context::save`]).
+    /// Until then weather and light are those of the new time, while water is shown and queried as of
+    /// [`Context::state_time_s`], and a still later time is refused. Settings made meanwhile take effect after the
+    /// remaining steps. The state is therefore the same for any `most`, and it can be saved only after the last step
+    /// ([`Context::save`]).
     ///
     /// # Errors
     /// As [`Context::update`].
@@ -58,15 +60,15 @@ impl Context {
         self.lead(Within { until_s: time_s, begun, most })
     }
 
-    /// Whether an update has left steps for another call.
+    /// Whether an update has left steps for a later call.
     pub(crate) fn is_behind(&self) -> bool {
         self.behind.is_some()
     }
 
-    /// Leads all state after the present, as far as the time reaches.
+    /// Advances all state towards the present, as far as the budget allows.
     fn lead(&mut self, budget: Within) -> Result<Status> {
         let led = self.lead_steps(budget)?;
-        // What has ended is forgotten, but for what the next step asks.
+        // The timeline forgets ended changes, except those that the next steps need.
         let stepped = self.held.all().into_iter().filter_map(|effect| effect.stepped_to_s());
         let keep_s = stepped.fold(self.world.time_s, f64::min);
         self.world.forget_before(keep_s);
@@ -74,8 +76,8 @@ impl Context {
         Ok(led)
     }
 
-    /// Leads the effects on until the present, or until the time is over: one step at least. Says whether they got
-    /// there.
+    /// Advances the effects to the present, or until the budget is used up, by at least one step. Returns
+    /// [`Status::Ok`] if they reached the present.
     fn lead_steps(&mut self, budget: Within) -> Result<Status> {
         let mut behind = self.behind.take();
         if let Some(then) = &mut behind {
@@ -100,8 +102,8 @@ impl Context {
         led
     }
 
-    /// Simulation time, s, until which the effects are led together: the end of the next step that reads what another
-    /// publishes, while that changes. Where it does not, `last_s`.
+    /// Returns the simulation time, s, up to which the effects advance together: the end of the next step that reads
+    /// another effect's published state. If no such state changes, `last_s`.
     fn next_stop_s(&self, before_s: f64, last_s: f64) -> f64 {
         let held = self.held.all();
         if !held.iter().any(|effect| effect.changes_until(&self.world)) {
@@ -111,7 +113,7 @@ impl Context {
         ends.fold(last_s, f64::min)
     }
 
-    /// Leads each effect on in turn, as far as the time allows.
+    /// Advances each effect in turn, as far as the budget allows.
     fn lead_each(&mut self, budget: Within) -> Result<Status> {
         let mut led = Ok(Status::Ok);
         for effect in self.held.each() {
@@ -119,7 +121,7 @@ impl Context {
             effect.publish(&mut self.world);
             match led_to {
                 Ok(Status::Ok) => {}
-                // Those after it read what it publishes: how far it gets in a call must not show in them.
+                // Later effects read the published state of this one. They must not see how far it gets in one call.
                 Ok(status) => return Ok(status),
                 fault => led = fault,
             }
@@ -127,8 +129,8 @@ impl Context {
         led
     }
 
-    /// Lets the effects take what the host has set since their last step, as far as it is a part of their state. While
-    /// steps of an update remain it waits for the last of them.
+    /// Lets each effect take over the host's settings since its last step, as far as they are part of its state. While
+    /// steps of an update remain, this waits for the last of them.
     pub(crate) fn settle(&mut self) {
         if self.behind.is_some() {
             return;
@@ -139,8 +141,8 @@ impl Context {
         }
     }
 
-    /// Simulation time of what is simulated, s: the present, or earlier as long as [`Context::update_within`] answers
-    /// that steps remain. The present if nothing is simulated.
+    /// Returns the simulation time of the simulated state, s: the present, or an earlier time as long as
+    /// [`Context::update_within`] answers that steps remain. Without simulated state it is the present.
     pub fn state_time_s(&self) -> f64 {
         let stepped = self.held.all().into_iter().filter_map(|effect| effect.stepped_to_s());
         match &self.behind {

@@ -1,4 +1,4 @@
-//! The wind that a context answers for: velocity at any place and time, and how far it has carried the air.
+//! The wind of a context: its velocity at any place and time, and the displacement of the air by it.
 
 use std::sync::Arc;
 
@@ -16,13 +16,14 @@ impl Context {
         Ok(self.world.over().wind.at(time_s))
     }
 
-    /// Wind at `position` and simulation time `time_s`, (east, north, up) of the place. Height counts from the
-    /// station's altitude: who has terrain asks as far above the station as the point is above his ground.
+    /// Returns the wind at `position` and simulation time `time_s`, in (east, north, up) of the place. Height counts
+    /// from the station's altitude. A host with terrain should therefore query a point as far above the station as the
+    /// real point is above the terrain.
     ///
-    /// Within a host's grid ([`Context::set_wind_grid`]) the wind is that of the grid, at any time; within a solved
-    /// field ([`Context::set_wind_field`]) that of the field, at times within a minute of its own.
+    /// Inside a host's grid ([`Context::set_wind_grid`]) the wind is the grid's, at any time. Inside a solved field
+    /// ([`Context::set_wind_field`]) it is the field's, at times within a minute of the field's own time.
     ///
-    /// Any thread. Closed form: any time costs the same. Laws: [`crate::wind`].
+    /// Any thread. Closed form: any time costs the same. [`crate::wind`] has the laws.
     ///
     /// # Errors
     /// As [`Context::conditions_at`].
@@ -30,10 +31,10 @@ impl Context {
         self.world.wind_at(position, time_s)
     }
 
-    /// Sets a wind that varies in space; `None` leaves the weather's, or the solved field's
-    /// ([`Context::set_wind_field`]), in place of which it blows. It is in [`Context::wind_at`], in what lands on a
-    /// surface or a windscreen, and on what falls near a camera; [`Context::wind_displacement`], and what goes with it,
-    /// know nothing of it.
+    /// Sets a wind that varies in space. It blows in place of the weather's wind and of a solved field
+    /// ([`Context::set_wind_field`]); `None` returns to these. It affects [`Context::wind_at`], the rain that lands on
+    /// a surface or a windscreen, and drops and flakes near a camera. It does not affect [`Context::wind_displacement`]
+    /// and everything that moves by it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -43,14 +44,15 @@ impl Context {
         Ok(())
     }
 
-    /// The wind that varies in space.
+    /// Returns the wind that varies in space, if the host has set one.
     pub fn wind_grid(&self) -> Option<&Arc<WindGrid>> {
         self.world.set.host_wind.as_ref().map(|host| &host.grid)
     }
 
-    /// How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m (east, north, up): the
-    /// integral of its velocity over the timeline, the same at every place. Continuous whatever the weather does: what
-    /// goes with the air is moved by its differences, never by velocity times time.
+    /// Returns the displacement of the air by the wind at 10 m, gusts included, since simulation time 0, m (east,
+    /// north, up). It is the integral of the wind's velocity over the timeline, the same at every place, and continuous
+    /// through all changes of weather. Things that drift with the air are moved by its differences, never by velocity
+    /// times time.
     ///
     /// Any thread. Closed form; the same bits for any sequence of updates, and after saving and loading.
     ///
@@ -60,8 +62,8 @@ impl Context {
         Ok(self.blowing(time_s)?.drift.displacement_m.extend(0.0))
     }
 
-    /// Velocity that [`Context::wind_displacement`] is the integral of, m/s: the wind at 10 m with its gusts, which
-    /// carries drops.
+    /// Returns the velocity whose integral is [`Context::wind_displacement`], m/s: the wind at 10 m with its gusts,
+    /// which carries drops.
     ///
     /// # Errors
     /// For times as [`Context::conditions_at`].

@@ -1,4 +1,4 @@
-//! An opaque effect for tests: a level plane of two alternating luminances, at a height of the host's flat world.
+//! An opaque effect for tests: a level checkerboard of two luminances, at a height of the host's flat world.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::{
     stage::{DrawContext, DrawnEffect, FrameContext, OpaqueDraw, OpaqueTarget, Outputs, Stages},
 };
 
-/// How far it reaches from below the camera, m.
+/// Half the side of the plane, which is centred below the camera, m.
 pub(crate) const HALF_SIZE_M: f64 = 400.0;
 /// Side of its squares, m.
 pub(crate) const SQUARE_M: f64 = 8.0;

@@ -1,11 +1,11 @@
-//! Rain areas: regions of the ground plan with a rate of their own, fading over a rim, moving with the wind or by
-//! themselves.
+//! Rain areas: regions on the ground plan with their own rain rate. They fade out over a rim, and move with the wind or
+//! with their own velocity.
 //!
-//! Inside a region the weather's rain gives way to the area's: of the drops that fall, the share `1 - s` is the
-//! weather's and `s` the area's, `s` going smoothly from 0 on the border to 1 a rim further in. Numbers, water and
-//! extinction are therefore linear in `s`, and half-way through the rim is half of either rate. Where areas overlap, a
-//! later one of the list lies over the earlier ones in the same way, so everything stays continuous; one of rate 0 is a
-//! dry hole.
+//! Inside a region the area's rain replaces the weather's. Of the falling drops, a share `1 - s` belongs to the weather
+//! and `s` to the area; `s` rises smoothly from 0 on the border to 1 at the inner edge of the rim. Drop numbers, water
+//! and extinction are therefore linear in `s`: half-way through the rim there is half of each rain. Where areas
+//! overlap, a later area in the list replaces the earlier ones in the same way, so that everything stays continuous. An
+//! area of rate 0 is a dry hole.
 
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -16,19 +16,19 @@ use crate::{
     weather::{Falling, hydrometeors},
 };
 
-/// Most corners of a polygon.
+/// Largest number of corners of a polygon.
 pub const MAX_CORNERS: usize = 8;
-/// Farthest that an area's centre may lie from what it is asked for, beside its own size, m: beyond, it is another part
-/// of the planet.
+/// Largest distance from a query point to an area's centre, less the area's radius, m. A point farther away counts as
+/// another part of the planet.
 const FARTHEST_M: f64 = 3e5;
 
-/// The shape of a region on the ground plan, m to the right and ahead of its centre.
+/// Shape of a region on the ground plan, in metres to the right and ahead of its centre.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum AreaShape {
-    /// Half the extent to the right and ahead, each \[10, 1e6\].
+    /// Half extents to the right and ahead, m, each \[10, 1e6\].
     Ellipse([f64; 2]),
-    /// Corners of a convex region, one after the other either way round, each coordinate within 1e6; the count,
-    /// \[3, 8\].
+    /// Corners of a convex region, in order, clockwise or counter-clockwise, each coordinate within 1e6; and the number
+    /// of corners, \[3, 8\].
     Polygon([[f64; 2]; MAX_CORNERS], usize),
 }
 
@@ -47,36 +47,37 @@ pub enum AreaRain {
 /// Motion of an area.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub enum AreaMotion {
-    /// The wind at 10 m with its gusts, by its displacement.
+    /// Motion with the wind at 10 m and its gusts, by the wind's displacement.
     #[default]
     WithWind,
-    /// A velocity of its own, m/s (east, north), each within \[-200, 200\]; 0 for what stands.
+    /// Its own velocity, m/s (east, north), each within \[-200, 200\]; 0 for an area that stands still.
     Own([f64; 2]),
 }
 
-/// A region with rain of its own.
+/// A region with its own rain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RainArea {
-    /// Its centre in the host's world at the time `at_s`, m, within 1e12 of the origin; its height does not matter.
+    /// Position of the centre in the host's world at the time `at_s`, m, within 1e12 of the origin. Its height does not
+    /// matter.
     pub center_m: [f64; 3],
-    /// Its shape about the centre.
+    /// Shape around the centre.
     pub shape: AreaShape,
-    /// Where `ahead` of the shape points: degrees clockwise from true north, \[-360, 360\].
+    /// Heading of the shape's `ahead` axis: degrees clockwise from true north, \[-360, 360\].
     pub heading_deg: f64,
-    /// Width inside of the border over which the rain fades, m, \[1, 1e6\]; at most an ellipse's smaller half extent,
-    /// or the radius of the largest circle in a polygon.
+    /// Width of the band inside the border over which the rain fades, m, \[1, 1e6\]. It is at most the smaller half
+    /// extent of an ellipse, or the radius of the largest circle inside a polygon.
     pub rim_m: f64,
     /// Rate at the ground, mm/h, \[0, 500\].
     pub rate_mm_h: f64,
     /// Kind of the rain.
     pub kind: AreaRain,
-    /// Altitude above the sea of the cloud base that it falls from, m, \[-1000, 20 000\]: above it there is neither the
-    /// area's rain nor the weather's.
+    /// Altitude of the cloud base that the rain falls from, m above the sea, \[-1000, 20 000\]. Above it neither the
+    /// area's rain nor the weather's falls.
     pub top_m: f64,
     /// Motion of the area.
     pub motion: AreaMotion,
-    /// Simulation time at which the centre is where it is said to be, s.
+    /// Simulation time at which the centre is at `center_m`, s.
     pub at_s: f64,
 }
 
@@ -97,10 +98,10 @@ impl Default for RainArea {
 }
 
 impl RainArea {
-    /// Refuses what is no area, by name. The time is the context's to check.
+    /// Checks that every field but the time is within its range. The context checks the time.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         let center = DVec3::from(self.center_m);
         if !(center.is_finite() && center.length() <= 1e12) {
@@ -131,7 +132,7 @@ impl RainArea {
         Ok(())
     }
 
-    /// Returns the precipitation inside of it.
+    /// Returns the precipitation inside the area.
     pub fn falling(&self) -> Falling {
         let only = |kind, v: f64| if self.kind == kind { v } else { 0.0 };
         let drizzle = only(AreaRain::Drizzle, self.rate_mm_h);
@@ -170,7 +171,7 @@ fn validate_corners(corners: &[[f64; 2]; MAX_CORNERS], count: usize) -> Result<(
     if area > 1.0 && convex && turns_once(corners) { Ok(()) } else { Err(flat()) }
 }
 
-/// Whether the sides turn by one round in all: corners that go round twice are convex too.
+/// Whether the sides turn by one full turn in all. Corners that go around twice would pass the test for convexity.
 fn turns_once(corners: &[[f64; 2]]) -> bool {
     let next = corners.iter().cycle().skip(1);
     let sides = corners.iter().zip(next).map(|(a, b)| DVec2::from(*b) - DVec2::from(*a));
@@ -180,7 +181,7 @@ fn turns_once(corners: &[[f64; 2]]) -> bool {
     turned.abs() < 1.5 * std::f64::consts::TAU
 }
 
-/// Radius of the largest circle inside of sides: it touches three of them.
+/// Radius of the largest circle inside the sides: a circle that touches three of them.
 fn inner_radius(edges: &[Edge]) -> f64 {
     let mut most = 0.0f64;
     for (i, a) in edges.iter().enumerate() {
@@ -206,7 +207,7 @@ fn twice_area(corners: &[[f64; 2]]) -> f64 {
     corners.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
 
-/// A side of a polygon: how deep inside of it a point lies is `normal . p + offset`.
+/// Side of a polygon. The depth of a point inside it is `normal . p + offset`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Edge {
     pub normal: DVec2,
@@ -219,7 +220,7 @@ impl Edge {
     }
 }
 
-/// The sides of a polygon. One that has no length says nothing: every point lies inside.
+/// Sides of a polygon. A side without length does not limit the region: every point lies inside it.
 fn edges(corners: &[[f64; 2]]) -> [Edge; MAX_CORNERS] {
     let turn = twice_area(corners).signum();
     let mut edges = [Edge { normal: DVec2::ZERO, offset: 1e9 }; MAX_CORNERS];
@@ -233,7 +234,7 @@ fn edges(corners: &[[f64; 2]]) -> [Edge; MAX_CORNERS] {
     edges
 }
 
-/// A region about its centre, m to the right and ahead.
+/// Outline of a region around its centre, m to the right and ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Outline {
     Ellipse(DVec2),
@@ -241,7 +242,7 @@ pub(crate) enum Outline {
 }
 
 impl Outline {
-    /// How deep inside the border a point lies, m, negative outside: exact of a polygon, to first order of an ellipse.
+    /// Depth of a point inside the border, m, negative outside. Exact for a polygon, first order for an ellipse.
     pub(crate) fn depth(&self, p: DVec2) -> f64 {
         match self {
             Self::Ellipse(semi) => {
@@ -254,43 +255,45 @@ impl Outline {
     }
 }
 
-/// An area at a moment.
+/// A rain area at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shaft {
-    /// In the host's world, m.
+    /// Centre in the host's world, m.
     pub center: DVec3,
-    /// Altitude of the place of `center`, m.
+    /// Altitude of `center`, m.
     pub center_altitude_m: f64,
     pub(crate) outline: Outline,
-    /// The way to the right: unit vector (east, north).
+    /// Unit vector to the right, (east, north).
     pub right: DVec2,
     pub rim_m: f64,
-    /// Metres east and north that the column moves aside a metre of height.
+    /// Horizontal shift of the column per metre of height, (east, north).
     pub lean: DVec2,
-    /// Altitude at which the plan holds, m.
+    /// Altitude at which the column's plan is the area's, m.
     pub ground_m: f64,
     /// Altitude of the cloud's base, m.
     pub top_m: f64,
-    /// Precipitation in it.
+    /// Precipitation in the column.
     pub falling: Falling,
-    /// Fall speed of the drop that divides its water into halves, m/s.
+    /// Fall speed of the drop of median volume, m/s: half of the water is in larger drops.
     pub speed_m_s: f64,
     /// Farthest point of the plan from the centre, m.
     pub radius_m: f64,
-    /// Place in the host's list: what its pattern is known by.
+    /// Index in the host's list, which seeds the pattern.
     pub index: u32,
 }
 
-/// Most that a column leans: 72 degrees. Drizzle in a gale from a cloud that stands would be blown further than its
-/// area is wide.
+/// Largest lean of a column, which is 72 degrees. Without this limit a gale would carry drizzle from a stationary cloud
+/// farther than its area is wide.
 const MOST_LEAN: f64 = 3.0;
-/// Share of a column's height, and depths, m, between which lies the part below the cloud in which the rain sets in.
+/// Depth below the cloud over which the rain sets in: its share of the column's height, and its smallest and largest
+/// value, m.
 const SOFT_SHARE: f64 = 0.25;
 const SOFT_M: [f64; 2] = [50.0, 400.0];
 
 impl Shaft {
-    /// Creates the shaft of an area whose centre has come to `center`, of place altitude `center_altitude_m`;
-    /// `cloud_m_s` is the velocity of what it falls from relative to the air that it falls through.
+    /// Creates the shaft of an area whose centre is now at `center`, which has the altitude `center_altitude_m`.
+    /// `speed_m_s` is the rain's fall speed, and `cloud_m_s` the velocity of its cloud relative to the air that it
+    /// falls through.
     pub fn new(
         area: &RainArea,
         index: u32,
@@ -322,20 +325,20 @@ impl Shaft {
         }
     }
 
-    /// Where a place lies on the plan, east and north of the centre, following the lean of the column down; `None` if
-    /// it lies on another part of the planet.
+    /// Position on the plan, (east, north) of the centre, m. The point is moved down along the lean of the column.
+    /// `None` for a point on another part of the planet.
     fn plan(&self, position: DVec3, world_to_enu: &DMat3, altitude_m: f64) -> Option<DVec2> {
         let away = world_to_enu * (position - self.center);
         let near = away.length() <= self.radius_m + FARTHEST_M;
         near.then(|| away.truncate() - self.lean * (altitude_m - self.ground_m))
     }
 
-    /// From east and north of the centre to right and ahead.
+    /// Turns (east, north) into (right, ahead).
     pub(crate) fn turned(&self, plan: DVec2) -> DVec2 {
         DVec2::new(plan.dot(self.right), plan.dot(self.right.perp()))
     }
 
-    /// Share of the rain at a place that is this area's, 0 to 1, at any height.
+    /// Share of this area in the rain at a position, 0 to 1, at any height.
     pub fn share_at(&self, position: DVec3, world_to_enu: &DMat3, altitude_m: f64) -> f64 {
         let Some(plan) = self.plan(position, world_to_enu, altitude_m) else { return 0.0 };
         smoothstep(0.0, self.rim_m, self.outline.depth(self.turned(plan)))
@@ -351,10 +354,10 @@ impl Shaft {
         (SOFT_SHARE * (self.top_m - self.ground_m)).clamp(SOFT_M[0], SOFT_M[1])
     }
 
-    /// Between which values [`Shaft::share_at`] lies within `reach_m` of a place.
+    /// Bounds of [`Shaft::share_at`] within `reach_m` of a position.
     pub fn share_within(&self, position: DVec3, world_to_enu: &DMat3, altitude_m: f64, reach_m: f64) -> [f64; 2] {
         let Some(plan) = self.plan(position, world_to_enu, altitude_m) else { return [0.0; 2] };
-        // The first-order depth changes faster than the way at the tips of a long ellipse.
+        // At the tips of a long ellipse the first-order depth changes faster than the distance.
         let steepest = match self.outline {
             Outline::Ellipse(semi) => 1.0 + semi.max_element() / semi.min_element(),
             Outline::Polygon(..) => 1.0,

@@ -1,16 +1,17 @@
-//! How what falls follows the air: drag that is linear for one step and solved exactly, so that no length of a step is
-//! unstable.
+//! Drag that makes falling particles follow the air. It is linear during one step and solved exactly, so that a step of
+//! any length is stable.
 //!
-//! dv/dt = k (air - v) - g has the solution v(t) = s + (v(0) - s) exp(-k t) about the settled velocity s = air - g / k.
-//! The rate k is that of drag by the square at the step's first moment, so short steps converge to it; where a step is
-//! long against it, the rate at rest, which ends at the right fall.
+//! dv/dt = k (air - v) - g has the solution v(t) = s + (v(0) - s) exp(-k t), where s = air - g / k is the settled
+//! velocity. The rate k is that of quadratic drag at the start of the step, so that short steps converge to quadratic
+//! drag. If the step is long compared with 1 / k at rest, k is the rate at rest, which gives the right terminal speed.
 
 use glam::DVec3;
 
 use super::drops::GRAVITY_M_S2;
 
-/// One step: velocity (m/s) and way (m) after `dt_s` of what has `velocity_m_s` in air of `air_m_s`, and falls at
-/// `terminal_m_s` at rest. Vectors (east, north, up). `shaders/falling/step.wgsl` has the same.
+/// Returns the velocity (m/s) and the displacement (m) after `dt_s` of a particle that has `velocity_m_s` in air of
+/// `air_m_s` and falls at `terminal_m_s` in still air. Vectors (east, north, up). `shaders/falling/step.wgsl` has the
+/// twin.
 pub fn step(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -> (DVec3, DVec3) {
     let terminal = terminal_m_s.max(1e-3);
     let at_rest = GRAVITY_M_S2 / terminal;

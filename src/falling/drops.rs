@@ -1,5 +1,5 @@
-//! One drop of rain: how fast it falls, what shape it has, how it follows the wind. Diameters are those of a sphere of
-//! as much water, mm.
+//! One raindrop: its fall speed, its shape, and how it follows the wind. Diameters are those of a sphere with the same
+//! volume, mm.
 
 use glam::DVec3;
 
@@ -19,8 +19,9 @@ const SEA_LEVEL_DENSITY_KG_M3: f64 = 1.225;
 /// Gas constant of dry air, J/(kg K).
 const AIR_GAS_CONSTANT: f64 = 287.053;
 
-/// Terminal speed at sea level, m/s, of a drop of `diameter_mm`: Gunn and Kinzer's table, between its entries a
-/// monotone cubic (Fritsch and Butland 1984). Below the table the speed goes with the square (Stokes), above it stays.
+/// Terminal speed at sea level, m/s, of a drop of `diameter_mm`: Gunn and Kinzer's table with monotone cubic
+/// interpolation (Fritsch and Butland 1984). Below the table the speed is proportional to the square of the diameter
+/// (Stokes); above it the speed is constant.
 pub fn terminal_speed_m_s(diameter_mm: f64) -> f64 {
     let table = &GUNN_KINZER;
     let (first, last) = (table[0], table[table.len() - 1]);
@@ -40,8 +41,8 @@ pub fn terminal_speed_m_s(diameter_mm: f64) -> f64 {
     va * (1.0 - 3.0 * t2 + 2.0 * t3) + vb * (3.0 * t2 - 2.0 * t3) + h * (ma * (t - 2.0 * t2 + t3) + mb * (t3 - t2))
 }
 
-/// Slope of the interpolant at entry `i` of the table: the weighted harmonic mean of its neighbours' (Fritsch and
-/// Butland 1984), which never overshoots; at the ends the neighbour's own.
+/// Slope of the interpolant at entry `i` of the table: the weighted harmonic mean of the slopes of the two neighbouring
+/// intervals (Fritsch and Butland 1984), which never overshoots. At the ends it is the slope of the only interval.
 fn slope(i: usize) -> f64 {
     let secant = |i: usize| {
         let ((a, va), (b, vb)) = (GUNN_KINZER[i], GUNN_KINZER[i + 1]);
@@ -62,56 +63,56 @@ fn slope(i: usize) -> f64 {
 /// Coefficients of [`closed_form_speed_m_s`]: least squares on Gunn and Kinzer's table.
 pub const CLOSED_FORM: [f64; 5] = [9.198_902, 0.053_827_5, 0.572_275_3, 0.008_907_134, 0.012_283_48];
 
-/// Terminal speed at sea level, m/s, in a form that a shader takes: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4 D^2))), never
-/// negative. RMS error over the table 0.031 m/s, at most 0.078; 2 % from 0.6 mm on (tested). Monotone, and at most
-/// 9.2 m/s for any size.
+/// Terminal speed at sea level, m/s, in a closed form for shaders: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4 D^2))), never
+/// negative. Its RMS error over the table is 0.031 m/s, at most 0.078 m/s; from 0.6 mm on it is within 2 % (tested). It
+/// is monotone and at most 9.2 m/s for any size.
 pub fn closed_form_speed_m_s(diameter_mm: f64) -> f64 {
     let [c0, c1, c2, c3, c4] = CLOSED_FORM;
     let d = (diameter_mm - c1).max(0.0);
     -c0 * libm::expm1(-d * (c2 + diameter_mm * (c3 + diameter_mm * c4)))
 }
 
-/// How much faster than at sea level drops fall in air of a density (kg/m^3): (rho0 / rho)^0.4 (Foote and du Toit
-/// 1969).
+/// Ratio of the fall speed of drops in air of a density (kg/m^3) to that at sea level: (rho0 / rho)^0.4 (Foote and du
+/// Toit 1969).
 pub fn density_factor(density_kg_m3: f64) -> f64 {
     libm::pow(SEA_LEVEL_DENSITY_KG_M3 / density_kg_m3, 0.4)
 }
 
-/// [`density_factor`] of the standard atmosphere at an altitude above the sea, m; held to \[-1000, 11 000\].
+/// [`density_factor`] of the standard atmosphere at an altitude above the sea, m, clamped to \[-1000, 11 000\].
 pub fn altitude_factor(altitude_m: f64) -> f64 {
     libm::pow(standard_density_ratio(altitude_m), -0.4)
 }
 
-/// Density over that at sea level in the troposphere of the standard atmosphere (ISO 2533).
+/// Density relative to sea level in the troposphere of the standard atmosphere (ISO 2533).
 fn standard_density_ratio(altitude_m: f64) -> f64 {
     libm::pow(1.0 - 2.255_77e-5 * altitude_m.clamp(-1000.0, 11_000.0), 4.255_88)
 }
 
-/// [`density_factor`] at an altitude above the sea, m, over a station whose air is known: its own density there,
-/// thinning out with height as the standard atmosphere does.
+/// [`density_factor`] at an altitude above the sea, m, over a station whose air is known. The density at the station is
+/// computed from its pressure and temperature; it changes with height as in the standard atmosphere.
 pub fn factor_in(air: &crate::weather::Air, altitude_m: f64) -> f64 {
     let at_station = 100.0 * air.station_pressure_hpa / (AIR_GAS_CONSTANT * (air.temperature_c + 273.15));
     let ratio = standard_density_ratio(altitude_m) / standard_density_ratio(air.station_altitude_m);
     density_factor(at_station * ratio)
 }
 
-/// Vertical over horizontal axis of a falling drop (Brandes, Zhang and Vivekanandan 2002, eq. 16), at most 1; held at 8
-/// mm.
+/// Ratio of the vertical to the horizontal axis of a falling drop (Brandes, Zhang and Vivekanandan 2002, eq. 16), at
+/// most 1; constant above 8 mm.
 pub fn axis_ratio(diameter_mm: f64) -> f64 {
     let d = diameter_mm.clamp(0.0, 8.0);
     (0.9951 + d * (0.0251 + d * (-0.03644 + d * (0.005_303 - d * 0.000_249_2)))).min(1.0)
 }
 
-/// Length of the streak that a drop of a velocity relative to the camera (m/s) makes in an exposure (s), m.
+/// Length, m, of the streak that a drop makes in an exposure (s) at a velocity relative to the camera (m/s).
 pub fn streak_length_m(relative_velocity_m_s: DVec3, exposure_s: f64) -> f64 {
     relative_velocity_m_s.length() * exposure_s
 }
 
-/// Velocity (m/s) and displacement (m) after `dt_s` of a drop of `velocity_m_s` in air of `air_m_s`, falling at
-/// `terminal_m_s` when it has come to rest in it. Vectors (east, north, up).
+/// Returns the velocity (m/s) and the displacement (m) after `dt_s` of a drop that has `velocity_m_s` in air of
+/// `air_m_s` and falls at `terminal_m_s` once it has settled. Vectors (east, north, up).
 ///
-/// Drag that is linear in the difference of velocities relaxes it over terminal / g: the solution is exact for any
-/// step. (Drag that goes with the square ends at the same velocity, at most twice as fast.)
+/// Drag that is linear in the velocity difference relaxes it within the time terminal / g; the solution is exact for
+/// any step. (Quadratic drag leads to the same velocity, at most twice as fast.)
 pub fn relax(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -> (DVec3, DVec3) {
     let settled = air_m_s - DVec3::Z * terminal_m_s;
     let time = terminal_m_s / GRAVITY_M_S2;
@@ -145,7 +146,7 @@ mod tests {
             assert!(steps().zip(steps().skip(1)).all(|(a, b)| speed(b) >= speed(a) && speed(b) - speed(a) < 6e-3));
             assert!(speed(0.0) == 0.0 && speed(100.0) < 9.2);
         }
-        // The published fits err by as much as their source says: the table is read rightly.
+        // The published fits agree within the errors that their authors state, so the table was copied correctly.
         let atlas = |d: f64| (9.65 - 10.3 * (-0.6 * d).exp()).max(0.0);
         let brandes = |d: f64| -0.1021 + d * (4.932 + d * (-0.9551 + d * (0.079_34 - d * 0.002_362)));
         assert!((0.09..0.104).contains(&self::tests::rms(atlas).0), "{:?}", self::tests::rms(atlas));
@@ -158,7 +159,7 @@ mod tests {
         assert!((altitude_factor(2000.0) - 1.082).abs() < 1e-3 && (altitude_factor(5000.0) - 1.226).abs() < 1e-3);
         let air = crate::weather::derive(&Default::default()).unwrap().air;
         for h in [0.0, 2000.0, 5000.0] {
-            // The station's air is that of the standard day.
+            // The air at the station is that of the standard atmosphere.
             assert!((factor_in(&air, h) / altitude_factor(h) - 1.0).abs() < 1e-3, "{h}");
         }
         let hot = crate::weather::Air { temperature_c: 40.0, ..air };
@@ -182,7 +183,7 @@ mod tests {
         assert!((from_a_car - (25.0f64 * 25.0 + v * v).sqrt() / 60.0).abs() < 1e-12);
     }
 
-    /// Against a fine fourth-order integration, where an explicit step of the same length oscillates and then explodes.
+    /// Compares with a fine fourth-order integration. An explicit step of the same length oscillates and then diverges.
     #[test]
     fn any_step_relaxes_exactly() {
         let (start, air) = (DVec3::new(3.0, -8.0, 5.0), DVec3::new(20.0, 4.0, -1.0));
@@ -204,7 +205,7 @@ mod tests {
                 }
                 assert!((velocity - v).length() < 1e-6, "{terminal} m/s, {dt} s: {velocity} against {v}");
                 assert!((moved - x).length() < 1e-6 * (1.0 + x.length()), "{terminal} m/s, {dt} s: {moved} {x}");
-                // Many small steps are one large one.
+                // Ten small steps give the result of one large step.
                 let (mut v, mut x) = (start, DVec3::ZERO);
                 for _ in 0..10 {
                     let (next, step) = relax(v, air, terminal, dt / 10.0);

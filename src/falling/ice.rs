@@ -1,11 +1,10 @@
-//! Falling ice, hail and pellets: how many stones of which size there are, how fast they fall, what they hide, what
-//! lands.
+//! Falling ice, hail and pellets: number of stones by size, fall speed, extinction, and what lands on surfaces.
 //!
-//! Pellets are frozen raindrops: Marshall and Palmer's (1948) sizes of the same water, swollen by freezing, from 0.5 to
-//! 5 mm; they fall as spheres do (Heymsfield and Westbrook 2010). Small hail goes with them. Hail is exponential from 5
-//! to 60 mm with N0 = 115 lambda^3.63 (Cheng and English 1983), so that a rate alone says how large the stones are;
-//! they fall as Matson and Huggins (1980) photographed them. The numbers close: what falls is the rate. Diameters in mm
-//! of spheres of ice.
+//! Pellets are frozen raindrops. Their sizes are Marshall and Palmer's (1948) for the same water, enlarged by freezing,
+//! from 0.5 to 5 mm. They fall like spheres (Heymsfield and Westbrook 2010). Small hail counts as pellets. Hail has an
+//! exponential size distribution from 5 to 60 mm with N0 = 115 lambda^3.63 (Cheng and English 1983), so that the rate
+//! alone determines the sizes; it falls as Matson and Huggins (1980) measured from photographs. The distributions are
+//! normalised: the flux that falls equals the rate. Diameters are in mm, of spheres of ice.
 
 use std::f64::consts::PI;
 
@@ -16,22 +15,22 @@ use crate::weather::Falling;
 
 /// Density of stones, kg/m^3.
 pub const ICE_KG_M3: f64 = 900.0;
-/// Sizes of pellets, mm.
+/// Smallest and largest pellet, mm.
 pub const PELLETS_MM: (f64, f64) = (0.5, 5.0);
-/// Sizes of hail, mm.
+/// Smallest and largest hailstone, mm.
 pub const HAIL_MM: (f64, f64) = (5.0, 60.0);
 
-/// mm/h of water of stones of 1 mm, one per m^3, falling at 1 m/s.
+/// Water flux, mm/h, of one 1 mm stone per m^3 that falls at 1 m/s.
 const RATE: f64 = PI / 6.0 * 3.6e-3 * ICE_KG_M3 / 1000.0;
-/// Hail of the least slope, per mm, has the most water that Cheng and English's law makes of any; more of it is more
-/// stones, not larger ones. Of the steepest there is next to nothing.
+/// Smallest and largest slope of hail's size distribution, 1/mm. The smallest gives the most water of Cheng and
+/// English's law; a higher rate has more stones, not larger ones. The largest gives almost no water.
 const HAIL_SLOPES_PER_MM: (f64, f64) = (0.15, 3.0);
-/// Density at sea level in the standard atmosphere, kg/m^3.
+/// Density of the standard atmosphere at sea level, kg/m^3.
 const SEA_LEVEL_KG_M3: f64 = 1.225;
-/// Panels of Simpson's rule over the sizes of a kind.
+/// Number of panels of Simpson's rule over the sizes of a kind.
 const PANELS: usize = 96;
 
-/// Kind of solid and nearly round precipitation.
+/// Kind of solid, nearly spherical precipitation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stone {
     /// Ice pellets and small hail.
@@ -41,7 +40,7 @@ pub enum Stone {
 }
 
 impl Stone {
-    /// Both, in the order of their numbers.
+    /// Both kinds, in the order of their numbers.
     pub const ALL: [Self; 2] = [Self::Pellet, Self::Hail];
 
     /// Smallest and largest diameter, mm.
@@ -52,9 +51,9 @@ impl Stone {
         }
     }
 
-    /// Terminal speed, m/s, of a diameter where raindrops are `factor` times as fast as at sea level.
+    /// Terminal speed, m/s, for a diameter; `factor` is the ratio of the speed of raindrops here to that at sea level.
     pub fn speed_m_s(self, diameter_mm: f64, factor: f64) -> f64 {
-        // Raindrops go with density^-0.4 (Foote and du Toit 1969).
+        // The speed of raindrops is proportional to density^-0.4 (Foote and du Toit 1969).
         let density = SEA_LEVEL_KG_M3 * libm::pow(factor, -2.5);
         match self {
             Self::Pellet => sphere_speed_m_s(diameter_mm, density),
@@ -64,12 +63,12 @@ impl Stone {
     }
 }
 
-/// Speed of a sphere of ice by its Best number: Re = (d^2 / 4) ((1 + 4 sqrt(X) / (d^2 sqrt(C)))^(1/2) - 1)^2 with d =
-/// 8.0 and C = 0.35 (Heymsfield and Westbrook 2010).
+/// Speed of a sphere of ice from its Best number X: Re = (d^2 / 4) ((1 + 4 sqrt(X) / (d^2 sqrt(C)))^(1/2) - 1)^2 with d
+/// = 8.0 and C = 0.35 (Heymsfield and Westbrook 2010).
 fn sphere_speed_m_s(diameter_mm: f64, density: f64) -> f64 {
     const DELTA: f64 = 8.0;
     const C: f64 = 0.35;
-    // Of air at 0 C, Pa s.
+    // Viscosity of air at 0 C, Pa s.
     const VISCOSITY: f64 = 1.72e-5;
     let d = 1e-3 * diameter_mm.max(1e-3);
     let best = 4.0 / 3.0 * ICE_KG_M3 * super::drops::GRAVITY_M_S2 * d * d * d * density / (VISCOSITY * VISCOSITY);
@@ -77,24 +76,24 @@ fn sphere_speed_m_s(diameter_mm: f64, density: f64) -> f64 {
     VISCOSITY * 0.25 * DELTA * DELTA * root * root / (density * d)
 }
 
-/// N0 exp(-lambda D) of one kind.
+/// Size distribution N0 exp(-lambda D) of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StoneMode {
     stone: Stone,
-    /// 1/(m^3 mm).
+    /// N0, 1/(m^3 mm).
     n0: f64,
-    /// 1/mm.
+    /// Slope lambda, 1/mm.
     lambda: f64,
 }
 
 impl StoneMode {
-    /// Integral of `f` times N over the kind's sizes.
+    /// Integral of `f` times the size distribution over the sizes of the kind.
     fn integral(&self, f: impl Fn(f64) -> f64) -> f64 {
         if self.n0 <= 0.0 {
             return 0.0;
         }
         let (low, high) = self.stone.range_mm();
-        // Evenly in the logarithm of the size: D dln D.
+        // Panels are equal in the logarithm of the size: dD = D dln D.
         let step = libm::log(high / low) / PANELS as f64;
         let at = |i: usize| {
             let d = low * libm::exp(0.5 * step * i as f64);
@@ -122,7 +121,8 @@ impl StoneMode {
     fn hail(rate_mm_h: f64, factor: f64) -> Self {
         let (mut low, mut high) = HAIL_SLOPES_PER_MM;
         let part = |lambda: f64| Self { stone: Stone::Hail, n0: 115.0 * libm::pow(lambda, 3.63), lambda };
-        // The steeper, the less; sizes are those at sea level whatever the altitude.
+        // Bisects for the slope: the steeper it is, the lower the rate. The rate is that at sea level, so that sizes do
+        // not depend on altitude.
         for _ in 0..40 {
             let middle = (low * high).sqrt();
             if part(middle).rate_mm_h(1.0) > rate_mm_h { low = middle } else { high = middle }
@@ -131,7 +131,7 @@ impl StoneMode {
     }
 }
 
-/// The stones in a cubic metre. Plain data, any thread.
+/// Size distribution of the stones in a cubic metre. Plain data, any thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoneSizes {
     parts: [StoneMode; 2],
@@ -139,13 +139,13 @@ pub struct StoneSizes {
 }
 
 impl StoneSizes {
-    /// Creates the sizes of what falls at the ground, where drops are `speed_factor` times as fast as at sea level
-    /// ([`super::drops::altitude_factor`]). The rate holds at every altitude.
+    /// Creates the size distribution of the precipitation at the ground, where drops are `speed_factor` times as fast
+    /// as at sea level ([`super::drops::altitude_factor`]). The rate is the same at every altitude.
     pub fn new(falling: &Falling, speed_factor: f64) -> Self {
         Self::of_rates(falling.ice_pellets_mm_h, falling.hail_mm_h, speed_factor)
     }
 
-    /// Creates the sizes from rates of pellets and hail, mm/h of melted water.
+    /// Creates the size distribution from the rates of pellets and hail, mm/h of melted water.
     pub fn of_rates(pellets_mm_h: f64, hail_mm_h: f64, speed_factor: f64) -> Self {
         let parts = [StoneMode::pellets(pellets_mm_h, speed_factor), StoneMode::hail(hail_mm_h, speed_factor)];
         Self { parts, factor: speed_factor }
@@ -155,7 +155,7 @@ impl StoneSizes {
         self.parts.iter().map(f).sum()
     }
 
-    /// Stones of a kind with diameters from `a_mm` to `b_mm`, 1/m^3.
+    /// Number of stones of a kind with diameters from `a_mm` to `b_mm`, 1/m^3.
     pub fn number_between(&self, stone: Stone, a_mm: f64, b_mm: f64) -> f64 {
         let (low, high) = stone.range_mm();
         let (a, b) = (a_mm.max(low), b_mm.min(high));
@@ -166,28 +166,28 @@ impl StoneSizes {
         part.n0 / part.lambda * (libm::exp(-part.lambda * a) - libm::exp(-part.lambda * b))
     }
 
-    /// Stones, 1/m^3.
+    /// Number of stones, 1/m^3.
     pub fn number_per_m3(&self) -> f64 {
         self.sum(|p| p.integral(|_| 1.0))
     }
 
-    /// Ice in the air, g/m^3.
+    /// Mass of ice in the air, g/m^3.
     pub fn ice_g_m3(&self) -> f64 {
         PI / 6.0 * 1e-6 * ICE_KG_M3 * self.sum(|p| p.integral(|d| d * d * d))
     }
 
-    /// Extinction, 1/m, any visible wavelength: geometric optics, Q = 2.
+    /// Extinction at any visible wavelength, 1/m (geometric optics, Q = 2).
     pub fn extinction_per_m(&self) -> f64 {
         PI / 2.0 * 1e-6 * self.sum(|p| p.integral(|d| d * d))
     }
 
-    /// Mean diameter of the stones in a volume, mm; 0 without any.
+    /// Mean diameter of the stones in a volume of air, mm; 0 without stones.
     pub fn mean_diameter_mm(&self) -> f64 {
         let number = self.number_per_m3();
         if number > 0.0 { self.sum(|p| p.integral(|d| d)) / number } else { 0.0 }
     }
 
-    /// Terminal speed of a stone here, m/s.
+    /// Terminal speed of a stone in this air, m/s.
     pub fn speed_m_s(&self, stone: Stone, diameter_mm: f64) -> f64 {
         stone.speed_m_s(diameter_mm, self.factor)
     }
@@ -197,7 +197,8 @@ impl StoneSizes {
         self.on_surface_of(normal, air_m_s, |_| true)
     }
 
-    /// As [`StoneSizes::on_surface`] of the stones whose fall speed, m/s, `comes` lets through.
+    /// Returns the flux as [`StoneSizes::on_surface`] does, but only of the stones whose fall speed (m/s) `comes`
+    /// accepts.
     pub(crate) fn on_surface_of(&self, normal: DVec3, air_m_s: DVec3, comes: impl Fn(f64) -> bool) -> SurfaceFlux {
         let carried = air_m_s.dot(normal);
         let towards = |p: &StoneMode, d: f64| {
@@ -229,7 +230,7 @@ mod tests {
                     let s = StoneSizes::of_rates(pellets, hail, altitude_factor(altitude));
                     let level = s.on_surface(DVec3::Z, DVec3::ZERO);
                     assert!((level.rate_mm_h / rate - 1.0).abs() < 1e-6, "{rate}: {level:?}");
-                    // By sums over narrow classes, as they are drawn.
+                    // Sums over narrow size classes, as they are drawn.
                     let (mut number, mut closed) = (0.0, 0.0);
                     for stone in Stone::ALL {
                         let (low, high) = stone.range_mm();
@@ -268,12 +269,12 @@ mod tests {
 
     #[test]
     fn speeds_are_those_that_were_measured() {
-        // Matson and Huggins: 5 to 25 mm, 1.6 km up where the air has 0.993 kg/m^3.
+        // Matson and Huggins: stones of 5 to 25 mm at an altitude of 1.6 km, where the air has 0.993 kg/m^3.
         let factor = libm::pow(SEA_LEVEL_KG_M3 / 0.993, 0.4);
         for (d, v) in [(5.0, 8.10), (10.0, 11.45), (25.0, 18.10)] {
             assert!((Stone::Hail.speed_m_s(d, factor) - v).abs() < 0.01, "{d}");
         }
-        // A frozen drop falls nearly as fast as it fell before.
+        // A frozen drop falls nearly as fast as it did when liquid.
         for d in [0.5, 1.0, 2.0, 3.0] {
             let ratio = Stone::Pellet.speed_m_s(d * 1.036, 1.0) / terminal_speed_m_s(d);
             assert!((0.8..1.05).contains(&ratio), "{d} mm: {ratio}");

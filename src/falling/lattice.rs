@@ -1,21 +1,21 @@
-//! Places in a cell of air that repeats through all space: fractions of its side in 32 bits. Adding them wraps as the
-//! cell does, so they are exact at any time and place.
+//! Positions in a cubic cell of air that repeats through all space, as 32-bit fractions of its side. Their addition
+//! wraps around like the cell, so positions are exact at any time and place.
 
 use glam::DVec3;
 
-/// `x` metres as a fraction of `side`, in 2^-32 of it; wraps.
+/// Position `x`, m, as a fraction of `side` in units of 2^-32; wraps around.
 pub fn fraction(x: f64, side: f64) -> u32 {
     let cells = x / side;
-    // 2^32 itself would saturate.
+    // Rounding may give 2^32 itself; a direct cast to `u32` would saturate it instead of wrapping.
     ((cells - cells.floor()) * 4_294_967_296.0) as u64 as u32
 }
 
-/// From `camera` to the copy of `place` nearest to it, m.
+/// Vector from `camera` to the nearest copy of `place`, m.
 pub fn nearest(place: [u32; 3], camera: [u32; 3], side: f64) -> DVec3 {
     DVec3::from([0, 1, 2].map(|i| f64::from(place[i].wrapping_sub(camera[i]) as i32) / 4_294_967_296.0 * side))
 }
 
-/// The seed's 32 bits that places are made of.
+/// Folds a seed to the 32 bits from which positions are made.
 pub fn short_seed(seed: u64) -> u32 {
     (seed ^ (seed >> 32)) as u32
 }

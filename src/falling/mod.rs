@@ -1,7 +1,7 @@
-//! Physics of precipitation: how large drops, pellets and stones are at a rate, how fast they fall, what lands on a
-//! surface, and the regions that have rain of their own.
+//! Physics of precipitation: the sizes of drops, pellets and stones at a given rate, their fall speeds, what lands on a
+//! surface, and the areas that have rain of their own.
 //!
-//! Rain, wet ground and the windscreen all count by these; none of it is drawn here.
+//! Rain, wet ground and the windscreen all use this physics. Nothing is drawn here.
 
 pub mod area;
 pub(crate) mod curtain;
@@ -14,10 +14,10 @@ pub mod sizes;
 
 use crate::weather::{Conditions, ONSET_M};
 
-/// Most rain areas at a time, and so most rains that fall at one place.
+/// Largest number of rain areas at a time, and so of area rains that fall at one place.
 pub const MAX_AREAS: usize = 16;
 
-/// pcg3d (Jarzynski and Olano 2020), as `shaders/common/hash.wgsl` has it.
+/// Hash pcg3d (Jarzynski and Olano 2020), equal to that of `shaders/common/hash.wgsl`.
 pub fn random3(key: [u32; 3]) -> [u32; 3] {
     let [mut x, mut y, mut z] = key.map(|k| k.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     x = x.wrapping_add(y.wrapping_mul(z));
@@ -30,25 +30,25 @@ pub fn random3(key: [u32; 3]) -> [u32; 3] {
     [x, y, z]
 }
 
-/// Extinction of what falls outside of all rain areas, by species: the same everywhere below the cloud that it falls
-/// from. Inside of the cloud the cloud's own water hides it.
+/// Extinction of the precipitation outside all rain areas, by species. It is the same everywhere below the cloud that
+/// it falls from. Inside the cloud it is not counted, because the cloud's own water hides it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingLayer {
     /// Extinction of rain and drizzle, at 550 nm, 1/m.
     pub liquid_per_m: f64,
     /// Extinction of snow, ice pellets and hail, at 550 nm, 1/m.
     pub solid_per_m: f64,
-    /// Altitude above which nothing that falls is seen, m.
+    /// Altitude above which no falling precipitation is visible, m.
     pub top_m: f64,
-    /// Depth below it over which the extinction rises evenly from nothing to all, m.
+    /// Depth below `top_m` over which the extinction rises linearly from 0 to its full value, m.
     pub soft_m: f64,
 }
 
 impl FallingLayer {
-    /// Where nothing falls.
+    /// Layer without precipitation.
     pub const NONE: Self = Self { liquid_per_m: 0.0, solid_per_m: 0.0, top_m: 0.0, soft_m: ONSET_M };
 
-    /// Creates the layer of what falls in a weather.
+    /// Creates the layer for the precipitation of a weather.
     pub(crate) fn new(c: &Conditions) -> Self {
         Self {
             liquid_per_m: c.precipitation.liquid_extinction_per_m,
@@ -58,7 +58,7 @@ impl FallingLayer {
         }
     }
 
-    /// Returns the extinction of both, 1/m.
+    /// Returns the extinction of liquid and solid precipitation together, 1/m.
     pub fn extinction_per_m(&self) -> f64 {
         self.liquid_per_m + self.solid_per_m
     }

@@ -1,45 +1,46 @@
-//! How the air carries its own velocity: candidates, from the source's to the one that keeps energy.
+//! Advection: how the air carries its own velocity. Three schemes, from Stam's simple one to one that keeps energy.
 
 use glam::Vec3;
 
 use super::lattice::{Faces, GHOSTS, Lattice};
 use crate::error::{Error, Result, shown};
 
-/// How velocity is carried, and how a step is split.
+/// Scheme that carries velocity and splits a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
-    /// The value from where the air came from, along a straight path, linear between grid points (Stam 1999): the
-    /// sources' scheme.
+    /// Value at the place the air came from, along a straight path, linear between grid points (Stam 1999): the most
+    /// diffusive scheme.
     SemiLagrangian,
-    /// The value from a curved path, corrected by the error that carrying it back shows, within the values that it came
-    /// from (Selle et al. 2008).
+    /// Value along a curved path, corrected by the error that carrying it back shows, and limited to the range of the
+    /// values it came from (Selle et al. 2008).
     MacCormack,
-    /// Half a step carried, projected, mirrored at the projection, half a step carried again and projected (Zehnder et
-    /// al. 2018, eq. 6), each carrying cubic: what projection takes is given back by the mirror.
+    /// Half a step of advection, a projection, a reflection at the projection, another half step of advection and a
+    /// projection (Zehnder et al. 2018, eq. 6). Advection is cubic. The reflection gives back the energy that the
+    /// projection removes.
     #[default]
     Reflection,
 }
 
-/// A wind to be carried by, and where it may be looked up.
+/// Wind that carries, and the range in which it may be looked up.
 pub(super) struct Carrier<'a> {
     lattice: &'a Lattice,
     wind: &'a Faces,
-    /// For each axis, the range of places in cells; where it is periodic, none, and places wrap.
+    /// Range of places along each axis, in cells; `None` along a periodic axis, where places wrap.
     range: [Option<[f32; 2]>; 3],
-    /// Offset to the next value along each axis: none along a flat one.
+    /// Offset to the next value along each axis; 0 along a flat one.
     next: [usize; 3],
     is_flat: [bool; 3],
     per_cell: [f32; 3],
 }
 
-/// The values about a place: where the lowest of them stands, and how far the place lies between them along each axis.
+/// Values around a place: index of the lowest one, and the fraction of a cell between it and the next along each axis.
 struct Taps {
     low: usize,
     part: [f32; 3],
 }
 
-/// A place among the values of all components: offset and part along each axis, between faces and between middles of
-/// cells.
+/// Place among the values of all components: offset and fraction along each axis, relative to faces and to cell
+/// centres.
 struct StaggeredPlace {
     faces: [(usize, f32); 3],
     middles: [(usize, f32); 3],
@@ -59,14 +60,14 @@ impl StaggeredPlace {
 }
 
 impl Scheme {
-    /// All of them, with the names that tools know them by.
+    /// All schemes, with the names by which tools know them.
     pub const NAMES: [(&'static str, Self); 3] =
         [("semi-lagrangian", Self::SemiLagrangian), ("maccormack", Self::MacCormack), ("reflection", Self::Reflection)];
 
-    /// The scheme of a name.
+    /// Returns the scheme of a name.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] with the names that there are.
+    /// [`crate::Status::InvalidArgument`] with the list of names.
     pub fn from_name(name: &str) -> Result<Self> {
         let known = Self::NAMES.map(|(n, _)| n).join(", ");
         let found = Self::NAMES.into_iter().find(|(n, _)| *n == name).map(|(_, s)| s);
@@ -81,7 +82,7 @@ impl<'a> Carrier<'a> {
         Self { lattice, wind, range, next, is_flat, per_cell: lattice.h.map(|h| 1.0 / h) }
     }
 
-    /// A place that lies `far` times `way` from another, m; where that leaves the range of places, the nearest in it.
+    /// Returns the place at `far` times `way`, m, from another, clamped to the range of places.
     #[inline]
     fn moved(&self, mut place: [f32; 3], way: [f32; 3], far: f32) -> [f32; 3] {
         for (a, along) in place.iter_mut().enumerate() {
@@ -125,7 +126,7 @@ impl<'a> Carrier<'a> {
     }
 
     #[inline]
-    /// Linear between the eight values about a place.
+    /// Interpolates linearly between the eight values around a place.
     fn linear(&self, values: &[f32], taps: &Taps) -> f32 {
         let [dx, dy, dz] = self.next;
         let [fx, fy, fz] = taps.part;
@@ -142,7 +143,7 @@ impl<'a> Carrier<'a> {
         layers[0] + (layers[1] - layers[0]) * fz
     }
 
-    /// The least and the largest of the eight.
+    /// Returns the least and the largest of the eight values.
     fn bounds(&self, values: &[f32], taps: &Taps) -> [f32; 2] {
         let [dx, dy, dz] = self.next;
         let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
@@ -158,7 +159,7 @@ impl<'a> Carrier<'a> {
         [least, most]
     }
 
-    /// Cubic (Lagrange's polynomial through four values) along each axis.
+    /// Interpolates along each axis by Lagrange's cubic through four values.
     fn cubic_between(&self, values: &[f32], taps: &Taps) -> f32 {
         let [x, y, z] = [0, 1, 2].map(|a| (self.next[a], cubic_weights(taps.part[a])));
         let row = |at: usize| match x {
@@ -176,7 +177,7 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// The wind at a place in cells, m/s; out of range that of the nearest place.
+    /// Returns the wind at a place in cells, m/s; outside the range that of the nearest place.
     pub(super) fn velocity_near(&self, place: [f32; 3]) -> Vec3 {
         self.velocity(self.moved(place, [0.0; 3], 0.0)).into()
     }
@@ -193,13 +194,13 @@ impl<'a> Carrier<'a> {
         v
     }
 
-    /// Where air that is at `place` will be after `dt` (was, if negative), along a straight path.
+    /// Returns where air at `place` will be after `dt` (or was, if negative), along a straight path.
     fn straight(&self, place: [f32; 3], dt: f32) -> [f32; 3] {
         self.moved(place, self.velocity(place), dt)
     }
 
-    /// Returns where air that is at `place` will be after `dt` (was, if negative), along a curved path (third order,
-    /// Ralston 1962).
+    /// Returns where air at `place` will be after `dt` (or was, if negative), along a curved path (third order, Ralston
+    /// 1962).
     fn curved(&self, place: [f32; 3], dt: f32) -> [f32; 3] {
         let v1 = self.velocity(place);
         let v2 = self.velocity(self.moved(place, v1, 0.5 * dt));
@@ -211,7 +212,7 @@ impl<'a> Carrier<'a> {
         self.moved(place, v, dt)
     }
 
-    /// Carries `source` by `dt` along straight paths, linear.
+    /// Carries `source` by `dt` along straight paths, with linear interpolation.
     pub(super) fn semi_lagrangian(&self, source: &Faces, dt: f32, target: &mut Faces) {
         for c in self.lattice.axes() {
             self.lattice.each(c, |i, at| {
@@ -221,7 +222,8 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// Carries `source` by `dt` along curved paths; cubic between values, within the eight nearest.
+    /// Carries `source` by `dt` along curved paths, with cubic interpolation limited to the range of the eight nearest
+    /// values.
     pub(super) fn cubic(&self, source: &Faces, dt: f32, target: &mut Faces) {
         for c in self.lattice.axes() {
             self.lattice.each(c, |i, at| {
@@ -232,7 +234,8 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// Carries `source` by `dt` along curved paths, linear, and keeps the bounds of what each value came from.
+    /// Carries `source` by `dt` along curved paths, with linear interpolation, and stores the range of the values that
+    /// each result came from.
     pub(super) fn predict(&self, source: &Faces, dt: f32, target: &mut Faces, bounds: &mut [Vec<[f32; 2]>; 3]) {
         for c in self.lattice.axes() {
             self.lattice.each(c, |i, at| {
@@ -243,7 +246,8 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// MacCormack's correction of `predicted`, whose ghosts are filled: half of what carrying it back misses.
+    /// Applies MacCormack's correction to `predicted`, whose ghosts are filled: half of the error that carrying it back
+    /// shows.
     pub(super) fn correct(
         &self,
         source: &Faces,
@@ -262,7 +266,7 @@ impl<'a> Carrier<'a> {
     }
 }
 
-/// Lagrange's weights of the values at -1, 0, 1, 2 for a place in [0, 1].
+/// Returns Lagrange's weights of the values at -1, 0, 1, 2 for a place in [0, 1].
 fn cubic_weights(f: f32) -> [f32; 4] {
     let (a, b, c) = (f + 1.0, f - 1.0, f - 2.0);
     [-f * b * c / 6.0, a * b * c / 2.0, -a * f * c / 2.0, a * f * b / 6.0]

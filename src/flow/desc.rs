@@ -1,47 +1,48 @@
-//! Description that the host gives of a field of wind about a place.
+//! Description by which a host asks for a wind field around a place.
 
 use glam::DVec3;
 
 use crate::error::{Error, Result, check_range};
 
-/// How a field is led through time.
+/// Mode in which a field advances through time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindFieldMode {
-    /// The mean wind round terrain and boxes: solved for over the first moments after the wind or an obstacle has
-    /// changed, then it rests at no cost. Gusts are as strong, against the weather's, as the mean is there.
+    /// Mean wind around terrain and boxes. It is solved for in the first moments after the wind or an obstacle has
+    /// changed; then the field rests at no cost. The ratio of gusts to the weather's gusts is that of the mean winds at
+    /// the place.
     #[default]
     Steady,
-    /// The wind with gusts, the whirls that come in with it and those that obstacles shed: stepped all the time.
+    /// Wind with gusts, the eddies of the inflow, and those that obstacles shed. It is stepped all the time.
     Running,
 }
 
-/// Friction of terrain and boxes on air that passes along them.
+/// Friction of terrain and boxes on the air that passes along them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindWalls {
-    /// They slow it, by the weather's roughness length.
+    /// Friction by the weather's roughness length.
     #[default]
     Rough,
-    /// It slides.
+    /// No friction: air slides along them.
     Smooth,
 }
 
-/// A field of wind about a place, level and aligned to north: the air in a box of cells goes round the host's terrain
+/// Wind field around a place, level and aligned to north: a box of cells in which air flows around the host's terrain
 /// ([`Context::set_ground_grid`](crate::context::Context::set_ground_grid)) and boxes
 /// ([`Context::set_shelters`](crate::context::Context::set_shelters)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindFieldDesc {
-    /// The middle of the field's floor, in the host's world: no higher than the lowest ground that matters. The field
-    /// moves with it by whole cells.
+    /// Centre of the field's floor in the host's world, not higher than the lowest ground that matters. The field moves
+    /// with it by whole cells.
     pub floor_center: DVec3,
     /// Size of a cell east, north and up, m, \[0.05, 1000\], the longest at most 8 times the shortest. Default 4.
     pub cell_m: DVec3,
-    /// Cells east, north and up, \[8, 4096\] each. Default 128, 128, 32.
+    /// Numbers of cells east, north and up, \[8, 4096\] each. Default 128, 128, 32.
     pub cells: [u32; 3],
-    /// Default [`WindFieldMode::Steady`].
+    /// Mode of the field. Default [`WindFieldMode::Steady`].
     pub mode: WindFieldMode,
-    /// Default [`WindWalls::Rough`].
+    /// Friction of walls. Default [`WindWalls::Rough`].
     pub walls: WindWalls,
-    /// Memory that the field may take, bytes, \[1 MiB, 16 GiB\]. Default 1 GiB.
+    /// Limit of the memory of the field, bytes, \[1 MiB, 16 GiB\]. Default 1 GiB.
     pub most_bytes: u64,
 }
 
@@ -58,24 +59,26 @@ impl Default for WindFieldDesc {
     }
 }
 
-/// Least and most memory that may be allowed, bytes.
+/// Range of the memory limit, bytes.
 const MEMORY_BYTES: [u64; 2] = [1 << 20, 16 << 30];
-/// Cells may be so many times as long along one axis as along another.
+/// Largest ratio of a cell's sides.
 const LONGEST: f64 = 8.0;
 
 impl WindFieldDesc {
-    /// Bytes of memory that a field of this size takes at most, by the arrays that it holds.
+    /// Returns the memory that a field of this size needs at most, bytes: the sum of its arrays.
     pub fn bytes(&self) -> u64 {
         let product = |more: u64| self.cells.iter().map(|n| u64::from(*n) + more).product::<u64>();
-        // Of each face with ghosts five velocities, open shares and what pushes, twice, its layer and its place in
-        // lists; of each cell pressures and their equation on all grids; of each corner what queries and shaders read.
+        // For each face with ghosts: five velocities; open shares and pushing velocities, twice; its layer, and its
+        // place in lists. For each cell: pressures, and their equation on all grids. For each corner: the values that
+        // queries and shaders read.
         product(5) * 3 * (9 * 4 + 1 + 12) + product(0) * (22 * 4) + product(1) * 24
     }
 
-    /// Refuses what is no field, by name.
+    /// Checks the description; the error names the field at fault.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`]; for a field that is too large it says how much memory it needs and may take.
+    /// [`crate::Status::InvalidArgument`]. For a field that is too large, the error says how much memory it needs and
+    /// how much is allowed.
     pub fn validate(&self) -> Result<()> {
         if !(self.floor_center.is_finite() && self.floor_center.length() <= 1e12) {
             return Err(Error::range("wind_field.floor_center_m", "finite and within 1e12 m", self.floor_center));
@@ -99,36 +102,38 @@ impl WindFieldDesc {
         Ok(())
     }
 
-    /// Whether a field of one goes over into one of the other by moving: all but the place is alike.
+    /// Whether a field of one description can become one of the other by moving: everything except the place, and the
+    /// memory limit, is equal.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         Self { floor_center: other.floor_center, most_bytes: other.most_bytes, ..*self } == *other
     }
 }
 
-/// How a field stands.
+/// State of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindFieldReport {
     /// Simulation time of the field, s: the present, or up to one step before it.
     pub time_s: f64,
-    /// When it last began from a steady field, s: as it was first set, after a leap of more than a minute, or far off.
+    /// Time of the last start from a steady field, s: when the field was first set, after a leap of more than a minute,
+    /// or after a move too far to follow.
     pub begun_s: f64,
     /// Length of its steps, s.
     pub step_s: f64,
-    /// It is steady and rests: nothing is stepped.
+    /// Whether the field is steady and rests: nothing is stepped.
     pub rests: bool,
-    /// Its lowest corner, farthest to the south-west, in the host's world.
+    /// Lowest corner, farthest to the south-west, in the host's world.
     pub corner: DVec3,
-    /// Size of a cell, m, and cells east, north and up.
+    /// Size of a cell, m.
     pub cell_m: DVec3,
     /// Cells east, north and up.
     pub cells: [u32; 3],
-    /// The largest component of the wind anywhere in it, m/s.
+    /// Largest component of the wind anywhere in the field, m/s.
     pub fastest_m_s: f64,
-    /// Memory that it may take, bytes ([`WindFieldDesc::bytes`]).
+    /// Memory that the field may take, bytes ([`WindFieldDesc::bytes`]).
     pub bytes: u64,
 }
 
-/// From when on there is a field, or none.
+/// Change at a time: from then on there is a field of this description, or none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FieldChange {
     pub start_s: f64,

@@ -1,31 +1,32 @@
-//! Whirls smaller than a cell: how they mix what the grid can show.
+//! Mixing by eddies smaller than a cell.
 //!
 //! Vreman's model (2004, Phys. Fluids 16, 3670, eqs. 5 to 8): with a_ij = du_j/dx_i and b_ij = sum over m of h_m^2 a_mi
-//! a_mj, nu = c sqrt(B / (a_ij a_ij)), B = b11 b22 - b12^2 + b11 b33 - b13^2 + b22 b33 - b23^2, and c = 2.5 C_S^2 with
-//! C_S = 0.17 of isotropic turbulence, 0.07. It is zero in parallel shear and at walls, and wants no averages and no
-//! distance from a wall. What keeps up the shear over the ground is [`GroundMixing`].
+//! a_mj, the eddy viscosity is nu = c sqrt(B / (a_ij a_ij)). B = b11 b22 - b12^2 + b11 b33 - b13^2 + b22 b33 - b23^2,
+//! and c = 2.5 C_S^2 = 0.07 with C_S = 0.17 of isotropic turbulence. The viscosity is zero in parallel shear and at
+//! walls, and needs neither averages nor the distance from a wall. [`GroundMixing`] maintains the shear over the
+//! ground.
 
 use super::lattice::{Faces, Lattice};
 
-/// How the whirls over the ground mix the mean wind: kappa u* z up to a longest way (Prandtl 1925). With the stress of
-/// rough walls ([`super::walls`]) the logarithmic profile is then in balance, which comes in over the sides.
+/// Mixing of the mean wind by eddies over the ground: the viscosity kappa u* z up to a longest mixing length (Prandtl
+/// 1925). With the stress of rough walls ([`super::walls`]), the logarithmic profile of the inflow is then in balance.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GroundMixing {
-    /// kappa u*, m/s; 0: none.
+    /// Product kappa u*, m/s; 0 for no mixing.
     pub speed_m_s: f32,
-    /// The longest way, m.
+    /// Longest mixing length, m.
     pub most_m: f32,
     /// Height of the ground in the middle of each column of cells, m.
     pub ground_m: Vec<f32>,
 }
 
 impl GroundMixing {
-    /// The largest viscosity that it makes, m2/s.
+    /// Returns the largest viscosity of this mixing, m2/s.
     pub fn most_m2_s(&self) -> f64 {
         f64::from(self.speed_m_s * self.most_m)
     }
 
-    /// Adds it to the viscosity of cells.
+    /// Adds this viscosity to that of the cells.
     pub fn add(&self, lattice: &Lattice, cells: &mut [f32]) {
         if self.speed_m_s <= 0.0 {
             return;
@@ -38,10 +39,10 @@ impl GroundMixing {
     }
 }
 
-/// 2.5 C_S^2 (Vreman 2004, section II).
+/// Constant c = 2.5 C_S^2 (Vreman 2004, section II).
 const C: f32 = 0.07;
 
-/// Finds the eddy viscosity of each cell, m2/s; the ghosts of `v` are filled.
+/// Finds the eddy viscosity of each cell, m2/s. The ghosts of `v` must be filled.
 pub(super) fn viscosity(lattice: &Lattice, v: &Faces, cells: &mut [f32]) {
     let h = lattice.h;
     lattice.each_cell(|_, cell, at| {
@@ -70,12 +71,13 @@ pub(super) fn viscosity(lattice: &Lattice, v: &Faces, cells: &mut [f32]) {
     });
 }
 
-/// Mixes a component by the viscosity of cells and by `even`, in `dt` seconds, explicitly; `old` is what it was before.
+/// Mixes a component over `dt` seconds in one explicit step, by the viscosity of the cells plus the uniform viscosity
+/// `even`. `old` has the values before the step.
 pub(super) fn mix(lattice: &Lattice, cells: &[f32], even: f32, dt: f32, c: usize, (old, v): (&[f32], &mut [f32])) {
     let n = lattice.n;
     let steps = [1, n[0], n[0] * n[1]];
     lattice.each(c, |i, at| {
-        // The two cells that the face lies between.
+        // The two cells on either side of the face.
         let above = (0..3).map(|a| i[a].min(n[a] - 1) * steps[a]).sum::<usize>();
         let below = if i[c] > 0 && i[c] < n[c] { above - steps[c] } else { above };
         let own = 0.5 * (cells[above] + cells[below]);

@@ -1,4 +1,4 @@
-//! The field itself: its velocity on the grid, what stands in it, and questions to it.
+//! Wind field: its velocity on the grid, its obstacles, and queries.
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 
-/// The air's velocity on a staggered grid, led through time.
+/// Velocity of the air on a staggered grid, advanced through time.
 #[derive(Clone, Debug)]
 pub struct FlowField {
     pub(super) settings: FlowSettings,
@@ -27,14 +27,14 @@ pub struct FlowField {
     pub(super) mixing: GroundMixing,
     pub(super) pressure: Pressure,
     pub(super) velocity: Faces,
-    /// Working memory of steps; the first keeps the middle of the step before.
+    /// Scratch memory of steps. The first entry keeps the velocity in the middle of the previous step.
     pub(super) scratch: [Faces; 3],
-    /// Length of the step before, s; 0: there is none to lead on from.
+    /// Length of the previous step, s; 0 if there is none to extrapolate from.
     pub(super) last_dt: f64,
-    /// The largest change of a velocity in the last step, m/s.
+    /// Largest change of a velocity in the last step, m/s.
     pub(super) last_change_m_s: f32,
     pub(super) bounds: [Vec<[f32; 2]>; 3],
-    /// Potentials of the first and the second projection of a step, from which the next step's begin.
+    /// Potentials of the first and the second projection of a step, with which those of the next step begin.
     pub(super) potentials: [Vec<f32>; 2],
     pub(super) divergence: Vec<f32>,
     pub(super) correction: Vec<f32>,
@@ -42,12 +42,12 @@ pub struct FlowField {
 }
 
 impl FlowField {
-    /// A field of air round `obstacles` that moves as `wind` says (m/s east, north, up, at a place), made free of
-    /// divergence. Open sides keep that wind as the outer one.
+    /// Creates a field around `obstacles` from a wind (m/s east, north, up, at a place) and makes it free of
+    /// divergence. This wind is also the outer wind at open sides.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for settings outside their ranges, for a wind that is not finite or over
-    /// [`MAX_SPEED_M_S`], and for obstacles outside of the field or without a finite height.
+    /// [`MAX_SPEED_M_S`], and for obstacles outside the field or without a finite height.
     pub fn new(settings: &FlowSettings, obstacles: &FlowObstacles, wind: impl Fn(DVec3) -> DVec3) -> Result<Self> {
         settings.check()?;
         let lattice = Lattice::new(settings.cells, settings.cell_m)?;
@@ -81,7 +81,7 @@ impl FlowField {
         Ok(field)
     }
 
-    /// Projects the velocity as it stands.
+    /// Makes the present velocity free of divergence, without using earlier steps.
     pub(super) fn begin(&mut self) {
         let mut v = std::mem::take(&mut self.velocity);
         self.potentials.iter_mut().for_each(|p| p.fill(0.0));
@@ -98,10 +98,10 @@ impl FlowField {
         }
     }
 
-    /// Puts other obstacles into the air, which flows on round them.
+    /// Replaces the obstacles; the air flows on around the new ones.
     ///
     /// # Errors
-    /// As [`FlowField::new`]; the field is as it was then.
+    /// As for [`FlowField::new`]; the field then stays unchanged.
     pub fn set_obstacles(&mut self, obstacles: &FlowObstacles) -> Result<()> {
         self.take_shares(obstacles.shares(&self.lattice)?);
         self.begin();
@@ -119,8 +119,8 @@ impl FlowField {
         self.walls.find(&self.lattice, &self.openings, self.settings.roughness_m, floor);
     }
 
-    /// The largest divergence of a cell with air in it, times the shortest cell size over the largest speed: 0 in still
-    /// air.
+    /// Returns the largest divergence of a cell with air, times the shortest cell size over the largest speed; 0 in
+    /// still air.
     pub fn largest_divergence(&mut self) -> f64 {
         let v = std::mem::take(&mut self.velocity);
         self.find_divergence(&v);
@@ -131,14 +131,14 @@ impl FlowField {
         if speed > 0.0 { f64::from(most * self.lattice.shortest_m()) / speed } else { 0.0 }
     }
 
-    /// Kinetic energy of all air over its density, m5/s2 (m4/s2 for each metre along a flat axis).
+    /// Returns the kinetic energy of all air over its density, m5/s2 (m4/s2 per metre along a flat axis).
     pub fn kinetic_energy(&self) -> f64 {
         let mut sum = 0.0;
         for c in self.lattice.axes() {
             let last = self.lattice.n[c];
             let wraps = self.roles[c][0] == Role::Periodic;
             self.lattice.each(c, |i, at| {
-                // Faces on sides have half a cell; both ends of a periodic axis are one face.
+                // Faces on sides count for half a cell; both ends of a periodic axis are one face.
                 let share = if i[c] == 0 || i[c] == last { 0.5 } else { 1.0 };
                 let open = f64::from(self.openings.open[c][at]);
                 let v = f64::from(self.velocity[c][at]);
@@ -157,25 +157,25 @@ impl FlowField {
         0.5 * sum * cell
     }
 
-    /// The velocity at a place, m/s (east, north, up), linear between faces; outside of the box that of its nearest
-    /// place.
+    /// Returns the velocity at a place, m/s (east, north, up), linear between faces; outside the box that of its
+    /// nearest place.
     pub fn velocity_at(&self, place_m: DVec3) -> DVec3 {
         let carrier = Carrier::new(&self.lattice, &self.velocity, self.range());
         carrier.velocity_near((place_m / self.settings.cell_m).as_vec3().to_array()).as_dvec3()
     }
 
-    /// The largest component of the velocity anywhere, m/s.
+    /// Returns the largest component of the velocity anywhere, m/s.
     pub fn fastest_m_s(&self) -> f64 {
         fastest(&self.lattice, &self.velocity)
     }
 
-    /// How the last projection went.
+    /// Returns the cost and the error of the last projection.
     pub fn solved(&self) -> Solved {
         self.solved
     }
 }
 
-/// Where a value stands whose indices may be those of a ghost, m from the box's lowest corner.
+/// Returns the place of a value, m from the box's lowest corner; its indices may be those of a ghost.
 pub(super) fn place_m(lattice: &Lattice, c: usize, i: [i64; 3]) -> DVec3 {
     DVec3::from([0, 1, 2].map(|a| {
         let half = if a == c && !lattice.is_flat(a) { 0.0 } else { 0.5 };
@@ -183,7 +183,7 @@ pub(super) fn place_m(lattice: &Lattice, c: usize, i: [i64; 3]) -> DVec3 {
     }))
 }
 
-/// Refuses a wind that no field takes.
+/// Checks that a wind is finite and not too strong for a field.
 pub(super) fn check_wind(v: DVec3) -> Result<()> {
     if (0.0..=MAX_SPEED_M_S).contains(&v.length()) {
         return Ok(());
@@ -191,7 +191,7 @@ pub(super) fn check_wind(v: DVec3) -> Result<()> {
     Err(Error::range("flow.wind", &format!("finite and at most {MAX_SPEED_M_S} m/s"), v))
 }
 
-/// A wind at every face and ghost.
+/// Returns a wind at every face and ghost.
 fn at_faces(lattice: &Lattice, wind: impl Fn(DVec3) -> DVec3) -> Result<Faces> {
     let mut faces = lattice.zeros();
     for c in lattice.axes() {

@@ -1,5 +1,5 @@
-//! The wind field of a context: set at a date, led on the step grid, shown to all that asks for the wind, saved and
-//! loaded.
+//! Wind field of a context: it is set for a date, stepped on the step grid, published to all readers of the wind, saved
+//! and loaded.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,22 +15,22 @@ use crate::{
     world::{HeldEffect, Within, World, parse_error},
 };
 
-/// Most changes of the field that may lie ahead.
+/// Largest number of changes of the field that may lie in the future.
 const MAX_CHANGES: usize = 64;
-/// Where it is in a saved state.
+/// Key of the field in a saved state.
 const KEY: &str = "wind_field";
 
-/// The wind field of a context, if the host asked for one.
+/// Wind field of a context, if the host asked for one.
 #[derive(Default)]
 pub(crate) struct HeldFlow {
-    /// In order of time; the first is the one that holds, if its time has come.
+    /// Changes in order of time. The first one is in force once its time has come.
     pub(super) changes: Vec<FieldChange>,
     pub(super) live: Option<Box<Live>>,
-    /// The world has what the field is now.
+    /// Whether the world has the field's present wind.
     is_shown: bool,
 }
 
-/// All of a state that is the field's.
+/// Saved form of the field and its changes.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedFlow {
@@ -41,10 +41,10 @@ struct SavedFlow {
 }
 
 impl HeldFlow {
-    /// See [`Context::set_wind_field`](crate::context::Context::set_wind_field).
+    /// Sets or ends the field at a time; see [`Context::set_wind_field`](crate::context::Context::set_wind_field).
     ///
     /// # Errors
-    /// As there; nothing changes then.
+    /// As for that function; nothing changes then.
     pub fn set(&mut self, world: &World, desc: Option<WindFieldDesc>, start_s: f64) -> Result<()> {
         if let Some(desc) = &desc {
             desc.validate()?;
@@ -67,17 +67,17 @@ impl HeldFlow {
         Ok(())
     }
 
-    /// How the field stands, if there is one.
+    /// Returns the state of the field, if there is one.
     pub fn report(&self) -> Option<WindFieldReport> {
         self.live.as_ref().filter(|live| live.start.is_none()).map(|live| live.report())
     }
 
-    /// Returns the description that holds at a time.
+    /// Returns the description in force at a time.
     fn at(&self, time_s: f64) -> Option<WindFieldDesc> {
         self.changes.iter().rfind(|c| c.start_s <= time_s)?.desc
     }
 
-    /// Forgets changes that others have followed by a time.
+    /// Removes changes that later ones have superseded by a time.
     fn forget(&mut self, time_s: f64) {
         if let Some(last) = self.changes.iter().rposition(|c| c.start_s <= time_s) {
             self.changes.drain(..last);
@@ -89,7 +89,7 @@ impl HeldFlow {
         }
     }
 
-    /// Begins a field where one has come to be since a time. Says whether there is one.
+    /// Begins a field if one is due by now. Returns whether there is one.
     fn begin_field(&mut self, world: &World) -> Result<bool> {
         let now = world.time_s;
         let come = self.changes.iter().filter(|c| c.start_s <= now);
@@ -107,7 +107,7 @@ impl HeldFlow {
         Ok(true)
     }
 
-    /// Does the next thing that is to be done until `until_s`. Says whether there was anything.
+    /// Does the next piece of work that is due until `until_s`. Returns whether there was any.
     fn go_on(&mut self, world: &World, until_s: f64) -> Result<bool> {
         let Some(mut live) = self.live.take() else { return self.begin_field(world) };
         let outcome = self.lead_live(&mut live, world, until_s);
@@ -166,10 +166,10 @@ impl HeldFlow {
         Ok(StepOutcome::Unchanged)
     }
 
-    /// Takes its part out of a saved state.
+    /// Takes the field's part out of a saved state.
     ///
     /// # Errors
-    /// [`Status::Parse`] for what can be no field of this context.
+    /// [`Status::Parse`] for values that cannot be a field of this context.
     pub fn read(world: &World, state: &mut toml::Table) -> Result<Self> {
         let Some(value) = state.remove(KEY) else { return Ok(Self::default()) };
         let saved: SavedFlow = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
@@ -182,7 +182,7 @@ impl HeldFlow {
         Ok(Self { changes, live, is_shown: false })
     }
 
-    /// Shows a loaded one, and leaves the one before in its place.
+    /// Activates a loaded field; `other` then holds the previous one.
     pub fn swap_in(&mut self, world: &mut World, other: &mut Self) {
         std::mem::swap(self, other);
         (self.is_shown, other.is_shown) = (false, false);
@@ -190,9 +190,9 @@ impl HeldFlow {
     }
 }
 
-/// Outcome of a part of the way to the present.
+/// Outcome of one piece of work.
 enum StepOutcome {
-    /// There is nothing to do.
+    /// Nothing is left to do.
     Rests,
     /// The field that others read is unchanged.
     Unchanged,
@@ -219,7 +219,7 @@ impl HeldEffect for HeldFlow {
     fn publish(&mut self, world: &mut World) {
         let is_ready = |live: &Live| live.start.is_none() && live.parts.0 == 0;
         if self.is_shown {
-            // A field that rests stays as it is, and goes on in time.
+            // A field that rests keeps its wind, but its time moves on.
             if let (Some(live), Some(volume)) =
                 (self.live.as_ref().filter(|live| is_ready(live)), &mut world.solved_wind)
             {
@@ -234,7 +234,7 @@ impl HeldEffect for HeldFlow {
                 world.solved_wind = Some(volume);
                 self.is_shown = true;
             }
-            // Until a start is over the field of before is shown.
+            // Until a start is complete, the previous field stays published.
             Some(_) => {}
             None => {
                 world.solved_wind = None;

@@ -1,32 +1,31 @@
-//! The staggered grid (Harlow and Welch 1965): a velocity component stands in the middle of the faces that it passes
-//! through, pressure in the middle of cells. Around the box lie two layers of ghost values, which the sides fill.
+//! Staggered grid (Harlow and Welch 1965): velocity components are stored at the centres of the faces they pass
+//! through, pressure at the centres of cells. Around the box lie two layers of ghost values, which the sides fill.
 
 use glam::DVec3;
 
 use crate::error::{Error, Result, check_range};
 
-/// Layers of ghost values on each side of an axis: what cubic interpolation reaches.
+/// Layers of ghost values on each side of an axis, as cubic interpolation needs.
 pub(super) const GHOSTS: usize = 2;
-/// Most cells of a grid: about 6 GB.
+/// Largest number of cells of a grid: about 6 GB.
 const MAX_CELLS: u64 = 1 << 25;
 
-/// Cells of the box and their size. An axis of one cell is flat: nothing changes along it, and its component stays
-/// zero.
+/// Grid of the box. An axis of one cell is flat: nothing changes along it, and its velocity component stays zero.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Lattice {
-    /// Cells east, north and up.
+    /// Numbers of cells east, north and up.
     pub n: [usize; 3],
     /// Size of a cell, m.
     pub h: [f32; 3],
-    /// From one value to the next along each axis.
+    /// Stride from one value to the next along each axis.
     pub stride: [usize; 3],
-    /// Values along each axis, ghosts included: as many for each component.
+    /// Number of values along each axis including ghosts, the same for each component.
     size: [usize; 3],
-    /// Layers of ghosts along each axis: none along a flat one.
+    /// Layers of ghosts along each axis; 0 along a flat one.
     ghosts: [usize; 3],
 }
 
-/// The three components, each in the middle of its faces.
+/// Values of the three components, each at the centres of its faces.
 pub(super) type Faces = [Vec<f32>; 3];
 
 impl Lattice {
@@ -53,18 +52,18 @@ impl Lattice {
         self.n[axis] == 1
     }
 
-    /// Axes along which something changes.
+    /// Returns the axes along which something changes.
     pub(super) fn axes(&self) -> impl Iterator<Item = usize> + use<> {
         let n = self.n;
         (0..3).filter(move |a| n[*a] > 1)
     }
 
-    /// The shortest side of a cell, m.
+    /// Returns the shortest side of a cell, m.
     pub(super) fn shortest_m(&self) -> f32 {
         self.axes().map(|a| self.h[a]).fold(f32::INFINITY, f32::min)
     }
 
-    /// Values of a component, ghosts included.
+    /// Returns the number of values of a component, including ghosts.
     pub(super) fn len(&self) -> usize {
         self.size.iter().product()
     }
@@ -73,17 +72,18 @@ impl Lattice {
         [0, 1, 2].map(|_| vec![0.0; self.len()])
     }
 
-    /// Where the value stands that has these indices; a component's first face and a row's first cell have index 0.
+    /// Returns the position in the list of the value with these indices. The first face of a component and the first
+    /// cell of a row have index 0.
     pub(super) fn at(&self, i: [usize; 3]) -> usize {
         (0..3).map(|a| (i[a] + self.ghosts[a]) * self.stride[a]).sum()
     }
 
-    /// Values of a component along an axis, without ghosts.
+    /// Returns the number of values of a component along an axis, without ghosts.
     pub(super) fn count(&self, component: usize, axis: usize) -> usize {
         self.n[axis] + usize::from(component == axis && !self.is_flat(axis))
     }
 
-    /// Calls `f` for every value of a component, with its indices and where it stands.
+    /// Calls `f` for every value of a component, with its indices and its position in the list.
     pub(super) fn each(&self, component: usize, mut f: impl FnMut([usize; 3], usize)) {
         let [nx, ny, nz] = [0, 1, 2].map(|a| self.count(component, a));
         for k in 0..nz {
@@ -96,15 +96,14 @@ impl Lattice {
         }
     }
 
-    /// Says whether no value and no ghost of a component has these indices. Along an axis that it does not point along,
-    /// a component has one value less than its list has room for; there the list stays 0, so that equal fields have
-    /// equal numbers.
+    /// Whether these indices are neither of a value nor of a ghost of a component. Across its own axis a component has
+    /// one value less than its list has room for. These spare entries stay 0, so that equal fields have equal numbers.
     fn is_spare(&self, component: usize, i: [i64; 3]) -> bool {
         (0..3).any(|a| a != component && !self.is_flat(a) && i[a] >= (self.n[a] + GHOSTS) as i64)
     }
 
-    /// Calls `f` for every value of a component and every ghost, with their indices, which are negative before the
-    /// first value.
+    /// Calls `f` for every value and every ghost of a component with its indices, which are negative before the first
+    /// value.
     pub(super) fn each_with_ghosts(&self, component: usize, mut f: impl FnMut([i64; 3], usize)) {
         let ghosts = self.ghosts.map(|g| g as i64);
         let [x, y, _] = self.size;
@@ -117,7 +116,7 @@ impl Lattice {
         }
     }
 
-    /// Calls `f` for every cell, with its indices, its number and where its lower faces stand.
+    /// Calls `f` for every cell, with its indices, its number, and the position of its lower faces in the lists.
     pub(super) fn each_cell(&self, mut f: impl FnMut([usize; 3], usize, usize)) {
         let [nx, ny, nz] = self.n;
         let mut cell = 0;
@@ -132,7 +131,8 @@ impl Lattice {
         }
     }
 
-    /// Calls `f` for the first value (index 0) of every line along `axis`, ghosts of the other axes included.
+    /// Calls `f` for the first value (index 0) of every line along `axis`, including lines through ghosts of the other
+    /// axes.
     pub(super) fn each_line(&self, axis: usize, mut f: impl FnMut(usize)) {
         let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
         let start = self.ghosts[axis] * self.stride[axis];
@@ -166,8 +166,8 @@ impl Lattice {
         }
     }
 
-    /// Moves values of a component by whole cells: what stood `cells` farther along each axis stands here then. What
-    /// comes in from outside, ghosts too, is what `new` answers for its indices.
+    /// Shifts the values of a component by whole cells: each place gets the value from `cells` farther along each axis.
+    /// Values from outside, and ghosts, come from `new` for their indices.
     pub(super) fn shift(&self, component: usize, values: &mut [f32], cells: [i64; 3], new: impl Fn([i64; 3]) -> f32) {
         let before = values.to_vec();
         let has = |i: [i64; 3]| (0..3).all(|a| (0..self.count(component, a) as i64).contains(&i[a]));
@@ -177,7 +177,7 @@ impl Lattice {
         });
     }
 
-    /// The place of a value in cells from the box's lowest corner.
+    /// Returns the place of a value in cells from the box's lowest corner.
     pub(super) fn place(&self, component: usize, i: [usize; 3]) -> [f32; 3] {
         [0, 1, 2].map(|a| i[a] as f32 + if a == component && !self.is_flat(a) { 0.0 } else { 0.5 })
     }

@@ -1,4 +1,4 @@
-//! A field that a context leads: where it lies, what stands in it, which wind comes in, and how it starts.
+//! Field that a context steps: its place, its obstacles, its inflow, and its start.
 
 use std::sync::Arc;
 
@@ -18,41 +18,43 @@ use crate::{
     world::World,
 };
 
-/// Length of a step, s, on a grid that is anchored at time 0: with gusts, and of the mean wind.
+/// Length of a step with gusts ([`WindFieldMode::Running`]), s. Steps lie on a grid that is anchored at time 0.
 const RUNNING_STEP_S: f64 = 0.5;
+/// Length of a step of the mean wind ([`WindFieldMode::Steady`]), s.
 const STEADY_STEP_S: f64 = 2.0;
-/// In a part of a step the fastest air passes at most so many cells.
+/// Largest number of cells that the fastest air passes in a part of a step.
 const CFL: f64 = 4.0;
-/// Most parts of a step.
+/// Largest number of parts of a step.
 const MOST_PARTS: f64 = 64.0;
-/// A steady field rests when in the time in which the wind crosses it no velocity would change by more than this share
-/// of the largest.
+/// Limit of change at which a steady field rests: largest change of a velocity in the time in which the wind crosses
+/// the field, as a share of the largest velocity.
 const REST: f64 = 0.01;
-/// It rests in any case after so many such times.
+/// Number of such times after which a steady field rests in any case.
 const MOST_CROSSINGS: f64 = 6.0;
-/// The mean wind must have changed by this share of its speed, or of 1 m/s, for a steady field to wake.
+/// Change of the mean wind at which a steady field wakes, as a share of its speed or of 1 m/s.
 const WAKES: f64 = 0.02;
-/// Parts by which a start goes on at each size of cell after the first, and crossings at that.
+/// Number of parts of a start at each finer level after the first.
 const FINER_PARTS: u32 = 6;
+/// Duration of a start at the first level, in crossings of the field.
 const FIRST_CROSSINGS: f64 = 4.0;
-/// A grid is halved for the start while each axis keeps so many cells.
+/// Least number of cells along each axis down to which a grid is halved for the start.
 const FEWEST_CELLS: u32 = 8;
-/// In a curved world a place so far from where the field's axes were taken takes them anew, m.
+/// Distance of a place from the field's anchor, m, beyond which the anchor is renewed in a curved world.
 const ANCHORED_M: f64 = 10_000.0;
-/// Cells from the sides and the top over which the field goes over into the weather's wind.
+/// Width of the zone at the sides and the top, in cells, over which the field fades into the weather's wind.
 const RIM_CELLS: f32 = 4.0;
-/// Longest way of whirls that mix the mean wind, m, and cells; with gusts, one cell: what is longer the field itself
-/// shows.
+/// Longest mixing length of eddies over the ground, m.
 const MIXING_M: f64 = 10.0;
+/// Longest mixing length in a steady field, cells. With gusts it is one cell: the field itself shows longer eddies.
 const STEADY_CELLS: f64 = 2.5;
 /// Von Karman's constant.
 const KAPPA: f64 = 0.4;
-/// Winds over this are not solved for, m/s.
+/// Largest wind that is solved for, m/s; stronger wind is clamped.
 const MOST_WIND_M_S: f64 = 0.9 * super::MAX_SPEED_M_S;
-/// A field says nothing of times further than this from its own, s; a longer leap begins anew.
+/// Largest difference from the field's time at which its wind is used, s. A longer leap of time restarts the field.
 pub(super) const LEAP_S: f64 = 60.0;
 
-/// Where the cells of a field lie: whole cells are counted from here.
+/// Origin and axes from which the cells of a field are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Anchor {
     pub origin: DVec3,
@@ -62,14 +64,14 @@ pub(super) struct Anchor {
 }
 
 impl Anchor {
-    /// Creates the anchor of a field about a place. In a flat world every field counts from the world's origin.
+    /// Creates the anchor of a field around a place. In a flat world every field counts from the world's origin.
     pub fn new(world: &World, center: DVec3) -> Self {
         let origin = if world.frame.kind == WorldKind::Flat { DVec3::ZERO } else { center };
         let local = world.frame.frame_at(origin);
         Self { origin, to_enu: local.world_to_enu, altitude_m: local.place.altitude_m }
     }
 
-    /// The lowest corner of a field, cells.
+    /// Returns the lowest corner of a field, cells.
     pub fn corner(&self, desc: &WindFieldDesc) -> [i64; 3] {
         let half = DVec3::new(f64::from(desc.cells[0]) / 2.0, f64::from(desc.cells[1]) / 2.0, 0.0);
         let cells = self.to_enu * (desc.floor_center - self.origin) / desc.cell_m - half;
@@ -81,7 +83,7 @@ impl Anchor {
     }
 }
 
-/// The wind that comes in.
+/// Inflow: the wind that comes in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inflow {
     pub blowing: Blowing,
@@ -96,27 +98,27 @@ impl Inflow {
         Self { blowing, profile, is_steady: mode == WindFieldMode::Steady }
     }
 
-    /// The mean wind of a profile.
+    /// Creates the inflow of the mean wind of a profile.
     fn of_mean(profile: WindProfile) -> Self {
         let mean_m_s = DVec2::new(profile.east_m_s, profile.north_m_s);
         let blowing = Blowing { drift: Drift::ZERO, mean_m_s, turned_m_s: DVec2::ZERO, gust_m_s: DVec2::ZERO };
         Self { blowing, profile, is_steady: true }
     }
 
-    /// The wind at a height above the ground, m/s.
+    /// Returns the wind at a height above the ground, m/s.
     fn at(&self, height_m: f64) -> DVec3 {
         let wind = self.blowing.at_height(&self.profile, height_m);
         let v = if self.is_steady { wind.mean_m_s } else { wind.velocity_m_s };
         v.clamp_length_max(MOST_WIND_M_S)
     }
 
-    /// The whirls that come in with it: none with the mean wind of a steady field.
+    /// Returns the eddies of the inflow: none for the mean wind of a steady field.
     fn whirls(&self, seed: u64, desc: &WindFieldDesc) -> Whirls {
         let speed = if self.is_steady { 0.0 } else { self.profile.friction_velocity_m_s() };
         Whirls::new(seed, desc, self.blowing.mean_m_s, speed)
     }
 
-    /// Lets the whirls that the field does not show mix its air.
+    /// Sets the mixing by the eddies that the field does not show.
     fn mix(&self, field: &mut FlowField, cell_m: DVec3, ground_m: impl Fn(DVec2) -> f64) {
         let cells = if self.is_steady { STEADY_CELLS } else { 1.0 };
         let speed = KAPPA * self.profile.friction_velocity_m_s();
@@ -124,18 +126,18 @@ impl Inflow {
     }
 }
 
-/// The ground and the boxes as a field meets them; lengths from its lowest corner.
+/// Ground and boxes from the view of a field; lengths are measured from its lowest corner.
 struct Scenery<'a> {
     world: &'a World,
     anchor: Anchor,
     corner: [i64; 3],
     corner_m: DVec3,
     size_m: DVec3,
-    /// How long after the host's boxes stand where they are, s.
+    /// Time after the one at which the host placed its boxes, s.
     since_s: f64,
     terrain: Option<&'a Arc<TerrainHeights>>,
     tiles: Option<&'a Arc<Terrain>>,
-    /// From the terrain's origin to the field's corner, m.
+    /// Vector from the terrain's origin to the field's corner, m.
     from_terrain: DVec3,
     /// Height of the ground where there is no terrain, m.
     level_m: f64,
@@ -161,7 +163,7 @@ impl<'a> Scenery<'a> {
         }
     }
 
-    /// The host's boxes that reach into the field.
+    /// Returns the host's boxes that reach into the field.
     fn boxes(&self) -> impl Iterator<Item = FlowBox<'a>> {
         let to_enu = self.anchor.to_enu;
         let flow_box = move |s: &'a Shelter| FlowBox {
@@ -191,7 +193,7 @@ impl<'a> Scenery<'a> {
         height_m.map_or(self.level_m, |height| height - self.from_terrain.z)
     }
 
-    /// Two numbers that are the same for scenery that is alike: of all that stands, and of what moves.
+    /// Returns two hashes, equal for equal scenery: of everything that stands still, and of everything that moves.
     fn hash(&self) -> [u64; 2] {
         let mut hash = [0xcbf2_9ce4_8422_2325_u64; 2];
         let mut add = |which: usize, bits: u64| {
@@ -206,7 +208,7 @@ impl<'a> Scenery<'a> {
             Some(heights) => {
                 add(0, heights);
                 self.from_terrain.to_array().iter().for_each(|v| add(0, v.to_bits()));
-                // Where tiles leave holes the station's height counts.
+                // In holes of the tiles the station's height is the ground.
                 self.tiles.iter().for_each(|_| add(0, self.level_m.to_bits()));
             }
             None => add(0, self.level_m.to_bits()),
@@ -221,17 +223,18 @@ impl<'a> Scenery<'a> {
     }
 }
 
-/// A start from the steady field of a moment: on coarser grids first.
+/// Progress of a start, which finds the steady field of a moment, on coarser grids first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Start {
-    /// How many times cells are twice as long now, 0 for the field's own.
+    /// Level: the number of times that the cell size is doubled; 0 for the field's own.
     level: u32,
-    /// Time left at this level, s, and parts left.
+    /// Time left at this level, s.
     left_s: f64,
+    /// Number of parts left at this level.
     left_parts: u32,
 }
 
-/// A field as it is led.
+/// Field of a context, with the state of its steps.
 pub(super) struct Live {
     pub desc: WindFieldDesc,
     pub anchor: Anchor,
@@ -239,24 +242,25 @@ pub(super) struct Live {
     pub field: FlowField,
     pub time_s: f64,
     pub begun_s: f64,
-    /// The field is on its way to the steady one of a moment.
+    /// Progress of the start; `None` once the field has started.
     pub start: Option<Start>,
-    /// Parts of a step that are left, and the length of each, s.
+    /// Number of parts of the step that are left, and the length of each, s.
     pub parts: (u32, f64),
     /// Hashes of the terrain and boxes in the field at its last step, as [`Scenery::hash`] returns them.
     pub stood: [u64; 2],
     standing: Option<SolidBodies>,
-    /// State of a steady field: the wind that it was solved for, east, north and roughness length; how long it has not
-    /// rested, s; and whether it does.
+    /// Wind for which a steady field was solved: east, north, and roughness length.
     pub solved_for: [f64; 3],
+    /// Time for which a steady field has not rested, s.
     pub awake_s: f64,
+    /// Whether a steady field rests.
     pub rests: bool,
-    /// Profile of the weather's wind over which a steady field is shown. While it rests, the present wind may differ a
-    /// little.
+    /// Profile of the weather's wind over which a steady field is shown. While the field rests, the present wind may
+    /// differ slightly from it.
     pub shown_over: Option<WindProfile>,
 }
 
-/// Length of the steps of a mode, s.
+/// Returns the length of the steps of a mode, s.
 pub(super) fn step_s(mode: WindFieldMode) -> f64 {
     match mode {
         WindFieldMode::Steady => STEADY_STEP_S,
@@ -264,7 +268,7 @@ pub(super) fn step_s(mode: WindFieldMode) -> f64 {
     }
 }
 
-/// Settings of a field's grid, cells so many times twice as long.
+/// Returns the settings of a field's grid whose cell size is doubled `level` times.
 fn settings(desc: &WindFieldDesc, roughness_m: f64, level: u32) -> FlowSettings {
     FlowSettings {
         cells: desc.cells.map(|n| n >> level),
@@ -278,10 +282,10 @@ fn settings(desc: &WindFieldDesc, roughness_m: f64, level: u32) -> FlowSettings 
 }
 
 impl Live {
-    /// A field at the beginning of its start, at a time of its step grid.
+    /// Creates a field at the beginning of its start, at a time of its step grid.
     pub fn new(world: &World, desc: WindFieldDesc, time_s: f64) -> Result<Self> {
         let anchor = Anchor::new(world, desc.floor_center);
-        // As small as there are any: the start makes the field.
+        // The smallest possible field: the start replaces it.
         let none = FlowSettings { cells: [2, 2, 1], ..FlowSettings::default() };
         let field = FlowField::new(&none, &FlowObstacles::default(), |_| DVec3::ZERO)?;
         let corner = anchor.corner(&desc);
@@ -290,7 +294,7 @@ impl Live {
         Ok(live)
     }
 
-    /// One that goes on from saved numbers, of which `field` is still without.
+    /// Creates a field that continues from saved numbers, which the caller has still to put into `field`.
     pub fn saved(world: &World, desc: WindFieldDesc, anchor: Anchor, corner: [i64; 3], time_s: f64) -> Result<Self> {
         let roughness_m = Inflow::new(world, time_s, desc.mode).profile.roughness_length_m;
         let settings = settings(&desc, roughness_m, 0);
@@ -298,7 +302,7 @@ impl Live {
         Ok(Self::standing_still(desc, anchor, corner, field, time_s))
     }
 
-    /// With nothing of a step or a start under way, and nothing known of what stands in it.
+    /// Creates a field without a step or a start in progress, and without known obstacles.
     fn standing_still(desc: WindFieldDesc, anchor: Anchor, corner: [i64; 3], field: FlowField, time_s: f64) -> Self {
         Self {
             desc,
@@ -318,7 +322,7 @@ impl Live {
         }
     }
 
-    /// Begins anew from the steady field of a moment.
+    /// Restarts from the steady field of a moment.
     pub fn restart(&mut self, world: &World, time_s: f64) -> Result<()> {
         (self.time_s, self.begun_s) = (time_s, time_s);
         let mut level = 0;
@@ -329,12 +333,12 @@ impl Live {
         self.start_at(world, level, false)
     }
 
-    /// Starts at a level, from what the level before has found if there was one.
+    /// Starts at a level, from the result of the previous level if `goes_on`.
     fn start_at(&mut self, world: &World, level: u32, goes_on: bool) -> Result<()> {
         let inflow = Inflow::new(world, self.time_s, WindFieldMode::Steady);
         let scenery = Scenery::new(world, self, self.time_s);
         let ground = |p: DVec2| scenery.ground_m(p);
-        // Round what moves no air is steady.
+        // The steady field leaves out boxes that move.
         let boxes: Vec<FlowBox> = scenery.boxes().filter(|b| b.velocity_m_s == DVec3::ZERO).collect();
         let obstacles = FlowObstacles { terrain: Some(&ground), boxes: &boxes };
         let set = settings(&self.desc, inflow.profile.roughness_length_m, level);
@@ -351,13 +355,13 @@ impl Live {
         Ok(())
     }
 
-    /// The time in which air of a speed crosses the field's longest side, s.
+    /// Returns the time in which air of a speed crosses the field's longest side, s.
     fn crossing_s(&self, speed_m_s: f64) -> f64 {
         let size = DVec3::from(self.desc.cells.map(f64::from)) * self.desc.cell_m;
         size.max_element() / speed_m_s.max(0.05)
     }
 
-    /// Goes on with the start by one part of it. Says whether it is done.
+    /// Continues the start by one part. Returns whether the start is complete.
     pub fn go_on_with_start(&mut self, world: &World) -> Result<bool> {
         let Some(mut start) = self.start.take() else { return Ok(true) };
         let speed = self.field.fastest_m_s();
@@ -383,7 +387,7 @@ impl Live {
         Ok(true)
     }
 
-    /// The field's lowest corner from its anchor, m.
+    /// Returns the field's lowest corner relative to its anchor, m.
     pub fn corner_m(&self) -> DVec3 {
         DVec3::from(self.corner.map(|c| c as f64)) * self.desc.cell_m
     }
@@ -392,12 +396,12 @@ impl Live {
         step_s(self.desc.mode)
     }
 
-    /// Where its next step ends, s.
+    /// Returns the end of the next step, s.
     pub fn next_s(&self) -> f64 {
         ((self.time_s / self.step_s()).floor() + 1.0) * self.step_s()
     }
 
-    /// Follows the place that the host gives. Says whether it must begin anew there.
+    /// Moves the field to the place that the host gives. Returns whether it must restart there.
     pub fn follow(&mut self, world: &World, desc: &WindFieldDesc) -> Result<bool> {
         if self.anchor.is_far(world, desc.floor_center) {
             self.anchor = Anchor::new(world, desc.floor_center);
@@ -421,7 +425,7 @@ impl Live {
         Ok(false)
     }
 
-    /// Makes the field ready for its next step. Says whether there is anything to do in it.
+    /// Prepares the field for its next step. Returns whether there is anything to do in it.
     pub fn begin_step(&mut self, world: &World) -> Result<bool> {
         let end_s = self.next_s();
         let inflow = Inflow::new(world, end_s, self.desc.mode);
@@ -463,7 +467,7 @@ impl Live {
         Ok(true)
     }
 
-    /// Leads the field through a part of the step that has begun. Says whether the step is over.
+    /// Advances the field by one part of the present step. Returns whether the step is complete.
     pub fn step_part(&mut self) -> Result<bool> {
         self.field.step(self.parts.1)?;
         self.parts.0 -= 1;
@@ -496,24 +500,25 @@ impl Live {
         (self.awake_s, self.rests) = (0.0, false);
     }
 
-    /// Whether a leap of time leads to the present, so that it begins anew. Counted from the end of its next step,
-    /// which the last update did not reach: so no update of [`LEAP_S`] is one, however long the steps.
+    /// Whether time has leapt so far that the field must restart. The leap is counted from the end of the field's next
+    /// step, which the last update did not reach. An update of [`LEAP_S`] therefore never counts as a leap, whatever
+    /// the length of the steps.
     pub fn is_left_behind(&self, present_s: f64) -> bool {
         present_s - self.next_s() > LEAP_S
     }
 
-    /// When it is known, s.
+    /// Returns the first and last time for which the field's wind is used, s.
     pub fn holds_s(&self) -> [f64; 2] {
         [self.time_s - LEAP_S, self.time_s + LEAP_S]
     }
 
-    /// The weather's wind over which a steady field is shown from now on. It is that of the step which changed the
-    /// field, however far the field is led before it is published.
+    /// Returns the weather's wind over which a steady field is shown from now on. It is that of the step that changed
+    /// the field, even if the field has advanced further before it is published.
     pub fn wind_over(&self, world: &World) -> Option<WindProfile> {
         (self.desc.mode == WindFieldMode::Steady).then(|| world.timeline.at(self.time_s).wind)
     }
 
-    /// Fills what queries and shaders read.
+    /// Fills the volume that queries and shaders read.
     pub fn publish(&self, world: &World, volume: &mut WindVolume) {
         let is_steady = self.desc.mode == WindFieldMode::Steady;
         let inflow = Inflow::of_mean(self.shown_over.unwrap_or_else(|| world.timeline.at(self.time_s).wind));
@@ -524,7 +529,7 @@ impl Live {
         volume.nodes = cells.map(|n| n + 1);
         volume.holds_s = Some(self.holds_s());
         volume.values.clear();
-        // 0 at a side, 1 so many cells from it.
+        // 0 at a side, 1 at the inner edge of the zone.
         let rim = |cells: f32| {
             let x = (cells / RIM_CELLS).clamp(0.0, 1.0);
             x * x * (3.0 - 2.0 * x)
@@ -539,7 +544,7 @@ impl Live {
                 volume.values.push([v.x, v.y, v.z, share]);
                 return;
             }
-            // As much of the gusts as of the mean wind.
+            // The share of gusts that is kept is that of the mean wind.
             let place = DVec3::new(i as f64, j as f64, k as f64) * h;
             let outer = inflow.at(place.z - scenery.ground_m(place.truncate())).as_vec3();
             let kept = (v.length() / outer.length().max(0.1)).min(1.0);

@@ -1,4 +1,4 @@
-//! A step of the field, and the steady state.
+//! Step of the field, and its steady state.
 
 use super::{
     advect::{Carrier, Scheme},
@@ -10,10 +10,10 @@ use super::{
 use crate::error::{Result, check_range};
 
 impl FlowField {
-    /// Leads the field on by `dt` seconds.
+    /// Advances the field by `dt` seconds.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a time that is not in \[0, 1000\] s.
+    /// [`crate::Status::InvalidArgument`] for a time outside \[0, 1000\] s.
     pub fn step(&mut self, dt: f64) -> Result<()> {
         check_range("flow.dt_s", dt, 0.0, 1e3, "s")?;
         if dt == 0.0 {
@@ -39,13 +39,13 @@ impl FlowField {
         self.last_dt = dt;
     }
 
-    /// Carries by half a step, projects, mirrors, carries by half a step and projects. The wind that carries is that of
-    /// the middle of each half, led on from the two winds before it: by the wind of the half's beginning, whirls would
-    /// stray across the mean wind.
+    /// Carries by half a step, projects, reflects, carries by half a step and projects. The wind that carries is the
+    /// one at the middle of each half, extrapolated from the two winds before it: with the wind at the half's
+    /// beginning, vortices would drift across the mean wind.
     fn step_mirrored(&mut self, dt: f64) {
         let from = std::mem::take(&mut self.velocity);
         let [mut wind, mut middle, mut to] = std::mem::take(&mut self.scratch);
-        // The scratch still has the middle of the step before.
+        // The scratch memory still has the middle of the previous step.
         let ahead = if self.last_dt > 0.0 { (0.5 * dt / self.last_dt).min(1.0) as f32 } else { 0.0 };
         lead_on(&from, &mut wind, ahead);
         self.carry(&from, &wind, dt / 2.0, &mut Faces::default(), &mut middle);
@@ -57,21 +57,20 @@ impl FlowField {
         self.carry(&mirrored, &wind, dt / 2.0, &mut Faces::default(), &mut to);
         self.mix(&wind, dt / 2.0, &mut mirrored, &mut to);
         self.project(&mut to, 1);
-        // `wind` lies half as far beyond the middle as the beginning lay before it.
+        // `wind` now lies beyond the middle by half the distance of the beginning before it.
         self.last_change_m_s = largest_of(&to, |c, at| to[c][at] - (3.0 * middle[c][at] - 2.0 * wind[c][at]));
         self.velocity = to;
         self.scratch = [middle, mirrored, wind];
         self.last_dt = dt;
     }
 
-    /// Leads the field on until it rests: until in the time in which the fastest air crosses the box's longest side no
-    /// velocity changes by more than `rest` of the largest. Steps have the length in which the fastest air passes `cfl`
-    /// cells.
+    /// Advances the field until it is steady: until no velocity changes by more than `rest` times the largest while the
+    /// fastest air crosses the box's longest side. In a step the fastest air passes `cfl` cells.
     ///
-    /// Answers whether it rests; air that sheds whirls never does, and after `most` such times this gives up.
+    /// Returns whether the field is steady. Air that sheds vortices never is; after `most` such times this gives up.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for `cfl` not in \[0.01, 64\] and `rest` not in \[1e-6, 1\].
+    /// [`crate::Status::InvalidArgument`] for `cfl` outside \[0.01, 64\] and `rest` outside \[1e-6, 1\].
     pub fn settle(&mut self, cfl: f64, rest: f64, most: u32) -> Result<bool> {
         check_range("flow.cfl", cfl, 0.01, 64.0, "")?;
         check_range("flow.rest", rest, 1e-6, 1.0, "")?;
@@ -98,7 +97,7 @@ impl FlowField {
         Ok(false)
     }
 
-    /// Projects `middle`, and makes `mirrored` what lies as far beyond the projection as it lay before.
+    /// Projects `middle`, and sets `mirrored` to the reflection of the unprojected `middle` at its projection.
     fn reflect(&mut self, middle: &mut Faces, mirrored: &mut Faces) {
         for c in self.lattice.axes() {
             mirrored[c].copy_from_slice(&middle[c]);
@@ -110,7 +109,7 @@ impl FlowField {
         self.fill_all(mirrored);
     }
 
-    /// `target` becomes what `source` is after the wind has carried it by `dt`, ghosts filled.
+    /// Sets `target` to `source` carried by the wind for `dt`, with ghosts filled.
     fn carry(&mut self, source: &Faces, wind: &Faces, dt: f64, other: &mut Faces, target: &mut Faces) {
         let mut bounds = std::mem::take(&mut self.bounds);
         let carrier = Carrier::new(&self.lattice, wind, self.range());
@@ -136,8 +135,8 @@ impl FlowField {
         })
     }
 
-    /// Mixes by viscosity and by whirls below a cell, in so many explicit steps that each is stable, and lets walls
-    /// take their part. `spare` is room.
+    /// Mixes by viscosity and by eddies smaller than a cell, in as many explicit steps as stability needs, and applies
+    /// the friction of walls. `spare` is scratch memory.
     fn mix(&mut self, wind: &Faces, dt: f64, spare: &mut Faces, v: &mut Faces) {
         let even = self.settings.viscosity_m2_s;
         let ground = self.mixing.most_m2_s();
@@ -149,7 +148,7 @@ impl FlowField {
             cells.fill(0.0);
             if self.settings.has_eddies {
                 eddies::viscosity(lattice, v, &mut cells);
-                // The rest of what one explicit step may mix.
+                // Limit of the eddy viscosity for a stable explicit step.
                 let most = ((0.45 * parts / (dt * inverse) - even - ground).max(0.0)) as f32;
                 cells.iter_mut().for_each(|nu| *nu = nu.min(most));
             }
@@ -169,19 +168,19 @@ impl FlowField {
         }
     }
 
-    /// The largest change of a velocity in the last step over its length, m/s2.
+    /// Returns the largest change of a velocity in the last step over its length, m/s2.
     pub fn last_change_m_s2(&self) -> f64 {
         if self.last_dt > 0.0 { f64::from(self.last_change_m_s) / self.last_dt } else { 0.0 }
     }
 }
 
-/// The largest amount of a number for each value.
+/// Returns the largest absolute value of `f` over all values.
 fn largest_of(faces: &Faces, f: impl Fn(usize, usize) -> f32) -> f32 {
     let all = faces.iter().enumerate().flat_map(|(c, v)| (0..v.len()).map(move |at| (c, at)));
     all.fold(0.0, |most, (c, at)| most.max(f(c, at).abs()))
 }
 
-/// Makes `earlier` the wind that goes on from it through `now`, `ahead` times as far as from the one to the other.
+/// Extrapolates from `earlier` through `now`, by `ahead` times the distance between the two, into `earlier`.
 fn lead_on(now: &Faces, earlier: &mut Faces, ahead: f32) {
     for (now, earlier) in now.iter().flatten().zip(earlier.iter_mut().flatten()) {
         *earlier = now + ahead * (now - *earlier);

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::error::{Result, check_range};
 
-/// Obstacles of a field when they were last looked up, so that only changes are looked up again.
+/// Obstacles of a field at their last evaluation, so that only changes are evaluated again.
 pub(super) struct SolidBodies {
     shares: Shares,
     /// Columns in which something moves.
@@ -19,14 +19,14 @@ pub(super) struct SolidBodies {
 }
 
 impl FlowField {
-    /// Another outer wind, m/s at a place: what blows in over open sides from the next step on. The air that is in the
-    /// box flows on.
+    /// Changes the outer wind, m/s at a place, which blows in over open sides from the next step on. The air in the box
+    /// flows on.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a wind that is not finite or over [`super::MAX_SPEED_M_S`]; the field is
-    /// as it was then.
+    /// [`crate::Status::InvalidArgument`] for a wind that is not finite or over [`super::MAX_SPEED_M_S`]; the field
+    /// then stays unchanged.
     pub fn set_wind(&mut self, wind: impl Fn(DVec3) -> DVec3) -> Result<()> {
-        // The highest winds of a profile stand on the sides: none is set before all are found good.
+        // The strongest winds of a profile are on the sides: all are checked before any is set.
         for is_checked in [false, true] {
             for c in self.lattice.axes() {
                 let (lattice, outer) = (&self.lattice, &mut self.outer[c]);
@@ -50,8 +50,8 @@ impl FlowField {
         Ok(())
     }
 
-    /// How whirls over the ground mix the wind: kappa u*, m/s, the longest way, m, and the height of the ground at
-    /// places of the box, m.
+    /// Sets the mixing by eddies over the ground: kappa u*, m/s, the longest mixing length, m, and the height of the
+    /// ground at places of the box, m.
     pub(super) fn set_mixing(&mut self, speed_m_s: f64, most_m: f64, ground_m: impl Fn(DVec2) -> f64) {
         let Self { lattice, mixing, .. } = self;
         (mixing.speed_m_s, mixing.most_m) = (speed_m_s as f32, most_m as f32);
@@ -61,10 +61,10 @@ impl FlowField {
         mixing.ground_m.extend(columns.map(|(i, j)| ground_m(DVec2::new(place(i, 0), place(j, 1))) as f32));
     }
 
-    /// Another roughness length of walls, m, \[0, 5\].
+    /// Changes the roughness length of walls, m, \[0, 5\].
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] for a length outside this range.
     pub fn set_roughness(&mut self, roughness_m: f64) -> Result<()> {
         check_range("flow.roughness_m", roughness_m, 0.0, 5.0, "m")?;
         if self.settings.roughness_m != roughness_m {
@@ -74,18 +74,18 @@ impl FlowField {
         Ok(())
     }
 
-    /// Fills what lies beyond the sides and inside of things from the air beside it.
+    /// Fills the values beyond the sides and inside obstacles from the air beside them.
     pub(super) fn fill_ghosts(&mut self) {
         let mut v = std::mem::take(&mut self.velocity);
         self.fill_all(&mut v);
         self.velocity = v;
     }
 
-    /// Moves the box by whole cells east, north and up; the air stays where it is, and what comes in moves as `wind`
-    /// says at places of the box as it then lies. The obstacles are to be set next.
+    /// Moves the box by whole cells east, north and up. The air stays where it is; air that comes in has the velocity
+    /// that `wind` gives at places of the moved box. The caller must set the obstacles next.
     ///
     /// # Errors
-    /// As [`FlowField::set_wind`].
+    /// As for [`FlowField::set_wind`].
     pub fn shift(&mut self, cells: [i64; 3], wind: impl Fn(DVec3) -> DVec3) -> Result<()> {
         self.set_wind(&wind)?;
         let Self { lattice, velocity, scratch, .. } = self;
@@ -99,11 +99,11 @@ impl FlowField {
         Ok(())
     }
 
-    /// Puts other obstacles into the air without making it free of divergence, which the next step does. `standing` is
-    /// what the last call left, if terrain and what stands are the same.
+    /// Replaces the obstacles without making the air free of divergence, which the next step does. `standing` is the
+    /// result of the last call, if terrain and fixed obstacles are the same.
     ///
     /// # Errors
-    /// As [`FlowField::new`]; the field is as it was then.
+    /// As for [`FlowField::new`]; the field then stays unchanged.
     pub(super) fn follow_obstacles(
         &mut self,
         obstacles: &FlowObstacles,
@@ -134,7 +134,7 @@ impl FlowField {
             let v = &self.velocity[c];
             let back = |a: usize| if a == c || lattice.is_flat(a) { 0 } else { lattice.stride[a] };
             let [x, y, z] = [0, 1, 2].map(back);
-            // Along its own axis, and along a flat one, a value counts twice.
+            // Along its own axis and along a flat one a value is its own neighbour and counts twice.
             let pair = |at: usize| v[at] + v[at - x];
             let square = |at: usize| pair(at) + pair(at - y);
             0.125 * (square(at) + square(at - z))
@@ -149,26 +149,27 @@ impl FlowField {
         }
     }
 
-    /// All numbers that the next step goes on from: velocities, those of the middle of the last step, potentials.
+    /// Returns all numbers from which the next step continues: velocities, those in the middle of the last step,
+    /// potentials.
     pub(super) fn numbers(&self) -> impl Iterator<Item = &Vec<f32>> {
         let middle = &self.scratch[0];
         self.velocity.iter().chain(middle).chain(&self.potentials)
     }
 
-    /// Length of the last step, s, and the largest change of a velocity in it, m/s.
+    /// Returns the length of the last step, s, and the largest change of a velocity in it, m/s.
     pub(super) fn last_step(&self) -> (f64, f32) {
         (self.last_dt, self.last_change_m_s)
     }
 
-    /// Returns the numbers of [`Self::numbers`] to be restored, the length of the last step, s, and the largest change
-    /// in it, m/s.
+    /// Returns the same numbers as [`Self::numbers`], the length of the last step, s, and the largest change in it,
+    /// m/s, all to be restored.
     pub(super) fn numbers_mut(&mut self) -> (impl Iterator<Item = &mut Vec<f32>>, &mut f64, &mut f32) {
         let [middle, ..] = &mut self.scratch;
         let numbers = self.velocity.iter_mut().chain(middle).chain(&mut self.potentials);
         (numbers, &mut self.last_dt, &mut self.last_change_m_s)
     }
 
-    /// Takes the velocities of a field of the same box with cells twice as long, linear between them.
+    /// Interpolates the velocities of a field of the same box with cells twice as long, linearly.
     pub(super) fn take_coarse(&mut self, coarse: &Self) {
         let mut velocity: Faces = std::mem::take(&mut self.velocity);
         for c in self.lattice.axes() {

@@ -1,44 +1,45 @@
-//! Multigrid for the pressure: the same equation on ever coarser grids.
+//! Multigrid for the pressure: the same equation on successively coarser grids.
 //!
-//! A coarse cell joins two cells along each axis on which cells are not much longer than on the others; so long cells
-//! become round before all axes are halved together. The opening of a coarse face is the mean of its fine ones. Odd
-//! numbers leave a coarse cell that is half closed. Residuals go down as means; corrections come up linearly between
-//! coarse cells.
+//! A coarse cell joins two cells along each axis on which cells are not much longer than on the others. Elongated cells
+//! thus become cubic first, and then all axes are halved together. The opening of a coarse face is the mean of its fine
+//! faces. An odd number of cells leaves a coarse cell that is half closed. Residuals are restricted as means;
+//! corrections are interpolated linearly between coarse cells.
 
 use std::mem::take;
 
-/// Sweeps before and after the coarser grid, and on the coarsest.
+/// Number of sweeps before and after the coarser grid.
 const SWEEPS: usize = 2;
+/// Number of sweeps on the coarsest grid.
 const COARSEST_SWEEPS: usize = 24;
-/// A grid of so few cells is not coarsened.
+/// Number of cells up to which a grid is not coarsened.
 const FEW_CELLS: usize = 32;
-/// An axis is coarsened if its cells are at most so many times as long as the shortest that can be.
+/// Ratio to the shortest cell side up to which an axis is coarsened.
 const LONGER: f32 = 1.5;
 
-/// One grid of the equation: for each cell, the sum over its faces of coefficient times (neighbour - own) is the
+/// Equation on one grid: for each cell, the sum over its faces of coefficient times (neighbour - own) equals the
 /// right-hand side.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GridLevel {
     pub n: [usize; 3],
     h: [f32; 3],
-    /// Coefficient of the lower face of each cell along each axis: open share / h^2. The first one of a row joins its
-    /// two ends.
+    /// Coefficient of the lower face of each cell along each axis: open share / h^2. The first one of a row connects
+    /// the two ends of the row.
     pub lower: [Vec<f32>; 3],
-    /// Sum over the faces of a cell; 0: no air in it.
+    /// Sum of the coefficients of a cell's faces; 0 for a cell without air.
     pub sum: Vec<f32>,
     x: Vec<f32>,
     b: Vec<f32>,
     r: Vec<f32>,
-    /// Cells that a cell of the next level joins along each axis, 1 or 2.
+    /// Number of cells that a cell of the next level joins along each axis, 1 or 2.
     join: [usize; 3],
-    /// Room for [`GridLevel::add_correction`].
+    /// Scratch space of [`GridLevel::add_correction`].
     taps: Vec<CoarseTaps>,
 }
 
-/// Coarse cells that a correction comes from along an axis, with their weights.
+/// Coarse cells from which a correction comes along an axis, with their weights.
 type CoarseTaps = [(usize, f32); 2];
 
-/// Neighbours of a row of cells: starts of the four rows beside it, and of itself.
+/// Neighbours of a row of cells: the starts of the row itself and of the four rows beside it.
 struct RowNeighbours {
     own: usize,
     beside: [usize; 4],
@@ -77,13 +78,13 @@ impl GridLevel {
         }
     }
 
-    /// The neighbours of the cell `i` of a row, before and after it.
+    /// Returns the neighbours of the cell `i` of a row, before and after it.
     fn across(&self, row: &RowNeighbours, i: usize) -> [usize; 2] {
         let last = self.n[0] - 1;
         [row.own + if i == 0 { last } else { i - 1 }, row.own + if i == last { 0 } else { i + 1 }]
     }
 
-    /// The sum over a cell's faces of coefficient times neighbour.
+    /// Returns the sum over a cell's faces of coefficient times neighbour.
     #[inline]
     fn neighbours(&self, x: &[f32], row: &RowNeighbours, i: usize) -> f32 {
         let [left, right] = self.across(row, i);
@@ -93,7 +94,7 @@ impl GridLevel {
         lx[at] * x[left] + lx[right] * x[right] + ly[at] * x[a] + ly[b] * x[b] + lz[at] * x[c] + lz[d] * x[d]
     }
 
-    /// Successive over-relaxation of the cells of one colour, as on a chessboard: 1 is Gauss and Seidel's.
+    /// Relaxes the cells of one colour of a chessboard by successive over-relaxation; a factor of 1 is Gauss-Seidel.
     pub(super) fn relax(&self, x: &mut [f32], b: &[f32], relaxation: f32, colour: usize) {
         self.each_row(|row, parity| {
             let mut i = (parity + colour) % 2;
@@ -118,7 +119,7 @@ impl GridLevel {
         });
     }
 
-    /// The left-hand side.
+    /// Computes the left-hand side of the equation.
     pub(super) fn apply(&self, x: &[f32], product: &mut [f32]) {
         self.each_row(|row, _| {
             for i in 0..self.n[0] {
@@ -128,14 +129,15 @@ impl GridLevel {
         });
     }
 
-    /// Returns how many cells the next level joins along each axis, 1 or 2; 1 on all where this is the last.
+    /// Returns the number of cells that the next level joins along each axis, 1 or 2; 1 on all axes if this is the last
+    /// level.
     fn joined(&self) -> [usize; 3] {
         let can = |a: &usize| self.n[*a] > 2;
         let shortest = (0..3).filter(can).map(|a| self.h[a]).fold(f32::INFINITY, f32::min);
         [0, 1, 2].map(|a| if can(&a) && self.h[a] <= LONGER * shortest { 2 } else { 1 })
     }
 
-    /// The next coarser level.
+    /// Returns the next coarser level and the numbers of cells that it joins.
     fn coarser(&self) -> Option<([usize; 3], Self)> {
         let join = self.joined();
         if join == [1; 3] || self.n.iter().product::<usize>() <= FEW_CELLS {
@@ -162,7 +164,7 @@ impl GridLevel {
         Some((join, Self::new(n, h, lower)))
     }
 
-    /// The residual's mean over the cells that each coarse cell joins.
+    /// Restricts the residual to the coarse grid: its mean over the cells that each coarse cell joins.
     fn restrict(&self, coarse: &mut Self) {
         coarse.b.fill(0.0);
         let share = 1.0 / self.join.iter().product::<usize>() as f32;
@@ -178,8 +180,8 @@ impl GridLevel {
         }
     }
 
-    /// Adds the coarse correction, linearly between coarse cells: 3/4 of the own one and 1/4 of the nearest other, each
-    /// axis; where there is no other, the own one stands for it.
+    /// Adds the coarse correction, interpolated linearly: on each axis 3/4 of the own coarse cell and 1/4 of its
+    /// nearest neighbour. Where there is no neighbour, the own cell replaces it.
     fn add_correction(&mut self, coarse: &Self) {
         let join = self.join;
         let taps = |a: usize, i: usize| -> CoarseTaps {
@@ -225,7 +227,7 @@ impl GridLevel {
     }
 }
 
-/// The equation on all grids, finest first.
+/// Equation on all grids, finest first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Levels(pub Vec<GridLevel>);
 
@@ -245,11 +247,11 @@ impl Levels {
     pub(super) fn cycle_work(&self) -> f64 {
         let cells = |l: &GridLevel| l.sum.len() as f64;
         let all: f64 = self.0.iter().map(cells).sum();
-        // Sweeps down and up, the residual, and the way up.
+        // Sweeps on the way down and up, the residual, and the correction.
         all / self.0.first().map_or(1.0, cells) * (2 * SWEEPS + 2) as f64
     }
 
-    /// One V-cycle from zero: roughly the solution for the right-hand side `b`.
+    /// Runs one V-cycle from zero, which approximates the solution for the right-hand side `b`.
     pub(super) fn cycle(&mut self, b: &[f32], solution: &mut [f32]) {
         if let Some(finest) = self.0.first_mut() {
             finest.b.copy_from_slice(b);

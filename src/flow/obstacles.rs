@@ -1,8 +1,8 @@
-//! Terrain and solid things in the air, as open shares of faces.
+//! Obstacles: terrain and solid objects in the air, as open shares of faces.
 //!
-//! Heights are exact along a face's vertical; along its level sides [`SAMPLES`] places count. So terrain slopes through
-//! cells rather than standing in them as stairs, and a box may end anywhere within a cell. A box thinner than a cell
-//! stands as one cell thick, so that no air passes between two faces that it lies between.
+//! Along the vertical of a face, heights are exact; along its horizontal sides, [`SAMPLES`] places are evaluated. So
+//! terrain slopes through cells instead of forming stairs, and a box may end anywhere within a cell. A box thinner than
+//! a cell is made one cell thick, so that no air passes through it between two faces.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -12,29 +12,28 @@ use super::{
 };
 use crate::error::{Error, Result, check_range};
 
-/// Places along each level side of a face at which obstacles are looked up.
+/// Number of places along each horizontal side of a face at which obstacles are evaluated.
 const SAMPLES: usize = 8;
-/// Distance from a face, as a share of a cell, within which a thing counts as lying on the face.
+/// Distance from a face, as a share of a cell, within which an object counts as lying on the face.
 const NEAR: f64 = 1e-6;
 
-/// A box in the air, turned in any way, and what planes leave of it. Lengths count from the lowest corner of the field.
+/// Box in the air with any orientation, cut by planes. Lengths are measured from the lowest corner of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowBox<'a> {
-    /// Its middle, m.
+    /// Centre, m.
     pub center_m: DVec3,
-    /// Half its size along its own axes, m, \[1e-3, 1e5\].
+    /// Half of its size along its own axes, m, \[1e-3, 1e5\].
     pub half_size_m: DVec3,
-    /// Its axes (east, north, up) as columns: a rotation.
+    /// Axes of the box as columns (east, north, up): a rotation.
     pub axes: DMat3,
-    /// How fast it moves, m/s: it pushes the air before it.
+    /// Velocity, m/s; a moving box pushes the air before it.
     pub velocity_m_s: DVec3,
-    /// Planes that cut it: unit vectors along its axes that point out of what they leave, and how far along them from
-    /// its middle the plane lies, m.
+    /// Planes that cut the box, in its own axes: outward unit normal, and distance from the centre along it, m.
     pub planes: &'a [[f64; 4]],
 }
 
 impl FlowBox<'static> {
-    /// A standing box whose floor is level, `turned_deg` counter-clockwise seen from above.
+    /// Creates a box that stands still on a level floor, turned by `turned_deg` counter-clockwise seen from above.
     pub fn level(center_m: DVec3, half_size_m: DVec3, turned_deg: f64) -> Self {
         let (sin, cos) = libm::sincos(turned_deg.to_radians());
         let axes = DMat3::from_cols(DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0), DVec3::Z);
@@ -43,7 +42,7 @@ impl FlowBox<'static> {
 }
 
 impl FlowBox<'_> {
-    /// How far it reaches from its middle along the field's axes, m, without what planes cut off.
+    /// Returns how far the box reaches from its centre along the field's axes, m, ignoring the planes.
     pub(super) fn reach_m(&self) -> DVec3 {
         let reach = |axis: DVec3, half: f64| axis.abs() * half;
         let h = self.half_size_m;
@@ -57,28 +56,28 @@ pub type Heights<'a> = &'a dyn Fn(DVec2) -> f64;
 /// Obstacles that stand or move in the air.
 #[derive(Clone, Copy, Default)]
 pub struct FlowObstacles<'a> {
-    /// The ground; none: the field's lowest side.
+    /// Heights of the ground; `None` puts it at the field's lowest side.
     pub terrain: Option<Heights<'a>>,
     /// Boxes.
     pub boxes: &'a [FlowBox<'a>],
 }
 
-/// Open shares of faces, and what closes them and moves.
+/// Open shares of faces, and the moving obstacles that close them.
 #[derive(Clone, Debug)]
 pub(super) struct Shares {
-    /// \[0, 1\].
+    /// Open share of each face, \[0, 1\].
     pub open: Faces,
-    /// Velocity along the face's axis times the share of the face that a moving thing closes, m/s; empty where nothing
-    /// moves.
+    /// Velocity along the face's axis times the share of the face that a moving obstacle closes, m/s; empty where
+    /// nothing moves.
     pub pushed: Faces,
 }
 
 /// First and last column of cells along east and north.
 pub(super) type ColumnRange = [[usize; 2]; 2];
 
-/// A box as a grid meets it: what lies within all of its planes.
+/// Box in the form that a grid needs: the space inside all of its planes.
 struct SolidBox {
-    /// Unit vectors outward, and how far along them from the field's corner the plane lies, m.
+    /// Outward unit normals, and distances of the planes along them from the field's corner, m.
     planes: Vec<(DVec3, f64)>,
     low: DVec2,
     high: DVec2,
@@ -93,7 +92,7 @@ impl SolidBox {
         let mut planes = Vec::with_capacity(6 + b.planes.len());
         let mut solid = FlowBox { ..*b };
         for (i, axis) in axes.into_iter().enumerate() {
-            // A cell's width along the axis.
+            // The width of a cell along the axis is the least thickness.
             let half = b.half_size_m[i].max(0.5 * axis.abs().dot(h)) + near;
             solid.half_size_m[i] = half;
             planes.push((axis, half + axis.dot(b.center_m)));
@@ -108,7 +107,7 @@ impl SolidBox {
         Self { planes, low, high, velocity: b.velocity_m_s }
     }
 
-    /// From and to which height it stands above a place.
+    /// Returns the lowest and the highest height of the box above a place.
     fn span(&self, place: DVec2) -> Option<[f64; 2]> {
         if place.cmplt(self.low).any() || place.cmpgt(self.high).any() {
             return None;
@@ -127,7 +126,7 @@ impl SolidBox {
         (low < high).then_some([low, high])
     }
 
-    /// Columns of cells that it may close faces of; none outside of the field.
+    /// Returns the columns of cells whose faces the box may close; `None` outside the field.
     fn columns(&self, lattice: &Lattice) -> Option<ColumnRange> {
         let along = |a: usize| {
             let h = f64::from(lattice.h[a]);
@@ -139,7 +138,7 @@ impl SolidBox {
     }
 }
 
-/// The columns that boxes may close faces of.
+/// Returns the columns whose faces the boxes may close.
 pub(super) fn columns_of(lattice: &Lattice, boxes: &[FlowBox]) -> Option<ColumnRange> {
     let all = boxes.iter().filter_map(|b| SolidBox::new(lattice, b).columns(lattice));
     all.reduce(|a, b| [0, 1].map(|i| [a[i][0].min(b[i][0]), a[i][1].max(b[i][1])]))
@@ -171,7 +170,7 @@ impl FlowObstacles<'_> {
         Ok(())
     }
 
-    /// Open shares of all faces of a grid.
+    /// Returns the open shares of all faces of a grid.
     pub(super) fn shares(&self, lattice: &Lattice) -> Result<Shares> {
         let open = lattice.zeros().map(|v| vec![1.0; v.len()]);
         let mut shares = Shares { open, pushed: Faces::default() };
@@ -183,7 +182,7 @@ impl FlowObstacles<'_> {
         Ok(shares)
     }
 
-    /// Finds the shares of the faces of some columns anew.
+    /// Computes the shares of the faces of some columns.
     pub(super) fn find(&self, lattice: &Lattice, columns: ColumnRange, shares: &mut Shares) -> Result<()> {
         let solids: Vec<SolidBox> = self.boxes.iter().map(|b| SolidBox::new(lattice, b)).collect();
         let moves = solids.iter().any(|s| s.velocity != DVec3::ZERO);
@@ -195,7 +194,7 @@ impl FlowObstacles<'_> {
         let nz = lattice.n[2] + 1;
         let (mut closed, mut pushed) = (vec![0.0; nz], vec![0.0; nz]);
         for c in lattice.axes() {
-            // Across the face's plane one place is enough.
+            // Along the normal of a face one place is enough.
             let count = |a: usize| if a == c || lattice.is_flat(a) { 1 } else { SAMPLES };
             let along = |a: usize, i: usize, s: usize| match a == c && !lattice.is_flat(a) {
                 true => i as f64 * h[a],
@@ -231,9 +230,9 @@ impl FlowObstacles<'_> {
 /// Solid spans above a place.
 struct SpanColumn {
     h: f64,
-    /// From and to a height, lowest first, apart from each other.
+    /// Lower and upper height of each span, lowest first, without overlap.
     spans: Vec<[f64; 2]>,
-    /// Spans of moving things, with their velocity.
+    /// Spans of moving objects, with their velocity.
     moving: Vec<([f64; 2], DVec3)>,
 }
 
@@ -267,8 +266,8 @@ impl SpanColumn {
         Ok(())
     }
 
-    /// Solid share of the height of a cell; of the face at its foot, across which the vertical component passes, 1 or
-    /// 0.
+    /// Returns the solid share of the height of a cell. For the vertical component, returns 1 or 0 for the face at the
+    /// cell's bottom.
     fn closed(&self, component: usize, cell: usize) -> f64 {
         let sum: f64 = self.spans.iter().map(|s| self.within(s, component, cell)).sum();
         sum.min(1.0)
@@ -282,7 +281,7 @@ impl SpanColumn {
         (span[1].min(high) - span[0].max(low)).max(0.0) / self.h
     }
 
-    /// Returns the share of moving things, as [`Self::closed`], times their velocity along the component's axis.
+    /// Returns the share of moving objects, as [`Self::closed`], times their velocity along the component's axis.
     fn pushed(&self, component: usize, cell: usize) -> f64 {
         self.moving.iter().map(|(span, v)| self.within(span, component, cell) * v[component]).sum()
     }

@@ -1,5 +1,5 @@
-//! How much of each face is open, and what follows from that: the coefficients of the pressure, separate bodies of air,
-//! and the faces inside of things that need a velocity because paths lead there.
+//! Open shares of faces, and what follows from them: the coefficients of the pressure equation, separate bodies of air,
+//! and the faces inside obstacles that need a velocity because paths of air lead there.
 
 use super::{
     lattice::{Faces, Lattice},
@@ -8,46 +8,46 @@ use super::{
     sides::{Role, Roles},
 };
 
-/// A face that is open for less than this share is closed: cells behind such slits would need very many iterations.
+/// Open share below which a face is closed: cells behind such slits would need very many iterations.
 const LEAST_OPEN: f32 = 0.03;
-/// So many layers of faces inside of things get the velocity of the air beside them.
+/// Number of layers of faces inside obstacles that get the velocity of the air beside them.
 const LAYERS: u8 = 4;
-/// Layer of a face that no layer has reached, and of a ghost.
+/// Layer number of a face that no layer has reached, and of a ghost.
 const NO_LAYER: u8 = u8::MAX;
 /// Body number of a cell without air.
 const NO_BODY: u32 = u32::MAX;
 
-/// Open faces in a grid.
+/// Open faces of a grid.
 #[derive(Clone, Debug)]
 pub(super) struct Openings {
     /// Open share of each face, [0, 1].
     pub open: Faces,
-    /// Velocity of what closes faces and moves, times the share that it closes, m/s; empty where nothing moves.
+    /// Velocity of moving obstacles times the share of the face that they close, m/s; empty where nothing moves.
     pub pushed: Faces,
-    /// Faces of open sides that were closed since the air behind them could not leave, and their open shares.
+    /// Faces of open sides that were closed because the air behind them could not leave, and their open shares.
     dead: Vec<(usize, usize, f32)>,
-    /// Body of air that each cell belongs to.
+    /// Body of air to which each cell belongs.
     bodies: Vec<u32>,
     body_count: usize,
-    /// Closed faces by layer, nearest the air first; for each component.
+    /// Closed faces of each component by layer, from the air inwards.
     inside: [Vec<Vec<usize>>; 3],
     layers: [Vec<u8>; 3],
-    /// Room to balance in.
+    /// Scratch space of [`Openings::balance`].
     passing: Vec<Passing>,
 }
 
-/// A face of an open side.
+/// Face of an open side.
 struct SideFace {
     axis: usize,
     at: usize,
     body: usize,
-    /// 1 where the axis points outward, -1 where inward.
+    /// Sign of the outward direction along the axis: 1 or -1.
     outward: f64,
     open_m2: f64,
     is_out: bool,
 }
 
-/// Air that leaves through the sides, for each body of air.
+/// Air of one body that leaves through the sides, m3/s, and the area through which it can leave, m2.
 #[derive(Clone, Copy, Debug, Default)]
 struct Passing {
     outward: f64,
@@ -55,7 +55,7 @@ struct Passing {
 }
 
 impl Openings {
-    /// From open shares of all faces.
+    /// Creates the openings from the open shares of all faces.
     pub(super) fn new(lattice: &Lattice, roles: &Roles, shares: Shares) -> Self {
         let Shares { mut open, mut pushed } = shares;
         for (open, pushed) in open.iter_mut().zip(&mut pushed) {
@@ -87,7 +87,7 @@ impl Openings {
         new
     }
 
-    /// The equation of the pressure.
+    /// Returns the pressure equation.
     pub(super) fn level(&self, lattice: &Lattice, roles: &Roles) -> GridLevel {
         let mut lower = [0, 1, 2].map(|_| vec![0.0; lattice.n.iter().product()]);
         for a in lattice.axes() {
@@ -101,7 +101,7 @@ impl Openings {
         GridLevel::new(lattice.n, lattice.h, lower)
     }
 
-    /// Numbers bodies of air, by flood.
+    /// Numbers the bodies of air by flood fill.
     fn find_bodies(&mut self, lattice: &Lattice, roles: &Roles) {
         let [nx, ny, _] = lattice.n;
         let steps = [1, nx, nx * ny];
@@ -161,7 +161,7 @@ impl Openings {
         }
     }
 
-    /// Closes sides where air comes into a body that it cannot leave.
+    /// Closes open sides of bodies of air that have no way out.
     fn close_dead_ends(&mut self, lattice: &Lattice, roles: &Roles) {
         let mut way_out = vec![0.0; self.body_count];
         self.each_open_side(lattice, roles, |f| way_out[f.body] += if f.is_out { f.open_m2 } else { 0.0 });
@@ -178,7 +178,7 @@ impl Openings {
         self.dead = dead;
     }
 
-    /// Follows sides that let air in now where it left before, or the other way round.
+    /// Updates the openings after an inflow side has become an outflow side, or the reverse.
     pub(super) fn set_roles(&mut self, lattice: &Lattice, roles: &Roles) {
         let had_dead = !self.dead.is_empty();
         for (axis, at, open) in self.dead.drain(..) {
@@ -190,7 +190,7 @@ impl Openings {
         }
     }
 
-    /// Makes as much air leave each body as comes into it, by the same change of speed on all of its outflow.
+    /// Balances the flux of each body of air: adds the same change of speed to all of its outflow faces.
     pub(super) fn balance(&mut self, lattice: &Lattice, roles: &Roles, velocity: &mut Faces) {
         let mut all = std::mem::take(&mut self.passing);
         all.clear();
@@ -208,7 +208,7 @@ impl Openings {
         self.passing = all;
     }
 
-    /// Adds the air that moving things push into the bodies of air, as if it had come in.
+    /// Adds the air that moving obstacles push into the bodies of air, as if it were inflow.
     fn add_pushed(&self, lattice: &Lattice, all: &mut [Passing]) {
         let size = lattice.h.map(f64::from);
         for a in lattice.axes().filter(|a| !self.pushed[*a].is_empty()) {
@@ -250,7 +250,7 @@ impl Openings {
         }
     }
 
-    /// Gives closed faces a velocity: zero, or if air slides along things that of the air beside them, layer by layer.
+    /// Gives closed faces a velocity: 0 or, if air slides along obstacles, that of the air beside them, layer by layer.
     pub(super) fn fill_inside(&self, lattice: &Lattice, slides: bool, component: usize, values: &mut [f32]) {
         let layers = &self.layers[component];
         for (depth, faces) in (1..).zip(&self.inside[component]) {

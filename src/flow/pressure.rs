@@ -1,40 +1,41 @@
-//! The pressure that makes the air's flow free of divergence: laplace(phi) = div u, then u - grad phi (Chorin 1968).
+//! Pressure that makes the flow free of divergence: laplace(phi) = div u, then u - grad phi (Chorin 1968).
 //!
-//! Two ways to solve it. Successive over-relaxation (Young 1954) in two colours, as on a chessboard: each cell's value
-//! moves toward what its neighbours ask for, and beyond by the relaxation factor; with 2 or more it diverges, and is
-//! refused. And multigrid: a V-cycle preconditions each step of conjugate gradients (Hestenes and Stiefel 1952, with
-//! the update of Polak and Ribiere, since a V-cycle is not symmetric). Coarse grids blur thin walls and small openings:
-//! these cost more cycles, but it converges.
+//! There are two methods. Successive over-relaxation (Young 1954) in two colours, as on a chessboard, moves each cell's
+//! value towards that which its neighbours require, and beyond it by the relaxation factor. With a factor of 2 or more
+//! it diverges, so such factors are refused. Multigrid preconditions each step of conjugate gradients with a V-cycle
+//! (Hestenes and Stiefel 1952, with the update of Polak and Ribiere, since a V-cycle is not symmetric). Coarse grids
+//! blur thin walls and small openings, which costs more cycles, but the method still converges.
 //!
-//! The residual of the equation is the divergence that stays. Both stop by it.
+//! The residual of the equation is the remaining divergence, and both methods stop by it.
 
 use super::multigrid::{GridLevel, Levels};
 use crate::error::{Error, Result, check_range};
 
-/// How the pressure is solved for.
+/// Method that solves for the pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PressureMethod {
-    /// V-cycles that lead conjugate gradients.
+    /// Conjugate gradients preconditioned by V-cycles.
     Multigrid {
-        /// At most so many, 1 to 1000.
+        /// Largest number of cycles, 1 to 1000.
         max_cycles: u32,
     },
     /// Red-black over-relaxation.
     Sor {
-        /// Relaxation of the first iteration and of the last possible one, in (0, 2) both; between them it changes
-        /// linearly.
+        /// Relaxation factors of the first iteration and of the last possible one, both in (0, 2); between them the
+        /// factor changes linearly.
         relaxation: [f32; 2],
-        /// At most so many, 1 to 1,000,000.
+        /// Largest number of iterations, 1 to 1,000,000.
         max_iterations: u32,
     },
 }
 
 impl PressureMethod {
-    /// The snow simulator of the sources: 5 iterations, the relaxation falling from 1.7 to 1.1.
+    /// Method with 5 iterations whose relaxation factor falls from 1.7 to 1.1, as in the snow simulator among the
+    /// sources.
     pub const FIVE_SWEEPS: Self = Self::Sor { relaxation: [1.7, 1.1], max_iterations: 5 };
 
-    /// The relaxation that converges fastest on a grid of `n` cells along its longest axis: 2 / (1 + sin(pi / n))
-    /// (Young 1954).
+    /// Returns the relaxation factor that converges fastest on a grid of `n` cells along its longest axis: 2 / (1 +
+    /// sin(pi / n)) (Young 1954).
     pub fn best_relaxation(n: u32) -> f32 {
         (2.0 / (1.0 + libm::sin(std::f64::consts::PI / f64::from(n.max(2))))) as f32
     }
@@ -59,22 +60,22 @@ impl PressureMethod {
 /// Cost and error of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solved {
-    /// V-cycles or iterations.
+    /// Number of V-cycles or iterations.
     pub iterations: u32,
-    /// Work in sweeps over the finest grid.
+    /// Work, in sweeps over the finest grid.
     pub work: f64,
-    /// The largest residual, of the right-hand side's unit (1/s: the divergence that stays).
+    /// Largest residual, in the unit of the right-hand side (1/s: the remaining divergence).
     pub residual: f32,
 }
 
 impl Solved {
-    /// This one, and `next` on what it left.
+    /// Adds the cost of `next`, a further solution, and takes its residual.
     pub(super) fn then(self, next: Self) -> Self {
         Self { iterations: self.iterations + next.iterations, work: self.work + next.work, residual: next.residual }
     }
 }
 
-/// The equation of a grid, and room to solve it in.
+/// Equation of a grid, and scratch space to solve it.
 #[derive(Clone, Debug)]
 pub(super) struct Pressure {
     levels: Levels,
@@ -109,12 +110,13 @@ impl Pressure {
         self.levels.0.first()
     }
 
-    /// Whether air is in a cell.
+    /// Whether a cell has air.
     pub(super) fn has_air(&self, cell: usize) -> bool {
         self.finest().is_some_and(|l| l.sum[cell] > 0.0)
     }
 
-    /// Makes `x` solve the equation for `b` until no residual is over `tolerance`; `x` is where it begins.
+    /// Solves the equation for `b`, beginning with `x`, until no residual exceeds `tolerance` or the method's limit is
+    /// reached.
     pub(super) fn solve(&mut self, method: PressureMethod, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
         match method {
             PressureMethod::Multigrid { max_cycles } => self.multigrid(max_cycles, x, b, tolerance),
@@ -124,7 +126,7 @@ impl Pressure {
 
     fn sor(&mut self, [first, last]: [f32; 2], most: u32, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
         let Some(level) = self.levels.0.first() else { return Solved::default() };
-        // Looking at the residual costs as much as an iteration: it is done after every eighth of those before it.
+        // The residual costs as much as an iteration, so it is computed only after an eighth more iterations each time.
         let (mut iterations, mut looks, mut next) = (0, 0, most.min(8));
         loop {
             while iterations < next {

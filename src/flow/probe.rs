@@ -1,4 +1,4 @@
-//! Flows whose answers others have published.
+//! Test flows with published solutions.
 
 use std::f64::consts::TAU;
 
@@ -7,14 +7,14 @@ use glam::DVec3;
 use super::{FlowField, FlowObstacles, FlowSettings, Scheme, Side};
 use crate::error::{Error, Result, Status, check_range};
 
-/// The cavity's flow rests where in the time in which the lid passes it nothing changes by more than this share of the
-/// lid's speed.
+/// Limit of change at which the cavity's flow counts as steady: largest change of a velocity while the lid moves by the
+/// cavity's width, as a share of the lid's speed.
 const REST: f64 = 2e-4;
-/// After so many such times it is not waited for any longer.
+/// Largest number of such times before giving up.
 const MOST_TIMES: u32 = 500;
 
-/// The flow in a square box, 1 m wide, of `n` by `n` cells, whose lid moves with 1 m/s, once it rests, at Reynolds
-/// number `re`.
+/// Returns the steady flow in a square box, 1 m wide, of `n` by `n` cells, whose lid moves at 1 m/s, at Reynolds number
+/// `re`.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] for `re` not in \[1, 10,000\] and `n` not in \[8, 1024\].
@@ -31,7 +31,7 @@ pub fn cavity(re: f64, n: u32) -> Result<FlowField> {
         ..FlowSettings::default()
     };
     let mut field = FlowField::new(&settings, &FlowObstacles::default(), |_| DVec3::ZERO)?;
-    // From rest the lid alone moves: the first step is as long as it takes to pass one cell.
+    // At the beginning only the lid moves: in the first step it moves by one cell.
     field.step(1.0 / f64::from(n))?;
     if field.settle(1.0, REST, MOST_TIMES)? {
         return Ok(field);
@@ -39,9 +39,9 @@ pub fn cavity(re: f64, n: u32) -> Result<FlowField> {
     Err(Error::new(Status::Unsupported, format!("the flow in the cavity does not rest at a Reynolds number of {re}")))
 }
 
-/// Whirls without viscosity (Taylor and Green 1937), which stand still for ever: the share of their kinetic energy that
-/// is left after they have turned for 2 pi seconds, on `n` by `n` cells, in steps in which the fastest air passes `cfl`
-/// cells.
+/// Returns the share of kinetic energy that Taylor-Green vortices (Taylor and Green 1937) keep after 2 pi seconds.
+/// Without viscosity they should stay unchanged for ever. The grid has `n` by `n` cells; in a step the fastest air
+/// passes `cfl` cells.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] for `n` not in \[8, 1024\] and `cfl` not in \[0.01, 64\].

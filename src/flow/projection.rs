@@ -1,4 +1,4 @@
-//! Makes the air free of divergence, and what its pressure does to things.
+//! Projection, which makes the air free of divergence, and the force of its pressure on obstacles.
 
 use glam::DVec3;
 
@@ -11,10 +11,11 @@ use super::{
 };
 
 impl FlowField {
-    /// Makes a field, its ghosts filled, free of divergence; fills the ghosts again.
+    /// Makes a velocity field, whose ghosts are filled, free of divergence, and fills the ghosts again.
     ///
-    /// The potential of the step before is taken off first, and only what is then missing is solved for: the correction
-    /// is small, and so are its rounding errors. What rounding still leaves is solved for once more.
+    /// The gradient of the previous step's potential is subtracted first, and only the rest is solved for: the
+    /// correction is small, and so are its rounding errors. A second solution removes the divergence that rounding
+    /// leaves.
     pub(super) fn project(&mut self, v: &mut Faces, which: usize) {
         self.openings.balance(&self.lattice, &self.roles, v);
         let tolerance = self.settings.tolerance as f32 * fastest(&self.lattice, v) as f32 / self.lattice.shortest_m();
@@ -59,7 +60,7 @@ impl FlowField {
         }
     }
 
-    /// Air that leaves each cell through its open faces, over the cell's volume.
+    /// Finds the air that leaves each cell through its open faces, over the cell's volume.
     pub(super) fn find_divergence(&mut self, v: &Faces) {
         let (lattice, open) = (&self.lattice, &self.openings.open);
         let out = &mut self.divergence;
@@ -75,16 +76,16 @@ impl FlowField {
             }
         }
         if self.openings.pushed.iter().any(|p| !p.is_empty()) {
-            // What goes on inside of things is no flow.
+            // Cells inside obstacles have no flow.
             out.iter_mut().enumerate().filter(|(cell, _)| !self.pressure.has_air(*cell)).for_each(|(_, d)| *d = 0.0);
         }
     }
 
-    /// Force of the air's pressure on what stands between two places over the air's density, m4/s2, in the mean over
-    /// the last step.
+    /// Returns the force of the air's pressure on the obstacles between two places, over the air's density, m4/s2, as
+    /// the mean over the last step.
     ///
-    /// A step's pressure is the sum of what its projections took off: of the mirrored scheme twice the first and the
-    /// second.
+    /// The pressure of a step is the sum of the potentials of its projections. In the reflection scheme it is twice the
+    /// first plus the second.
     pub fn pressure_force(&self, low_m: DVec3, high_m: DVec3) -> DVec3 {
         let (lattice, open) = (&self.lattice, &self.openings.open);
         let steps = [1, lattice.n[0], lattice.n[0] * lattice.n[1]];

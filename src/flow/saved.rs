@@ -1,4 +1,4 @@
-//! A wind field as text, and back: every number of it, so that a loaded one goes on to the bit.
+//! Saved form of a wind field as text. It has every number, so a loaded field continues with the same bits.
 
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -13,10 +13,10 @@ use crate::{
     world::World,
 };
 
-/// How the field is solved for: a state of another solver would go on otherwise.
+/// Name of the solver. The state of another solver would continue differently.
 const SOLVER: &str = "reflection 1";
 
-/// A description as it is saved.
+/// Saved description.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedDesc {
@@ -28,7 +28,7 @@ pub(super) struct SavedDesc {
     most_bytes: u64,
 }
 
-/// A change as it is saved.
+/// Saved change.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedChange {
@@ -37,7 +37,7 @@ pub(super) struct SavedChange {
     desc: Option<SavedDesc>,
 }
 
-/// A field as it is saved.
+/// Saved field.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedField {
@@ -54,7 +54,7 @@ pub(super) struct SavedField {
     rests: bool,
     last_dt_s: f64,
     last_change_m_s: f32,
-    /// Not in states of before: those are shown over the wind of the moment.
+    /// Absent in states saved before this existed; these are shown over the wind of the moment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shown_over: Option<WindProfile>,
     desc: SavedDesc,
@@ -120,10 +120,10 @@ impl SavedField {
         }
     }
 
-    /// The field that was saved.
+    /// Returns the saved field.
     ///
     /// # Errors
-    /// For what can be none.
+    /// [`crate::Status::InvalidArgument`] for values that cannot be a field.
     pub fn live(&self, world: &World) -> Result<Live> {
         let unfit = |what: &str| Error::invalid("wind_field.field", what);
         if self.solver != SOLVER {
@@ -166,10 +166,10 @@ impl SavedField {
 
 /// Digits of base 64.
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-/// Numbers that become 16 digits together.
+/// Number of values that are written together as 16 digits.
 const GROUP: usize = 3;
 
-/// Numbers as digits of base 64, three in 16 digits; the last group is filled up with zeros.
+/// Returns numbers as digits of base 64, three numbers in 16 digits; the last group is filled with zeros.
 fn written<'a>(lists: impl Iterator<Item = &'a Vec<f32>>) -> String {
     let mut text = String::new();
     for list in lists {
@@ -185,7 +185,8 @@ fn written<'a>(lists: impl Iterator<Item = &'a Vec<f32>>) -> String {
     text
 }
 
-/// Fills lists with the numbers that [`written`] wrote of others as long. Says whether these were so many, all finite.
+/// Reads the numbers that [`written`] wrote into lists of the same lengths. Returns whether the text has exactly that
+/// many numbers, all finite.
 fn read<'a>(text: &str, lists: impl Iterator<Item = &'a mut Vec<f32>>) -> bool {
     let mut values = [u8::MAX; 256];
     DIGITS.iter().zip(0..).for_each(|(digit, value)| values[usize::from(*digit)] = value);

@@ -1,38 +1,38 @@
-//! Settings of a field, `FlowSettings`: cells, sides, and how it is solved for.
+//! Settings of a field, [`FlowSettings`]: its cells, its sides, and the methods that solve it.
 
 use glam::{DVec3, Vec3};
 
 use super::{advect::Scheme, pressure::PressureMethod, sides::Side};
 use crate::error::{Error, Result, check_range};
 
-/// Largest speed of the air that a field takes, m/s.
+/// Largest speed of the air that a field accepts, m/s.
 pub const MAX_SPEED_M_S: f64 = 300.0;
 
-/// Settings of a field. Lengths count from the lowest corner of its box.
+/// Settings of a field. Lengths are measured from the lowest corner of its box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowSettings {
-    /// Cells east, north and up, 1 to 4096 each, at most 33,554,432 in all. An axis of one cell is flat: nothing
-    /// changes along it.
+    /// Numbers of cells east, north and up, 1 to 4096 each, at most 33,554,432 in all. An axis of one cell is flat:
+    /// nothing changes along it.
     pub cells: [u32; 3],
     /// Size of a cell, m, \[1e-6, 10,000\].
     pub cell_m: DVec3,
     /// Low and high side of each axis.
     pub sides: [[Side; 2]; 3],
-    /// How velocity is carried.
+    /// Scheme that carries velocity.
     pub scheme: Scheme,
-    /// How the pressure is solved for.
+    /// Method that solves for the pressure.
     pub pressure: PressureMethod,
-    /// The pressure is good enough where no cell's divergence times cell size exceeds this share of the largest speed,
+    /// Largest divergence times cell size that the pressure may leave in any cell, as a share of the largest speed,
     /// \[1e-7, 1\].
     pub tolerance: f64,
-    /// Kinematic viscosity, m2/s, \[0, 1e6\]: 0 for weather, whose walls stop no air by it; tests set it.
+    /// Kinematic viscosity, m2/s, \[0, 1e6\]. It is 0 for weather, where it would not slow air at walls; tests set it.
     pub viscosity_m2_s: f64,
-    /// Air slides along terrain and boxes; otherwise it sticks to them.
+    /// Whether air slides along terrain and boxes; otherwise it sticks to them.
     pub is_slip: bool,
-    /// Roughness length of terrain, boxes and a slip wall as floor, m, \[0, 5\]: what they take of the speed of air
-    /// that slides along them. 0: nothing.
+    /// Roughness length of terrain, boxes and a slip wall as floor, m, \[0, 5\], which sets the friction on air that
+    /// slides along them; 0 for no friction.
     pub roughness_m: f64,
-    /// Whirls below a cell mix the air (Vreman 2004).
+    /// Whether eddies smaller than a cell mix the air (Vreman 2004).
     pub has_eddies: bool,
 }
 
@@ -54,7 +54,7 @@ impl Default for FlowSettings {
 }
 
 impl FlowSettings {
-    /// Refuses settings outside their ranges.
+    /// Checks that the settings are within their ranges.
     pub(super) fn check(&self) -> Result<()> {
         self.pressure.check()?;
         check_range("flow.tolerance", self.tolerance, 1e-7, 1.0, "")?;

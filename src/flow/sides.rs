@@ -1,24 +1,24 @@
-//! The six sides of the box: what the ghost values beyond them are, and how much air passes them.
+//! Six sides of the box: the ghost values beyond them, and the air that passes them.
 
 use super::lattice::{Faces, Lattice};
 
 /// Kind of a side of the box.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Side {
-    /// Air passes. Where the outer wind blows in over the side as a whole, it is the inflow; where it blows out, the
-    /// air leaves as it was carried there, and the flux alone is balanced: nothing is reflected by pressure. Where it
-    /// does neither, the side is a slip wall.
+    /// Open side. Where the outer wind blows in over the side as a whole, it is the inflow. Where it blows out, air
+    /// leaves with the velocity that advection gives it, and only the flux is balanced, so pressure reflects nothing.
+    /// Where it does neither, the side is a slip wall.
     #[default]
     Open,
-    /// A wall along which air slides without friction.
+    /// Wall along which air slides without friction.
     Slip,
-    /// A wall at which air has the wall's velocity, m/s; its part through the wall is ignored.
+    /// Wall at which air has the wall's velocity, m/s; the component through the wall is ignored.
     NoSlip([f32; 3]),
-    /// A side whose outflow comes in on the opposite side, which must be periodic too.
+    /// Side whose outflow comes in on the opposite side, which must be periodic too.
     Periodic,
 }
 
-/// Effect of a side on the air now.
+/// Present effect of a side on the air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
     Periodic,
@@ -28,13 +28,13 @@ pub(super) enum Role {
     Out,
 }
 
-/// Low and high side of each axis.
+/// Roles of the low and the high side of each axis.
 pub(super) type Roles = [[Role; 2]; 3];
 
-/// The share of the wind's speed that must pass a side before it is open, in the mean.
+/// Least mean flow through an open side, as a share of the wind's speed; with less it is a wall.
 const LEAST_THROUGH: f64 = 1e-4;
 
-/// Roles of the sides in an outer wind that stands in `outer`.
+/// Returns the roles of the sides in the outer wind `outer`.
 pub(super) fn roles(lattice: &Lattice, sides: &[[Side; 2]; 3], outer: &Faces) -> Roles {
     let mut roles = [[Role::Periodic; 2]; 3];
     let fastest = fastest_on_sides(lattice, outer);
@@ -59,8 +59,8 @@ pub(super) fn roles(lattice: &Lattice, sides: &[[Side; 2]; 3], outer: &Faces) ->
     roles
 }
 
-/// The largest component of any face on a side or beside one, m/s: farther in `outer` holds the wind of the field's
-/// beginning.
+/// Returns the largest component on any face on a side or next to it, m/s. Further inside, `outer` still has the wind
+/// with which the field was created.
 fn fastest_on_sides(lattice: &Lattice, outer: &Faces) -> f64 {
     let mut most = 0.0_f32;
     for c in lattice.axes() {
@@ -69,7 +69,7 @@ fn fastest_on_sides(lattice: &Lattice, outer: &Faces) -> f64 {
     most.into()
 }
 
-/// The largest component of any face, m/s.
+/// Returns the largest component on any face, m/s.
 pub(super) fn fastest(lattice: &Lattice, faces: &Faces) -> f64 {
     let mut most = 0.0_f32;
     for c in lattice.axes() {
@@ -100,7 +100,7 @@ pub(super) fn fill(lattice: &Lattice, roles: &Roles, outer: &Faces, component: u
         lattice.each_line(axis, |first| {
             let at = |i: isize| (first as isize + i * stride) as usize;
             for (end, role) in roles[axis].into_iter().enumerate() {
-                // Counted from the side inward: faces from 0, values between faces from 0 too.
+                // Counted inward from the side: faces from 0, and values between faces from 0 too.
                 let edge = if across { n } else { n - 1 };
                 let inward = |i: isize| at(if end == 0 { i } else { edge - i });
                 match role {

@@ -1,10 +1,10 @@
-//! Turbulence of the air that blows in: whirls that the cells can show and the box has room for.
+//! Turbulence of the inflow: eddies that are long enough for the cells and short enough for the box.
 //!
-//! They are a sum of waves, each across its own wave vector, so that no air comes from nowhere (Kraichnan 1970, Phys.
-//! Fluids 13, 22), in all directions alike. Waves of different lengths have the energy of von Karman's spectrum (1948):
-//! E(k) is proportional to x^4 / (1 + x^2)^(17/6), x = 1.339 L k, with L the integral length along the wind. The wind
-//! carries them unchanged (Taylor 1938). They mix the shear between the wake of a block and the wind; in a calm inflow
-//! the wake is too long (`src/flow/tests/bluff.rs`).
+//! The turbulence is a sum of waves in all directions. The velocity of each is perpendicular to its wave vector, so the
+//! sum is free of divergence (Kraichnan 1970, Phys. Fluids 13, 22). The waves have the energy of von Karman's spectrum
+//! (1948): E(k) is proportional to x^4 / (1 + x^2)^(17/6), x = 1.339 L k, with L the integral length along the wind.
+//! The wind carries them unchanged (Taylor 1938). They mix the shear between the wake of a block and the wind; without
+//! them the wake is too long (`src/flow/tests/bluff.rs`).
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,19 +13,19 @@ use glam::{DMat3, DVec2, DVec3};
 use super::WindFieldDesc;
 use crate::chance::Chance;
 
-/// Waves that are added up.
+/// Number of waves in the sum.
 const WAVES: usize = 32;
-/// Shortest wave that the field carries, cells.
+/// Length of the shortest wave that the field carries, cells.
 const FEWEST_CELLS: f64 = 4.0;
 /// Integral of x^4 / (1 + x^2)^(17/6) from 0 to infinity: half the beta function of 5/2 and 1/3.
 const WHOLE: f64 = 1.0325;
-/// Standard deviations of the wind near the ground along the mean wind, across it and upward, in friction velocities,
-/// in neutral stratification (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
+/// Standard deviations of the wind near the ground along the mean wind, across it and upward, over the friction
+/// velocity, in neutral stratification (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
 const OVER_LAND: DVec3 = DVec3::new(2.4, 1.9, 1.25);
-/// Integral length along the wind, m: 10 m over open grassland (25 z^0.35 / z0^0.063, Counihan 1975).
+/// Integral length along the wind, m, at 10 m over open grassland (25 z^0.35 / z0^0.063, Counihan 1975).
 const INTEGRAL_M: f64 = 70.0;
 
-/// sine x sin(k . place) + cosine x cos(k . place).
+/// Wave with the velocity sine x sin(k . place) + cosine x cos(k . place).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wave {
     k_per_m: DVec3,
@@ -33,12 +33,12 @@ struct Wave {
     cosine: DVec3,
 }
 
-/// Whirls of a seed. Those of all lengths together have a variance of 1 in each component; these are the ones that a
-/// field can show, and have their share of it.
+/// Turbulence of a seed. All wavelengths together would have a variance of 1 in each component; these waves are those
+/// that a field can carry, and have their share of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Turbulence([Wave; WAVES]);
 
-/// Share of the energy in von Karman's spectrum between two values of x.
+/// Returns the share of the energy of von Karman's spectrum between two values of x.
 fn share_between(low: f64, high: f64) -> f64 {
     const PARTS: u32 = 16;
     let ratio = libm::pow(high / low, 1.0 / f64::from(PARTS));
@@ -48,14 +48,14 @@ fn share_between(low: f64, high: f64) -> f64 {
 }
 
 impl Turbulence {
-    /// Creates the whirls of an integral length, m, in a box of cells `cell_m` long whose shorter level side is
-    /// `side_m` long; none if it is too short for any.
+    /// Creates the turbulence of an integral length, m, in a box with cells of `cell_m`, whose shorter horizontal side
+    /// is `side_m`. `None` if the box is too small for any wave.
     pub fn new(seed: u64, integral_m: f64, cell_m: f64, side_m: f64) -> Option<Self> {
         let (longest, shortest) = (side_m / 2.0, FEWEST_CELLS * cell_m);
         if longest <= shortest {
             return None;
         }
-        // A word of its own, as gusts have.
+        // Separate random numbers, as gusts have.
         let mut stream = Chance::seeded(seed ^ 0x7768_6972_6c73_2069);
         let mut random = || stream.unit();
         let x_of = |length_m: f64| 1.339 * integral_m * TAU / length_m;
@@ -64,7 +64,7 @@ impl Turbulence {
         let wave = |i: usize| {
             let part = random();
             let k = edge(i as f64 + part) / (1.339 * integral_m);
-            // Directions go round a sphere by the golden angle, in an order that does not go with the length.
+            // Directions follow the golden angle around a sphere, in an order that is independent of the wavelength.
             let place = ((i * 13) % WAVES) as f64 + 0.5;
             let (up, round) = (1.0 - 2.0 * place / WAVES as f64, place * PI * (3.0 - 5.0f64.sqrt()) + TAU * random());
             let (sin, cos) = libm::sincos(round);
@@ -82,7 +82,8 @@ impl Turbulence {
         Some(Self(std::array::from_fn(wave)))
     }
 
-    /// Velocity at a place that moves with the air, m; 1 is the standard deviation of whirls of all lengths.
+    /// Returns the velocity at a place that moves with the air, m; 1 is the standard deviation of eddies of all
+    /// lengths.
     pub fn at(&self, place_m: DVec3) -> DVec3 {
         self.0.iter().fold(DVec3::ZERO, |sum, wave| {
             let (sin, cos) = libm::sincos(wave.k_per_m.dot(place_m));
@@ -91,18 +92,18 @@ impl Turbulence {
     }
 }
 
-/// Whirls in the wind that comes in over a field's sides.
+/// Eddies in the wind that comes in over a field's sides.
 pub(super) struct Whirls {
     turbulence: Option<Turbulence>,
-    /// Along the mean wind, across it, up.
+    /// Axes as columns: along the mean wind, across it, up.
     axes: DMat3,
     deviation_m_s: DVec3,
-    /// Height below which they fade towards the ground, m.
+    /// Height below which the eddies fade towards the ground, m.
     least_m: f64,
 }
 
 impl Whirls {
-    /// Creates the whirls of a mean wind (east, north) with a friction velocity, m/s; no whirls if that is 0.
+    /// Creates the eddies of a mean wind (east, north) with a friction velocity, m/s; without eddies if that is 0.
     pub fn new(seed: u64, desc: &WindFieldDesc, mean_m_s: DVec2, friction_velocity_m_s: f64) -> Self {
         let along = mean_m_s.try_normalize().unwrap_or(DVec2::X).extend(0.0);
         let side_m = |i: usize| f64::from(desc.cells[i]) * desc.cell_m[i];
@@ -119,7 +120,7 @@ impl Whirls {
         }
     }
 
-    /// Returns the wind that the whirls add, m/s, at a place in the air that carries them and a height above the
+    /// Returns the wind that the eddies add, m/s, at a place in the air that carries them and a height above the
     /// ground, m.
     pub fn at(&self, place_m: DVec3, height_m: f64) -> DVec3 {
         let Some(turbulence) = &self.turbulence else { return DVec3::ZERO };
@@ -138,7 +139,7 @@ mod tests {
         Turbulence::new(seed, LENGTH_M, cell_m, side_m).expect("room for whirls")
     }
 
-    /// The mean of what is asked of whirls at a place, over places and seeds.
+    /// Returns the mean of a function of the turbulence at a place, over places and seeds.
     fn means(f: impl Fn(&Turbulence, DVec3) -> DVec3) -> DVec3 {
         let of = |seed: u64| {
             let whirls = whirls(seed, 0.25, 2000.0);
@@ -150,7 +151,7 @@ mod tests {
     #[test]
     fn whirls_have_the_energy_and_the_lengths_of_von_karmans() {
         let square = means(|w, p| w.at(p) * w.at(p));
-        // What waves from 1 m to 1000 m have of all.
+        // Share of the variance in waves from 1 m to 1000 m.
         println!("variance {square}, due 0.952");
         assert!((square - 0.952).abs().max_element() < 0.04, "{square}");
         // Von Karman's longitudinal correlation at r = L / 2: 2^(2/3) / Gamma(1/3) z^(1/3) K_1/3(z) = 0.54 with z = r /

@@ -1,10 +1,10 @@
-//! Loss of the air's speed at rough walls.
+//! Friction of the air at rough walls.
 //!
-//! Along a wall the mean wind grows with the logarithm of the distance (Prandtl 1925): u = u*/kappa ln(y/z0). So a wall
-//! of roughness length z0 takes the momentum u*^2 = (kappa / ln(y/z0))^2 u^2 a second from each square metre of air
-//! whose speed in the distance y is u (Schumann 1975 for the walls of a grid too coarse for the layer at them). y is
-//! the middle of the open part of the cell at the wall; y + z0 stands in the logarithm's place of y, so that it does
-//! not fall below zero in thin cells.
+//! Along a wall the mean wind grows with the logarithm of the distance y (Prandtl 1925): u = u*/kappa ln(y/z0). A wall
+//! of roughness length z0 therefore takes the momentum u*^2 = (kappa / ln(y/z0))^2 u^2 per second from each square
+//! metre of air that has the speed u at the distance y (Schumann 1975, for the walls of a grid too coarse for the layer
+//! at them). y is the distance to the middle of the open part of the cell at the wall. In the logarithm y is replaced
+//! by y + z0, so that the logarithm does not fall below zero in thin cells.
 
 use super::{
     lattice::{Faces, Lattice},
@@ -14,25 +14,26 @@ use super::{
 /// Von Karman's constant.
 const KAPPA: f64 = 0.4;
 
-/// A value beside a wall: where it stands, and how much of its speed a metre of way past the wall takes, 1/m.
+/// Value beside a wall: its index, and the share of its speed that the wall takes per metre of path, 1/m.
 #[derive(Clone, Copy, Debug)]
 struct Rubbed {
     at: u32,
     per_m: f32,
 }
 
-/// All values of each component beside walls.
+/// Values of each component beside walls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Walls([Vec<Rubbed>; 3]);
 
-/// Share of the speed in the middle of an open width, m, that the wall's friction velocity is, squared.
+/// Returns (u*/u)^2, with the speed u in the middle of an open width, m.
 fn friction(open_m: f64, roughness_m: f64) -> f64 {
     let ratio = KAPPA / libm::log(1.0 + 0.5 * open_m / roughness_m);
     (ratio * ratio).min(1.0)
 }
 
 impl Walls {
-    /// Finds the walls of a grid anew: what closes faces, and the floor if `floor` is one. None if `roughness_m` is 0.
+    /// Finds the walls of a grid: closed parts of faces, and the floor if `floor`. There are none if `roughness_m`
+    /// is 0.
     pub(super) fn find(&mut self, lattice: &Lattice, openings: &Openings, roughness_m: f64, floor: bool) {
         self.0.iter_mut().for_each(Vec::clear);
         if roughness_m <= 0.0 {
@@ -58,7 +59,7 @@ impl Walls {
                     };
                     let above = if i[a] + 1 < lattice.n[a] { open[at + s] } else { 1.0 };
                     for beside in [below, above] {
-                        // The part of the side toward the neighbour that has a wall behind it.
+                        // Part of the side towards the neighbour that has a wall behind it.
                         let wall = f64::from((own - beside).max(0.0));
                         if wall > 0.0 {
                             per_m += friction(f64::from(own) * h, roughness_m) * wall / (f64::from(own) * h);
@@ -72,7 +73,8 @@ impl Walls {
         }
     }
 
-    /// Takes what walls take in `dt` seconds, at the speeds of `wind`: implicitly, so that no step is too long.
+    /// Applies the friction of walls over `dt` seconds at the speeds of `wind`. The step is implicit and stable for any
+    /// `dt`.
     pub(super) fn rub(&self, lattice: &Lattice, wind: &Faces, dt: f32, v: &mut Faces) {
         for c in lattice.axes() {
             for Rubbed { at, per_m } in &self.0[c] {

@@ -1,4 +1,4 @@
-//! The ways to draw a layer of fog that are charted against each other, with what they cost.
+//! Ways to draw a layer of fog that the lab charts against each other, and their cost.
 
 use super::{
     laws::{CompatibilityLaw, Curve, DistanceKind},
@@ -8,37 +8,37 @@ use super::{
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Fog, mist, dust and what falls, as a layer. How much it matters: as the air (`sky::candidates::AIR`).
+/// Fog, mist, dust and what falls, as one part. Its importance is that of the air (`sky::candidates::AIR`).
 pub const FOG: Part = Part { name: "fog", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(1) };
 
-/// Work of the layer, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the
-/// parts.
+/// Work of the layer in units of a pixel with none of the parts. Measured on a software driver (`cargo bench --
+/// parts`).
 pub(crate) const FOG_WORK: StepWork = StepWork { object: 0.26, sky: 0.26, fixed: 0.0 };
 
-/// Curve of the older simulators that stands in for a layer.
+/// Curve of older simulators, used instead of a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FogCurve {
-    /// [`Curve::Linear`] from the eye.
+    /// [`Curve::Linear`], starting at the eye.
     Linear,
-    /// [`Curve::Exponential`] of the layer's extinction.
+    /// [`Curve::Exponential`] with the layer's extinction.
     Exponential,
     /// [`Curve::ExponentialSquared`].
     ExponentialSquared,
 }
 
-/// A way to draw fog.
+/// Method to draw fog.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum FogMethod {
-    /// The closed form at every pixel, by the pipeline that can do just what the law needs.
+    /// The closed form at every pixel, with the smallest pipeline that can draw the law.
     #[default]
     Exact,
-    /// The closed form at every pixel, by the pipeline for all laws.
+    /// The closed form at every pixel, with the pipeline for all laws.
     ExactForAll,
     /// The closed form without the layer's patches.
     Even,
-    /// The closed form in cells over (picture, distance), looked up at every pixel; as hosts' transparent shaders do.
+    /// The closed form in cells over (picture, distance), looked up at every pixel, as in hosts' transparent shaders.
     Froxels {
-        /// Cells across the picture, up, and in distance.
+        /// Number of cells across the picture, up, and in distance.
         cells: [u32; 3],
     },
     /// A curve of distance, fitted so that a layer that fills the air has the same visibility.
@@ -46,10 +46,10 @@ pub enum FogMethod {
 }
 
 impl FogMethod {
-    /// The law with which this method draws `layer`.
+    /// Returns the law with which this method draws `layer`.
     pub fn law(self, layer: &FogLayer) -> Law {
         let sigma = layer.extinction_per_m;
-        // The distance at which the visibility's contrast is left.
+        // Distance at which the contrast of the visibility is left.
         let visibility = -CONTRAST_THRESHOLD.ln() / sigma.max(1e-12);
         let curve = match self {
             Self::Even => return Law::Layer(FogLayer { patches: None, ..*layer }),
@@ -62,21 +62,21 @@ impl FogMethod {
                 Curve::ExponentialSquared { density_per_m: (-CONTRAST_THRESHOLD.ln()).sqrt() / visibility }
             }
         };
-        // The older simulators measured from the camera's plane and left the sky's upper part free.
+        // The older simulators measured from the camera's plane and kept the upper part of the sky clear.
         Law::Compatibility(CompatibilityLaw { curve, distance: DistanceKind::Plane, colour: None, sky_band: 0.35 })
     }
 
     fn work(self) -> Work {
         let sample = |samples: f64| Work { pixel: Units { samples, texels: 0.0, bytes: 8.0 }, ..Work::default() };
         match self {
-            // 12 exponentials and as many roots: about what 6 nodes of a march take.
+            // 12 exponentials and 12 square roots: about the work of 6 steps of ray marching.
             Self::Exact | Self::Even => sample(6.0),
             Self::ExactForAll => sample(10.0),
             Self::Curve(_) => sample(1.0),
             Self::Froxels { cells } => {
                 let count = cells.iter().map(|n| f64::from(*n)).product::<f64>();
                 Work {
-                    // Follows the camera: drawn anew every frame.
+                    // The cells move with the camera, so they are drawn anew in every frame.
                     view: Units { samples: 6.0 * count, texels: 0.0, bytes: 16.0 * count },
                     pixel: Units { samples: 0.5, texels: 4.0, bytes: 8.0 },
                     view_bytes: (16.0 * count) as u64,
@@ -87,7 +87,7 @@ impl FogMethod {
     }
 }
 
-/// All candidates.
+/// Returns all candidates.
 pub fn candidates() -> Vec<Listed<FogMethod>> {
     let froxels = |x, y, z| FogMethod::Froxels { cells: [x, y, z] };
     let named = [

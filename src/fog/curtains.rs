@@ -1,34 +1,35 @@
-//! Curtains of rain, and the mean of a pattern's wave along a ray.
+//! Curtains of rain, and the mean of a wave of a pattern along a ray.
 
 use glam::DVec3;
 
 use crate::light::sinc;
 
-/// Half of a path on which a wave of a pattern fades to a half, in its length / 2 pi: `PATCH_ROW` of
-/// `shaders/fog/patterns.wgsl`.
+/// Half-length of a path over which a wave of a pattern fades to one half, in units of its wavelength / (2 pi):
+/// `PATCH_ROW` of `shaders/fog/patterns.wgsl`.
 pub(super) const PATCH_ROW: f64 = 8.0;
 /// Number of plane waves in the curtains' pattern.
 pub const CURTAIN_WAVES: usize = 8;
-/// Distance from the eye at which curtains begin, m: what is nearer is drawn drop by drop or nearly so. `CURTAIN_START`
-/// of `shaders/fog/patterns.wgsl`.
+/// Distance from the eye at which curtains begin, m. Nearer rain is drawn as single drops or cones. `CURTAIN_START` of
+/// `shaders/fog/patterns.wgsl`.
 pub const CURTAIN_START_M: f64 = 30.0;
 
-/// Curtains of rain: the extinction of what falls is that of even rain times 1 + `amount` times the sum of the waves'
+/// Curtains of rain. The extinction of what falls is that of even rain times 1 + `amount` times the sum of the waves'
 /// cosines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curtains {
-    /// Amplitude of each wave over the extinction of all that falls; 0 for none.
+    /// Amplitude of each wave relative to the extinction of all that falls; 0 without curtains.
     pub amount: f64,
     /// Wave vectors (east, north, up), 1/m, and phases at the camera, rad.
     pub waves: [(DVec3, f64); CURTAIN_WAVES],
 }
 
 impl Curtains {
-    /// Even rain.
+    /// Even rain, without curtains.
     pub const NONE: Self = Self { amount: 0.0, waves: [(DVec3::ZERO, 0.0); CURTAIN_WAVES] };
 
-    /// Returns what they add between two distances of a ray, relative to what an even layer has there, and the variance
-    /// of that over all places. In both only what lies beyond [`CURTAIN_START_M`] counts.
+    /// Returns two numbers for the ray between two distances: what the curtains add to the optical depth, relative to
+    /// that of even rain, and the variance of this over all places. Only the part beyond [`CURTAIN_START_M`] counts in
+    /// both.
     pub fn mean(&self, origin: DVec3, direction: DVec3, first: f64, last: f64) -> (f64, f64) {
         let start = first.max(CURTAIN_START_M);
         if last <= start {
@@ -44,15 +45,15 @@ impl Curtains {
         (part * sum, 0.5 * part * part * squares)
     }
 
-    /// The optical depth that even rain of `depth` shows with them. On the mean over all places as much of the light
-    /// behind is left as even rain leaves, so signs are seen as far: the mean of e^-x of a normal x is e^(v/2) above
-    /// that of its mean.
+    /// Returns the optical depth with curtains where even rain has `depth`. The variance raises it so that the mean
+    /// transmittance over all places is that of even rain, and signs are seen equally far: for a normal x of variance
+    /// v, the mean of e^-x is e^(v/2) times e^-x of the mean.
     pub fn depth(&self, depth: f64, (added, variance): (f64, f64)) -> f64 {
         (depth * (1.0 + added)).max(0.0) + 0.5 * depth * depth * variance
     }
 }
 
-/// Mean of a wave's cosine along a ray, and how large it may be there.
+/// Returns the mean of a wave's cosine along a ray, and the amplitude of this mean.
 pub(super) fn wave_mean(
     (wave, phase): (DVec3, f64),
     origin: DVec3,
@@ -62,7 +63,7 @@ pub(super) fn wave_mean(
 ) -> (f64, f64) {
     let along = wave.dot(direction);
     let x = along * half;
-    // No row goes on for ever: a ray along one meets others after some.
+    // Rows of the pattern do not go on for ever: a long ray along one row meets others, so the wave fades with length.
     let size = sinc(x) * PATCH_ROW / (PATCH_ROW + wave.length() * half);
     ((phase + wave.dot(origin) + along * middle).cos() * size, size)
 }

@@ -1,4 +1,4 @@
-//! State of the fog in a context: the law that stands in for the weather's, if the host asked for one.
+//! State of the fog in a context: the fog law that replaces the weather's fog, if the host has set one.
 
 use super::layer::Law;
 use crate::{
@@ -6,21 +6,21 @@ use crate::{
     world::{HeldEffect, parse_error},
 };
 
-/// The fog of a context.
+/// Fog of a context.
 #[derive(Clone, Default)]
 pub(crate) struct HeldFog {
     pub law: Option<Law>,
 }
 
-/// Where the law is in a saved state.
+/// Table and key of the law in a saved state.
 const TABLE: &str = "settings";
 const KEY: &str = "fog_law";
 
 impl HeldFog {
-    /// Takes its part out of a saved state.
+    /// Removes the law from a saved state and returns it.
     ///
     /// # Errors
-    /// [`Status::Parse`] for what is no law.
+    /// [`Status::Parse`] for an entry that is not a law.
     pub fn read(state: &mut toml::Table) -> Result<Self> {
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
         let Some(value) = settings.and_then(|s| s.remove(KEY)) else { return Ok(Self::default()) };

@@ -1,8 +1,8 @@
-//! The fog laws of older simulators, kept for pictures that must look as before, and the distance beyond which a host
+//! Fog laws of older simulators, for pictures that must look as they did there, and the distance beyond which a host
 //! may cull.
 //!
-//! A trap in their names: texts about these laws call the **visibility** V "fog" (1 = clear, 0 = all fog), while
-//! shaders mix by the fog's share 1 - V. Here [`CompatibilityLaw::visibility`] is V, the transmittance.
+//! Beware of a naming trap: texts about these laws call the **visibility** V "fog" (1 = clear, 0 = all fog), while
+//! shaders mix by the share of fog, 1 - V. Here [`CompatibilityLaw::visibility`] is V, the transmittance.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,59 +11,59 @@ use crate::{
     moment::MAX_EXTINCTION_PER_M,
 };
 
-/// Kind of distance that a compatibility law takes.
+/// Kind of distance that a compatibility law uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum DistanceKind {
-    /// From the camera's centre: turning on the spot changes nothing.
+    /// Distance from the camera's centre. Turning on the spot changes nothing.
     #[default]
     Range,
-    /// From the camera's plane, as the oldest systems have it: objects at the picture's edge gain fog when the camera
-    /// turns toward them.
+    /// Distance from the camera's plane, as in the oldest systems. Objects at the picture's edge gain fog when the
+    /// camera turns toward them.
     Plane,
 }
 
-/// The curve.
+/// Curve of the visibility V over the distance d.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Curve {
-    /// V = (end - d)/(end - start), clamped: none before the start, all after the end.
+    /// V = (end - d)/(end - start), clamped: no fog before the start, all fog after the end.
     Linear {
-        /// Where fog begins, m, \[0, 1e9\].
+        /// Distance at which fog begins, m, \[0, 1e9\].
         start_m: f64,
-        /// Where nothing is left, m, above `start_m`.
+        /// Distance at which nothing else is visible, m, above `start_m`.
         end_m: f64,
     },
     /// V = exp(-density d).
     Exponential {
-        /// 1/m, \[0, 10\].
+        /// Density, 1/m, \[0, 10\].
         density_per_m: f64,
     },
     /// V = exp(-(density d)^2).
     ExponentialSquared {
-        /// 1/m, \[0, 10\].
+        /// Density, 1/m, \[0, 10\].
         density_per_m: f64,
     },
 }
 
-/// A curve with its distance and colour.
+/// Fog law: a curve, its kind of distance and its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CompatibilityLaw {
-    /// The curve.
+    /// Curve of the visibility.
     pub curve: Curve,
-    /// Range or plane.
+    /// Kind of distance, range or plane.
     pub distance: DistanceKind,
-    /// Radiance that the picture fades into, per channel; `None` takes what a deep layer under this light would show
-    /// (see [`super::FogModel::new`]).
+    /// Radiance of full fog, per channel. `None` takes the radiance of a deep layer of fog under the current light (see
+    /// [`super::FogModel::new`]).
     pub colour: Option<[f64; 3]>,
-    /// Sky pixels fade fully at the horizon and not at all this high above it, rad, \[0, pi\]: 0 leaves the sky as it
-    /// is (then culled objects would vanish before it), pi covers all of it.
+    /// Height above the horizon over which fog on sky pixels decreases from full to none, rad, \[0, pi\]. 0 leaves the
+    /// sky clear, so culled objects would vanish visibly in front of it; pi covers the whole sky.
     pub sky_band: f64,
 }
 
 impl CompatibilityLaw {
-    /// Refuses what is not a law, by name.
+    /// Checks that every field is within its range.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         match self.curve {
             Curve::Linear { start_m, end_m } => {
@@ -92,8 +92,8 @@ impl CompatibilityLaw {
         }
     }
 
-    /// Distance beyond which less than `threshold` of an object's colour is left, m; infinite if that never happens.
-    /// Measured as the law measures: from the plane if it takes plane distance.
+    /// Returns the distance, m, beyond which less than `threshold` of an object's colour is left; infinite if there is
+    /// none. It is of the law's kind: for plane distance, it is measured from the camera's plane.
     pub fn cull_distance_m(&self, threshold: f64) -> f64 {
         let depth = -threshold.ln();
         match self.curve {
@@ -104,13 +104,13 @@ impl CompatibilityLaw {
     }
 }
 
-/// Largest contrast that an 8-bit picture cannot show: 1/255.
+/// Largest contrast that is invisible in an 8-bit picture: 1/255.
 pub const CULL_THRESHOLD: f64 = 1.0 / 255.0;
 
-/// Distance beyond which a host may cull in a homogeneous extinction (of a visibility:
-/// [`super::koschmieder_extinction_per_m`]), m: there less than 1/255 of an object's contrast is left. Infinite in
-/// clear air. The picture without the culled objects is the same only if what lies behind them is fogged as well, as
-/// Welkin's sky is.
+/// Returns the distance, m, beyond which a host may cull in a homogeneous extinction (for a visibility see
+/// [`super::koschmieder_extinction_per_m`]): less than 1/255 of an object's contrast is left there. Infinite in clear
+/// air. The picture without the culled objects is the same only if the background is fogged as well, as Welkin's sky
+/// is.
 pub fn cull_distance_m(extinction_per_m: f64) -> f64 {
     -CULL_THRESHOLD.ln() / extinction_per_m
 }
@@ -123,7 +123,7 @@ mod tests {
         CompatibilityLaw { curve, distance: DistanceKind::Range, colour: None, sky_band: 0.0 }
     }
 
-    /// The printed example: start 5, end 40, density 0.05.
+    /// The printed example has start 5, end 40 and density 0.05.
     #[test]
     fn the_source_systems_table_is_met() {
         let rows = [

@@ -1,19 +1,21 @@
-//! Light inside a layer: the delta-Eddington solution of a plane-parallel slab, lit from above by the sun and the sky
-//! and from below by the ground it lights itself.
+//! Light inside a layer: the delta-Eddington solution of a plane-parallel slab. Sun and sky light the slab from above,
+//! the ground from below by reflection.
 //!
-//! Radiance is taken as I(tau, mu) = I0 + mu I1 (mu > 0 travels down), the forward peak of the phase function as
-//! unscattered (Joseph, Wiscombe and Weinman 1976; f is the second moment as in delta-M, Wiscombe 1977). The moments
-//! of the transfer equation give (Shettle and Weinman 1970), with w the albedo, g the asymmetry, F the sun:
+//! The radiance is approximated as I(tau, mu) = I0 + mu I1, where mu > 0 points down. The forward peak of the phase
+//! function counts as unscattered (Joseph, Wiscombe and Weinman 1976; its share f is the second moment as in delta-M,
+//! Wiscombe 1977). With the albedo w, the asymmetry g and the sun's irradiance F, the moments of the transfer equation
+//! are (Shettle and Weinman 1970):
 //!
 //! * dI1/dtau = -3 (1 - w) I0 + 3 w F / (4 pi) e^(-tau/mu0)
 //! * dI0/dtau = -(1 - w g) I1 + 3 w g mu0 F / (4 pi) e^(-tau/mu0)
 //!
-//! whose solution is a constant and a slope (w = 1) or two exponentials, and one exponential of the beam. Top:
-//! pi (I0 + 2/3 I1) = the sky's irradiance. Bottom: pi (I0 - 2/3 I1) = albedo times all that comes down.
+//! The solution is a constant and a slope (w = 1) or two exponentials, plus one exponential of the beam. At the top, pi
+//! (I0 + 2/3 I1) is the sky's irradiance. At the bottom, pi (I0 - 2/3 I1) is the ground's albedo times all downward
+//! irradiance.
 
 use std::f64::consts::PI;
 
-/// A slab in scaled optical depth, one channel.
+/// Slab of one channel, in scaled optical depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slab {
     /// Scaled optical depth from top to bottom.
@@ -24,7 +26,7 @@ pub struct Slab {
     pub asymmetry: f64,
     /// Cosine of the sun's zenith angle, > 0.
     pub mu0: f64,
-    /// Irradiance of the sun facing it, at the top.
+    /// Irradiance of the sun at the top, on a surface facing it.
     pub sun: f64,
     /// Irradiance of the sky on a horizontal surface at the top.
     pub sky: f64,
@@ -32,52 +34,51 @@ pub struct Slab {
     pub ground: f64,
 }
 
-/// Fraction of scattering taken as forward, and the scaled medium, of a medium with albedo `w` and moments `m`.
-///
-/// Answers (w f, scaled albedo, scaled asymmetry): optical depths are to be multiplied by 1 - w f.
+/// Returns the delta scaling of a medium with albedo `w` and moments `m`, as (w f, scaled albedo, scaled asymmetry),
+/// where f is the share of scattering that counts as forward. Optical depths must be multiplied by 1 - w f.
 pub fn delta_scaling(w: f64, m: [f64; 2]) -> (f64, f64, f64) {
-    // What scatters backward has no forward peak.
+    // A medium that scatters mostly backward has no forward peak.
     let f = if m[0] > 0.0 { m[1].max(0.0) } else { 0.0 };
     let wf = w * f;
     (wf, (w - wf) / (1.0 - wf), (m[0] - f) / (1.0 - f))
 }
 
-/// I0 and I1 as functions of depth t: `constant + slope t + rise e^(-k t) + fall e^(-k (depth - t)) - beam e^(-t/mu0)`,
-/// each for (I0, I1).
+/// I0 and I1 as functions of the depth t: `constant + slope t + rise e^(-k t) + fall e^(-k (depth - t)) - beam
+/// e^(-t/mu0)`, each for (I0, I1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solution {
-    /// The slab it solves.
+    /// Slab of which this is the solution.
     pub slab: Slab,
     /// Diffusion exponent; 0 where the medium does not absorb.
     pub k: f64,
-    /// Terms for I0 and I1.
+    /// Constant terms for I0 and I1.
     pub constant: [f64; 2],
-    /// Per unit of scaled depth.
+    /// Terms per unit of scaled depth.
     pub slope: [f64; 2],
-    /// Falling from the top.
+    /// Terms that decrease from the top down.
     pub rise: [f64; 2],
-    /// Falling from the bottom.
+    /// Terms that decrease from the bottom up.
     pub fall: [f64; 2],
-    /// Driven by the direct beam.
+    /// Terms of the direct beam.
     pub beam: [f64; 2],
 }
 
-/// Below this k times depth the medium is treated as not absorbing; the error is its square.
+/// Product of k and depth below which the medium is treated as not absorbing. The error is its square.
 const CONSERVATIVE: f64 = 1e-4;
 
 impl Slab {
-    /// Solves the two equations with their boundary conditions, in f64.
+    /// Solves the two equations with their boundary conditions.
     pub fn solve(&self) -> Solution {
         self.solve_beside(1e-7)
     }
 
-    /// As [`Slab::solve`], with terms that f32 can add up: they are 1 / `margin` times their sum at most.
+    /// Solves like [`Slab::solve`], but with terms that f32 can add: they are at most 1 / `margin` times their sum.
     pub(super) fn solve_beside(&self, margin: f64) -> Solution {
         let Self { depth, albedo: w, asymmetry: g, .. } = *self;
         let mut slab = *self;
         let k = (3.0 * (1.0 - w) * (1.0 - w * g)).sqrt();
-        // Where the beam falls off exactly as the diffuse light does, the particular solution has a pole; beside it
-        // none.
+        // The particular solution has a pole where the beam decreases exactly as the diffuse light does. Shift mu0 away
+        // from it.
         if (1.0 - (k * slab.mu0).powi(2)).abs() < margin {
             slab.mu0 *= 1.0 - margin;
         }
@@ -91,7 +92,7 @@ impl Slab {
         let p = k / (1.0 - w * g);
         let e = (-k * depth).exp();
         let eb = (-depth / mu0).exp();
-        // Rows: top and bottom condition; columns: rise, fall.
+        // Rows: conditions at top and bottom; columns: rise, fall.
         let down = |i0: f64, i1: f64| i0 + i1 * 2.0 / 3.0;
         let net = |i0: f64, i1: f64| i0 - i1 * 2.0 / 3.0 - slab.ground * (i0 + i1 * 2.0 / 3.0);
         let m = [[down(1.0, p), e * down(1.0, -p)], [e * net(1.0, p), net(1.0, -p)]];
@@ -113,7 +114,7 @@ impl Slab {
         let beam = [3.0 * mu0 * mu0 * q, 3.0 * mu0 * q];
         let eb = (-depth / mu0).exp();
         let a = self.ground;
-        // Unknowns: I0 at the top without beam (c0) and the constant I1 (c1).
+        // Unknowns: I0 at the top without the beam (c0) and the constant I1 (c1).
         let m = [[1.0, 2.0 / 3.0], [1.0 - a, -(1.0 - a) * (1.0 - g) * depth - 2.0 / 3.0 * (1.0 + a)]];
         let top = self.sky / PI + beam[0] + beam[1] * 2.0 / 3.0;
         let bottom =
@@ -137,7 +138,7 @@ fn solve2(m: [[f64; 2]; 2], r: [f64; 2]) -> [f64; 2] {
 }
 
 impl Solution {
-    /// (I0, I1) at scaled depth `t` below the top.
+    /// Returns (I0, I1) at the scaled depth `t` below the top.
     pub fn intensities(&self, t: f64) -> [f64; 2] {
         let (rise, fall) = ((-self.k * t).exp(), (-self.k * (self.slab.depth - t)).exp());
         let beam = (-t / self.slab.mu0).exp();
@@ -146,15 +147,15 @@ impl Solution {
         })
     }
 
-    /// Irradiance on a horizontal surface from above at depth `t`, as (direct sun, everything else). The direct part
-    /// holds what the forward peak scattered: what a diffuse surface sees as sun.
+    /// Returns the downward irradiance on a horizontal surface at depth `t`, as (direct sun, everything else). The
+    /// direct part includes the light of the forward peak, which a diffuse surface cannot tell from the sun.
     pub fn irradiance_down(&self, t: f64) -> [f64; 2] {
         let [i0, i1] = self.intensities(t);
         let direct = self.slab.mu0 * self.slab.sun * (-t / self.slab.mu0).exp();
         [direct, PI * (i0 + i1 * 2.0 / 3.0)]
     }
 
-    /// Irradiance from below at depth `t`.
+    /// Returns the upward irradiance at depth `t`.
     pub fn irradiance_up(&self, t: f64) -> f64 {
         let [i0, i1] = self.intensities(t);
         PI * (i0 - i1 * 2.0 / 3.0)
@@ -170,8 +171,8 @@ mod tests {
         Slab { depth: depth * (1.0 - wf), albedo, asymmetry, mu0, sun: 1.0 / mu0, sky: 0.0, ground }.solve()
     }
 
-    /// Truth: slab of Henyey-Greenstein g = 0.85 by discrete ordinates, (depth, mu0, albedo, R, T diffuse + direct).
-    /// Delta-Eddington is a two-stream method: its known error for fluxes is a few hundredths.
+    /// Reference: slab of Henyey-Greenstein g = 0.85 by discrete ordinates, (depth, mu0, albedo, R, T diffuse +
+    /// direct). Delta-Eddington is a two-stream method, whose fluxes are known to err by a few hundredths.
     #[test]
     fn fluxes_follow_the_slab_table() {
         let table = [
@@ -230,7 +231,7 @@ mod tests {
                 assert!((a[0] - b[0]).abs() < 2e-4 * a[0].abs(), "{depth} {x}: {a:?} {b:?}");
             }
         }
-        // The beam's pole: k mu0 = 1.
+        // At the pole of the beam, k mu0 = 1.
         let s =
             Slab { depth: 2.0, albedo: 0.5, asymmetry: 0.0, mu0: 1.0 / 1.5f64.sqrt(), sun: 1.0, sky: 0.0, ground: 0.0 };
         let near = Slab { mu0: s.mu0 * 0.99, ..s };

@@ -1,18 +1,18 @@
-//! Model of a frame's fog, prepared in f64: shaders, their twin and queries read it.
+//! Model of a frame's fog, prepared in f64. Shaders, their twin and queries read it.
 
 use glam::DVec3;
 
 use super::{curtains::Curtains, laws::DistanceKind, light::Solution};
 use crate::{light::PhaseLobes, wind::Detour};
 
-/// Number of plane waves in the patches' pattern: the pairs of four.
+/// Number of plane waves in the patches' pattern: one for each pair of four waves.
 pub const PATCH_WAVES: usize = 6;
 
-/// Kind of a fog model: the shader's switch.
+/// Kind of a fog model, by which shaders branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum FogKind {
-    /// Nothing.
+    /// No layer.
     Clear = 0,
     /// Slab with linear flanks.
     Slab = 1,
@@ -26,12 +26,12 @@ pub enum FogKind {
     ExponentialSquared = 5,
 }
 
-/// One light source term c(mu) = `even` + mu `odd`, per channel.
+/// One source term of scattered light, c(mu) = `even` + mu `odd`, per channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Term {
-    /// Independent of direction.
+    /// Part that does not depend on direction.
     pub even: DVec3,
-    /// Times the cosine of the view with up.
+    /// Factor of the cosine between the view direction and up.
     pub odd: DVec3,
 }
 
@@ -41,21 +41,21 @@ impl Term {
     }
 }
 
-/// All that a frame's fog needs, prepared in f64; [`FogModel::uniform`] is its form for shaders.
+/// Fog of a frame, prepared in f64; [`FogModel::uniform`] returns its form for shaders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FogModel {
-    /// Kind of fog that is drawn.
+    /// Kind of the fog.
     pub kind: FogKind,
-    /// Distance of the compatibility laws.
+    /// Kind of distance of the compatibility laws.
     pub distance: DistanceKind,
     /// Altitude of the camera, m.
     pub altitude: f64,
     /// 1/(planet radius + altitude), 1/m; 0 for a flat world.
     pub curvature: f64,
-    /// Altitude at which rays without an object end in the ground, m.
+    /// Altitude, m, at which rays without an object end at the ground.
     pub ground: f64,
-    /// Slab: altitudes where the flanks begin and end (base 0, base 1, top 0, top 1), m. Exponential: reference
-    /// altitude, scale height.
+    /// For a slab: altitudes where the flanks begin and end (base 0, base 1, top 0, top 1), m. For an exponential
+    /// layer: reference altitude and scale height.
     pub knots: [f64; 4],
     /// 1/height of the slab's flanks, 1/m.
     pub inverse_flanks: [f64; 2],
@@ -63,72 +63,73 @@ pub struct FogModel {
     pub extinction: f64,
     /// Start and end of the linear law, m.
     pub linear: [f64; 2],
-    /// Band of the sky that the compatibility laws cover, rad.
+    /// Height of the band of sky that the compatibility laws cover, rad.
     pub sky_band: f64,
-    /// Extinction of each channel over that at 550 nm.
+    /// Ratio of each channel's extinction to that at 550 nm.
     pub ratio: DVec3,
-    /// Scaled (delta) optical depth over depth at 550 nm.
+    /// Ratio of each channel's delta-scaled optical depth to the depth at 550 nm.
     pub scaling: DVec3,
-    /// Depth at 550 nm from the layer's top to the ground.
+    /// Optical depth at 550 nm from the layer's top to the ground.
     pub depth_total: f64,
-    /// Unit vector to the sun.
+    /// Unit vector towards the sun, or the moon if it is brighter.
     pub to_sun: DVec3,
-    /// 1/cosine of the sun's zenith angle, as the slab was solved.
+    /// 1/cosine of the sun's zenith angle, as used in the solution of the slab.
     pub inverse_mu0: f64,
     /// Phase function.
     pub lobes: PhaseLobes,
-    /// Share of scattering counted as forward, and asymmetry of the rest.
+    /// Share of scattering that counts as forward.
     pub forward: f64,
-    /// See `forward`.
+    /// Asymmetry of the rest of the scattering.
     pub smooth: f64,
     /// Whether the exponential terms are used.
     pub absorbing: bool,
     /// Diffusion exponent per channel.
     pub k: DVec3,
-    /// Source terms: constant, per scaled depth, beam, from the top, from the bottom.
+    /// Constant source term.
     pub constant: Term,
-    /// Per scaled depth.
+    /// Source term per unit of scaled depth.
     pub slope: Term,
-    /// Times e^(-depth/mu0).
+    /// Source term times e^(-depth/mu0).
     pub beam: Term,
-    /// Times e^(-k depth).
+    /// Source term times e^(-k depth).
     pub rise: Term,
-    /// Times e^(-k (total - depth)).
+    /// Source term times e^(-k (total - depth)).
     pub fall: Term,
-    /// First scattering: times phase and e^(-depth/mu0). The colour of the compatibility laws.
+    /// First scattering, to be multiplied by the phase function and e^(-depth/mu0). For the compatibility laws, their
+    /// colour.
     pub first: DVec3,
     /// Mean radiance of the sky above the layer.
     pub sky_radiance: DVec3,
-    /// Radiance of the ground below it.
+    /// Radiance of the ground below the layer.
     pub ground_radiance: DVec3,
-    /// The layer's light per channel, as it was solved; `None` without a layer.
+    /// Solutions of the layer's light per channel; `None` without a layer.
     pub solutions: Option<[Solution; 3]>,
-    /// Share of the light above the layer that reaches the camera: that of the air inside it.
+    /// Share of the light above the layer that reaches the camera, by which the air inside the layer is lit.
     pub lit: f64,
-    /// Patches: share, and waves as (wave vector, phase at the camera).
+    /// Strength of the patches.
     pub patch_amount: f64,
-    /// See `patch_amount`.
+    /// Waves of the patches, as (wave vector, phase at the camera).
     pub patch_waves: [(DVec3, f64); PATCH_WAVES],
-    /// How obstacles to the wind lead the patches.
+    /// Lag of the patches where the wind flows round obstacles.
     pub(crate) detour: Option<Detour>,
-    /// Precipitation through it and above it.
+    /// Precipitation in the layer and above it.
     pub falling: FallingModel,
 }
 
-/// Precipitation as a medium of its own: the same everywhere below the altitude where it begins, and in curtains.
+/// Precipitation as a medium of its own: even below the altitude where it begins, except for curtains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingModel {
-    /// Extinction at 550 nm, 1/m; 0 where nothing falls.
+    /// Extinction at 550 nm, 1/m; 0 if nothing falls.
     pub extinction: f64,
-    /// Altitudes between which it falls off to nothing, m.
+    /// Altitudes between which the extinction decreases to 0, m.
     pub top: [f64; 2],
-    /// 1/their distance, 1/m.
+    /// 1/difference of these altitudes, 1/m.
     pub inverse_flank: f64,
-    /// Curtains of the rain among it.
+    /// Curtains of the rain in it.
     pub curtains: Curtains,
 }
 
 impl FallingModel {
-    /// Nothing falls.
+    /// No precipitation.
     pub const NONE: Self = Self { extinction: 0.0, top: [0.0; 2], inverse_flank: 1.0, curtains: Curtains::NONE };
 }

@@ -1,4 +1,4 @@
-//! The fog of a scene: the weather's low layer and what falls, or one of the older laws if the host asked for it.
+//! Fog of a scene: the weather's low layer and what falls, or a fog law of older simulators if the host has set one.
 
 use std::f64::consts::TAU;
 
@@ -22,12 +22,11 @@ use crate::{
     wind::Detour,
 };
 
-/// Least change of the optical depth of the longest curtain that shows.
+/// Smallest change of the optical depth of the longest curtain that is visible.
 const LEAST_SHOWN: f64 = 1e-3;
 
-/// Matter that a weather has in the air near the ground: its low layer of fog, mist or dust, and what falls outside of
-/// rain areas. Each has an extinction and heights of its own; a reported visibility at the station is that through
-/// both.
+/// Media of a weather in the air near the ground: its low layer of fog, mist or dust, and what falls outside rain
+/// areas. Each has its own extinction and heights. A reported visibility at the station is that through both.
 pub(crate) struct LowAir {
     layer: Option<FogLayer>,
     falling: FallingLayer,
@@ -35,13 +34,13 @@ pub(crate) struct LowAir {
 }
 
 impl LowAir {
-    /// Creates the low air of a weather. Patches of fog go with the air: `drift_m` is how far the wind has carried it
-    /// (east, north).
+    /// Creates the low air of a weather. Patches of fog move with the air; `drift_m` is the distance over which the
+    /// wind has carried it (east, north).
     pub fn new(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Self {
         Self { layer: ground_layer(c, seed, drift_m), falling: FallingLayer::new(c), detour: None }
     }
 
-    /// With patches that go round what the wind goes round.
+    /// Returns the low air with patches that flow round obstacles to the wind.
     pub fn led_by(self, detour: Option<Detour>) -> Self {
         Self { detour, ..self }
     }
@@ -52,12 +51,12 @@ impl LowAir {
         Self { layer: air.layer.map(|layer| FogLayer { patches: None, ..layer }), ..air }
     }
 
-    /// Whether nothing is there that takes light.
+    /// Whether nothing in it extinguishes light.
     pub fn is_clear(&self) -> bool {
         self.layer.is_none() && self.falling.extinction_per_m() <= 0.0
     }
 
-    /// As shaders draw it and queries count it, but for the curtains of rain.
+    /// Returns the model that shaders draw and queries use, without the curtains of rain.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -66,7 +65,7 @@ impl LowAir {
     }
 }
 
-/// Least unevenness of a layer that shows as patches.
+/// Smallest strength of patches that is visible.
 const LEAST_PATCHES: f64 = 0.002;
 
 fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer> {
@@ -75,17 +74,17 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
         return None;
     }
     let station = c.air.station_altitude_m;
-    // Fog lies on the ground, wherever the terrain takes it: only a lifted layer has a base.
+    // Fog lies on the ground at any altitude of the terrain. Only a lifted layer has a base.
     let base_m = if f.base_m <= 0.0 { -1e4 } else { station + f.base_m };
     let softness = f.softness_m.min(f.top_m - f.base_m);
     let profile = Profile::Slab {
         base_m,
-        // The weather's top is where nothing is left, the slab's is the middle of its flank.
+        // The weather's top is where nothing is left; the slab's top is the middle of its flank.
         top_m: (station + f.top_m - 0.5 * softness).max(base_m),
         base_softness_m: 0.0,
         top_softness_m: softness,
     };
-    // Particles that tell colours apart are no droplets.
+    // Particles whose extinction depends on the wavelength are not droplets.
     let (diameter_um, g) = (15.0, f.asymmetry.clamp(-0.95, 0.95));
     let phase = match smoothstep(0.25, 0.75, f.angstrom_exponent) {
         share if share <= 0.0 => Phase::Droplets { diameter_um },
@@ -93,15 +92,15 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
         share => Phase::Between { diameter_um, g, share },
     };
     let covered = (2.0 * (1.0 - f.coverage)).clamp(0.0, 1.0);
-    // The pattern's values are spread exponentially about its mean of 1. The densest share c of it, which is the part
-    // of the ground under fog, has the mean 1 - ln c: there the extinction shall be the reported one.
+    // The pattern's values are distributed exponentially around the mean of 1. Their densest share c, which is the part
+    // of the ground under fog, has the mean 1 - ln c. There the extinction must be the reported one.
     let inside = 1.0 - covered * f.coverage.max(0.01).ln();
-    // Gusts lift more here and less there; what is reported is their mean.
+    // Gusts lift more dust in some places than in others. The report is their mean.
     let gusts = if f.lifted > 0.0 { f.lifted * lifting::unevenness(&c.wind) } else { 0.0 };
     let amount = covered.max(gusts);
     let amount = (amount - LEAST_PATCHES) / (1.0 - LEAST_PATCHES);
     let patches = (amount > 0.0).then_some(Patches { amount, size_m: f.drawn_patch_m(), seed, drift_m });
-    // Dust takes blue, soot every colour: absorption has a power of the wavelength of its own.
+    // Dust absorbs blue, soot all colours: absorption follows its own power of the wavelength.
     let absorbed = 1.0 - f.single_scattering_albedo.clamp(0.0, 1.0);
     let dust = lifting::DUST_ABSORPTION_EXPONENT;
     let absorbing = c.aerosol.absorption_angstrom_exponent;
@@ -123,7 +122,7 @@ fn viewpoint(place: &Place, c: &Conditions, map_m: [f64; 2], planet_radius_m: f6
     Viewpoint { altitude_m: place.altitude_m, map_m, planet_radius_m, ground_m }
 }
 
-/// Takes off the light of a scene what the weather's low layer takes.
+/// Attenuates the light of a scene by the weather's low layer.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -135,8 +134,8 @@ pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-/// Returns the light that the weather's low layer leaves of that above it, `lux`: sun, moon, and all else on level
-/// ground.
+/// Returns what is left of the light `lux` below the weather's low layer: of the sun, the moon, and all other light on
+/// level ground.
 fn through_fog(
     c: &Conditions,
     place: &Place,
@@ -155,7 +154,7 @@ fn through_fog(
     };
     let model = under(sun, sun_lux, sky_lux)?;
     let [sun_under, mut sky_under] = model.light_at(place.altitude_m).unwrap_or([sun_lux, sky_lux]);
-    // By day nobody sees what fog makes of the moon's light.
+    // By day the moonlight scattered by fog is invisible.
     let seen = smoothstep(1e-4, 2e-4, moon_lux[1] / sky_lux[1].max(f64::MIN_POSITIVE));
     if seen > 0.0 {
         let [_, more] = under(moon, moon_lux, [0.0; 3])?.light_at(place.altitude_m).unwrap_or_default();
@@ -166,7 +165,7 @@ fn through_fog(
 }
 
 impl Scene {
-    /// The fog as the frame draws it, lit by whichever of sun and moon gives more light.
+    /// Returns the fog that the frame draws, lit by the brighter of sun and moon.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -188,12 +187,12 @@ impl Scene {
         Ok(model)
     }
 
-    /// The curtains of the weather's own rain among all that falls.
+    /// Returns the curtains of the weather's own rain, as part of all that falls.
     fn curtains(&self, seed: u64) -> Curtains {
         let falling = &self.conditions.precipitation;
         let variation = curtain::variation(falling);
         let rain_per_m = falling.liquid_extinction_per_m;
-        // In so thin a rain they would not show.
+        // Curtains are invisible in very thin rain.
         let shown = variation * rain_per_m * curtain::OWN_LENGTHS_M[1];
         if shown < LEAST_SHOWN {
             return Curtains::NONE;
@@ -210,13 +209,13 @@ impl Scene {
 }
 
 impl FogModel {
-    /// With patches that go round what the wind goes round.
+    /// Returns the model with patches that flow round obstacles to the wind.
     pub(crate) fn led_by(self, detour: Option<Detour>) -> Self {
         Self { detour: detour.filter(|_| self.patch_amount > 0.0), ..self }
     }
 
-    /// Optical depth straight up from an altitude. The older laws have no height: what they say of the light above the
-    /// ground is nothing.
+    /// Returns the optical depth straight up from an altitude. It is 0 for the compatibility laws, which have no height
+    /// and do not affect the light above the ground.
     pub(crate) fn depth_above(&self, altitude_m: f64) -> f64 {
         match self.kind {
             FogKind::Clear | FogKind::Slab | FogKind::Exponential => layer_depth_above(self, altitude_m),
@@ -233,7 +232,7 @@ mod tests {
     use crate::fog::patterns::patch_mean;
     use crate::weather::{FogKind, PrecipitationKind, Weather, derive};
 
-    /// A reported visibility is total: what air, haze, rain and the drawn layer each take makes 5 % at that distance.
+    /// A reported visibility is the total: air, haze, rain and the drawn layer together leave 5 % at that distance.
     #[test]
     fn nothing_is_counted_twice_at_station_height() {
         for (kind, visibility) in [
@@ -261,8 +260,7 @@ mod tests {
         }
     }
 
-    /// The pattern has the mean 1, reaches clear gaps, and is as dense inside its patches as `fog_layer` takes it to
-    /// be.
+    /// The pattern has the mean 1, reaches clear gaps, and is as dense inside its patches as `fog_layer` assumes.
     #[test]
     fn patches_hold_the_reported_extinction_inside() {
         let patches = Patches { amount: 1.0, size_m: 100.0, seed: 5, drift_m: [0.0; 2] };

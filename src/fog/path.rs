@@ -1,22 +1,23 @@
-//! A ray's way through a layer of fog and its optical depth, in f64: what the twin of `shaders/fog/lookup.wgsl`
-//! (`reference.rs`) needs of a ray before any light.
+//! Path of a ray through a layer of fog, and its optical depth, in f64: the geometric part of the twin of
+//! `shaders/fog/lookup.wgsl` (`reference.rs`).
 //!
-//! With r0 the distance of the ray's start from the planet's centre, mu the cosine of its angle with the vertical and k
-//! = 1/r0, the altitude after t metres is h0 + q/(1 + sqrt(1 + k q)) with q = t (2 mu + k t): exact, and without the
-//! cancellation of sqrt(r^2) - R. Seen from its lowest point (its start, its end, or where it is level) a ray only
-//! rises, and meets an altitude d higher after c/(mu + sqrt(mu^2 + k c)), c = d (2 + k d): a form that only adds. So a
-//! slab with linear flanks is three path lengths; a flank counts with its mean, in which the path's curvature enters.
+//! Let r0 be the distance of the ray's start from the planet's centre, mu the cosine of its angle with the vertical,
+//! and k = 1/r0. After t metres its altitude is h0 + q/(1 + sqrt(1 + k q)) with q = t (2 mu + k t). This is exact, and
+//! avoids the cancellation in sqrt(r^2) - R. From its lowest point (its start, its end, or where it is level) a ray
+//! only rises. It reaches an altitude d higher after c/(mu + sqrt(mu^2 + k c)), with c = d (2 + k d), which has only
+//! additions. The path through a slab with linear flanks is therefore three lengths. Each flank counts with its mean
+//! density, to which the path's curvature contributes.
 
 use super::model::{FogKind, FogModel};
 
-/// A ray's way through the layer.
+/// Path of a ray through the layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerPath {
     /// Optical depth at 550 nm.
     pub depth: f64,
-    /// Where the ray enters the layer and leaves it, m.
+    /// Distance at which the ray enters the layer, m.
     pub first: f64,
-    /// See `first`.
+    /// Distance at which the ray leaves the layer, m.
     pub last: f64,
     /// Altitude of the ray's end, m.
     pub end_altitude: f64,
@@ -24,25 +25,25 @@ pub struct LayerPath {
     pub end_mu: f64,
 }
 
-/// Rise from the start of a ray after `t` metres, m.
+/// Returns the rise of a ray above its start after `t` metres, m.
 pub fn layer_rise(curvature: f64, mu: f64, t: f64) -> f64 {
     let q = t * (2.0 * mu + curvature * t);
     q / (1.0 + (1.0 + curvature * q).max(0.0).sqrt())
 }
 
-/// Depth at 550 nm of the layer and of what falls above altitude `h`.
+/// Returns the optical depth at 550 nm of the layer and of what falls, above the altitude `h`.
 pub fn layer_depth_above(m: &FogModel, h: f64) -> f64 {
     own_depth_above(m, h) + falling_depth_above(m, h)
 }
 
-/// Depth at 550 nm of what falls above altitude `h`.
+/// Returns the optical depth at 550 nm of what falls above the altitude `h`.
 pub fn falling_depth_above(m: &FogModel, h: f64) -> f64 {
     let f = &m.falling;
     let in_top = f.top[1] - h.clamp(f.top[0], f.top[1]);
     f.extinction * (in_top * in_top * 0.5 * f.inverse_flank + f.top[0] - h.min(f.top[0]))
 }
 
-/// Depth at 550 nm of the layer alone above altitude `h`.
+/// Returns the optical depth at 550 nm of the layer alone above the altitude `h`.
 fn own_depth_above(m: &FogModel, h: f64) -> f64 {
     if m.kind == FogKind::Exponential {
         return m.extinction * ((m.knots[0] - h) / m.knots[1]).min(60.0).exp() * m.knots[1];
@@ -55,15 +56,15 @@ fn own_depth_above(m: &FogModel, h: f64) -> f64 {
     m.extinction * (top + (t0 - h.clamp(b1, t0)) + base)
 }
 
-/// Distance after which a ray that rises from its lowest point with cosine `mu` >= 0 is `lift` higher; 0 if that is
-/// below.
+/// Returns the distance after which a ray that starts at its lowest point with cosine `mu` >= 0 is `lift` higher; 0 for
+/// a negative `lift`.
 fn layer_reach(curvature: f64, mu: f64, lift: f64) -> f64 {
     let c = lift.max(0.0) * (2.0 + curvature * lift.max(0.0));
     c / (mu + (mu * mu + curvature * c).sqrt()).max(1e-20)
 }
 
-/// Optical depth over extinction of a slab's part that rises from altitude `low` to `high` over `length` metres,
-/// meeting the knots after `reach`.
+/// Returns the optical depth over the extinction for a part of a ray in a slab. The part rises from altitude `low` to
+/// `high` over `length` metres and passes the knots at the distances `reach`.
 fn slab_part(m: &FogModel, bend: f64, reach: [f64; 4], length: f64, low: f64, high: f64) -> f64 {
     let r = reach.map(|x| x.min(length));
     let h = m.knots.map(|k| k.clamp(low, high));
@@ -75,23 +76,24 @@ fn slab_part(m: &FogModel, bend: f64, reach: [f64; 4], length: f64, low: f64, hi
     (r[1] - r[0]) * share(0) + (r[2] - r[1]) + (r[3] - r[2]) * (1.0 - share(2))
 }
 
-/// Heights along a ray from altitude `h0` with cosine `mu`, `t` metres long, over the place where it is lowest.
+/// Altitudes along a ray that starts at altitude `h0` with cosine `mu` and is `t` metres long, split at its lowest
+/// point.
 struct RayCourse {
-    /// Altitude of its end, m, and its cosine with the vertical there.
+    /// Altitude of the end, m, and cosine with the vertical there.
     end_altitude: f64,
     end_mu: f64,
-    /// Distance at which it is level, m; whether it is within its length, and whether the ray only falls.
+    /// Distance at which the ray is level, m; whether this is within its length; and whether the ray only descends.
     level: f64,
     passes: bool,
     falls: bool,
     /// Lowest altitude, m, and the cosine with which both parts rise from there.
     low: f64,
     low_mu: f64,
-    /// Lengths of the parts on either side of the lowest place, m, and the altitude at which the first begins.
+    /// Lengths of the parts before and after the lowest point, m, and the altitude at the other end of the first part.
     before: f64,
     after: f64,
     high: f64,
-    /// Curvature of altitude along the ray, 1/m.
+    /// Curvature of the altitude along the ray, 1/m.
     bend: f64,
 }
 
@@ -103,7 +105,7 @@ fn ray_course(m: &FogModel, h0: f64, mu: f64, t: f64) -> RayCourse {
     let passes = mu < 0.0 && t > level;
     let falls = mu < 0.0 && !passes;
     let (low, low_mu) = if passes {
-        // Where the ray is level: r0 (sqrt(1 - mu^2) - 1).
+        // Altitude where the ray is level: r0 (sqrt(1 - mu^2) - 1) above its start.
         (h0 - mu * mu / (1.0 + (1.0 - mu * mu).max(0.0).sqrt()) / k.max(1e-30), 0.0)
     } else if falls {
         (end_altitude, (-end_mu).max(0.0))
@@ -116,8 +118,8 @@ fn ray_course(m: &FogModel, h0: f64, mu: f64, t: f64) -> RayCourse {
     RayCourse { end_altitude, end_mu, level, passes, falls, low, low_mu, before, after, high, bend }
 }
 
-/// Distances along a ray at which it enters and leaves a slab. `reach`: distances of the slab's lower and upper edge
-/// from the ray's lowest point.
+/// Returns the distances along a ray at which it enters and leaves a slab. `reach` has the distances of the slab's
+/// lower and upper edge from the ray's lowest point.
 fn slab_ends(c: &RayCourse, t: f64, reach: [f64; 2]) -> (f64, f64) {
     let [near, far] = reach.map(|x| x.min(c.before));
     if c.passes {
@@ -129,12 +131,12 @@ fn slab_ends(c: &RayCourse, t: f64, reach: [f64; 2]) -> (f64, f64) {
     }
 }
 
-/// The way of a ray from altitude `h0` with cosine `mu` through what falls, `t` metres long.
+/// Returns the path of a ray from altitude `h0` with cosine `mu`, `t` metres long, through what falls.
 pub fn falling_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
     let c = ray_course(m, h0, mu, t);
     let f = &m.falling;
     let reach = f.top.map(|h| layer_reach(m.curvature, c.low_mu, h - c.low));
-    // It falls to the ground, wherever that is: the ray never is below it.
+    // Precipitation falls to the ground at any altitude, so the ray is never below it.
     let part = |length: f64, high: f64| {
         let r = reach.map(|x| x.min(length));
         let [h0, h1] = f.top.map(|k| k.clamp(c.low, high));
@@ -147,13 +149,13 @@ pub fn falling_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
     LayerPath { depth: f.extinction * length, first, last, end_altitude: c.end_altitude, end_mu: c.end_mu }
 }
 
-/// The way of a ray from altitude `h0` with cosine `mu` through the layer, `t` metres long.
+/// Returns the path of a ray from altitude `h0` with cosine `mu`, `t` metres long, through the layer.
 pub fn layer_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
     let c = ray_course(m, h0, mu, t);
     let RayCourse { end_altitude, end_mu, .. } = c;
     if m.kind == FogKind::Exponential {
         let depth = exponential_path(m, h0, mu, t, end_altitude, end_mu);
-        // Where the weight lies: beside the denser end.
+        // The ends of the part with most of the depth, which lies at the denser end of the ray.
         let dense = m.extinction * ((m.knots[0] - h0.min(end_altitude)) / m.knots[1]).min(60.0).exp();
         let length = (depth / dense.max(1e-20)).min(t);
         let first = if end_altitude < h0 { t - length } else { 0.0 };
@@ -166,7 +168,8 @@ pub fn layer_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
     LayerPath { depth: m.extinction * length, first, last, end_altitude, end_mu }
 }
 
-/// e^(z^2) erfc(z) for z >= 0, to 1.2e-7 relative (Chebyshev fit of Press et al., Numerical Recipes, 1992, 6.2).
+/// Returns e^(z^2) erfc(z) for z >= 0, within 1.2e-7 relative (Chebyshev fit of Press et al., Numerical Recipes, 1992,
+/// 6.2).
 fn scaled_erfc(z: f64) -> f64 {
     const C: [f64; 10] = [
         -1.265_512_23,
@@ -184,8 +187,9 @@ fn scaled_erfc(z: f64) -> f64 {
     t * C.iter().rev().fold(0.0, |a, c| a * t + c).exp()
 }
 
-/// Optical depth over (extinction at the start) of an upward exponential path whose altitude grows by `rise`, from a
-/// point where the ray has cosine `mu` >= 0: the Chapman integral with a parabolic altitude.
+/// Returns the optical depth, over the extinction at the start, of an upward path through an exponential layer. The
+/// altitude grows by `rise` from a point where the ray has cosine `mu` >= 0. This is the Chapman integral with a
+/// parabolic altitude.
 fn exponential_up(k: f64, scale: f64, mu: f64, rise: f64) -> f64 {
     let z = mu / (2.0 * k * scale).sqrt();
     let x = rise / scale;
@@ -200,7 +204,7 @@ fn exponential_path(m: &FogModel, h0: f64, mu: f64, t: f64, end_altitude: f64, e
     let turn = if mu < 0.0 { (-mu / k).min(t) } else { 0.0 };
     let low = h0 + layer_rise(m.curvature, mu, turn);
     if (end_altitude - low).max(h0 - low) < scale {
-        // Short in altitude: three Gauss nodes, where the closed form would subtract equal numbers.
+        // Three Gauss nodes for a small range of altitude, where the closed form would subtract almost equal numbers.
         let node = |x: f64| (-layer_rise(m.curvature, mu, t * x) / scale).exp();
         let sum = (node(0.112_701_665) + node(0.887_298_335)) * 5.0 / 18.0 + node(0.5) * 8.0 / 18.0;
         return at(h0) * t * sum;
@@ -214,8 +218,8 @@ fn exponential_path(m: &FogModel, h0: f64, mu: f64, t: f64, end_altitude: f64, e
     at(low) * (exponential_up(k, scale, 0.0, h0 - low) + exponential_up(k, scale, 0.0, end_altitude - low))
 }
 
-/// A ray's way through two media: the sum of their optical depths; its ends are the means of theirs, weighted by those
-/// depths.
+/// Returns the path of a ray through two media: the sum of their optical depths, and the means of their ends weighted
+/// by these depths.
 pub(super) fn both_paths(fog: &LayerPath, falling: &LayerPath) -> LayerPath {
     let depth = fog.depth + falling.depth;
     let share = if fog.depth > 0.0 { falling.depth / depth } else { 1.0 };

@@ -1,5 +1,5 @@
 //! Patterns of uneven layers: patches of fog, and curtains of rain. Both are sums of waves whose mean along a ray is a
-//! closed form, so that nothing flickers however far away.
+//! closed form, so they do not flicker at any distance.
 
 use glam::DVec3;
 
@@ -13,18 +13,18 @@ use super::{
 };
 use crate::{light::sinc, wind::Detour};
 
-/// Mean of the patches' pattern along a ray between `first` and `last` metres: 1 for an even layer.
+/// Returns the mean of the patches' pattern along a ray between `first` and `last` metres: 1 for an even layer.
 pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, last: f64) -> f64 {
     let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
     let mut sum: f64 = m.patch_waves.iter().map(|w| wave_mean(*w, origin, direction, middle, half).0).sum();
     if let Some(detour) = &m.detour {
         sum += detoured(m, detour, (origin, direction), [first, last]);
     }
-    // Pairs of four unit waves: |sum of four|^2 / 4 = 1 + 1/2 sum of cosines, never negative.
+    // Pairs of four unit waves: |sum of four|^2 / 4 = 1 + 1/2 sum of cosines, which is never negative.
     (1.0 + m.patch_amount * 0.5 * sum).max(0.0)
 }
 
-/// Parts of a ray over a map of detours, each with the detour of its middle: `DETOUR_PARTS` of
+/// Number of parts of a ray over a map of detours, each with the lag at its middle: `DETOUR_PARTS` of
 /// `shaders/fog/patterns.wgsl`.
 const DETOUR_PARTS: usize = 8;
 
@@ -42,7 +42,7 @@ fn detoured(m: &FogModel, detour: &Detour, (origin, direction): (DVec3, DVec3), 
         let lag = detour.lag_m(place).extend(0.0);
         let moved = |(wave, phase): &(DVec3, f64)| {
             let at = phase + wave.dot(place);
-            // As long rows fade with all of a ray, so do they here.
+            // Waves fade with the length of the whole ray, as in `wave_mean`.
             let row = PATCH_ROW / (PATCH_ROW + wave.length() * 0.5 * (last - first));
             ((at + wave.dot(lag)).cos() - at.cos()) * sinc(wave.dot(direction) * half) * row
         };
@@ -57,7 +57,7 @@ mod tests {
 
     use super::*;
 
-    /// Waves of 130 to 900 m, `shift` metres further.
+    /// Waves of 130 to 900 m, displaced by `shift` metres.
     fn curtains(shift: f64) -> Curtains {
         let wave = |i: usize| {
             let angle = TAU * (i as f64 + 0.3) / (2.0 * CURTAIN_WAVES as f64);
@@ -68,7 +68,7 @@ mod tests {
         Curtains { amount: 0.245, waves: std::array::from_fn(wave) }
     }
 
-    /// One wave along a ray against small steps.
+    /// Compares the mean of one wave along a ray with a sum of small steps.
     #[test]
     fn a_wave_has_the_mean_of_its_steps() {
         let wave = curtains(0.0).waves[3];
@@ -87,8 +87,8 @@ mod tests {
         }
     }
 
-    /// On the mean over places what lies behind is left as much of as by even rain, at every distance; without the
-    /// variance it would be more. Near the eye and far beyond all waves there is no pattern.
+    /// The mean transmittance over all places equals that of even rain at every distance. Without the variance term it
+    /// would be higher. Near the eye and far beyond all waves there is no pattern.
     #[test]
     fn as_much_is_left_as_by_even_rain() {
         let n = 20_000;

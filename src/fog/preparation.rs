@@ -1,4 +1,4 @@
-//! Preparation of a frame's fog: from settings and weather to the model.
+//! Preparation of a frame's fog: the model from settings or weather.
 
 use glam::DVec3;
 
@@ -20,18 +20,18 @@ use crate::{
     numerics::smoothstep,
 };
 
-/// Wavelengths of the channels, nm: those at which the sky's three-channel tables stand; green is Koschmieder's 550.
+/// Wavelengths of the channels, nm: those of the sky's three-channel tables. Green is Koschmieder's 550.
 const WAVELENGTHS_NM: [f64; 3] = crate::light::EARTH_WAVELENGTHS_NM;
 
-/// The sun's zenith cosine is not taken smaller: a plane-parallel layer would let no light in, the curved one of the
-/// real planet lets a low sun pass sqrt(2 thickness/radius), some thousandths.
+/// Smallest cosine of the sun's zenith angle. A plane-parallel layer would let no light in at 0; the curved layer of
+/// the real planet admits a low sun at sqrt(2 thickness/radius), some thousandths.
 const MIN_MU0: f64 = 0.01;
 
-/// Diffusion exponent times depth below which a channel's two exponentials are drawn as a straight line, whose error
-/// is an eighth of the square.
+/// Product of diffusion exponent and depth below which a channel's two exponentials are drawn as a straight line. The
+/// error is an eighth of its square.
 const LINEAR_DIFFUSION: f64 = 0.05;
 
-/// How a medium scatters; see [`FogLayer`] for the fields.
+/// Scattering of a medium; [`FogLayer`] explains the fields.
 struct FogScattering {
     angstrom: f64,
     albedo: [f64; 3],
@@ -39,15 +39,16 @@ struct FogScattering {
 }
 
 impl FogScattering {
-    /// Under the deck that it falls from, light comes from all sides: where drops and flakes send it does not show.
+    /// Scattering by drops and flakes. The light under their cloud comes from all sides, so their phase function does
+    /// not matter.
     const OF_FALLING: Self = Self { angstrom: 0.0, albedo: [1.0; 3], phase: Phase::HenyeyGreenstein { g: 0.0 } };
 
     fn of(layer: &FogLayer) -> Self {
         Self { angstrom: layer.angstrom, albedo: layer.albedo, phase: layer.phase }
     }
 
-    /// With what falls, of which a share of the optical depth is: phase functions mix as long as neither has twice the
-    /// other's.
+    /// Mixes in what falls, which has the share `share` of the optical depth. Phase functions are mixed while neither
+    /// medium has more than twice the depth of the other.
     fn with_falling(&self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + (b - a) * share;
         let falling = Self::OF_FALLING;
@@ -59,7 +60,7 @@ impl FogScattering {
     }
 }
 
-/// A phase function so far on the way to one that scatters to all sides alike.
+/// Moves a phase function by `share` towards an isotropic one.
 fn toward_even(phase: Phase, share: f64) -> Phase {
     match phase {
         same if share <= 0.0 => same,
@@ -72,7 +73,7 @@ fn toward_even(phase: Phase, share: f64) -> Phase {
 }
 
 impl FogModel {
-    /// Prepares the fog of one view and frame.
+    /// Prepares the fog of one view and frame from a law.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -143,10 +144,10 @@ impl FogModel {
         }
     }
 
-    /// Prepares what a weather has in the air near the ground: its `layer` of fog, if there is any, and what falls.
+    /// Prepares the fog of a weather: its `layer`, if there is one, and what falls.
     ///
-    /// Both have heights and an extinction of their own. They are lit as one medium, whose optical depth is that of
-    /// both and which scatters as they do on the mean.
+    /// Each has its own heights and extinction. They are lit as one medium, whose optical depth is the sum of both and
+    /// whose scattering is their mean.
     ///
     /// # Errors
     /// As [`FogModel::new`].
@@ -235,7 +236,8 @@ impl FogModel {
                 sky: light.sky_irradiance[i],
                 ground: light.ground_albedo[i],
             };
-            // What shaders add up in f32 keeps farther from the solution's pole than what queries answer by.
+            // The terms for shaders, which add them in f32, keep farther away from the solution's pole than those for
+            // queries.
             self.set_source(i, &slab.solve_beside(1e-4));
             self.first[i] = scattering.albedo[i] * light.sun_irradiance[i] / (1.0 - wf);
             slab.solve()
@@ -244,8 +246,8 @@ impl FogModel {
         self.lit = self.share_at(view.altitude_m);
     }
 
-    /// Light at an altitude under or in the layer, per channel: the sun's on a surface facing it (its aureole, the
-    /// forward peak of the scattering, included), and what else falls on level ground.
+    /// Returns the light at an altitude below or in the layer, per channel: that of the sun on a surface facing it,
+    /// including its aureole (the forward peak of the scattering), and all other light on level ground.
     pub fn light_at(&self, altitude_m: f64) -> Option<[[f64; 3]; 2]> {
         let solutions = self.solutions?;
         let depth = layer_depth_above(self, altitude_m).min(self.depth_total);
@@ -258,14 +260,14 @@ impl FogModel {
         Some([[a.0, b.0, c.0], [a.1, b.1, c.1]])
     }
 
-    /// Share of a beam from a source at zenith cosine `mu0` that reaches an altitude, per channel, its aureole
-    /// included.
+    /// Returns the share of a beam from a source at zenith cosine `mu0` that reaches an altitude, per channel,
+    /// including its aureole.
     pub fn beam_share(&self, mu0: f64, altitude_m: f64) -> [f64; 3] {
         let depth = layer_depth_above(self, altitude_m).min(self.depth_total);
         (self.scaling * (-depth / mu0.max(MIN_MU0))).to_array().map(f64::exp)
     }
 
-    /// Share at 550 nm of the light above the layer that reaches level ground at an altitude.
+    /// Returns the share at 550 nm of the light above the layer that reaches level ground at an altitude.
     fn share_at(&self, altitude_m: f64) -> f64 {
         let (Some(all), Some([sun, sky])) = (&self.solutions, self.light_at(altitude_m)) else { return 1.0 };
         let Slab { mu0, sun: sun_above, sky: sky_above, .. } = all[1].slab;
@@ -273,7 +275,7 @@ impl FogModel {
         if above > 0.0 { ((mu0 * sun[1] + sky[1]) / above).min(1.0) } else { 1.0 }
     }
 
-    /// The source w (I0 + g mu I1) of channel `i`; the first scattering has its own term.
+    /// Sets the source w (I0 + g mu I1) of channel `i`. The first scattering has its own term.
     fn set_source(&mut self, i: usize, s: &Solution) {
         let (w, g, depth) = (s.slab.albedo, s.slab.asymmetry, s.slab.depth);
         let set = |term: &mut Term, v: [f64; 2]| {
@@ -296,7 +298,8 @@ impl FogModel {
         self.ground_radiance[i] = s.irradiance_up(depth) / std::f64::consts::PI;
     }
 
-    /// Four waves of like length and different direction; the pattern is the square of their sum.
+    /// Sets the patches from four waves of similar length in different directions: the pattern is the square of their
+    /// sum.
     fn set_patches(&mut self, patches: &Patches, view: &Viewpoint) {
         self.patch_amount = patches.amount;
         let mut stream = Chance::seeded(patches.seed);
@@ -318,7 +321,8 @@ impl FogModel {
     }
 }
 
-/// Returns the radiance of a deep layer of droplets under this light in the horizontal, one scaled depth below its top.
+/// Returns the radiance of a deep layer of droplets under this light, in horizontal directions, one scaled depth below
+/// its top.
 fn deep_layer_radiance(light: &FogLight) -> DVec3 {
     let lobes = PhaseLobes::new(&Phase::Droplets { diameter_um: 15.0 });
     let (_, albedo, asymmetry) = delta_scaling(1.0, lobes.moments());

@@ -1,5 +1,5 @@
-//! Asks the drawn fog from outside: `probe fog --visibility V`. The GPU path is that of the composition (a depth
-//! buffer, `view_range`, `fog_along`, `fog_apply`), only the scene is made up.
+//! Probe of the drawn fog: `probe fog --visibility V`. The GPU path is that of the composition (a depth buffer,
+//! `view_range`, `fog_along`, `fog_apply`) with a synthetic scene.
 
 use glam::{DVec2, DVec3};
 
@@ -22,12 +22,12 @@ use crate::{
     scene::{Camera, DepthMapping, DepthUniform, ViewRays},
 };
 
-/// Pixels a row of the synthetic picture.
+/// Width of the synthetic picture, pixels.
 const WIDTH: u32 = 256;
-/// So near that a distance of 0 errs by nothing that shows.
+/// Near plane, m: so near that a distance of 0 has no visible error.
 const NEAR_M: f64 = 1e-6;
 
-/// Measures the contrast that is left, and the transmittance at 550 nm, over each of `distances_m` (\[0, 1e9\] m) in a
+/// Measures, for each of `distances_m` (\[0, 1e9\] m), the contrast that is left and the transmittance at 550 nm in a
 /// flat homogeneous layer of visibility `visibility_m` (\[1, 1e6\] m), as the GPU draws it.
 ///
 /// The contrast is measured in the drawn picture: the difference between a white and a black target behind the fog.
@@ -43,9 +43,9 @@ pub fn probe(device: &Device, visibility_m: f64, distances_m: &[f64]) -> Result<
         return Ok(Vec::new());
     };
     let height = height.get();
-    // So flat a picture that no ray leaves the layer before nothing is left of it.
+    // The field of view is so flat that no ray leaves the layer before the contrast is 0.
     let mut camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 0.02, 60.0, NEAR_M);
-    // The numbers a host would pass are f32.
+    // Hosts pass f32 matrices.
     camera.projection = camera.projection.as_mat4().as_dmat4();
     let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..Default::default() })?;
     let mut fog = LowAirUniform::default();
@@ -62,7 +62,7 @@ pub fn probe(device: &Device, visibility_m: f64, distances_m: &[f64]) -> Result<
     Ok(texels.iter().take(distances_m.len()).map(|t| [f64::from(t[0] - t[1]), f64::from(t[2])]).collect())
 }
 
-/// A layer that fills all the air, under a grey sky.
+/// Returns a layer that fills all the air, under a grey sky.
 fn model(visibility_m: f64) -> Result<FogModel> {
     let layer = FogLayer {
         profile: Profile::Slab { base_m: -1e5, top_m: 1e6, base_softness_m: 0.0, top_softness_m: 0.0 },
@@ -81,7 +81,7 @@ fn draw(
 ) -> Result<Vec<[f32; 4]>> {
     let gpu = &device.device;
     let texture = |format, usage| flat_texture(gpu, "fog probe", (WIDTH, height), format, usage);
-    // Software OpenGL renders no 32-bit floats.
+    // Software OpenGL cannot render to 32-bit floats.
     let wide = device.adapter.get_texture_format_features(wgpu::TextureFormat::Rgba32Float).allowed_usages;
     let format = if wide.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
         wgpu::TextureFormat::Rgba32Float

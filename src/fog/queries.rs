@@ -1,4 +1,4 @@
-//! Questions about visibility, answered in f64 without a device (queries of class A).
+//! Queries of visibility, answered in f64 without a device (queries of class A).
 
 use glam::DVec3;
 
@@ -19,19 +19,19 @@ use crate::{
 /// Transmittance and visibility between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
-    /// Share of light that gets through, per channel (620, 550, 450 nm of the default planet).
+    /// Share of light transmitted, per channel (620, 550, 450 nm of the default planet).
     pub transmittance: [f64; 3],
-    /// Meteorological optical range of the air along the way, m: where 550 nm light would fall to 5 % if all the way
-    /// were like this part of it; infinite where nothing stops light.
+    /// Meteorological optical range of the air along the path, m: the distance at which light of 550 nm would fall to 5
+    /// % in air with the path's mean extinction. Infinite without extinction.
     pub visibility_m: f64,
 }
 
-/// Light that plays no part where only extinction is asked for.
+/// Light for models of which only the extinction is used.
 const NO_LIGHT: FogLight =
     FogLight { to_sun: DVec3::Z, sun_irradiance: [0.0; 3], sky_irradiance: [0.0; 3], ground_albedo: [0.0; 3] };
 
-/// Transmittance of the layer per channel (620, 550, 450 nm) from the viewpoint to the point `offset` metres away, in
-/// the host's axes. Multiply by those of air, haze and precipitation.
+/// Returns the transmittance of the layer per channel (620, 550, 450 nm) from the viewpoint to the point `offset`
+/// metres away, in the host's axes. Multiply it by those of air, haze and precipitation.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -45,7 +45,7 @@ fn check_offset(offset: DVec3) -> Result<()> {
 }
 
 impl FogModel {
-    /// Share of light that is left after `offset` metres from the viewpoint, per channel.
+    /// Returns the share of light that is left after `offset` metres from the viewpoint, per channel.
     fn transmittance_over(&self, offset: DVec3) -> [f64; 3] {
         let range = offset.length();
         if range == 0.0 {
@@ -56,7 +56,8 @@ impl FogModel {
 }
 
 impl LowAir {
-    /// As [`transmittance_between`], of fog and of what falls on the mean over its curtains.
+    /// Returns the transmittance of fog and of what falls, as [`transmittance_between`] does for a layer, averaged over
+    /// the curtains of rain.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -66,9 +67,9 @@ impl LowAir {
     }
 }
 
-/// Visibility along the line from the viewpoint to the point `offset` metres away, m: the meteorological optical range
-/// that a homogeneous medium of the same mean extinction would have. `background_per_m` is the extinction of air, haze
-/// and precipitation there at 550 nm. Infinite where nothing extinguishes.
+/// Returns the visibility along the line from the viewpoint to the point `offset` metres away, m: the meteorological
+/// optical range of a homogeneous medium with the same mean extinction. `background_per_m` is the extinction of air,
+/// haze and precipitation there at 550 nm. Infinite without extinction.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -82,9 +83,9 @@ pub fn visibility_between_m(layer: &FogLayer, eye: &Viewpoint, offset: DVec3, ba
     Ok(koschmieder_visibility_m(depth / range + background_per_m))
 }
 
-/// Vertical visibility from altitude `altitude_m`, m (METAR VV): how far straight up a black target keeps 5 % of its
-/// contrast in the layer and the `background_per_m` of the rest; infinite if it does so through all of the layer and
-/// nothing else extinguishes.
+/// Returns the vertical visibility from altitude `altitude_m`, m (METAR VV): how far straight up a black target keeps 5
+/// % of its contrast in the layer and the extinction `background_per_m` of the rest. Infinite if it keeps more through
+/// the whole layer and nothing else extinguishes.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -108,16 +109,17 @@ pub fn vertical_visibility_m(layer: &FogLayer, altitude_m: f64, background_per_m
     Ok(0.5 * (lo + hi))
 }
 
-/// Illuminance at which a pilot still sees a light, lx, against a background of `background_cd_m2`: log10 E = 0.05
-/// (log10 B)^2 + 0.573 log10 B - 6.667, not below 8e-7 lx, the value by night. The curve runs midway through the steps
-/// of ICAO's table (8e-7, 1e-5, 1e-4, 1e-3 lx; night, 50, 1000, 12000 cd/m2) (ICAO Doc 9328; WMO-No. 8).
+/// Returns the smallest illuminance at which a pilot sees a light, lx, against a background of `background_cd_m2`:
+/// log10 E = 0.05 (log10 B)^2 + 0.573 log10 B - 6.667, at least the value by night, 8e-7 lx. The curve runs midway
+/// through the steps of ICAO's table (8e-7, 1e-5, 1e-4, 1e-3 lx; night, 50, 1000, 12000 cd/m2) (ICAO Doc 9328; WMO-No.
+/// 8).
 pub fn light_threshold_lx(background_cd_m2: f64) -> f64 {
     let b = background_cd_m2.max(1.0).log10();
     10f64.powf(0.05 * b * b + 0.573 * b - 6.667).max(8e-7)
 }
 
-/// Distance at which a light of `intensity_cd` is just seen in air of extinction `extinction_per_m`, m: Allard's law
-/// (Allard 1876), E = I exp(-sigma R)/R^2 at the threshold of [`light_threshold_lx`].
+/// Returns the distance, m, at which a light of `intensity_cd` is just visible in air of extinction `extinction_per_m`:
+/// Allard's law (Allard 1876), E = I exp(-sigma R)/R^2 at the threshold of [`light_threshold_lx`].
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -126,7 +128,7 @@ pub fn lights_range_m(intensity_cd: f64, extinction_per_m: f64, background_cd_m2
     check_range("extinction_per_m", extinction_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
     check_range("background_cd_m2", background_cd_m2, 0.0, 1e6, "cd/m2")?;
     let threshold = light_threshold_lx(background_cd_m2);
-    // ln(I/E) = sigma R + 2 ln R: the right side grows with R, so bisect.
+    // ln(I/E) = sigma R + 2 ln R. The right side grows with R, so it is bisected.
     let wanted = (intensity_cd / threshold).ln();
     let (mut lo, mut hi) = (1e-6f64, (intensity_cd / threshold).sqrt().max(1e-6));
     for _ in 0..200 {
@@ -136,8 +138,8 @@ pub fn lights_range_m(intensity_cd: f64, extinction_per_m: f64, background_cd_m2
     Ok(0.5 * (lo + hi))
 }
 
-/// Runway visual range, m: the larger of the range of its lights (by night and in thick fog) and the meteorological
-/// optical range (by day), as ICAO Doc 9328 has it.
+/// Returns the runway visual range, m: the larger of the range of its lights (by night and in thick fog) and the
+/// meteorological optical range (by day), as in ICAO Doc 9328.
 ///
 /// # Errors
 /// As [`lights_range_m`].
@@ -146,7 +148,7 @@ pub fn runway_visual_range_m(intensity_cd: f64, extinction_per_m: f64, backgroun
     Ok(lights.max(koschmieder_visibility_m(extinction_per_m)))
 }
 
-/// Extinction, 1/m, of a reported runway visual range: the inverse of [`runway_visual_range_m`].
+/// Returns the extinction, 1/m, for a reported runway visual range: the inverse of [`runway_visual_range_m`].
 ///
 /// # Errors
 /// As [`lights_range_m`].
@@ -162,7 +164,7 @@ pub fn extinction_of_rvr_per_m(rvr_m: f64, intensity_cd: f64, background_cd_m2: 
 mod tests {
     use super::*;
 
-    /// The steps of the table, taken at the geometric middle of neighbouring ones.
+    /// The steps of the table, tested at the geometric means of neighbouring values.
     #[test]
     fn the_threshold_runs_through_the_steps() {
         for (b, e) in [(50.0, 8e-7 * 1e-5), (1000.0, 1e-5 * 1e-4), (12_000.0, 1e-4 * 1e-3)] {
@@ -184,7 +186,7 @@ mod tests {
             let back = extinction_of_rvr_per_m(rvr, intensity, background).unwrap();
             assert!((back / sigma - 1.0).abs() < 1e-9, "{back} {sigma}");
         }
-        // By night a strong light is seen far beyond the optical range, by bright day it is not.
+        // By night a strong light is visible far beyond the optical range, by bright day it is not.
         let sigma = koschmieder_extinction_per_m(350.0);
         assert!(lights_range_m(1e4, sigma, 0.1).unwrap() > 700.0);
         assert!((runway_visual_range_m(10.0, sigma, 2e4).unwrap() - 350.0).abs() < 1e-9);

@@ -1,4 +1,4 @@
-//! Uniform blocks of fog: the model in the form that shaders read, and what a pipeline must be able to draw of it.
+//! Uniform blocks of fog, and the features that a pipeline needs to draw a model.
 
 use glam::DVec3;
 
@@ -10,11 +10,11 @@ use super::{
 };
 use crate::wind::DETOUR_SIDE;
 
-/// A slab's lower edge must lie this far below the ground to be left out: hosts draw valleys and pits.
+/// Depth below the ground, m, from which on a slab's lower edge is left out. Hosts draw valleys and pits.
 const MARGIN_M: f64 = 2000.0;
 
 impl FogModel {
-    /// The least that a pipeline must be able to do to draw this model.
+    /// Returns the fewest features that a pipeline needs to draw this model.
     pub fn variant(&self) -> FogVariant {
         let even = |v: DVec3| v.x == v.y && v.y == v.z;
         FogVariant {
@@ -29,11 +29,12 @@ impl FogModel {
         }
     }
 
-    /// The form the shaders read (`FogUniform` of `fog/lookup.wgsl`).
+    /// Returns the block that shaders read (`FogUniform` of `fog/uniform.wgsl`).
     pub fn uniform(&self) -> FogUniform {
         let v = |d: DVec3| d.as_vec3().to_array();
         let lobes = &self.lobes;
-        // Powers are taken on the GPU by exponentials of these; an asymmetry of 0 stays small to any power.
+        // Shaders raise these asymmetries to powers by exponentials of the logarithms. An asymmetry of 0 stays small at
+        // any power.
         let log = |x: f64| x.abs().max(1e-9).ln() as f32;
         FogUniform {
             to_sun: v(self.to_sun),
@@ -77,31 +78,31 @@ impl FogModel {
     }
 }
 
-/// Features that a pipeline with `fog/lookup.wgsl` can draw. A GPU steps over what the uniform does not ask for, so one
-/// pipeline for [`FogVariant::ALL`] serves it and need never be exchanged; software drivers execute every branch and
-/// are three times as fast with the least that a model needs ([`FogModel::variant`]).
+/// Features of a pipeline with `fog/lookup.wgsl`. A GPU skips branches that the uniform does not select, so one
+/// pipeline for [`FogVariant::ALL`] serves it and never needs to be exchanged. Software drivers execute every branch.
+/// They are three times as fast with only the features that a model needs ([`FogModel::variant`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FogVariant {
-    /// Bit k: kind k of [`FogKind`].
+    /// Kinds of fog: bit k stands for kind k of [`FogKind`].
     pub kinds: u32,
-    /// Layers that absorb.
+    /// Whether layers may absorb.
     pub absorbing: bool,
-    /// Layers in patches.
+    /// Whether layers may have patches.
     pub patches: bool,
-    /// Patches that go round obstacles to the wind.
+    /// Whether patches may flow round obstacles to the wind.
     pub detour: bool,
-    /// Precipitation.
+    /// Whether there may be precipitation.
     pub falling: bool,
-    /// Curtains of rain among it.
+    /// Whether rain may have curtains.
     pub curtains: bool,
-    /// Only layers whose channels are alike.
+    /// Whether all channels of a layer are equal.
     pub neutral: bool,
-    /// Slabs with a lower edge.
+    /// Whether slabs may have a lower edge.
     pub lifted: bool,
 }
 
 impl FogVariant {
-    /// Everything but detours.
+    /// All features except detours.
     pub const ALL: Self = Self {
         kinds: 63,
         absorbing: true,
@@ -113,12 +114,12 @@ impl FogVariant {
         lifted: true,
     };
 
-    /// Everything, and detours if the model has any.
+    /// Returns all features, with detours only if the model has any.
     pub fn all_of(model: &FogModel) -> Self {
         Self { detour: model.detour.is_some(), ..Self::ALL }
     }
 
-    /// Values of the shader's `override` constants.
+    /// Returns the values of the shader's `override` constants.
     pub fn constants(&self) -> [(&'static str, f64); 8] {
         let flag = |b: bool| f64::from(u8::from(b));
         [
@@ -142,7 +143,7 @@ fn term(t: &Term) -> [[f32; 4]; 2] {
     [t.even, t.odd].map(|v| [v.x as f32, v.y as f32, v.z as f32, 0.0])
 }
 
-/// [`FogModel`] as shaders read it; offsets are tested against naga's.
+/// [`FogModel`] in the layout of the shaders; tests compare the offsets with naga's.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
@@ -184,10 +185,10 @@ pub struct FogUniform {
     pub waves: [u32; 2],
 }
 
-/// `LowAir` of `shaders/fog/uniform.wgsl`: what is bound, the fog of a frame and the detours of its patches.
+/// `LowAir` of `shaders/fog/uniform.wgsl`: the fog of a frame and the detours of its patches.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[allow(missing_docs)] // As above.
+#[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
 pub struct LowAirUniform {
     pub fog: FogUniform,
     pub detour_scale: [f32; 2],
@@ -205,7 +206,7 @@ impl Default for LowAirUniform {
 }
 
 impl LowAirUniform {
-    /// Takes up a frame's fog; without detours those of an earlier frame stay, and nothing reads them.
+    /// Sets a frame's fog. Without detours those of an earlier frame remain, and no shader reads them.
     pub fn set(&mut self, model: &FogModel) {
         self.fog = model.uniform();
         let Some(detour) = &model.detour else { return };

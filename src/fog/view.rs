@@ -1,4 +1,4 @@
-//! Fog in a view: its block of numbers, and the constants of the composition.
+//! Fog in a view: its uniform block, and its constants of the composition.
 
 use super::{
     candidates,
@@ -18,14 +18,14 @@ use crate::{
     },
 };
 
-/// The fog of a view.
+/// Fog of a view.
 pub(crate) struct FogView {
     block: UniformBlock,
     uniform: Box<LowAirUniform>,
     model: Option<FogModel>,
-    /// Features of it that shaders must be able to draw, if there is any.
+    /// Features that shaders need to draw it, if there is any.
     variant: Option<FogVariant>,
-    /// A software driver takes both ways of every branch.
+    /// Whether the driver is a software driver, which executes both sides of every branch.
     software: bool,
 }
 
@@ -44,8 +44,8 @@ impl DrawnEffect for FogView {
     fn gather(&mut self, context: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
         let (now, law) = (context.now, context.held.of::<HeldFog>()?.law.as_ref());
         let model = now.scene.fog_model(law, now.seed, now.planet_radius_m)?.led_by(now.detour.clone());
-        // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes. Detours,
-        // which few scenes have, would cost every other one registers.
+        // A GPU keeps one pipeline for all fogs, because exchanging it would cost a hitch when the weather changes.
+        // Detours are an exception: few scenes have them, and they would cost registers in all others.
         self.variant = (model.kind != FogKind::Clear || model.falling.extinction > 0.0)
             .then(|| if self.software { model.variant() } else { FogVariant::all_of(&model) });
         given.fog_depth = model.depth_above(now.scene.place.altitude_m);

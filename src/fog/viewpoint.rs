@@ -1,16 +1,16 @@
-//! Viewpoint of the camera, and the light that falls on the layer: a frame's inputs beside the law.
+//! Viewpoint of the camera, and the light on the layer: a frame's inputs apart from the law.
 
 use glam::DVec3;
 
 use crate::error::{Error, Result, check_range};
 
-/// The light that falls on the layer.
+/// Light that falls on the layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogLight {
-    /// Unit vector to the sun, or at night to the moon: (east, north, up).
+    /// Unit vector towards the sun, or at night the moon, (east, north, up).
     pub to_sun: DVec3,
-    /// Its direct irradiance at the layer's top, facing it, per channel (any unit; radiance comes out per that unit
-    /// and steradian).
+    /// Its direct irradiance at the layer's top, on a surface facing it, per channel. In any unit; radiance is in that
+    /// unit per steradian.
     pub sun_irradiance: [f64; 3],
     /// Irradiance of the sky on a horizontal surface at the layer's top, per channel.
     pub sky_irradiance: [f64; 3],
@@ -19,10 +19,10 @@ pub struct FogLight {
 }
 
 impl FogLight {
-    /// Refuses light that is negative or not finite, by name.
+    /// Checks that all light is finite and not negative, and that `to_sun` is a unit vector.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         if !(self.to_sun.length() - 1.0).abs().lt(&1e-3) {
             return Err(Error::range("fog.to_sun", "a unit vector", self.to_sun));
@@ -36,12 +36,12 @@ impl FogLight {
     }
 }
 
-/// Where the camera is, as the fog sees it.
+/// Position of the camera, as far as fog depends on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
-    /// Altitude of the camera above mean sea level, m, \[-1e4, 1e9\].
+    /// Altitude of the camera above mean sea level, m, \[-1e5, 1e9\].
     pub altitude_m: f64,
-    /// Place on the map, m east and north of any fixed point: only the patches' pattern depends on it.
+    /// Position on the map, m east and north of any fixed point. Only the patches' pattern depends on it.
     pub map_m: [f64; 2],
     /// Radius of the planet, m; infinite for a flat world.
     pub planet_radius_m: f64,
@@ -50,15 +50,15 @@ pub struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// A camera at `altitude_m` over a flat world.
+    /// Creates a viewpoint at `altitude_m` over a flat world.
     pub fn flat(altitude_m: f64) -> Self {
         Self { altitude_m, map_m: [0.0; 2], planet_radius_m: f64::INFINITY, ground_m: 0.0 }
     }
 
-    /// Refuses what is not a viewpoint, by name.
+    /// Checks that every field is within its range.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         check_range("altitude_m", self.altitude_m, -1e5, 1e9, "m")?;
         check_range("fog.ground_m", self.ground_m, -1e5, 1e5, "m")?;

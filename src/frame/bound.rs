@@ -1,15 +1,16 @@
-//! Textures that the composition's bind group was made of.
+//! Textures that the composition's bind group refers to.
 
 use crate::gpu::KeptLayer;
 
-/// The textures of one bind group beside the copy of the picture: it is made anew only when the host hands over others.
+/// Textures of one bind group, apart from the copy of the picture. The group is created anew only when one of these
+/// changes.
 pub(super) struct Bound {
     pub depth: Option<KeptLayer>,
     pub mask: Option<KeptLayer>,
     pub surface_classes: Option<KeptLayer>,
     pub normals: Option<KeptLayer>,
     pub own: Own,
-    /// The group of the effects' textures before these: an effect may draw into two in turns.
+    /// Previous textures of the effects and their bind group, for effects that draw into two textures by turns.
     pub before: Option<(Own, wgpu::BindGroup)>,
 }
 

@@ -1,4 +1,4 @@
-//! GPU objects that a view keeps between frames: pipelines, bind groups, blocks, and all that has the picture's size.
+//! GPU objects that a view keeps between frames: pipelines, bind groups, blocks, and everything of the picture's size.
 
 use std::sync::Arc;
 
@@ -26,30 +26,30 @@ use crate::{
     surroundings::SurroundingsBlock,
 };
 
-/// A view's resources on the GPU. Each is made when a frame first needs it.
+/// GPU resources of a view. Each is created when a frame first needs it.
 pub(super) struct DrawCache {
     /// Pipelines, shared by the views of a device.
     pub composite: Arc<SharedComposite>,
     pub blocks: Blocks,
-    /// The frame's block.
+    /// Uniform block of the frame.
     pub uniform: UniformBlock,
     pub surroundings: SurroundingsBlock,
-    /// The host's picture as shaders read it, and as it is drawn into.
+    /// Copy of the host's picture that shaders read. `target` is the picture that is drawn into.
     pub copy: Option<wgpu::Texture>,
     pub target: KeptView,
     pub bound: Option<(Bound, wgpu::BindGroup)>,
-    /// Draws of the last calls.
+    /// Draws of the last calls, with their pipelines.
     pub draws: LruCache<DrawKey, Draws, MOST_DRAWS>,
     pub kinds: Option<KindAttachment>,
     pub even: Option<CoarseWeather>,
     pub opaque: Option<OpaqueStep>,
-    /// For the host's own shaders, once it has asked for them.
+    /// Textures of the veil, once the host has asked for them.
     pub froxels: Option<Froxels>,
     pub environment: Option<Box<EnvironmentMap>>,
 }
 
 impl DrawCache {
-    /// With nothing of a picture's size.
+    /// Creates the cache without anything of a picture's size.
     ///
     /// # Errors
     /// A GPU fault.
@@ -72,7 +72,7 @@ impl DrawCache {
         })
     }
 
-    /// Lets go what has the picture's size.
+    /// Drops everything of the picture's size.
     pub fn forget_images(&mut self) {
         (self.bound, self.copy, self.opaque) = (None, None, None);
         self.target = KeptView::default();

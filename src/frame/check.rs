@@ -1,4 +1,4 @@
-//! Checks for which a call is refused before anything is done for it: a refusal costs nothing and changes nothing.
+//! Checks of a call before anything is done for it: a refused call costs nothing and changes nothing.
 
 use super::view::View;
 use crate::{
@@ -23,11 +23,10 @@ impl View {
         Ok(())
     }
 
-    /// Refuses what is wrong with a call, its images aside. Before anything is done for it, so that it costs nothing
-    /// and changes nothing.
+    /// Checks everything about a call except its images, before anything is done for it.
     ///
     /// # Errors
-    /// As [`View::record`].
+    /// The errors of [`View::record`].
     pub(crate) fn check_call(&self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         Stages::from_bits(stages.0)?;
         self.check_order(frame.frame_id, stages)?;
@@ -36,8 +35,8 @@ impl View {
         frame.validate()
     }
 
-    /// Refuses images that cannot be drawn into or read, whatever there is to draw now: a host should not learn of them
-    /// by the first rain.
+    /// Checks that the images can be drawn into and read, even if there is nothing to draw now: a host should not first
+    /// learn of unsuitable images when it starts to rain.
     pub(super) fn check_images(&self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         if !stages.draw() {
             return Ok(());
@@ -68,7 +67,7 @@ impl View {
         self.effects.all().iter().try_for_each(|effect| effect.check(frame, stages))
     }
 
-    /// Where `color` is read if wgpu cannot copy it.
+    /// Returns the texture from which `color` is read if wgpu cannot copy it.
     pub(super) fn reading(&self, color: &wgpu::Texture) -> Result<wgpu::Texture> {
         self.device.reading(color).ok_or_else(|| {
             Error::range("color.usage", "one with RENDER_ATTACHMENT | COPY_SRC", format!("{:?}", color.usage()))

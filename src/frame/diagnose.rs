@@ -1,4 +1,5 @@
-//! A diagnostic picture in place of a frame's: the composition's bindings and constants, another shader.
+//! Diagnostic picture in place of a frame's picture: it uses the composition's bindings and constants with another
+//! shader.
 
 use super::{draw::frame_block, view::View};
 use crate::{
@@ -10,8 +11,8 @@ use crate::{
 };
 
 impl View {
-    /// Draws the frame's diagnostic picture if its stage is among those `asked` for; `there` are those of which there
-    /// is anything.
+    /// Draws the frame's diagnostic picture if its stage is among those `asked` for. `there` are the stages in which
+    /// there is something to draw.
     pub(super) fn draw_diagnostic<'a>(
         &mut self,
         frame_context: &FrameContext<'a>,
@@ -25,7 +26,7 @@ impl View {
             return Ok(());
         }
         self.history.report.exposure = target.exposure;
-        // Planned as the picture itself would be.
+        // The plan is that of the picture itself.
         let mut context =
             self.planned(frame_context, target, Stages(asked.0 & there.0).without(Stages::PREPARE.with(Stages::LENS)));
         let behind = if frame.diagnostic == Diagnostic::PlanError { asked.0 & Stages::BACKGROUND.0 } else { 0 };

@@ -1,5 +1,4 @@
-//! One draw of a view: from stages and moment to the composition's pass, what effects draw before it, and what is made
-//! of it.
+//! One draw of a view: the effects' passes before the composition, the composition, and the outputs made from it.
 
 use super::{
     froxels::{FroxelKind, Froxels},
@@ -21,14 +20,14 @@ use crate::{
     },
 };
 
-/// The frame's block for a draw. `tone` says that the whole picture is tone-mapped.
+/// Returns the frame's uniform block for a draw. `tone` says that the whole picture is tone-mapped.
 pub(super) fn frame_block(context: &DrawContext<'_>, tone: bool) -> FrameUniform {
     let target = &context.target;
     uniform(context.frame, context.now, target.rays, context.picture(), target.exposure, tone)
 }
 
 impl View {
-    /// Draws stages that neighbour each other into the host's picture.
+    /// Draws consecutive stages into the host's picture.
     pub(super) fn draw<'a>(
         &mut self,
         frame_context: &FrameContext<'a>,
@@ -72,8 +71,8 @@ impl View {
         Ok(())
     }
 
-    /// Merges what all effects add to a draw into a new composition, in place, for it is large. `has_cube_map` says
-    /// that the host has asked for the cube map.
+    /// Merges what all effects add to a draw into `composition`, in place because it is large. `has_cube_map` says that
+    /// the host has asked for the cube map.
     pub(super) fn compose_effects(
         &mut self,
         context: &DrawContext<'_>,
@@ -85,7 +84,7 @@ impl View {
         Ok(())
     }
 
-    /// Draws the passes of the effects, and copies the picture that the composition reads.
+    /// Draws the passes of the effects, and copies the picture for the composition to read.
     pub(super) fn draw_effects(
         &mut self,
         context: &DrawContext<'_>,
@@ -100,7 +99,7 @@ impl View {
         self.take_picture(context.target.color, recording)
     }
 
-    /// Plans the frame, once for all its draws, and gives a draw what the plan has chosen.
+    /// Plans the frame, once for all its draws, and returns the context of a draw with the plan's choices.
     pub(super) fn planned<'a>(
         &mut self,
         frame_context: &FrameContext<'a>,
@@ -123,8 +122,8 @@ impl View {
         context
     }
 
-    /// Returns the variant that the composition must be able to draw, with the constants that are the frame's own; and
-    /// brings the host's surroundings up to date.
+    /// Returns the variant that the composition needs, and sets the frame's own constants in the composition. Updates
+    /// the block of the host's surroundings.
     pub(super) fn variant(&mut self, context: &DrawContext<'_>, composition: &mut Composition) -> Result<Variant> {
         let (frame, color) = (context.frame, context.picture());
         let stages = composition.stages();
@@ -158,7 +157,7 @@ impl View {
         })
     }
 
-    /// The pass over the picture; and the gauge of all of it, if one is due.
+    /// Draws the composition over the picture, and the gauge over the whole picture if it is due.
     fn compose(
         &mut self,
         context: &DrawContext<'_>,
@@ -169,11 +168,11 @@ impl View {
         let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
         let target = self.cache.target.of(context.target.color, Layer::view);
         let groups = [group, tables, self.cache.surroundings.bind_group()];
-        // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
+        // A GPU skips by branches what is not drawn; another pipeline for that would cost it a hitch.
         let splits = self.device.caps().software;
         let constants = if splits { composition.least() } else { composition.whole() };
         let has_grid = self.cache.even.is_some();
-        // A pure picture does not depend on how many frames were drawn before it.
+        // A pure picture must not depend on the number of frames drawn before it.
         let how = (splits, splits || context.frame.is_pure());
         let make = || {
             let drawn = DrawKey { of: Variant { constants: *constants, ..*whole }, has_grid };
@@ -201,7 +200,7 @@ impl View {
         Ok(())
     }
 
-    /// Fills the textures of the veil for the host's own shaders, if it has asked for them.
+    /// Fills the veil's textures for the host's own shaders, if the host has asked for them.
     fn fill_veil(
         &mut self,
         context: &DrawContext<'_>,
@@ -218,7 +217,7 @@ impl View {
         let (composite, of_veil) = (self.cache.composite.lock()?, composition.whole().of_veil);
         match &own {
             Some((shader, layout, own)) => {
-                // That of an effect has no colour in it.
+                // An effect's own veil shader does not read the colour, so only depth's samples matter.
                 let several = context.frame.depth_layer().is_some_and(Layer::is_multisampled);
                 let sampling = if several { Sampling::Multi } else { Sampling::Single };
                 let layouts = [layout, composite.layouts(sampling)[1]];

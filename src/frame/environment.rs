@@ -1,4 +1,4 @@
-//! Environment of a view for the host's own shaders: the cube map, handed out and filled.
+//! Environment of a view for the host's own shaders: the cube map, as handed out and as filled.
 
 use super::{environment_map::EnvironmentMap, view::View};
 use crate::{
@@ -6,23 +6,24 @@ use crate::{
     stage::{Composition, CostItem, DrawContext, Recording, Sampling, Stages},
 };
 
-/// Cube map of what stands around the camera, for the host's own shaders; valid until the view is destroyed.
+/// Cube map of the surroundings of the camera, for the host's own shaders; valid until the view is destroyed.
 #[derive(Clone, Debug)]
 pub struct Environment {
-    /// Six faces of RGBA half floats with levels down to one texel, in the order and axes of cube maps (+X -X +Y -Y +Z
-    /// -Z), where X, Y and Z are the axes of the host's world. Level m is what a mirror of roughness m over the number
-    /// of the last level shows.
+    /// Six faces of RGBA half floats, with mip levels down to one texel. Order and axes are those of cube maps (+X -X
+    /// +Y -Y +Z -Z), where X, Y and Z are the axes of the host's world. Level m is the reflection for a surface of
+    /// roughness m / (number of the last level).
     pub texture: wgpu::Texture,
-    /// Multiply texels by this to have cd/m^2; 0 before the first frame.
+    /// Factor from texels to cd/m^2; 0 before the first frame.
     pub cd_m2_per_unit: f64,
-    /// Multiply texels by this to have units of the last frame's colour: of a scene-linear host; for others display
-    /// values before the tone curve.
+    /// Factor from texels to the last frame's colour of a scene-linear host; for other hosts, to display values before
+    /// the tone curve.
     pub light_scale: f64,
 }
 
 impl View {
-    /// A cube map of what stands around the camera, for reflections in the host's own things: drawn by the first call
-    /// of every frame that has [`Stages::BACKGROUND`] or [`Stages::MEDIUM`], from the first call of this function on.
+    /// Returns a cube map of the surroundings of the camera, for reflections in the host's own objects. From this
+    /// function's first call on, the first call of every frame with [`Stages::BACKGROUND`] or [`Stages::MEDIUM`] draws
+    /// it.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -41,7 +42,7 @@ impl View {
         Ok(Environment { texture: map.texture.clone(), cd_m2_per_unit, light_scale })
     }
 
-    /// Draws what is due of the cube map, if the host has asked for it.
+    /// Draws the faces of the cube map that are due, if the host has asked for it.
     pub(super) fn fill_environment(
         &mut self,
         context: &DrawContext<'_>,

@@ -1,7 +1,7 @@
-//! Cube map of what stands around the camera, with rougher levels, for reflections in the host's own things.
+//! Cube map of the surroundings of the camera, prefiltered by roughness, for reflections in the host's own objects.
 //!
-//! Created when the host first calls `View::environment`. Each frame draws one face, or all six where nothing of
-//! earlier frames may show or light and weather leap. `shaders/frame/environment.wgsl` asks the composition's own
+//! Created when the host first calls `View::environment`. Each frame draws one face. It draws all six if nothing of
+//! earlier frames may show, or if light or weather jump. `shaders/frame/environment.wgsl` uses the composition's own
 //! functions; `environment_filter.wgsl` makes the levels.
 
 use glam::{DMat3, DVec3};
@@ -18,21 +18,21 @@ use crate::{
     stage::{ColorSpace, Constants, DrawContext, Recording, Sampling},
 };
 
-/// Texels of a face's edge, and levels down to one texel.
+/// Edge of a face in texels, and number of levels down to one texel.
 const SIZE: u32 = 64;
 const LEVELS: u32 = 7;
-/// Directions that the filter takes for a texel of each level: narrow lobes need few.
+/// Sample directions of the filter for a texel of each level; narrow lobes need few.
 const SAMPLES: [f32; LEVELS as usize] = [0.0, 16.0, 32.0, 64.0, 64.0, 64.0, 64.0];
-/// Levels of the source that the filter reads.
+/// Number of source levels that the filter reads.
 const SOURCE_LEVELS: u32 = 5;
 const FACES: u32 = 6;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Bytes from one block of numbers to the next, as every device allows.
+/// Distance from one uniform block to the next, bytes; a multiple of every device's alignment.
 const STEP: usize = 256;
-/// Pipelines held for a view: with and without a low layer, over one host's images.
+/// Most cached pipelines of a view: with and without a low cloud layer, for one host's images.
 const MOST_PIPELINES: usize = 4;
 
-/// Middle, right edge and lower edge of each face in the cube's axes: OpenGL 4.6, table 8.19.
+/// Middle, right edge and lower edge of each face in the cube's axes (OpenGL 4.6, table 8.19).
 const AXES: [[DVec3; 3]; FACES as usize] = [
     [DVec3::X, DVec3::NEG_Z, DVec3::NEG_Y],
     [DVec3::NEG_X, DVec3::Z, DVec3::NEG_Y],
@@ -42,15 +42,15 @@ const AXES: [[DVec3; 3]; FACES as usize] = [
     [DVec3::NEG_Z, DVec3::NEG_X, DVec3::NEG_Y],
 ];
 
-/// `EnvironmentFace` and `FilterFace` of the shaders, which lie alike.
+/// `EnvironmentFace` and `FilterFace` of the shaders, which have the same layout.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct FaceUniform {
     forward: [f32; 3],
-    /// Texels per cd/m^2; the filter's alpha.
+    /// Texels per cd/m^2 of a face; alpha of the filter.
     number: f32,
     right: [f32; 3],
-    /// The filter's directions.
+    /// Number of the filter's directions.
     samples: f32,
     down: [f32; 3],
     pad1: f32,
@@ -63,7 +63,7 @@ impl FaceUniform {
     }
 }
 
-/// Blocks one after the other, each at a multiple of [`STEP`].
+/// Returns the bytes of the blocks, each at a multiple of [`STEP`].
 fn apart(blocks: impl Iterator<Item = FaceUniform>) -> Vec<u8> {
     let mut bytes = Vec::new();
     for block in blocks {
@@ -73,19 +73,19 @@ fn apart(blocks: impl Iterator<Item = FaceUniform>) -> Vec<u8> {
     bytes
 }
 
-/// Light and weather at a camera, to see when they leap.
+/// Light and weather at the camera, compared from frame to frame to find jumps.
 #[derive(Clone, Copy, PartialEq)]
 struct EnvironmentInputs {
-    /// Logarithms of what doubles and halves; altitude, share of a closed layer.
+    /// Logarithms of quantities that change by factors; altitude in km; cover of a closed layer.
     sizes: [f64; 6],
     to_lamp: DVec3,
     world_to_enu: DMat3,
 }
 
-/// Changes from one frame to the next that are leaps: of a size, and of a direction, rad.
+/// Changes from one frame to the next that count as a jump: of a size, and of a direction (rad).
 const LEAP: f64 = 0.05;
 const LEAP_RAD: f64 = 0.02;
-/// Adaptation luminances over that of the scale between which half floats serve well.
+/// Ratios of adaptation luminance to the map's scale for which half floats are precise enough.
 const SCALES: std::ops::Range<f64> = 0.1..10.0;
 
 impl EnvironmentInputs {
@@ -94,7 +94,7 @@ impl EnvironmentInputs {
         let doubling = [light.total_lux, light.sky_lux[1], scene.deck_cd_m2[1], scene.conditions.visibility_m()];
         let [total, level, overhead, far] = doubling.map(|v| v.clamp(1e-12, 1e12).ln());
         Self {
-            // Within a kilometre the air overhead changes by about a tenth.
+            // Over 1 km of altitude the air overhead changes by about a tenth.
             sizes: [total, level, overhead, far, scene.place.altitude_m / 1000.0, scene.deck_cover],
             to_lamp: scene.brighter().direction,
             world_to_enu: scene.world_to_enu,
@@ -109,20 +109,20 @@ impl EnvironmentInputs {
     }
 }
 
-/// Samples of the host's images, and the constants of a pipeline that draws every part.
+/// Sampling of the host's images, and the constants of a pipeline that draws every part.
 pub(super) type PipelineKind = (Sampling, Constants);
 
-/// Pipeline and bind groups with which the levels are made.
+/// Pipeline and bind groups of the filter that makes the levels.
 struct Filter {
     pipeline: wgpu::RenderPipeline,
-    /// Over each level of the source but the last, and over all of them.
+    /// Bind groups for each source level except the last, then one for all source levels.
     groups: Vec<wgpu::BindGroup>,
 }
 
-/// The cube map of a view, and what draws it.
+/// Cube map of a view, and the resources that draw it.
 pub(super) struct EnvironmentMap {
     pub texture: wgpu::Texture,
-    /// By face, then level.
+    /// Views by face, then by level.
     levels: Vec<wgpu::TextureView>,
     source_levels: Vec<wgpu::TextureView>,
     layout: wgpu::BindGroupLayout,
@@ -130,7 +130,7 @@ pub(super) struct EnvironmentMap {
     group: wgpu::BindGroup,
     pipelines: LruCache<PipelineKind, wgpu::RenderPipeline, MOST_PIPELINES>,
     filter: Filter,
-    /// Light and weather when the last face was drawn; none: all are to be drawn.
+    /// Light and weather when the last face was drawn; `None` makes the next frame draw all faces.
     drawn: Option<EnvironmentInputs>,
     next: u32,
     pub frame_id: Option<u64>,
@@ -153,7 +153,7 @@ fn cube(device: &wgpu::Device, label: &str, levels: u32) -> wgpu::Texture {
     })
 }
 
-/// Views of one face and level each, to draw into.
+/// Creates a view of each face and level, to draw into.
 fn views(texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
     let view = |face, level| {
         texture.create_view(&wgpu::TextureViewDescriptor {
@@ -172,7 +172,7 @@ fn views(texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
         .collect()
 }
 
-/// Alpha of a level: the square of its roughness.
+/// Returns alpha of a level: the square of its roughness.
 fn alpha(level: u32) -> f64 {
     (f64::from(level) / f64::from(LEVELS - 1)).powi(2)
 }
@@ -229,7 +229,7 @@ impl Filter {
         Ok(Self { pipeline, groups })
     }
 
-    /// Draws a level of a face from the source that a group shows; halved where `level` is 0.
+    /// Draws a level of a face from the source in `group`; level 0 halves the source's resolution.
     fn draw(&self, recording: &mut Recording<'_>, target: &wgpu::TextureView, group: usize, face: u32, level: u32) {
         let mut pass = begin(recording.encoder, "environment filter", &[target]);
         pass.set_pipeline(&self.pipeline);
@@ -240,7 +240,7 @@ impl Filter {
     }
 }
 
-/// One block of a buffer of many.
+/// Binding of a single block in a buffer with many.
 fn of_one(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
     let size = wgpu::BufferSize::new(size_of::<FaceUniform>() as u64);
     wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
@@ -296,18 +296,18 @@ impl EnvironmentMap {
         })
     }
 
-    /// Returns the bytes of both cubes, levels and all.
+    /// Returns the size of both cubes with all levels, bytes.
     pub fn bytes(&self) -> u64 {
         let of = |levels: u32| (0..levels).map(|level| u64::from(SIZE >> level).pow(2)).sum::<u64>();
         8 * u64::from(FACES) * (of(LEVELS) + of(SOURCE_LEVELS))
     }
 
-    /// The next frame draws all faces.
+    /// Makes the next frame draw all faces.
     pub fn forget(&mut self) {
         (self.drawn, self.frame_id) = (None, None);
     }
 
-    /// The faces to draw for a frame, and the scale of what is drawn.
+    /// Returns the faces to draw in a frame, and updates the scale and the faces' blocks.
     pub fn faces_due(&mut self, context: &DrawContext<'_>) -> std::ops::Range<u32> {
         let (frame, scene) = (context.frame, &context.now.scene);
         let (now, white) = (EnvironmentInputs::of(scene), scene.ground.adaptation_cd_m2.clamp(1e-6, 1e9));
@@ -331,7 +331,7 @@ impl EnvironmentMap {
         faces
     }
 
-    /// Draws faces with the groups of the composition.
+    /// Draws faces with the bind groups of the composition.
     pub fn draw(
         &mut self,
         recording: &mut Recording<'_>,

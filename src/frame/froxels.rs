@@ -1,4 +1,4 @@
-//! The veil of air and fog as textures, for the host's own transparent shaders (glass, lamps, smoke).
+//! Textures of the veil of air and fog, for the host's own transparent shaders (glass, lamps, smoke).
 //!
 //! Created when the host first calls `frame_textures`, and drawn in each frame from then on. The mapping is that of
 //! `shaders/frame/froxels.wgsl` and of the published snippets.
@@ -13,40 +13,40 @@ use crate::{
     stage::{Constants, Recording, Sampling, Stages},
 };
 
-/// Texels of one distance slice, and how many slices lie side by side and above each other.
+/// Texels of one distance slice, and numbers of slices side by side and one above the other.
 const TILE: (u32, u32) = (32, 18);
 const TILES: (u32, u32) = (8, 4);
 
-/// Textures that a host's transparent shader samples; valid until the view is destroyed.
+/// Textures for a host's transparent shaders; valid until the view is destroyed.
 #[derive(Clone, Debug)]
 pub struct FrameTextures {
-    /// Light that air and fog add, RGB, in units of [`light_scale`](Self::light_scale); for hosts with a tone-mapped
-    /// colour it is tone-mapped and linear.
+    /// Light that air and fog add, RGB, in units of [`light_scale`](Self::light_scale). If the host's colour is
+    /// tone-mapped, this light is tone-mapped and linear.
     pub light: wgpu::Texture,
-    /// Share of the light behind that gets through, RGB.
+    /// Transmittance of air and fog for the light behind them, RGB.
     pub through: wgpu::Texture,
-    /// Multiply `light` by this to have it in units of the host's colour.
+    /// Factor from `light` to units of the host's colour.
     pub light_scale: f32,
 }
 
-/// WGSL text of the sampling functions; see [`FrameTextures`].
+/// WGSL source of the sampling functions; see [`FrameTextures`].
 pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_veil.wgsl");
-/// GLSL 3.30 text of the sampling functions.
+/// GLSL 3.30 source of the sampling functions.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_veil.glsl");
 
-/// Properties that a pipeline of the froxels is made for.
+/// Properties for which a froxel pipeline is compiled.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct FroxelKind {
     pub shader: &'static str,
-    /// Samples of the host's images.
+    /// Sampling of the host's images.
     pub sampling: Sampling,
     pub constants: Constants,
 }
 
-/// Pipelines held for a view: with and without fog, and an effect's own, over one host's images.
+/// Most cached pipelines of a view: with and without fog, and an effect's own, for one host's images.
 const MOST_PIPELINES: usize = 8;
 
-/// The two textures and the pipelines that fill them.
+/// Textures of the veil, and the pipelines that fill them.
 pub(super) struct Froxels {
     pub light: wgpu::Texture,
     pub through: wgpu::Texture,
@@ -78,10 +78,10 @@ impl Froxels {
         2 * 8 * u64::from(TILE.0 * TILES.0 * TILE.1 * TILES.1)
     }
 
-    /// The shader that fills the textures where no effect has one of its own.
+    /// Shader that fills the textures if no effect has its own.
     pub const SHADER: &'static str = "frame/froxels.wgsl";
 
-    /// Fills the textures by a shader for depth of so many samples, with constants of what lies between.
+    /// Fills the textures by the shader, sampling and constants of `kind`.
     pub fn draw(
         &mut self,
         recording: &mut Recording<'_>,
@@ -126,6 +126,6 @@ impl Froxels {
         Ok(())
     }
 
-    /// The stage after which the textures hold the frame's veil.
+    /// Stage after which the textures hold the frame's veil.
     pub const STAGE: Stages = Stages::MEDIUM;
 }

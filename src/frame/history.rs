@@ -1,4 +1,4 @@
-//! History of a view: its last calls.
+//! History of a view: data of its last calls.
 
 use std::time::Duration;
 
@@ -8,19 +8,19 @@ use crate::{
     world::KeptScene,
 };
 
-/// Calls of the last frame, and what was found of it.
+/// Data of the last frame's calls.
 pub(super) struct FrameHistory {
-    /// The frame that the plan was made for.
+    /// Frame for which the plan was made.
     pub planned_for: Option<u64>,
-    /// Texels of the veil's textures over the units of the last picture.
+    /// Ratio of the veil textures' values to the units of the last picture.
     pub light_scale: f32,
     pub unit: LuminanceUnitCheck,
-    /// Stages of the frame so far.
+    /// Stages of the frame that have been recorded so far.
     pub recorded: Stages,
     pub report: Report,
-    /// The scene of the last call, for the next calls of the frame.
+    /// Scene of the last call, for the next calls of the frame.
     pub scene: Option<Box<KeptScene>>,
-    /// Time that the last measured call took, its wait for earlier work included.
+    /// Time that the last measured call took, with its wait for earlier work.
     pub last_call: Option<Duration>,
 }
 

@@ -1,15 +1,15 @@
-//! The weather's light in the host's own numbers: what a host sets its lamps and ambient light to, so that its scene is
-//! lit as Welkin lights the sky.
+//! Weather's light in the host's own units: values for the host's lamps and ambient light, so that its scene is lit
+//! like Welkin's sky.
 //!
-//! A surface of albedo a that lies in sun and sky reflects the luminance L = a / pi (E_sun max(n.l, 0) + E_sky)
-//! (Lambert 1760). A scene-linear host computes just that, in its unit. A display host has no luminance: its numbers
-//! are what Welkin's tone curve T would have made of L at the exposure e. T bends, so that no pair of lights is right
-//! for every albedo; this one is right for a grey card of albedo 0.18, in shade and where it faces the sun:
+//! A surface of albedo a in sun and sky reflects the luminance L = a / pi (E_sun max(n.l, 0) + E_sky) (Lambert 1760). A
+//! scene-linear host computes this in its own unit. A display host has no luminance: its values are T(e L), where T is
+//! Welkin's tone curve and e the exposure. T is not linear, so no pair of lights is right for every albedo. The pair
+//! below is right for a grey card of albedo 0.18, in shade and where it faces the sun:
 //!
-//! ambient = T(e a E_sky / pi) / a,   direct = (T(e a (E_sun + E_sky) / pi) - T(e a E_sky / pi)) / a
+//! ambient = T(e a E_sky / pi) / a, direct = (T(e a (E_sun + E_sky) / pi) - T(e a E_sky / pi)) / a
 //!
-//! A host that multiplies numbers encoded by the sRGB curve (fixed-function OpenGL without an sRGB framebuffer) needs
-//! them with both sides encoded: enc(T) / enc(a).
+//! A host that multiplies sRGB-encoded values (fixed-function OpenGL without an sRGB framebuffer) needs both numerator
+//! and denominator encoded: enc(T) / enc(a).
 
 use std::f64::consts::PI;
 
@@ -18,32 +18,32 @@ use glam::DVec3;
 use super::{ColorSpace, Frame, ToneCurve};
 use crate::{context::Context, error::Result, light::tone::srgb_encode};
 
-/// Albedo of the photographer's grey card.
+/// Albedo of a photographer's grey card.
 const GREY: f64 = 0.18;
 
-/// Light for the host's own shading of one frame. A surface of colour c (in the frame's numbers) whose normal is n
-/// shows c * (ambient + direct * max(n . direction, 0)).
+/// Light for the host's own shading of one frame. A surface of colour c (in the frame's units) and normal n shows c *
+/// (ambient + direct * max(n . direction, 0)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameLight {
-    /// Unit vector in the host's world towards the sun, or towards the moon where that is brighter.
+    /// Unit vector in the host's world towards the brighter one of sun and moon.
     pub direction: DVec3,
-    /// Its direct light on a surface that faces it, after air, clouds and fog.
+    /// Direct light of the sun or moon on a surface that faces it, after air, clouds and fog.
     pub direct: [f64; 3],
     /// Light of sky, clouds and fog on level ground.
     pub ambient: [f64; 3],
-    /// Light that the ground sends up, on a surface that faces down: for hosts with one ambient light above and one
+    /// Light from the ground on a surface that faces down, for hosts with one ambient light from above and one from
     /// below.
     pub ambient_below: [f64; 3],
-    /// Display units per cd/m^2 with which Welkin draws the frame.
+    /// Exposure with which Welkin draws the frame, display units per cd/m^2.
     pub exposure: f64,
 }
 
 impl Frame<'_> {
-    /// The light of sun, moon and sky at the camera, in the numbers of the frame's [`ColorSpace`] at its exposure. The
-    /// images are not looked at.
+    /// Returns the light of sun, moon and sky at the camera, in the units of the frame's [`ColorSpace`] at its
+    /// exposure. The images are not used.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field that is out of range.
+    /// [`crate::Status::InvalidArgument`], which names the field that is out of range.
     pub fn light(&self, context: &Context) -> Result<FrameLight> {
         self.validate()?;
         let scene = context.scene_at(self.camera.position, context.time_s())?;
@@ -71,7 +71,7 @@ impl Frame<'_> {
     }
 }
 
-/// Settings that the host computes with.
+/// Settings that convert illuminance to the host's values.
 struct Numbers {
     space: ColorSpace,
     unit: f64,
@@ -80,7 +80,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    /// Returns the number that white shows under `lux`, as the grey card has it.
+    /// Returns the host's value for white under `lux`, computed with the grey card.
     fn of(&self, lux: f64) -> f64 {
         let shown = || self.curve.apply(self.exposure * GREY * lux / PI);
         match self.space {

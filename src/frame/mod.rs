@@ -1,8 +1,8 @@
-//! A view of the weather: it takes a host's frame through its stages, composes what the effects add, plans what may be
-//! left out, and reports.
+//! Views of the weather. A view records a host's frame stage by stage: it composes what the effects add, plans what may
+//! be left out, and reports.
 //!
 //! A host hands over a [`Frame`] (camera, colour, depth) and a set of [`Stages`]; a [`View`] records them. No effect is
-//! named here: `src/effects.rs` lists them.
+//! named here; `src/effects.rs` has the list of effects.
 
 mod bound;
 mod cache;

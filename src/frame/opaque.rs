@@ -1,5 +1,5 @@
-//! The opaque step: what effects draw into the host's colour and depth, in one pass before the composition. There is no
-//! pass where no effect has anything opaque.
+//! Opaque step: the effects draw into the host's colour and depth, in one pass before the composition. There is no pass
+//! if no effect has anything opaque.
 
 use super::{opaque_step::OpaqueStep, view::View};
 use crate::{
@@ -18,7 +18,7 @@ impl View {
         stages.has(Stages::SURFACE) && self.effects.all().iter().any(|effect| effect.has_opaque())
     }
 
-    /// Refuses depth that cannot be written, whatever there is to draw now, where the host lets Welkin write it.
+    /// Checks that depth can be written if the host lets Welkin write it, even if there is nothing to draw now.
     pub(super) fn check_depth_access(&self, frame: &Frame<'_>, color: &wgpu::Texture) -> Result<()> {
         match (frame.depth_access, frame.depth) {
             (DepthAccess::Read, _) => Ok(()),
@@ -29,7 +29,7 @@ impl View {
         }
     }
 
-    /// Refuses depth that is copied between submissions, where the host makes them.
+    /// Checks that written depth is no copy: where the host submits, Welkin cannot copy it back between submissions.
     pub(super) fn check_depth_is_one(&self, frame: &Frame<'_>) -> Result<()> {
         let written = frame.depth.filter(|_| frame.depth_access == DepthAccess::ReadWrite);
         if written.is_some_and(|depth| self.device.attached_depth(depth).is_copied) {
@@ -40,7 +40,7 @@ impl View {
         Ok(())
     }
 
-    /// Draws what effects have that is opaque, or counts them where the host's depth may only be read.
+    /// Draws what the effects have that is opaque. If the host's depth is read-only, counts these effects instead.
     pub(super) fn draw_opaque<'a>(
         &mut self,
         frame_context: &FrameContext<'a>,

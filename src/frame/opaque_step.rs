@@ -1,4 +1,4 @@
-//! State of the opaque step between frames: layout, and the bind group of a frame's images.
+//! State of the opaque step between frames: its layout, and the bind group of a frame's images.
 
 use crate::{
     gpu::{
@@ -10,16 +10,16 @@ use crate::{
     stage::FrameUniform,
 };
 
-/// State that the step holds between frames.
+/// State that the step keeps between frames.
 pub(super) struct OpaqueStep {
     pub layout: wgpu::BindGroupLayout,
-    /// Stands for a mask where the host gives none.
+    /// Placeholder for a mask that the host does not give.
     none: wgpu::TextureView,
     color: KeptView,
     bound: Option<OpaqueImages>,
 }
 
-/// Depth and bind group of a frame's images: made anew only when the host hands over others.
+/// Depth and bind group of a frame's images, created anew only when the host hands over other images.
 pub(super) struct OpaqueImages {
     depth: KeptLayer,
     mask: Option<KeptLayer>,
@@ -39,7 +39,7 @@ impl OpaqueStep {
         }
     }
 
-    /// Lets go the picture.
+    /// Drops the view of the picture.
     pub fn forget_color(&mut self) {
         self.color = KeptView::default();
     }

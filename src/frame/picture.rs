@@ -1,4 +1,4 @@
-//! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
+//! Resources of a view for the host's picture: the copy that shaders read, and the bind group of the host's textures.
 
 use super::{
     bound::Bound,
@@ -14,7 +14,7 @@ use crate::{
 };
 
 impl View {
-    /// Bytes of GPU memory the view holds for itself.
+    /// Returns the size of the view's own GPU memory, bytes.
     pub(super) fn bytes(&self) -> u64 {
         let copy = self.cache.copy.as_ref().map_or(0, |c| {
             let texel = u64::from(c.format().block_copy_size(None).unwrap_or(4));
@@ -31,7 +31,7 @@ impl View {
             + effects
     }
 
-    /// Makes the colour copy anew if it does not serve the host's colour; whether it did.
+    /// Creates the colour copy anew if it does not fit the host's colour; returns whether it did.
     pub(super) fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<bool> {
         let reading = if can_copy(color) { None } else { Some(self.reading(color)?) };
         let fits = self.cache.copy.as_ref().is_some_and(|c| match &reading {
@@ -39,7 +39,7 @@ impl View {
             None => is_copy_of(c, color),
         });
         if !fits {
-            // The old one is bound there.
+            // The bind group refers to the old copy.
             self.cache.bound = None;
             self.cache.copy = Some(reading.unwrap_or_else(|| color_copy(&self.device.device, color)));
             self.history.report.bytes = self.bytes();
@@ -47,7 +47,7 @@ impl View {
         Ok(!fits)
     }
 
-    /// Makes the attachment for kinds of pixels and the weather's grid anew if they do not serve.
+    /// Creates the attachment for kinds of pixels, and the coarse grid, anew if they do not fit.
     pub(super) fn hold_kinds(&mut self, color: &wgpu::Texture) -> Result<()> {
         let apart = color.sample_count() == 1;
         if self.cache.kinds.as_ref().is_some_and(|kinds| !apart || !kinds.fits(color)) {
@@ -63,7 +63,7 @@ impl View {
         Ok(())
     }
 
-    /// Brings the colour copy up to date with all that was recorded.
+    /// Copies the picture, with everything recorded so far, to the colour copy.
     pub(super) fn take_picture(&mut self, color: Layer<'_>, recording: &mut Recording<'_>) -> Result<()> {
         self.hold_copy(color.texture)?;
         if !can_copy(color.texture) {
@@ -76,7 +76,7 @@ impl View {
         Ok(())
     }
 
-    /// Makes the bind group anew if the host's textures are others than last time.
+    /// Creates the bind group anew if the host's textures have changed.
     pub(super) fn bind(&mut self, context: &DrawContext<'_>, composition: &Composition) -> Result<()> {
         let (frame, own) = (context.frame, composition.textures());
         let of_host = |b: &Bound| {

@@ -1,4 +1,4 @@
-//! A view's budget and plan: what it may leave out of its pictures, and what it did.
+//! Budget and plan of a view: what its pictures may leave out, and what they have left out.
 
 use glam::DVec3;
 
@@ -11,7 +11,7 @@ use crate::{
     stage::{DrawContext, Frame, Stages},
 };
 
-/// Returns which parts a picture of these stages has, and what each costs in it.
+/// Returns the parts that a picture of these stages has, and the cost of each.
 pub(super) fn present(effects: &mut Effects, context: &DrawContext<'_>, stages: Stages) -> Presence {
     let place = |part: &Part| PARTS.iter().position(|p| p.name == part.name);
     let (pair, work) = together(&context.now.scene);
@@ -38,11 +38,11 @@ pub(super) fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
 }
 
 impl View {
-    /// Sets how wrong the view's pictures may be: what they do not need is left out from some frames later on.
-    /// Unchanged after an error. Default: everything is drawn.
+    /// Sets how wrong the view's pictures may be. After a few frames, what they do not need is left out. After an error
+    /// the budget is unchanged. Default: everything is drawn.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field and its range.
+    /// [`Status::InvalidArgument`], which names the field and its range.
     pub fn set_budget(&mut self, budget: Budget) -> Result<()> {
         let device = self.device.clone();
         let _entered = device.enter()?;
@@ -50,23 +50,23 @@ impl View {
         device.check()
     }
 
-    /// Says what the weather took in the last frame, ms of whatever the host's budget counts (its GPU timer, or the
-    /// waited call): under a budget of time the plan follows it.
+    /// Reports the time that the weather took in the last frame, ms, measured in whatever way the host's budget is
+    /// meant (its GPU timer, or a call that waits). Under a budget of time the plan follows these reports.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] outside of (0, 1e5] ms; nothing changes then.
+    /// [`Status::InvalidArgument`] outside of (0, 1e5] ms; the view is then unchanged.
     pub fn report_time(&mut self, milliseconds: f64) -> Result<()> {
         self.planner.report_time(milliseconds)?;
         self.history.report.reported_ms = Some(milliseconds);
         Ok(())
     }
 
-    /// The plan as text, for [`View::load_plan`] on other channels or another day: the parts that are drawn, and the
-    /// sky's settings.
+    /// Returns the plan as text, for [`View::load_plan`] on other channels or another day: the parts that are drawn,
+    /// and the sky's settings.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] while the view has a budget but has not gauged its picture yet: some frames follow each
-    /// jump of camera, sun or weather.
+    /// [`Status::WrongOrder`] while the view has a budget but has not yet gauged its picture. Gauging takes some frames
+    /// after each jump of camera, sun or weather.
     pub fn save_plan(&self) -> Result<String> {
         let plan = self.plan();
         if plan.parts.iter().any(|p| p.reason == Reason::NotGauged) {
@@ -75,12 +75,12 @@ impl View {
         Ok(plan::write(PARTS, &plan.rungs(), &self.effects.saved_with()))
     }
 
-    /// Pins a plan that [`View::save_plan`] wrote ([`plan::Wish::rung`]); the rest of the budget stays, and says what
-    /// the plan does not keep. Unchanged after an error.
+    /// Pins a plan that [`View::save_plan`] wrote ([`plan::Wish::rung`]). The rest of the budget stays, and limits that
+    /// the plan breaks are reported. After an error the budget is unchanged.
     ///
     /// # Errors
-    /// [`Status::Parse`] for what is no such plan or of another version, naming line and column or the field;
-    /// [`Status::InvalidArgument`] naming the setting of the sky in which the view's context differs.
+    /// [`Status::Parse`] for text that is no such plan, or of another version, naming line and column or the field;
+    /// [`Status::InvalidArgument`], which names the sky's setting in which the view's context differs.
     pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
         let rungs = plan::read(plan, PARTS, &self.effects.saved_with())?;
         let mut budget = self.planner.budget().clone();
@@ -89,7 +89,7 @@ impl View {
         self.set_budget(budget)
     }
 
-    /// Returns the plan of the last frame: what it drew of the weather, and why.
+    /// Returns the plan of the last frame: which parts of the weather it drew, and why.
     pub fn plan(&self) -> &Plan {
         self.planner.plan()
     }

@@ -1,9 +1,9 @@
-//! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible: a scene lit without units, its white at 1, is
-//! black in daylight at 1 cd/m^2 a unit, and nothing else would say why.
+//! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible. Example: a scene is lit without units and its
+//! white is 1; at 1 cd/m^2 a unit it is black in daylight, and nothing else would say why.
 //!
-//! Formats that end at 1 tell by themselves. Of floats a few rows of the host's picture are read back without waiting,
-//! in a view's third frame and in every 1024th from there. What is found wrong is logged as a warning, once until it
-//! was right again.
+//! In formats that end at 1 the largest value is known. Of float formats a few rows of the host's picture are read back
+//! without waiting, in a view's third frame and in every 1024th frame after it. An implausible unit is logged as a
+//! warning, and again only after it was plausible in between.
 
 use std::sync::{
     Arc,
@@ -15,15 +15,15 @@ use crate::{
     stage::{ColorSpace, Frame, can_copy},
 };
 
-/// Rows looked at, spread over the picture.
+/// Number of rows that are read back, spread over the picture.
 const ROWS: u32 = 8;
-/// The frame of a view that is looked at first, and how many lie between two.
+/// First frame of a view that is checked, and number of frames between two checks.
 const FIRST: u64 = 3;
 const EVERY: u64 = 1024;
-/// White in the weather's light over the brightest thing in the picture, from which on the unit cannot be right. A room
-/// whose lamps are off has less.
+/// Least ratio of white in the weather's light to the brightest pixel for which the unit must be wrong. A room with its
+/// lamps off has less.
 const DARKER: f64 = 2000.0;
-/// Brightest thing in the picture over white in the weather's light, from which on the unit cannot be right by day.
+/// Least ratio of the brightest pixel to white in the weather's light for which the unit must be wrong by day.
 const BRIGHTER: f64 = 2000.0;
 const DAY_CD_M2: f64 = 100.0;
 
@@ -32,7 +32,7 @@ const RECORDED: u32 = 1;
 const MAPPING: u32 = 2;
 const READY: u32 = 3;
 
-/// The picture of which a readback is under way.
+/// Picture whose readback is pending.
 #[derive(Clone, Copy)]
 struct WatchedPicture {
     format: wgpu::TextureFormat,
@@ -41,11 +41,11 @@ struct WatchedPicture {
     rows: u32,
     unit: f64,
     white: f64,
-    /// The sky may be in the picture already.
+    /// Whether the sky may already be in the picture.
     with_background: bool,
 }
 
-/// The watch over one view's unit.
+/// Check of one view's luminance unit.
 #[derive(Default)]
 pub(super) struct LuminanceUnitCheck {
     frames: u64,
@@ -56,8 +56,8 @@ pub(super) struct LuminanceUnitCheck {
 }
 
 impl LuminanceUnitCheck {
-    /// Goes on with a readback under way, and looks at the picture of this frame if its turn has come; `white_cd_m2` is
-    /// the luminance of white on level ground, `with_background` says that BACKGROUND may be in the picture already.
+    /// Continues a pending readback, and starts one of this frame's picture if it is due. `white_cd_m2` is the
+    /// luminance of white on level ground; `with_background` says that BACKGROUND may already be in the picture.
     pub fn watch(
         &mut self,
         device: &Device,
@@ -121,7 +121,7 @@ impl LuminanceUnitCheck {
         self.state.store(RECORDED, Ordering::Release);
     }
 
-    /// Takes what has arrived, without waiting.
+    /// Advances the pending readback without waiting.
     fn advance(&mut self, device: &Device) {
         let Some(buffer) = &self.buffer else { return };
         match self.state.load(Ordering::Acquire) {
@@ -147,8 +147,8 @@ impl LuminanceUnitCheck {
         }
     }
 
-    /// Warns if a picture whose brightest pixels have `found` cd/m^2 cannot be lit by a light in which white has
-    /// `white`.
+    /// Warns if a picture whose brightest pixels have `found` cd/m^2 cannot be lit by the weather's light, in which
+    /// white has `white` cd/m^2.
     fn judge(&mut self, found: f64, white: f64, unit: f64) {
         let wrong = found * DARKER < white || (white > DAY_CD_M2 && found > white * BRIGHTER);
         if wrong && !self.has_warned {
@@ -164,8 +164,8 @@ impl LuminanceUnitCheck {
     }
 }
 
-/// Luminance of the brightest pixels, cd/m^2; none of a picture in which nothing is drawn. With the sky in it, that of
-/// the darker fifth that is not black: what is not sky.
+/// Returns the luminance of the brightest pixels, cd/m^2; `None` if all pixels are black. If the sky is in the picture,
+/// returns the 20th percentile of the pixels that are not black, because these are not sky.
 fn brightest(bytes: &[u8], looked: &WatchedPicture) -> Option<f64> {
     let half = |b: &[u8], i: usize| f64::from(half::f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32());
     let float =

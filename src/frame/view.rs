@@ -1,4 +1,4 @@
-//! A view: one camera or projector channel, with what it keeps between frames.
+//! View: one camera or projector channel, with its state between frames.
 
 use std::{sync::Arc, time::Instant};
 
@@ -25,7 +25,7 @@ use crate::{
     world::HeldEffects,
 };
 
-/// One camera or projector channel. Exclusive: one thread at a time.
+/// One camera or projector channel. Use it from one thread at a time.
 pub struct View {
     pub(crate) device: Arc<Device>,
     pub(crate) effects: Effects,
@@ -35,7 +35,7 @@ pub struct View {
 }
 
 impl View {
-    /// Makes a view of `context`.
+    /// Creates a view of `context`.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -50,13 +50,13 @@ impl View {
         Ok(Self { device, effects, planner, cache, history: FrameHistory::default() })
     }
 
-    /// Returns the report on what the last frame took and showed.
+    /// Returns the report on the last frame: its cost and its contents.
     pub fn report(&self) -> &Report {
         &self.history.report
     }
 
-    /// Textures of air and fog for the host's own transparent shaders, filled by [`Stages::MEDIUM`] of every frame from
-    /// the first call of this function on.
+    /// Returns textures of air and fog for the host's own transparent shaders. From this function's first call on,
+    /// [`Stages::MEDIUM`] of every frame fills them.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -75,14 +75,15 @@ impl View {
         Ok(FrameTextures { light, through, light_scale: self.history.light_scale })
     }
 
-    /// Records the stages of a frame and submits them: when it returns, the work is on the device's queue.
+    /// Records the stages of a frame and submits them: on return the work is on the device's queue.
     ///
-    /// The calls of one frame share `frame.frame_id` and come in the order of the stages; a new id begins a new frame.
+    /// The calls of one frame have the same `frame.frame_id` and follow the order of the stages; a new id begins a new
+    /// frame.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] and [`crate::Status::Unsupported`] naming the field,
-    /// [`crate::Status::WrongOrder`] if a stage comes twice or late, [`crate::Status::DeviceLost`]. After an error
-    /// nothing was drawn by this call.
+    /// [`crate::Status::InvalidArgument`] and [`crate::Status::Unsupported`], which name the field;
+    /// [`crate::Status::WrongOrder`] if a stage comes twice or late; [`crate::Status::DeviceLost`]. After an error this
+    /// call has drawn nothing.
     pub fn record(&mut self, context: &Context, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let device = self.device.clone();
         self.check_call(frame, stages)?;
@@ -92,26 +93,26 @@ impl View {
         self.record_and_submit(context, frame, stages, &device).inspect_err(|_| self.take_back(recorded))
     }
 
-    /// The stages that were recorded of a frame so far, for [`View::take_back`].
+    /// Returns the stages of a frame that have been recorded so far, for [`View::take_back`].
     pub(crate) fn recorded_of(&self, frame_id: u64) -> Stages {
         if frame_id == self.history.report.frame_id { self.history.recorded } else { Stages(0) }
     }
 
-    /// After a call that failed once it was recorded: the frame has the stages that it had before, so that the host may
-    /// record it again, and nothing is kept that there may have been no memory for.
+    /// Undoes a call that failed after it was recorded: the frame has the stages that it had before, so that the host
+    /// may record it again. Everything of the picture's size is dropped, because memory may have been too small for it.
     pub(crate) fn take_back(&mut self, recorded: Stages) {
         self.history.recorded = recorded;
         self.forget_images();
     }
 
-    /// Lets go what the view holds of the picture's size.
+    /// Drops everything of the picture's size that the view holds.
     fn forget_images(&mut self) {
         self.cache.forget_images();
         self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
     }
 
-    /// Lets go the picture where it is a window's image: it goes to the screen next, and DXGI resizes a window only
-    /// when nobody holds its images.
+    /// Drops the references to a picture that is a window's image. The image goes to the screen next, and DXGI resizes
+    /// a window only when nothing refers to its images.
     fn let_go_of_window(&mut self, frame: &Frame<'_>) {
         if frame.color.is_some_and(|color| self.device.is_of_window(color)) {
             self.cache.target = KeptView::default();
@@ -119,27 +120,27 @@ impl View {
         }
     }
 
-    /// How many scenes were worked out for its calls.
+    /// Returns the number of scenes that were computed for the view's calls.
     #[cfg(test)]
     pub(crate) fn scene_count(&self) -> u64 {
         self.history.scene.as_ref().map_or(0, |kept| kept.count)
     }
 
-    /// Draws the weather at every pixel from now on.
+    /// Makes the view draw the weather at every pixel from now on.
     #[cfg(test)]
     pub(crate) fn forget_grid(&mut self) {
         self.cache.even = None;
     }
 
-    /// The pipelines that the views of its device compose with: for which pixels, shader and entry point, constants.
+    /// Returns the composition pipelines of the device's views: their pixels, shader and entry point, and constants.
     #[cfg(test)]
     pub(crate) fn composes_with(&self) -> Vec<(String, (String, &'static str), crate::stage::Constants)> {
         let held = self.cache.composite.lock().expect("no call has panicked").held();
         held.into_iter().map(|(pixels, program, constants)| (format!("{pixels:?}"), program, constants)).collect()
     }
 
-    /// Makes what the view needs of the picture's size, before anything of the frame is recorded: a large target is
-    /// what memory may be too small for.
+    /// Creates what the view needs of the picture's size, before anything of the frame is recorded, because memory may
+    /// be too small for a large target.
     fn hold_images(&mut self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let Some(color) = frame.color else { return Ok(()) };
         let (made, bytes) = (self.hold_copy(color)?, self.bytes());
@@ -172,8 +173,8 @@ impl View {
         device.check_made()
     }
 
-    /// Counts what a measured call that began at `start` took beyond its recording: the host's context and images came
-    /// and went.
+    /// Adds to the costs the time that a measured call that began at `start` took beyond its recording, for taking over
+    /// and handing back the host's context and images.
     pub(crate) fn add_hand_over(&mut self, start: Instant) {
         if let (Some(costs), Some(inside)) = (&mut self.history.report.costs, self.history.last_call) {
             let ms = (start.elapsed().saturating_sub(inside)).as_secs_f64() * 1e3;
@@ -182,11 +183,11 @@ impl View {
         }
     }
 
-    /// As [`View::record`], into a Rust host's own encoder; the host submits.
+    /// Records as [`View::record`] does, into a Rust host's own encoder, which the host submits.
     ///
     /// # Errors
-    /// As [`View::record`]; [`crate::Status::Unsupported`] with `MEASURE`: timing needs the submission, which the host
-    /// makes here.
+    /// The errors of [`View::record`]; [`crate::Status::Unsupported`] with `MEASURE`: timing needs the submission,
+    /// which the host makes here.
     pub fn record_into(
         &mut self,
         context: &Context,
@@ -225,7 +226,7 @@ impl View {
     ) -> Result<()> {
         let now = context.moment("frame.camera.position", frame.camera.position, &mut self.history.scene)?;
         let rays = stages.draw().then(|| rays(frame, &now.scene)).transpose()?;
-        // What is not there is not drawn.
+        // Stages without anything to draw are left out.
         let asked = stages;
         let frame_context = FrameContext {
             device: &self.device.clone(),
@@ -275,7 +276,7 @@ impl View {
         Ok(())
     }
 
-    /// Draws the stages of a call in as few draws as give the picture.
+    /// Draws the stages of a call in as few draws as possible.
     fn draw_all<'a>(
         &mut self,
         context: &FrameContext<'a>,
@@ -284,7 +285,7 @@ impl View {
         recording: &mut Recording<'_>,
     ) -> Result<()> {
         let frame = context.frame;
-        // A lens lies before the tone curve, where the target can hold the picture between them.
+        // The lens comes before the tone curve if the target can hold the picture between them.
         let mut lens = stages.has(Stages::LENS) && self.effects.all().iter().any(|effect| effect.has_lens());
         let two = |[a, b]: [Stages; 2]| [a, b, Stages(0), Stages(0), Stages(0)];
         let draws = match can_be_apart(frame, stages) {
@@ -302,7 +303,7 @@ impl View {
         if lens { self.draw_lens(frame, target.color, stages.has(Stages::TONE), recording) } else { Ok(()) }
     }
 
-    /// Draws what lies over the picture that the target holds; `toned` says that TONE has been over it in this call.
+    /// Draws the lens effects over the picture in the target. `toned` says that TONE has been applied in this call.
     fn draw_lens(
         &mut self,
         frame: &Frame<'_>,
@@ -320,7 +321,7 @@ impl View {
     }
 }
 
-/// The camera's rays in the local east-north-up, in which the shaders work.
+/// Returns the camera's rays in local east, north, up, in which the shaders work.
 fn rays(frame: &Frame<'_>, scene: &Scene) -> Result<ViewRays> {
     let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
     let local = Camera { position: DVec3::ZERO, view, projection: frame.camera.projection };

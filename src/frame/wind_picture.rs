@@ -1,4 +1,4 @@
-//! The wind as the diagnostic picture of it reads it: group 1 of its pipeline (`shaders/frame/wind_picture.wgsl`).
+//! Wind for its diagnostic picture: group 1 of the picture's pipeline (`shaders/frame/wind_picture.wgsl`).
 
 use bytemuck::{Pod, Zeroable};
 
@@ -12,10 +12,10 @@ use crate::{
     surroundings::WindMap,
 };
 
-/// The world repeats after so many metres as far as arrows are concerned: a far place has no digits left in f32.
+/// Period after which positions repeat for the arrows, m: a distant position has too few digits in f32.
 const PERIOD_M: f64 = 65_536.0;
 
-/// `WindPicture` of the shader.
+/// `WindPicture` in the shader.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct WindUniform {
@@ -26,7 +26,7 @@ struct WindUniform {
     pad: [u32; 2],
 }
 
-/// Layout and sampler that all pictures of the wind have in common.
+/// Layout and sampler of all wind pictures.
 pub(super) struct WindPicture {
     pub layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
@@ -45,10 +45,10 @@ impl WindPicture {
         }
     }
 
-    /// The wind of a moment.
+    /// Creates the bind group of the wind at a moment.
     ///
     /// # Errors
-    /// For a time that the weather does not know.
+    /// An error for a time that the weather does not cover.
     pub fn bind(&self, device: &Device, now: &SceneMoment<'_>) -> Result<wgpu::BindGroup> {
         let (found, map) = now.wind_texture(device);
         let uniform = WindUniform {

@@ -1,7 +1,7 @@
-//! Air, sky and fog by their names: what lies between two places, the sky's light and its tables, the fog laws.
+//! Air, sky and fog: transmittance between two places, the sky's light and its tables, and fog laws.
 //!
-//! Queries are closed forms in f64 that need no device and no frame, but for [`Context::ambient_at`], which looks into
-//! the sky's tables. Positions are in the host's world.
+//! Queries are closed forms in f64 that need no device and no frame, except [`Context::ambient_at`], which reads the
+//! sky's tables. Positions are in the host's world.
 
 use std::sync::MutexGuard;
 
@@ -20,11 +20,11 @@ use crate::{
 };
 
 impl Context {
-    /// Finds the light that air, fog, rain, snow and clouds drawn as a volume let through between `from` and `to` at
-    /// simulation time `time_s`, rain areas on the mean over their curtains.
+    /// Returns the share of light that air, fog, rain, snow and clouds drawn as a volume let through between `from` and
+    /// `to` at simulation time `time_s`. Rain areas count with the mean over their curtains.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if a position is no place, or both are the same; for times as
+    /// [`crate::Status::InvalidArgument`] if a position is invalid, or both are the same; for times as
     /// [`Context::conditions_at`].
     pub fn between(&self, from: DVec3, to: DVec3, time_s: f64) -> Result<Between> {
         let scene = self.world.scene_named("from", from, time_s)?;
@@ -36,19 +36,20 @@ impl Context {
         }
         let clouds = self.cloud_rays((&scene, from), time_s)?;
         let through = self.through(&scene, clouds.as_ref(), from, offset, time_s)?;
-        // The logarithm of 1 has a sign of its own.
+        // Without `abs` the logarithm of 1 could be -0.
         let mean = through[1].max(f64::MIN_POSITIVE).ln().abs() / distance;
         Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
     }
 
-    /// Slant visual range: how far a black object is seen from `position` along `direction`, a unit vector (east,
-    /// north, up) there, at simulation time `time_s`, m. Its contrast with what lies behind it falls to 5 % where
-    /// [`Context::between`] leaves 5 % of the light of 550 nm: by air, fog, rain, snow, rain areas, and clouds that are
-    /// drawn as a volume. Infinite where more is left at the end of the air or on the planet's ground.
+    /// Returns the slant visual range, m: the distance at which a black object along `direction` is just visible from
+    /// `position`, at simulation time `time_s`. `direction` is a unit vector (east, north, up) there. At that distance
+    /// [`Context::between`] leaves 5 % of the light of 550 nm, and the object's contrast falls to 5 %. Air, fog, rain,
+    /// snow, rain areas, and clouds drawn as a volume count. Infinite if more light is left at the end of the air or on
+    /// the planet's ground.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place or the direction no unit vector; for times as
-    /// [`Context::conditions_at`].
+    /// [`crate::Status::InvalidArgument`] if the position is invalid or the direction is not a unit vector; for times
+    /// as [`Context::conditions_at`].
     pub fn visibility_toward(&self, position: DVec3, direction: DVec3, time_s: f64) -> Result<f64> {
         let scene = self.scene_at(position, time_s)?;
         let unit = unit_vector("direction", direction)?;
@@ -73,7 +74,7 @@ impl Context {
         Ok(far)
     }
 
-    /// Share of light per channel that is left over `offset` metres (east, north, up) from a scene's place.
+    /// Returns the transmittance per channel over `offset` metres (east, north, up) from a scene's place.
     fn through(
         &self,
         scene: &Scene,
@@ -103,16 +104,16 @@ impl Context {
         Ok(through.map(|t| (t * left).min(1.0)))
     }
 
-    /// The sky's light on surfaces of any slope at `position` and simulation time `time_s`: nine spherical harmonics of
-    /// radiance, cd/m^2 a channel, in (east, north, up) of the place, the lit ground as the lower half. Clouds dim and
-    /// whiten it.
+    /// Returns the sky's light on surfaces of any slope at `position` and simulation time `time_s`: nine spherical
+    /// harmonics of radiance, cd/m^2 a channel, in (east, north, up) of the place. The lower half is the lit ground.
+    /// Clouds dim and whiten the sky.
     ///
-    /// Reads the sky's tables: builds them first if no frame did, and waits for the GPU once after every change of the
-    /// air. The clear sky's pattern is that of the air that the tables show; how bright all of it is, and clouds and
-    /// fog, are those of `time_s`.
+    /// The query reads the sky's tables: it builds them first if no frame did, and waits for the GPU once after every
+    /// change of the air. The pattern of the clear sky is that of the air in the tables; the overall brightness, clouds
+    /// and fog are those of `time_s`.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`];
+    /// [`crate::Status::InvalidArgument`] if the position is invalid; for times as [`Context::conditions_at`];
     /// [`crate::Status::DeviceLost`] or a GPU fault.
     pub fn ambient_at(&self, position: DVec3, time_s: f64) -> Result<Sh9> {
         let scene = self.scene_at(position, time_s)?;
@@ -126,7 +127,7 @@ impl Context {
             (sh.map(colored), colored(table.irradiance(scene.place.altitude_m, light.direction.z))[1])
         };
         let ((sun, sun_e), (moon, moon_e)) = (clear(&scene.sun), clear(&scene.moon));
-        // Clouds and fog turn the clear sky's pattern into an even one of the light that they let through.
+        // Clouds and fog replace the clear sky's pattern by a uniform one of the light that they let through.
         let through = if scene.ground != scene.above_fog {
             let above = Viewpoint::flat(scene.place.altitude_m);
             LowAir::even(&scene.conditions).transmittance(&above, DVec3::Z * 1e5)?[1]
@@ -143,7 +144,7 @@ impl Context {
         Ok(sh)
     }
 
-    /// Draws one of the older simulators' fog laws in place of the weather's fog; `None` returns to the weather's.
+    /// Draws one of the older simulators' fog laws in place of the weather's fog; `None` returns to the weather's fog.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -154,7 +155,7 @@ impl Context {
         Ok(())
     }
 
-    /// The fog law that the host asked for.
+    /// Returns the fog law that the host has set.
     pub fn fog_law(&self) -> Option<&Law> {
         self.held.fog.law.as_ref()
     }
@@ -166,28 +167,27 @@ impl Context {
             .map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked while building the sky"))
     }
 
-    /// Builds the tables of the sky for the weather of the present time now, in sixteen parts with a wait for the GPU
-    /// after each, and shows them, so that no frame has to. Tables that another context of the device shows, or that
-    /// lie in [`ContextDesc::cache_dir`](crate::context::ContextDesc::cache_dir), are taken instead; new ones are
-    /// written there. `progress` is told the share done, 1 at last; when it answers false the build ends, and the
-    /// context stays as it was.
+    /// Builds the sky's tables for the present weather now, in sixteen parts with a wait for the GPU after each, and
+    /// shows them, so that no frame has to. It reuses tables that another context of the device shows or that lie in
+    /// [`ContextDesc::cache_dir`](crate::context::ContextDesc::cache_dir), and writes new ones there. `progress`
+    /// receives the completed share, at last 1; if it returns false, the build ends and the context stays as it was.
     ///
     /// # Errors
     /// [`Status::Aborted`], [`Status::DeviceLost`], or a GPU fault.
     pub fn build_sky(&self, progress: &mut dyn FnMut(f32) -> bool) -> Result<()> {
         let planet = self.world.planet_under(&self.world.timeline.at(self.world.time_s));
         planet.check()?;
-        // Not under the sky's lock: frames and queries of other threads go on while parts are built.
+        // The sky's lock is not held here: frames and queries of other threads continue during the build.
         let kit = self.sky()?.kit().clone();
         let set = kit.build(&planet, self.sky()?.cache_dir().as_deref(), progress)?;
         let _entered = self.device().enter()?;
         self.sky()?.show_now(set)
     }
 
-    /// Puts another planet in place of the one before: air, ground and sun. The sky's tables follow as after a change
-    /// of the weather, by a draft that fades in within sixteen frames; where radius, top or wavelengths are others, the
-    /// next frame cuts to a draft of them, and later ones refine it. Steps of the simulated ground that remain are done
-    /// under the planet before.
+    /// Replaces the planet: air, ground and sun. The sky's tables follow as after a change of the weather, by a draft
+    /// that fades in within sixteen frames. If the radius, the top or the wavelengths differ, the next frame cuts to a
+    /// draft of the new planet, and later ones refine it. Remaining steps of the simulated ground still use the
+    /// previous planet.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -195,9 +195,9 @@ impl Context {
         self.world.set_planet(*planet)
     }
 
-    /// Sets how the sky is drawn. Views take the new tables up in their next frame, which shows a draft as a first one
-    /// does, unless [`Context::build_sky`] has built them. A plan that was loaded or made before stays. The same
-    /// settings again change nothing.
+    /// Sets how the sky is drawn. Views use the new tables from their next frame on, which shows a draft like a first
+    /// frame, unless [`Context::build_sky`] has built the tables. An existing plan stays. Setting the same settings
+    /// again changes nothing.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field, [`crate::Status::DeviceLost`], or a GPU fault; nothing
@@ -209,7 +209,7 @@ impl Context {
         self.sky()?.set_settings(&device, &library, settings)
     }
 
-    /// How the sky is drawn.
+    /// Returns the settings of the sky.
     ///
     /// # Errors
     /// [`crate::Status::Poisoned`] after a panic.
@@ -224,10 +224,10 @@ impl Context {
     }
 }
 
-/// A direction's length may be so far from 1.
+/// Largest deviation of a direction's length from 1.
 const LENGTH_OFF: f64 = 1e-3;
 
-/// A host's direction, made exactly as long as 1.
+/// Checks a host's direction and normalises it to length 1.
 pub(super) fn unit_vector(name: &str, direction: DVec3) -> Result<DVec3> {
     let length = direction.length();
     if (length - 1.0).abs() < LENGTH_OFF {
@@ -236,7 +236,7 @@ pub(super) fn unit_vector(name: &str, direction: DVec3) -> Result<DVec3> {
     Err(Error::range(name, "a unit vector (east, north, up)", direction))
 }
 
-/// Adds a sky of the same radiance `u` everywhere above the horizon and a ground of albedo `a` that it lights.
+/// Adds a sky of uniform radiance `u` above the horizon, and a ground of this albedo that it lights.
 fn add_even_sky(sh: &mut Sh9, u: [f32; 3], albedo: [f64; 3]) {
     // Integrals of the basis over the upper half: Y00 sqrt(pi), Y10 sqrt(3 pi)/2, the zonal Y20 vanishes.
     let (y00, y10) = (std::f32::consts::PI.sqrt(), (3.0 * std::f32::consts::PI).sqrt() / 2.0);
@@ -255,8 +255,8 @@ mod tests {
     fn an_even_sky_lights_a_level_surface_by_pi_times_its_radiance() {
         let mut sh: Sh9 = [[0.0; 3]; 9];
         add_even_sky(&mut sh, [1.0; 3], [0.0; 3]);
-        // Irradiance from the harmonics, Ramamoorthi & Hanrahan 2001: A0 = pi, A1 = 2 pi/3; facing up Y10 = sqrt(3/(4
-        // pi)).
+        // Irradiance from the harmonics, Ramamoorthi & Hanrahan 2001: A0 = pi, A1 = 2 pi/3; facing up,
+        // Y10 = sqrt(3/(4 pi)).
         let pi = std::f32::consts::PI;
         let up = pi * sh[0][0] * 0.5 / pi.sqrt() + 2.0 * pi / 3.0 * sh[2][0] * (3.0 / (4.0 * pi)).sqrt();
         assert!((up - pi).abs() < 1e-4, "{up}");

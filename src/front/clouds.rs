@@ -1,4 +1,4 @@
-//! The clouds by their name.
+//! Clouds: their model, their map, and the share of direct light at a place.
 
 use glam::DVec3;
 
@@ -10,21 +10,21 @@ use crate::{
 };
 
 impl Context {
-    /// Sets how clouds are drawn; part of the saved state. Default [`CloudModel::Volume`]. Light on the mean,
-    /// conditions and what falls do not change with it; [`Context::sun_share`] does.
+    /// Sets how clouds are drawn; part of the saved state. Default [`CloudModel::Volume`]. The mean light, the
+    /// conditions and the precipitation do not depend on it; [`Context::sun_share`] does.
     pub fn set_cloud_model(&mut self, model: CloudModel) {
         self.held.clouds.model = model;
     }
 
-    /// How clouds are drawn.
+    /// Returns how clouds are drawn.
     pub fn cloud_model(&self) -> CloudModel {
         self.held.clouds.model
     }
 
-    /// Lays a map on layers of cloud, in place of the one before: where over the ground they stand ([`CloudMap`]);
-    /// `None` takes it off. It holds in pictures, shadows and questions, and in the light of a place
-    /// ([`Context::light_at`]); what falls does not change with it. With [`CloudModel::Deck`] it holds for light alone.
-    /// Clouds change at once. Part of the saved state.
+    /// Sets a map of where cloud layers stand over the ground ([`CloudMap`]), in place of the one before; `None`
+    /// removes it. It affects pictures, shadows, queries, and the light at a place ([`Context::light_at`]), but not the
+    /// precipitation. With [`CloudModel::Deck`] it affects only the light. Clouds change at once. Part of the saved
+    /// state.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -33,27 +33,27 @@ impl Context {
         self.refresh()
     }
 
-    /// The map that is laid on layers of cloud.
+    /// Returns the map of cloud layers.
     pub fn cloud_map(&self) -> Option<&CloudMap> {
         self.world.set.cloud_map.as_deref()
     }
 
-    /// The share of the direct light of sun or moon, whichever is brighter, that clouds let through to `position` at
-    /// simulation time `time_s`, 0 to 1: in the shadow of a cloud that [`CloudModel::Volume`] draws, or between two.
-    /// The light of [`Context::light_at`] is that on the mean over places: times this over
-    /// [`Light::direct_share`](crate::moment::Light::direct_share), its sun is that of the very place. With
-    /// [`CloudModel::Deck`] the mean itself.
+    /// Returns the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to
+    /// `position` at simulation time `time_s`, 0 to 1. It is low in the shadow of a cloud that [`CloudModel::Volume`]
+    /// draws, high between two. The light of [`Context::light_at`] is the mean over places. Times this share over
+    /// [`Light::direct_share`](crate::moment::Light::direct_share), its sun is that at the very place. With
+    /// [`CloudModel::Deck`] the share is the mean itself.
     ///
-    /// The first question makes the field that clouds are cut out of, in some tenths of a second.
+    /// The first call builds the noise field from which clouds are cut, which takes some tenths of a second.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
+    /// [`crate::Status::InvalidArgument`] if the position is invalid; for times as [`Context::conditions_at`].
     pub fn sun_share(&self, position: DVec3, time_s: f64) -> Result<f64> {
         let scene = self.scene_at(position, time_s)?;
         self.held.clouds.sun_share(self.world.seed, (&scene, position), (&self.world.over(), time_s))
     }
 
-    /// The clouds about the place of a scene, where they are drawn as a volume.
+    /// Returns the clouds around the place of a scene if they are drawn as a volume.
     pub(super) fn cloud_rays(&self, (scene, position): (&Scene, DVec3), time_s: f64) -> Result<Option<CloudRays<'_>>> {
         if self.held.clouds.model == CloudModel::Deck {
             return Ok(None);

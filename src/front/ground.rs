@@ -1,4 +1,4 @@
-//! The ground by its name: the host's terrain, the water on it, what it is made of.
+//! Ground: the host's terrain as a grid, the water on it, and its material.
 
 use glam::DVec3;
 
@@ -9,11 +9,11 @@ use crate::{
 };
 
 impl Context {
-    /// The host's terrain as one grid, over which wetness and puddles are found cell by cell, in place of tiles; `None`
-    /// leaves level ground everywhere. The grid whose heights are set already keeps its water. With
-    /// [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has a state, which begins as the
-    /// ground has it and which [`Context::save`] keeps together with the heights; else the weather's wetness is spread
-    /// over the terrain's hollows. Takes some tenths of a second for the largest grids.
+    /// Sets the host's terrain as one grid, on which wetness and puddles are computed cell by cell, in place of tiles;
+    /// `None` leaves level ground everywhere. If the heights are those of the present grid, it keeps its water. With
+    /// [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has a state, which starts as wet as
+    /// the level ground, and which [`Context::save`] keeps together with the heights. Otherwise the weather's wetness
+    /// is spread over the terrain's hollows. Takes some tenths of a second for the largest grids.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -29,51 +29,53 @@ impl Context {
         Ok(())
     }
 
-    /// The host's terrain.
+    /// Returns the host's terrain, if it is one grid.
     pub fn ground_grid(&self) -> Option<&GroundGrid> {
         self.held.ground.grid()
     }
 
-    /// Water of each cell of the host's terrain now, in the order of its heights; `None` without one.
+    /// Returns the present water of each cell of the host's terrain, in the order of its heights; `None` without a
+    /// grid.
     pub fn ground_cells(&self) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
         self.held.ground.cells()
     }
 
-    /// A number that is another whenever the water of the cells has changed.
+    /// Returns a number that changes whenever the water of the cells has changed.
     pub fn ground_revision(&self) -> u64 {
         self.held.ground.revision
     }
 
-    /// Sets the material of the ground where neither the host's grid nor its image says it:
-    /// [`SurfaceClass::Unspecified`], the default, is natural ground. Part of the saved state.
+    /// Sets the material of ground that has none from the host's grid or image: [`SurfaceClass::Unspecified`], the
+    /// default, is natural ground. Part of the saved state.
     pub fn set_default_surface_class(&mut self, class: SurfaceClass) {
         self.held.ground.surface_class = class;
     }
 
-    /// Returns the material of ground of which nothing else is said.
+    /// Returns the material of ground that has none from the host's grid or image.
     pub fn default_surface_class(&self) -> SurfaceClass {
         self.held.ground.surface_class
     }
 
-    /// The simulated water on level, open ground at [`Context::state_time_s`]; `None` if it is not simulated
+    /// Returns the simulated water on level, open ground at [`Context::state_time_s`]; `None` if it is not simulated
     /// ([`GroundModel::Reported`](crate::ground::GroundModel::Reported)).
     pub fn ground_water(&self) -> Option<GroundWater> {
         self.held.ground.water(&self.world)
     }
 
-    /// Water on the ground at `position`, now, or while steps remain at [`Context::state_time_s`]: on the host's
-    /// terrain ([`Context::set_ground_grid`]), up to 3 m above it, that of its cells; elsewhere by the hollows that are
-    /// drawn, wherever the host's own ground has its own.
+    /// Returns the water on the ground at `position` as of [`Context::state_time_s`]. On the host's terrain
+    /// ([`Context::set_ground_grid`]) and up to 3 m above it, this is the water of its cells. Elsewhere it follows the
+    /// hollows that Welkin draws; the host's own ground may have others.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place.
+    /// [`crate::Status::InvalidArgument`] if the position is invalid.
     pub fn ground_at(&self, position: DVec3) -> Result<GroundAt> {
         self.held.ground.at(&self.world, position)
     }
 
-    /// The water on the host's terrain as a texture for the host's own materials, up to date: what has changed since is
-    /// uploaded and submitted, which is every 10 s of simulation time at most. It stays the same object until another
-    /// grid is set or loaded; then it goes, at this function's or a view's next call.
+    /// Returns the water on the host's terrain as a texture for the host's own materials, up to date. Changes since the
+    /// last call, which come at most every 10 s of simulation time, are uploaded and submitted. The texture stays the
+    /// same object until another grid is set or loaded; it is then released at the next call of this function or of a
+    /// view.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a terrain, [`crate::Status::DeviceLost`], or a GPU fault.
@@ -82,7 +84,7 @@ impl Context {
         self.held.ground.texture(&device, self.world.snow.as_deref())
     }
 
-    /// Hollows of the ground, in which water stands.
+    /// Returns the hollows of the ground, in which water stands.
     pub fn hollows(&self) -> &Hollows {
         &self.held.ground.hollows
     }

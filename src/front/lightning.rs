@@ -1,4 +1,4 @@
-//! The lightning by its name.
+//! Lightning: its settings, triggered flashes, and queries.
 
 use glam::DVec3;
 
@@ -9,8 +9,8 @@ use crate::{
 };
 
 impl Context {
-    /// Sets how often it flashes, where, and how flashes are drawn; part of the saved state. Flashes are a function of
-    /// seed, time, rate and cells: another rate adds and takes flashes, and moves none.
+    /// Sets how often and where lightning flashes, and how flashes are drawn; part of the saved state. Flashes are a
+    /// function of seed, time, rate and cells: another rate adds or removes flashes, but moves none.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -21,12 +21,12 @@ impl Context {
         Ok(())
     }
 
-    /// How often it flashes, where, and how flashes are drawn.
+    /// Returns the settings of lightning.
     pub fn lightning(&self) -> &LightningSettings {
         &self.held.lightning.settings
     }
 
-    /// Triggers a flash, whatever the weather; part of the saved state. It is kept until 120 s after it.
+    /// Triggers a flash in any weather; part of the saved state. The flash is kept until 120 s after it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field, or for more than [`lightning::MAX_TRIGGERED`] at a time;
@@ -35,9 +35,9 @@ impl Context {
         self.held.lightning.trigger(flash, self.world.time_s)
     }
 
-    /// The flashes that begin from `from_s` on until `until_s` (an hour at most) and lie within `most_distance_m` (50
-    /// km at most, on the map) of a place, in order of time: past or to come. Where the timeline has forgotten the
-    /// weather of then, that of the first moment that it knows counts.
+    /// Returns the past or future flashes that begin between `from_s` and `until_s` (an hour at most), within
+    /// `most_distance_m` (50 km at most, on the map) of a place, in order of time. For times that the timeline has
+    /// forgotten, the weather is that of the first moment that it still knows.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -50,8 +50,8 @@ impl Context {
         lightning::events(&self.world, &self.held.lightning, position, (from_s, until_s), most_distance_m)
     }
 
-    /// Light of flashes at a place, on the mean of `exposure_s` (1 s at most) before `time_s`; with 0 that of the very
-    /// moment. A host that lights its own ground by it asks for the time of its frame.
+    /// Returns the light of flashes at a place, as the mean over `exposure_s` (1 s at most) before `time_s`; with 0 the
+    /// light at that moment. A host that lights its own ground by it passes the time of its frame.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.

@@ -1,5 +1,5 @@
-//! The front room: what a Rust host asks of contexts and views by the names of effects. The rooms below it, but for the
-//! list of effects, name none.
+//! The front room: queries and settings of single effects on contexts and views, for Rust hosts. No room below it names
+//! a single effect, except the list of effects.
 
 mod air;
 mod clouds;

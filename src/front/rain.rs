@@ -1,4 +1,4 @@
-//! Rain by its name: areas, and what falls where.
+//! Rain: areas, and precipitation at places and on surfaces.
 
 use glam::DVec3;
 
@@ -10,8 +10,8 @@ use crate::{
 };
 
 impl Context {
-    /// Regions with rain of their own, in place of those before. Where clouds are a volume
-    /// ([`Context::set_cloud_model`]), they have cloud over them.
+    /// Sets the regions with rain of their own, in place of those before. Where clouds are a volume
+    /// ([`Context::set_cloud_model`]), each region has cloud above it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`](crate::rain::MAX_AREAS), or naming the field;
@@ -21,14 +21,14 @@ impl Context {
         self.refresh()
     }
 
-    /// The regions with rain of their own, as they were set.
+    /// Returns the regions with rain of their own, as they were set.
     pub fn rain_areas(&self) -> impl ExactSizeIterator<Item = &RainArea> {
         self.world.set.regions.iter().map(|kept| &kept.area)
     }
 
     /// Returns the precipitation at `position` and simulation time `time_s`.
     ///
-    /// Any thread. Laws: [`crate::rain::sizes`], [`crate::rain::ice`].
+    /// Any thread. [`crate::rain::sizes`] and [`crate::rain::ice`] have the laws.
     ///
     /// # Errors
     /// As [`Context::conditions_at`].
@@ -36,11 +36,11 @@ impl Context {
         rain_at(&self.world, position, time_s)
     }
 
-    /// Returns the precipitation that lands on a surface, or comes through a window, at simulation time `time_s`: each
-    /// size along its own slant in the wind, and in that which the surface's own motion makes. What a box
-    /// ([`Context::set_shelters`]) keeps off, where it is at that time by its velocity, does not land: each size is
-    /// asked for by its own path to a point 5 cm before the surface, so that a face of a box is not inside of it.
-    /// Occluder maps are not asked.
+    /// Returns the precipitation that lands on a surface, or comes through a window, at simulation time `time_s`. Each
+    /// drop size has its own slant, from the wind and the surface's own motion. Precipitation that a box
+    /// ([`Context::set_shelters`]) keeps off does not land; the box is where its velocity has carried it by that time.
+    /// The test follows the path of each size to a point 5 cm in front of the surface, so that a face of a box is not
+    /// inside that box. Occluder maps do not count.
     ///
     /// Any thread.
     ///
@@ -50,8 +50,8 @@ impl Context {
         rain_on(&self.world, surface, time_s)
     }
 
-    /// Optical depth at 550 nm that the areas add between a place and another `offset` metres away (east, north, up of
-    /// the first), on the mean over their pattern; negative where they thin the weather's rain.
+    /// Returns the optical depth at 550 nm that the areas add between a place and another one `offset` metres away
+    /// (east, north, up of the first), on the mean over their pattern. Negative where they thin the weather's rain.
     pub(super) fn areas_depth(&self, position: DVec3, offset: DVec3, time_s: f64, c: &Conditions) -> Result<f64> {
         let (over, world) = (self.world.over(), &self.world);
         if over.regions.is_empty() {

@@ -1,5 +1,5 @@
-//! The sky's light towards a direction, as a query: what the composition (`shaders/frame/composite.wgsl`,
-//! `shaders/between/veil.wgsl`) draws where the host drew nothing, in f64.
+//! The sky's radiance towards a direction, as a query in f64. It follows the composition of pixels in which the host
+//! drew nothing (`shaders/frame/composite.wgsl`, `shaders/between/veil.wgsl`).
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -18,22 +18,25 @@ use crate::{
     world::color_of,
 };
 
-/// Fog whose light comes from nearer than this has no air before it, m.
+/// Distance, m, below which the light of fog has no air in front of it.
 const NEAR_FOG_M: f64 = 50.0;
-/// Irradiance of level ground under an overcast sky over pi times its zenith's luminance (Moon and Spencer 1942).
+/// Ratio for level ground under an overcast sky: its irradiance over pi times the zenith's luminance (Moon and
+/// Spencer 1942).
 const UNDER_DECK: f64 = 7.0 / 9.0;
 
 impl Context {
-    /// Radiance of the sky at `position` towards `directions`, unit vectors (east, north, up) there, at simulation time
-    /// `time_s`: cd/m^2 a channel of linear Rec. 709, as a picture shows it where the host drew nothing. Clear air,
-    /// clouds, fog, what falls in the weather's fog layer, the night's glow, and below the horizon the planet's ground
-    /// count. The discs of sun and moon, stars and planets, rain areas, and the host's objects do not.
+    /// Returns the radiance of the sky at `position` towards `directions`, unit vectors (east, north, up) there, at
+    /// simulation time `time_s`: cd/m^2 a channel of linear Rec. 709, as a picture shows it where the host drew
+    /// nothing. It includes clear air, clouds, fog, precipitation in the weather's fog layer, the night's glow and,
+    /// below the horizon, the planet's ground. It leaves out the discs of the sun and the moon, stars and planets, rain
+    /// areas, and the host's objects.
     ///
-    /// The f64 reference of clear air answers, at three wavelengths. The first call in a new air solves it: a second or
-    /// two, while other threads that ask wait. The last four airs are kept for all contexts of the device.
+    /// Clear air comes from its f64 reference, at three wavelengths. The first call in a new state of the air solves
+    /// it; that takes a second or two, during which other threads that call this wait. The last four solutions are kept
+    /// for all contexts of the device.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place or a direction no unit vector; for times as
+    /// [`crate::Status::InvalidArgument`] if the position is invalid or a direction is not a unit vector; for times as
     /// [`Context::conditions_at`].
     pub fn sky_radiance(&self, position: DVec3, directions: &[DVec3], time_s: f64) -> Result<Vec<[f64; 3]>> {
         let scene = self.scene_at(position, time_s)?;
@@ -55,31 +58,31 @@ impl Context {
     }
 }
 
-/// Mean luminance of an overcast sky over elevation, 1 at the zenith (CIE S 011, the standard overcast sky).
+/// Returns the luminance of an overcast sky by elevation, 1 at the zenith (CIE S 011, the standard overcast sky).
 fn overcast_gradation(sin_elevation: f64) -> f64 {
     (1.0 + 2.0 * sin_elevation.max(0.0)) / 3.0
 }
 
-/// All that a direction's light is made of.
+/// Inputs of the radiance towards a direction.
 struct DirectionLight<'a> {
     skies: &'a SolvedSkies,
     solved: OnceCell<Arc<SolvedSky>>,
     scene: &'a Scene,
     fog: FogModel,
-    /// The bows of its drops, where light shows them.
+    /// Bows of the drops, where there is light to show them.
     bows: Option<bow::Table>,
     night: NightBehind,
-    /// Clouds that the model draws as a volume.
+    /// Clouds, if the model draws them as a volume.
     clouds: Option<CloudRays<'a>>,
 }
 
 impl DirectionLight<'_> {
-    /// The lamps that light the picture.
+    /// Returns the lamps (sun, moon) that light the picture.
     fn lamps(&self) -> impl Iterator<Item = &Light> {
         [&self.scene.sun, &self.scene.moon].into_iter().filter(|light| light.matters)
     }
 
-    /// The clear sky, solved where it is asked for: a closed deck or dense fog hide all of it.
+    /// Returns the clear sky, solved on first use: a closed deck or dense fog hides all of it.
     fn clear(&self) -> Result<&SolvedSky> {
         if let Some(solved) = self.solved.get() {
             return Ok(solved);
@@ -93,17 +96,17 @@ impl DirectionLight<'_> {
         Sightline { altitude_m, direction, to_lamp: lamp.direction }
     }
 
-    /// Colour of light at the planet's wavelengths; what lies outside of Rec. 709 is cut, as in a picture.
+    /// Returns the colour of light at the planet's wavelengths, clipped to Rec. 709 as in a picture.
     fn color(&self, spectrum: [f64; 3]) -> DVec3 {
         DVec3::from_array(color_of(&self.scene.color, spectrum)).max(DVec3::ZERO)
     }
 
-    /// How far the sky above is a deck.
+    /// Returns the share of the sky above that is a deck.
     fn deck_share(&self) -> f64 {
         self.clouds.as_ref().map_or(self.scene.deck_cover, |clouds| f64::from(u8::from(clouds.has_deck)))
     }
 
-    /// The sky behind all fog, with the clouds before it: `before_sky` of the composition.
+    /// Returns the sky behind all fog, with the clouds in front of it: `before_sky` of the composition.
     fn behind(&self, d: DVec3) -> Result<DVec3> {
         let Some(clouds) = &self.clouds else { return self.open(d) };
         let seen = clouds.seen(d, RANGE_SKY_M);
@@ -115,7 +118,7 @@ impl DirectionLight<'_> {
         Ok(open + seen.light * through + air * (1.0 - seen.transmittance))
     }
 
-    /// The sky behind fog and clouds: `behind_all` of the composition.
+    /// Returns the sky behind fog and clouds: `behind_all` of the composition.
     fn open(&self, d: DVec3) -> Result<DVec3> {
         let (scene, deck_share) = (self.scene, self.deck_share());
         let deck = DVec3::from_array(scene.deck_cd_m2);
@@ -136,7 +139,8 @@ impl DirectionLight<'_> {
         Ok((clear + night).lerp(above, deck_share))
     }
 
-    /// Luminance of the ground and of the air before it over that of a closed deck's zenith: `ground_under_deck`.
+    /// Returns the luminance of the ground and of the air in front of it, over that of a closed deck's zenith:
+    /// `ground_under_deck`.
     fn ground_under_deck(&self, d: DVec3) -> Result<DVec3> {
         let Some(lamp) = self.lamps().next() else { return Ok(DVec3::ZERO) };
         let along = self.clear()?.whole(&self.line(d, lamp))?;
@@ -146,7 +150,7 @@ impl DirectionLight<'_> {
         Ok(air + DVec3::from_array(albedo) * UNDER_DECK * through)
     }
 
-    /// Light of the air before `distance_m`, and what it lets through: `air_on`.
+    /// Returns the light of the air up to `distance_m`, and its transmittance: `air_on`.
     fn air(&self, d: DVec3, distance_m: f64) -> Result<(DVec3, DVec3)> {
         let (mut spectrum, mut through) = ([0.0; 3], [1.0; 3]);
         for lamp in self.lamps() {
@@ -161,10 +165,10 @@ impl DirectionLight<'_> {
         Ok((clear.lerp(under_deck, self.scene.deck_cover) + lit(self.scene.night_floor_cd_m2), through))
     }
 
-    /// Returns what a pixel of the sky shows, as `with_fog` of the shaders.
+    /// Returns the radiance of a pixel of the sky, as `with_fog` of the shaders.
     fn with_fog(&self, d: DVec3) -> Result<DVec3> {
         let fog = fog_along(&self.fog, DVec3::ZERO, d, RANGE_SKY_M, RANGE_SKY_M);
-        // Nothing of what lies behind is left.
+        // Where the fog lets nothing through, the sky behind it is not needed.
         let behind = if fog.transmittance.max_element() > 0.0 { self.behind(d)? } else { DVec3::ZERO };
         let (mut before, mut through) = (DVec3::ZERO, DVec3::ONE);
         if fog.distance > NEAR_FOG_M {

@@ -1,4 +1,4 @@
-//! Lying snow by its name.
+//! Lying snow: queries, clearing, and fast-forward.
 
 use glam::DVec3;
 
@@ -8,35 +8,35 @@ use crate::{
     snowpack::{SnowAt, SnowBooks, SnowStrip},
 };
 
-/// Longest time that one call lays, hours.
+/// Longest time of one fast-forward, hours.
 const MOST_HOURS: f64 = 720.0;
 
 impl Context {
-    /// Snow at `position` as of [`Context::state_time_s`]: on the host's terrain, up to 3 m above it, that between its
-    /// cells; elsewhere that of level, open ground.
+    /// Returns the snow at `position` as of [`Context::state_time_s`]. On the host's terrain and up to 3 m above it, it
+    /// is interpolated between the terrain's cells; elsewhere it is that of level, open ground.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] if the position is no place.
+    /// [`Status::InvalidArgument`] if the position is invalid.
     pub fn snow_at(&self, position: DVec3) -> Result<SnowAt> {
         self.held.snowpack.at(&self.world, position)
     }
 
-    /// Where the mass of the snow on the host's terrain came from and went, kg; `None` without a terrain or a simulated
+    /// Returns the mass balance of the snow on the host's terrain, kg; `None` without a terrain or without simulated
     /// snow.
     pub fn snow_books(&self) -> Option<SnowBooks> {
         self.held.snowpack.books()
     }
 
-    /// Time of the state that fast-forward has laid, s: 0 where every step was an ordinary one.
+    /// Returns how much of the state's time was simulated by fast-forward, s; 0 if every step was an ordinary one.
     pub fn snow_laid_fast_s(&self) -> f64 {
         self.held.snowpack.coarse_s()
     }
 
-    /// Takes the snow of a strip of the host's terrain away but for the lowest `left_m`, \[0, 100\]: a plough, a
-    /// shovel. Answers its mass, kg.
+    /// Removes the snow of a strip of the host's terrain, except the lowest `left_m`, \[0, 100\]: a plough, a shovel.
+    /// Returns the removed mass, kg.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] without a terrain or a simulated snow
+    /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] without a terrain or without simulated snow
     /// ([`LyingSnowModel::Simulated`](crate::snowpack::LyingSnowModel::Simulated)), and while steps of an update
     /// remain.
     pub fn take_snow(&mut self, strip: &SnowStrip, left_m: f64) -> Result<f64> {
@@ -44,7 +44,7 @@ impl Context {
         self.change_snow(|held, world| held.take(world, strip, left_m))
     }
 
-    /// Presses the snow of a strip of the host's terrain to 500 kg/m^3, where it is less dense: a wheel's track.
+    /// Compacts the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense: a wheel's track.
     ///
     /// # Errors
     /// As [`Context::take_snow`].
@@ -62,14 +62,14 @@ impl Context {
         Ok(done)
     }
 
-    /// Moves time on by `hours`, (0, 720], and lays the snow of that time by steps of ten minutes, so that a lesson may
-    /// begin after a night's snowfall. Its laws are those of ordinary steps; the state differs from theirs by up to
-    /// some percent, and remembers how much was laid so ([`Context::snow_laid_fast_s`]). All else is led as by
-    /// [`Context::update`].
+    /// Advances time by `hours`, (0, 720], with the snow in steps of ten minutes, so that a lesson can begin after a
+    /// night's snowfall. The laws are those of ordinary steps. The state differs from that of ordinary steps by up to
+    /// some percent, and records the time simulated this way ([`Context::snow_laid_fast_s`]). Everything else advances
+    /// as by [`Context::update`].
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] for another number of hours or a time beyond the range; [`Status::WrongOrder`] while
-    /// steps of an update remain.
+    /// [`Status::InvalidArgument`] if `hours` or the new time is out of range; [`Status::WrongOrder`] while steps of an
+    /// update remain.
     pub fn accumulate(&mut self, hours: f64) -> Result<()> {
         if hours.is_nan() || hours <= 0.0 {
             return Err(Error::range("hours", "in (0, 720]", hours));

@@ -1,4 +1,4 @@
-//! The stars by their name.
+//! Stars: settings of the night sky, and the faintest visible star.
 
 use std::f64::consts::PI;
 
@@ -13,8 +13,8 @@ use crate::{
 };
 
 impl Context {
-    /// Sets how the night sky is drawn: the host's own stars, how they are turned, planets, airglow. All but the list
-    /// of stars is part of the saved state; one that loads a state keeps its own.
+    /// Sets how the night sky is drawn: the host's own stars and their rotation, planets, airglow. Everything except
+    /// the list of stars is part of the saved state; a context that loads a state keeps its own list.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -25,13 +25,13 @@ impl Context {
         Ok(())
     }
 
-    /// Magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from `position` at
-    /// simulation time `time_s`: what [`limiting_magnitude`] sees against the sky's mean luminance, by which pictures
-    /// leave stars out too, less what air, fog and clouds take of the star's light at 550 nm. Negative infinity where
-    /// nothing comes through.
+    /// Returns the catalogue magnitude of the faintest star that the naked eye sees straight up from `position` at
+    /// simulation time `time_s`. It is [`limiting_magnitude`] against the sky's mean luminance, by which pictures leave
+    /// out stars too, less the extinction by air, fog and clouds at 550 nm. Negative infinity if no light comes
+    /// through.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
+    /// [`crate::Status::InvalidArgument`] if the position is invalid; for times as [`Context::conditions_at`].
     pub fn limiting_magnitude(&self, position: DVec3, time_s: f64) -> Result<f64> {
         let scene = self.scene_at(position, time_s)?;
         let altitude_m = scene.place.altitude_m;
@@ -43,7 +43,7 @@ impl Context {
         Ok(at_eye + 2.5 * through.log10())
     }
 
-    /// How the night sky is drawn.
+    /// Returns the settings of the night sky.
     pub fn stars(&self) -> &StarSettings {
         &self.held.stars.settings
     }

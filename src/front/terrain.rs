@@ -10,8 +10,8 @@ use crate::{
 };
 
 impl Context {
-    /// Sets the lattice of a terrain in tiles, still without any, in place of the terrain before, be that tiles or a
-    /// grid; `None` leaves none. The lattice that is set already stays with its tiles.
+    /// Sets the lattice of a terrain in tiles, at first without tiles, in place of the terrain before, be that tiles or
+    /// a grid; `None` leaves none. If the lattice is the present one, it keeps its tiles.
     ///
     /// With [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has water of its own, which
     /// [`Context::save`] keeps. Heights are not saved: set the same tiles before [`Context::load`].
@@ -25,8 +25,8 @@ impl Context {
         Ok(())
     }
 
-    /// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is,
-    /// with as much simulated snow; one that is there keeps its water, and its snow wherever there is ground.
+    /// Adds a tile, or replaces all cells of an existing one. A new tile starts as wet as level ground, with as much
+    /// simulated snow. An existing one keeps its water, and its snow wherever there is still ground.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] naming the field, or for
@@ -38,12 +38,12 @@ impl Context {
         Ok(())
     }
 
-    /// Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where
-    /// the ground lets it. The time of it grows with the rectangle and with the standing waters that it touches, not
-    /// with tile or terrain.
+    /// Sets new heights, new classes, or both, in a rectangle of a tile's cells. Water that stands there flows wherever
+    /// the new ground lets it. The cost grows with the rectangle and with the pools that it touches, not with the tile
+    /// or the terrain.
     ///
     /// # Errors
-    /// As [`Context::set_terrain_tile`]; also for a tile that there is not.
+    /// As [`Context::set_terrain_tile`]; also for a tile that does not exist.
     pub fn update_terrain(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
         let waits = self.is_behind();
         self.held.ground.update_tile(&mut self.world, waits, cells)?;
@@ -51,11 +51,11 @@ impl Context {
         Ok(())
     }
 
-    /// Takes a tile away, with the water and the snow on it. Beside it water runs off.
+    /// Removes a tile, with the water and the snow on it. Water of the cells beside it runs off.
     ///
     /// # Errors
-    /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that there is
-    /// not.
+    /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that does not
+    /// exist.
     pub fn remove_terrain_tile(&mut self, key: TileKey) -> Result<()> {
         let waits = self.is_behind();
         self.held.ground.remove_tile(&mut self.world, waits, key)?;
@@ -63,45 +63,45 @@ impl Context {
         Ok(())
     }
 
-    /// The lattice of the terrain's tiles.
+    /// Returns the lattice of the terrain's tiles.
     pub fn terrain(&self) -> Option<TerrainDesc> {
         self.world.set.tiles.as_ref().map(|terrain| terrain.desc)
     }
 
-    /// Keys of the terrain's tiles, by rows from the south.
+    /// Returns the keys of the terrain's tiles, by rows from the south.
     pub fn terrain_tiles(&self) -> impl Iterator<Item = TileKey> + '_ {
         self.world.set.tiles.iter().flat_map(|terrain| terrain.all().map(|(_, tile)| tile.key))
     }
 
-    /// A number that grows whenever the tiles change; 0 without a terrain.
+    /// Returns a number that grows whenever the tiles change; 0 without a terrain.
     pub fn terrain_revision(&self) -> u64 {
         self.world.set.tiles.as_ref().map_or(0, |terrain| terrain.revision)
     }
 
-    /// Water of each cell of a tile now, or while steps remain at [`Context::state_time_s`], by rows from the
-    /// south-west; holes are dry. `None` for a tile that there is not.
+    /// Returns the water of each cell of a tile as of [`Context::state_time_s`], by rows from the south-west; holes are
+    /// dry. `None` for a tile that does not exist.
     pub fn terrain_water(&self, key: TileKey) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
         self.held.ground.tile_water(&self.world, key)
     }
 
-    /// The water on the tiles about a place as textures for the host's own materials, up to date, and the snow where it
-    /// is simulated: a window of 512 x 512 cells, one texel a cell, that holds `center` in its middle quarter and moves
-    /// by 64 cells at a time. What has changed since the last call is uploaded and submitted; all of it where the
-    /// window has moved. Both stay the same objects as long as the context lives; where no tile has ground there is
-    /// neither water nor snow. A host with several cameras calls it before each.
+    /// Returns the water on the tiles around a place as textures for the host's own materials, up to date, with the
+    /// snow where it is simulated. They cover a window of 512 x 512 cells, one texel a cell, which has `center` in its
+    /// middle quarter and moves by 64 cells at a time. Changes since the last call are uploaded and submitted; after a
+    /// move that is the whole window. Both textures stay the same objects as long as the context lives. Where no tile
+    /// has ground there is neither water nor snow. A host with several cameras calls this before it draws each one.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if `center` is no place; [`crate::Status::WrongOrder`] where no tile reaches
+    /// [`crate::Status::InvalidArgument`] if `center` is invalid; [`crate::Status::WrongOrder`] where no tile reaches
     /// into the window; [`crate::Status::DeviceLost`], or a GPU fault.
     pub fn terrain_texture(&mut self, center: DVec3) -> Result<GroundTexture> {
         let device = self.device().clone();
         self.held.ground.terrain_texture(&device, &self.world, center)
     }
 
-    /// The terrain under or above a position; `None` where no tile has ground.
+    /// Returns the terrain below or above a position; `None` where no tile has ground.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place.
+    /// [`crate::Status::InvalidArgument`] if the position is invalid.
     pub fn terrain_at(&self, position: DVec3) -> Result<Option<TerrainPoint>> {
         self.world.frame.place_at("position", position)?;
         Ok(self.world.set.tiles.as_ref().and_then(|terrain| terrain.point_at(position)))

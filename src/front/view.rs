@@ -1,4 +1,4 @@
-//! Settings of a view's effects by the host, and queries about them.
+//! The host's settings of a view's effects, and queries about them.
 
 use crate::{
     clouds::{CloudSettings, CloudShadows},
@@ -23,7 +23,7 @@ impl View {
         Ok(())
     }
 
-    /// Sets how finely clouds are drawn that are a volume. Default: [`CloudSettings::default`].
+    /// Sets the quality of clouds that are drawn as a volume. Default: [`CloudSettings::default`].
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range; nothing changes then.
@@ -33,10 +33,10 @@ impl View {
         Ok(())
     }
 
-    /// The map of the clouds' shadows, for a host that lights its own materials. From the first call on, the first call
-    /// of each frame brings it up to date, and [`Stages::SURFACE`](crate::frame::Stages::SURFACE) lays no shadows of
-    /// clouds any more: the host does. Ask after each frame for how the map lies; a host that draws before Welkin uses
-    /// that of the last frame, in which clouds have moved by centimetres.
+    /// Returns the map of the clouds' shadows, for a host that lights its own materials. From the first call on, the
+    /// first call of each frame updates the map, and [`Stages::SURFACE`](crate::frame::Stages::SURFACE) no longer draws
+    /// cloud shadows: the host does. Call it after each frame for the map's placement. A host that draws before Welkin
+    /// uses the placement of the last frame: clouds have moved by centimetres since then.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -58,20 +58,21 @@ impl View {
         Ok(())
     }
 
-    /// Sets the window that the view looks through; `None` takes it away. A host that drives, turns its head or wipes
-    /// sets it anew before each frame: the water stays on the glass while its size does. Unchanged after an error.
+    /// Sets the windscreen through which the view looks; `None` removes it. A host that drives, turns its head or wipes
+    /// sets it again before each frame: the water stays on the glass as long as the size stays the same. Unchanged
+    /// after an error.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range.
     pub fn set_windscreen(&mut self, screen: Option<&Windscreen>) -> Result<()> {
         let device = self.device.clone();
-        // What goes with a window is freed in the host's context.
+        // The windscreen's GPU objects are released in the host's context.
         let _entered = if screen.is_none() { Some(device.enter()?) } else { None };
         self.effects.glass.set(screen)
     }
 
-    /// Water on the windscreen as of the last frame, or `None` without one. Reads it back and waits for the GPU: not
-    /// for every frame.
+    /// Returns the water on the windscreen as of the last frame, or `None` without one. It waits for the GPU to read
+    /// the water back: do not call it every frame.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -80,7 +81,7 @@ impl View {
         self.effects.glass.water(&self.device)
     }
 
-    /// The snow on the windscreen, or `None` where there is none; for tests and tools. Waits for the GPU.
+    /// Returns the snow on the windscreen, or `None` if there is none; for tests and tools. Waits for the GPU.
     ///
     /// # Errors
     /// As [`View::windscreen_report`].
@@ -89,7 +90,7 @@ impl View {
         self.effects.glass.snow(&self.device)
     }
 
-    /// The cells of the windscreen's water, or `None` where it is dry; for tests and tools. Waits for the GPU.
+    /// Returns the cells of the windscreen's water, or `None` if it is dry; for tests and tools. Waits for the GPU.
     ///
     /// # Errors
     /// As [`View::windscreen_report`].

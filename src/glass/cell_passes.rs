@@ -8,9 +8,9 @@ use crate::{
     },
 };
 
-/// Water of the cells.
+/// Format of the water in the cells.
 pub(super) const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// Shares of the rain that maps let through, and snow.
+/// Format of the shares of the rain that maps let through, and of snow.
 pub(super) const WORD: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
 pub(super) fn texture(
@@ -36,7 +36,7 @@ pub(super) fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&Default::default())
 }
 
-/// A bind group of `resources`, numbered from 0.
+/// Creates a bind group of `resources`, with bindings numbered from 0.
 pub(super) fn bind(
     device: &Device,
     layout: &wgpu::BindGroupLayout,
@@ -52,10 +52,10 @@ pub(super) fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(view)
 }
 
-/// Shader that lands, melts and wipes away snow, and takes its declared state.
+/// Shader of the snow: its steps, and its declared state.
 const SETTLE: &str = "glass/settle.wgsl";
 
-/// The two pipelines of snow.
+/// Creates the two pipelines of snow.
 pub(super) fn settle_pipelines(
     device: &Device,
     layout: &wgpu::BindGroupLayout,
@@ -65,7 +65,7 @@ pub(super) fn settle_pipelines(
     Ok([one("settle")?, one("declare_snow")?])
 }
 
-/// A pipeline over the cells.
+/// Creates a pipeline over the cells.
 pub(super) fn cells_pipeline(
     device: &Device,
     (shader, entry): (&str, &str),

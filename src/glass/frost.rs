@@ -1,4 +1,4 @@
-//! The physics of snow on glass: how much of it lands and stays, and what melts it.
+//! Physics of snow on glass: how much of it lands and stays, and how it melts.
 
 use std::f64::consts::PI;
 
@@ -7,28 +7,27 @@ use crate::{falling::flakes::aggregate_speed_m_s, weather::Falling};
 
 /// Latent heat of melting ice, J/kg.
 const MELTING_J_KG: f64 = 3.34e5;
-/// Diameter of a flake whose fall speed stands for all, mm.
+/// Diameter of a flake whose fall speed stands for that of all flakes, mm.
 const TYPICAL_MM: f64 = 4.0;
-/// Width of the body that the air flows around: the glass and its cab, m.
+/// Width of the body that the air flows around, glass and cab, m.
 const BLUFF_M: f64 = 1.0;
-/// Most snow that stays on glass, m of water: more slides off as a sheet.
+/// Largest amount of snow that stays on glass, m of water. Any more slides off as a sheet.
 const MOST_M: f64 = 5e-3;
 
-/// Snow as it comes to glass.
+/// Snowfall at the glass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Snowing {
-    /// Water, m/s on level ground.
+    /// Rate of water on level ground, m/s.
     pub water_m_s: f64,
-    /// Fall speed of its flakes, m/s.
+    /// Fall speed of the flakes, m/s.
     pub fall_m_s: f64,
-    /// Water of a flake, m^3.
+    /// Volume of water in a flake, m^3.
     pub flake_m3: f64,
 }
 
 impl Snowing {
-    /// Creates the snowfall of `falling` at a temperature, where things fall `factor` times as fast as at sea level.
-    /// The melted diameter that divides the water in halves is 1.4 mm R^0.45 at R mm/h (Sekhon & Srivastava 1970, eq.
-    /// 8).
+    /// Creates the snowfall of `falling` at a temperature. `factor` is the ratio of fall speeds to those at sea level.
+    /// The median melted diameter by volume is 1.4 mm R^0.45 at R mm/h (Sekhon & Srivastava 1970, eq. 8).
     pub fn new(falling: &Falling, temperature_c: f64, factor: f64) -> Self {
         let rate = falling.snow_mm_h;
         if rate <= 0.0 {
@@ -42,10 +41,11 @@ impl Snowing {
         }
     }
 
-    /// Water that stays on a surface whose outward normal has the upward component `normal_up` and that moves outwards
-    /// against the air at `approach_m_s`, m/s. Air that turns away before the glass takes light flakes with it: a share
-    /// S^3 / (S^3 + 0.77 S^2 + 0.22) of those blown at it arrive, S their Stokes number (Landahl & Herrmann 1949). Of
-    /// those that arrive faster than 1 m/s a share of one over that speed stays (ISO 12494:2001, wet snow).
+    /// Returns the rate of water that stays on a surface, m/s. `normal_up` is the upward component of the surface's
+    /// outward normal, and `approach_m_s` its speed outwards against the air. The air that flows around the glass takes
+    /// light flakes with it. Of the flakes blown towards the glass the share S^3 / (S^3 + 0.77 S^2 + 0.22) arrives,
+    /// where S is their Stokes number (Landahl & Herrmann 1949). Of flakes that arrive faster than 1 m/s, the share of
+    /// one over that speed stays (ISO 12494:2001, wet snow).
     pub fn stays_m_s(&self, normal_up: f64, approach_m_s: f64) -> f64 {
         if self.water_m_s <= 0.0 {
             return 0.0;
@@ -58,25 +58,26 @@ impl Snowing {
     }
 }
 
-/// Heat that glass gives to air, W/(m^2 K): a plate in wind (McAdams 1954, *Heat Transmission*, 3rd edition, eq. 9-42).
+/// Returns the heat transfer from glass to air, W/(m^2 K): a plate in wind (McAdams 1954, *Heat Transmission*, 3rd
+/// edition, eq. 9-42).
 fn exchange_w_m2_k(wind_m_s: f64) -> f64 {
     let v = wind_m_s.abs();
     if v < 5.0 { 5.7 + 3.8 * v } else { 6.47 * libm::pow(v, 0.78) }
 }
 
-/// Rate at which snow melts on heated glass, m/s of water. The glass is at 0 C: warmer air adds heat, colder air takes
-/// it.
+/// Returns the rate at which snow melts on heated glass, m/s of water. The glass is at 0 C. Warmer air adds heat, and
+/// colder air takes heat away.
 pub fn melts_m_s(heat_w_m2: f64, temperature_c: f64, wind_m_s: f64) -> f64 {
     (heat_w_m2 + exchange_w_m2_k(wind_m_s) * temperature_c).max(0.0) / (MELTING_J_KG * WATER)
 }
 
-/// Most water that one flake brings to a cell, m^3: a large flake lies on several cells. One of 5 mm that weighs 2 mg
-/// is 0.1 mm of water over its disc.
+/// Returns the largest volume of water that one flake brings to a cell, m^3. A large flake covers several cells: one of
+/// 5 mm and 2 mg is 0.1 mm of water over its disc.
 pub fn of_a_flake_m3(cell_m: f64) -> f64 {
     1e-4 * cell_m * cell_m
 }
 
-/// Most that a cell holds, m^3.
+/// Returns the largest volume of water in the snow of a cell, m^3.
 pub fn most_m3(cell_m: f64) -> f64 {
     MOST_M * cell_m * cell_m
 }
@@ -89,10 +90,10 @@ mod tests {
     fn standing_glass_gathers_what_falls_and_fast_glass_less_than_meets_it() {
         let snow = Snowing { water_m_s: 1.0 / 3.6e6, fall_m_s: 1.0, flake_m3: 1e-9 };
         let mm_h = |up, approach| snow.stays_m_s(up, approach) * 3.6e6;
-        // In calm air level glass gathers as much as level ground does, and upright glass none.
+        // In calm air level glass gathers as much as level ground does, and upright glass nothing.
         assert!((mm_h(1.0, 0.0) - 1.0).abs() < 1e-12);
         assert_eq!([mm_h(0.0, 0.0), mm_h(0.0, -8.0), mm_h(-0.5, 0.0)], [0.0; 3]);
-        // A leaning windscreen at 14 m/s meets eight times what falls, of which most blows off.
+        // A leaning windscreen at 14 m/s meets eight times the falling snow, most of which blows away.
         let driven = mm_h(0.5, 14.0);
         assert!((0.5..1.5).contains(&driven), "{driven}");
         assert_eq!(Snowing::default().stays_m_s(1.0, 20.0), 0.0);
@@ -103,7 +104,7 @@ mod tests {
         let mm_h = |heat, t, v| melts_m_s(heat, t, v) * 3.6e6;
         assert_eq!(mm_h(0.0, -5.0, 0.0), 0.0);
         assert_eq!(mm_h(300.0, -10.0, 20.0), 0.0, "the wind takes more");
-        // 600 W/m^2 at -5 C in a calm: 571 W/m^2 melt 6.2 kg/(m^2 h).
+        // 600 W/m^2 at -5 C in calm air: 571 W/m^2 melt 6.2 kg/(m^2 h).
         let melted = mm_h(600.0, -5.0, 0.0);
         assert!((melted - 571.5 * 3600.0 / 3.34e5 / 0.998).abs() < 0.01, "{melted}");
         assert!(mm_h(0.0, 3.0, 0.0) > 0.1);

@@ -1,4 +1,4 @@
-//! Pane of the glass: where it is, its plane in the camera's axes, and the lattice on it.
+//! Pane of the glass: its shape, its plane in the camera's axes, and the lattice on it.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
@@ -6,23 +6,24 @@ use crate::error::{Error, Result};
 
 /// Edge of a cell, m, on glass up to 4 m across; larger glass has larger cells.
 pub const CELL_M: f64 = 0.004;
-/// Cells along the longer edge at most.
+/// Largest number of cells along the longer edge.
 pub const MAX_CELLS: u32 = 1024;
 
-/// Where the glass is.
+/// Shape and position of the glass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pane {
-    /// A flat window, its corners in the camera's axes (x right, y up, z backwards), m from the camera: lower left,
+    /// A flat window. Its corners in the camera's axes (x right, y up, z backwards), m from the camera: lower left,
     /// lower right, upper right, upper left as seen from the camera. Convex; edges from 0.05 to 8 m.
     Quad([DVec3; 4]),
     /// The whole picture: glass across the view at this distance, m, [0.1, 3].
     WholeView(f64),
 }
 
-/// A pane as a plane with axes: u along the lower edge, v up the glass, both from the lower left of the pane's bounds.
+/// Plane of a pane with its axes. u runs along the lower edge and v up the glass, both from the lower left of the
+/// pane's bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Lower left of the bounds, m in the camera's axes.
+    /// Lower left of the bounds in the camera's axes, m.
     pub origin: DVec3,
     /// Unit vector along the lower edge, to the right.
     pub u: DVec3,
@@ -32,13 +33,13 @@ pub struct Plane {
     pub out: DVec3,
     /// Width and height of the bounds, m.
     pub size_m: DVec2,
-    /// The corners in (u, v), m, anticlockwise as seen from the camera.
+    /// Corners in (u, v), m, anticlockwise as seen from the camera.
     pub corners: [DVec2; 4],
 }
 
 impl Plane {
-    /// The plane of four corners: lower left, lower right, upper right, upper left as seen from the camera, at the
-    /// origin.
+    /// Creates the plane of four corners: lower left, lower right, upper right, upper left as seen from the camera,
+    /// which is at the origin.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if they are out of range, not in one plane, not convex or not in that order.
@@ -61,7 +62,7 @@ impl Plane {
             let accepted = "lower left, lower right, upper right, upper left as seen from a camera at least 1 mm away";
             return Err(Error::range(NAME, accepted, listed()));
         }
-        // The lower edge lies in the plane but for what its corners are off.
+        // The lower edge lies in this plane, apart from the corners' errors.
         let v = towards.cross(u).normalize();
         let (out, flat) = (v.cross(u), |c: DVec3| DVec2::new(u.dot(c - corners[0]), v.dot(c - corners[0])));
         let off = corners.map(|c| out.dot(c - corners[0]).abs()).into_iter().fold(0.0, f64::max);
@@ -82,7 +83,7 @@ impl Plane {
         Ok(Self { origin, u, v, out, size_m: high - low, corners: flat.map(|c| c - low) })
     }
 
-    /// The plane of a pane in a picture with this projection.
+    /// Creates the plane of a pane in a picture with this projection.
     ///
     /// # Errors
     /// As [`Plane::of`].
@@ -91,7 +92,7 @@ impl Plane {
             Pane::Quad(corners) => Self::of(corners),
             Pane::WholeView(distance_m) => {
                 let rays = PictureRays::of(projection)?;
-                // A little more than the picture, so that its edge is glass.
+                // Slightly larger than the picture, so that the picture's edge is on the glass.
                 let at = |x: f64, y: f64| {
                     let d = rays.direction + 1.02 * (x * rays.dx + y * rays.dy);
                     d * (distance_m / -d.z)
@@ -103,20 +104,20 @@ impl Plane {
         }
     }
 
-    /// Edge of a cell, m, and the lattice's columns and rows.
+    /// Returns the edge of a cell, m, and the lattice's columns and rows.
     pub fn lattice(&self) -> (f64, [u32; 2]) {
         let cell = CELL_M.max(self.size_m.max_element() / f64::from(MAX_CELLS));
         (cell, self.size_m.to_array().map(|m| ((m / cell).round() as u32).clamp(4, MAX_CELLS)))
     }
 
-    /// Area of the pane, m^2.
+    /// Returns the area of the pane, m^2.
     pub fn area_m2(&self) -> f64 {
         let c = &self.corners;
         0.5 * (c[2] - c[0]).perp_dot(c[3] - c[1])
     }
 }
 
-/// A perspective picture's rays: direction = `direction` + x `dx` + y `dy` over clip x and y, camera's axes.
+/// Rays of a perspective picture in the camera's axes: direction = `direction` + x `dx` + y `dy` at clip x and y.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PictureRays {
     pub direction: DVec3,
@@ -128,9 +129,9 @@ impl PictureRays {
     /// # Errors
     /// [`crate::Status::Unsupported`] for parallel rays: there is no eye behind the glass.
     pub fn of(projection: &DMat4) -> Result<Self> {
-        // p = (x, y, z, 1) lies on the ray of (x', y') where (r_x - x' r_w) . p = (r_y - y' r_w) . p = 0; of two planes
-        // through the eye the cross product of their normals is the ray's direction, affine in x' and y' as r_w x r_w =
-        // 0.
+        // p = (x, y, z, 1) lies on the ray of (x', y') where (r_x - x' r_w) . p = (r_y - y' r_w) . p = 0. These are two
+        // planes through the eye. The cross product of their normals is the ray's direction; it is affine in x' and y'
+        // because r_w x r_w = 0.
         let row = |i: usize| {
             let r: DVec4 = projection.row(i);
             r.truncate()
@@ -146,7 +147,8 @@ impl PictureRays {
         Ok(Self { direction: direction * sign, dx: dx * sign, dy: dy * sign })
     }
 
-    /// From a direction to (x, y, 1) in clip space times a factor that is positive before the camera.
+    /// Returns the matrix from a direction to (x, y, 1) in clip space, times a factor that is positive in front of the
+    /// camera.
     pub fn to_clip(self) -> DMat3 {
         DMat3::from_cols(self.dx, self.dy, self.direction).inverse()
     }
@@ -158,7 +160,7 @@ mod tests {
     use crate::scene::Camera;
 
     fn quad() -> [DVec3; 4] {
-        // A car's: 1.2 m wide, leaning back.
+        // The windscreen of a car: 1.2 m wide, leaning back.
         [(-0.7, -0.2, -0.9), (0.7, -0.2, -0.9), (0.5, 0.3, -0.4), (-0.5, 0.3, -0.4)].map(DVec3::from)
     }
 

@@ -1,4 +1,4 @@
-//! The physics of drops on glass, in f64 and by `libm`, so that its tables have the same bits everywhere.
+//! Physics of drops on glass, in f64 with `libm`, so that its tables have the same bits everywhere.
 
 use std::f64::consts::PI;
 
@@ -14,42 +14,42 @@ const AIR: f64 = 1.2;
 const VISCOSITY: f64 = 1.0e-3;
 /// Acceleration of gravity, m/s^2.
 pub const GRAVITY: f64 = 9.81;
-/// Contact angle at which beads are drawn and weighed, degrees: between the two below.
+/// Contact angle for the shape and volume of beads, degrees; it lies between the two below.
 pub const CONTACT_DEG: f64 = 50.0;
-/// Advancing and receding contact angle of water on glass in use, degrees: clean glass has less than 20, waxed glass
+/// Advancing and receding contact angle of water on glass in use, degrees. Clean glass has less than 20, waxed glass
 /// more than 80; road film lies between.
 const ADVANCING_DEG: f64 = 62.0;
 const RECEDING_DEG: f64 = 32.0;
-/// Share of the retention that is left under a bead that runs, or on wet glass.
+/// Share of the retention that remains under a running bead or on wet glass.
 const MOVING_RETENTION: f64 = 0.5;
-/// Slope of the capillary number over the Bond number's excess: runners of some centimetres a second on upright glass.
+/// Slope of the capillary number over the excess Bond number: beads run some centimetres a second on upright glass.
 const MOBILITY: f64 = 0.003;
-/// Drag coefficient of a sessile drop with the air's speed at its height, set so that a drop of 10 uL on level glass
-/// lets go near 13 m/s, the order of what Milne & Amirfazli (2009) measured.
+/// Drag coefficient of a sessile drop for the air's speed at its height. With it a drop of 10 uL on level glass starts
+/// to move near 13 m/s, the order of what Milne & Amirfazli (2009) measured.
 const DRAG: f64 = 0.35;
-/// Classes of diameter between the smallest and largest drop of rain, and their width, mm.
+/// Number of diameter classes between the smallest and largest raindrop, and their width, mm.
 const CLASSES: usize = 295;
 const STEP_MM: f64 = (LARGEST_MM - SMALLEST_MM) / CLASSES as f64;
 
-/// Volume of a cap over the cube of its contact radius.
+/// Returns the volume of a spherical cap over the cube of its contact radius.
 pub fn volume_factor() -> f64 {
     let (s, c) = libm::sincos(CONTACT_DEG.to_radians());
     PI * (2.0 - 3.0 * c + c * c * c) / (3.0 * s * s * s)
 }
 
-/// Contact radius of a bead, m, by its volume, m^3.
+/// Returns the contact radius of a bead, m, for its volume, m^3.
 pub fn radius_m(volume_m3: f64) -> f64 {
     libm::cbrt(volume_m3 / volume_factor())
 }
 
-/// Force along the glass that holds a bead at rest, N: gamma w (cos receding - cos advancing) with the width w = 2 r
-/// (Furmidge 1962, eq. 1).
+/// Returns the force along the glass that holds a bead at rest, N: gamma w (cos receding - cos advancing) with the
+/// width w = 2 r (Furmidge 1962, eq. 1).
 pub fn retention_n(radius_m: f64) -> f64 {
     let difference = libm::cos(RECEDING_DEG.to_radians()) - libm::cos(ADVANCING_DEG.to_radians());
     SURFACE_TENSION * 2.0 * radius_m * difference
 }
 
-/// Force of the air on a bead, N: 1/2 rho C A u |u| with the cap's frontal area A.
+/// Returns the force of the air on a bead, N: 1/2 rho C A u |u| with the cap's frontal area A.
 pub fn drag_n(radius_m: f64, airflow_m_s: f64) -> f64 {
     let theta = CONTACT_DEG.to_radians();
     let (s, c) = libm::sincos(theta);
@@ -57,8 +57,9 @@ pub fn drag_n(radius_m: f64, airflow_m_s: f64) -> f64 {
     0.5 * AIR * DRAG * area * airflow_m_s * airflow_m_s.abs()
 }
 
-/// Speed of a bead that runs or lies on wet glass, m/s: the capillary number rises linearly with the Bond number beyond
-/// the one at which the bead stops (Le Grand, Daerr & Limat 2005), Bond numbers being forces over gamma V^(1/3).
+/// Returns the speed of a bead that runs or lies on wet glass, m/s. The capillary number rises linearly with the Bond
+/// number above the one at which the bead stops (Le Grand, Daerr & Limat 2005). Bond numbers are forces over gamma
+/// V^(1/3).
 pub fn speed_m_s(volume_m3: f64, drive_n: f64) -> f64 {
     let excess = drive_n - MOVING_RETENTION * retention_n(radius_m(volume_m3));
     if excess <= 0.0 {
@@ -67,8 +68,8 @@ pub fn speed_m_s(volume_m3: f64, drive_n: f64) -> f64 {
     SURFACE_TENSION / VISCOSITY * MOBILITY * excess / (SURFACE_TENSION * libm::cbrt(volume_m3))
 }
 
-/// Volume that a bead loses to the air, m^3/s: diffusion from a sessile cap, pi r D c (1 - H) (0.27 theta^2 + 1.30) (Hu
-/// & Larson 2002, eq. 19), with the Ranz-Marshall (1952) factor for the air that passes.
+/// Returns the volume that evaporates from a bead, m^3/s: diffusion from a sessile cap, pi r D c (1 - H) (0.27
+/// theta^2 + 1.30) (Hu & Larson 2002, eq. 19), with the Ranz-Marshall (1952) factor for moving air.
 pub fn evaporation_m3_s(radius_m: f64, relative_humidity: f64, temperature_c: f64, airflow_m_s: f64) -> f64 {
     const DIFFUSIVITY: f64 = 2.5e-5;
     const AIR_VISCOSITY: f64 = 1.5e-5;
@@ -82,7 +83,7 @@ pub fn evaporation_m3_s(radius_m: f64, relative_humidity: f64, temperature_c: f6
     still * (0.27 * theta * theta + 1.30) * passed / WATER
 }
 
-/// Volume of a drop, m^3, by its diameter, mm.
+/// Returns the volume of a drop, m^3, for its diameter, mm.
 pub fn drop_volume_m3(d: f64) -> f64 {
     PI / 6.0 * d * d * d * 1e-9
 }
@@ -90,17 +91,17 @@ pub fn drop_volume_m3(d: f64) -> f64 {
 /// Drops that hit a surface, by size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrivals {
-    /// (diameter mm, drops a m^2 and second), from the largest down.
+    /// Diameter, mm, and drops per m^2 and second of each class, from the largest down.
     pub classes: [(f64, f64); CLASSES],
-    /// Drops, 1/(m^2 s).
+    /// Number of drops, 1/(m^2 s).
     pub number_m2_s: f64,
-    /// Water, m^3/(m^2 s).
+    /// Volume of water, m^3/(m^2 s).
     pub water_m_s: f64,
 }
 
 impl Arrivals {
-    /// A share of the rain on a surface whose outward normal has the upward component `normal_up`, and that moves
-    /// outwards against the air at `approach_m_s`: each size arrives at its own speed against the surface, fall x
+    /// Creates the arrivals on a surface from a share of the rain. `normal_up` is the upward component of the surface's
+    /// outward normal, and `approach_m_s` its speed outwards against the air. Each size arrives with the speed fall x
     /// normal_up + approach.
     pub fn of(rain: &DropSizes, share: f64, normal_up: f64, approach_m_s: f64) -> Self {
         let mut arrivals = Self { classes: [(0.0, 0.0); CLASSES], number_m2_s: 0.0, water_m_s: 0.0 };
@@ -123,7 +124,7 @@ mod tests {
 
     use super::*;
 
-    /// Where gravity alone first moves a bead on glass at this slope, m of contact radius.
+    /// Returns the contact radius above which gravity alone moves a bead on glass at this slope, m.
     fn critical_radius_m(slope_deg: f64) -> f64 {
         let pull = WATER * GRAVITY * volume_factor() * slope_deg.to_radians().sin();
         (retention_n(1.0) / pull).sqrt()

@@ -1,4 +1,4 @@
-//! The numbers of the lens pass: from pixels to the glass, and from directions back to the picture.
+//! Uniforms of the lens pass: mapping from pixels to the glass, and from directions back to the picture.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec2, DVec3};
@@ -11,24 +11,24 @@ use super::{
 };
 use crate::{error::Result, gpu::Layer, scene::Camera};
 
-/// Optical depth of snow over its water, 1/m: 3 / (2 r) over the density of ice, for grains of r = 0.1 mm (Wiscombe &
-/// Warren 1980, new snow).
+/// Optical depth of snow over its depth of water, 1/m: 3 / (2 r) over the density of ice, for grains of r = 0.1 mm
+/// (Wiscombe & Warren 1980, new snow).
 const SNOW_DEPTH_PER_M: f64 = 1.5 / (1e-4 * 0.917);
 
 /// Target and source images of the frame.
 #[derive(Clone, Copy)]
 pub(crate) struct LensFrame<'a> {
     pub camera: &'a Camera,
-    /// The finished picture, to read; as large as the target.
+    /// Finished picture to read, with the size of the target.
     pub picture: &'a wgpu::Texture,
     pub mask: Option<Layer<'a>>,
     pub target: &'a wgpu::TextureView,
-    /// Its values follow the sRGB curve.
+    /// Whether its values are sRGB-encoded.
     pub encoded: bool,
     pub bottom_left: bool,
 }
 
-/// As `Lens` of `shaders/glass/lens.wgsl`.
+/// `Lens` of `shaders/glass/lens.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct LensUniform {
@@ -56,7 +56,7 @@ pub(super) struct LensUniform {
     pub pad: u32,
 }
 
-/// The lattice that the lens shows.
+/// Lattice that the lens draws.
 #[derive(Clone, Copy)]
 pub(super) struct LensLattice {
     pub cell_m: f64,
@@ -65,7 +65,7 @@ pub(super) struct LensLattice {
     pub wet: bool,
     /// Whether snow may lie on it.
     pub snowy: bool,
-    /// Where large beads run to, (u, v); any length.
+    /// Direction in which large beads run, (u, v), with any length.
     pub flow: DVec2,
     pub key: u32,
 }
@@ -77,7 +77,8 @@ impl LensUniform {
         let clip = rays.to_clip() * to_glass.transpose();
         let eye = to_glass * -plane.origin;
         let f3 = |v: DVec3| v.as_vec3().to_array();
-        // A pixel's size where the view's middle meets the glass, or would if it were across.
+        // Size of a pixel where the middle of the view meets the glass, or would meet it if the glass were across the
+        // view.
         let ray = rays.direction.normalize();
         let distance = eye.z.abs() / (to_glass * ray).z.abs().max(0.2);
         let angle = 2.0 * rays.dy.length() / rays.direction.length() / f64::from(frame.picture.height());

@@ -1,4 +1,4 @@
-//! A pane of glass in the host's world: which drops come to it, and which of them the host's boxes keep off.
+//! A pane of glass in the host's world: the drops that arrive at it, and the share that the host's boxes keep off.
 
 use glam::{DMat3, DVec3};
 
@@ -15,26 +15,26 @@ use crate::{
     surroundings::{MAX_SHELTERS, Shelter, shelter::sheltered},
 };
 
-/// How far before a surface a drop is asked for the box that kept it off, m.
+/// Distance in front of the surface at which a drop is tested against the boxes, m.
 const BEFORE_M: f64 = 0.05;
-/// How far a vehicle reaches before its windscreen at most, m.
+/// Largest distance that a vehicle extends in front of its windscreen, m.
 const VEHICLE_M: f64 = 3.0;
 
 /// A pane of glass and the eye behind it, in the host's world.
 pub(super) struct PaneAt {
     eye: DVec3,
-    /// Lower left of its bounds, and from there to the lower right and the upper left.
+    /// Lower left corner of its bounds, and the vectors from there to the lower right and the upper left, m.
     origin: DVec3,
     along: DVec3,
     up: DVec3,
-    /// Outwards, unit.
+    /// Unit vector outwards.
     out: DVec3,
-    /// Velocity of the air against the glass, m/s.
+    /// Velocity of the air relative to the glass, m/s.
     air_m_s: DVec3,
 }
 
 impl PaneAt {
-    /// A pane of a camera's.
+    /// Creates the pane of a camera.
     pub fn new(camera: &Camera, plane: &Plane, screen: &Windscreen) -> Self {
         let to_world = camera.rotation().transpose();
         Self {
@@ -47,22 +47,22 @@ impl PaneAt {
         }
     }
 
-    /// Whether a box is the vehicle's own: it holds the eye and ends within [`VEHICLE_M`] before the glass, where a
-    /// tunnel goes on.
+    /// Whether a box is the vehicle's own: it contains the eye and ends within [`VEHICLE_M`] in front of the glass. A
+    /// tunnel goes on beyond.
     fn sits_in(&self, shelter: &Shelter) -> bool {
         let met = |p: DVec3, way: DVec3| sheltered(shelter, p, shelter.velocity_m_s - way);
-        // What both ways of a line from a point meet has the point in it: it is convex.
+        // The box is convex: a point is inside if both directions of a line through it meet the box.
         let before = self.at([0.5; 2]) + self.out * VEHICLE_M;
         met(self.eye, self.out) && met(self.eye, -self.out) && !met(before, self.out)
     }
 
-    /// The place so far, 0 to 1, to the right and up.
+    /// Returns the point at these shares of the pane to the right and up, 0 to 1.
     fn at(&self, [x, y]: [f64; 2]) -> DVec3 {
         self.origin + self.along * x + self.up * y
     }
 
-    /// Drops of `sizes` that stand for as much of the falling water each: their velocities in the host's world now, and
-    /// the share of the water on the pane that they bring.
+    /// Returns drops of `sizes` that each stand for an equal share of the falling water: their present velocities in
+    /// the host's world, and the share of the water on the pane that they bring.
     pub fn drops(&self, now: &SceneMoment<'_>, sizes: &DropSizes) -> [(DVec3, f64); SIZES] {
         let over = &now.weather;
         let to_enu = over.world.frame_at(self.origin).world_to_enu;
@@ -80,8 +80,8 @@ impl PaneAt {
         drops
     }
 
-    /// Returns the share of such drops that boxes let through to each part of the pane now. The vehicle's own box is
-    /// not asked.
+    /// Returns the share of these drops that boxes now let through to each part of the pane. The vehicle's own box does
+    /// not count.
     pub fn reach(&self, shelters: &[Shelter], drops: &[(DVec3, f64); SIZES]) -> Reach {
         if shelters.is_empty() {
             return Reach::ALL;
@@ -96,7 +96,8 @@ impl PaneAt {
         })
     }
 
-    /// Returns the pane and its drops for the maps' pass, from a camera at `eye` whose axes `to_enu` turns.
+    /// Returns the pane and its drops as uniforms for the maps' pass. The camera is at `eye`, and `to_enu` turns its
+    /// axes.
     pub fn uniform(&self, drops: &[(DVec3, f64); SIZES], (eye, to_enu): (DVec3, DMat3)) -> PaneUniform {
         let row = |v: DVec3, w: f64| (to_enu * v).extend(w).as_vec4().to_array();
         PaneUniform {

@@ -21,7 +21,8 @@ use crate::{
 };
 
 const SMALL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Texels of the picture in one of its smaller copies, along an edge.
+/// Factors by which the picture's copies are smaller, along an edge: the first against the picture, the second against
+/// the first.
 const SMALLER: u32 = 8;
 const SMALLEST: u32 = 4;
 
@@ -33,17 +34,17 @@ pub(super) struct LensVariant {
     pub has_mask: bool,
 }
 
-/// Lenses held: one for each format that views are drawn in.
+/// Number of cached lens pipelines: one for each format that views are drawn in.
 const MOST_LENSES: usize = 16;
 
-/// Pipelines and layouts, one set a device.
+/// Pipelines and layouts, one set for each device.
 pub(crate) struct GlassKit {
     step_layout: wgpu::BindGroupLayout,
     decide: wgpu::RenderPipeline,
     gather: wgpu::RenderPipeline,
     declare: wgpu::RenderPipeline,
     settle: [wgpu::RenderPipeline; 2],
-    /// Once a view has looked through glass below maps.
+    /// Additional pipelines, created when a view first looks through glass below maps.
     mapped: Option<MappedKit>,
     shrink_layout: wgpu::BindGroupLayout,
     shrink: [wgpu::RenderPipeline; 3],
@@ -56,7 +57,7 @@ pub(crate) struct GlassKit {
 }
 
 impl GlassKit {
-    /// Compiles what every lattice needs.
+    /// Compiles the pipelines that every lattice needs.
     ///
     /// # Errors
     /// A missing shader file.
@@ -136,31 +137,31 @@ impl GlassKit {
     }
 }
 
-/// Work of a step on the lattice.
+/// Kind of a step's work on the lattice.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum LatticeWork {
     /// Takes the declared state of the moment.
     Declare,
-    /// Moves on by one step.
+    /// Advances by one step.
     Move,
 }
 
-/// A view's cells on the GPU.
+/// Cells of a view's glass on the GPU.
 pub(super) struct PaneLattice {
     pub size: [u32; 2],
     cells: [wgpu::Texture; 2],
     views: [wgpu::TextureView; 2],
     moves: wgpu::TextureView,
-    /// Snow on the cells, likewise.
+    /// Snow on the cells, in two states.
     snow: [wgpu::Texture; 2],
     snow_views: [wgpu::TextureView; 2],
-    /// Share of the rain that maps let through to the net over the pane.
+    /// Shares of the rain that maps let through to the nodes over the pane.
     mapped: (wgpu::Texture, wgpu::TextureView),
-    /// Index of the present state of the two, for the cells and for the snow.
+    /// Index of the present state of the cells (`now`) and of the snow (`snow_now`).
     now: usize,
     snow_now: usize,
-    /// By the state of the snow: reading state i and, in place of the moves, the other state; reading state i and the
-    /// moves.
+    /// Bind groups by the present state of the snow, then of the cells. The first reads the cells, with the other state
+    /// in place of the moves; the second reads the cells and the moves.
     groups: [[[wgpu::BindGroup; 2]; 2]; 2],
     steps: wgpu::Buffer,
     stride: usize,
@@ -211,22 +212,22 @@ impl PaneLattice {
         }
     }
 
-    /// The present state.
+    /// Returns the present state of the cells.
     pub fn texture(&self) -> &wgpu::Texture {
         &self.cells[self.now]
     }
 
-    /// The present snow.
+    /// Returns the present state of the snow.
     pub fn snow(&self) -> &wgpu::Texture {
         &self.snow[self.snow_now]
     }
 
-    /// Bytes on the GPU.
+    /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
         (3 * 16 + 2 * 4) * u64::from(self.size[0]) * u64::from(self.size[1]) + self.steps.size()
     }
 
-    /// Adds work to what [`PaneLattice::record`] will do; a declared state makes what was due before it needless.
+    /// Adds work for [`PaneLattice::record`]. A declared state replaces the work that was due before it.
     pub fn add(&mut self, numbers: &StepUniform, (work, has_snow): (LatticeWork, bool)) {
         if work == LatticeWork::Declare {
             self.slots.clear();
@@ -237,12 +238,12 @@ impl PaneLattice {
         self.due.push((work, has_snow));
     }
 
-    /// The shares of the rain that maps let through, as of the last frame that had any.
+    /// Returns the shares of the rain that maps let through, from the last frame that had maps.
     pub fn mapped(&self) -> &wgpu::Texture {
         &self.mapped.0
     }
 
-    /// Records the work that was added, below what `maps` show; says how many passes that took.
+    /// Records the added work, with the shelter of `maps`. Returns the number of passes.
     ///
     /// # Errors
     /// A missing shader file.
@@ -293,7 +294,7 @@ impl PaneLattice {
     }
 }
 
-/// As [`pass::draw`], every texel anew, with one group whose numbers begin at an offset.
+/// Does the work of [`pass::draw`] into a cleared target, with one bind group and the offset of the step's uniforms.
 fn draw(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,
@@ -315,21 +316,22 @@ fn draw(
     pass.draw(0..3, 0..1);
 }
 
-/// Numbers, pipeline and target of a lens to draw.
+/// Inputs of a lens to draw.
 pub(super) struct LensDraw<'a> {
     pub uniform: &'a LensUniform,
     pub variant: LensVariant,
     pub target: &'a wgpu::TextureView,
 }
 
-/// The lens over one picture: its smaller copies and bind groups, made anew when the host hands over other textures.
+/// Lens over one picture, with its smaller copies and bind groups. It is created again when the host gives other
+/// textures.
 pub(super) struct LensPass {
     picture: wgpu::Texture,
     mask: Option<KeptLayer>,
     smaller: [wgpu::TextureView; 2],
     shrinks: [wgpu::BindGroup; 2],
     uniform: wgpu::Buffer,
-    /// Over either state of the lattice's snow and cells, or none.
+    /// Bind groups by the state of the lattice's snow, then of its cells.
     groups: [[wgpu::BindGroup; 2]; 2],
     lattice: Option<[u32; 2]>,
     bytes: u64,
@@ -374,7 +376,7 @@ impl LensPass {
         }
     }
 
-    /// Whether it was made for these.
+    /// Whether it was created for these textures.
     pub fn serves(&self, frame: &LensFrame<'_>, lattice: Option<&PaneLattice>) -> bool {
         self.picture == *frame.picture
             && is_kept(frame.mask, self.mask.as_ref())
@@ -385,7 +387,7 @@ impl LensPass {
         self.bytes
     }
 
-    /// Draws; `picture` holds the finished picture already.
+    /// Draws the lens; `picture` already has the finished picture.
     pub fn draw(
         &self,
         device: &Arc<Device>,

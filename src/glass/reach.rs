@@ -1,31 +1,31 @@
-//! How much of the rain gets to which part of the pane, past what stands about.
+//! Share of the rain that reaches each part of the pane past shelters and maps.
 //!
-//! A net of nodes over the pane's bounds: boxes are asked for on the CPU, in f64, so that every channel has the same
-//! bits; the host's maps, which live on the GPU, by a pass of their own (`shaders/glass/maps.wgsl`). A cell has what
-//! lies between its nodes, in integers.
+//! A grid of nodes lies over the pane's bounds. Boxes are tested on the CPU in f64, so that every channel has the same
+//! bits. The host's maps, which are on the GPU, are tested by their own pass (`shaders/glass/maps.wgsl`). A cell
+//! interpolates between its nodes, in integers.
 
 use std::array::from_fn;
 
-/// Nodes along the pane's lower edge, and up the glass.
+/// Number of nodes along the pane's lower edge, and up the glass.
 pub const NODES: [usize; 2] = [16, 8];
-/// Value of a node that all rain gets to.
+/// Value of a node that all of the rain reaches.
 pub const ALL: u8 = 128;
-/// Words of the nodes, four bytes each.
+/// Number of vectors that hold the nodes, with sixteen nodes each.
 const WORDS: usize = NODES[0] * NODES[1] / 16;
-/// Sizes of drops that each node is asked for, as much of the water as the others each.
+/// Number of drop sizes tested at each node. Each stands for an equal share of the water.
 pub const SIZES: usize = 6;
 
-/// Shares of the rain that get to the nodes, each from 0 to [`ALL`], rows from the lower edge up, packed as
-/// `shaders/glass/cells.wgsl` reads them.
+/// Shares of the rain that reach the nodes, each from 0 to [`ALL`], in rows from the lower edge up, packed for
+/// `shaders/glass/cells.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reach([[u32; 4]; WORDS]);
 
 impl Reach {
-    /// All of it, everywhere.
+    /// All of the rain everywhere.
     pub const ALL: Self = Self([[ALL as u32 * 0x0101_0101; 4]; WORDS]);
 
-    /// Creates the shares of the nodes from `share`, 0 to 1, at places of the pane's bounds, 0 to 1 to the right and
-    /// up.
+    /// Creates the shares. `share` returns the share, 0 to 1, at a position in the pane's bounds, 0 to 1 to the right
+    /// and up.
     pub fn of(share: impl Fn([f64; 2]) -> f64) -> Self {
         let mut nodes = [0u8; NODES[0] * NODES[1]];
         for (i, node) in nodes.iter_mut().enumerate() {
@@ -36,7 +36,7 @@ impl Reach {
         Self::from_nodes(&nodes)
     }
 
-    /// Creates the shares from the nodes, row by row; a missing node gets nothing.
+    /// Creates the shares from the nodes, row by row; a missing node has 0.
     pub fn from_nodes(nodes: &[u8]) -> Self {
         let byte = |i: usize| nodes.get(i).copied().unwrap_or(0);
         Self(from_fn(|w| from_fn(|k| u32::from_le_bytes(from_fn(|b| byte(16 * w + 4 * k + b))))))
@@ -50,12 +50,12 @@ impl Reach {
         self.0.iter().flatten().flat_map(|w| w.to_le_bytes()).map(|b| f64::from(b) / f64::from(ALL))
     }
 
-    /// Whether any gets anywhere.
+    /// Whether any rain reaches the pane.
     pub fn any(&self) -> bool {
         self.0.iter().flatten().any(|w| *w != 0)
     }
 
-    /// Returns the share that gets past both this and `other`.
+    /// Returns the share that passes both this and `other`.
     pub fn and(&self, other: &Self) -> Self {
         let mut nodes = [0u8; NODES[0] * NODES[1]];
         for ((node, a), b) in nodes.iter_mut().zip(self.nodes()).zip(other.nodes()) {
@@ -64,7 +64,7 @@ impl Reach {
         Self::from_nodes(&nodes)
     }
 
-    /// Mean share over the pane's bounds: nodes on an edge count half.
+    /// Returns the mean share over the pane's bounds. Nodes on an edge have half the weight.
     pub fn mean(&self) -> f64 {
         let edge = |i: usize, n: usize| if i == 0 || i == n - 1 { 0.5 } else { 1.0 };
         let weighed = self.nodes().enumerate().map(|(i, share)| {

@@ -1,4 +1,5 @@
-//! The pass that asks the host's maps, where they live, which share of the rain gets to which part of the pane.
+//! Pass that tests the host's occluder maps on the GPU: the share of the rain that they let through to each part of the
+//! pane.
 
 use super::{
     cell_passes::{WORD, bind, buffer, cells_pipeline, settle_pipelines},
@@ -24,7 +25,7 @@ pub(crate) struct PaneUniform {
     pub drops: [[f32; 4]; SIZES],
 }
 
-/// Pipelines that glass below maps needs besides.
+/// Additional pipelines for glass below maps.
 pub(super) struct MappedKit {
     layouts: [wgpu::BindGroupLayout; 2],
     reach: wgpu::RenderPipeline,
@@ -33,14 +34,14 @@ pub(super) struct MappedKit {
     pub settle: [wgpu::RenderPipeline; 2],
 }
 
-/// A view's maps as its glass asks them.
+/// Bindings of a view's maps for its glass.
 pub(super) struct MapReach {
     surroundings: SurroundingsBlock,
     uniform: wgpu::Buffer,
     groups: [wgpu::BindGroup; 2],
 }
 
-/// Maps of a frame, and the pane among them.
+/// Maps of a frame, and the pane below them.
 pub(crate) struct Mapped<'a> {
     pub told: HostSurroundings<'a>,
     pub pane: PaneUniform,
@@ -84,7 +85,7 @@ impl MapReach {
         Self { surroundings: SurroundingsBlock::new(&device.device), uniform, groups }
     }
 
-    /// Draws the shares into `target`, of [`NODES`] texels.
+    /// Draws the shares into `target`, which has [`NODES`] texels.
     pub fn draw(
         &mut self,
         device: &Device,
@@ -100,7 +101,7 @@ impl MapReach {
     }
 }
 
-/// Texels of what [`MapReach::draw`] draws into.
+/// Size of the target of [`MapReach::draw`], texels.
 pub(super) const SIZE: [u32; 2] = [NODES[0] as u32, NODES[1] as u32];
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! The cells on the CPU, bit for bit as `shaders/glass/{cells,decide,gather,declare,settle}.wgsl` have them: same
-//! names, same order.
+//! Reference of the cells on the CPU, with the same bits as `shaders/glass/{cells,decide,gather,declare,settle}.wgsl`,
+//! the same names and the same order.
 
 use glam::DVec2;
 
@@ -17,7 +17,7 @@ const WIPED: u32 = 16;
 const RAN: u32 = 32;
 const LIFE_STEPS: u32 = 2048;
 
-/// (volume, place x + 65536 y, speed + 65536 shape, hits + 4096 clearings + 65536 film).
+/// A cell: (volume, place x + 65536 y, speed + 65536 shape, hits + 4096 clearings + 65536 film).
 pub type Cell = [u32; 4];
 
 /// A lattice of cells, row by row from the lower left.
@@ -25,7 +25,7 @@ pub type Cell = [u32; 4];
 pub struct Cells {
     /// Columns and rows.
     pub size: [u32; 2],
-    /// The cells.
+    /// Cells, row by row.
     pub cells: Vec<Cell>,
 }
 
@@ -95,24 +95,24 @@ fn part_of(number: u32, share: u32) -> u32 {
 }
 
 impl Cells {
-    /// Dry glass.
+    /// Creates dry glass.
     pub fn dry(size: [u32; 2]) -> Self {
         Self { size, cells: vec![[0; 4]; (size[0] * size[1]) as usize] }
     }
 
-    /// The declared state of a step.
+    /// Creates the declared state of a step.
     pub fn declared(step: &StepUniform) -> Self {
         let size = [step.key[2], step.key[3]];
         let cells = (0..size[0] * size[1]).map(|i| declare(step, [(i % size[0]) as i32, (i / size[0]) as i32]));
         Self { size, cells: cells.collect() }
     }
 
-    /// Water on the glass, units of volume.
+    /// Returns the water on the glass, units of volume.
     pub fn water(&self) -> u64 {
         self.cells.iter().map(|c| u64::from(c[0])).sum()
     }
 
-    /// Share of a pane under beads, and the water on it, m^3.
+    /// Returns the share of a pane under beads, and the water on it, m^3.
     pub fn covered(&self, plane: &Plane, cell_m: f64) -> (f64, f64) {
         let inside = |p: DVec2| {
             let c = &plane.corners;
@@ -128,7 +128,7 @@ impl Cells {
                 area += std::f64::consts::PI * laws::radius_m(volume).powi(2);
             }
         }
-        // Beads that lie over one another hide each other as chance has it.
+        // Beads overlap at random.
         (1.0 - libm::exp(-area / plane.area_m2()), water)
     }
 
@@ -144,7 +144,7 @@ impl Cells {
         Self { size: self.size, cells: cells.collect() }
     }
 
-    /// The state a step later, without snow.
+    /// Returns the state a step later, without snow.
     pub fn stepped(&self, step: &StepUniform) -> Self {
         self.stepped_under(step, None)
     }
@@ -260,7 +260,7 @@ impl Cells {
     }
 }
 
-/// Snow on glass, units of its water a cell, row by row from the lower left.
+/// Snow on glass, in units of its water for each cell, row by row from the lower left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Snow {
     /// Columns and rows.
@@ -280,7 +280,7 @@ impl Snow {
         self.cells[(cell[1] * self.size[0] as i32 + cell[0]) as usize]
     }
 
-    /// The declared state of a step.
+    /// Creates the declared state of a step.
     pub fn declared(step: &StepUniform) -> Self {
         let [_, flake, melt, most] = step.snow;
         Self::of(step, |cell| {
@@ -293,7 +293,7 @@ impl Snow {
         })
     }
 
-    /// The state a step later.
+    /// Returns the state a step later.
     pub fn settled(&self, step: &StepUniform) -> Self {
         Self::of(step, |cell| {
             if swept(step, cell.map(|v| v * 16 + 8)) {
@@ -305,7 +305,7 @@ impl Snow {
         })
     }
 
-    /// Water in it, m^3.
+    /// Returns the water in the snow, m^3.
     pub fn water_m3(&self) -> f64 {
         self.cells.iter().map(|c| f64::from(*c)).sum::<f64>() * VOLUME_UNIT_M3
     }

@@ -1,4 +1,4 @@
-//! A view's glass: which steps are due, what acts during them, and when there is nothing to do.
+//! State of a view's glass: the steps that are due, the conditions during them, and whether there is anything to do.
 
 use std::sync::Arc;
 
@@ -23,8 +23,8 @@ use crate::{
     weather::Conditions,
 };
 
-/// Share of the rain that boxes let through to each part of the glass, and the maps that keep rain off, if there are
-/// any.
+/// Share of the rain that boxes let through to each part of the glass, and the host's maps that keep rain off, if there
+/// are any.
 pub(super) type Reached<'a> = (Reach, Option<Mapped<'a>>);
 
 /// Weather and frame at the glass at a moment.
@@ -32,24 +32,24 @@ pub(super) struct AtGlass<'a> {
     pub time_s: f64,
     pub seed: u64,
     pub camera: &'a Camera,
-    /// Up in the world's axes, unit.
+    /// Unit vector up, in the world's axes.
     pub up: DVec3,
     /// Altitude of the camera above sea level, m.
     pub altitude_m: f64,
-    /// The weather at a time.
+    /// Function that returns the weather at a time, s.
     pub weather: &'a dyn Fn(f64) -> Conditions,
-    /// Function that finds the share of the rain that gets to the glass now.
+    /// Function that returns the share of the rain that reaches the glass now.
     pub reach: &'a dyn Fn(&Plane, &Windscreen) -> Result<Reached<'a>>,
-    /// Nothing of earlier frames may show.
+    /// Whether nothing of earlier frames may remain.
     pub cut: bool,
 }
 
 /// Water on a windscreen.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct GlassReport {
-    /// Drops that hit the pane in a second.
+    /// Drops that hit the pane per second.
     pub drops_per_s: f64,
-    /// Water that hits it, mm/h of its area.
+    /// Water that hits it, mm/h over its area.
     pub water_mm_h: f64,
     /// Share of the pane under water.
     pub covered: f64,
@@ -61,10 +61,10 @@ pub struct GlassReport {
     pub state_time_s: f64,
 }
 
-/// A view's windscreen with what it keeps between frames.
+/// A view's windscreen, and its state between frames.
 pub(crate) struct Glass {
     screen: Windscreen,
-    /// Simulation time of the last frame, and the windscreen then.
+    /// Simulation time of the last frame, s, and the windscreen then.
     last: Option<(f64, Windscreen)>,
     plane: Option<Plane>,
     acting: Option<StepConditions>,
@@ -74,24 +74,24 @@ pub(crate) struct Glass {
     below: Option<Box<MapReach>>,
     lens: Option<LensPass>,
     tables: Box<Tables>,
-    /// The last step that was done.
+    /// Number of the last step that was done.
     step: Option<i64>,
-    /// 1 after rain, 0 when the last bead has dried.
+    /// 1 after rain; falls to 0 until the last bead has dried.
     moisture: f64,
-    /// Snow of the cell that may have most, units; 0 where there is none.
+    /// Upper bound of the snow in a cell, units; 0 without snow.
     frost: f64,
-    /// Key of the seed, for what stays where it is on the glass.
+    /// Hash of the seed, for patterns that stay in place on the glass.
     key: u32,
 }
 
-/// The number of the last step at or before a time: what a host calls n / 60 s is step n.
+/// Returns the number of the last step at or before a time. The time n / 60 s, as a host rounds it, is step n.
 fn step_at(time_s: f64) -> i64 {
     (time_s * STEPS_PER_S + 1e-6).floor() as i64
 }
 
 fn acting(screen: &Windscreen, plane: &Plane, moment: &AtGlass<'_>, weather: &Conditions) -> StepConditions {
     let up = moment.camera.rotation() * moment.up;
-    // Steps of 50 m: a road's ups and downs must not cost new tables.
+    // Altitude in steps of 50 m, so that a hilly road does not need new tables all the time.
     let level = (moment.altitude_m / 50.0).round() * 50.0;
     StepConditions {
         cell_m: plane.lattice().0,
@@ -127,22 +127,22 @@ impl Glass {
         }
     }
 
-    /// Sets the windscreen anew; the water stays on it.
+    /// Replaces the windscreen; the water stays on it.
     pub fn set(&mut self, screen: Windscreen) {
         self.screen = screen;
     }
 
-    /// Whether the lens has anything to show.
+    /// Whether the lens has anything to draw.
     pub fn shows(&self) -> bool {
         self.moisture > 0.0 || self.frost > 0.0 || self.screen.fogging * (1.0 - self.screen.demist) > 0.0
     }
 
-    /// Bytes on the GPU.
+    /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
         self.lattice.as_ref().map_or(0, PaneLattice::bytes) + self.lens.as_ref().map_or(0, LensPass::bytes)
     }
 
-    /// Brings the glass to a moment; says how many passes that took.
+    /// Advances the glass to a moment. Returns the number of passes.
     ///
     /// # Errors
     /// [`Status::Unsupported`] for a projection of parallel rays.
@@ -155,7 +155,7 @@ impl Glass {
     ) -> Result<u32> {
         let plane = Plane::of_pane(&self.screen.pane, &moment.camera.projection)?;
         let (cell_m, size) = plane.lattice();
-        // A moving head changes the pane's size by rounding: the water on it stays.
+        // Rounding changes the pane's size a little when the head moves; the water on it stays.
         let same = |old: [u32; 2]| (0..2).all(|i| old[i].abs_diff(size[i]) <= 1 + size[i] / 50);
         let fits = self.lattice.as_ref().is_some_and(|l| same(l.size));
         if self.lattice.is_some() && !fits {
@@ -185,7 +185,7 @@ impl Glass {
         self.record(device, kit, encoder, moment, mapped.as_ref())
     }
 
-    /// Records what is due, and that this frame was.
+    /// Records the due work, and remembers this frame.
     fn record(
         &mut self,
         device: &Device,
@@ -199,7 +199,7 @@ impl Glass {
         lattice.record(device, kit, encoder, mapped.map(|m| (&mut self.below, m)))
     }
 
-    /// The declared state of a moment.
+    /// Takes the declared state of a moment.
     fn begin(
         &mut self,
         device: &Device,
@@ -221,7 +221,7 @@ impl Glass {
         }
     }
 
-    /// One step of the water's, where there is any.
+    /// Does one step of water and snow, if there are any.
     #[allow(clippy::too_many_arguments, reason = "the step's inputs, which only this call brings together")]
     fn take_step(
         &mut self,
@@ -245,7 +245,7 @@ impl Glass {
             None => *screen,
         };
         let is_wiped = (0..MAX_ARMS).any(|i| screen.arms[i] != earlier.arms[i]);
-        // Snow that lies.
+        // Snow that just lies needs no step.
         if !rains && self.moisture <= 0.0 && !snows && melts <= 0.0 && !is_wiped {
             return;
         }
@@ -253,7 +253,7 @@ impl Glass {
         let has_snow = snows || self.frost > 0.0;
         let wets = rains || (self.frost > 0.0 && melts > 0.0);
         self.moisture = if wets { 1.0 } else { (self.moisture - 1.0 / (STEPS_PER_S * acts.drying_s())).max(0.0) };
-        // Cells melt by chance around the mean.
+        // Cells melt by random amounts around the mean.
         self.frost = if snows { self.tables.most_snow() } else { (self.frost - 0.99 * melts).max(0.0) };
         let lattice = self.lattice.get_or_insert_with(|| PaneLattice::new(device, kit, size, MAX_STEPS as usize + 1));
         if was_dry {
@@ -268,18 +268,18 @@ impl Glass {
         });
         let mut numbers = self.tables.at((acts, &self.reach.0), seed, step, lattice.size, &arms);
         if !has_snow {
-            // Warm air has nothing to melt.
+            // Melting is off without snow.
             numbers.snow = [0; 4];
         }
         lattice.add(&numbers, (LatticeWork::Move, has_snow));
     }
 
-    /// The windscreen at a time since the last frame.
+    /// Returns the windscreen at a time since the last frame.
     fn between(&self, last_frame: Option<(f64, Windscreen)>, until_s: f64, time_s: f64) -> Windscreen {
         last_frame.map_or(self.screen, |(from_s, old)| blend(&old, &self.screen, share(from_s, until_s, time_s)))
     }
 
-    /// Draws what the glass does to the finished picture; says how many passes that took.
+    /// Draws the lens over the finished picture. Returns the number of passes.
     ///
     /// # Errors
     /// As [`Glass::advance`].
@@ -298,7 +298,7 @@ impl Glass {
             self.lens = Some(LensPass::new(device, kit, frame, lattice));
         }
         let Some(lens) = &self.lens else { return Ok(0) };
-        // Large beads: as heavy as the largest that a cell holds.
+        // Flow of the largest beads that a cell holds.
         let large = self.tables.flow();
         let size = lattice.map_or(plane.lattice().1, |l| l.size);
         let shown = LensLattice { cell_m: acts.cell_m, size, wet, snowy, flow: large, key: self.key };
@@ -308,7 +308,7 @@ impl Glass {
         lens.draw(device, kit, encoder, &LensDraw { uniform: &uniform, variant, target: frame.target }, lattice)
     }
 
-    /// Water on the pane. Reads the cells back: waits for the GPU.
+    /// Returns the water on the pane. Reads the cells back, which waits for the GPU.
     ///
     /// # Errors
     /// [`Status::DeviceLost`], or a GPU fault.
@@ -332,8 +332,8 @@ impl Glass {
         Ok(report)
     }
 
-    /// Returns the share of the rain that gets to each part past boxes and maps. Waits for the GPU where there are
-    /// maps.
+    /// Returns the share of the rain that reaches each part of the pane past boxes and maps. Waits for the GPU if there
+    /// are maps.
     fn reached(&self, device: &Device) -> Result<Reach> {
         let (boxes, mapped) = self.reach;
         let Some(lattice) = self.lattice.as_ref().filter(|_| mapped) else { return Ok(boxes) };
@@ -341,7 +341,7 @@ impl Glass {
         Ok(boxes.and(&Reach::from_nodes(&nodes)))
     }
 
-    /// The snow, if any may lie there. Waits for the GPU.
+    /// Returns the snow, if there may be any. Waits for the GPU.
     ///
     /// # Errors
     /// As [`Glass::report`].
@@ -352,7 +352,7 @@ impl Glass {
         Ok(Some(Snow { size: lattice.size, cells: cells.collect() }))
     }
 
-    /// The cells, if there is water. Waits for the GPU.
+    /// Returns the cells, if there is water. Waits for the GPU.
     ///
     /// # Errors
     /// As [`Glass::report`].
@@ -369,7 +369,7 @@ fn share(from_s: f64, until_s: f64, time_s: f64) -> f64 {
     if until_s <= from_s { 1.0 } else { ((time_s - from_s) / (until_s - from_s)).clamp(0.0, 1.0) }
 }
 
-/// Interpolates what moves steadily between two frames; the rest is taken from the later one.
+/// Interpolates the wind and the wipers between two frames. All other fields are taken from the later one.
 fn blend(a: &Windscreen, b: &Windscreen, share: f64) -> Windscreen {
     let lerp = |a: f64, b: f64| if a == b { b } else { a + (b - a) * share };
     let mut s = *b;

@@ -1,4 +1,4 @@
-//! One step's numbers: what the laws come to on a lattice, as the integers that the cells work with.
+//! Uniforms of one step: the laws for a lattice, as integers for the cells.
 
 use std::f64::consts::LN_2;
 
@@ -13,49 +13,50 @@ use super::{
 };
 use crate::falling::sizes::DropSizes;
 
-/// Steps a second.
+/// Steps per second.
 pub const STEPS_PER_S: f64 = 60.0;
-/// Steps that one frame may be behind; beyond, the glass takes its declared state.
+/// Largest number of steps that one frame catches up. Beyond it, the glass takes its declared state.
 pub const MAX_STEPS: i64 = 30;
-/// Volume of water that a cell counts as 1, m^3.
+/// Volume of one unit of water in a cell, m^3.
 pub const VOLUME_UNIT_M3: f64 = 1e-13;
-/// Classes of drops: sixteen octaves of rarity, each in sixteen parts.
+/// Number of drop classes: sixteen octaves of rarity with sixteen parts each.
 const DROP_CLASSES: usize = 256;
-/// Classes of beads: four an octave of volume.
+/// Number of bead classes: four in each octave of volume.
 const BEAD_CLASSES: usize = 96;
-/// A bead is at most as large as a cell's neighbours are seen from it: radius over the cell's edge.
+/// Largest contact radius of a bead over the cell's edge. A bead then stays within the neighbouring cells.
 const LARGEST: f64 = 0.95;
-/// Farthest that a bead moves in a step, 1/65536 cell.
+/// Longest distance that a bead moves in a step, 1/65536 cell.
 const FARTHEST: f64 = 58_000.0;
-/// Units of an arm's place and directions: 1/16 cell, 1/4096.
+/// Units of an arm's positions and directions: 1/16 cell and 1/4096.
 const ARM_UNIT: f64 = 16.0;
 const DIRECTION_UNIT: f64 = 4096.0;
 
-/// As `Step` of `shaders/glass/cells.wgsl`.
+/// `Step` of `shaders/glass/cells.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct StepUniform {
-    /// Key of (seed, step), key of the seed, columns, rows.
+    /// Hash of (seed, step), hash of the seed, columns, rows.
     pub key: [u32; 4],
-    /// A cell gets at least 1, 2, 3 drops where its 32 random bits are below these; chance in 65536 that a fine bead
-    /// dries.
+    /// Limits of 32 random bits below which a cell gets at least 1, 2 or 3 drops; probability in 1/65536 that a fine
+    /// bead dries.
     pub arrive: [u32; 4],
-    /// Declared state: water a step in 1/256 unit, drops a step in 1/65536, the step, the largest bead that rests.
+    /// Declared state: water per step in 1/256 unit, drops per step in 1/65536, number of the step, volume of the
+    /// largest bead that rests.
     pub declared: [u32; 4],
-    /// The largest volume of a cell, units; 1 where not all of the rain gets everywhere.
+    /// Largest volume of a cell, units; 1 if some cells get less than all of the rain.
     pub limits: [u32; 4],
-    /// Each arm: (pivot x, y, inner, outer radius), (direction before x, y, half way x, y), (now x, y, half width, is
-    /// there).
+    /// For each arm: (pivot x, y, inner radius, outer radius), (direction before x, y, direction half way x, y),
+    /// (direction now x, y, half width, 1 if there is an arm).
     pub arms: [[i32; 4]; 6],
-    /// Volumes of drops, from common to rare.
+    /// Volumes of drops, from common to rare, units.
     pub drops: [[u32; 4]; DROP_CLASSES / 4],
-    /// Beads by volume: (radius in 1/256 cell + 1024 x loss to the air in 1/4096 unit a step), motion x, y in 1/65536
-    /// cell, 256 x drive over retention.
+    /// Beads by class of volume: (radius in 1/256 cell + 1024 x evaporation in 1/4096 unit per step), motion x, y in
+    /// 1/65536 cell per step, 256 x driving force over retention.
     pub beads: [[i32; 4]; BEAD_CLASSES],
-    /// Snow. A flake lands on a cell whose 32 random bits are below the first number. Then, in units of water: a flake,
-    /// what melts in a step (in 1/4096), and the most that a cell holds.
+    /// Snow: limit of 32 random bits below which a flake lands on a cell; then, in units of water, a flake, the melt
+    /// per step (in 1/4096), and the largest amount in a cell.
     pub snow: [u32; 4],
-    /// [`Reach`]: the shares of the rain that get to the nodes.
+    /// [`Reach`]: shares of the rain that reach the nodes.
     pub reach: [[u32; 4]; 8],
 }
 
@@ -64,9 +65,9 @@ pub struct StepUniform {
 pub struct StepConditions {
     /// Edge of a cell, m.
     pub cell_m: f64,
-    /// The rain.
+    /// Sizes of the raindrops.
     pub rain: DropSizes,
-    /// Share of it that reaches the glass.
+    /// Share of the rain that reaches the glass.
     pub exposed: f64,
     /// Upward component of the glass's outward normal.
     pub up: f64,
@@ -74,26 +75,26 @@ pub struct StepConditions {
     pub approach_m_s: f64,
     /// Speed of the air up the glass, m/s.
     pub airflow_m_s: f64,
-    /// Gravity's direction in the glass's (u, v): 1 long on upright glass.
+    /// Direction of gravity in the glass's (u, v), with length 1 on upright glass.
     pub down: DVec2,
     /// Relative humidity, 0 to 1.
     pub relative_humidity: f64,
     /// Temperature, degrees Celsius.
     pub temperature_c: f64,
-    /// The snow.
+    /// Snowfall.
     pub snow: Snowing,
-    /// Heat that the glass gets, W/m^2.
+    /// Heating of the glass, W/m^2.
     pub heat_w_m2: f64,
 }
 
 impl StepConditions {
-    /// The drops that arrive.
+    /// Returns the drops that arrive.
     pub fn arrivals(&self) -> Arrivals {
         Arrivals::of(&self.rain, self.exposed, self.up, self.approach_m_s)
     }
 
-    /// How long the largest bead lasts, s: the cap's radius follows r^2 = r0^2 - 2 k t / (3 f) for V = f r^3 and a loss
-    /// of k r. Infinite in saturated air.
+    /// Returns the time in which the largest bead dries, s. The cap's radius follows r^2 = r0^2 - 2 k t / (3 f) for V =
+    /// f r^3 and an evaporation of k r. Infinite in saturated air.
     pub fn drying_s(&self) -> f64 {
         let r = LARGEST * self.cell_m;
         let per_m = laws::evaporation_m3_s(r, self.relative_humidity, self.temperature_c, self.airflow_m_s) / r;
@@ -101,7 +102,7 @@ impl StepConditions {
     }
 }
 
-/// The part of a step's numbers that follows from what acts; kept while nothing changes.
+/// Uniforms of a step that follow from the conditions, kept while these do not change.
 pub struct Tables {
     of: Option<StepConditions>,
     numbers: StepUniform,
@@ -113,7 +114,7 @@ impl Default for Tables {
     }
 }
 
-/// PCG of 32 bits (Jarzynski & Olano 2020).
+/// Returns the 32-bit PCG hash of a number (Jarzynski & Olano 2020).
 pub fn pcg(v: u32) -> u32 {
     let state = v.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
@@ -124,7 +125,7 @@ fn key(a: u64, b: u64) -> u32 {
     [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32].into_iter().fold(0x9e37_79b9, |k, part| pcg(k ^ part))
 }
 
-/// Key of what stays where it is on the glass.
+/// Returns the hash of a seed for patterns that stay in place on the glass.
 pub fn seed_key(seed: u64) -> u32 {
     key(seed, 0x0067_6c61_7373)
 }
@@ -137,7 +138,7 @@ impl Tables {
         }
     }
 
-    /// Whether drops arrive at all.
+    /// Whether drops arrive.
     pub fn arrive(&mut self, acting: &StepConditions) -> bool {
         if acting.exposed <= 0.0 || acting.rain.number_per_m3() <= 0.0 {
             return false;
@@ -146,25 +147,25 @@ impl Tables {
         self.numbers.arrive[0] > 0
     }
 
-    /// Whether snow lands at all, and how much melts in a step, units.
+    /// Whether snow lands, and how much melts in a step, units.
     pub fn snows(&mut self, acting: &StepConditions) -> (bool, f64) {
         self.update(acting);
         let [chance, _, melt, _] = self.numbers.snow;
         (acting.exposed > 0.0 && chance > 0, f64::from(melt) / 4096.0)
     }
 
-    /// Most snow of a cell, units.
+    /// Returns the largest amount of snow in a cell, units.
     pub fn most_snow(&self) -> f64 {
         f64::from(self.numbers.snow[3])
     }
 
-    /// Where beads as large as a cell holds run to, in (u, v); any length, 0 if they rest.
+    /// Returns the direction in (u, v) in which the largest beads of a cell run, with any length; 0 if they rest.
     pub fn flow(&self) -> DVec2 {
         let largest = &self.numbers.beads[4 * (31 - (self.numbers.limits[0] | 1).leading_zeros()) as usize];
         DVec2::new(largest[1].into(), largest[2].into())
     }
 
-    /// The numbers of `step`. `arms` are the wipers with their blades' angles before and now, rad.
+    /// Returns the uniforms of `step`. `arms` has the wipers and the angles of their blades before and now, rad.
     pub fn at(
         &mut self,
         (acting, reach): (&StepConditions, &Reach),
@@ -191,7 +192,7 @@ fn numbers(acting: &StepConditions) -> StepUniform {
     let arrivals = acting.arrivals();
     let per_cell = acting.cell_m * acting.cell_m / STEPS_PER_S;
     let mean = arrivals.number_m2_s * per_cell;
-    // Poisson: 1 - P(0), less P(1), less P(2); what would be four drops and more counts as three.
+    // Poisson distribution: 1 - P(0), less P(1), less P(2). Four and more drops count as three.
     let none = libm::exp(-mean);
     let at_least = [1.0 - none, 1.0 - none * (1.0 + mean), 1.0 - none * (1.0 + mean + 0.5 * mean * mean)];
     let chance = |p: f64| (p.clamp(0.0, 1.0) * 4_294_967_295.0) as u32;
@@ -228,7 +229,7 @@ fn numbers(acting: &StepConditions) -> StepUniform {
     n
 }
 
-/// A class of beads, and whether it rests anywhere on the glass.
+/// Returns the row of a class of beads, and whether its beads can rest on the glass.
 fn bead(acting: &StepConditions, volume: f64, loss: f64) -> ([i32; 4], bool) {
     let r = laws::radius_m(volume);
     let held = laws::retention_n(r);
@@ -238,7 +239,7 @@ fn bead(acting: &StepConditions, volume: f64, loss: f64) -> ([i32; 4], bool) {
     let full = r >= 0.93 * LARGEST * acting.cell_m;
     let mut speed = laws::speed_m_s(volume, drive) / STEPS_PER_S / acting.cell_m * 65_536.0;
     if full && drive > 0.0 {
-        // More than a cell can hold flows off as a film would.
+        // A cell that overflows loses its water at the speed of a film.
         speed = speed.max(6_000.0);
     }
     let motion = if drive > 0.0 { force * (speed.min(FARTHEST) / drive) } else { DVec2::ZERO };
@@ -248,14 +249,15 @@ fn bead(acting: &StepConditions, volume: f64, loss: f64) -> ([i32; 4], bool) {
     ([radius + 1024 * loss, motion.x.round() as i32, motion.y.round() as i32, ratio as i32], ratio < 140.0)
 }
 
-/// Mean volumes of the classes: class 16 k + j holds the drops whose rarity (the share of larger ones) lies between
-/// (16 + 15 - j) / 16 and (16 + 16 - j) / 16 of 2^-(k + 1), so that large drops, rare and heavy, are told apart.
+/// Fills in the mean volumes of the drop classes. Class 16 k + j has the drops whose rarity (the share of larger drops)
+/// lies between (16 + 15 - j) / 16 and (16 + 16 - j) / 16 of 2^-(k + 1). Large drops, which are rare and heavy,
+/// therefore have classes of their own.
 fn drop_classes(arrivals: &Arrivals, drops: &mut [[u32; 4]; DROP_CLASSES / 4]) {
     if arrivals.number_m2_s <= 0.0 {
         return;
     }
     let mut classes = arrivals.classes.iter();
-    // From the largest drops on: what is left of the present size, in shares of all drops.
+    // Start from the largest drops. `left` is the rest of the present size, as a share of all drops.
     let (mut left, mut volume) = (0.0, 0.0);
     let mut from = 0.0;
     for i in (0..DROP_CLASSES).rev() {
@@ -282,7 +284,7 @@ fn drop_classes(arrivals: &Arrivals, drops: &mut [[u32; 4]; DROP_CLASSES / 4]) {
 
 fn arm_numbers(arm: &WiperArm, [before, now]: [f64; 2], cell_m: f64) -> [[i32; 4]; 3] {
     let place = |m: f64| (m / cell_m * ARM_UNIT).round() as i32;
-    // A blade goes the shorter of ways; the half plane about its mean direction holds the sector.
+    // A blade takes the shorter way. The half plane around its mean direction contains the sector.
     let widest = 170f64.to_radians();
     let before = before.clamp(now - widest, now + widest);
     let (low, high) = if before < now { (before, now) } else { (now, before) };
@@ -328,7 +330,7 @@ mod tests {
             let n = numbers(&acting);
             for i in 0..DROP_CLASSES {
                 let octave = (i / 16) as f64;
-                // The rarest class stands for what is rarer still.
+                // The rarest class also stands for all rarer drops.
                 let share = 0.5f64.powf(octave + 5.0) * if i == DROP_CLASSES - 1 { 17.0 } else { 1.0 };
                 sum += share * f64::from(n.drops[i / 4][i % 4]) * VOLUME_UNIT_M3;
             }

@@ -1,4 +1,4 @@
-//! A view's windscreen: what it keeps between frames, and how it is drawn in the stage LENS.
+//! Windscreen of a view: its state between frames, and its drawing in the stage LENS.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -22,7 +22,7 @@ use crate::{
     surroundings::{HostSurroundings, ShelterReach},
 };
 
-/// The windscreen of a view, if it has one.
+/// Windscreen of a view, if it has one.
 pub(crate) struct GlassView {
     shared: Arc<Shared>,
     glass: Option<Box<Glass>>,
@@ -33,7 +33,7 @@ impl GlassView {
         Self { shared: shared.clone(), glass: None }
     }
 
-    /// Sets the window that the view looks through; `None` takes it away.
+    /// Sets the window that the view looks through; `None` removes it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range; nothing changes then.
@@ -50,7 +50,7 @@ impl GlassView {
         Ok(())
     }
 
-    /// Water on the glass, if there is a glass. Waits for the GPU.
+    /// Returns the water on the glass; `None` without a windscreen. Waits for the GPU.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -58,7 +58,7 @@ impl GlassView {
         self.glass.as_ref().map(|g| g.report(device)).transpose()
     }
 
-    /// The cells of the water, or `None` where the glass is dry. Waits for the GPU.
+    /// Returns the cells of the water, or `None` if the glass is dry. Waits for the GPU.
     ///
     /// # Errors
     /// As [`GlassView::water`].
@@ -66,7 +66,7 @@ impl GlassView {
         self.glass.as_ref().map_or(Ok(None), |g| g.cells(device))
     }
 
-    /// The snow, or `None` where there is none. Waits for the GPU.
+    /// Returns the snow, or `None` if there is none. Waits for the GPU.
     ///
     /// # Errors
     /// As [`GlassView::water`].
@@ -74,7 +74,7 @@ impl GlassView {
         self.glass.as_ref().map_or(Ok(None), |g| g.snow(device))
     }
 
-    /// Returns the kit with which the device draws windscreens, made at its first use.
+    /// Returns the pipelines with which the device draws windscreens, created at first use.
     fn kit(&self, device: &Arc<Device>) -> Result<Arc<Mutex<GlassKit>>> {
         self.shared.get(|| GlassKit::new(device).map(Mutex::new))
     }
@@ -84,7 +84,7 @@ fn locked(kit: &Mutex<GlassKit>) -> Result<MutexGuard<'_, GlassKit>> {
     kit.lock().map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked over a windscreen"))
 }
 
-/// Finds the share of the rain that boxes and maps let through to a pane now.
+/// Returns the share of the rain that boxes let through to a pane now, and the maps above it.
 fn reached<'a>(now: &'a SceneMoment<'_>, frame: &Frame<'_>, plane: &Plane, screen: &Windscreen) -> Result<Reached<'a>> {
     if !now.is_sheltered() {
         return Ok((Reach::ALL, None));
@@ -114,7 +114,7 @@ impl DrawnEffect for GlassView {
         Ok(())
     }
 
-    /// Brings the water on the glass to the frame's time.
+    /// Advances the water on the glass to the frame's time.
     fn prepare(&mut self, context: &FrameContext<'_>, recording: &mut Recording<'_>) -> Result<()> {
         if self.glass.is_none() {
             return Ok(());

@@ -1,27 +1,27 @@
-//! The windscreen as a host describes it: pane, wipers, and what acts on the glass.
+//! The windscreen as a host describes it: pane, wipers, and what affects the glass.
 
 use glam::DVec3;
 
 use super::geometry::{Pane, Plane};
 use crate::error::{Error, Result, check_range};
 
-/// Wiper arms at most.
+/// Largest number of wiper arms.
 pub const MAX_ARMS: usize = 2;
 
-/// A wiper: a blade on an arm that turns about a pivot in the glass's plane.
+/// A wiper: a blade on an arm that turns around a pivot in the plane of the glass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiperArm {
-    /// Pivot, m right of and above the pane's lower left corner along the glass, each [-4, 12].
+    /// Position of the pivot, m right of and above the pane's lower left corner along the glass, each [-4, 12].
     pub pivot_m: [f64; 2],
-    /// From the pivot to the blade's outer end, m, (0, 3].
+    /// Distance from the pivot to the blade's outer end, m, (0, 3].
     pub length_m: f64,
-    /// From the pivot to the blade's inner end, m, [0, `length_m`).
+    /// Distance from the pivot to the blade's inner end, m, [0, `length_m`).
     pub inner_radius_m: f64,
     /// Angle of the parked blade, degrees anticlockwise from the glass's right, as seen from the camera, [-360, 360].
     pub parked_deg: f64,
     /// Angle at the far end of the stroke, degrees, within 350 of `parked_deg`.
     pub far_deg: f64,
-    /// Where the blade is now: 0 parked, 1 at the far end.
+    /// Present position of the blade: 0 parked, 1 at the far end.
     pub position: f64,
     /// Width of the rubber on the glass, m, [0, 0.1].
     pub blade_width_m: f64,
@@ -41,28 +41,28 @@ impl Default for WiperArm {
     }
 }
 
-/// The window that a view looks through, and what acts on it. A host that drives sets it anew before each frame.
+/// The window that a view looks through, and what affects it. A host that drives sets it before each frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Windscreen {
-    /// Where the glass is.
+    /// Shape and position of the glass.
     pub pane: Pane,
-    /// Velocity of the glass against the air (the vehicle's less the wind's), m/s in the camera's axes, each within
-    /// 400: decides how many drops it meets.
+    /// Velocity of the glass against the air (the vehicle's less the wind's), m/s in the camera's axes, each
+    /// within 400. The number of drops that hit the glass depends on it.
     pub velocity_m_s: DVec3,
-    /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]: drives the beads.
+    /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]. It drives the beads.
     pub airflow_m_s: f64,
-    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel for which there is no box. What the
-    /// context's boxes and maps keep off each part of the pane ([`crate::context::Context::set_shelters`],
-    /// [`crate::context::Context::set_occluder_maps`]) is taken off besides; a box that holds the camera and ends
-    /// within 3 m before the glass is the vehicle's own and keeps nothing off.
+    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel without a box. The context's boxes and
+    /// maps ([`crate::context::Context::set_shelters`], [`crate::context::Context::set_occluder_maps`]) further reduce
+    /// the rain on each part of the pane. A box that contains the camera and ends within 3 m in front of the glass is
+    /// the vehicle's own, and keeps no rain off.
     pub exposed: f64,
     /// Mist on the inside, [0, 1].
     pub fogging: f64,
-    /// How far the blower has cleared it, from the lower edge upwards, [0, 1].
+    /// Part that the blower has cleared of mist, from the lower edge upwards, [0, 1].
     pub demist: f64,
-    /// The wipers; 0 to 2.
+    /// Wipers, 0 to 2.
     pub arms: [Option<WiperArm>; MAX_ARMS],
-    /// Heat that the glass gets from wires in it or from a blower, W/m^2, [0, 3000]: melts snow.
+    /// Heating of the glass by wires in it or by a blower, W/m^2, [0, 3000]. It melts snow.
     pub heat_w_m2: f64,
 }
 
@@ -97,14 +97,14 @@ impl WiperArm {
         check_range("blade_width_m", self.blade_width_m, 0.0, 0.1, "m")
     }
 
-    /// The blade's angle at a place of the stroke, rad.
+    /// Returns the blade's angle at a position of the stroke, rad.
     pub(super) fn angle(&self, position: f64) -> f64 {
         (self.parked_deg + (self.far_deg - self.parked_deg) * position).to_radians()
     }
 }
 
 impl Windscreen {
-    /// Refuses what is out of range, by name.
+    /// Checks the ranges; an error names the field.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -124,7 +124,7 @@ impl Windscreen {
         check_range("windscreen.fogging", self.fogging, 0.0, 1.0, "")?;
         check_range("windscreen.demist", self.demist, 0.0, 1.0, "")?;
         check_range("windscreen.heat_w_m2", self.heat_w_m2, 0.0, 3000.0, "W/m^2")?;
-        // Names are put together for an error only: a host that drives sets its windscreen before every frame.
+        // Names are built only for an error, because a host that drives sets its windscreen before every frame.
         let named = |i: usize| move |e: Error| e.within(&format!("windscreen.arms[{i}]"));
         self.arms.iter().flatten().enumerate().try_for_each(|(i, a)| a.validate().map_err(named(i)))
     }

@@ -1,38 +1,38 @@
-//! Layouts of bind groups, slot by slot.
+//! Bind group layouts, described slot by slot, and their entries.
 
 use std::ops::Range;
 
 /// Kind of resource at a shader binding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Slot {
-    /// A block of so many bytes; of 0 any.
+    /// A uniform block of this many bytes; 0 allows any size.
     Uniform(usize),
-    /// A block of so many bytes whose place in its buffer is said with every draw.
+    /// A uniform block of this many bytes, with its offset in the buffer given at every draw.
     DynamicUniform(usize),
-    /// Elements of so many bytes that the shader writes.
+    /// A storage buffer that the shader writes, with elements of this many bytes.
     Storage(u64),
-    /// Elements of so many bytes.
+    /// A storage buffer that the shader reads, with elements of this many bytes.
     StorageRead(u64),
-    /// A texture of floats, read texel by texel.
+    /// A float texture, read texel by texel.
     Texels,
-    /// A texture with several samples a pixel.
+    /// A multisampled texture.
     Samples,
-    /// A texture of whole numbers.
+    /// A texture of unsigned integers.
     Words,
-    /// A texture that is looked up between its texels.
+    /// A float texture with linear filtering.
     Filtered,
-    /// Layers of them.
+    /// An array of float textures with linear filtering.
     FilteredArray,
-    /// The six faces of a cube, looked up by direction.
+    /// A cube map with linear filtering.
     FilteredCube,
-    /// A texture in three dimensions that is looked up between its texels.
+    /// A three-dimensional float texture with linear filtering.
     FilteredVolume,
-    /// How textures are looked up.
+    /// A filtering sampler.
     Sampler,
 }
 
 impl Slot {
-    /// A texture that is read texel by texel, or sample by sample.
+    /// Returns the slot of a texture that is read texel by texel or, if `multisampled`, sample by sample.
     pub fn texels(multisampled: bool) -> Self {
         if multisampled { Self::Samples } else { Self::Texels }
     }
@@ -67,7 +67,7 @@ impl Slot {
     }
 }
 
-/// A layout of slots at their bindings, seen by `stages`.
+/// Creates a bind group layout of `slots` at their binding numbers, visible to `stages`.
 pub(crate) fn layout(
     device: &wgpu::Device,
     label: &str,
@@ -84,7 +84,7 @@ pub(crate) fn layout(
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
-/// A buffer for a uniform block of so many bytes that is written anew when it changes.
+/// Creates a buffer for a uniform block of this many bytes, which is rewritten when its contents change.
 pub(crate) fn block(device: &wgpu::Device, label: &str, bytes: usize) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
@@ -94,13 +94,13 @@ pub(crate) fn block(device: &wgpu::Device, label: &str, bytes: usize) -> wgpu::B
     })
 }
 
-/// A texture of one texel that stands for one that the host does not give: bound, not read.
+/// Creates the placeholder for a texture that the host does not give: one texel, bound but not read.
 pub(crate) fn nothing(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::TextureView {
     let texture = super::flat_texture(device, "nothing", (1, 1), format, wgpu::TextureUsages::TEXTURE_BINDING);
     texture.create_view(&Default::default())
 }
 
-/// Creates the placeholder for a texture of layers that is not there.
+/// Creates the placeholder for an array texture that does not exist.
 pub(crate) fn no_layers(device: &wgpu::Device) -> wgpu::TextureView {
     as_layers(&device.create_texture(&wgpu::TextureDescriptor {
         label: Some("no layers"),
@@ -114,8 +114,8 @@ pub(crate) fn no_layers(device: &wgpu::Device) -> wgpu::TextureView {
     }))
 }
 
-/// All layers of a texture. With wgpu's OpenGL backend shaders find nothing in a view of one layer of several; and a
-/// texture of one layer is no array there, one of a multiple of six is of cubes.
+/// Creates a view of all layers of a texture. In wgpu's OpenGL backend a view of a single layer of an array reads as
+/// empty; a texture with one layer counts as no array, and one with a multiple of six layers as a cube map array.
 pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
@@ -123,12 +123,12 @@ pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
     })
 }
 
-/// A buffer at a binding.
+/// Entry that binds a whole buffer.
 pub(crate) fn buffer(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
 }
 
-/// A part of a buffer at a binding, from a multiple of 256 on.
+/// Entry that binds a part of a buffer, whose start is a multiple of 256.
 pub(crate) fn part(binding: u32, buffer: &wgpu::Buffer, part: Range<usize>) -> wgpu::BindGroupEntry<'_> {
     let (offset, size) = (part.start as u64, wgpu::BufferSize::new(part.len() as u64));
     wgpu::BindGroupEntry {
@@ -137,12 +137,12 @@ pub(crate) fn part(binding: u32, buffer: &wgpu::Buffer, part: Range<usize>) -> w
     }
 }
 
-/// A texture at a binding.
+/// Entry that binds a texture.
 pub(crate) fn view(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }
 }
 
-/// A sampler at a binding.
+/// Entry that binds a sampler.
 pub(crate) fn sampler(binding: u32, sampler: &wgpu::Sampler) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) }
 }

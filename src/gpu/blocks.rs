@@ -1,7 +1,6 @@
-//! The uniform blocks of a view, side by side in a buffer: however many of them a call changes, one write brings them
-//! to the GPU.
+//! Uniform blocks of a view, side by side in one buffer: one write uploads all blocks that a call has changed.
 //!
-//! wgpu makes a staging buffer for every write; five of them cost as much of the CPU as two empty passes.
+//! wgpu creates a staging buffer for every write. Five writes take as much CPU time as two empty passes.
 
 use std::{
     ops::{Deref, Range},
@@ -10,33 +9,33 @@ use std::{
 
 use super::Device;
 
-/// Bytes of a page, in which blocks lie side by side; a larger block has a page to itself.
+/// Size of a page in bytes. A page holds several blocks; a larger block has a page of its own.
 const PAGE: usize = 32 << 10;
-/// Bytes by which changes are told.
+/// Granularity in bytes with which changes are tracked.
 const CHUNK: usize = 64;
 
-/// The pages of a view.
+/// Pages of a view's uniform blocks.
 #[derive(Clone)]
 pub(crate) struct Blocks(Arc<Mutex<Vec<Page>>>);
 
-/// A buffer, and what it is to hold.
+/// A GPU buffer, and its contents on the CPU.
 struct Page {
     buffer: wgpu::Buffer,
     staged: Vec<u8>,
-    /// Bytes of it that have not been uploaded.
+    /// Range of `staged` that is not yet uploaded.
     changed: Range<usize>,
-    /// The last first.
+    /// Ranges in use, the last one in the page first.
     taken: Vec<Range<usize>>,
 }
 
-/// One of them; its place is free again when it is dropped.
+/// A uniform block in a page. Its range is free again when it is dropped.
 pub(crate) struct UniformBlock {
     pages: Blocks,
     page: usize,
     view: BlockView,
 }
 
-/// Where one lies, for bind groups.
+/// Buffer and range of a block, for bind groups.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BlockView {
     buffer: wgpu::Buffer,
@@ -49,8 +48,9 @@ impl Page {
         Self { buffer, staged: vec![0; bytes], changed: 0..0, taken: Vec::new() }
     }
 
-    /// The last place of so many bytes at a multiple of `step`, taken. So the first block, which every frame writes,
-    /// lies at the end, and no write spans the tables at its end that do not change.
+    /// Takes the last free range of this many bytes that begins at a multiple of `step`. The first block taken, which
+    /// every frame writes, thus lies at the end of the page; the tables at that block's own end rarely change, so no
+    /// write has to span them.
     fn take(&mut self, bytes: usize, step: usize) -> Option<Range<usize>> {
         let ends = std::iter::once(self.staged.len()).chain(self.taken.iter().map(|taken| taken.start));
         let starts = ends.map(|end| end.checked_sub(bytes).map(|start| start - start % step));
@@ -81,7 +81,7 @@ impl Blocks {
         Self(Arc::new(Mutex::new(Vec::new())))
     }
 
-    /// Room for a block of so many bytes, a multiple of 4, all 0.
+    /// Allocates a block of this many bytes (a multiple of 4), all 0.
     pub fn block(&self, device: &Device, bytes: usize) -> UniformBlock {
         let step = device.device.limits().min_uniform_buffer_offset_alignment as usize;
         let (page, at, buffer) = self.with(|pages| {
@@ -98,7 +98,7 @@ impl Blocks {
         UniformBlock { pages: self.clone(), page, view: BlockView { buffer, at } }
     }
 
-    /// Brings up what was written since the last time: before every submission of what reads it.
+    /// Uploads what was written since the last upload. Must be called before every submission that reads the blocks.
     pub fn upload(&self, queue: &wgpu::Queue) {
         self.with(|pages| {
             for page in pages.iter_mut().filter(|page| !page.changed.is_empty()) {
@@ -108,7 +108,7 @@ impl Blocks {
         });
     }
 
-    /// Bytes of GPU memory.
+    /// Size of all pages in GPU memory, bytes.
     pub fn bytes(&self) -> u64 {
         self.with(|pages| pages.iter().map(|page| page.staged.len() as u64).sum())
     }
@@ -119,7 +119,7 @@ impl Blocks {
 }
 
 impl UniformBlock {
-    /// Sets its contents from the next [`Blocks::upload`] on; what lies behind `bytes` stays.
+    /// Writes `bytes` to the start of the block; the rest keeps its contents. The next [`Blocks::upload`] uploads them.
     pub fn write(&self, bytes: &[u8]) {
         self.write_at(0, bytes);
     }
@@ -146,23 +146,23 @@ impl Drop for UniformBlock {
 }
 
 impl BlockView {
-    /// All of it at a binding.
+    /// Entry that binds the whole block.
     pub fn entry(&self, binding: u32) -> wgpu::BindGroupEntry<'_> {
         self.part(binding, 0, self.bytes())
     }
 
-    /// A part of it at a binding, from a multiple of 256 on.
+    /// Entry that binds a part of the block, whose `offset` is a multiple of 256.
     pub fn part(&self, binding: u32, offset: usize, bytes: usize) -> wgpu::BindGroupEntry<'_> {
         wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Buffer(self.range(offset, bytes)) }
     }
 
-    /// A part of it.
+    /// Part of the block as a buffer binding.
     pub fn range(&self, offset: usize, bytes: usize) -> wgpu::BufferBinding<'_> {
         let offset = (self.at.start + offset) as u64;
         wgpu::BufferBinding { buffer: &self.buffer, offset, size: wgpu::BufferSize::new(bytes as u64) }
     }
 
-    /// Its size.
+    /// Size of the block, bytes.
     pub fn bytes(&self) -> usize {
         self.at.len()
     }

@@ -1,4 +1,4 @@
-//! The device: one queue, its caps, its faults, and the way into a host's context.
+//! Device: one queue, its capabilities and faults, and the entrance to a host's context.
 
 use std::{
     collections::HashMap,
@@ -13,15 +13,15 @@ use crate::error::{Error, Result, Status};
 /// Capabilities of a device, which the host may query before it creates anything.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Caps {
-    /// Native graphics interface that serves it.
+    /// Native graphics API in use.
     pub backend: wgpu::Backend,
-    /// The adapter's own name.
+    /// Name that the adapter reports.
     pub adapter_name: String,
-    /// The driver's own name and version.
+    /// Name and version that the driver reports.
     pub driver: String,
-    /// 0 = no compute (GL 3.3 to 4.2, macOS GL), 1 = compute, with counts that stay on the GPU.
+    /// Feature tier: 0 without compute (GL 3.3 to 4.2, macOS GL), 1 with compute and draw counts that stay on the GPU.
     pub tier: u32,
-    /// A driver that computes on the CPU.
+    /// Whether the driver computes on the CPU.
     pub software: bool,
     /// Largest edge of a 2-D texture, pixels.
     pub max_texture_size: u32,
@@ -30,11 +30,11 @@ pub struct Caps {
 /// Options for a device that Welkin creates.
 #[derive(Clone, Debug)]
 pub struct DeviceOptions {
-    /// Native graphics interfaces that may serve; `noop` draws nothing and needs no GPU.
+    /// Native graphics APIs that may be used; `noop` draws nothing and needs no GPU.
     pub backends: wgpu::Backends,
-    /// Use no compute shaders even where there are any: how a GL 3.3 host would draw.
+    /// Whether to use no compute shaders even where there are any, as on a GL 3.3 host.
     pub force_tier0: bool,
-    /// Take the software driver.
+    /// Whether to use the software driver.
     pub force_software: bool,
 }
 
@@ -45,62 +45,64 @@ impl Default for DeviceOptions {
     }
 }
 
-/// A host's depth as it is attached.
+/// Depth texture to attach for a host's depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachedDepth {
     /// Texture to attach.
     pub texture: wgpu::Texture,
-    /// Whether the depth that is read is a copy of it, which [`HostBinding::refresh_depth`] brings up to date.
+    /// Whether the depth that shaders read is a copy of `texture`, which [`HostBinding::refresh_depth`] updates.
     pub is_copied: bool,
 }
 
-/// Hooks that a host-owned device needs around every batch of GPU calls: making its context current, fences, state.
+/// Hooks that a host-owned device needs around every batch of GPU calls: to make the host's context current, to wait
+/// for fences, to save and restore state.
 pub trait HostBinding: Send + Sync {
     /// Called before the first GPU call of a batch.
     ///
     /// # Errors
-    /// Whatever keeps the host's context from being entered.
+    /// Any reason for which the host's context cannot be entered.
     fn enter(&self) -> Result<()>;
-    /// Called after the last one; must not fail.
+    /// Called after the last GPU call of a batch; must not fail.
     fn leave(&self);
-    /// The texture in which a host's `color` can be read, where wgpu cannot copy it itself; [`HostBinding::refresh`]
-    /// fills it.
+    /// Returns the texture from which a host's `color` can be read, if wgpu cannot copy `color` itself.
+    /// [`HostBinding::refresh`] fills it.
     fn reading(&self, _color: &wgpu::Texture) -> Option<wgpu::Texture> {
         None
     }
-    /// Brings [`HostBinding::reading`] of `color` up to date with all that was submitted.
+    /// Copies all that was submitted for `color` into its [`HostBinding::reading`].
     ///
     /// # Errors
-    /// A copy that the host's context refuses.
+    /// The error with which the host's context refuses the copy.
     fn refresh(&self, _color: &wgpu::Texture) -> Result<()> {
         Ok(())
     }
-    /// Returns the texture to attach where a host's `depth`, as it is read, is to be written; `None` for that texture
-    /// itself.
+    /// Returns the texture to attach for writing a host's depth, where `depth` is the texture that shaders read; `None`
+    /// if that is `depth` itself.
     fn attached_depth(&self, _depth: &wgpu::Texture) -> Option<AttachedDepth> {
         None
     }
-    /// Brings a copy that `depth` is up to date with all that was submitted.
+    /// Updates `depth`, if it is a copy, with all that was submitted.
     ///
     /// # Errors
     /// As [`HostBinding::refresh`].
     fn refresh_depth(&self, _depth: &wgpu::Texture) -> Result<()> {
         Ok(())
     }
-    /// The first error flag that OpenGL raised since the last question. Asked while entered.
+    /// Returns the first error flag that OpenGL has raised since the last call. Must be called while entered.
     fn raised(&self) -> Option<Error> {
         None
     }
-    /// Called once, entered, before the device's own objects go: whatever holds on to them must let go.
+    /// Called once, while entered, before the device's own objects are released. The binding must release its
+    /// references to them.
     fn closing(&self);
-    /// Called once, still entered, when the device's own objects are gone.
+    /// Called once, still entered, after the device's own objects were released.
     fn closed(&self);
-    /// Called instead of both where the host's context is gone, and its objects with it.
+    /// Called instead of `closing` and `closed` if the host's context, and with it all its objects, no longer exists.
     fn forsaken(&self);
 }
 
-/// The first thing to go with a device: enters the host's context for what goes after it. Without a context that
-/// cannot be, and then nothing may be released: a driver need not survive a call without a context.
+/// First field of a device to be dropped: enters the host's context so that the fields after it are released in it. If
+/// the context cannot be entered, nothing is released, because a driver may crash at a call without a context.
 struct Entrance {
     binding: Arc<dyn HostBinding>,
     entered: Arc<AtomicBool>,
@@ -115,12 +117,12 @@ impl Drop for Entrance {
             self.binding.closing();
         } else {
             self.binding.forsaken();
-            std::mem::forget(kept); // a count that never falls to 0
+            std::mem::forget(kept); // keeps the reference count above 0
         }
     }
 }
 
-/// The last thing to go with a device.
+/// Last field of a device to be dropped: leaves the host's context, and tells the binding that the device is gone.
 struct Exit {
     binding: Arc<dyn HostBinding>,
     entered: Arc<AtomicBool>,
@@ -135,7 +137,7 @@ impl Drop for Exit {
     }
 }
 
-/// Proof that the host's context is current; leaves it when dropped.
+/// Proof that the host's context is current. Dropping it leaves the context.
 #[must_use = "the host's context is left when this is dropped"]
 pub struct Entered<'a>(Option<&'a dyn HostBinding>);
 
@@ -151,43 +153,44 @@ impl Drop for Entered<'_> {
 struct Faults {
     first: Mutex<Option<Error>>,
     lost: AtomicBool,
-    /// The GPU does not finish: see [`Device::give_up`].
+    /// Whether the GPU does not finish its work: see [`Device::give_up`].
     hung: AtomicBool,
 }
 
-/// An assembled shader as the driver has it, and the names of its `override` constants.
+/// A compiled shader module, and the names of its `override` constants.
 #[derive(Clone)]
 pub(crate) struct Shader {
     pub module: wgpu::ShaderModule,
     pub overrides: Arc<[String]>,
 }
 
-/// One native queue or GL context with what was found out about it. Shared by contexts and views.
+/// One native queue or GL context, with its capabilities and faults. Contexts and views share it.
 pub struct Device {
-    // Fields go in this order: see `Entrance`.
+    // Fields are dropped in this order: see `Entrance`.
     _entrance: Option<Entrance>,
-    /// Kept alive for surfaces and for the order of destruction.
+    /// Instance; kept for surfaces and for the order of destruction.
     pub instance: wgpu::Instance,
-    /// The physical device.
+    /// Physical device.
     pub adapter: wgpu::Adapter,
-    /// The logical device.
+    /// Logical device.
     pub device: wgpu::Device,
-    /// Its one queue.
+    /// Only queue of the device.
     pub queue: wgpu::Queue,
-    /// Shaders by name: reading one takes longer than making a pipeline of it.
+    /// Shader modules by name: parsing a shader takes longer than creating a pipeline from it.
     shaders: Mutex<HashMap<String, Shader>>,
     caps: Caps,
     faults: Arc<Faults>,
     submission: Mutex<()>,
     submissions: AtomicU64,
-    /// Images of windows that are in hand, each from its acquisition until it is presented or given back.
+    /// Window images that are acquired but not yet presented or given back.
     of_windows: Mutex<Vec<wgpu::Texture>>,
     binding: Option<Arc<dyn HostBinding>>,
     _exit: Option<Exit>,
 }
 
 impl Device {
-    /// As [`Device::adopt`], from a driver that is trusted or is about to be asked.
+    /// Creates the device as [`Device::adopt`] does, without testing the driver: it is trusted, or tested by the
+    /// caller.
     pub(super) fn around(
         instance: wgpu::Instance,
         adapter: wgpu::Adapter,
@@ -241,16 +244,16 @@ impl Device {
         &self.caps
     }
 
-    /// Draws as on a GPU from now on.
+    /// Treats the device as a GPU from now on, even if its driver is a software driver.
     #[cfg(test)]
     pub(crate) fn take_for_gpu(&mut self) {
         self.caps.software = false;
     }
 
-    /// Makes the host's context current for as long as the answer lives; does nothing for own devices.
+    /// Makes the host's context current until the returned value is dropped. Does nothing for own devices.
     ///
     /// # Errors
-    /// Whatever keeps the host's context from being entered, and [`Status::DeviceLost`].
+    /// Any reason for which the host's context cannot be entered, and [`Status::DeviceLost`].
     pub fn enter(&self) -> Result<Entered<'_>> {
         if self.is_lost() {
             return Err(Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one"));
@@ -258,11 +261,11 @@ impl Device {
         self.enter_to_release()
     }
 
-    /// Enters as [`Device::enter`] does, also when the device is lost: what the device made in the host's context is
-    /// still there and must be deleted in it.
+    /// Enters as [`Device::enter`] does, even if the device is lost: objects that the device created in the host's
+    /// context still exist and must be deleted in it.
     ///
     /// # Errors
-    /// Whatever keeps the host's context from being entered.
+    /// Any reason for which the host's context cannot be entered.
     pub(crate) fn enter_to_release(&self) -> Result<Entered<'_>> {
         if let Some(binding) = &self.binding {
             binding.enter()?;
@@ -270,49 +273,49 @@ impl Device {
         Ok(Entered(self.binding.as_deref()))
     }
 
-    /// The texture in which a host's `color` can be read, where wgpu cannot copy it itself.
+    /// Returns the texture from which a host's `color` can be read, if wgpu cannot copy `color` itself.
     pub(crate) fn reading(&self, color: &wgpu::Texture) -> Option<wgpu::Texture> {
         self.binding.as_ref().and_then(|b| b.reading(color))
     }
 
-    /// Brings [`Device::reading`] of `color` up to date with all that was submitted.
+    /// Copies all that was submitted for `color` into its [`Device::reading`].
     ///
     /// # Errors
-    /// A copy that the host's context refuses.
+    /// The error with which the host's context refuses the copy.
     pub(crate) fn refresh(&self, color: &wgpu::Texture) -> Result<()> {
         self.binding.as_ref().map_or(Ok(()), |b| b.refresh(color))
     }
 
-    /// Returns the texture to attach where a host's `depth` is to be written.
+    /// Returns the texture to attach for writing a host's `depth`.
     pub(crate) fn attached_depth(&self, depth: &wgpu::Texture) -> AttachedDepth {
         let other = self.binding.as_ref().and_then(|b| b.attached_depth(depth));
         other.unwrap_or_else(|| AttachedDepth { texture: depth.clone(), is_copied: false })
     }
 
-    /// Brings a copy that `depth` is up to date with all that was submitted.
+    /// Updates `depth`, if it is a copy, with all that was submitted.
     ///
     /// # Errors
-    /// A copy that the host's context refuses.
+    /// The error with which the host's context refuses the copy.
     pub(crate) fn refresh_depth(&self, depth: &wgpu::Texture) -> Result<()> {
         self.binding.as_ref().map_or(Ok(()), |b| b.refresh_depth(depth))
     }
 
-    /// Whether `texture` is a window's image that is in hand.
+    /// Whether `texture` is a window's image that is acquired now.
     pub(crate) fn is_of_window(&self, texture: &wgpu::Texture) -> bool {
         self.of_windows().contains(texture)
     }
 
-    /// The windows' images that are in hand.
+    /// Locks the list of window images that are acquired now.
     pub(super) fn of_windows(&self) -> MutexGuard<'_, Vec<wgpu::Texture>> {
         self.of_windows.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether the native device is gone.
+    /// Whether the native device is lost.
     pub fn is_lost(&self) -> bool {
         self.faults.lost.load(Ordering::Acquire)
     }
 
-    /// The first GPU fault since the last call, if any: wgpu reports them here instead of panicking.
+    /// Returns the first GPU fault since the last call, if any. wgpu reports faults here instead of panicking.
     pub fn take_fault(&self) -> Option<Error> {
         self.faults.first.lock().map_or(None, |mut f| f.take())
     }
@@ -325,8 +328,8 @@ impl Device {
         self.take_fault().map_or(Ok(()), Err)
     }
 
-    /// As [`Device::check`], after images were made, while entered: OpenGL says only when asked that there is no memory
-    /// for one.
+    /// Checks as [`Device::check`] does, and reads OpenGL's error flag: without that, OpenGL does not report that there
+    /// was no memory for an image. Called while entered, after images were created.
     ///
     /// # Errors
     /// The fault.
@@ -339,13 +342,13 @@ impl Device {
         .map_or(Ok(()), Err)
     }
 
-    /// The error flag of an own device on OpenGL.
+    /// Reads the error flag of an own device on OpenGL.
     #[cfg(not(any(target_os = "macos", target_os = "ios")))]
     fn raised_in_own(&self) -> Option<Error> {
         if self.caps.backend != wgpu::Backend::Gl || self.is_lost() {
             return None;
         }
-        // SAFETY: the context is only asked for its error flag, under the lock that all of wgpu's calls take.
+        // SAFETY: the only call on the context reads its error flag, under the lock that all of wgpu's calls take.
         let error = unsafe {
             let hal = self.device.as_hal::<wgpu::hal::gles::Api>()?;
             glow::HasContext::get_error(&*hal.context().lock())
@@ -358,14 +361,14 @@ impl Device {
         None
     }
 
-    /// Destroys the native device as a driver crash would; for tests of the lost path.
+    /// Marks the device as lost and destroys it, as a driver crash would. For tests of the lost path.
     pub fn simulate_loss(&self) {
         self.faults.lost.store(true, Ordering::Release);
         let _entered = self.enter_to_release();
         self.device.destroy();
     }
 
-    /// Assembles shader file `name` and hands it to the driver.
+    /// Assembles the shader file `name` and creates its module, unless it is cached.
     ///
     /// # Errors
     /// [`Status::Internal`] if an include is missing.
@@ -373,29 +376,30 @@ impl Device {
         self.shader_and_overrides(name).map(|shader| shader.module)
     }
 
-    /// As [`Self::shader`], with the names of its `override` constants.
+    /// Returns the module of [`Self::shader`] and the names of its `override` constants.
     pub(crate) fn shader_and_overrides(&self, name: &str) -> Result<Shader> {
         let mut shaders = self.shaders.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = shaders.get(name) {
             return Ok(known.clone());
         }
-        // Tests see a value that is not a number, which others draw as black or white.
+        // Builds for tests make a NaN visible; other builds draw it as black or white.
         let text =
             if cfg!(debug_assertions) { super::shader::assemble_checked(name) } else { super::shader::assemble(name) }?;
         let overrides = super::shader::overrides(&text);
         let desc = wgpu::ShaderModuleDescriptor { label: Some(name), source: wgpu::ShaderSource::Wgsl(text.into()) };
-        // By default wgpu counts the turns of each loop, to end those that never would. That takes a sixteenth of what
-        // clouds cost on a GPU.
+        // By default wgpu counts the iterations of each loop to end endless ones. On a GPU that takes 1/16 of the time
+        // of the clouds.
         let checks = wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..wgpu::ShaderRuntimeChecks::checked() };
-        // SAFETY: all shaders are this crate's own, and each loop in them ends whatever its blocks hold
-        // (tests/shaders/loops.rs); bounds are checked as ever.
+        // SAFETY: all shaders are this crate's own, and each of their loops ends whatever its blocks hold
+        // (tests/shaders/loops.rs); bounds checks stay on.
         let module = unsafe { self.device.create_shader_module_trusted(desc, checks) };
         let made = Shader { module, overrides };
         shaders.insert(name.to_owned(), made.clone());
         Ok(made)
     }
 
-    /// Submits. One thread at a time: what a Vulkan host stages for its own submission goes with no other.
+    /// Submits, one thread at a time, so that what a Vulkan host stages for a submission goes with that submission
+    /// only.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) {
         let commands = encoder.finish();
         let _turn = self.turn();
@@ -403,18 +407,18 @@ impl Device {
         self.queue.submit([commands]);
     }
 
-    /// How often work was submitted here so far.
+    /// Number of submissions to this device so far.
     pub fn submissions(&self) -> u64 {
         self.submissions.load(Ordering::Relaxed)
     }
 
-    /// The right to submit, until the answer is dropped.
+    /// Takes the lock for submitting; it is held until the returned guard is dropped.
     pub(crate) fn turn(&self) -> MutexGuard<'_, ()> {
         self.submission.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// Turns uncaptured errors and loss into values that calls return: nothing panics or prints.
+/// Turns uncaptured errors and device loss into values that calls return, so that nothing panics or prints.
 fn watch(device: &wgpu::Device, faults: &Arc<Faults>) {
     let sink = faults.clone();
     device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {

@@ -1,10 +1,10 @@
-//! Known answers: what an OpenGL driver draws of blocks and loops whose results are known, before anything else is
-//! asked of it.
+//! Known answers: a test of an OpenGL driver with uniform blocks and loops whose results are known, made before any
+//! other work.
 //!
-//! NVIDIA's 580.159 does not finish the sky's first tables by OpenGL, and the GPU hangs with them. Tables are built by
-//! loops whose bounds come from uniform blocks; zeros in a block end them at once, and the bits of a float never. So
-//! each kind of block is drawn out without a loop first, then one texel by a loop; whoever fails gives no device. Twin:
-//! `shaders/common/known.wgsl`.
+//! With NVIDIA's driver 580.159 on OpenGL the first tables of the sky never finish, and the GPU hangs. Tables are built
+//! by loops whose bounds come from uniform blocks: if the block reads as zeros, a loop ends at once; if it reads as the
+//! bits of a float, it never ends in practice. So the test first draws the contents of each kind of block without a
+//! loop, and then one texel by a loop. A driver that fails gets no device. Shader: `shaders/common/known.wgsl`.
 
 use std::{
     sync::Arc,
@@ -20,24 +20,25 @@ use super::{
 };
 use crate::error::{Error, Status};
 
-/// A driver that has not finished a few texels after so long never will. A device must be there or refused within 10 s.
+/// Time limit of the test. A driver that needs longer for a few texels never finishes; a device must open or fail in 10
+/// s.
 pub(super) const LIMIT: Duration = Duration::from_secs(6);
 
-/// Fault that a driver showed with the known answers.
+/// Fault that the test found in a driver.
 #[derive(Debug)]
 pub(super) enum Fault {
-    /// Shaders find other bytes in a block.
+    /// Shaders read wrong bytes from a block.
     Blocks(String),
-    /// A loop comes to another sum.
+    /// A loop has a wrong sum.
     Loop(String),
-    /// The GPU does not finish. Nothing that belongs to it may be waited for or released.
+    /// Hang: the GPU does not finish. None of its objects may be waited for or released.
     Hang,
-    /// Whatever else a device answers.
+    /// Any other error of the device.
     Other(Error),
 }
 
 impl Fault {
-    /// The refusal, with the driver's name and what to use instead.
+    /// Returns the error for the refused driver, with its name and what to use instead.
     pub fn refuse(self, driver: &str) -> Error {
         let what = match self {
             Self::Blocks(what) => format!("gives shaders other bytes than were written: {what}"),
@@ -59,15 +60,15 @@ impl From<Error> for Fault {
     }
 }
 
-/// Sizes of the blocks in vectors of 16 bytes, in the order in which they are drawn: rows, counts, rule, job, written.
+/// Sizes of the blocks in vectors of 16 bytes, in drawing order: rows, counts, rule, job, written.
 const SIZES: [usize; 5] = [9, 5, 24, 1, 5];
 const NAMES: [&str; 5] = ["rows", "counts", "rule", "job", "written"];
 const TEXELS: usize = 44;
 /// Bounds of the two loops.
 const TURNS: (u32, u32) = (5, 7);
 
-/// Returns the contents of every vector. Rows and rule are floats, whose bits are large numbers, as those of the air;
-/// counts are small.
+/// Returns the contents of every vector. Rows and rule are floats, whose bits are large as integers, like the blocks of
+/// the air; counts are small.
 fn contents() -> Vec<[u32; 4]> {
     let floats = |i: usize| std::array::from_fn(|k| ((1 + i * 4 + k) as f32 * 1.25).to_bits());
     let whole = |i: usize| std::array::from_fn(|k| ((1 + (i * (k + 3)) % 11) as f32).to_bits());
@@ -82,7 +83,7 @@ fn contents() -> Vec<[u32; 4]> {
     all
 }
 
-/// The sum that the loops come to.
+/// Returns the sum that the loops must have.
 fn sum_of_turns(all: &[[u32; 4]]) -> u32 {
     let rule = |i: u32, k: usize| f32::from_bits(all[14 + i as usize][k]);
     let mut sum = 0.0;
@@ -93,13 +94,13 @@ fn sum_of_turns(all: &[[u32; 4]]) -> u32 {
     sum as u32
 }
 
-/// Draws and compares.
+/// Draws the test and compares the result.
 ///
 /// # Errors
-/// What the driver did instead.
+/// The fault that the driver showed.
 pub(super) fn ask(device: &Arc<Device>) -> std::result::Result<(), Fault> {
     let begun = Instant::now();
-    // Opening leaves error flags: wgpu asks for limits that an older driver does not know.
+    // Opening a device leaves error flags, because wgpu asks for limits that an older driver does not know.
     for _ in 0..8 {
         if device.check_made().is_ok() {
             break;
@@ -128,7 +129,7 @@ pub(super) fn ask(device: &Arc<Device>) -> std::result::Result<(), Fault> {
     Ok(())
 }
 
-/// The blocks, bound.
+/// Blocks of the test and their bind group.
 struct BoundBlocks {
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
@@ -136,7 +137,7 @@ struct BoundBlocks {
 }
 
 impl BoundBlocks {
-    /// Makes the blocks as the tables' are made, with contents, and one as a view's is written.
+    /// Creates four blocks in the same way as the tables' blocks, and one that is written like a view's block.
     fn new(device: &Device, all: &[[u32; 4]]) -> Self {
         let step = device.device.limits().min_uniform_buffer_offset_alignment.max(16) as usize;
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
@@ -169,7 +170,7 @@ impl BoundBlocks {
         Self { layout, group, job: step as u32 }
     }
 
-    /// Draws so many texels by an entry point, and reads them.
+    /// Draws this many texels with an entry point, and reads them back.
     fn draw(
         &self,
         device: &Arc<Device>,
@@ -207,7 +208,7 @@ impl BoundBlocks {
         drop(drawn);
         device.submit(encoder);
         device.check()?;
-        // Before anything is read: reading waits as long as the driver likes.
+        // Must come before any read-back, which would wait without a limit.
         let waited = device.wait_within(LIMIT.saturating_sub(begun.elapsed()));
         if device.is_hung() {
             return Err(Fault::Hang);

@@ -1,22 +1,22 @@
-//! One layer of a host's image: what a frame draws into and reads.
+//! Layer of a host's image that a frame draws into or reads.
 
 use crate::error::{Error, Result};
 
-/// One layer of a texture; a plain texture has layer 0 alone.
+/// One layer of a texture; a plain texture has only layer 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layer<'a> {
-    /// The texture.
+    /// Texture.
     pub texture: &'a wgpu::Texture,
     /// Index of the layer in it.
     pub index: u32,
 }
 
-/// A layer kept beyond the frame, to compare the next one with.
+/// Layer kept beyond the frame, to compare with that of a later frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KeptLayer(wgpu::Texture, u32);
 
 impl Layer<'_> {
-    /// A view of the layer alone, and of depth alone where the format has stencil too.
+    /// Creates a view of this layer only, and of depth only if the format also has stencil.
     pub fn view(self) -> wgpu::TextureView {
         let depth = self.texture.format().has_depth_aspect();
         self.texture.create_view(&wgpu::TextureViewDescriptor {
@@ -28,8 +28,8 @@ impl Layer<'_> {
         })
     }
 
-    /// A view of the layer alone to draw into, with all that its format holds. It cannot be read from: OpenGL finds
-    /// nothing in a single layer of several.
+    /// Creates a view of this layer only, to draw into, with all aspects of its format. It cannot be read: on OpenGL a
+    /// single layer of several reads as empty.
     pub fn attached_view(self) -> wgpu::TextureView {
         self.texture.create_view(&wgpu::TextureViewDescriptor {
             usage: Some(wgpu::TextureUsages::RENDER_ATTACHMENT),
@@ -40,19 +40,19 @@ impl Layer<'_> {
         })
     }
 
-    /// Whether it has several samples a pixel.
+    /// Whether the texture is multisampled.
     pub fn is_multisampled(self) -> bool {
         self.texture.sample_count() > 1
     }
 
-    /// Copies it to `destination`, a plain texture of its size.
+    /// Copies the layer to `destination`, a plain texture of the same size.
     pub fn copy(self, encoder: &mut wgpu::CommandEncoder, destination: &wgpu::Texture) {
         let mut from = self.texture.as_image_copy();
         from.origin.z = self.index;
         encoder.copy_texture_to_texture(from, destination.as_image_copy(), destination.size());
     }
 
-    /// To compare a later frame's with.
+    /// Keeps the layer, to compare with that of a later frame.
     pub fn kept(self) -> KeptLayer {
         KeptLayer(self.texture.clone(), self.index)
     }
@@ -64,13 +64,13 @@ impl PartialEq<KeptLayer> for Layer<'_> {
     }
 }
 
-/// The view of the layer that was drawn into last. A window's image is let go as soon as it is recorded
-/// (`View::let_go_of_window`): some systems change a window's size only when nobody holds its images.
+/// View of the layer that was last drawn into. A view of a window's image is dropped as soon as the frame is recorded
+/// (`View::let_go_of_window`), because some systems resize a window only when nothing holds its images.
 #[derive(Default)]
 pub(crate) struct KeptView(Option<(KeptLayer, wgpu::TextureView)>);
 
 impl KeptView {
-    /// The view of `layer`, which `make` makes where another was drawn into last.
+    /// Returns the view of `layer`; `make` creates it if another layer was drawn into last.
     pub fn of<'a>(
         &mut self,
         layer: Layer<'a>,
@@ -83,7 +83,7 @@ impl KeptView {
     }
 }
 
-/// Whether an image of this frame, or none, is the one kept.
+/// Whether `layer`, of this frame, is the layer kept; two absent ones are equal.
 pub(crate) fn is_kept(layer: Option<Layer<'_>>, kept: Option<&KeptLayer>) -> bool {
     match (layer, kept) {
         (Some(layer), Some(kept)) => layer == *kept,
@@ -92,10 +92,10 @@ pub(crate) fn is_kept(layer: Option<Layer<'_>>, kept: Option<&KeptLayer>) -> boo
     }
 }
 
-/// Refuses a format whose depth shaders cannot read.
+/// Checks that shaders can read the depth of `format`.
 ///
 /// # Errors
-/// [`crate::Status::Unsupported`] naming those that they can.
+/// [`crate::Status::Unsupported`], which names the formats that they can read.
 pub(crate) fn check_depth_format(format: wgpu::TextureFormat) -> Result<()> {
     use wgpu::TextureFormat as F;
     if !matches!(

@@ -1,10 +1,10 @@
-//! Devices, surfaces, targets, shader assembly, timing and readback: everything that touches wgpu's edges.
+//! Devices, surfaces, targets, shader assembly, timing and readback: everything that goes beyond plain use of wgpu.
 //!
-//! A [`Device`] is one native queue or GL context, however it came to us: made here (headless or for a window),
-//! adopted from an OpenGL or Vulkan host, or handed over by a Rust host. The rooms of the effects see only
-//! `wgpu` objects and never ask whose they are.
+//! A [`Device`] is one native queue or GL context. Welkin creates it (headless or for a window), adopts it from an
+//! OpenGL or Vulkan host, or gets it from a Rust host. The rooms of the effects see only `wgpu` objects, and need not
+//! know where these come from.
 
-// wgpu builds its OpenGL backend for Apple hosts only round another library; there the backend is Metal.
+// For Apple hosts wgpu builds its OpenGL backend only on another library (ANGLE); the backend there is Metal.
 pub(crate) mod bind;
 pub(crate) mod blocks;
 #[cfg(not(any(target_os = "macos", target_os = "ios")))]
@@ -14,7 +14,7 @@ pub mod readback;
 pub(crate) mod recent;
 pub mod shader;
 pub mod surface;
-// ash does not build for Apple hosts here: there the backend is Metal.
+// ash does not build for Apple hosts; the backend there is Metal.
 #[cfg(not(any(target_os = "macos", target_os = "ios")))]
 pub mod vulkan;
 

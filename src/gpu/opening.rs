@@ -1,4 +1,4 @@
-//! Opening of devices: made here, without a window or for one, or taken over from ready wgpu objects.
+//! Opening of devices: created by Welkin, with or without a window, or taken over from existing wgpu objects.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ use super::{
 use crate::error::{Error, Result, Status};
 
 impl Device {
-    /// Makes an own device, without a window.
+    /// Creates an own device without a window.
     ///
     /// # Errors
-    /// [`Status::NoAdapter`] if no driver serves the request.
+    /// [`Status::NoAdapter`] if no driver meets the request.
     pub fn headless(options: &DeviceOptions) -> Result<Arc<Self>> {
         let mut answer = Err(instance::none_wanted(options.backends));
         for backends in instance::attempts(options.backends) {
@@ -24,10 +24,10 @@ impl Device {
         answer
     }
 
-    /// Makes an own device on `instance` that can present to `surface`, if one is given.
+    /// Creates an own device on `instance` that can present to `surface`, if one is given.
     ///
     /// # Errors
-    /// [`Status::NoAdapter`] if no driver serves the request.
+    /// [`Status::NoAdapter`] if no driver meets the request.
     pub fn from_instance(
         instance: wgpu::Instance,
         options: &DeviceOptions,
@@ -46,11 +46,11 @@ impl Device {
         Self::adopt(instance, adapter, device, queue, options.force_tier0, None)
     }
 
-    /// Takes over ready wgpu objects: a Rust host's own, or those made round a GL or Vulkan host's handles. On OpenGL
-    /// the driver first draws what is known.
+    /// Takes over existing wgpu objects: a Rust host's own, or those created on a GL or Vulkan host's handles. An
+    /// OpenGL driver must first pass the test of known answers (`src/gpu/known.rs`).
     ///
     /// # Errors
-    /// [`Status::NoAdapter`] if an OpenGL driver draws that wrong or does not finish it.
+    /// [`Status::NoAdapter`] if an OpenGL driver fails that test or does not finish it.
     pub fn adopt(
         instance: wgpu::Instance,
         adapter: wgpu::Adapter,
@@ -59,7 +59,7 @@ impl Device {
         force_tier0: bool,
         binding: Option<Arc<dyn HostBinding>>,
     ) -> Result<Arc<Self>> {
-        // A host's context was asked already, when it was opened.
+        // A host's context was tested when it was opened.
         let is_unknown = binding.is_none() && adapter.get_info().backend == wgpu::Backend::Gl;
         let own = Self::around(instance, adapter, device, queue, force_tier0, binding);
         if is_unknown {
@@ -70,7 +70,7 @@ impl Device {
     }
 }
 
-/// The features and limits Welkin asks for: the adapter's own, so that a host's large targets fit.
+/// Returns the features and limits that Welkin requests. The limits are the adapter's own, so that large targets fit.
 fn device_descriptor(adapter: &wgpu::Adapter, options: &DeviceOptions) -> wgpu::DeviceDescriptor<'static> {
     let mut limits = adapter.limits();
     if options.force_tier0 {

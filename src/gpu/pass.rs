@@ -1,13 +1,13 @@
-//! The kinds of pass that effects are: a full-screen triangle with a fragment shader, quads over a layer, a mesh, or a
-//! compute shader.
+//! Kinds of passes that effects use: a full-screen triangle with a fragment shader, quads drawn over a layer, a mesh,
+//! or a compute shader.
 //!
-//! Tables, sky, fog and composition are all built of it, so they run on tier 0 as well. The vertex stage is
-//! `common/fullscreen.wgsl`.
+//! Tables, sky, fog and composition use full-screen passes only, so they also run on tier 0. The vertex stage of these
+//! is `common/fullscreen.wgsl`.
 
 use super::device::{Device, Shader};
 use crate::error::Result;
 
-/// Pipelines of a pass that are made when first drawn with, each known by what it was made for.
+/// Pipelines of a pass, each created when it is first needed and found by its key.
 pub(crate) struct Made<K, P>(Vec<(K, P)>);
 
 impl<K: PartialEq, P> Made<K, P> {
@@ -17,10 +17,10 @@ impl<K: PartialEq, P> Made<K, P> {
         self.0.iter().find(|(k, _)| k == key).map(|(_, made)| made)
     }
 
-    /// Makes the one for `key` if it is not there.
+    /// Creates the pipeline for `key` if there is none yet.
     ///
     /// # Errors
-    /// As `make`.
+    /// The errors of `make`.
     pub fn prepare(&mut self, key: K, make: impl FnOnce(&K) -> Result<P>) -> Result<()> {
         if self.get(&key).is_none() {
             let made = make(&key)?;
@@ -36,17 +36,17 @@ pub struct FullscreenDesc<'a> {
     pub shader: &'a str,
     /// Fragment entry point.
     pub entry: &'a str,
-    /// One layout a bind group, in order.
+    /// Bind group layouts, in order.
     pub layouts: &'a [&'a wgpu::BindGroupLayout],
-    /// One state a colour attachment.
+    /// States of the colour attachments, in order.
     pub targets: &'a [wgpu::ColorTargetState],
     /// Values of `override` constants.
     pub constants: &'a [(&'a str, f64)],
-    /// Samples of the attachments.
+    /// Samples per pixel of the attachments.
     pub samples: u32,
 }
 
-/// Makes the pipeline.
+/// Creates the pipeline.
 ///
 /// # Errors
 /// A missing shader file; GPU faults come through [`Device::check`].
@@ -54,17 +54,18 @@ pub fn fullscreen(device: &Device, desc: &FullscreenDesc<'_>) -> Result<wgpu::Re
     fullscreen_at(device, desc, None)
 }
 
-/// As [`fullscreen`], its triangle at a depth in [0, 1] and tested against a depth attachment.
+/// Creates the pipeline as [`fullscreen`] does, with its triangle at a depth in [0, 1], tested against a depth
+/// attachment.
 ///
 /// # Errors
-/// As [`fullscreen`].
+/// The errors of [`fullscreen`].
 pub(crate) fn fullscreen_at(
     device: &Device,
     desc: &FullscreenDesc<'_>,
     tested: Option<(f64, wgpu::DepthStencilState)>,
 ) -> Result<wgpu::RenderPipeline> {
     let Shader { module, overrides } = device.shader_and_overrides(desc.shader)?;
-    // A variant lacks those of what it leaves out; in a shader that is whole, one that is not there is a fault.
+    // A variant lacks the constants of the parts that it leaves out. In a whole shader a missing constant is a fault.
     let is_whole = !desc.shader.contains(':');
     let constants: Vec<_> =
         desc.constants.iter().copied().filter(|(name, _)| is_whole || overrides.iter().any(|o| o == name)).collect();
@@ -101,7 +102,7 @@ pub(crate) fn fullscreen_at(
     }))
 }
 
-/// A test against a depth attachment, which may write it.
+/// Returns the state for a test against a depth attachment, which may also write it.
 pub(crate) fn depth_test(
     format: wgpu::TextureFormat,
     compare: wgpu::CompareFunction,
@@ -116,8 +117,9 @@ pub(crate) fn depth_test(
     }
 }
 
-/// A target whose pipeline llvmpipe compiles once instead of twice. It makes a second version of the shader for blocks
-/// of pixels that a triangle covers wholly, unless the target blends; a blend that replaces draws the same.
+/// Returns a target whose pipeline llvmpipe compiles once instead of twice. Unless the target blends, llvmpipe compiles
+/// a second version of the shader for blocks of pixels that a triangle covers wholly. A blend that replaces draws the
+/// same picture.
 fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::ColorTargetState {
     let features = target.format.guaranteed_format_features(device.device.features()).flags;
     let can = device.caps().software && features.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE);
@@ -129,29 +131,29 @@ fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::Color
     }
 }
 
-/// Description of a pipeline of quads: strips of four corners an instance, premultiplied and blended over what is
-/// there.
+/// Description of a pipeline of quads: a triangle strip of four corners per instance, premultiplied and blended over
+/// the target.
 pub struct QuadsDesc<'a> {
     /// Name in captures.
     pub label: &'a str,
-    /// Module and entry point of the corners, and values of its `override` constants.
+    /// Module and entry point of the vertex stage, and values of its `override` constants.
     pub vertex: (&'a wgpu::ShaderModule, &'a str, &'a [(&'a str, f64)]),
-    /// Module and entry point of the pixels, and values of its `override` constants.
+    /// Module and entry point of the fragment stage, and values of its `override` constants.
     pub fragment: (&'a wgpu::ShaderModule, &'a str, &'a [(&'a str, f64)]),
-    /// One layout a bind group, in order.
+    /// Bind group layouts, in order.
     pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
-    /// Layouts of the data that each instance brings.
+    /// Layouts of the per-instance vertex buffers.
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    /// Format of the layer, of one sample.
+    /// Format of the layer, which has one sample per pixel.
     pub format: wgpu::TextureFormat,
-    /// Counts how often a pixel is drawn, in place of `fragment`.
+    /// Whether to count how often each pixel is drawn, instead of running `fragment`.
     pub counts: bool,
 }
 
-/// Makes the pipeline.
+/// Creates the pipeline.
 ///
 /// # Errors
-/// As [`fullscreen`].
+/// The errors of [`fullscreen`].
 pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> Result<wgpu::RenderPipeline> {
     let counting = desc.counts.then(|| device.shader("common/count.wgsl")).transpose()?;
     let fragment = counting.as_ref().map_or(desc.fragment, |module| (module, "count", &[]));
@@ -188,26 +190,26 @@ pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> Result<wgpu::RenderPipeli
     }))
 }
 
-/// Description of a pipeline of a mesh: triangles of vertices that a buffer brings, in place of what is there.
+/// Description of a mesh pipeline: triangles from a vertex buffer, which replace what the target holds.
 pub(crate) struct MeshDesc<'a> {
     /// Shader file below `shaders/`.
     pub shader: &'a str,
-    /// Entry point of the vertices.
+    /// Entry point of the vertex stage.
     pub vertex: &'a str,
-    /// Entry point of the pixels.
+    /// Entry point of the fragment stage.
     pub fragment: &'a str,
-    /// One layout a bind group, in order.
+    /// Bind group layouts, in order.
     pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
-    /// Layout of the data that each vertex brings.
+    /// Layout of the vertex buffer.
     pub vertices: wgpu::VertexBufferLayout<'a>,
-    /// Format of the target, of one sample.
+    /// Format of the target, which has one sample per pixel.
     pub format: wgpu::TextureFormat,
 }
 
-/// Makes the pipeline.
+/// Creates the pipeline.
 ///
 /// # Errors
-/// As [`fullscreen`].
+/// The errors of [`fullscreen`].
 pub(crate) fn mesh(device: &Device, desc: &MeshDesc<'_>) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(desc.shader)?;
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -244,16 +246,16 @@ pub(crate) struct ComputeDesc<'a> {
     pub shader: &'a str,
     /// Entry point.
     pub entry: &'a str,
-    /// One layout a bind group, in order; none where the shader leaves a group out.
+    /// Bind group layouts, in order; `None` for a group that the shader does not use.
     pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
     /// Values of `override` constants.
     pub constants: &'a [(&'a str, f64)],
 }
 
-/// Makes the pipeline.
+/// Creates the pipeline.
 ///
 /// # Errors
-/// As [`fullscreen`].
+/// The errors of [`fullscreen`].
 pub(crate) fn compute(device: &Device, desc: &ComputeDesc<'_>) -> Result<wgpu::ComputePipeline> {
     let module = device.shader(desc.shader)?;
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -271,7 +273,7 @@ pub(crate) fn compute(device: &Device, desc: &ComputeDesc<'_>) -> Result<wgpu::C
     }))
 }
 
-/// Draws a full-screen triangle with `pipeline` into `target`, clearing nothing.
+/// Draws a full-screen triangle with `pipeline` into `target`, without clearing it.
 pub fn draw(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,

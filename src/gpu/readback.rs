@@ -1,11 +1,12 @@
-//! Reading textures back to the CPU, for queries, probes, tests and pictures. Waits for the GPU: never in a frame.
+//! Reading textures back to the CPU, for queries, probes, tests and pictures. It waits for the GPU, so no frame uses
+//! it.
 
 use half::f16;
 
 use super::device::Device;
 use crate::error::{Error, Result, Status};
 
-/// Bytes of one texel of the formats that can be read back.
+/// Returns the bytes of one texel, for the formats that can be read back.
 fn texel_bytes(format: wgpu::TextureFormat) -> Result<u32> {
     use wgpu::TextureFormat as F;
     match format {
@@ -19,26 +20,26 @@ fn texel_bytes(format: wgpu::TextureFormat) -> Result<u32> {
     }
 }
 
-/// The raw bytes of mip 0 of a 2-D texture (or of `layer` of an array), rows packed.
+/// Reads the bytes of mip 0 of a 2-D texture (or of `layer` of an array), with rows tightly packed.
 ///
 /// # Errors
-/// [`Status::Unsupported`] for other formats, [`Status::DeviceLost`] or a GPU fault.
+/// [`Status::Unsupported`] for a format that cannot be read back; [`Status::DeviceLost`] or a GPU fault.
 pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec<u8>> {
     let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
     let origin = wgpu::Origin3d { x: 0, y: 0, z: layer };
     copied(device, wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() }, size)
 }
 
-/// The raw bytes of a mip level with all its layers or slices, rows packed.
+/// Reads the bytes of a mip level with all its layers or slices, with rows tightly packed.
 ///
 /// # Errors
-/// As [`bytes`].
+/// The errors of [`bytes`].
 pub(crate) fn level(device: &Device, texture: &wgpu::Texture, level: u32) -> Result<Vec<u8>> {
     let size = texture.size().mip_level_size(level, texture.dimension());
     copied(device, wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() }, size)
 }
 
-/// The raw bytes of a part of a texture as wide as its mip level, rows packed.
+/// Reads the bytes of a part of a texture, as wide as its mip level, with rows tightly packed.
 fn copied(device: &Device, source: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::Extent3d) -> Result<Vec<u8>> {
     let row = size.width * texel_bytes(source.texture.format())?;
     let rows = u64::from(size.height) * u64::from(size.depth_or_array_layers);
@@ -69,7 +70,7 @@ fn copied(device: &Device, source: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::E
         let _ = done.send(r);
     });
     device.wait()?;
-    // Another thread's poll may have taken our callback and be about to run it.
+    // Another thread's poll may have taken this callback and be about to run it.
     match answer.recv_timeout(std::time::Duration::from_secs(30)) {
         Ok(Ok(())) => {}
         _ => return Err(Error::new(Status::DeviceLost, "the GPU did not give a texture back")),
@@ -85,12 +86,12 @@ fn copied(device: &Device, source: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::E
     Ok(packed)
 }
 
-/// The texels of mip 0 as RGBA in f32; missing channels are 0, a missing alpha 1; 8-bit ones are divided by 255
-/// and not linearised.
+/// Reads the texels of mip 0 as RGBA in f32. Missing colour channels are 0, a missing alpha is 1. 8-bit values are
+/// divided by 255 and not linearised.
 ///
 /// # Errors
-/// As [`bytes`]. With debug assertions also [`Status::Internal`] for a picture in floats with a value that is not
-/// finite.
+/// The errors of [`bytes`]. With debug assertions also [`Status::Internal`] if a float texture holds a value that is
+/// not finite.
 pub fn rgba(device: &Device, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>> {
     use wgpu::TextureFormat as F;
     let raw = bytes(device, texture, 0)?;

@@ -1,9 +1,9 @@
-//! Least-recently-used cache of things that are made when they are first needed.
+//! Least-recently-used cache of objects that are created when first needed.
 //!
-//! Pipelines come in as many variants as hosts have formats, and weathers parts. One that has not been used for longest
-//! goes when another one is made, so that memory levels off however long a session changes between them.
+//! Hosts' formats and weathers' parts give pipelines many variants. When the cache is full, a new object replaces the
+//! least recently used one, so that memory stays bounded however long a session changes between variants.
 
-/// Values by their keys, at most `MOST` of them.
+/// Values found by their keys; at most `MOST` of them.
 pub(crate) struct LruCache<K, V, const MOST: usize> {
     all: Vec<RecentEntry<K, V>>,
     uses: u64,
@@ -26,10 +26,10 @@ impl<K, V, const MOST: usize> LruCache<K, V, MOST> {
         Self { all: Vec::new(), uses: 0 }
     }
 
-    /// The value of the key that `is` knows, made with its key if there is none.
+    /// Returns the value whose key satisfies `is`; `make` creates value and key if there is none.
     ///
     /// # Errors
-    /// Those of `make`; nothing goes then.
+    /// The errors of `make`; the cache then stays as it was.
     pub fn get_or_make<E>(
         &mut self,
         is: impl Fn(&K) -> bool,
@@ -44,18 +44,18 @@ impl<K, V, const MOST: usize> LruCache<K, V, MOST> {
         Ok(&self.all[at].value)
     }
 
-    /// Whether there is a value of the key that `is` knows.
+    /// Whether there is a value whose key satisfies `is`.
     pub fn has(&self, is: impl Fn(&K) -> bool) -> bool {
         self.all.iter().any(|held| is(&held.key))
     }
 
-    /// The keys of all that are held.
+    /// Iterates over all keys.
     #[cfg(test)]
     pub fn keys(&self) -> impl Iterator<Item = &K> {
         self.all.iter().map(|held| &held.key)
     }
 
-    /// As [`Self::get_or_make`] for a value that is copied out and whose making cannot fail.
+    /// Returns a copy of the value as [`Self::get_or_make`] does, where `make` cannot fail.
     pub fn get_or_put(&mut self, key: &K, make: impl FnOnce() -> V) -> V
     where
         K: Copy + PartialEq,
@@ -66,7 +66,7 @@ impl<K, V, const MOST: usize> LruCache<K, V, MOST> {
         *value
     }
 
-    /// Puts it into free room, or into that of what was not used for longest.
+    /// Stores the entry in a free place, or in place of the least recently used one; returns the index.
     fn put(&mut self, (key, value): (K, V)) -> usize {
         let held = RecentEntry { key, value, used: 0 };
         if self.all.len() < MOST {
@@ -99,11 +99,11 @@ mod tests {
             made.iter().filter(|m| m.strong_count() > 0).count()
         };
         for round in 0..100 {
-            // Three that every frame uses among ever others.
+            // Three keys that every round uses, and one that is always new.
             let others = [0, 1, 2, 1000 + round];
             assert!(others.into_iter().map(&mut ask).max() <= Some(8));
         }
-        // Those three were made once.
+        // The three values were created once.
         assert_eq!(made.len(), 103);
         assert!(held.get_or_make(|k| *k == 7, || Err("no shader")).is_err());
         assert_eq!(made.iter().filter(|m| m.strong_count() > 0).count(), 8);

@@ -1,11 +1,11 @@
 //! Shader assembly: plain WGSL files, `//!include "common/x.wgsl"` resolved once each.
 //!
-//! Variants come from `override` constants and entry points, and from other files in place of some:
-//! `rain/drops_view.wgsl:multi` reads `common/host_multi.wgsl` instead of `common/host.wgsl`, as of every file that
-//! there is another of for `multi`. A name may have several such words. So a host's textures may be of other types, and
-//! what a pipeline does not draw is not compiled: a driver that finds dead code only after it has inlined everything
-//! takes several times as long. There is no preprocessor. Every assembled shader is validated by naga in a test
-//! ([`names`] lists them), and every uniform's offsets are compared with naga's ([`struct_layout`]).
+//! A variant of a shader has other `override` constants, another entry point, or other files in place of some:
+//! `rain/drops_view.wgsl:multi` includes `common/host_multi.wgsl` instead of `common/host.wgsl`, and so for every file
+//! that has a version for `multi`. A name may have several such words. In this way a host's textures may have other
+//! types, and code that a pipeline does not need is not compiled: a driver that finds dead code only after it has
+//! inlined everything takes several times as long. There is no preprocessor. A test validates every assembled shader
+//! with naga ([`names`] lists them), and compares every uniform's offsets with naga's ([`struct_layout`]).
 
 use std::{cell::Cell, sync::Arc};
 
@@ -24,7 +24,7 @@ fn source(name: &str) -> Option<&'static str> {
     table::SHADERS.binary_search_by_key(&name, |(n, _)| n).ok().map(|i| table::SHADERS[i].1)
 }
 
-/// Words of variants, and a file of the shaders that have them.
+/// Words of variants, each with a shader file that has that variant.
 const VARIANTS: [(&str, &str); 6] = [
     ("multi", "common/host.wgsl"),
     ("resolved", "common/host.wgsl"),
@@ -34,11 +34,11 @@ const VARIANTS: [(&str, &str); 6] = [
     ("lamps", "clouds/glow_view.wgsl"),
 ];
 
-/// Names of shader `name` and its variants of one word, and of the composition's of several, which stand for what
-/// others may use.
+/// Returns the names of shader `name` and of its variants with one word. For the composition also some variants with
+/// several words, as examples of the rest.
 ///
 /// # Errors
-/// As [`assemble`].
+/// The errors of [`assemble`].
 pub fn with_variants(name: &str) -> Result<Vec<String>> {
     let text = assemble(name)?;
     let has = |file: &str| text.contains(&format!("// ---- {file}\n"));
@@ -49,29 +49,29 @@ pub fn with_variants(name: &str) -> Result<Vec<String>> {
     Ok(std::iter::once(String::new()).chain(words).chain(several).map(|words| format!("{name}{words}")).collect())
 }
 
-/// The text of shader `name` with its includes put before it, each once, in order of first mention; of variants after
-/// colons.
+/// Returns the text of shader `name` after the text of its includes, each once, in order of first mention. Words after
+/// colons select a variant.
 ///
 /// # Errors
-/// [`Status::Internal`] if a file is missing or includes form a cycle; the message names the chain.
+/// [`Status::Internal`] if a file is missing or includes form a cycle; the message has the chain of includes.
 pub fn assemble(name: &str) -> Result<String> {
     assemble_from(name, &|n| source(n).map(str::to_owned))
 }
 
-/// As [`assemble`], with `common/guarded_checked.wgsl` in place of `common/guarded.wgsl`: what is not a number stays
-/// so.
+/// Assembles as [`assemble`] does, with `common/guarded_checked.wgsl` in place of `common/guarded.wgsl`, so that a NaN
+/// stays a NaN.
 ///
 /// # Errors
-/// As [`assemble`].
+/// The errors of [`assemble`].
 pub fn assemble_checked(name: &str) -> Result<String> {
     let checked = |n: &str| if n == "common/guarded.wgsl" { "common/guarded_checked.wgsl" } else { n }.to_owned();
     assemble_from(name, &|n| source(&checked(n)).map(str::to_owned))
 }
 
-/// As [`assemble`], from another set of files: `lookup` gives a file's text.
+/// Assembles as [`assemble`] does, from other files: `lookup` returns a file's text.
 ///
 /// # Errors
-/// As [`assemble`].
+/// The errors of [`assemble`].
 pub fn assemble_from(name: &str, lookup: &dyn Fn(&str) -> Option<String>) -> Result<String> {
     let mut done = Vec::new();
     let mut out = String::new();
@@ -126,13 +126,13 @@ fn append(
     Ok(())
 }
 
-/// Names of the `override` constants of an assembled shader.
+/// Returns the names of the `override` constants of an assembled shader.
 pub(crate) fn overrides(text: &str) -> Arc<[String]> {
     let name = |line: &str| Some(line.strip_prefix("override ")?.split_once(':')?.0.to_owned());
     text.lines().filter_map(name).collect()
 }
 
-/// Size in bytes and (member, offset) list of a WGSL struct, as naga lays it out.
+/// Returns the size in bytes and the (member, offset) list of a WGSL struct, as naga lays it out.
 ///
 /// # Errors
 /// [`Status::Internal`] if the text does not parse or has no such struct.
@@ -150,10 +150,10 @@ pub fn struct_layout(wgsl: &str, name: &str) -> Result<(u32, Vec<(String, u32)>)
     Err(Error::new(Status::Internal, format!("no struct {name} in this shader")))
 }
 
-/// Parses and validates an assembled shader as a strict implementation would.
+/// Parses and validates an assembled shader, as strictly as WebGPU demands.
 ///
 /// # Errors
-/// [`Status::Internal`] with naga's report, lines and carets included.
+/// [`Status::Internal`] with naga's report, which marks the lines.
 pub fn validate(wgsl: &str) -> Result<()> {
     use wgpu::naga::{front::wgsl, valid};
     let module = wgsl::parse_str(wgsl).map_err(|e| Error::new(Status::Internal, e.emit_to_string(wgsl)))?;
@@ -163,7 +163,7 @@ pub fn validate(wgsl: &str) -> Result<()> {
         .map_err(|e| Error::new(Status::Internal, e.emit_to_string(wgsl)))
 }
 
-/// Holds a Rust struct's size and fields against a WGSL struct of shader `$shader`, whose members have the same names.
+/// Asserts that a Rust struct has the size and offsets of a WGSL struct of shader `$shader` with the same member names.
 #[cfg(test)]
 macro_rules! assert_layout {
     ($shader:expr, $name:expr, $type:ident, [$($field:ident),* $(,)?]) => {
@@ -222,9 +222,9 @@ mod tests {
         assert!(lines("a:odd").unwrap_err().to_string().contains("no variant odd"));
     }
 
-    /// An index that a compiler does not know, into an array of a value: drivers copy all of that value for it, for
-    /// every pixel, and llvmpipe takes 0.3 s to compile the copy of a block of ours. Arrays of bound blocks are indexed
-    /// where they are bound.
+    /// Drivers copy a whole array to the stack of every pixel where a function indexes an array value by a variable.
+    /// llvmpipe takes 0.3 s to compile that copy for one of Welkin's blocks. Arrays in blocks must be indexed through
+    /// their binding.
     #[test]
     fn no_function_indexes_an_array_of_a_block_that_it_was_given() {
         use wgpu::naga::{Expression as E, Function, Handle, front::wgsl::parse_str};
@@ -255,7 +255,8 @@ mod tests {
         assert_eq!(faults(given), ["f"], "one is found");
     }
 
-    /// WebGPU promises 16 textures a stage, and tier 0 devices have no more: three are left for what comes.
+    /// WebGPU guarantees 16 textures per stage, and tier 0 devices have no more. The limit of 13 leaves three for later
+    /// use.
     #[test]
     fn no_shader_reads_more_than_thirteen_textures() {
         use wgpu::naga::{ImageClass, TypeInner, front::wgsl::parse_str};
@@ -276,7 +277,7 @@ mod tests {
 
     type Type = wgpu::naga::Handle<wgpu::naga::Type>;
 
-    /// Locations of an entry point's arguments or result.
+    /// Returns the locations of an entry point's arguments or result.
     fn locations<'a>(
         module: &'a wgpu::naga::Module,
         bound: impl Iterator<Item = (Option<&'a wgpu::naga::Binding>, Type)>,

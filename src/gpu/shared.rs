@@ -1,4 +1,4 @@
-//! Objects that the contexts and views of a device share: pipelines and tables, each made once, at its first use.
+//! Objects that the contexts and views of a device share: pipelines and tables, each created once, at its first use.
 
 use std::{
     any::Any,
@@ -8,25 +8,25 @@ use std::{
 use super::device::Device;
 use crate::error::{Error, Result, Status};
 
-/// Pipelines and tables of one device, made once and used by all its contexts and views. Any thread.
+/// Pipelines and tables of one device, created once and used by all its contexts and views, on any thread.
 pub struct Shared {
     kept: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
 }
 
 impl Shared {
-    /// With nothing made yet.
+    /// Creates an empty collection.
     ///
     /// # Errors
-    /// A GPU fault that is still to be told.
+    /// A GPU fault that has not been reported yet.
     pub fn new(device: &Device) -> Result<Self> {
         device.check()?;
         Ok(Self { kept: Mutex::default() })
     }
 
-    /// The one thing of its type, made if it is the first time.
+    /// Returns the one object of type `T`; `make` creates it at the first call.
     ///
     /// # Errors
-    /// What `make` answers; [`Status::Poisoned`] after a panic in it.
+    /// The errors of `make`; [`Status::Poisoned`] after a panic in it.
     pub(crate) fn get<T: Send + Sync + 'static>(&self, make: impl FnOnce() -> Result<T>) -> Result<Arc<T>> {
         let poisoned = || Error::new(Status::Poisoned, "an earlier call panicked while it made what views share");
         let mut kept = self.kept.lock().map_err(|_| poisoned())?;

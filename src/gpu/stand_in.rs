@@ -1,5 +1,5 @@
-//! A picture that stands in for a window's image where that can only be drawn to (OpenGL): the effects read and copy
-//! what is drawn so far, and only the finished picture goes to the window.
+//! Picture that stands in for a window's image that can only be drawn to (OpenGL). The effects read and copy what is
+//! drawn so far from the stand-in; only the finished picture goes to the window.
 
 use super::{
     Device,
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::error::Result;
 
-/// A texture like the window's image, and its way there.
+/// Texture like the window's image, and the pipeline that copies it there.
 pub(super) struct StandIn {
     pub(super) texture: wgpu::Texture,
     pipeline: wgpu::RenderPipeline,
@@ -16,7 +16,7 @@ pub(super) struct StandIn {
 }
 
 impl StandIn {
-    /// One for images of `format` and size.
+    /// Creates a stand-in for images of this format and size.
     ///
     /// # Errors
     /// GPU faults come through [`Device::check`].
@@ -58,7 +58,7 @@ impl StandIn {
         Ok(Self { texture, pipeline, group })
     }
 
-    /// Copies the picture onto the window's image and submits that.
+    /// Copies the picture to the window's image and submits the copy.
     pub(super) fn copy_to(&self, device: &Device, image: &wgpu::Texture) {
         let mut encoder = device.device.create_command_encoder(&Default::default());
         let view = image.create_view(&Default::default());

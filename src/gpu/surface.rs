@@ -1,7 +1,8 @@
-//! A window that the host named by its native handle: images to draw into, and their way to the screen.
+//! Window that the host gave by its native handle: images to draw into, and their presentation.
 //!
-//! Welkin neither makes nor reads the window; the host keeps its event loop and says when the size changed.
-//! Nothing that a window may do is a fault: resized, hidden, minimised and lost are answers to [`Surface::acquire`].
+//! Welkin neither creates the window nor handles its events. The host keeps its event loop and says when the size has
+//! changed. A window that was resized, hidden, minimised or lost is no fault: [`Surface::acquire`] returns a status for
+//! each.
 
 use std::ffi::c_void;
 use std::num::{NonZeroIsize, NonZeroU32};
@@ -13,10 +14,11 @@ use raw_window_handle as rwh;
 use super::{Device, DeviceOptions, instance, stand_in::StandIn};
 use crate::error::{Error, Result, Status};
 
-/// A native window. Pointers and numbers are the host's and outlive the device and surface made from them.
+/// Native window. The pointers and numbers are the host's; what they name must outlive the device and surface made from
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NativeWindow {
-    /// X11 by Xlib: `Display*`, screen number, `Window`.
+    /// X11 through Xlib: `Display*`, screen number, `Window`.
     Xlib {
         /// `Display*`.
         display: *mut c_void,
@@ -25,7 +27,7 @@ pub enum NativeWindow {
         /// `Window`.
         window: u64,
     },
-    /// X11 by XCB: `xcb_connection_t*`, screen number, `xcb_window_t`.
+    /// X11 through XCB: `xcb_connection_t*`, screen number, `xcb_window_t`.
     Xcb {
         /// `xcb_connection_t*`.
         connection: *mut c_void,
@@ -45,10 +47,10 @@ pub enum NativeWindow {
     Win32 {
         /// `HWND`.
         hwnd: *mut c_void,
-        /// `HINSTANCE` of the module that made the window.
+        /// `HINSTANCE` of the module that created the window.
         hinstance: *mut c_void,
     },
-    /// macOS: `NSView*`; to be used on the main thread.
+    /// macOS: `NSView*`, for use on the main thread only.
     AppKit {
         /// `NSView*`.
         ns_view: *mut c_void,
@@ -59,8 +61,8 @@ impl NativeWindow {
     /// Takes the handles of a Rust window.
     ///
     /// # Errors
-    /// [`Status::Unsupported`] for a window system that Welkin does not present to, or handles that are not
-    /// available now.
+    /// [`Status::Unsupported`] for a window system that Welkin cannot present to, or for handles that are not available
+    /// at the moment.
     pub fn of(window: &(impl rwh::HasWindowHandle + rwh::HasDisplayHandle)) -> Result<Self> {
         let gone = |e: rwh::HandleError| Error::unsupported(format!("the window has no handle now: {e}"));
         let display = window.display_handle().map_err(gone)?.as_raw();
@@ -87,7 +89,7 @@ impl NativeWindow {
         })
     }
 
-    /// The handles as wgpu takes them.
+    /// Returns the handles in the form that wgpu takes.
     fn raw(&self) -> Result<(rwh::RawDisplayHandle, rwh::RawWindowHandle)> {
         Ok(match *self {
             Self::Xlib { display, screen, window } => {
@@ -126,7 +128,7 @@ impl NativeWindow {
 }
 
 impl NativeWindow {
-    /// Refuses a window that is not there: drivers crash on one of X11, and make of one of Windows what they like.
+    /// Checks that the window exists: without it X11 drivers crash, and the behaviour on Windows depends on the driver.
     ///
     /// # Safety
     /// The connection is live.
@@ -162,12 +164,12 @@ fn pointer(name: &str, accepted: &str, p: *mut c_void) -> Result<NonNull<c_void>
     NonNull::new(p).ok_or_else(|| Error::range(name, accepted, "NULL"))
 }
 
-/// The connection to the window system, which OpenGL needs before there is any window.
+/// Connection to the window system, which OpenGL needs before there is a window.
 #[derive(Debug)]
 struct Display(rwh::RawDisplayHandle);
 
-// SAFETY: the host keeps the connection alive and lets it be used from the threads that call Welkin
-// (`device_for_window`'s contract); wgpu only passes the pointer on to EGL.
+// SAFETY: the host keeps the connection alive and allows its use from the threads that call Welkin
+// (`device_for_window`'s contract). wgpu only passes the pointer to EGL.
 unsafe impl Send for Display {}
 // SAFETY: as above.
 unsafe impl Sync for Display {}
@@ -179,14 +181,15 @@ impl rwh::HasDisplayHandle for Display {
     }
 }
 
-/// Makes an own device that can present to `window` (and to other windows of the same connection).
+/// Creates an own device that can present to `window`, and to other windows of the same connection.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] names a null handle; [`Status::NoAdapter`] if no driver can present to the window.
+/// [`Status::InvalidArgument`], which names a null handle; [`Status::NoAdapter`] if no driver can present to the
+/// window.
 ///
 /// # Safety
-/// The window's connection (display) outlives the device. With X11, if the host or Welkin calls from several
-/// threads, the host called `XInitThreads` first.
+/// The window's connection (display) must outlive the device. With X11, if the host or Welkin calls from several
+/// threads, the host must have called `XInitThreads` first.
 pub unsafe fn device_for_window(window: &NativeWindow, options: &DeviceOptions) -> Result<Arc<Device>> {
     let (display, _) = window.raw()?;
     let mut answer = Err(instance::none_wanted(options.backends));
@@ -204,7 +207,7 @@ pub unsafe fn device_for_window(window: &NativeWindow, options: &DeviceOptions) 
 }
 
 /// # Safety
-/// The window lives as long as the surface.
+/// The window must live as long as the surface.
 unsafe fn create(instance: &wgpu::Instance, window: &NativeWindow) -> Result<wgpu::Surface<'static>> {
     let (raw_display_handle, raw_window_handle) = window.raw()?;
     // SAFETY: the caller vouches for the window's connection.
@@ -216,36 +219,36 @@ unsafe fn create(instance: &wgpu::Instance, window: &NativeWindow) -> Result<wgp
         .map_err(|e| Error::new(Status::Unsupported, format!("no driver can present to this window: {e}")))
 }
 
-/// How the values that are drawn mean colour on the screen.
+/// Encoding of the colours that are drawn to the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SurfaceEncoding {
-    /// Display-linear values, which the hardware encodes to sRGB as they are written.
+    /// Display-linear values, which the hardware encodes to sRGB when they are written.
     #[default]
     DisplayLinear,
     /// Values that are already sRGB-encoded.
     DisplaySrgb,
 }
 
-/// When images reach the screen.
+/// Time at which images reach the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pacing {
-    /// With the screen's refresh, no tearing: [`Surface::acquire`] waits for it.
+    /// At the screen's refresh, without tearing: [`Surface::acquire`] waits for it.
     #[default]
     Refresh,
     /// As soon as possible.
     Immediate,
 }
 
-/// How a surface is to be set up.
+/// Settings of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SurfaceOptions {
     /// Width of the window's drawable area, pixels; 0 while it is minimised.
     pub width: u32,
     /// Height of the window's drawable area, pixels; 0 while it is minimised.
     pub height: u32,
-    /// Default display-linear.
+    /// Encoding of the colours. Default: display-linear.
     pub encoding: SurfaceEncoding,
-    /// Default with the refresh.
+    /// Time at which images reach the screen. Default: at the refresh.
     pub pacing: Pacing,
 }
 
@@ -253,9 +256,9 @@ pub struct SurfaceOptions {
 const IMAGE_USAGE: wgpu::TextureUsages =
     wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::COPY_SRC).union(wgpu::TextureUsages::COPY_DST);
 
-/// A window to present to. One thread at a time; on macOS the main thread.
+/// Window to present to. Use it from one thread at a time; on macOS from the main thread.
 pub struct Surface {
-    // Dropped in this order: an image before its surface, the surface before the device's instance.
+    // Drop order: an image before its surface, the surface before the device's instance.
     current: Option<wgpu::SurfaceTexture>,
     stand_in: Option<StandIn>,
     surface: wgpu::Surface<'static>,
@@ -267,8 +270,8 @@ pub struct Surface {
     lost: bool,
 }
 
-// SAFETY: the raw handles inside are only passed on to the driver, under `&mut self`, from the thread that the
-// host calls from; the host's promise for them is the contract of `Surface::new`.
+// SAFETY: the raw handles inside are only passed to the driver, under `&mut self`, from the thread that the host calls
+// from. The host's promise for them is the contract of `Surface::new`.
 unsafe impl Send for Surface {}
 
 impl std::fmt::Debug for Surface {
@@ -280,14 +283,14 @@ impl std::fmt::Debug for Surface {
 }
 
 impl Surface {
-    /// A surface on `window`, presented to by `device`. It is to be configured before it gives images.
+    /// Creates a surface on `window`, presented to by `device`. It gives images only after [`Surface::configure`].
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] names a null handle; [`Status::Unsupported`] if the device cannot present to
-    /// this window: make the device with [`device_for_window`].
+    /// [`Status::InvalidArgument`], which names a null handle; [`Status::Unsupported`] if the device cannot present to
+    /// this window (create the device with [`device_for_window`]).
     ///
     /// # Safety
-    /// The window outlives the surface, and its connection the device.
+    /// The window must outlive the surface, and its connection must outlive the device.
     pub unsafe fn new(device: &Arc<Device>, window: &NativeWindow) -> Result<Self> {
         let _entered = device.enter()?;
         // SAFETY: the caller vouches for the window.
@@ -311,24 +314,25 @@ impl Surface {
         })
     }
 
-    /// The format that images have, once configured.
+    /// Returns the format of the images, once configured.
     pub fn format(&self) -> Option<wgpu::TextureFormat> {
         self.format
     }
 
-    /// Size of the images, pixels, as configured; (0, 0) before.
+    /// Returns the configured size of the images, pixels; (0, 0) before the first configure.
     pub fn size(&self) -> (u32, u32) {
         self.options.map_or((0, 0), |o| (o.width, o.height))
     }
 
-    /// Sets the surface up, or up again after its window changed. An image in hand is given back undrawn.
+    /// Configures the surface, for the first time or after its window has changed. An acquired image is discarded.
     ///
-    /// A width or height of 0 is a minimised window: the call succeeds and [`Surface::acquire`] answers
-    /// [`Status::SurfaceOutdated`] until it is configured with an area.
+    /// A width or height of 0 means a minimised window: the call succeeds, and [`Surface::acquire`] returns
+    /// [`Status::SurfaceOutdated`] until the surface is configured with a size above 0.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] beyond the device's texture size; [`Status::Unsupported`] if the window gives
-    /// no format for the encoding; [`Status::SurfaceOutdated`] if the window is gone; [`Status::DeviceLost`].
+    /// [`Status::InvalidArgument`] for a size beyond the device's largest texture; [`Status::Unsupported`] if the
+    /// window has no format for the encoding; [`Status::SurfaceOutdated`] if the window is gone;
+    /// [`Status::DeviceLost`].
     pub fn configure(&mut self, options: &SurfaceOptions) -> Result<()> {
         let max = self.device.caps().max_texture_size;
         for (name, value) in [("width", options.width), ("height", options.height)] {
@@ -387,12 +391,12 @@ impl Surface {
         Ok(())
     }
 
-    /// The next image to draw into. To be drawn, then shown by [`Surface::present`]; asked for again before that,
-    /// it is the same image.
+    /// Returns the next image to draw into. Draw it, then show it by [`Surface::present`]. Until then, further calls
+    /// return the same image.
     ///
     /// # Errors
     /// [`Status::SurfaceOutdated`]: configure again, with the window's present size (also while it is minimised);
-    /// [`Status::Pending`]: the window shows nothing now (hidden, or the screen is busy): skip this frame;
+    /// [`Status::Pending`]: the window shows nothing now (it is hidden, or the screen is busy), skip this frame;
     /// [`Status::WrongOrder`] before the first configure; [`Status::DeviceLost`].
     pub fn acquire(&mut self) -> Result<wgpu::Texture> {
         let device = self.device.clone();
@@ -415,7 +419,7 @@ impl Surface {
         use wgpu::CurrentSurfaceTexture as Next;
         let image = match self.surface.get_current_texture() {
             Next::Success(image) => image,
-            // Still good to draw into; the next call says that the window changed.
+            // The image can still be drawn into; the next call reports that the window has changed.
             Next::Suboptimal(image) => {
                 self.ready = false;
                 image
@@ -443,8 +447,8 @@ impl Surface {
         Ok(picture)
     }
 
-    /// Lets an image in hand go undrawn. wgpu does not take it back from a lost device, and would panic when the
-    /// surface goes before it: there it is destroyed, whoever else holds it.
+    /// Discards an acquired image. wgpu does not take an image back from a lost device, and panics if the surface is
+    /// dropped before the image; so on a lost device the image's texture is destroyed, even if others hold it.
     fn give_back(&mut self) {
         if let Some(image) = self.take_image()
             && self.device.is_lost()
@@ -453,23 +457,23 @@ impl Surface {
         }
     }
 
-    /// The image in hand, which nobody of the device knows from now on.
+    /// Takes the acquired image, and removes it from the device's list of window images.
     fn take_image(&mut self) -> Option<wgpu::SurfaceTexture> {
         let image = self.current.take()?;
         self.device.of_windows().retain(|known| *known != image.texture);
         Some(image)
     }
 
-    /// Returns the texture that the host draws into for an image in hand.
+    /// Returns the texture that the host draws into for an acquired image.
     fn picture(&self, image: &wgpu::SurfaceTexture) -> wgpu::Texture {
         self.stand_in.as_ref().map_or_else(|| image.texture.clone(), |s| s.texture.clone())
     }
 
-    /// Shows the image in hand, after the work submitted for it.
+    /// Shows the acquired image, after the work submitted for it.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] if no image was acquired; [`Status::SurfaceOutdated`] and [`Status::DeviceLost`] as
-    /// in [`Surface::acquire`].
+    /// [`Status::WrongOrder`] if no image was acquired; [`Status::SurfaceOutdated`] and [`Status::DeviceLost`] as in
+    /// [`Surface::acquire`].
     pub fn present(&mut self) -> Result<()> {
         let device = self.device.clone();
         let _entered = device.enter()?;
@@ -503,7 +507,7 @@ fn outdated(why: &str) -> Error {
     Error::new(Status::SurfaceOutdated, message)
 }
 
-/// The window's format for an encoding: 8 bits a channel, in the order that the window prefers.
+/// Chooses the window's format for an encoding: 8 bits a channel, in the order that the window prefers.
 fn choose_format(offered: &[wgpu::TextureFormat], encoding: SurfaceEncoding) -> Result<wgpu::TextureFormat> {
     let wanted = match encoding {
         SurfaceEncoding::DisplayLinear => [wgpu::TextureFormat::Bgra8UnormSrgb, wgpu::TextureFormat::Rgba8UnormSrgb],

@@ -1,6 +1,6 @@
-//! The plain texture that most passes, probes and tests need.
+//! Plain texture that most passes, probes and tests need.
 
-/// A texture of two dimensions with one level, one layer and one sample.
+/// Creates a two-dimensional texture with one mip level, one layer and one sample per pixel.
 pub fn flat_texture(
     device: &wgpu::Device,
     label: &str,

@@ -1,5 +1,5 @@
-//! Queries to Windows about windows and modules: each driver treats a window that is gone in its own way, and none
-//! well.
+//! Windows API queries about windows and modules. They come before calls to drivers, which mishandle a destroyed window
+//! in various ways.
 #![cfg(windows)]
 
 use std::ffi::c_void;
@@ -20,15 +20,15 @@ pub(super) fn exists(hwnd: *mut c_void) -> bool {
     unsafe { IsWindow(hwnd) != 0 }
 }
 
-/// Keeps the module that this code is in loaded until the process ends. wgpu's OpenGL on Windows leaves a thread and a
-/// class of windows behind, whose code is in the module: a host that unloads Welkin's DLL would end in what is no
-/// longer there.
+/// Keeps the module with this code loaded until the process ends. wgpu's OpenGL on Windows leaves behind a thread and a
+/// window class whose code is in the module. A host that unloaded Welkin's DLL would crash in code that is no longer
+/// there.
 pub(super) fn stay_loaded() {
     const PIN: u32 = 1;
     const FROM_ADDRESS: u32 = 4;
     let mut module = std::ptr::null_mut();
     let here: fn() = stay_loaded;
-    // SAFETY: an address inside this module and a place for its handle. Where the call fails, nothing is kept and
-    // nothing is broken.
+    // SAFETY: the arguments are an address inside this module and a place for its handle. If the call fails, the module
+    // is merely not pinned.
     unsafe { GetModuleHandleExW(PIN | FROM_ADDRESS, here as *const c_void, &mut module) };
 }

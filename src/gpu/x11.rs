@@ -1,5 +1,5 @@
-//! Whether an X11 window exists. Drivers do not ask: Mesa's EGL dereferences NULL for a window that is gone, and
-//! an X error that reaches Xlib's default handler ends the process. XCB answers the question without either.
+//! Check whether an X11 window exists. Drivers do not check: Mesa's EGL dereferences NULL for a window that is gone,
+//! and an X error that reaches Xlib's default handler ends the process. XCB answers without either.
 #![cfg(all(unix, not(any(target_os = "macos", target_os = "ios"))))]
 
 use std::ffi::{c_uint, c_void};
@@ -17,24 +17,24 @@ struct Cookie {
     _sequence: c_uint,
 }
 
-/// The three functions of the X libraries, loaded when first asked for: a machine without X has none.
+/// Functions of the X libraries, loaded at first use, because a machine without X has none.
 struct Xcb {
     get_geometry: GetGeometry,
     get_geometry_reply: GetGeometryReply,
-    /// Only needed for Xlib displays.
+    /// Needed only for Xlib displays.
     get_xcb_connection: Option<GetXcbConnection>,
 }
 
 unsafe extern "C" {
-    /// The C library's `free`: replies belong to the caller.
+    /// `free` of the C library, for replies, which the caller must free.
     fn free(p: *mut c_void);
 }
 
 fn xcb() -> Option<&'static Xcb> {
     static XCB: OnceLock<Option<Xcb>> = OnceLock::new();
     XCB.get_or_init(|| {
-        // SAFETY: these libraries' initialisers do nothing but set up themselves; the symbols have these
-        // signatures in every version; the libraries are kept loaded for good.
+        // SAFETY: the initialisers of these libraries only set up the libraries; the symbols have these signatures in
+        // every version; the libraries stay loaded for good.
         unsafe {
             let xcb = libloading::Library::new("libxcb.so.1").ok()?;
             let get_geometry = *xcb.get::<GetGeometry>(b"xcb_get_geometry\0").ok()?;
@@ -56,8 +56,8 @@ fn xcb() -> Option<&'static Xcb> {
 /// `connection` is a live `xcb_connection_t*`.
 pub(super) unsafe fn exists_xcb(connection: NonNull<c_void>, window: u32) -> Option<bool> {
     let xcb = xcb()?;
-    // SAFETY: the caller vouches for the connection; the reply, if any, is ours to free. With no place for an
-    // error, XCB drops it instead of queueing it for the host.
+    // SAFETY: the caller vouches for the connection; the reply, if any, is ours to free. Without a place for an error,
+    // XCB drops it instead of queueing it for the host.
     unsafe {
         let cookie = (xcb.get_geometry)(connection.as_ptr(), window);
         let reply = (xcb.get_geometry_reply)(connection.as_ptr(), cookie, null_mut());
@@ -67,7 +67,7 @@ pub(super) unsafe fn exists_xcb(connection: NonNull<c_void>, window: u32) -> Opt
     }
 }
 
-/// As [`exists_xcb`], for an Xlib display.
+/// Answers as [`exists_xcb`] does, for an Xlib display.
 ///
 /// # Safety
 /// `display` is a live `Display*`.

@@ -1,46 +1,51 @@
-//! Hollows of a terrain as a tree, and which of them each cell drains to.
+//! Hollows of a terrain as a tree, and the pit to which each cell drains.
 //!
-//! A pit fills until its water meets that of another at a saddle: from there on both are one larger hollow, up to the
-//! height at which that one spills, and so on until the water finds the grid's border (the hierarchy of Barnes,
-//! Callaghan and Wickert 2020; the level at which each hollow spills is that of the priority-flood of Barnes, Lehman
-//! and Mulla 2014). Cells are gone through from the lowest up, equal ones by their number, so that every cell but a pit
-//! has a lower neighbour. Run-off takes the steepest of the eight ways down. At the border water leaves.
+//! A pit fills until its water meets that of another pit at a saddle. From there on both are one larger hollow, up to
+//! the height at which that one spills, and so on until the water finds the grid's border. This is the depression
+//! hierarchy of Barnes, Callaghan and Wickert (2020); the level at which each hollow spills is that of the
+//! priority-flood (Barnes, Lehman and Mulla 2014). Cells are visited from the lowest up, equal heights by cell number,
+//! so every cell except a pit has a lower neighbour that has been visited. Run-off takes the steepest of the eight
+//! directions. Water leaves at the border.
 
-/// No hollow: what drains there leaves the grid.
+/// Number of no hollow: water that drains there leaves the grid.
 pub(super) const OUT: u32 = u32::MAX;
 /// Owner of a cell that has not been visited yet.
 const UNSEEN: u32 = u32::MAX - 1;
 
-/// A hollow. Water is counted in millimetres times cells.
+/// Hollow of a terrain. Its water is counted in millimetres times cells.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Basin {
-    /// The larger hollow that it becomes a part of when it and its neighbours are full; [`OUT`] for none.
+    /// Larger hollow that this one becomes a part of when it and its neighbours are full; [`OUT`] for none.
     pub parent: u32,
-    /// The pit into which it spills when it is full; [`OUT`] off the grid.
+    /// Pit into which the hollow spills when it is full; [`OUT`] if the water leaves the grid.
     pub spills_to: u32,
-    /// Its first part, and the next part of its own parent; [`OUT`] for none.
+    /// First part of the hollow; [`OUT`] for none.
     pub first_child: u32,
+    /// Next part of its parent; [`OUT`] for none.
     pub next: u32,
-    /// Height at which it begins: its pit, or where its parts meet, mm.
+    /// Height at which the hollow begins, mm: its pit, or the saddle where its parts meet.
     birth_mm: f64,
-    /// Cells of its parts, all under water, and what these hold.
+    /// Number of the cells of its parts, which are all under water.
     pub below: f64,
+    /// Water that its parts hold.
     pub base: f64,
-    /// Water that it holds when it spills, that of its parts included.
+    /// Water in the hollow when it spills, including that of its parts.
     pub capacity: f64,
-    /// Cells of its own in [`Basins::cells`], ascending.
+    /// Range of its own cells in [`Basins::cells`], in ascending order of height.
     own: std::ops::Range<usize>,
 }
 
-/// All hollows of a terrain; parts come before the whole.
+/// Hollows of a terrain; parts come before their whole.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Basins {
     pub list: Vec<Basin>,
-    /// For each cell the pit that its run-off ends in, or [`OUT`].
+    /// Pit in which the run-off of each cell ends, or [`OUT`].
     pub drains_to: Vec<u32>,
-    /// Cells of the hollows, their heights, mm, and what the hollow holds when its water stands that high.
+    /// Cells of the hollows, hollow by hollow.
     cells: Vec<u32>,
+    /// Heights of these cells, mm.
     levels_mm: Vec<f64>,
+    /// Water that the hollow holds when its level is at the cell, for each of these cells.
     held: Vec<f64>,
 }
 
@@ -54,7 +59,7 @@ fn neighbours(cell: usize, columns: usize, rows: usize) -> impl Iterator<Item = 
     })
 }
 
-/// The whole that a hollow is part of by now, [`OUT`] once it has met the border.
+/// Returns the largest hollow that a hollow is part of so far, or [`OUT`] once it has met the border.
 fn whole_of(wholes: &mut [u32], mut basin: u32) -> u32 {
     while basin != OUT && wholes[basin as usize] != basin {
         let above = wholes[basin as usize];
@@ -97,7 +102,7 @@ impl Rising<'_> {
         id
     }
 
-    /// Takes the next cell up.
+    /// Visits the next cell up.
     fn take(&mut self, cell: usize, (columns, rows): (usize, usize)) {
         let mut met = [OUT; 8];
         let mut count = 0;
@@ -136,8 +141,8 @@ impl Rising<'_> {
         };
     }
 
-    /// Ends or joins the hollows that meet at `cell`: beside the border's ground each ends, else they join, two at a
-    /// time.
+    /// Handles a cell where several hollows meet and returns its owner. If ground that drains off the grid is among
+    /// them, each hollow ends there; else they join, two at a time.
     fn saddle(&mut self, cell: usize, met: &[u32], size: (usize, usize)) -> u32 {
         if met.contains(&OUT) {
             let to = self.lowest_of(cell, OUT, size);
@@ -153,7 +158,8 @@ impl Rising<'_> {
         })
     }
 
-    /// Where water ends that goes down from `cell` by the lowest neighbour of a hollow, or of the border's ground.
+    /// Returns the pit in which water ends that leaves `cell` by the lowest neighbour belonging to `whole` (a hollow,
+    /// or the ground that drains off the grid).
     fn lowest_of(&mut self, cell: usize, whole: u32, size: (usize, usize)) -> u32 {
         let mut lowest: Option<usize> = None;
         for (other, _) in neighbours(cell, size.0, size.1) {
@@ -172,7 +178,7 @@ impl Rising<'_> {
             OUT => OUT,
             whole => std::mem::replace(&mut self.list[whole as usize].first_child, basin),
         };
-        // The capacity is the height alone until the cells are known.
+        // The capacity holds only the height until the cells are known.
         let capacity = self.heights_mm[cell];
         let ended = &mut self.list[basin as usize];
         *ended = Basin { parent, spills_to, next, capacity, ..ended.clone() };
@@ -180,7 +186,7 @@ impl Rising<'_> {
 }
 
 impl Basins {
-    /// Finds the hollows of a grid of `heights_m`, m, with so many columns.
+    /// Finds the hollows of a grid of `heights_m`, m, with this number of columns.
     pub fn new(heights_m: &[f32], columns: usize) -> Self {
         let heights_mm: Vec<f64> = heights_m.iter().map(|h| f64::from(*h) * 1e3).collect();
         let mut order: Vec<u32> = (0..heights_mm.len() as u32).collect();
@@ -202,7 +208,7 @@ impl Basins {
         basins
     }
 
-    /// Sorts the cells by their hollows and sums up what these hold.
+    /// Sorts the cells by hollow and sums up the hollows' volumes.
     fn lay_out(&mut self, heights_mm: &[f64], order: &[u32], owner: &[u32]) {
         let mut starts = vec![0usize; self.list.len() + 1];
         owner.iter().filter(|o| **o != OUT).for_each(|o| starts[*o as usize + 1] += 1);
@@ -237,8 +243,8 @@ impl Basins {
         }
     }
 
-    /// Level of the water, mm, and how many cells lie under it, when a hollow holds `held`, which is at least its
-    /// parts'.
+    /// Returns the water level, mm, and the number of cells under water when a hollow holds `held`, which must be at
+    /// least what its parts hold.
     pub fn level(&self, basin: usize, held: f64) -> (f64, f64) {
         let b = &self.list[basin];
         if b.own.is_empty() {
@@ -250,13 +256,13 @@ impl Basins {
         (self.levels_mm[last] + (held - self.held[last]) / under, under)
     }
 
-    /// Cells of a hollow that its parts do not have, and their heights, mm.
+    /// Returns the cells of a hollow that do not belong to its parts, and their heights, mm.
     pub fn own_cells(&self, basin: usize) -> impl Iterator<Item = (usize, f64)> {
         let own = self.list[basin].own.clone();
         self.cells[own.clone()].iter().map(|c| *c as usize).zip(self.levels_mm[own].iter().copied())
     }
 
-    /// Parts of a hollow.
+    /// Returns the parts of a hollow.
     pub fn parts(&self, basin: usize) -> impl Iterator<Item = usize> {
         let first = self.list[basin].first_child;
         std::iter::successors((first != OUT).then_some(first as usize), |b| {
@@ -272,7 +278,7 @@ pub(super) mod tests {
 
     use super::*;
 
-    /// Heights of a rough ground, m, in whole millimetres.
+    /// Returns the heights of a rough ground, m, in whole millimetres.
     pub(in super::super) fn rough(columns: usize, rows: usize, seed: u32) -> Vec<f32> {
         let random = |i: usize| crate::falling::random3([i as u32, seed, 5])[0] as f32 / 4_294_967_296.0;
         let smooth = |x: f32, y: f32| (x * 0.37).sin() * (y * 0.29 + 0.4).cos() * 0.3;
@@ -280,7 +286,7 @@ pub(super) mod tests {
         (0..columns * rows).map(|i| (at(i) * 1e3).round() * 1e-3).collect()
     }
 
-    /// The level at which water that is poured everywhere without end stands, mm: the priority-flood.
+    /// Returns the water level in each cell, mm, after endless rain everywhere: the priority-flood.
     pub(in super::super) fn flooded(heights: &[f32], columns: usize) -> Vec<f64> {
         let rows = heights.len() / columns;
         let (mut level, mut queue) = (vec![f64::NAN; heights.len()], BinaryHeap::new());
@@ -339,13 +345,13 @@ pub(super) mod tests {
         assert_eq!(held, 25.0 * 250.0);
         let pit = trough.list.iter().position(|b| b.capacity > 0.0).unwrap();
         assert_eq!(trough.level(pit, 25.0 * 100.0), (-150.0, 25.0));
-        // Rings of a pyramid, 8 k cells in ring k, each 0.125 m higher: water to ring 4 holds 8 k (4 - k) 125 mm and
-        // the middle.
+        // Rings of a pyramid: ring k has 8 k cells and is 0.125 m higher than the last. Water up to ring 4 has 8 k (4 -
+        // k) 125 mm in each ring, plus the middle.
         let pyramid = made(&|x, y| 0.125 * x.abs().max(y.abs()));
         let to_ring_4: f64 = 4.0 * 125.0 + (1..4).map(|k| f64::from(8 * k) * f64::from(4 - k) * 125.0).sum::<f64>();
         let (level, under) = pyramid.level(0, to_ring_4);
         assert!(level == 500.0 && under == 81.0, "{level} {under}");
-        // Nothing stands on a hill or a slope.
+        // No water stands on a hill or a slope.
         for dry in [made(&|x, y| -0.1 * (x * x + y * y)), made(&|x, y| 0.3 * x + 0.01 * y), made(&|_, _| 7.0)] {
             assert!(dry.list.iter().all(|b| b.capacity == 0.0) && dry.drains_to.iter().all(|d| *d == OUT));
         }
@@ -353,7 +359,7 @@ pub(super) mod tests {
 
     #[test]
     fn two_pits_spill_into_each_other_and_then_over_the_rim() {
-        // Pits 0.3 and 0.2 m deep, a saddle between them 0.1 m deep, the rim at 0 and a notch at -0.05 m.
+        // Pits are 0.3 and 0.2 m deep, the saddle between them 0.1 m; the rim is at 0, with a notch at -0.05 m.
         let mut row = vec![0.0f32; 27];
         (row[10], row[11], row[12], row[13], row[14]) = (-0.3, -0.3, -0.1, -0.2, -0.05);
         let heights: Vec<f32> = (0..5).flat_map(|y| if y == 2 { row.clone() } else { vec![0.0; 27] }).collect();

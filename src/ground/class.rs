@@ -1,28 +1,28 @@
-//! Classes of what the ground is made of, and how water changes the look of each.
+//! Surface classes of the ground, and how water changes the look of each.
 //!
-//! | class | darkens | film | rises over a film | puddles |
-//! |---|---|---|---|---|
-//! | soil | as wet ground does | little: it soaks in, and clods are rough | 10 mm | of the host's terrain |
-//! | rock | as wet ground does | in parts, on rough faces | 10 mm | of the host's terrain |
-//! | paved | as wet ground does | all of it | 1 mm | all |
-//! | vegetation | hardly: leaves shed water | none | 50 mm | where they drown it |
+//! | class | darkens | film | level above a depth of | puddles |
+//! | --- | --- | --- | --- | --- |
+//! | soil | as wet ground does | little: water soaks in, and clods are rough | 10 mm | on the host's terrain only |
+//! | rock | as wet ground does | in parts, on rough faces | 10 mm | on the host's terrain only |
+//! | paved | as wet ground does | everywhere | 1 mm | everywhere |
+//! | vegetation | hardly: leaves shed water | none | 50 mm | where water covers the plants |
 //! | water | no | none: the host draws it | 0 mm | none |
-//! | building | as wet ground does | most of it | 1 mm | of the host's terrain |
+//! | building | as wet ground does | most of it | 1 mm | on the host's terrain only |
 //!
-//! Porous and rough ground under water darkens by one law (Angstrom 1925; Lekner & Dorf 1988), soil as much as asphalt:
-//! dark soils have an albedo of 0.05 wet and light ones 0.4 dry (Oke 1987, table 1.1). Shares of film and slopes are
-//! chosen: no measured mirror of wet soil, rock and roofs was found.
+//! Porous and rough ground under water darkens by one law (Angstrom 1925; Lekner & Dorf 1988), the same for soil and
+//! asphalt: dark soils have an albedo of 0.05 when wet, and light ones 0.4 when dry (Oke 1987, table 1.1). The shares
+//! of film and the slopes are chosen: no measurements of reflection from wet soil, rock and roofs were found.
 
 pub(crate) use crate::terrain::CLASSES;
 pub use crate::terrain::SurfaceClass;
 
 impl SurfaceClass {
-    /// Whether the pattern of hollows that no heights are known of has puddles there.
+    /// Whether the class has puddles in the pattern of hollows that is used where the ground's heights are unknown.
     pub fn has_hollows(self) -> bool {
         self.surface_look().hollows > 0.0
     }
 
-    /// How water shows on it; what is not specified is soil.
+    /// Returns how water shows on the class. [`Self::Unspecified`] counts as soil.
     pub(crate) fn surface_look(self) -> SurfaceLook {
         let look = |soaks, film, slope, relief_mm, most_albedo| SurfaceLook {
             soaks,
@@ -45,25 +45,25 @@ impl SurfaceClass {
     }
 }
 
-/// How water shows on a class: `SurfaceLook` of `shaders/ground/uniform.wgsl`.
+/// Look of water on a class: `SurfaceLook` of `shaders/ground/uniform.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct SurfaceLook {
-    /// Share of the darkening of wet ground.
+    /// Share of the darkening of wet ground that the class shows.
     pub soaks: f32,
-    /// Share of it that a closed film covers.
+    /// Share of the ground that a closed film covers.
     pub film: f32,
-    /// Root mean square slope, along one axis, of what the film lies on, beyond the film's own.
+    /// Root mean square slope, along one axis, of the ground under the film, beyond the film's own slope.
     pub slope: f32,
-    /// Depth that standing water must have to be level over most of it, mm; 0 keeps none.
+    /// Depth at which standing water is level over most of the ground, mm; 0 keeps no standing water.
     pub relief_mm: f32,
-    /// Largest albedo that its colour is taken for.
+    /// Upper limit of the albedo estimated from the host's colour.
     pub most_albedo: f32,
-    /// Share of the pattern's puddles that it has.
+    /// Share of the pattern's puddles that the class has.
     pub hollows: f32,
-    /// How sure it is that it lies level, where nothing else says how it lies.
+    /// Confidence that the ground is level where nothing else gives its slope, 0 to 1.
     pub level: f32,
-    /// Share of it on which snow lies.
+    /// Share of the ground on which snow lies.
     pub snow: f32,
 }
 

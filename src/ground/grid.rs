@@ -1,36 +1,37 @@
-//! The host's terrain as Welkin takes it for the water on it: heights on a regular grid.
+//! Heights of the host's terrain on a regular grid, for the water on it.
 
 use glam::{DMat3, DVec2, DVec3};
 
 use super::class::SurfaceClass;
 use crate::error::{Error, Result, check_range};
 
-/// Most nodes of a grid east and north.
+/// Largest number of nodes of a grid, east and north each.
 pub const MAX_GRID_NODES: u32 = 512;
 /// Largest height above or below the origin, m.
 const MOST_M: f32 = 1e5;
-/// Height above the terrain, m, above which a place is on something that stands on it: a bridge, a roof.
+/// Height above the terrain, m, above which a place counts as on an object that stands on it, such as a bridge or a
+/// roof.
 pub(super) const ABOVE_M: f64 = 3.0;
 
 /// Heights of the host's terrain on a grid that is level and aligned to north at its origin. Each node stands for the
-/// square cell about it, with one state of water; between nodes the state goes linearly. Outside of the nodes the
+/// square cell around it and has its own water; between nodes the water is interpolated linearly. Outside the nodes the
 /// ground is the world's own ([`GroundModel`](crate::ground::GroundModel)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundGrid {
-    /// The node farthest to the south-west, in the host's world; its height is what `heights_m` count from.
+    /// South-west corner node in the host's world; `heights_m` count from its height.
     pub origin: DVec3,
-    /// From node to node, m, \[0.01, 10 000\]. Puddles that are smaller than a few cells are not in it.
+    /// Distance between nodes, m, \[0.01, 10 000\]. Puddles smaller than a few cells are not resolved.
     pub cell_m: f64,
-    /// Nodes east and north, each \[2, 512\].
+    /// Numbers of nodes east and north, each \[2, 512\].
     pub nodes: [u32; 2],
-    /// Heights above the origin, m, within 1e5; eastern neighbours beside each other, then northern.
+    /// Heights above the origin, m, within +-1e5, by rows: from west to east, rows from south to north.
     pub heights_m: Vec<f32>,
-    /// Class of what each cell is made of, in the order of the heights; empty where none is given.
+    /// Surface class of each cell, in the order of the heights; empty if not given.
     pub classes: Vec<SurfaceClass>,
 }
 
 impl GroundGrid {
-    /// Refuses what is no grid, by name.
+    /// Checks the grid; the error names the field at fault.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -61,41 +62,42 @@ impl GroundGrid {
         }
     }
 
-    /// Nodes.
+    /// Returns the number of nodes.
     pub(crate) fn len(&self) -> usize {
         self.nodes[0] as usize * self.nodes[1] as usize
     }
 
-    /// `position` of the host's world in cells east and north of the origin, and its height over it; `to_enu` turns the
-    /// host's axes at the origin.
+    /// Returns `position` (in the host's world) in cells east and north of the origin, and its height over the origin,
+    /// m. `to_enu` turns the host's axes to east, north, up at the origin.
     pub(crate) fn cells_at(&self, position: DVec3, to_enu: DMat3) -> (DVec2, f64) {
         let p = to_enu * (position - self.origin);
         (p.truncate() / self.cell_m, p.z)
     }
 
-    /// The cells alone.
+    /// Returns the grid's cells without its classes.
     pub(super) fn cells(&self) -> CellGrid<'_> {
         CellGrid { origin: self.origin, cell_m: self.cell_m, nodes: self.nodes, heights_m: &self.heights_m }
     }
 
-    /// Where a node lies in the host's world.
+    /// Returns the position of a node in the host's world.
     #[cfg(test)]
     pub(super) fn node(&self, index: usize, to_enu: &DMat3) -> DVec3 {
         self.cells().node(index, to_enu)
     }
 
-    /// Whether another has the same heights at the same places, whatever it is made of.
+    /// Whether `other` has the same heights at the same places; classes are ignored.
     pub(crate) fn has_heights_of(&self, other: &Self) -> bool {
         let place = |g: &Self| (g.origin, g.cell_m, g.nodes);
         place(self) == place(other) && self.heights_m == other.heights_m
     }
 
-    /// Returns the class of what a cell is made of.
+    /// Returns the surface class of a cell.
     pub(crate) fn class(&self, cell: usize) -> SurfaceClass {
         self.classes.get(cell).copied().unwrap_or_default()
     }
 
-    /// Slope at a node, rise over run to the east and the north: over both neighbours, at the border over one.
+    /// Returns the slope at a node, rise over run to the east and the north: a central difference, one-sided at the
+    /// border.
     pub(crate) fn slope(&self, node: usize) -> [f64; 2] {
         let columns = self.nodes[0] as usize;
         let place = [node % columns, node / columns];
@@ -108,7 +110,7 @@ impl GroundGrid {
         })
     }
 
-    /// The four nodes about a place and their shares; `None` outside.
+    /// Returns the four nodes around a place and their bilinear weights; `None` outside the grid.
     pub(crate) fn about(&self, cells: DVec2) -> Option<[(usize, f64); 4]> {
         let c = cells.to_array();
         let inside = c.iter().zip(self.nodes).all(|(x, n)| (0.0..=f64::from(n - 1)).contains(x));
@@ -123,7 +125,7 @@ impl GroundGrid {
         })
     }
 
-    /// The nodes about a place of the host's world, if it is on this terrain and not high above it.
+    /// Returns the nodes around a place of the host's world if it is on this terrain and not high above it.
     pub(crate) fn on_terrain(&self, position: DVec3, to_enu: DMat3) -> Option<[(usize, f64); 4]> {
         let (cells, height) = self.cells_at(position, to_enu);
         let about = self.about(cells)?;
@@ -132,13 +134,13 @@ impl GroundGrid {
     }
 }
 
-/// Cells of a grid or of a tile: where they lie and how high.
+/// Cells of a grid or of a tile: their places and heights.
 #[derive(Clone, Copy)]
 pub(super) struct CellGrid<'a> {
-    /// The first node, in the host's world; its height is what heights count from.
+    /// First node in the host's world; heights count from its height.
     pub origin: DVec3,
     pub cell_m: f64,
-    /// East and north.
+    /// Numbers of nodes east and north.
     pub nodes: [u32; 2],
     pub heights_m: &'a [f32],
 }
@@ -148,14 +150,14 @@ impl CellGrid<'_> {
         self.heights_m.len()
     }
 
-    /// Where a node lies in the host's world.
+    /// Returns the position of a node in the host's world.
     pub fn node(&self, index: usize, to_enu: &DMat3) -> DVec3 {
         let columns = self.nodes[0] as usize;
         let plan = DVec2::new((index % columns) as f64, (index / columns) as f64) * self.cell_m;
         self.origin + to_enu.transpose() * plan.extend(f64::from(self.heights_m[index]))
     }
 
-    /// Lowest and highest node, m.
+    /// Returns the heights of the lowest and the highest node, m.
     pub fn range(&self) -> (f64, f64) {
         let ends = self.heights_m.iter().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
         (f64::from(ends.0), f64::from(ends.1))

@@ -1,5 +1,5 @@
-//! The water on the ground as a context holds it for all its views: as the weather reports it, or simulated over the
-//! timeline if the host asked for that; on level, open ground and cell by cell on the host's terrain.
+//! Water on the ground as a context holds it for all its views. It is the water that the weather reports or, if the
+//! host asks for it, a simulation over the timeline: on level, open ground, and for each cell of the host's terrain.
 
 use std::sync::{Arc, Mutex};
 
@@ -27,32 +27,34 @@ use crate::{
 };
 use glam::{DMat3, DVec2, DVec3};
 
-/// Water at a place of the ground.
+/// Water at a place on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundAt {
-    /// Depth of water, mm: the film, and what stands in the hollow if there is one. For tyres.
+    /// Depth of water, mm: the film plus the standing water of a hollow. For tyre models.
     pub water_mm: f64,
-    /// Film on level ground outside of hollows, mm; on the host's terrain that of the place.
+    /// Film on level ground outside hollows, mm; on the host's terrain the film at the place.
     pub film_mm: f64,
-    /// Wetness of all the ground, on the host's terrain that of the place: 0 dry, 0.3 damp, 1 under a closed film.
+    /// Wetness of the ground in general; on the host's terrain that of the place. 0 is dry, 0.3 damp, 1 under a closed
+    /// film.
     pub wetness: f64,
-    /// Share of all the ground, or of the host's terrain, under standing water.
+    /// Share of the ground under standing water: of the host's terrain for a place on it, else of the ground in
+    /// general.
     pub puddles: f64,
     /// Whether standing water covers the place. Off the host's terrain only paved ground has puddles.
     pub in_puddle: bool,
-    /// Class of the ground there, from the host's terrain, else the context's default.
+    /// Surface class at the place: from the host's terrain, else the context's default.
     pub surface_class: SurfaceClass,
 }
 
-/// Sunlight for evaporation is looked up this often, s: a multiple of the step.
+/// Interval at which the sunlight for evaporation is updated, s: a multiple of the step.
 const SUN_EVERY_S: f64 = 300.0;
-/// An update that moves time by more than this begins the state anew, this long before its end, s.
+/// Longest leap of time that is simulated, s. A longer update restarts the state this long before its end.
 const LONGEST_S: f64 = 86_400.0;
 
-/// The ground of a context.
+/// Ground of a context.
 pub(crate) struct HeldGround {
     pub model: GroundModel,
-    /// Hollows of the ground, in which water stands.
+    /// Pattern of hollows in which water stands where heights are unknown.
     pub hollows: Hollows,
     state: Option<GroundState>,
     pub(super) host: Option<Box<HostGround>>,
@@ -60,22 +62,23 @@ pub(crate) struct HeldGround {
     pub revision: u64,
     /// Incremented whenever the host replaces the grid.
     pub generation: u64,
-    /// Incremented whenever the host says anew what its terrain is made of.
+    /// Incremented whenever the host sets new classes for its terrain.
     pub classes_revision: u64,
-    /// Class of ground for which the host gives none.
+    /// Surface class of ground for which the host gives none.
     pub surface_class: SurfaceClass,
-    /// The terrain has no part in steps before this, s: it was set later.
+    /// Time at which the terrain was set, s; steps before it leave the terrain out.
     terrain_from_s: f64,
     pub(super) textures: Mutex<TerrainTextures>,
-    /// Water on the host's tiles, and the changes of these that it has still to follow, with the terrain after each.
+    /// Water on the host's tiles.
     pub(super) tiled: Option<Box<TiledWater>>,
+    /// Changes of the tiles that the water has yet to follow, each with the terrain after it.
     pub(super) waiting: Vec<(Changed, Arc<Terrain>)>,
     pub(super) recent: RecentChanges,
-    /// The textures of tiles that the host has asked for.
+    /// Window of tile textures for the host's own shaders, once it has asked for one.
     pub(super) host_window: Option<Box<TerrainWindow>>,
 }
 
-/// A saved ground that can be shown.
+/// Ground of a saved state, not yet active.
 pub(crate) struct LoadedGround {
     state: Option<GroundState>,
     host: Option<Box<HostGround>>,
@@ -85,14 +88,14 @@ pub(crate) struct LoadedGround {
     waiting: Vec<(Changed, Arc<Terrain>)>,
 }
 
-/// Where the parts of the ground are in a saved state.
+/// Keys of the ground's parts in a saved state.
 const STATE_KEY: &str = "ground";
 const TERRAIN_KEY: &str = "terrain";
 pub(super) const TILES_KEY: &str = "terrain_tiles";
 const CLASS_KEY: &str = "surface_class";
 
 impl HeldGround {
-    /// Dry, level ground.
+    /// Creates a dry, level ground.
     pub fn new(model: GroundModel, seed: u64) -> Self {
         Self {
             model,
@@ -112,8 +115,7 @@ impl HeldGround {
         }
     }
 
-    /// Puts a grid in place of the one before; see
-    /// [`Context::set_ground_grid`](crate::context::Context::set_ground_grid).
+    /// Replaces the grid; see [`Context::set_ground_grid`](crate::context::Context::set_ground_grid).
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field; nothing changes then.
@@ -138,19 +140,19 @@ impl HeldGround {
         self.refresh(world)
     }
 
-    /// The host's terrain.
+    /// Returns the host's terrain.
     pub fn grid(&self) -> Option<&GroundGrid> {
         self.host.as_ref().map(|held| &held.terrain.grid)
     }
 
-    /// The host's terrain for all that goes round it.
+    /// Returns the heights of the host's terrain, for all that depends on its shape.
     pub fn heights(&self) -> Option<Arc<TerrainHeights>> {
         let held = self.host.as_ref()?;
         let g = &held.terrain.grid;
         Some(Arc::new(TerrainHeights::new((g.origin, held.to_enu), g.cell_m, g.nodes, g.heights_m.clone())))
     }
 
-    /// Water of each cell of the host's terrain.
+    /// Returns the water of each cell of the host's terrain.
     pub fn cells(&self) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
         let held = self.host.as_ref()?;
         Some((0..held.terrain.grid.len()).map(move |cell| {
@@ -164,7 +166,7 @@ impl HeldGround {
         }))
     }
 
-    /// Returns the class of the ground at a place: that of the terrain's cell, else the default.
+    /// Returns the surface class at a place: that of the terrain's cell, else the default.
     fn surface_class_at(&self, world: &World, position: DVec3) -> SurfaceClass {
         let tile = self.tile_class_at(world, position);
         let cell = self.host.as_ref().and_then(|held| {
@@ -175,24 +177,25 @@ impl HeldGround {
         cell.or(tile).unwrap_or_default().or(self.surface_class)
     }
 
-    /// Water at a place on the host's terrain, and the share of the terrain under standing water; `None` elsewhere.
+    /// Returns the water at a place on the host's terrain, and the share of the terrain under standing water; `None`
+    /// elsewhere.
     fn terrain_at(&self, position: DVec3) -> Option<(CellWater, f64)> {
         let held = self.host.as_ref()?;
         let about = held.terrain.grid.on_terrain(position, held.to_enu)?;
         Some((held.water.between(&about), held.water.puddles()))
     }
 
-    /// The host's terrain and what turns the host's axes at its origin, for drawing.
+    /// Returns the host's terrain, and the rotation from the host's axes to east, north, up at its origin.
     pub fn drawn_terrain(&self) -> Option<(&GroundGrid, DMat3)> {
         self.host.as_ref().map(|held| (&held.terrain.grid, held.to_enu))
     }
 
-    /// Whether steps remain up to the present.
+    /// Whether steps remain before the present.
     fn is_behind(&self, world: &World) -> bool {
         self.state.is_some_and(|state| state.next_s() <= world.time_s)
     }
 
-    /// The simulated water on level, open ground; `None` if it is not simulated.
+    /// Returns the simulated water on level, open ground; `None` if the water is not simulated.
     pub fn water(&self, world: &World) -> Option<GroundWater> {
         match (self.model, self.state) {
             (GroundModel::Reported, _) => None,
@@ -205,8 +208,8 @@ impl HeldGround {
         }
     }
 
-    /// Returns the cover that weather has left on the ground up to now: `reported`, with the simulated water in its
-    /// place.
+    /// Returns the cover that weather has left on the ground up to now: `reported`, with the simulated water instead of
+    /// the reported.
     fn cover(&self, world: &World, reported: SurfaceCover) -> SurfaceCover {
         match self.water(world).map(|w| w.cover()) {
             Some((wetness, puddles)) => SurfaceCover { wetness, puddles, ..reported },
@@ -214,7 +217,7 @@ impl HeldGround {
         }
     }
 
-    /// Returns the cover at a place: in a rain area at least as wet as the area's present rain keeps the ground.
+    /// Returns the cover at a place. In a rain area the ground is at least as wet as the area's present rain keeps it.
     fn cover_at(&self, world: &World, position: DVec3, reported: SurfaceCover) -> SurfaceCover {
         let cover = self.cover(world, reported);
         let weather = world.timeline.at(world.time_s);
@@ -230,7 +233,7 @@ impl HeldGround {
         }
     }
 
-    /// Returns the ground as a camera sees it.
+    /// Returns the state of the ground that a view's camera needs.
     pub fn seen(&self, world: &World, now: &SceneMoment<'_>) -> GroundSeen<'_> {
         let has_cells = self.host.is_some() || self.tiled.is_some();
         GroundSeen {
@@ -249,10 +252,10 @@ impl HeldGround {
         }
     }
 
-    /// Water on the ground at a place; see [`Context::ground_at`](crate::context::Context::ground_at).
+    /// Returns the water on the ground at a place; see [`Context::ground_at`](crate::context::Context::ground_at).
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] if the position is no place.
+    /// [`Status::InvalidArgument`] if the position is no place of the world.
     pub fn at(&self, world: &World, position: DVec3) -> Result<GroundAt> {
         let frame = world.frame.place_at("position", position)?;
         let surface_class = self.surface_class_at(world, position);
@@ -287,13 +290,13 @@ impl HeldGround {
         })
     }
 
-    /// Takes its part out of a saved state.
+    /// Takes the ground's part out of a saved state.
     ///
     /// # Errors
-    /// [`Status::Parse`] for what can be no ground of this context.
+    /// [`Status::Parse`] for values that cannot be a ground of this context.
     pub fn read(&self, world: &World, saved: &mut toml::Table) -> Result<LoadedGround> {
         let fault = |key: &str, e: toml::de::Error| parse_error(format_args!("{key}: {e}"));
-        // Out with all of them first: what is left is the world's, whatever is wrong here.
+        // All keys are removed first: the caller then finds only the world's own, even if a value here is wrong.
         let [state, terrain, class, tiles] =
             [STATE_KEY, TERRAIN_KEY, CLASS_KEY, TILES_KEY].map(|key| saved.remove(key));
         let simulated = self.model == GroundModel::Simulated;
@@ -332,7 +335,7 @@ impl HeldGround {
         })
     }
 
-    /// Shows a loaded ground, and leaves the one before in its place.
+    /// Activates a loaded ground; `other` then holds the previous one.
     pub fn swap_in(&mut self, other: &mut LoadedGround) {
         let same = match (self.grid(), other.host.as_ref().map(|held| &held.terrain.grid)) {
             (Some(old), Some(new)) => old.has_heights_of(new),
@@ -355,7 +358,7 @@ impl HeldEffect for HeldGround {
             return Ok(());
         }
         self.state = Some(if time_s - world.time_s > LONGEST_S {
-            // Where the sun is looked at, so that leaps that end a little apart begin alike.
+            // The start is on the sunlight grid, so leaps that end at slightly different times start alike.
             let begin_s = ((time_s - LONGEST_S) / SUN_EVERY_S).floor() * SUN_EVERY_S;
             let state = GroundState::first(world, begin_s.max(world.time_s))?;
             self.host.iter_mut().for_each(|host| host.begin_anew());
@@ -437,15 +440,15 @@ impl HeldEffect for HeldGround {
     }
 }
 
-/// Returns the rain or meltwater and the evaporation that act on the ground from the state's time on, in the weather
-/// `c`.
+/// Returns the liquid (rain or meltwater) and the evaporation that act on the ground from the state's time on, in the
+/// weather `c`.
 fn forcing(world: &World, c: &Conditions, state: &GroundState) -> Forcing {
     let forcing = Forcing::of(c, state.sunlight_w_m2);
     let snow = world.snow.as_ref().and_then(|snow| snow.meltwater(state.time_s));
     snow.map_or(forcing, |water| forcing.under_snow(c, water))
 }
 
-/// Snow on level, open ground: as it is led through time, else as deep as the weather reports it, some days old.
+/// Returns the snow on level, open ground: the simulated snow, else snow of the reported depth that is some days old.
 fn snow_about(world: &World, now: &SceneMoment<'_>) -> SnowHere {
     if let Some(snow) = &world.snow {
         return snow.country;

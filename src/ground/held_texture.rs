@@ -1,4 +1,4 @@
-//! The water on the host's terrain on the GPU: one upload for all views and for the host's own shaders.
+//! GPU textures of the water on the host's terrain: one upload serves all views and the host's own shaders.
 
 use std::sync::{Arc, MutexGuard, PoisonError};
 
@@ -16,7 +16,7 @@ use crate::{
     world::World,
 };
 
-/// Submits that what was written into textures is read next.
+/// Submits the transition of textures to reading after they were written.
 fn hand_over<'a>(device: &Device, textures: impl Iterator<Item = &'a wgpu::Texture>) {
     let label = wgpu::CommandEncoderDescriptor { label: Some("ground texture") };
     let mut encoder = device.device.create_command_encoder(&label);
@@ -27,9 +27,9 @@ fn hand_over<'a>(device: &Device, textures: impl Iterator<Item = &'a wgpu::Textu
 }
 
 impl HeldGround {
-    /// The water on the host's terrain as a texture for the host's own materials, up to date: what has changed since is
-    /// uploaded and submitted, which is every 10 s of simulation time at most. It stays the same object until another
-    /// grid is set or loaded; then it goes, at this function's or a view's next call.
+    /// Returns the water on the host's terrain as an up-to-date texture for the host's own materials. Changes since the
+    /// last call are uploaded and submitted: at most every 10 s of simulation time. The texture object stays the same
+    /// until another grid is set or loaded; the next call of this function or the next frame of a view then drops it.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without a terrain, [`Status::DeviceLost`], or a GPU fault.
@@ -54,11 +54,11 @@ impl HeldGround {
         Ok(GroundTexture { texture: water, snow, generation, revision, uv_from_world: rows })
     }
 
-    /// The water and the snow on the tiles about a place, for the host's own materials; see
+    /// Returns the water and the snow on the tiles around a place, for the host's own materials; see
     /// [`Context::terrain_texture`](crate::context::Context::terrain_texture).
     ///
     /// # Errors
-    /// As there.
+    /// As for that function.
     pub fn terrain_texture(&mut self, device: &Arc<Device>, world: &World, center: DVec3) -> Result<GroundTexture> {
         world.frame.place_at("center", center)?;
         let none = || {
@@ -87,7 +87,7 @@ impl HeldGround {
         Ok(GroundTexture { texture: water, snow, generation: 1, revision, uv_from_world: rows })
     }
 
-    /// Water and surface of the terrain for drawing, up to date if any of it is `wanted`; there are none without one.
+    /// Returns the views of the terrain's water and surface for drawing, up to date if `wanted`; `None` without a grid.
     pub fn views(
         &self,
         device: &Arc<Device>,
@@ -99,7 +99,7 @@ impl HeldGround {
         filled.map_or([None, None], |f| f.views.clone().map(Some))
     }
 
-    /// Within the host's context.
+    /// Updates and returns the textures. The host's GPU context must be current ([`Device::enter`]).
     fn fill<'a>(
         &self,
         device: &Arc<Device>,
@@ -116,7 +116,7 @@ impl HeldGround {
     }
 
     fn locked(&self) -> MutexGuard<'_, TerrainTextures> {
-        // What a panic left is only written anew.
+        // Textures that a panic left half-written are only written again.
         self.textures.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,4 +1,4 @@
-//! The host's terrain in tiles, as a context holds it, and the water on it.
+//! Tiles of the host's terrain as a context holds them, and the water on them.
 
 use std::sync::Arc;
 
@@ -26,11 +26,11 @@ fn without_terrain() -> Error {
 }
 
 impl HeldGround {
-    /// Sets the lattice of a terrain without tiles, or none; see
+    /// Sets the lattice of a terrain without tiles, or removes the terrain; see
     /// [`Context::set_terrain`](crate::context::Context::set_terrain).
     ///
     /// # Errors
-    /// As there; nothing changes then.
+    /// As for that function; nothing changes then.
     pub fn set_terrain(&mut self, world: &mut World, desc: Option<TerrainDesc>) -> Result<()> {
         if world.set.tiles.as_ref().map(|t| t.desc) == desc {
             return Ok(());
@@ -48,8 +48,8 @@ impl HeldGround {
         Ok(())
     }
 
-    /// Changes the tiles by `change`, which answers the cells that it touched. `waits`: steps remain of what was set
-    /// before.
+    /// Changes the tiles by `change`, which returns the cells that it touched. If `waits`, steps from before the change
+    /// are still to be done, and the water follows the change later.
     fn change(
         &mut self,
         world: &mut World,
@@ -70,7 +70,7 @@ impl HeldGround {
         Ok(())
     }
 
-    /// Lets the water follow a change of its terrain.
+    /// Updates the water after a change of its terrain.
     fn follow_change(&mut self, changed: &Changed, terrain: &Terrain) {
         if let Some(tiled) = self.tiled.as_mut().filter(|tiled| tiled.is_of(terrain)) {
             tiled.follow(terrain, changed);
@@ -78,43 +78,43 @@ impl HeldGround {
         }
     }
 
-    /// See [`Context::set_terrain_tile`](crate::context::Context::set_terrain_tile).
+    /// Sets a tile; see [`Context::set_terrain_tile`](crate::context::Context::set_terrain_tile).
     ///
     /// # Errors
-    /// As there; nothing changes then.
+    /// As for that function; nothing changes then.
     pub fn set_tile(&mut self, world: &mut World, waits: bool, cells: &TerrainCells<'_>) -> Result<()> {
         self.change(world, waits, false, |terrain| terrain.set_tile(cells))
     }
 
-    /// See [`Context::update_terrain`](crate::context::Context::update_terrain).
+    /// Updates cells of a tile; see [`Context::update_terrain`](crate::context::Context::update_terrain).
     ///
     /// # Errors
-    /// As there; nothing changes then.
+    /// As for that function; nothing changes then.
     pub fn update_tile(&mut self, world: &mut World, waits: bool, cells: &TerrainCells<'_>) -> Result<()> {
         self.change(world, waits, false, |terrain| terrain.update(cells))
     }
 
-    /// See [`Context::remove_terrain_tile`](crate::context::Context::remove_terrain_tile).
+    /// Removes a tile; see [`Context::remove_terrain_tile`](crate::context::Context::remove_terrain_tile).
     ///
     /// # Errors
-    /// As there; nothing changes then.
+    /// As for that function; nothing changes then.
     pub fn remove_tile(&mut self, world: &mut World, waits: bool, key: TileKey) -> Result<()> {
         self.change(world, waits, true, |terrain| terrain.remove(key).map(Some))
     }
 
-    /// Lets the water follow the changes that had to wait, each on the terrain as it was then, up to that of the world
-    /// by now.
+    /// Updates the water after the changes that had to wait, each on the terrain as it was then, up to the world's
+    /// present terrain.
     pub(super) fn follow_late(&mut self, world: &World) {
         let Some(now) = world.set.tiles.as_ref().filter(|_| !self.waiting.is_empty()) else { return };
         let count = self.waiting.iter().take_while(|(changed, _)| changed.revision <= now.revision).count();
         for (changed, terrain) in self.waiting.drain(..count).collect::<Vec<_>>() {
             self.follow_change(&changed, &terrain);
         }
-        // Windows have shown the new ground already, with the water of before.
+        // Windows already show the new ground, but with the old water.
         self.tiled.iter_mut().for_each(|tiled| tiled.count_version());
     }
 
-    /// Leads the water on the tiles through a step, or a part of it. Says whether it is done.
+    /// Steps the water on the tiles, or on some of them within the budget. Returns whether the step is complete.
     pub(super) fn step_tiles(&mut self, world: &World, step: &GroundStep<'_>, budget: Within) -> Result<bool> {
         let (Some(terrain), Some(tiled)) = (world.set.tiles.as_ref(), self.tiled.as_mut()) else { return Ok(true) };
         if !tiled.is_of(terrain) {
@@ -134,12 +134,12 @@ impl HeldGround {
         Ok(stepped.is_some())
     }
 
-    /// Water of level ground, as it lies on tiles that have none of their own yet.
+    /// Returns the water of level ground, which also lies on tiles without a state of their own.
     pub(super) fn even_water(&self, world: &World) -> GroundWater {
         self.water(world).unwrap_or_else(|| GroundWater::of_cover(&world.timeline.at(world.time_s).surface))
     }
 
-    /// Returns the class of a tile's cell at a place; none off the tiles.
+    /// Returns the class of a tile's cell at a place; `None` off the tiles.
     pub(super) fn tile_class_at(&self, world: &World, position: DVec3) -> Option<SurfaceClass> {
         let terrain = world.set.tiles.as_ref()?;
         let (_, height) = terrain.cells_at(position);
@@ -147,7 +147,7 @@ impl HeldGround {
         (height < point.height_m + ABOVE_M).then_some(point.surface_class)
     }
 
-    /// Water at a place on the tiles, and the share of them under standing water; none elsewhere.
+    /// Returns the water at a place on the tiles, and the share of them under standing water; `None` elsewhere.
     pub(super) fn tiles_at(&self, world: &World, position: DVec3) -> Option<(CellWater, f64)> {
         let (terrain, tiled) = (world.set.tiles.as_ref()?, self.tiled.as_ref()?);
         if !tiled.is_of(terrain) {
@@ -158,7 +158,7 @@ impl HeldGround {
         Some((tiled.between(terrain, cells, &self.even_water(world))?, tiled.puddles()))
     }
 
-    /// Returns what a view's window draws from, if there are tiles.
+    /// Returns the data from which a view fills its window; `None` without tiles.
     pub(super) fn shown_tiles<'a>(&'a self, world: &'a World, ice: f64) -> Option<Shown<'a>> {
         let terrain = world.set.tiles.as_deref()?;
         let water = self.tiled.as_ref().filter(|tiled| tiled.is_of(terrain))?;
@@ -166,7 +166,7 @@ impl HeldGround {
         Some(Shown { terrain, water, even: self.even_water(world), ice: ice as f32, recent: &self.recent, snow })
     }
 
-    /// Water of each cell of a tile.
+    /// Returns the water of each cell of a tile.
     pub fn tile_water<'a>(
         &'a self,
         world: &'a World,
@@ -191,7 +191,8 @@ impl HeldGround {
         }))
     }
 
-    /// Adds the water on the tiles to a saved state. `for_hash`: the film and pores of each tile by their hash alone.
+    /// Adds the water on the tiles to a saved state. If `for_hash`, film and pores of each tile are given only by their
+    /// hash.
     pub(super) fn save_tiles(&self, world: &World, for_hash: bool, table: &mut toml::Table) -> Result<()> {
         let (Some(terrain), Some(tiled)) = (&world.set.tiles, &self.tiled) else { return Ok(()) };
         let saved = toml::Value::try_from(SavedTiles::of(tiled, terrain, for_hash));

@@ -1,9 +1,9 @@
-//! Hollows of a ground of which no heights are known: a sum of waves fixed to the host's world, in f64 the twin of
-//! `shaders/ground/hollows.wgsl`.
+//! Hollows of a ground whose heights are unknown: a sum of waves that is fixed to the host's world. This is the f64
+//! twin of `shaders/ground/hollows.wgsl`.
 //!
-//! Waves rather than noise on a lattice: a picture's pixel averages each of them exactly, so that puddles far away fade
-//! to their mean without flicker, and their sum is spread normally, so that the level of water follows from the share
-//! of ground under it.
+//! Waves have two advantages over noise on a lattice. The average of each over a pixel is known exactly, so distant
+//! puddles fade to their mean without flicker. And their sum is normally distributed, so the water level follows from
+//! the share of ground under water.
 
 use std::f64::consts::TAU;
 
@@ -11,17 +11,17 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::chance::Chance;
 
-/// The pattern repeats after this distance, m: a multiple of every wave.
+/// Distance after which the pattern repeats, m: a multiple of every wavelength.
 pub const PERIOD_M: f64 = 1e4;
-/// Waves of the pattern.
+/// Number of waves in the pattern.
 pub const WAVES: usize = 16;
-/// Turns of each wave along both axes in [`PERIOD_M`]: whole numbers. They are the same in all worlds, and only phases
-/// depend on the seed: so the shader has them as constants, since some software drivers take longer to read a uniform
-/// block than to add a wave.
+/// Turns of each wave along both axes in [`PERIOD_M`], whole numbers. They are the same in all worlds; only the phases
+/// depend on the seed. The shader can therefore have them as constants: some software drivers take longer to read a
+/// uniform block than to add a wave.
 ///
-/// The waves are of three bands: 17 to 7 m, 5.3 to 2.2 m, 1.7 to 0.8 m. Each has enough of them that the pattern looks
-/// irregular also where pixels are too coarse for the shorter bands. The golden angle lies between the directions of
-/// one wave and the next.
+/// The waves form three bands, with wavelengths of 17 to 7 m, 5.3 to 2.2 m and 1.7 to 0.8 m. Each band has enough waves
+/// to look irregular even where pixels are too coarse for the shorter bands. The directions of successive waves differ
+/// by the golden angle.
 const TURNS: [(i32, i32); WAVES] = [
     (513, 432),
     (-684, 28),
@@ -40,17 +40,17 @@ const TURNS: [(i32, i32); WAVES] = [
     (-9348, 2467),
     (6685, -10404),
 ];
-/// Waves of each band, and its share of the variance.
+/// Number of waves in each band, and the band's share of the variance.
 const BANDS: [(usize, f64); 3] = [(6, 0.45), (6, 0.35), (4, 0.2)];
 
-/// The hollows of a world.
+/// Hollows of one world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hollows {
     /// Phase of each wave, turns.
     phases: [f64; WAVES],
 }
 
-/// Turns to [`PERIOD_M`] of a wave.
+/// Returns the turns of a wave per [`PERIOD_M`], along both axes.
 fn turns(wave: usize) -> DVec2 {
     let (east, north) = TURNS[wave];
     DVec2::new(east.into(), north.into())
@@ -72,7 +72,7 @@ impl Hollows {
     /// Creates the hollows of a world with this seed.
     pub fn new(seed: u64) -> Self {
         let mut stream = Chance::seeded(seed);
-        // The second of two numbers each: the lengths in TURNS are those that the first ones drew for seed 0.
+        // Of each two numbers the second is used: for seed 0, the first ones gave the wavelengths in TURNS.
         let phases = [(); WAVES].map(|()| {
             stream.unit();
             stream.unit()
@@ -80,26 +80,27 @@ impl Hollows {
         Self { phases }
     }
 
-    /// Depth below the mean ground at a place of the pattern, in units of its root mean square.
+    /// Returns the depth below the mean ground at a place of the pattern, in units of its root mean square.
     pub fn depth(&self, place: DVec2) -> f64 {
         (0..WAVES).map(|k| amplitude(k) * libm::sin(TAU * self.turns_at(k, place).fract())).sum()
     }
 
-    /// Phases of the waves for a camera at this place of the pattern, in turns, by fours as the shader reads them.
+    /// Returns the phases of the waves for a camera at this place of the pattern, in turns, in groups of four as the
+    /// shader reads them.
     pub(super) fn seen_from(&self, place: DVec2) -> [[f32; 4]; WAVES / 4] {
         std::array::from_fn(|four| std::array::from_fn(|i| self.turns_at(4 * four + i, place).rem_euclid(1.0) as f32))
     }
 
-    /// Phase of a wave at a place, turns.
+    /// Returns the phase of a wave at a place, turns.
     fn turns_at(&self, wave: usize, place: DVec2) -> f64 {
-        // Whole turns are dropped before they cost digits.
+        // Whole periods are dropped first: large coordinates would cost precision.
         let place = place.rem_euclid(DVec2::splat(PERIOD_M)) / PERIOD_M;
         self.phases[wave] + turns(wave).dot(place)
     }
 }
 
-/// Axes of the pattern in the host's world: the two of its three axes that lie flattest on the ground. In an
-/// Earth-centred world these are others on each of six sides of the planet.
+/// Returns the axes of the pattern in the host's world: the two of its three axes that are closest to horizontal. In an
+/// Earth-centred world the choice differs between six sides of the planet.
 pub(crate) fn pattern_axes(world_to_enu: &DMat3) -> [DVec3; 2] {
     let up = (world_to_enu.transpose() * DVec3::Z).abs();
     if up.z >= up.x && up.z >= up.y {

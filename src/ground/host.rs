@@ -1,4 +1,4 @@
-//! Water on the host's terrain: what falls where on it, and how it is led through time beside that of level, open
+//! Water on the host's grid: what falls on each cell, and how the water is stepped together with that of level, open
 //! ground.
 
 use glam::{DMat3, DVec2};
@@ -19,33 +19,33 @@ use crate::{
     world::World,
 };
 
-/// Water of a cell of the host's terrain, for its own materials.
+/// Water of one cell of the host's terrain, for the host's own materials.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct GroundCell {
-    /// Water between and on the grains, mm; none under standing water.
+    /// Water between and on the grains, mm; 0 under standing water.
     pub film_mm: f32,
-    /// In the pores, as a share of what they hold.
+    /// Water in the pores, as a share of their capacity.
     pub soaked: f32,
-    /// Standing water, mm.
+    /// Depth of standing water, mm.
     pub standing_mm: f32,
-    /// Share under ice, by the weather of the moment; what freezing rain leaves is not where standing boxes keep it
-    /// off.
+    /// Share of the cell under ice, from the weather of the moment. Boxes that stand still keep freezing rain off, and
+    /// thus its ice.
     pub ice: f32,
 }
 
-/// The host's terrain and the water on it.
+/// Terrain of the host and the water on it.
 pub(super) struct HostGround {
     pub terrain: GridTerrain,
-    /// Turns the host's axes at the grid's origin.
+    /// Rotation from the host's axes to east, north, up at the grid's origin.
     pub to_enu: DMat3,
     pub rain: GridRain,
     pub water: TerrainWater,
-    /// Whether `water` is a state of its own by now; else it is what `shown` makes of it.
+    /// Whether `water` is a simulated state; else it is derived from `shown`.
     pub begun: bool,
     shown: Option<CellInputs>,
 }
 
-/// Inputs that decide a cell's water where it has no state.
+/// Inputs from which the water of cells without a state is derived.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CellInputs {
     water: GroundWater,
@@ -65,12 +65,12 @@ impl HostGround {
         Self { to_enu: frame.world_to_enu, rain, terrain, water, begun: false, shown: None }
     }
 
-    /// Share of a cell under ice.
+    /// Returns the share of a cell under ice.
     pub fn ice(&self, cell: usize) -> f32 {
         self.rain.ice(cell)
     }
 
-    /// Leads the water through a step.
+    /// Steps the water. Returns whether it may have changed.
     fn step(&mut self, now: &RainStep<'_>, overs: &AreasOverGrid, shelters: &[Shelter]) -> bool {
         let rains = overs.rain(now.forcing);
         if !rains && self.water.is_dry() {
@@ -87,13 +87,13 @@ impl HostGround {
         true
     }
 
-    /// Takes the water from what the weather says of all the ground, where it gets to.
+    /// Sets the water that the weather reports for all ground, less where boxes shelter the cell.
     fn show(&mut self, c: &Conditions, water: &GroundWater, overs: &AreasOverGrid, shelters: &[Shelter]) {
         let cells = self.rain.first_water(&self.terrain.grid.cells(), (c, water), overs, shelters);
         self.water = TerrainWater::new(&self.terrain, |cell| cells[cell]);
     }
 
-    /// Leads the water through a step beside that of level, open ground. Says whether it may have changed.
+    /// Steps the water together with that of level, open ground. Returns whether it may have changed.
     pub fn lead(&mut self, world: &World, step: &GroundStep<'_>) -> Result<bool> {
         let GroundStep { from_s, seconds, conditions, forcing, water } = *step;
         let overs = self.rain.overs(world, from_s + 0.5 * seconds, conditions)?;
@@ -105,15 +105,15 @@ impl HostGround {
         Ok(self.step(&RainStep { conditions, forcing, seconds }, &overs, shelters))
     }
 
-    /// Lets the water begin at its next step as the ground is then.
+    /// Discards the state; the next step begins with the ground as it is then.
     pub fn begin_anew(&mut self) {
         (self.begun, self.shown) = (false, None);
     }
 
-    /// Updates what follows from weather, areas and shelter without a state: the ice, and the water where it has none.
-    /// Answers whether anything may have changed.
+    /// Updates what follows from weather, areas and shelter without a state: the ice, and the water where it has no
+    /// state. Returns whether anything may have changed.
     pub fn refresh(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
-        // Looked at as often as a state is stepped: weather and areas may change all the time.
+        // Updated as often as a state is stepped: weather and areas may change at any time.
         let slot_s = ((world.time_s / STEP_S).floor() * STEP_S).max(world.timeline.known_from_s());
         let c = world.timeline.at(slot_s);
         if self.begun && c.surface.ice == 0.0 && !self.rain.is_iced() {

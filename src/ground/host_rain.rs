@@ -1,4 +1,4 @@
-//! Rain areas over a grid, and the bounds of its cells by which their shares are found.
+//! Rain areas over a grid, and the bounds of its cells from which the areas' shares are found.
 
 use std::ops::Range;
 
@@ -10,24 +10,24 @@ use crate::{
     weather::Falling,
 };
 
-/// A rain area above a grid.
+/// Rain area over a grid.
 #[derive(Clone, Copy)]
 pub(super) struct AreaOverGrid {
     pub shaft: Shaft,
-    /// Whether it reaches the grid anywhere.
+    /// Whether the area reaches the grid anywhere.
     pub reaches: bool,
-    /// 0 where it does not.
+    /// Rain and drizzle of the area, mm/h; 0 if it does not reach the grid.
     pub liquid_mm_h: f64,
 }
 
-/// Share of each area, and how much of its rain has left its cloud, where both are the same all over a part of the
-/// grid; none where they vary.
+/// Share of each area, and the share of its rain that has left its cloud, where both are the same all over a part of
+/// the grid; `None` where they vary.
 pub(super) type Evens = [Option<(f64, f64)>; MAX_AREAS];
 
-/// Areas over a grid, in their order.
+/// Rain areas over a grid, in the order of the world's list.
 pub(super) struct AreasOverGrid {
     pub list: [Option<AreaOverGrid>; MAX_AREAS],
-    /// Shares that are the same all over the grid.
+    /// Shares that are uniform over the whole grid.
     pub evens: Evens,
 }
 
@@ -45,18 +45,18 @@ impl AreasOverGrid {
         forcing.liquid_mm_h > 0.0 || self.all().any(|o| o.liquid_mm_h > 0.0)
     }
 
-    /// Whether as much falls on each cell.
+    /// Whether every cell gets the same rain, apart from shelter.
     pub fn even(&self) -> bool {
         self.are_even(&self.evens)
     }
 }
 
-/// Rain and drizzle, mm/h.
+/// Returns rain and drizzle together, mm/h.
 pub(super) fn liquid(f: &Falling) -> f64 {
     f.rain_mm_h + f.drizzle_mm_h
 }
 
-/// Where some cells of a grid lie: their middle in the host's world, how far they reach from it, lowest and highest
+/// Bounds of some cells of a grid: their middle in the host's world, the radius around it, and the lowest and highest
 /// altitude, m.
 pub(super) struct CellBounds {
     middle: DVec3,
@@ -75,26 +75,27 @@ impl CellBounds {
         });
         Self {
             middle: grid.origin + to_enu.transpose() * (0.5 * (low + high)),
-            // A little more, for the rounding.
+            // A small margin for rounding.
             reach_m: 0.5 * (high - low).length() * 1.000_001 + 1e-6,
             altitudes_m: [low.z, high.z].map(|z| altitude_m + z),
         }
     }
 
-    /// All of a grid, and each run of its cells.
+    /// Returns the bounds of the whole grid, and of each run of its cells.
     pub fn whole_and_runs(grid: &CellGrid<'_>, frame: (&DMat3, f64)) -> (Self, Vec<Self>) {
         let run = |first| Self::new(grid, frame, first..(first + RUN).min(grid.len()));
         (Self::new(grid, frame, 0..grid.len()), (0..grid.len()).step_by(RUN).map(run).collect())
     }
 
-    /// Reaches over another too.
+    /// Extends the bounds over `other`.
     pub fn reach_over(&mut self, other: &Self) {
         self.reach_m = self.reach_m.max((other.middle - self.middle).length() + other.reach_m);
         let [low, high] = other.altitudes_m;
         self.altitudes_m = [self.altitudes_m[0].min(low), self.altitudes_m[1].max(high)];
     }
 
-    /// Bounds of an area's share here, and the share itself where it is the same everywhere.
+    /// Returns the largest share of an area within the bounds and, if the area is uniform there, its share and the
+    /// share of its rain that has left the cloud.
     pub fn even(&self, shaft: &Shaft, to_enu: &DMat3) -> (f64, Option<(f64, f64)>) {
         let [low, high] = self.altitudes_m;
         let [least, most] = shaft.share_within(self.middle, to_enu, 0.5 * (low + high), self.reach_m);
@@ -103,7 +104,7 @@ impl CellBounds {
         (most, even.then_some((most, begun[0])))
     }
 
-    /// Finds share and begun rain of each area over this part, where they are even, as [`Evens`].
+    /// Returns the [`Evens`] of this part of the grid.
     pub fn evens(&self, overs: &AreasOverGrid, to_enu: &DMat3) -> Evens {
         let mut evens = overs.evens;
         for (even, over) in evens.iter_mut().zip(&overs.list) {

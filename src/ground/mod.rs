@@ -1,20 +1,24 @@
-//! Water on the ground: how wet it is, and how that looks.
+//! Ground: how wet it is, and how the water on it looks.
 //!
-//! **Drawn** onto the host's picture from its depth ([`Stages::SURFACE`](crate::frame::Stages::SURFACE)): what is wet
-//! is darker (Angstrom 1925; Lekner & Dorf 1988) and mirrors sky, sun and moon (Fresnel, n = 1.333) off a rough film;
-//! standing water fills the hollows of a pattern that is fixed to the host's world, level and smooth but for the rings
-//! of drops. Which way a surface faces comes from the host's image of normals, else from its terrain, else from the
-//! depths round a pixel, whose error bounds the mirror: level ground gets all of it, walls less, undersides nothing.
-//! What the ground is made of ([`SurfaceClass`]) comes from an image, else from the terrain's cells, else from the
-//! context: film and puddles belong to what is paved. Costs one sky lookup a pixel and nothing where it is dry.
+//! **Drawing**. The surface pass ([`Stages::SURFACE`](crate::frame::Stages::SURFACE)) draws the water onto the host's
+//! picture, pixel by pixel from the host's depth. Wet ground is darker (Angstrom 1925; Lekner & Dorf 1988), and its
+//! rough film mirrors sky, sun and moon (Fresnel, n = 1.333). Standing water fills the hollows of a pattern that is
+//! fixed to the host's world; its surface is level, and smooth but for the rings of drops.
 //!
-//! Right for a host that hands over scene-linear luminance: the ground's albedo then follows from its luminance and the
-//! light on it (a surface in shadow is taken for a darker one and darkens too much). In the display's spaces the shown
-//! colour is taken for the albedo, darkened, and the mirrored light added through the tone curve. Mirrors see the sky
-//! and level ground, no objects.
+//! **Surface normals** come from the host's image of normals, else from its terrain, else from the depths around a
+//! pixel, whose error limits the mirroring: level ground mirrors fully, walls less, undersides not at all.
 //!
-//! No `passes.rs`: the composition draws the water, and `texture.rs` holds what it reads of the terrain. No
-//! `candidates.rs`: it is drawn in one way, and no plan leaves it out.
+//! **Surface classes** ([`SurfaceClass`]: what the ground is made of) come from an image, else from the terrain's
+//! cells, else from the context. A closed film and puddles belong to paved ground. The cost is one sky lookup a pixel,
+//! and nothing where it is dry.
+//!
+//! **Accuracy**. The result is right for a host that hands over scene-linear luminance: the albedo of the ground then
+//! follows from its luminance and the light on it. A surface in shadow is taken for a darker one and darkens too much.
+//! In display spaces the shown colour is taken for the albedo and darkened, and the mirrored light is added through the
+//! tone curve. Reflections show the sky and level ground, but no objects.
+//!
+//! **Files**. There is no `passes.rs`: the composition draws the water, and `texture.rs` holds the terrain data that it
+//! reads. There is no `candidates.rs`: only one way to draw the water exists, and no plan leaves it out.
 
 mod basins;
 mod class;

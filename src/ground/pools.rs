@@ -1,29 +1,28 @@
-//! Water in the hollows of a terrain: poured into a pit it fills it, spills into the next and joins with it (after the
-//! fill-spill-merge of Barnes, Callaghan and Wickert 2021), and sinks by what its surface loses. No water is lost on
-//! the way.
+//! Water in the hollows of a terrain. Water that is poured into a pit fills it, spills into the next and joins with it
+//! (after the fill-spill-merge of Barnes, Callaghan and Wickert 2021). Its level sinks by the losses through its
+//! surface. No water is lost in between.
 
 use super::basins::{Basins, OUT};
 
 /// Volume of a hollow whose parts are not all full.
 const APART: f64 = -1.0;
 
-/// Water in each hollow, mm times cells, that of its parts included; [`APART`] while its parts have waters of their
-/// own.
+/// Water in each hollow, mm times cells, including that of its parts; [`APART`] while its parts hold separate waters.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pools {
     pub held: Vec<f64>,
-    /// Water that is passed down within [`Pools::sink`].
+    /// Scratch space of [`Pools::sink`]: the loss that each part takes over from its whole.
     passed: Vec<f64>,
 }
 
 impl Pools {
-    /// Dry ones.
+    /// Creates dry pools.
     pub fn new(basins: &Basins) -> Self {
         let held = basins.list.iter().map(|b| if b.first_child == OUT { 0.0 } else { APART }).collect();
         Self { held, passed: vec![0.0; basins.list.len()] }
     }
 
-    /// Creates the pools of a saved state; none if it cannot be one of these hollows.
+    /// Creates the pools of a saved state; `None` if it cannot be of these hollows.
     pub fn from_held(basins: &Basins, held: Vec<f64>) -> Option<Self> {
         let sound = held.len() == basins.list.len()
             && held.iter().zip(&basins.list).all(|(h, b)| {
@@ -42,13 +41,13 @@ impl Pools {
         self.held[basin] >= basins.list[basin].capacity
     }
 
-    /// Whether a hollow's water is a part of a larger one.
+    /// Whether a hollow's water is part of a larger one.
     fn is_part(&self, basins: &Basins, basin: usize) -> bool {
         let parent = basins.list[basin].parent;
         parent != OUT && self.held[parent as usize] >= 0.0
     }
 
-    /// Pours water into a pit. Answers what leaves the grid.
+    /// Pours water into a pit. Returns the amount that leaves the grid.
     pub fn pour(&mut self, basins: &Basins, pit: u32, water: f64) -> f64 {
         let (mut to, mut left) = (pit, water);
         while to != OUT && left > 0.0 {
@@ -76,10 +75,10 @@ impl Pools {
         left
     }
 
-    /// Lowers every water by `depth_mm`. Answers how much went.
+    /// Lowers every water by `depth_mm`. Returns the amount lost.
     pub fn sink(&mut self, basins: &Basins, depth_mm: f64) -> f64 {
         let mut gone = 0.0;
-        // Wholes come after their parts: what a whole loses beyond its own depth is taken from its parts.
+        // In reverse order a whole comes before its parts: the loss beyond its own depth is taken from its parts.
         for basin in (0..self.held.len()).rev() {
             let passed = std::mem::take(&mut self.passed[basin]);
             if self.held[basin] <= 0.0 || self.is_part(basins, basin) {
@@ -104,9 +103,10 @@ impl Pools {
         gone
     }
 
-    /// Takes water from the parts of a hollow by their surfaces. Answers what they do not have.
+    /// Takes water from the parts of a hollow in proportion to their surfaces. Returns the amount that they do not
+    /// have.
     fn pass(&mut self, basins: &Basins, basin: usize, water: f64) -> f64 {
-        // What only holds water above its own brim has none.
+        // Parts without a capacity of their own have no water.
         let holding = || basins.parts(basin).filter(|part| basins.list[*part].capacity > 0.0);
         let cells = |part: usize| basins.level(part, basins.list[part].capacity).1;
         let all: f64 = holding().map(cells).sum();
@@ -114,19 +114,20 @@ impl Pools {
         if all > 0.0 { 0.0 } else { water }
     }
 
-    /// All water, mm times cells.
+    /// Returns all water, mm times cells.
     #[cfg(test)]
     pub fn total(&self, basins: &Basins) -> f64 {
         let whole = |i: &usize| self.held[*i] > 0.0 && !self.is_part(basins, *i);
         (0..self.held.len()).filter(whole).map(|i| self.held[i]).sum()
     }
 
-    /// The larger hollow whose water a hollow's is a part of.
+    /// Returns the larger hollow that a hollow's water is part of.
     pub fn whole_of(&self, basins: &Basins, basin: usize) -> Option<usize> {
         self.is_part(basins, basin).then(|| basins.list[basin].parent as usize)
     }
 
-    /// Level of the water in a hollow that is no part, mm; negative infinity for one that is only its parts.
+    /// Returns the water level in a hollow that is not part of another, mm; negative infinity while its parts hold
+    /// separate waters.
     pub fn level(&self, basins: &Basins, basin: usize) -> f64 {
         let held = self.held[basin];
         if held >= 0.0 { basins.level(basin, held).0 } else { f64::NEG_INFINITY }
@@ -161,19 +162,20 @@ mod tests {
         let deep: Vec<usize> = (0..basins.list.len()).filter(|i| basins.list[*i].capacity > 0.0).collect();
         let [a, b, whole] = deep[..] else { panic!("{basins:?}") };
         let mut pools = Pools::new(&basins);
-        // To the saddle the deep pit holds 400; 60 go over to the other, which is then .06 m deep.
+        // Up to the saddle the deep pit holds 400; 60 spill into the other pit, which is then 0.06 m deep.
         assert_eq!(pools.pour(&basins, a as u32, 460.0), 0.0);
         let levels = self::levels(&pools, &basins);
         assert!((levels[a] + 100.0).abs() < 1e-3 && (levels[b] + 140.0).abs() < 1e-3, "{levels:?}");
         assert_eq!(levels[whole], f64::NEG_INFINITY);
-        // Then both are one, whoever gets it: 4 cells, 80 more raise it by 10 mm with the saddle's.
+        // Then both are one water, wherever it is poured in. 40 fill the second pit to the saddle; 40 more raise the 4
+        // cells, with that of the saddle, by 10 mm.
         assert_eq!(pools.pour(&basins, b as u32, 40.0 + 40.0), 0.0);
         let levels = self::levels(&pools, &basins);
         assert!(deep.iter().all(|i| (levels[*i] + 90.0).abs() < 1e-3), "{levels:?}");
-        // 400 in all go in above the saddle; what is more leaves.
+        // Above the saddle 400 fit in; the rest leaves.
         assert!((pools.pour(&basins, a as u32, 1000.0) - 640.0).abs() < 1e-3);
         assert!((pools.total(&basins) - 900.0).abs() < 1e-3);
-        // Down by 120 mm: below the saddle they part again, and each goes on for itself.
+        // Down by 120 mm: below the saddle the waters part again, and each sinks on its own.
         assert!((pools.sink(&basins, 100.0) - 400.0).abs() < 1e-3);
         assert!((pools.sink(&basins, 20.0) - 80.0).abs() < 1e-3, "the saddle is dry: 4 cells give 20 each");
         assert!((pools.total(&basins) - 420.0).abs() < 1e-3);

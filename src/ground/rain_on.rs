@@ -1,4 +1,5 @@
-//! Precipitation on the cells of a grid: past standing boxes, under rain areas, and its share of ice.
+//! Precipitation on the cells of a grid: less what boxes that stand still keep off, and with rain areas; and the share
+//! of each cell under ice.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -16,14 +17,14 @@ use crate::{
     world::World,
 };
 
-/// Height above the ground up to which a place counts as its surface, m.
+/// Height above the ground up to which a place counts as the surface, m.
 const SURFACE_M: f64 = 0.02;
 
-/// How many thirds of the rain the boxes keep off each cell.
+/// Number of thirds of the rain that the boxes keep off each cell.
 #[derive(Default)]
 struct Shadow {
     made_for: Option<([f64; 3], DVec2, Vec<Shelter>)>,
-    /// Empty where nothing is kept off anywhere.
+    /// Thirds kept off, by cell; empty if nothing is kept off anywhere.
     thirds: Vec<u8>,
 }
 
@@ -33,35 +34,37 @@ impl Shadow {
     }
 }
 
-/// Share of open ground under ice, and what the boxes keep off of freezing rain: by the weather of the moment.
+/// Share of open ground under ice, and the freezing rain that boxes keep off, both by the weather of the moment.
 #[derive(Default)]
 struct Glaze {
     ice: f64,
     shadow: Shadow,
 }
 
-/// A step in which rain falls on a grid.
+/// Step in which rain falls on a grid.
 #[derive(Clone, Copy)]
 pub(super) struct RainStep<'a> {
-    /// The weather in its middle, and what it does to the ground.
+    /// Weather in the middle of the step, and its effect on the ground.
     pub conditions: &'a Conditions,
     pub forcing: &'a Forcing,
     pub seconds: f64,
 }
 
-/// Where a grid lies under the sky, and what falls on its cells.
+/// Position of a grid in the atmosphere, and the rain on its cells.
 pub(super) struct GridRain {
-    /// Turns the host's axes; the altitude of the height that the grid's heights count from, m.
+    /// Rotation from the host's axes to east, north, up.
     pub to_enu: DMat3,
+    /// Altitude from which the grid's heights count, m.
     pub altitude_m: f64,
-    /// Where the grid lies, and each run of its cells.
+    /// Bounds of the whole grid, and of each run of its cells.
     pub whole: CellBounds,
     pub runs: Vec<CellBounds>,
-    /// Lowest and highest node.
+    /// Heights of the lowest and the highest node, m.
     range_m: (f64, f64),
     shadow: Shadow,
     glaze: Glaze,
-    /// Precipitation in this step, mm: on every cell before boxes, or else on each.
+    /// Precipitation on every cell in this step, mm, before boxes; `None` if cells differ. Then `rates` has the
+    /// precipitation on each, mm.
     even_mm: Option<f64>,
     rates: Vec<f64>,
 }
@@ -82,7 +85,7 @@ impl GridRain {
         }
     }
 
-    /// Takes other heights of some cells: by their runs, the lowest and highest as far as they reach now.
+    /// Takes over changed heights: renews the bounds of these runs and extends those of the whole grid.
     pub fn heights_changed(&mut self, grid: &CellGrid<'_>, runs: impl Iterator<Item = usize>) {
         for run in runs {
             let cells = run * RUN..((run + 1) * RUN).min(grid.len());
@@ -98,8 +101,8 @@ impl GridRain {
         self.glaze.shadow.made_for = None;
     }
 
-    /// Finds what the standing boxes keep off, and says whether that may be something else than before. `falls_m_s`: of
-    /// the drops in the middle of each third of the water; `wind` of the air, east and north.
+    /// Finds what the boxes that stand still keep off. Returns whether it may have changed. `falls_m_s` are the fall
+    /// speeds of the drops in the middle of each third of the water; `wind` is the wind, east and north, m/s.
     fn shade(
         &self,
         grid: &CellGrid<'_>,
@@ -129,7 +132,7 @@ impl GridRain {
         true
     }
 
-    /// Finds what the standing boxes keep off of the rain that falls under the weather `c`.
+    /// Finds what the boxes that stand still keep off in the rain of the weather `c`.
     fn shade_rain(&mut self, grid: &CellGrid<'_>, c: &Conditions, overs: &AreasOverGrid, shelters: &[Shelter]) {
         let mut shadow = std::mem::take(&mut self.shadow);
         let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
@@ -137,8 +140,8 @@ impl GridRain {
         self.shadow = shadow;
     }
 
-    /// Takes the ice from the weather, what freezing rain leaves where it gets to. Says whether any of it may have
-    /// changed.
+    /// Takes over the ice of the weather; ice from freezing rain forms only where the rain arrives. Returns whether any
+    /// of it may have changed.
     pub fn ice_over(
         &mut self,
         grid: &CellGrid<'_>,
@@ -160,7 +163,7 @@ impl GridRain {
         changed
     }
 
-    /// Share of a cell under ice.
+    /// Returns the share of a cell under ice.
     pub fn ice(&self, cell: usize) -> f32 {
         (self.glaze.ice * self.glaze.shadow.share(cell)) as f32
     }
@@ -174,7 +177,7 @@ impl GridRain {
     ) {
         let in_world = self.to_enu.transpose() * velocity;
         let columns = grid.nodes[0] as usize;
-        // Each box is asked where its shadow may lie; a cell counts once.
+        // Only cells in the possible shadow of a box are tested; a cell counts once.
         for (i, shelter) in shelters.clone().enumerate() {
             let Some([x, y]) = self.shadow_within(grid, shelter, velocity) else { continue };
             for (row, column) in (y[0]..=y[1]).flat_map(|row| (x[0]..=x[1]).map(move |column| (row, column))) {
@@ -187,7 +190,7 @@ impl GridRain {
         }
     }
 
-    /// First and last column and row in which the shadow of a box may lie.
+    /// Returns the first and last column and row to which the shadow of a box can reach.
     fn shadow_within(&self, grid: &CellGrid<'_>, shelter: &Shelter, velocity: DVec3) -> Option<[[usize; 2]; 2]> {
         let center = self.to_enu * (shelter.center_m - grid.origin);
         let radius = shelter.half_size_m.length();
@@ -205,7 +208,8 @@ impl GridRain {
         Some([part(low.x, high.x, grid.nodes[0])?, part(low.y, high.y, grid.nodes[1])?])
     }
 
-    /// Fall speeds of thirds of the heaviest rain over the grid; without rain, of steady rain.
+    /// Returns the fall speeds for each third of the water in the heaviest rain over the grid; without rain, in steady
+    /// rain of 3 mm/h.
     fn falls_m_s(&self, c: &Conditions, overs: &AreasOverGrid) -> [f64; 3] {
         let mut heaviest = c.precipitation;
         for over in overs.all().filter(|over| over.reaches) {
@@ -224,13 +228,13 @@ impl GridRain {
         self.glaze.ice > 0.0
     }
 
-    /// Finds what falls on each cell in a step.
+    /// Finds how much falls on each cell in a step.
     pub fn fall(&mut self, grid: &CellGrid<'_>, step: &RainStep<'_>, overs: &AreasOverGrid, shelters: &[Shelter]) {
         let RainStep { conditions: c, forcing, seconds } = *step;
         self.shade_rain(grid, c, overs, shelters);
         let own = liquid(&c.precipitation);
         let liquid_stays = 1.0 - c.precipitation.freezing;
-        // What melts falls everywhere alike.
+        // Meltwater of falling snow and ice is the same everywhere.
         let melting = forcing.liquid_mm_h - own * liquid_stays;
         let hours = seconds / 3600.0;
         let fallen_mm = |liquid: f64| ((liquid * liquid_stays + melting) * hours).max(0.0);
@@ -260,7 +264,8 @@ impl GridRain {
         }
     }
 
-    /// The water of each cell where it begins: what the weather says of all the ground, where it gets to.
+    /// Returns the water with which each cell begins: that of the weather for all ground, less where boxes keep rain
+    /// off.
     pub fn first_water(
         &mut self,
         grid: &CellGrid<'_>,
@@ -295,7 +300,7 @@ impl GridRain {
 }
 
 impl GridRain {
-    /// Rain and drizzle at a cell where the weather has `own`, mm/h.
+    /// Returns rain and drizzle at a cell, mm/h; `own` is the rate of the weather outside the areas.
     fn liquid_with(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, evens: &Evens, own: f64, cell: usize) -> f64 {
         overs.list.iter().zip(evens).fold(own, |sum, (over, even)| {
             let Some(over) = over else { return sum };
@@ -308,12 +313,13 @@ impl GridRain {
         })
     }
 
-    /// Returns rain and drizzle at a cell, mm/h, from what is even over all of the grid.
+    /// Returns rain and drizzle at a cell, mm/h, with the shares that are uniform over the whole grid.
     fn liquid(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, cell: usize) -> f64 {
         self.liquid_with(grid, overs, &overs.evens, own, cell)
     }
 
-    /// Rain and drizzle at each cell, mm/h: asked once for each run of cells on which areas lie evenly.
+    /// Finds rain and drizzle at each cell, mm/h, with one evaluation for a run of cells over which all areas are
+    /// uniform.
     fn liquids(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, liquids: &mut Vec<f64>) {
         liquids.clear();
         let count = grid.len();
@@ -328,7 +334,7 @@ impl GridRain {
         }
     }
 
-    /// The areas over the terrain at a time; `c` is the weather then.
+    /// Returns the rain areas over the terrain at a time; `c` is the weather then.
     pub fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<AreasOverGrid> {
         let mut overs = AreasOverGrid { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };
         if world.set.regions.is_empty() {

@@ -1,4 +1,5 @@
-//! Light at water, in f64: the twin of `shaders/ground/optics.wgsl`, same names and order of parameters.
+//! Reflection of light by water, in f64: the twin of `shaders/ground/optics.wgsl`, with the same names and order of
+//! parameters.
 
 pub use crate::chance::normal_quantile;
 use std::f64::consts::PI;
@@ -7,15 +8,16 @@ use glam::DVec3;
 
 use crate::falling::sizes::DropSizes;
 
-/// Refractive index of water over that of air, visible light at 20 C (Hale & Querry 1973, rounded).
+/// Refractive index of water relative to air, for visible light at 20 C (Hale & Querry 1973, rounded).
 pub const WATER_INDEX: f64 = 1.333;
-/// Share of diffuse light that a level surface of water sends back up, from above: Fresnel's law integrated over the
-/// half space.
+/// Share of diffuse light from above that a level water surface reflects back up: Fresnel's law integrated over the
+/// hemisphere.
 pub const WATER_OUTSIDE: f64 = 0.0664;
-/// Share of diffuse light that it sends back down, from below.
+/// Share of diffuse light from below that the surface reflects back down.
 pub const WATER_INSIDE: f64 = 0.4746;
 
-/// Share of unpolarised light that water mirrors at an angle of incidence of this cosine, \[0, 1\] (Fresnel 1823).
+/// Returns the share of unpolarised light that water reflects, \[0, 1\], at an angle of incidence with this cosine
+/// (Fresnel 1823).
 pub fn fresnel_water(cosine: f64) -> f64 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt() / WATER_INDEX;
     let inside = (1.0 - sine * sine).sqrt();
@@ -24,36 +26,36 @@ pub fn fresnel_water(cosine: f64) -> f64 {
     0.5 * (across * across + along * along)
 }
 
-/// Returns the share that a film leaves of the light that a rough ground of this albedo (\[0, 1\]) sends up, where the
-/// share `entering` of the light from above gets into the water: e (1 - p) / (1 - p a), p = [`WATER_INSIDE`] (Angstrom
-/// 1925; Lekner & Dorf 1988, eq. 1 to 3).
+/// Returns the factor by which a film dims the light that a rough ground of this albedo (\[0, 1\]) sends up: e (1 - p)
+/// / (1 - p a), with albedo a, p = [`WATER_INSIDE`] and e = `entering`, the share of the light from above that enters
+/// the water (Angstrom 1925; Lekner & Dorf 1988, eq. 1 to 3).
 pub fn wet_share(albedo: f64, entering: f64) -> f64 {
     entering * (1.0 - WATER_INSIDE) / (1.0 - WATER_INSIDE * albedo)
 }
 
-/// Albedo of a wet ground under light at normal incidence, what its surface mirrors included.
+/// Returns the albedo of a wet ground under light at normal incidence, including what its surface reflects.
 pub fn wet_albedo(albedo: f64) -> f64 {
     let mirrored = fresnel_water(1.0);
     mirrored + albedo * wet_share(albedo, 1.0 - mirrored)
 }
 
-/// Mean slope towards the eye of the facets that it sees on a surface whose slopes are spread normally by `slope` (root
-/// mean square along one axis), at the tangent of its zenith angle: slope^2 tan for steep looks, sqrt(pi / 2) slope,
-/// the mean of the facets weighted by their own slope, for grazing ones.
+/// Returns the mean slope, towards the eye, of the facets that the eye sees. `slope` is the root mean square slope of
+/// the surface along one axis, normally distributed; `tangent` is that of the eye's zenith angle. For steep views the
+/// mean is slope^2 tan; for grazing views it is sqrt(pi / 2) slope, the mean of the facets weighted by their own slope.
 pub fn seen_slope(slope: f64, tangent: f64) -> f64 {
     let t = slope * tangent * (2.0 / PI).sqrt();
     slope * slope * tangent / (1.0 + t * t).sqrt()
 }
 
-/// Share of a unit of a rough surface that a direction of this zenith cosine sees of it.
+/// Returns the projected area of a unit of rough surface in a direction with this zenith cosine.
 pub fn seen_area(slope: f64, cosine: f64) -> f64 {
     let c = cosine.max(0.0);
     (c * c + 0.16 * slope * slope * (1.0 - c * c)).sqrt()
 }
 
-/// Luminance that a lamp of illuminance 1 makes on rough water, per Fresnel share (Cox & Munk 1954, eq. 5, with the
-/// shadows of facets on each other): `normal` is the surface's, `facet` the one that mirrors the lamp's middle into
-/// the eye, `disc2` = (radius of the lamp / 4)^2, rad^2.
+/// Returns the luminance of the glitter of a lamp of illuminance 1 on rough water, divided by the Fresnel share (Cox &
+/// Munk 1954, eq. 5, with the shadowing of facets by each other). `normal` is that of the surface, `facet` the normal
+/// of the facet that reflects the lamp's centre into the eye, `disc2` = (radius of the lamp / 4)^2, rad^2.
 pub fn glitter(slope: f64, disc2: f64, normal: DVec3, facet: DVec3, to_eye: DVec3, to_lamp: DVec3) -> f64 {
     let (c, lit, seen) = (normal.dot(facet), normal.dot(to_lamp), normal.dot(to_eye));
     let area = seen_area(slope, seen) * seen_area(slope, lit);
@@ -69,21 +71,21 @@ pub fn glitter(slope: f64, disc2: f64, normal: DVec3, facet: DVec3, to_eye: DVec
     density * lit / (4.0 * area)
 }
 
-/// Drops larger than [`RING_DIAMETER_MM`] that land on a square metre of level ground in a second.
+/// Returns the number of drops larger than [`RING_DIAMETER_MM`] that land on a square metre of level ground per second.
 pub fn ring_drops_per_m2_s(sizes: &DropSizes) -> f64 {
     let slowest = sizes.speed_m_s(RING_DIAMETER_MM);
     sizes.on_surface_of(DVec3::Z, DVec3::ZERO, |falls_m_s| falls_m_s > slowest).drops_per_m2_s
 }
 
-/// Drops above this diameter make a ring that is drawn, mm.
+/// Diameter above which a drop makes a ring that is drawn, mm.
 pub const RING_DIAMETER_MM: f64 = 1.8;
 
-/// Density of the normal distribution.
+/// Returns the density of the standard normal distribution.
 pub fn normal_density(x: f64) -> f64 {
     libm::exp(-0.5 * x * x) / (2.0 * PI).sqrt()
 }
 
-/// The normal distribution function.
+/// Returns the cumulative standard normal distribution.
 pub fn normal_share(x: f64) -> f64 {
     0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
 }
@@ -94,7 +96,7 @@ mod tests {
 
     #[test]
     fn water_mirrors_as_fresnel_says() {
-        // n = 1.333, unpolarised: degrees, share.
+        // n = 1.333, unpolarised: angle of incidence in degrees, reflected share.
         let table = [
             (0.0, 0.02037),
             (45.0, 0.02790),
@@ -112,7 +114,7 @@ mod tests {
 
     #[test]
     fn diffuse_shares_are_fresnel_over_the_half_space() {
-        // 2 int F(mu) mu dmu; from below, 1 - (1 - outside) / n^2 by reciprocity.
+        // From above, 2 int F(mu) mu dmu; from below, 1 - (1 - outside) / n^2 by reciprocity.
         let n = 20_000;
         let mean: f64 = (0..n)
             .map(|i| (f64::from(i) + 0.5) / f64::from(n))
@@ -133,7 +135,8 @@ mod tests {
 
     #[test]
     fn facets_seen_are_the_mean_over_the_slopes() {
-        // Mean of z max(0, 1 + z tan) over that of max(0, 1 + z tan), z normal with the slope.
+        // Mean of z max(0, 1 + z tan) over that of max(0, 1 + z tan); z is normal with the slope as its standard
+        // deviation.
         for slope in [0.02, 0.1, 0.3] {
             for tangent in [0.1, 1.0, 5.0, 50.0] {
                 let (mut sum, mut weight, mut n) = (0.0, 0.0, 0.0);

@@ -1,4 +1,5 @@
-//! A terrain and its water as text, and back. Numbers are words of their bits, runs of equal ones as "bits*times".
+//! Saved form of a terrain and its water as text. Numbers are the words of their bits; a run of equal ones is written
+//! as "bits*times".
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,7 @@ use crate::{
     world::{values, words},
 };
 
-/// A terrain as it is saved, with its water if that is a state.
+/// Saved terrain, with its water if that is a simulated state.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedGround {
@@ -22,7 +23,7 @@ pub(super) struct SavedGround {
     cell_m: f64,
     nodes: [u32; 2],
     heights_m: String,
-    /// Numbers of the cells' classes; left out where nothing is said of any.
+    /// Numbers of the cells' classes; left out if no cell has one.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     classes: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -44,7 +45,7 @@ impl SavedGround {
         }
     }
 
-    /// Returns the saved ground; none if it cannot be one of ours.
+    /// Returns the saved ground, or `None` if it is not valid.
     pub fn host_ground(&self, world: &WorldFrame) -> Option<HostGround> {
         if self.nodes.iter().any(|n| *n > MAX_GRID_NODES) {
             return None;

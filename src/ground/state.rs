@@ -1,24 +1,24 @@
-//! State of the water on level, open ground: where it comes from, and what is led through time.
+//! State of the water on level, open ground: its source, and what is stepped through time.
 
 use serde::{Deserialize, Serialize};
 
 use super::water::{Forcing, GroundWater, STEP_S};
 use crate::{error::Result, weather::Conditions, world::World};
 
-/// Where the wetness of the ground comes from.
+/// Source of the ground's wetness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GroundModel {
-    /// From the weather of the moment: as reported, or as the rain of the moment keeps it. No state: rain that ends
-    /// leaves dry ground.
+    /// Wetness from the weather of the moment: as reported, or as the rain of the moment keeps it. There is no state:
+    /// when rain ends, the ground is dry.
     #[default]
     Reported,
-    /// A state that rain fills and that drains and dries by wind, sun and humidity ([`crate::ground::water`]). It
-    /// begins at simulation time 0 as the weather of that moment reports the ground. An update that moves time by more
-    /// than a day begins it anew, in the same way, a day before its end.
+    /// Simulated state: rain fills it; it drains, and dries by wind, sun and humidity ([`crate::ground::water`]). It
+    /// begins at simulation time 0 with the ground that the weather reports then. An update that moves time by more
+    /// than a day restarts it in the same way, one day before the end of the update.
     Simulated,
 }
 
-/// The simulated water and what its next step needs.
+/// Simulated water, and what its next step needs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GroundState {
@@ -26,7 +26,7 @@ pub(crate) struct GroundState {
     film_mm: f64,
     soaked_mm: f64,
     hollows_mm: f64,
-    /// Sunlight on level ground since the last look at it.
+    /// Sunlight on level ground at its last update, W/m^2.
     pub sunlight_w_m2: f64,
 }
 
@@ -39,7 +39,7 @@ impl GroundState {
         (self.film_mm, self.soaked_mm, self.hollows_mm) = (water.film_mm, water.soaked_mm, water.hollows_mm);
     }
 
-    /// A state that begins at `time_s` as the weather reports the ground.
+    /// Creates a state that begins at `time_s` with the ground that the weather reports.
     pub fn first(world: &World, time_s: f64) -> Result<Self> {
         let sunlight_w_m2 = world.sunlight_w_m2(time_s)?;
         let mut state = Self { time_s, film_mm: 0.0, soaked_mm: 0.0, hollows_mm: 0.0, sunlight_w_m2 };
@@ -47,25 +47,25 @@ impl GroundState {
         Ok(state)
     }
 
-    /// Where its next step ends, s.
+    /// Returns the end of the next step, s.
     pub fn next_s(&self) -> f64 {
         ((self.time_s / STEP_S).floor() + 1.0) * STEP_S
     }
 
-    /// Whether a saved one can be one of ours.
+    /// Whether the values of a saved state are in range.
     pub fn is_valid(&self) -> bool {
         let amounts = [self.film_mm, self.soaked_mm, self.hollows_mm, self.sunlight_w_m2];
         self.time_s.is_finite() && amounts.iter().all(|v| (0.0..1e4).contains(v))
     }
 }
 
-/// A step of level, open ground, for the grid and the tiles beside it.
+/// Step of level, open ground, for the grid and the tiles that are stepped with it.
 #[derive(Clone, Copy)]
 pub(super) struct GroundStep<'a> {
     pub from_s: f64,
     pub seconds: f64,
     pub conditions: &'a Conditions,
     pub forcing: &'a Forcing,
-    /// Water of level ground at the step's beginning.
+    /// Water of level ground at the beginning of the step.
     pub water: &'a GroundWater,
 }

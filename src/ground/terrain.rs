@@ -1,10 +1,10 @@
-//! Water on the host's terrain: of every cell of a [`GroundGrid`] film and pores by the laws of [`super::water`], and
-//! in the hollows of the terrain what runs off.
+//! Water on the host's grid terrain: film and pores of every cell of a [`GroundGrid`] by the laws of [`super::water`],
+//! and run-off that collects in the hollows of the terrain.
 //!
-//! What a cell sheds in a step is in its hollow at the end of the step ([`super::basins`]); a full hollow spills into
-//! the next, and what reaches the grid's border is gone. Nothing runs in from outside. Standing water loses Penman's
-//! evaporation to the air and a leak to the ground below, and takes whole what falls on it. So rain = change of film,
-//! pores and standing water + evaporated + leaked + drained.
+//! What a cell sheds in a step reaches its hollow by the end of the step ([`super::basins`]). A full hollow spills into
+//! the next, and water that reaches the grid's border leaves. Nothing flows in from outside. Standing water loses
+//! Penman's evaporation to the air and a leakage to the ground below, and takes all rain that falls on it. The balance
+//! is: rain = change of film, pores and standing water + evaporated + leaked + drained.
 
 use half::f16;
 
@@ -15,13 +15,12 @@ use super::{
     water::{GroundWater, PORES_MM, Step, SurfaceWater, wetness_of},
 };
 
-/// Cells that are gone through together, or passed over together where nothing falls, flows or dries.
+/// Number of cells in a run: they are stepped together, or skipped together where nothing falls, flows or dries.
 pub(crate) const RUN: usize = 64;
-/// Depth of water where there is none and no hollow's level is known, mm: as far as puddles' edges run out between
-/// cells.
+/// Standing water of a cell in a dry hollow, mm. It sets how far the edges of puddles extend between cells.
 const BARE_MM: f32 = -50.0;
 
-/// The host's terrain and its hollows.
+/// Terrain of the host and its hollows.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct GridTerrain {
     pub grid: GroundGrid,
@@ -35,7 +34,7 @@ impl GridTerrain {
     }
 }
 
-/// Water that a step brought and took, mm times cells.
+/// Water that a step added and removed, mm times cells.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Flows {
     pub rain: f64,
@@ -48,25 +47,26 @@ pub(crate) struct Flows {
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct CellWater {
     pub film_mm: f64,
-    /// In the pores, as a share of what they hold.
+    /// Water in the pores, as a share of their capacity.
     pub soaked: f64,
-    /// Above the ground; how far below the hollow's level it lies, or [`BARE_MM`], where negative.
+    /// Depth of standing water above the ground. Negative where none stands: minus the height of the ground above its
+    /// hollow's water level, or [`BARE_MM`].
     pub standing_mm: f64,
 }
 
 impl CellWater {
-    /// Depth over the ground, mm.
+    /// Returns the depth of water over the ground, mm.
     pub fn depth_mm(&self) -> f64 {
         self.film_mm + self.standing_mm.max(0.0)
     }
 
-    /// As [`SurfaceCover::wetness`](crate::weather::SurfaceCover::wetness).
+    /// Returns the wetness, as [`SurfaceCover::wetness`](crate::weather::SurfaceCover::wetness).
     pub fn wetness(&self) -> f64 {
         if self.standing_mm > 0.0 { 1.0 } else { wetness_of(self.film_mm, self.soaked * PORES_MM) }
     }
 }
 
-/// The water on a terrain.
+/// Water on a terrain.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TerrainWater {
     /// Film and pores, mm.
@@ -75,16 +75,17 @@ pub(crate) struct TerrainWater {
     /// Depths as in [`CellWater::standing_mm`].
     standing: Vec<f32>,
     dry: bool,
-    /// Flag of each run of cells: whether a step without rain may change any cell of it: one with a film, or with wet
-    /// pores above water.
+    /// Whether a step without rain may change a cell, for each run: true if a cell has a film, or wet pores that are
+    /// not under water.
     awake: Vec<bool>,
-    /// Level of the water in each hollow, and what it held when that was found.
+    /// Water level of each hollow, and the volume for which it was computed.
     levels: Vec<WaterLevel>,
-    /// Room for a step: what pits get.
+    /// Scratch space for a step: the water that flows into each pit.
     inflow: Vec<f64>,
 }
 
-/// Cached level of the water in a hollow, mm, and its volume then; none where the pool has merged into another.
+/// Cached level of the water in a hollow, mm, and the volume it was computed for; `None` if the pool has merged into
+/// another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct WaterLevel {
     mm: f64,
@@ -92,8 +93,8 @@ struct WaterLevel {
 }
 
 impl TerrainWater {
-    /// On a terrain that is as wet as `water` says of open, level ground at each cell; what it says of hollows stands
-    /// in the terrain's own, gathered from what drains there.
+    /// Creates the water of a terrain on which each cell is as wet as `water` says for open, level ground. The water in
+    /// hollows is gathered from the cells that drain to each pit, and stands in the terrain's own hollows.
     pub fn new(terrain: &GridTerrain, water: impl Fn(usize) -> GroundWater) -> Self {
         let basins = &terrain.basins;
         let top: Vec<GroundWater> = (0..terrain.grid.len()).map(water).collect();
@@ -108,7 +109,7 @@ impl TerrainWater {
         Self::with(terrain, top.iter().map(|w| [w.film_mm, w.soaked_mm]).collect(), pools)
     }
 
-    /// A saved one, if it can be of this terrain.
+    /// Creates the water of a saved state; `None` if it cannot be of this terrain.
     pub fn from_parts(terrain: &GridTerrain, top: Vec<[f64; 2]>, held: Vec<f64>) -> Option<Self> {
         let sound = |[film, soaked]: &[f64; 2]| (0.0..1e4).contains(film) && (0.0..=PORES_MM).contains(soaked);
         let pools = Pools::from_held(&terrain.basins, held)?;
@@ -134,7 +135,7 @@ impl TerrainWater {
         new
     }
 
-    /// Returns the water in each hollow, mm times cells.
+    /// Returns the volume of water in each hollow, mm times cells.
     pub fn held(&self) -> &[f64] {
         &self.pools.held
     }
@@ -144,8 +145,8 @@ impl TerrainWater {
         self.dry
     }
 
-    /// Leads it through a step in which so many millimetres fall on each cell, none on the cells of a run on which it
-    /// does not rain. Runs where nothing falls, flows or dries are passed over, which changes no bit.
+    /// Steps the water. `rain_mm` gives the rain on each cell, `rains` whether any falls on a run. Runs on which
+    /// nothing falls, flows or dries are skipped, which gives the same bits.
     pub fn step(
         &mut self,
         terrain: &GridTerrain,
@@ -198,9 +199,9 @@ impl TerrainWater {
         flows
     }
 
-    /// Brings the depths up to date with what the hollows hold.
+    /// Updates the depths from the volumes in the hollows.
     fn level(&mut self, basins: &Basins) {
-        // Wholes come after their parts, which take their level.
+        // In reverse order a whole comes before its parts, which take its level.
         for hollow in (0..self.levels.len()).rev() {
             let before = self.levels[hollow];
             let now = match self.pools.whole_of(basins, hollow) {
@@ -216,7 +217,7 @@ impl TerrainWater {
                 let depth = (now.mm - height_mm) as f32;
                 let depth = if depth.is_finite() { depth } else { BARE_MM };
                 if depth <= 0.0 && self.standing[cell] > 0.0 {
-                    // What the water leaves begins to dry.
+                    // Ground from which water has withdrawn begins to dry.
                     self.awake[cell / RUN] = true;
                 }
                 self.standing[cell] = depth;
@@ -224,13 +225,13 @@ impl TerrainWater {
         }
     }
 
-    /// Water of a cell.
+    /// Returns the water of a cell.
     pub fn cell(&self, cell: usize) -> CellWater {
         let [film_mm, soaked_mm] = self.top[cell];
         CellWater { film_mm, soaked: soaked_mm / PORES_MM, standing_mm: f64::from(self.standing[cell]) }
     }
 
-    /// Water between cells.
+    /// Returns the water between cells, with the weights of four of them.
     pub fn between(&self, shares: &[(usize, f64); 4]) -> CellWater {
         shares.iter().fold(CellWater::default(), |sum, (cell, share)| {
             let c = self.cell(*cell);
@@ -242,23 +243,23 @@ impl TerrainWater {
         })
     }
 
-    /// Texels of each cell, by rows ([`super::GroundTexture`]): film, mm, soaked share of the pores, depth of standing
-    /// water as in [`CellWater`], mm, and the share under ice.
+    /// Fills `texels` with each cell by rows ([`super::GroundTexture`]): film, mm, soaked share of the pores, depth of
+    /// standing water as in [`CellWater`], mm, and the share under ice.
     pub fn texels(&self, ice: impl Fn(usize) -> f32, texels: &mut Vec<[u16; 4]>) {
         texels.clear();
-        // Beyond what a half float holds water only gets no deeper.
+        // Values beyond the range of a half float are clamped.
         let half = |v: f32| f16::from_f32(v.clamp(f16::MIN.to_f32(), f16::MAX.to_f32())).to_bits();
         texels.extend(self.top.iter().zip(&self.standing).enumerate().map(|(cell, ([film, soaked], standing))| {
             [*film as f32, (soaked / PORES_MM) as f32, *standing, ice(cell)].map(half)
         }));
     }
 
-    /// Share of the cells under standing water.
+    /// Returns the share of the cells under standing water.
     pub fn puddles(&self) -> f64 {
         self.standing.iter().filter(|s| **s > 0.0).count() as f64 / self.standing.len() as f64
     }
 
-    /// All of it, mm times cells.
+    /// Returns all water, mm times cells.
     #[cfg(test)]
     fn total(&self, terrain: &GridTerrain) -> f64 {
         self.top.iter().map(|t| t[0] + t[1]).sum::<f64>() + self.pools.total(&terrain.basins)
@@ -294,7 +295,7 @@ mod tests {
         assert!(water.is_dry());
         let (mut fallen, mut gone) = (0.0, 0.0);
         for i in 0..2400 {
-            // Two showers of other rains in the east and west, with roofs; then wind and sun.
+            // Two showers that differ between east and west, with roofs; then wind and sun.
             let (step, mm) = rain(if i % 1200 < 500 { 9.0 } else { 0.0 }, if i % 1200 < 500 { 0.02 } else { 0.6 });
             let over = |cell: usize| if cell % 48 < 20 { mm } else { mm * ((cell / 48) % 4) as f64 / 3.0 };
             let flows = water.step(&terrain, &step, |_| true, over);
@@ -344,7 +345,7 @@ mod tests {
             water.step(&terrain, &dry, |_| false, |_| 0.0);
             hours += STEP_S / 3600.0;
             let now = under(&water);
-            // The last of the film still runs in for a while.
+            // The last of the film still flows in for a while.
             assert!((hours < 1.0 || now.len() <= left) && (now.is_empty() || now.contains(&deepest)));
             left = now.len();
         }
@@ -352,8 +353,8 @@ mod tests {
         assert_eq!(water.puddles(), 0.0);
     }
 
-    /// Hours of showers and sun on rough ground: to the bit what going through all cells and hollows gives, in less
-    /// time.
+    /// Hours of showers and sun on rough ground: skipping gives the same bits as stepping all cells and hollows, in
+    /// less time.
     #[test]
     fn passing_over_what_rests_changes_no_bit_and_saves_most_of_the_time() {
         let (columns, rows) = (256, 256);
@@ -399,7 +400,7 @@ mod tests {
         let water = TerrainWater::new(&terrain, |_| reported);
         let caught = terrain.basins.drains_to.iter().filter(|d| **d != OUT).count() as f64;
         let standing = water.pools.total(&terrain.basins);
-        // Some hollows hold less than drains into them.
+        // Some hollows hold less than the water that drains into them.
         assert!((0.95..1.0).contains(&(standing / (0.9 * caught))), "{standing} of {caught}");
         assert!(water.puddles() > 0.02, "{}", water.puddles());
         let again = TerrainWater::from_parts(&terrain, water.top.clone(), water.held().to_vec()).unwrap();

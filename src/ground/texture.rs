@@ -1,10 +1,10 @@
-//! The water on the host's terrain as a texture: what the surface pass draws from, and what a host samples in its own
+//! Texture of the water on the host's terrain, which the surface pass reads and which the host can sample in its own
 //! materials.
 //!
-//! One texel a node, the first one south-west, rows to the north: half floats, which every interface filters. Film and
-//! soaked share are within 1/2048 of their value, standing water within 1/2048 of it, so 0.06 mm at 100 mm. Standing
-//! water is signed, so that between a node under water and one above it the shore lies where the water's level meets
-//! the ground.
+//! There is one texel per node, beginning with the south-west one, rows running north. Texels are half floats, which
+//! every graphics API can filter. Film, soaked share and standing water are exact to 1/2048 of their value, which is
+//! 0.06 mm at 100 mm. Standing water is signed: between a node under water and one above it, the shore lies where the
+//! water's level meets the ground.
 
 use glam::DVec4;
 
@@ -15,33 +15,34 @@ use super::{
 };
 use crate::{gpu::Device, surroundings::LyingSnow};
 
-/// WGSL text of the functions that say how the water looks; see [`GroundTexture`].
+/// WGSL text of functions that compute the look of the water; see [`GroundTexture`].
 pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_ground.wgsl");
-/// Their GLSL text, for 3.30 and ES 3.00.
+/// GLSL text of the same functions, for 3.30 and ES 3.00.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_ground.glsl");
 
-/// Water on the host's terrain for its own shaders: as [`GroundCell`](crate::ground::GroundCell), one texel a node.
+/// Water on the host's terrain for the host's own shaders: the values of [`GroundCell`](crate::ground::GroundCell), one
+/// texel per node.
 #[derive(Clone, Debug)]
 pub struct GroundTexture {
     /// RGBA half floats: film in mm, soaked share of the pores, standing water in mm, share under ice. Standing water
-    /// is negative where none stands: how far its hollow's level lies below the ground, or -50 where the hollow is dry.
-    /// Belongs to the context; filled anew by its next
-    /// [`Context::ground_texture`](crate::context::Context::ground_texture) and by frames with
-    /// [`Stages::SURFACE`](crate::frame::Stages::SURFACE).
+    /// is negative where none stands: minus the height of the ground above its hollow's water level, or -50 where the
+    /// hollow is dry. The texture belongs to the context. The next
+    /// [`Context::ground_texture`](crate::context::Context::ground_texture) and frames with
+    /// [`Stages::SURFACE`](crate::frame::Stages::SURFACE) update it.
     pub texture: wgpu::Texture,
-    /// Incremented whenever `texture` is replaced: where another grid was set or loaded.
+    /// Incremented whenever `texture` is replaced, which happens when another grid is set or loaded.
     pub generation: u64,
-    /// [`Context::ground_revision`](crate::context::Context::ground_revision) of what it holds.
+    /// [`Context::ground_revision`](crate::context::Context::ground_revision) of the contents.
     pub revision: u64,
-    /// The snow on the same nodes, RGBA half floats: depth in m, density in kg/m^3, wetness, albedo of visible light.
-    /// `None` without a simulated snow ([`LyingSnowModel`](crate::snowpack::LyingSnowModel)). Replaced with `texture`,
-    /// filled likewise.
+    /// Snow on the same nodes, RGBA half floats: depth in m, density in kg/m^3, wetness, albedo of visible light.
+    /// `None` without simulated snow ([`LyingSnowModel`](crate::snowpack::LyingSnowModel)). Replaced and updated
+    /// together with `texture`.
     pub snow: Option<wgpu::Texture>,
-    /// Rows that, times (x, y, z, 1) of a place in the host's world, m, give its u and v.
+    /// Rows of the transform to u and v: the dot product of each with (x, y, z, 1) of a place in the host's world, m.
     pub uv_from_world: [DVec4; 2],
 }
 
-/// Rows from the host's world to the coordinates of a texture of these nodes.
+/// Returns the rows that map the host's world to the coordinates of a texture of these nodes.
 pub(crate) fn uv_from_world(drawn: &DrawnTerrain) -> [DVec4; 2] {
     [0, 1].map(|i| {
         let nodes = f64::from(drawn.nodes[i]);
@@ -50,40 +51,43 @@ pub(crate) fn uv_from_world(drawn: &DrawnTerrain) -> [DVec4; 2] {
     })
 }
 
-/// The textures of a terrain.
+/// GPU textures of a terrain.
 #[derive(Clone, Debug)]
 pub(crate) struct Filled {
     pub water: wgpu::Texture,
-    /// And below its rows as many of snow.
+    /// Surface, with an equal number of rows of snow below it.
     surface: wgpu::Texture,
-    /// For drawing: of the water and of the surface.
+    /// Views for drawing: of the water and of the surface.
     pub views: [wgpu::TextureView; 2],
-    /// Revisions of the grid, of the water, of the classes and of the snow in the textures.
+    /// Revision of the grid in the textures.
     pub generation: u64,
+    /// Revision of the water in the textures.
     pub revision: u64,
+    /// Revision of the classes in the textures.
     classes: u64,
+    /// Revision of the snow in the textures.
     snow: u64,
-    /// For the host, once it has asked for it: the texture, and what it holds.
+    /// Snow texture for the host, once it has asked for one, and the snow revision in it.
     host_snow: Option<(wgpu::Texture, u64)>,
 }
 
-/// Keeps the textures of a context's terrain; there are none before somebody asks.
+/// Terrain textures of a context; created when they are first asked for.
 #[derive(Default)]
 pub(crate) struct TerrainTextures {
     filled: Option<Filled>,
-    /// Whether the water was written since it was last handed to the host.
+    /// Whether the water was written since it was last handed over to the host.
     pub written: bool,
     texels: Vec<[u16; 4]>,
     surface: Vec<[f32; 4]>,
 }
 
 impl TerrainTextures {
-    /// Returns the textures as they are, however old.
+    /// Returns the textures as they are, which may be out of date.
     pub fn filled(&self) -> Option<&Filled> {
         self.filled.as_ref()
     }
 
-    /// Uploads what has changed: surface and water of another grid, or one of them alone.
+    /// Uploads what has changed: surface and water if the grid is another one, else only the one that changed.
     pub fn upload(
         &mut self,
         device: &Device,
@@ -109,7 +113,7 @@ impl TerrainTextures {
         self.filled = Some(filled);
     }
 
-    /// The snow as a texture for the host, up to date.
+    /// Returns the up-to-date snow texture for the host.
     pub fn host_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<wgpu::Texture> {
         let (filled, snow) = (self.filled.as_mut()?, snow?);
         let [width, height] = [filled.water.width(), filled.water.height()];
@@ -128,7 +132,7 @@ impl TerrainTextures {
         Some(texture)
     }
 
-    /// Uploads the snow on the terrain, if it has changed, into the rows below the surface's.
+    /// Uploads the snow on the terrain, if it has changed, into the rows below the surface.
     pub fn upload_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<&Filled> {
         let filled = self.filled.as_mut()?;
         if let Some(snow) = snow.filter(|s| s.revision != filled.snow) {
@@ -141,7 +145,7 @@ impl TerrainTextures {
 }
 
 impl Filled {
-    /// Textures of a grid, still empty.
+    /// Creates the empty textures of a grid.
     fn new(device: &Device, grid: &GroundGrid, generation: u64) -> Self {
         use wgpu::TextureFormat as F;
         let [width, height] = grid.nodes;
@@ -171,8 +175,8 @@ fn terrain_texture(
     })
 }
 
-/// Appends for each node, by rows: slopes to the east and the north, height over the grid's origin in metres, number of
-/// its class.
+/// Fills `texels` with one texel per node, by rows: slopes to the east and the north, height over the grid's origin in
+/// m, number of the class.
 fn surface_texels(grid: &GroundGrid, texels: &mut Vec<[f32; 4]>) {
     texels.clear();
     texels.extend(grid.heights_m.iter().enumerate().map(|(node, height)| {
@@ -236,7 +240,7 @@ mod tests {
         let right = |law: &String| law.split_once('=').map_or(law.clone(), |(_, value)| value.to_owned());
         let (wgsl, glsl) = (laws(&wgsl), laws(&glsl));
         assert!(wgsl.len() > 6, "{wgsl:?}");
-        // How wetness is chosen is written in two ways.
+        // The choice of wetness is written differently in the two.
         let differ: Vec<_> = wgsl.iter().zip(&glsl).filter(|(w, g)| right(w) != right(g)).collect();
         assert!(wgsl.len() == glsl.len() && differ.len() == 1 && differ[0].0.contains("wetness"), "{differ:?}");
     }

@@ -1,4 +1,5 @@
-//! Uniform block of the shaders of wet ground in a frame: `GroundUniform` of `shaders/ground/uniform.wgsl`.
+//! Uniform block of the shaders of wet ground: `GroundUniform` of `shaders/ground/uniform.wgsl`, and its inputs for a
+//! frame.
 
 use std::f64::consts::PI;
 
@@ -21,18 +22,19 @@ use crate::{
     weather::{Falling, SurfaceCover, snow_cover},
 };
 
-/// Twins of the constants of `shaders/ground/hollows.wgsl`.
+/// Twins of the ring constants in `shaders/ground/hollows.wgsl`.
 const RING_CELL_M: f64 = 0.2;
 const RING_SLOT_S: f64 = 0.6;
 const RING_LAYERS: f64 = 4.0;
 
-/// Root mean square slopes, along one axis, of a film: thin, on the grains of asphalt that it hardly fills; and closed.
+/// Root mean square slope of a thin film, along one axis: it hardly fills the grain of asphalt.
 const THIN_FILM_SLOPE: f64 = 0.3;
+/// Root mean square slope of a closed film, along one axis.
 const CLOSED_FILM_SLOPE: f64 = 0.15;
-/// Share of the open sea's mean square slope by wind (Cox & Munk 1954: 0.00512 per m/s, of both axes) that puddles
-/// have: they are a few metres long.
+/// Mean square slope of puddles by wind, as a share of that of the open sea (Cox & Munk 1954: 0.00512 per m/s, both
+/// axes together). It is small because puddles are only a few metres long.
 const PUDDLE_SHARE_OF_SEA: f64 = 0.03;
-/// Mean square slope of puddles by the rings of drops, per mm/h.
+/// Mean square slope of puddles by the rings of drops, per mm/h of rain.
 const RING_SLOPE2_PER_MM_H: f64 = 2e-4;
 
 #[repr(C)]
@@ -88,15 +90,15 @@ impl GroundUniform {
     }
 }
 
-/// Inputs of a frame's wet surfaces.
+/// Inputs of [`GroundUniform`] for a frame.
 pub(crate) struct WetScene<'a> {
     pub scene: &'a Scene,
     pub cover: &'a SurfaceCover,
-    /// On level, open ground.
+    /// Snow on level, open ground.
     pub snow: SnowHere,
-    /// Whether the terrain's cells have snow of their own; else it lies on them as on level, open ground.
+    /// Whether the terrain's cells have snow of their own; else they have the snow of level, open ground.
     pub terrain_has_snow: bool,
-    /// Precipitation that falls on it.
+    /// Precipitation on the ground.
     pub falling: Falling,
     /// Share of level ground under clear ice.
     pub glaze: f64,
@@ -104,48 +106,50 @@ pub(crate) struct WetScene<'a> {
     /// Position of the camera in the host's world, m.
     pub position: DVec3,
     pub time_s: f64,
-    /// 1/m; 0 for a flat world.
+    /// Curvature of the planet, 1/m; 0 for a flat world.
     pub curvature: f64,
     /// Optical depth of the fog straight up.
     pub fog_depth: f64,
-    /// Steps of ndc to the next pixel to the right and below.
+    /// Steps in normalised device coordinates to the next pixel to the right and below.
     pub pixel: [f64; 2],
-    /// Rounding of the host's depth: absolute, and over its value.
+    /// Rounding error of the host's depth: absolute, and relative to the value.
     pub depth_rounding: [f64; 2],
-    /// Most light that a pixel holds, cd/m^2.
+    /// Limit of the light in a pixel, cd/m^2.
     pub most_cd_m2: f64,
-    /// Velocity of the air that carries the rain, (east, north, up), m/s, where anything keeps rain off.
+    /// Velocity of the air that carries the rain, (east, north, up), m/s; `None` if nothing keeps rain off.
     pub wind_m_s: Option<DVec3>,
-    /// The host's terrain about the camera.
+    /// Terrain of the host around the camera.
     pub terrain: Option<DrawnTerrain>,
-    /// Class of ground for which the host gives none.
+    /// Surface class of ground for which the host gives none.
     pub surface_class: SurfaceClass,
-    /// From the axes of the host's image of normals to east, north, up, and what its numbers are multiplied by and
-    /// added to that.
+    /// Rotation from the axes of the host's image of normals to east, north, up; and the scale and the offset that
+    /// decode its numbers.
     pub normals: (DMat3, [f32; 2]),
 }
 
-/// Cells within which a terrain gives way to the world's ground.
+/// Width of the border zone of a terrain, in cells, in which it fades into the world's ground.
 const TERRAIN_RIM: f64 = 2.0;
-/// How far a surface may lie off a terrain, m, and of its cells' size.
+/// Largest distance of a surface from a terrain to which it still belongs: a constant part, m, and a share of the cell
+/// size.
 const NEAR_TERRAIN: [f64; 2] = [0.25, 0.25];
 
-/// How soaked ground of this wetness looks, and the share of it that a film covers.
+/// Returns the share of soaked pores at this wetness, and the share of the ground that a film covers.
 fn look_of(wetness: f64) -> (f64, f64) {
     (smoothstep(0.0, 0.3, wetness), smoothstep(0.3, 1.0, wetness))
 }
 
-/// Level of what fills no hollow, however rare; twin of the shader's.
+/// Level that is deeper than any hollow: no water lies in them. Twin of the shader's constant.
 const NO_LEVEL: f32 = 1000.0;
 
-/// Depth of the hollows, in units of their root mean square, above which the share `covered` of the ground lies.
+/// Returns the depth of the hollows, in units of their root mean square, above which the share `covered` of the ground
+/// lies.
 fn level_of(covered: f64) -> f32 {
     if covered <= 0.0 { NO_LEVEL } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
 }
 
-/// Cache of what follows from the sizes of drops alone, kept while the precipitation is unchanged: sums over all sizes
-/// would cost more than the rest of a frame's recording. The rings that a rate makes are as many at every altitude, and
-/// all speeds change by one factor.
+/// Cache of values that depend on the drop sizes alone, kept while the precipitation is unchanged: sums over all sizes
+/// would cost more than the rest of a frame's recording. Altitude does not matter to them: a rate makes equally many
+/// rings everywhere, and all fall speeds change by one factor.
 #[derive(Default)]
 pub(crate) struct DropsKept {
     rings: Option<(Falling, f64)>,
@@ -153,13 +157,14 @@ pub(crate) struct DropsKept {
 }
 
 impl DropsKept {
-    /// See [`ring_drops_per_m2_s`].
+    /// Returns the rate of rings; see [`ring_drops_per_m2_s`].
     fn rings_per_m2_s(&mut self, falling: &Falling) -> f64 {
         let kept = self.rings.filter(|(of, _)| of == falling);
         kept.unwrap_or_else(|| *self.rings.insert((*falling, ring_drops_per_m2_s(&DropSizes::new(falling, 1.0))))).1
     }
 
-    /// Speeds of the drops in the middle of each twelfth of the water that falls; without rain, those of steady rain.
+    /// Returns the fall speeds of the drops in the middle of each twelfth of the falling water; without rain, those of
+    /// steady rain of 3 mm/h.
     fn falls_m_s(&mut self, scene: &Scene) -> [[f32; 4]; 3] {
         let c = &scene.conditions;
         let mut falling = c.precipitation;
@@ -250,15 +255,15 @@ impl WetScene<'_> {
         }
     }
 
-    /// Returns the look of each class; the default's stands first, with a `level` of 0: nobody has marked that ground,
-    /// and it may be a hill.
+    /// Returns the look of each class. The first entry is the context's default with a `level` of 0: nobody has marked
+    /// this ground as level, and it may be a hill.
     fn looks(&self) -> [SurfaceLook; CLASSES] {
         let mut looks = SurfaceClass::ALL.map(SurfaceClass::surface_look);
         looks[0] = SurfaceLook { level: 0.0, ..self.surface_class.surface_look() };
         looks
     }
 
-    /// The rows of the block, the last node, and the size of a cell.
+    /// Returns the block's rows of the terrain, its last node, and the size of a cell.
     fn terrain_rows(&self) -> ([[f32; 4]; 3], [f64; 2], f64) {
         let Some(grid) = &self.terrain else { return ([[0.0; 4]; 3], [1.0; 2], 1.0) };
         let turned = grid.to_enu * self.scene.world_to_enu.transpose();
@@ -268,7 +273,7 @@ impl WetScene<'_> {
         ([row(0, grid.cell_m), row(1, grid.cell_m), row(2, 1.0)], last, grid.cell_m)
     }
 
-    /// Share of the light on level ground that enters a surface of water.
+    /// Returns the share of the light on level ground that enters a water surface.
     fn entering(&self, lamp_z: f64, lamp_lux: f64) -> f64 {
         let (lamp, sky) = (lamp_lux * lamp_z.max(0.0), self.scene.ground.sky_lux[1].max(1e-9));
         let kept = lamp * fresnel_water(lamp_z.clamp(0.0, 1.0)) + sky * WATER_OUTSIDE;

@@ -1,4 +1,4 @@
-//! Drawing of the water on the ground in a view: nothing while it is dry.
+//! Water on the ground in a view; nothing is drawn while the ground is dry.
 
 use glam::DMat3;
 
@@ -22,18 +22,18 @@ use crate::{
     },
 };
 
-/// Largest number of a half float, with room for what follows.
+/// Limit for light in units of the host's target: the largest half float, with a margin for later passes.
 const MOST_UNITS: f64 = 6e4;
 
-/// The ground of a view.
+/// Ground of a view.
 pub(crate) struct GroundView {
     uniform: UniformBlock,
-    /// Uniform block of the frame, where there is any water on surfaces.
+    /// Uniform block of the frame; `None` if no surface has water or snow.
     block: Option<GroundUniform>,
     has_terrain: bool,
     has_snow: bool,
     has_water: bool,
-    /// Water and surface of the host's terrain.
+    /// Texture views of the water and the surface of the host's terrain.
     views: [Option<wgpu::TextureView>; 2],
     window: TerrainWindow,
     drops: DropsKept,
@@ -65,8 +65,8 @@ impl DrawnEffect for GroundView {
             let scene = wet_scene(now, (frame, color), &seen, glaze, given.fog_depth)?;
             self.block = Some(scene.uniform(&mut self.drops));
         }
-        // The textures of the host's terrain, of its tiles about the camera or of its grid: up to date where any of it
-        // is drawn.
+        // Texture views of the host's terrain, of its tiles around the camera or of its grid. They are updated only if
+        // the surface pass is drawn.
         let is_drawn = self.block.is_some() && context.asked.has(Stages::SURFACE);
         self.views = match held.shown_tiles(context.world, now.here.surface.ice) {
             Some(shown) if is_drawn => self.window.views(context.device, now.eye, &shown),
@@ -102,15 +102,15 @@ impl DrawnEffect for GroundView {
     }
 }
 
-/// Share of level ground under clear ice: as the freezing rain of the moment keeps it.
+/// Returns the share of level ground under clear ice, as the freezing rain of the moment keeps it.
 fn glaze(now: &SceneMoment<'_>) -> f64 {
     let falling = &now.here.precipitation;
     let falls = (falling.rain_mm_h + falling.drizzle_mm_h) * falling.freezing > 0.0;
     if falls { now.here.surface.ice } else { 0.0 }
 }
 
-/// Rotation from the axes of the host's normals to east, north, up; and the scale and offset that decode its numbers:
-/// normalised formats hold (n + 1) / 2.
+/// Returns the rotation from the axes of the host's normals to east, north, up, and the scale and offset that decode
+/// the stored numbers: normalised formats hold (n + 1) / 2.
 fn normals(frame: &Frame<'_>, now: &SceneMoment<'_>) -> (DMat3, [f32; 2]) {
     let from_eye = now.scene.world_to_enu * frame.camera.rotation().transpose();
     let turned = if frame.flags.has(FrameFlags::NORMALS_IN_EYE_SPACE) { from_eye } else { now.scene.world_to_enu };

@@ -1,11 +1,11 @@
-//! Water on and in the ground as a state: a film, what the pores hold, what stands in hollows; millimetres over level,
-//! open ground.
+//! Water on and in level, open ground as a state: a film, water in the pores, and water in hollows, all in mm over the
+//! whole ground.
 //!
-//! A state moves on by steps of [`STEP_S`] that begin at whole multiples of it, so that it does not depend on how often
-//! it is asked. In a step rain wets (minus what freezes), pores fill, the film runs off into the hollows and away,
-//! hollows leak and overflow, and all of it dries by Penman's law. Each part is solved over the whole step, so that no
-//! step can overshoot. Not in it: freezing and thawing, dew. On the host's terrain (`terrain.rs`) each cell has film
-//! and pores by these laws, and what runs off stands in the hollows of the terrain.
+//! The state advances in steps of [`STEP_S`] that begin at whole multiples of it, so the result does not depend on how
+//! often it is asked for. In a step rain wets the ground (less the part that freezes), pores fill, the film runs off
+//! into the hollows and away, hollows leak and overflow, and everything dries by Penman's law. Each part is solved over
+//! the whole step, so no step can overshoot. Freezing, thawing and dew are not modelled. On the host's terrain
+//! (`terrain.rs`) each cell has film and pores by these laws, and run-off collects in the hollows of the terrain.
 
 use super::reference::{normal_density, normal_quantile, normal_share};
 use crate::{
@@ -16,26 +16,26 @@ use crate::{
 /// Length of a step, s.
 pub const STEP_S: f64 = 10.0;
 
-/// Capacity of the pores of the uppermost ground, mm (asphalt: initial losses of 0.3 to 0.6 mm).
+/// Capacity of the pores of the uppermost ground, mm (for asphalt, initial losses are 0.3 to 0.6 mm).
 pub(crate) const PORES_MM: f64 = 0.4;
-/// Time in which dry pores take up most of what lies on them, s.
+/// Time constant with which pores take up the water on them, s.
 const SOAK_S: f64 = 90.0;
-/// Run-off of a film, Nusselt (1916): g sin(slope) / (3 nu) film^3 a metre of width, on a slope of 2 % and 5 m length;
-/// mm^-2 s^-1.
+/// Run-off coefficient k of a film, d film / dt = -k film^3, for a slope of 2 % and 5 m length (Nusselt 1916: the flux
+/// per metre of width is g sin(slope) / (3 nu) film^3), mm^-2 s^-1.
 const RUN_OFF: f64 = 9.81 * 0.02 / (3.0 * 1.3e-6) / 5.0 * 1e-6;
-/// Share of the run-off that meets a hollow.
+/// Share of the run-off that flows into a hollow.
 const INTO_HOLLOWS: f64 = 0.4;
 /// Root mean square depth of hollows, mm.
 const HOLLOW_MM: f64 = 6.0;
-/// Share of the ground under water when the hollows overflow.
+/// Share of the ground under water at which the hollows overflow.
 const OVERFLOW_SHARE: f64 = 0.35;
-/// Loss of hollows to the ground below, mm/h.
+/// Leakage from hollows into the ground below, mm/h.
 const LEAK_MM_H: f64 = 0.4;
-/// Film at which 1 - 1/e of the ground is covered, mm: the depth of asphalt's texture.
+/// Film at which the share 1 - 1/e of the ground is covered, mm: the depth of asphalt's texture.
 const FILM_MM: f64 = 0.15;
-/// Less than this is nothing, mm.
+/// Amount of water below which it counts as none, mm.
 const LEAST_MM: f64 = 1e-4;
-/// Wetness of soaked ground without a film ([`SurfaceCover::wetness`]: damp).
+/// Wetness of soaked ground without a film: damp, in [`SurfaceCover::wetness`].
 const DAMP: f64 = 0.3;
 
 /// Water on level, open ground.
@@ -45,21 +45,21 @@ pub struct GroundWater {
     pub film_mm: f64,
     /// Water in the pores, mm, \[0, 0.4\].
     pub soaked_mm: f64,
-    /// Water in the hollows, mm over all of the ground.
+    /// Water in the hollows, mm, averaged over all of the ground.
     pub hollows_mm: f64,
 }
 
-/// Water that falls and evaporates during a step.
+/// Liquid that falls and water that evaporates during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forcing {
-    /// Liquid that falls, mm/h.
+    /// Rate at which liquid falls, mm/h.
     pub liquid_mm_h: f64,
-    /// Evaporation of open water, mm/h.
+    /// Evaporation rate of open water, mm/h.
     pub evaporation_mm_h: f64,
 }
 
 impl Forcing {
-    /// That of `c` with this sunlight on level ground, W/m^2.
+    /// Creates the forcing of the conditions `c` under this sunlight on level ground, W/m^2.
     pub fn of(c: &Conditions, sunlight_w_m2: f64) -> Self {
         let f = &c.precipitation;
         let melting = if c.air.temperature_c > 0.0 { f.snow_mm_h + f.ice_pellets_mm_h + f.hail_mm_h } else { 0.0 };
@@ -69,8 +69,8 @@ impl Forcing {
 }
 
 impl Forcing {
-    /// Returns the forcing where snow lies whose melting is simulated: the snow takes the rain that falls on it and
-    /// gives its run-off.
+    /// Returns the forcing under snow whose melting is simulated: the snow absorbs the rain that falls on it and
+    /// releases its own run-off.
     pub(crate) fn under_snow(self, c: &Conditions, snow: Meltwater) -> Self {
         let f = &c.precipitation;
         let rain_mm_h = (f.rain_mm_h + f.drizzle_mm_h) * (1.0 - f.freezing);
@@ -78,9 +78,9 @@ impl Forcing {
     }
 }
 
-/// Evaporation of open water, mm/h: Penman (1948) in SI units (Shuttleworth 1993, eq. 4.2.31), with Penman's net
-/// long-wave loss, sigma T^4 (0.56 - 0.092 sqrt(e)) (0.1 + 0.9 n/N), e in mmHg, n/N the share of clear sky, and an
-/// albedo of 0.08.
+/// Returns the evaporation of open water, mm/h: Penman (1948) in SI units (Shuttleworth 1993, eq. 4.2.31), with an
+/// albedo of 0.08 and Penman's net long-wave loss, sigma T^4 (0.56 - 0.092 sqrt(e)) (0.1 + 0.9 n/N). Here e is in mmHg,
+/// and n/N is the share of clear sky.
 pub fn evaporation_mm_h(c: &Conditions, sunlight_w_m2: f64) -> f64 {
     let (t, humidity) = (c.air.temperature_c, c.air.relative_humidity);
     let saturated = 0.1 * saturation_pressure_hpa(t);
@@ -90,7 +90,7 @@ pub fn evaporation_mm_h(c: &Conditions, sunlight_w_m2: f64) -> f64 {
     let kelvin2 = (t + 273.15) * (t + 273.15);
     let clear = 1.0 - c.cloud_cover();
     let long_wave = 5.67e-8 * kelvin2 * kelvin2 * (0.56 - 0.092 * vapour_mm_hg.sqrt()).max(0.0) * (0.1 + 0.9 * clear);
-    // MJ a square metre and day.
+    // MJ per square metre and day.
     let net = (0.92 * sunlight_w_m2 - long_wave) * 0.0864;
     let wind = 6.43 * (1.0 + 0.536 * c.wind.speed_at_height_m_s(2.0));
     let deficit = saturated * (1.0 - humidity).max(0.0);
@@ -98,7 +98,7 @@ pub fn evaporation_mm_h(c: &Conditions, sunlight_w_m2: f64) -> f64 {
     (mm_a_day / 24.0).max(0.0)
 }
 
-/// Water over all of the ground, mm, that stands in hollows of which the share `covered` is under water.
+/// Returns the water that stands in hollows, mm over all of the ground, if the share `covered` of it is under water.
 fn hollows_mm(covered: f64) -> f64 {
     if covered <= 0.0 {
         return 0.0;
@@ -107,7 +107,7 @@ fn hollows_mm(covered: f64) -> f64 {
     HOLLOW_MM * (normal_density(level) - level * covered)
 }
 
-/// The inverse of [`hollows_mm`], by bisection of the level.
+/// Returns the share of the ground under water: the inverse of [`hollows_mm`], by bisection of the level.
 fn covered_by(water_mm: f64) -> f64 {
     if water_mm <= 0.0 {
         return 0.0;
@@ -123,7 +123,7 @@ fn covered_by(water_mm: f64) -> f64 {
 }
 
 impl GroundWater {
-    /// The water of a ground that looks like this.
+    /// Creates the water of a ground with this cover.
     pub fn of_cover(cover: &SurfaceCover) -> Self {
         let film = ((cover.wetness - DAMP) / (1.0 - DAMP)).clamp(0.0, 0.95);
         Self {
@@ -142,42 +142,43 @@ impl GroundWater {
         }
     }
 
-    /// All of it, mm.
+    /// Returns the sum of all water, mm.
     pub fn total_mm(&self) -> f64 {
         self.film_mm + self.soaked_mm + self.hollows_mm
     }
 
-    /// How it looks: wetness and share of puddles.
+    /// Returns wetness and share of puddles.
     pub fn cover(&self) -> (f64, f64) {
         (wetness_of(self.film_mm, self.soaked_mm), covered_by(self.hollows_mm))
     }
 
-    /// The state `seconds` later under this forcing.
+    /// Returns the state `seconds` later under this forcing.
     pub fn after(&self, forcing: &Forcing, seconds: f64) -> Self {
         let step = Step::new(forcing, seconds);
         let top = step.surface(self.film_mm, self.soaked_mm, forcing.liquid_mm_h * seconds / 3600.0);
         let hollows_mm = (self.hollows_mm + INTO_HOLLOWS * top.ran_off_mm).min(hollows_mm(OVERFLOW_SHARE));
         let left = (hollows_mm - (step.evaporated_mm + step.leaked_mm) * covered_by(hollows_mm)).max(0.0);
-        // The last of a puddle is a film in a crack.
+        // A remainder below LEAST_MM counts as none: it is a film in a crack.
         Self { film_mm: top.film_mm, soaked_mm: top.soaked_mm, hollows_mm: if left < LEAST_MM { 0.0 } else { left } }
     }
 }
 
-/// Changes of a step that are the same for all places.
+/// Factors of a step that are the same for all places.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Step {
-    /// Loss of open water to the air, and of standing water to the ground below, mm.
+    /// Evaporation of open water, mm.
     pub evaporated_mm: f64,
+    /// Leakage of standing water into the ground below, mm.
     pub leaked_mm: f64,
-    /// Share of their room that pores take up.
+    /// Share of their free capacity that pores fill.
     soaking: f64,
-    /// 2 k t of the run-off.
+    /// 2 k t, with the run-off coefficient k ([`RUN_OFF`]) and the length t of the step.
     run_off: f64,
     /// Share of their water that pores keep where there is no film.
     drying: f64,
 }
 
-/// Film and pores after a step, and where the rest went.
+/// Film and pores after a step, and the water that left them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SurfaceWater {
     pub film_mm: f64,
@@ -202,17 +203,17 @@ impl Step {
         film_mm.min((PORES_MM - soaked_mm) * self.soaking)
     }
 
-    /// Open ground on which `rain_mm` falls.
+    /// Steps open ground on which `rain_mm` falls.
     pub fn surface(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> SurfaceWater {
-        // Half of the rain before the run-off, half after it: right to second order.
+        // Half of the rain falls before the run-off and half after it: second-order accurate.
         let half = 0.5 * rain_mm;
         let up = self.soaked_up(film_mm + half, soaked_mm);
         let (film, soaked) = (film_mm + half - up, soaked_mm + up);
-        // d film / dt = - k film^3, solved.
+        // Exact solution of d film / dt = -k film^3.
         let left = film / (1.0 + self.run_off * film * film).sqrt();
         let wet = left + half;
         let from_film = wet.min(self.evaporated_mm);
-        // Pores give up water ever more slowly, at a rate that falls with what is left.
+        // Pores lose water at a rate proportional to what is left.
         let kept = match self.evaporated_mm - from_film {
             0.0 => soaked,
             more if more == self.evaporated_mm => soaked * self.drying,
@@ -227,20 +228,20 @@ impl Step {
         }
     }
 
-    /// Ground under standing water, which takes all that its pores do not.
+    /// Steps ground under standing water, which takes all water that the pores do not.
     pub fn below_water(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> SurfaceWater {
         let up = self.soaked_up(film_mm + rain_mm, soaked_mm);
         SurfaceWater { film_mm: 0.0, soaked_mm: soaked_mm + up, ran_off_mm: film_mm + rain_mm - up, evaporated_mm: 0.0 }
     }
 }
 
-/// How film and pores look: wetness, as [`SurfaceCover::wetness`].
+/// Returns the wetness of film and pores, as [`SurfaceCover::wetness`].
 pub(crate) fn wetness_of(film_mm: f64, soaked_mm: f64) -> f64 {
     DAMP * soaked_mm / PORES_MM + (1.0 - DAMP) * (1.0 - libm::exp(-film_mm / FILM_MM))
 }
 
-/// Depth of water, mm, at a point of a ground under `water` whose hollow there is `hollow` deep, in units of their root
-/// mean square: the film, or the water that stands in it.
+/// Returns the depth of water, mm, at a point of a ground under `water`: the film plus the water that stands there.
+/// `hollow` is the depth of the pattern at the point, in units of its root mean square.
 pub fn depth_at_mm(water: &GroundWater, hollow: f64) -> f64 {
     let covered = covered_by(water.hollows_mm);
     if covered <= 0.0 {
@@ -264,9 +265,9 @@ mod tests {
 
     #[test]
     fn open_water_evaporates_as_penman_says() {
-        // By hand, 20 C, humidity 0.5, 3 m/s at 2 m, 1013.25 hPa, clear, 600 W/m^2: es 2.336 kPa (WMO), slope 0.1445,
-        // psychrometric 0.0674 kPa/K, e 8.76 mmHg, long wave 5.67e-8 293.15^4 (0.56 - 0.2723) = 120.5 W/m^2, net 37.28
-        // MJ/d, wind 16.77: (5.387 + 1.320) / (2.45 0.2119) = 12.92 mm/d.
+        // By hand, for 20 C, humidity 0.5, 3 m/s at 2 m, 1013.25 hPa, clear sky, 600 W/m^2: es 2.336 kPa (WMO), slope
+        // 0.1445, psychrometric constant 0.0674 kPa/K, e 8.76 mmHg, long wave 5.67e-8 293.15^4 (0.56 - 0.2723) = 120.5
+        // W/m^2, net 37.28 MJ/d, wind 16.77: (5.387 + 1.320) / (2.45 0.2119) = 12.92 mm/d.
         let c = conditions(20.0, 0.5, 3.0 * (10.0f64 / 0.03).ln() / (2.0f64 / 0.03).ln());
         let got = 24.0 * evaporation_mm_h(&c, 600.0);
         assert!((got / 12.92 - 1.0).abs() < 0.02, "{got}");
@@ -296,7 +297,7 @@ mod tests {
             assert!(water.total_mm() <= before.total_mm() + gained + 1e-12, "step {i}");
             assert!(water.film_mm >= 0.0 && water.soaked_mm >= 0.0 && water.hollows_mm >= 0.0);
         }
-        // 6 mm/h at rest: what falls runs off, k F^3 = R.
+        // Steady state at 6 mm/h: run-off equals rain, k F^3 = R.
         let film = (6.0 / 3600.0 / RUN_OFF).cbrt();
         assert!((water.film_mm / film - 1.0).abs() < 0.02, "{} {film}", water.film_mm);
         let (wetness, puddles) = water.cover();

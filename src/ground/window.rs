@@ -1,10 +1,10 @@
-//! The part of a terrain of tiles about a place as textures: about a camera for the surface pass, or about a place that
-//! the host names for its own shaders. What a grid has in [`super::texture`].
+//! Textures of the part of a tiled terrain around a place: a camera, for the surface pass, or a place that the host
+//! names for its own shaders. [`super::texture`] does the same for a grid.
 //!
-//! A window of 512 x 512 cells lies about the camera, moved by 64 cells at a time. A texel is a cell, so a window of
-//! cells of 1 m reaches 224 to 288 m from the camera; beyond it lies the world's own ground. Only what has changed is
-//! filled and uploaded: all of it where the window moves or water is other than before, else the rectangles of the
-//! ground that changed.
+//! A window has 512 x 512 cells around the place and moves in steps of 64 cells. A texel is a cell, so with cells of 1
+//! m the window reaches 224 to 288 m from the camera; beyond it lies the world's own ground. Only what has changed is
+//! filled and uploaded: everything if the window moves, all water if the water has changed, else the rectangles in
+//! which the ground changed.
 
 use std::collections::VecDeque;
 
@@ -22,25 +22,25 @@ use crate::{
     terrain::{CellRect, Terrain},
 };
 
-/// Cells along a side of a window, and by how many it moves.
+/// Cells along a side of a window, and the step by which it moves.
 const WINDOW: i32 = 512;
 const STEP: i32 = 64;
-/// In the place of a hole's height, m: no surface lies there.
+/// Height stored for a hole, m, where no surface can lie.
 const NOWHERE_M: f32 = 1e6;
-/// Depth of water where none stands, mm.
+/// Standing water of a cell where none stands, mm.
 const BARE_MM: f64 = -50.0;
-/// Changes that are remembered: a window that has seen none of them is filled anew.
+/// Number of changes that are remembered. A window that has missed older ones is filled completely.
 const REMEMBERED: usize = 256;
 
-/// The nodes of a terrain that a frame draws.
+/// Nodes of a terrain that a frame draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DrawnTerrain {
-    /// The first node at the height that heights count from, in the host's world.
+    /// Position of the first node in the host's world, at the level from which heights count.
     pub origin: DVec3,
-    /// Turns the host's axes at the origin of the terrain.
+    /// Rotation from the host's axes to east, north, up at the origin of the terrain.
     pub to_enu: DMat3,
     pub cell_m: f64,
-    /// East and north.
+    /// Numbers of nodes east and north.
     pub nodes: [u32; 2],
 }
 
@@ -49,7 +49,7 @@ impl DrawnTerrain {
         Self { origin: grid.origin, to_enu, cell_m: grid.cell_m, nodes: grid.nodes }
     }
 
-    /// The window about a camera.
+    /// Creates the window around a camera; `None` if no tile reaches into it.
     pub fn window(terrain: &Terrain, eye: DVec3) -> Option<Self> {
         let low = window(terrain, eye)?.low;
         let plan = DVec3::new(f64::from(low[0]), f64::from(low[1]), 0.0) * terrain.desc.cell_m;
@@ -58,7 +58,7 @@ impl DrawnTerrain {
     }
 }
 
-/// The cells of the window about a camera, if any tile reaches into it.
+/// Returns the cells of the window around a camera, if any tile reaches into it.
 fn window(terrain: &Terrain, eye: DVec3) -> Option<CellRect> {
     let (cells, _) = terrain.cells_at(eye);
     if !cells.is_finite() || cells.abs().max_element() > f64::from(1 << 29) {
@@ -69,7 +69,7 @@ fn window(terrain: &Terrain, eye: DVec3) -> Option<CellRect> {
     terrain.keys_within(rect).any(|key| terrain.slot(key).is_some()).then_some(rect)
 }
 
-/// Changes of the ground that windows may not have seen yet.
+/// Recent changes of the ground, which windows may not have taken over yet.
 #[derive(Default)]
 pub(super) struct RecentChanges(VecDeque<Changed>);
 
@@ -81,27 +81,28 @@ impl RecentChanges {
         self.0.push_back(change);
     }
 
-    /// Returns the rectangles changed since a revision; none if that is forgotten.
+    /// Returns the rectangles that changed since a revision; `None` if the changes since then are no longer remembered.
     fn since(&self, revision: u64, now: u64) -> Option<impl Iterator<Item = CellRect> + '_> {
         let known = revision == now || self.0.front().is_some_and(|c| c.revision <= revision + 1);
         known.then(|| self.0.iter().filter(move |c| c.revision > revision).map(|c| c.rect))
     }
 }
 
-/// Contents of a window.
+/// Data from which a window is filled.
 #[derive(Clone, Copy)]
 pub(super) struct Shown<'a> {
     pub terrain: &'a Terrain,
     pub water: &'a TiledWater,
-    /// Water of level ground, for tiles without water of their own, and the share of the ground under ice.
+    /// Water of level ground, for tiles without water of their own.
     pub even: GroundWater,
+    /// Share of the ground under ice.
     pub ice: f32,
     pub recent: &'a RecentChanges,
     /// Snow on the tiles, where it is simulated.
     pub snow: Option<&'a LyingSnow>,
 }
 
-/// Identity of what the textures hold.
+/// Identity of the contents of the textures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct WindowContents {
     rect: CellRect,
@@ -114,7 +115,7 @@ struct WindowContents {
     snow: u64,
 }
 
-/// Part of its textures that a window fills.
+/// Part of its textures that a window fills. `Ground` is surface and water together.
 #[derive(Clone, Copy)]
 enum WindowPart {
     Ground,
@@ -123,31 +124,31 @@ enum WindowPart {
     Snow,
 }
 
-/// The textures of a window: water, and the surface with its snow; for a host water and snow.
+/// Textures of a window: for drawing, the water, and the surface with its snow; for a host, water and snow.
 #[derive(Default)]
 pub(crate) struct TerrainWindow {
     is_for_host: bool,
-    /// How often anything was written.
+    /// Number of writes to the textures.
     pub(super) writes: u64,
     textures: Option<([wgpu::Texture; 2], [wgpu::TextureView; 2])>,
     filled: Option<WindowContents>,
     water: Vec<[u16; 4]>,
-    /// Texels of the surface, or of the snow, which lies in as many rows below it.
+    /// Texels of the surface, or of the snow, which is stored in the rows below the surface.
     surface: Vec<[f32; 4]>,
 }
 
 impl TerrainWindow {
-    /// For a host's own shaders.
+    /// Creates a window for the host's own shaders.
     pub fn for_host() -> Self {
         Self { is_for_host: true, ..Self::default() }
     }
 
-    /// Water and snow, for a host.
+    /// Returns the textures of water and snow, for a host.
     pub(super) fn textures(&self) -> Option<&[wgpu::Texture; 2]> {
         self.textures.as_ref().map(|(textures, _)| textures)
     }
 
-    /// Water and surface about a camera, up to date.
+    /// Returns the up-to-date views of water and surface around a camera.
     pub(super) fn views(&mut self, device: &Device, eye: DVec3, shown: &Shown<'_>) -> [Option<wgpu::TextureView>; 2] {
         let Some(rect) = window(shown.terrain, eye) else { return [None, None] };
         let terrain = shown.terrain;
@@ -173,7 +174,7 @@ impl TerrainWindow {
         if is_wet_anew {
             self.fill(device, shown, (rect, rect), WindowPart::Water);
         }
-        // A new texture has none.
+        // A new texture has no snow.
         if before.map_or(0, |f| f.snow) != now.snow {
             self.fill(device, shown, (rect, rect), WindowPart::Snow);
         }
@@ -283,8 +284,8 @@ impl TerrainWindow {
     }
 }
 
-/// How far the highest water beside a cell lies below it, mm, negative; so that a shore between two cells lies where it
-/// should.
+/// Returns the highest water level beside a cell minus the cell's height, mm (negative). With it the shore between two
+/// cells lies at the right place.
 fn shore(shown: &Shown<'_>, cell: u32) -> f64 {
     if !shown.water.has_lakes_near(shown.terrain, cell) {
         return BARE_MM;
@@ -295,7 +296,7 @@ fn shore(shown: &Shown<'_>, cell: u32) -> f64 {
     beside.fold(BARE_MM, |highest, level| highest.max(level - own)).min(0.0)
 }
 
-/// Rise over run to the east and the north: over both neighbours, where one is no ground over the other.
+/// Returns rise over run to the east and the north: a central difference, one-sided where one neighbour is no ground.
 fn slope(terrain: &Terrain, [x, y]: [i32; 2], own: f32) -> [f32; 2] {
     let height = |at: [i32; 2]| terrain.cell_at(at).map(|cell| terrain.height(cell));
     [[1, 0], [0, 1]].map(|[dx, dy]| {
@@ -309,7 +310,7 @@ fn half4(values: [f32; 4]) -> [u16; 4] {
     values.map(|v| f16::from_f32(v.clamp(f16::MIN.to_f32(), f16::MAX.to_f32())).to_bits())
 }
 
-/// Textures of a window, still empty, and their views.
+/// Creates the empty textures of a window, and their views.
 fn made(device: &Device, is_for_host: bool) -> ([wgpu::Texture; 2], [wgpu::TextureView; 2]) {
     use wgpu::{TextureFormat as F, TextureUsages as U};
     let texture = |label, format, height| {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-/// How particles scatter.
+/// Phase function of particles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Phase {
     /// Water droplets of this mean diameter, micrometres, \[5, 50\] (Jendersie and d'Eon 2023); fog has 10 to 25.
@@ -18,18 +18,18 @@ pub enum Phase {
         /// Mean cosine of the scattering angle.
         g: f64,
     },
-    /// Part of the way from droplets to Henyey and Greenstein's function: a change of weather passes through it.
+    /// Blend between droplets and Henyey and Greenstein's function, for changes of weather from one to the other.
     Between {
         /// Mean diameter of the droplets, micrometres, \[5, 50\].
         diameter_um: f64,
-        /// Asymmetry of the other, \[-0.95, 0.95\].
+        /// Asymmetry of the Henyey-Greenstein function, \[-0.95, 0.95\].
         g: f64,
-        /// 0 droplets, 1 the other.
+        /// Share of the Henyey-Greenstein function: 0 is droplets alone.
         share: f64,
     },
 }
 
-/// A blend of Henyey-Greenstein and Draine (2003) lobes: the form all phase functions here have.
+/// A blend of a Henyey-Greenstein and a Draine (2003) lobe: the form of all phase functions here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseLobes {
     /// Asymmetry of the Henyey-Greenstein lobe.
@@ -38,13 +38,13 @@ pub struct PhaseLobes {
     pub g_draine: f64,
     /// Draine's alpha.
     pub alpha: f64,
-    /// Weight of the Draine lobe; the other has the rest.
+    /// Weight of the Draine lobe; the Henyey-Greenstein lobe has the rest.
     pub w_draine: f64,
 }
 
 impl PhaseLobes {
-    /// Lobes of a phase function. Droplets: Jendersie and d'Eon, "An Approximate Mie Scattering Function for Fog and
-    /// Cloud Rendering", 2023, equations 4 to 7.
+    /// Returns the lobes of a phase function. Droplets: Jendersie and d'Eon, "An Approximate Mie Scattering Function
+    /// for Fog and Cloud Rendering", 2023, equations 4 to 7.
     pub fn new(phase: &Phase) -> Self {
         match *phase {
             Phase::Droplets { diameter_um: d } => Self {
@@ -65,8 +65,8 @@ impl PhaseLobes {
         }
     }
 
-    /// First two Legendre moments (mean cosine, and mean of P2) of the blend, in closed form: the Henyey-Greenstein
-    /// lobe has g^l, and cos^2 P_l of Draine's lobe is a sum of neighbouring P.
+    /// Returns the first two Legendre moments of the blend (mean cosine, and mean of P2) in closed form: the
+    /// Henyey-Greenstein lobe has g^l, and cos^2 P_l of Draine's lobe is a sum of neighbouring Legendre polynomials.
     pub fn moments(&self) -> [f64; 2] {
         let (g, a) = (self.g_draine, self.alpha);
         let norm = 1.0 + a * (1.0 + 2.0 * g * g) / 3.0;
@@ -77,13 +77,13 @@ impl PhaseLobes {
     }
 }
 
-/// Value per steradian at the angle whose 1 - cos is `versine`, of light scattered `order` >= 1 times in a row (1: the
-/// phase function itself). From `versine`, not the cosine, because near the forward peak of droplets (1 - g = 0.007)
-/// the cosine has no digits left in f32.
+/// Returns the phase function, 1/sr, of light that was scattered `order` >= 1 times in a row (1: the phase function
+/// itself), at the angle with 1 - cos equal to `versine`. It takes `versine` rather than the cosine because near the
+/// forward peak of droplets (1 - g = 0.007) the cosine has too few digits in f32.
 ///
-/// Light that meets a Henyey-Greenstein lobe n times is spread by a lobe of g^n. Of the blend, the share (1 - w)^n has
-/// met only that lobe. The rest has met Draine's about n w times and becomes more even: alpha falls with the square of
-/// that number.
+/// Light that is scattered n times by a Henyey-Greenstein lobe is spread by a lobe of g^n. Of the blend, the share (1 -
+/// w)^n was scattered by that lobe only. The rest was scattered by Draine's lobe about n w times and becomes more even:
+/// alpha falls with the square of that number.
 pub fn lobes_phase(lobes: &PhaseLobes, order: f64, versine: f64) -> f64 {
     let lobe = |g: f64| {
         let d = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;
@@ -103,7 +103,7 @@ pub fn lobes_phase(lobes: &PhaseLobes, order: f64, versine: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Integral over the sphere of p, p cos and p P2, substituting so that the forward peak is resolved.
+    /// Returns the integrals over the sphere of p, p cos and p P2, with a substitution that resolves the forward peak.
     fn integrals(lobes: &PhaseLobes) -> [f64; 3] {
         let n = 20_000;
         let (lo, hi) = ((1e-9f64).ln(), 2f64.ln());

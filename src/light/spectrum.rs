@@ -1,14 +1,14 @@
-//! From wavelengths to colours: black bodies, the eye of the standard observer, and linear Rec. 709.
+//! From wavelengths to colours: black bodies, the CIE 1931 standard observer, and linear Rec. 709.
 
-/// Planck's law per wavelength, up to a factor.
+/// Returns Planck's law per wavelength, up to a factor.
 pub fn black_body(wavelength_nm: f64, temperature_k: f64) -> f64 {
     let um = wavelength_nm * 1e-3;
     // Second radiation constant, 14387.77 um K.
     um.powi(-5) / (14_387.77 / (um * temperature_k)).exp_m1()
 }
 
-/// Colour matching functions of the CIE 1931 standard observer (2 degrees), by the sums of lobes of Wyman, Sloan and
-/// Shirley 2013 (table 1; within 1 % of the tabulated ones' integrals). Wavelength in nm.
+/// Returns the colour matching functions of the CIE 1931 standard observer (2 degrees), by the sums of lobes of Wyman,
+/// Sloan and Shirley 2013 (table 1; their integrals are within 1 % of the tabulated functions'). Wavelength in nm.
 pub fn cie_1931(wavelength_nm: f64) -> [f64; 3] {
     let lobe = |mean: f64, below: f64, above: f64| {
         let t = (wavelength_nm - mean) / if wavelength_nm < mean { below } else { above };
@@ -24,7 +24,7 @@ pub fn cie_1931(wavelength_nm: f64) -> [f64; 3] {
 /// Luminous efficacy of radiation at 555 nm, lm/W (SI definition of the candela).
 pub const LUMINOUS_EFFICACY_LM_PER_W: f64 = 683.002;
 
-/// Linear Rec. 709 from CIE XYZ (ITU-R BT.709 primaries, D65).
+/// Matrix from CIE XYZ to linear Rec. 709 (ITU-R BT.709 primaries, D65).
 #[rustfmt::skip]
 pub(crate) const REC709_FROM_XYZ: [[f64; 3]; 3] = [
     [ 3.240_969_942, -1.537_383_178, -0.498_610_760],
@@ -32,12 +32,12 @@ pub(crate) const REC709_FROM_XYZ: [[f64; 3]; 3] = [
     [ 0.055_630_080, -0.203_976_959,  1.056_971_514],
 ];
 
-/// Colour per spectral radiance at one wavelength: cd/m^2 per W m^-2 sr^-1.
+/// Returns the colour of a unit spectral radiance at one wavelength: cd/m^2 per W m^-2 sr^-1.
 pub fn rec709_of_wavelength(wavelength_nm: f64) -> [f64; 3] {
     apply(&REC709_FROM_XYZ, &cie_1931(wavelength_nm)).map(|v| v * LUMINOUS_EFFICACY_LM_PER_W)
 }
 
-/// Matrix times column.
+/// Multiplies a matrix by a column.
 pub fn apply(matrix: &[[f64; 3]; 3], column: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| (0..3).map(|j| matrix[i][j] * column[j]).sum())
 }
@@ -49,7 +49,8 @@ mod tests {
     #[test]
     fn the_eye_has_its_known_sums_and_d65_is_white() {
         let sum = |f: &dyn Fn(f64) -> f64| (360..=830).map(|nm| f(f64::from(nm))).sum::<f64>();
-        // CIE 1931: the three functions' sums over 1 nm are 106.87 (equal-energy white); the fit keeps them within 1 %.
+        // CIE 1931: the sum of each of the three functions over 1 nm is 106.87 (equal-energy white); the fit is within
+        // 1 %.
         for k in 0..3 {
             let total = sum(&|nm| cie_1931(nm)[k]);
             assert!((total / 106.87 - 1.0).abs() < 0.01, "{k}: {total}");

@@ -1,11 +1,11 @@
-//! From luminance to the display, in f64: the truth of `shaders/common/tone.wgsl`, and the exposure that all channels
-//! of a simulator share.
+//! From luminance to the display, in f64: the reference of `shaders/common/tone.wgsl`, and the exposure that all
+//! channels of a simulator share.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, check_range};
 
-/// How luminance becomes display values.
+/// Curve from exposed luminance to display values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum ToneCurve {
     /// Exposure and clamp.
@@ -26,7 +26,7 @@ impl ToneCurve {
         }
     }
 
-    /// The curve applied to an exposed value.
+    /// Applies the curve to an exposed value.
     pub fn apply(self, x: f64) -> f64 {
         let hable = |x: f64| (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 1.0 / 15.0;
         match self {
@@ -37,11 +37,11 @@ impl ToneCurve {
     }
 }
 
-/// How bright the picture is taken: one value for all channels of a simulator, never measured per view.
+/// Exposure of a picture: one value for all channels of a simulator, never measured per view.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Exposure {
-    /// From the light of sun, moon and sky at the place, by the closed-form queries: equal on every channel and
-    /// machine. `compensation_ev` brightens (+) or darkens (-), in stops, [-20, 20].
+    /// Computed from the light of sun, moon and sky at the place, by the closed-form queries: equal on every channel
+    /// and machine. `compensation_ev` brightens (+) or darkens (-), in stops, [-20, 20].
     Auto {
         /// Stops added.
         compensation_ev: f64,
@@ -59,10 +59,10 @@ impl Default for Exposure {
 }
 
 impl Exposure {
-    /// Refuses what is out of range, by name.
+    /// Checks that the value is in range.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         match *self {
             Self::Auto { compensation_ev } => {
@@ -74,7 +74,7 @@ impl Exposure {
         }
     }
 
-    /// Display units per cd/m^2, given the luminance that an eye would adapt to, cd/m^2.
+    /// Returns the exposure, display units per cd/m^2, for the luminance that an eye would adapt to, cd/m^2.
     pub fn factor(&self, adaptation_cd_m2: f64) -> f64 {
         match *self {
             Self::Auto { compensation_ev } => auto_factor(adaptation_cd_m2) * compensation_ev.exp2(),
@@ -84,26 +84,26 @@ impl Exposure {
     }
 }
 
-/// Saturation-based sensitivity of ISO 12232 with the usual lens: L_max = 1.2 * 2^EV.
+/// Returns the exposure by the saturation-based sensitivity of ISO 12232 with the usual lens: L_max = 1.2 * 2^EV.
 fn ev100_factor(ev: f64) -> f64 {
     1.0 / (1.2 * ev.exp2())
 }
 
-/// Maps the luminance adapted to to a key that falls with adaptation (Krawczyk, Myszkowski &
-/// Seidel 2005, eq. 11), so that a night looks like one and yet is not black.
+/// Returns the exposure that shows the adaptation luminance at a key. The key falls with that luminance (Krawczyk,
+/// Myszkowski & Seidel 2005, eq. 11), so that a night looks dark and yet is not black.
 fn auto_factor(adaptation_cd_m2: f64) -> f64 {
     let luminance = adaptation_cd_m2.max(1e-5);
     let key = 1.03 - 2.0 / (2.0 + (luminance + 1.0).log10());
     key.max(0.03) / luminance
 }
 
-/// IEC 61966-2-1 encoding of a linear value.
+/// Encodes a linear value by IEC 61966-2-1 (sRGB).
 pub fn srgb_encode(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// IEC 61966-2-1 decoding.
+/// Decodes a value by IEC 61966-2-1 (sRGB).
 pub fn srgb_decode(v: f64) -> f64 {
     let v = v.clamp(0.0, 1.0);
     if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }

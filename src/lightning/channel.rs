@@ -1,45 +1,45 @@
-//! The way of a flash, and what of it a place sees and hears.
+//! Path of a flash, and the part of it that a place sees and hears.
 //!
 //! # Model
-//! A channel wanders about a straight way by halving: the middle of each stretch is moved aside by chance, by a share
-//! of the stretch's length, and less in the first two halvings. Of all shares that give a dimension near what
-//! photographs show (1.1 to 1.4; Tsonis 1991), the one taken gives 1.15 (tested). From the way of a ground flash 8 to
-//! 17 branches leave, each by 20 to 50 degrees from the way and 0.15 to 0.6 of what remains of it long; a third of them
-//! branch again. They point down, and none reaches the ground.
+//! A channel wanders around a straight line by midpoint displacement: the middle of each interval is moved sideways at
+//! random, by a share of the interval's length, and less in the first two halvings. Photographs show a fractal
+//! dimension of 1.1 to 1.4 (Tsonis 1991); the chosen share gives 1.15 (tested). From the path of a ground flash 8 to 17
+//! branches leave, each at 20 to 50 degrees to the path, with 0.15 to 0.6 of the remaining path's length. A third of
+//! them branch again. They point down, and none reaches the ground.
 //!
-//! What stands high draws a ground flash: from a leader of peak current I the last leap is 10 I^0.65 m (Love 1973), and
-//! the leader comes down until it is so near to the ground or to something tall; that which it meets first is struck
-//! (Armstrong and Whitehead 1968, the electrogeometric model).
+//! Tall objects attract a ground flash. The last leap of a leader with peak current I is 10 I^0.65 m long (Love 1973).
+//! The leader comes down until it is within that distance of the ground or of something tall, and strikes what it comes
+//! near first (Armstrong and Whitehead 1968, the electrogeometric model).
 
 use glam::{DVec2, DVec3};
 
 use super::flash::{Flash, FlashKind};
 use crate::chance::Chance;
 
-/// Sideways move of a stretch's middle over the stretch's length, one spread.
+/// Standard deviation of the sideways move of an interval's middle, over the interval's length.
 const WANDERING: f64 = 0.25;
-/// Sideways move at the first halvings, over the stretch's length, one spread: a channel wanders less in the large than
-/// in the small, for the field that draws it down is even there.
+/// `WANDERING` for the first `FIRST` halvings. A channel wanders less on a large scale than on a small one, because the
+/// field that draws it down is even on a large scale.
 const WANDERING_FIRST: f64 = 0.12;
 const FIRST: u32 = 2;
-/// Halvings of a channel: 2^9 stretches of some 10 m.
+/// Number of halvings of a channel: 2^9 intervals of some 10 m.
 const HALVINGS: u32 = 9;
-/// Points of a channel.
+/// Number of points of a channel.
 pub const POINTS: usize = (1 << HALVINGS) + 1;
 
-/// Something tall.
+/// A tall object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mast {
-    /// Its tip, m east, north and up.
+    /// Tip, m east, north and up.
     pub tip_m: DVec3,
 }
 
-/// Speed of sound in air, m/s (331.3 + 0.606 T).
+/// Returns the speed of sound in air, m/s (331.3 + 0.606 T).
 pub fn sound_m_s(temperature_c: f64) -> f64 {
     331.3 + 0.606 * temperature_c
 }
 
-/// Length of a leader's last leap, m, by the peak current that follows (Love 1973).
+/// Returns the length of a leader's last leap, m, for the peak current that follows (Love 1973).
 pub fn leap_m(peak_ka: f64) -> f64 {
     10.0 * libm::pow(peak_ka.max(0.0), 0.65)
 }
@@ -47,28 +47,28 @@ pub fn leap_m(peak_ka: f64) -> f64 {
 /// A side channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
-    /// From the channel that it leaves on.
+    /// Points from the channel that it leaves to its end.
     pub points_m: Vec<DVec3>,
-    /// How far down the main channel it left, 0 at the upper end to 1.
+    /// Position on the main channel where it leaves, 0 at the upper end to 1.
     pub leaves_at: f64,
-    /// Light of its beginning over that of the main channel there.
+    /// Ratio of the light at its start to that of the main channel there.
     pub strength: f64,
 }
 
-/// The way of a flash.
+/// Path of a flash.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// From its upper end on, m east, north and up.
+    /// Points from its upper end on, m east, north and up.
     pub points_m: Vec<DVec3>,
     /// Branches that leave it.
     pub branches: Vec<Branch>,
 }
 
-/// Where a ground flash ends: the tip of the mast that it meets, or the ground at `ground_m` below its start.
+/// Returns the end of a ground flash: the tip of the mast that it strikes, or the ground at `ground_m` below its start.
 pub fn struck(flash: &Flash, masts: &[Mast], ground_m: f64) -> DVec3 {
     let leap = leap_m(flash.strokes()[0].peak_ka);
     let below = flash.place_m;
-    // The height at which the leader is a leap away from the ground, and from each mast.
+    // Height at which the leader is a leap away from a mast's tip. The ground's is `ground_m` + leap.
     let met = |mast: &Mast| {
         let aside = (mast.tip_m.truncate() - below).length();
         (aside <= leap).then(|| mast.tip_m.z + (leap * leap - aside * aside).sqrt())
@@ -81,8 +81,8 @@ pub fn struck(flash: &Flash, masts: &[Mast], ground_m: f64) -> DVec3 {
 }
 
 impl Channel {
-    /// Creates the channel of a flash that starts `top_m` high, and ends at `end_m` (ground flashes) or some kilometres
-    /// away in the cloud.
+    /// Creates the channel of a flash that starts at the height `top_m`. A ground flash ends at `end_m`, a flash in the
+    /// cloud some kilometres away.
     pub fn new(flash: &Flash, top_m: f64, end_m: DVec3) -> Self {
         let mut chance = Chance::new(flash.id, 0xc4a1);
         let start = flash.place_m.extend(top_m) + aside(&mut chance, DVec3::Z) * 0.1 * (top_m - end_m.z);
@@ -103,13 +103,13 @@ impl Channel {
         Self { points_m, branches }
     }
 
-    /// All ways: the main one and those that leave it.
+    /// Returns the points of all its paths: the main one and the branches.
     pub fn ways(&self) -> impl Iterator<Item = &[DVec3]> {
         std::iter::once(self.points_m.as_slice()).chain(self.branches.iter().map(|b| b.points_m.as_slice()))
     }
 
-    /// Ends every way where it first meets something: `met` says at which share of a stretch that is. Whether the main
-    /// one was cut.
+    /// Ends every path where it first meets an object. `met` returns where on an interval that is, 0 to 1. Returns
+    /// whether the main path was cut.
     pub fn cut(&mut self, met: impl Fn(DVec3, DVec3) -> Option<f64>) -> bool {
         let cut = |points: &mut Vec<DVec3>| {
             let hit = points.windows(2).enumerate().find_map(|(i, p)| Some((i, p[0].lerp(p[1], met(p[0], p[1])?))));
@@ -121,7 +121,7 @@ impl Channel {
         };
         let last = self.points_m.len() - 1;
         let was_cut = cut(&mut self.points_m);
-        // What left the main way below where it ends now leaves nothing.
+        // Branches that leave below the new end of the main path are removed.
         let left = (self.points_m.len() - 1) as f64 / last as f64;
         if was_cut {
             self.branches.retain(|b| b.leaves_at < left);
@@ -132,17 +132,17 @@ impl Channel {
         was_cut
     }
 
-    /// Its lower end, or its far one in the cloud.
+    /// Returns its lower end, or its far end in the cloud.
     pub fn end_m(&self) -> DVec3 {
         self.points_m[self.points_m.len() - 1]
     }
 
-    /// Length of the main way, m.
+    /// Returns the length of the main path, m.
     pub fn length_m(&self) -> f64 {
         self.points_m.windows(2).map(|p| (p[1] - p[0]).length()).sum()
     }
 
-    /// Distance of its point nearest to a place, m.
+    /// Returns the distance from a place to its nearest point, m.
     pub fn distance_m(&self, place_m: DVec3) -> f64 {
         let to_stretch = |ends: &[DVec3]| {
             let (a, way) = (ends[0], ends[1] - ends[0]);
@@ -152,13 +152,13 @@ impl Channel {
         self.ways().flat_map(|way| way.windows(2)).map(to_stretch).fold(f64::INFINITY, f64::min)
     }
 
-    /// Time from the flash to the beginning of its thunder at a place, s.
+    /// Returns the time from the flash to the start of its thunder at a place, s.
     pub fn thunder_delay_s(&self, place_m: DVec3, temperature_c: f64) -> f64 {
         self.distance_m(place_m) / sound_m_s(temperature_c)
     }
 }
 
-/// A way between two points by so many halvings that goes nowhere below `lowest_m`.
+/// Returns a path between two points by `halvings` halvings that stays above `lowest_m`.
 fn wander(chance: &mut Chance, (start, end): (DVec3, DVec3), halvings: u32, lowest_m: f64) -> Vec<DVec3> {
     let last = 1usize << halvings;
     let mut points_m = vec![DVec3::ZERO; last + 1];
@@ -180,18 +180,18 @@ fn wander(chance: &mut Chance, (start, end): (DVec3, DVec3), halvings: u32, lowe
     points_m
 }
 
-/// Branches of the first order, the fewest and how many more there may be.
+/// Branches of the first order: the smallest number, and the largest number of additional ones.
 const BRANCHES: (f64, f64) = (8.0, 10.0);
-/// Their angles with the way that they leave, degrees.
+/// Range of their angles to the path that they leave, degrees.
 const LEAVES_DEG: (f64, f64) = (20.0, 50.0);
-/// Their lengths over what remains of the way.
+/// Range of their lengths over the rest of the path.
 const LENGTHS: (f64, f64) = (0.15, 0.6);
 /// Share of branches that branch again.
 const AGAIN: f64 = 0.33;
-/// Light of a branch over that of what it leaves: photographs show branches of first strokes some two to four times
-/// fainter.
+/// Ratio of a branch's light to that of the path it leaves. Photographs show branches of first strokes some two to four
+/// times fainter.
 const FAINTER: f64 = 0.35;
-/// Least height of a branch's end over the end of the main way, m.
+/// Least height of a branch's end above the end of the main path, m.
 const CLEAR_M: f64 = 30.0;
 
 fn branches(chance: &mut Chance, main: &[DVec3]) -> Vec<Branch> {
@@ -215,7 +215,7 @@ fn branches(chance: &mut Chance, main: &[DVec3]) -> Vec<Branch> {
     out
 }
 
-/// One branch from a point of a way that leads on along `way`.
+/// Creates a branch from a point of a path that goes on along `way`.
 fn branch(
     chance: &mut Chance,
     (from, way): (DVec3, DVec3),
@@ -226,14 +226,14 @@ fn branch(
     let share = |(low, high): (f64, f64), x: f64| low + (high - low) * x;
     let angle = share(LEAVES_DEG, chance.even()).to_radians();
     let turned = way.normalize_or(DVec3::NEG_Z) * libm::cos(angle) + aside(chance, way) * libm::sin(angle);
-    // Downwards, however the way went.
+    // Branches point down, whatever the direction of the path.
     let turned = DVec3::new(turned.x, turned.y, turned.z.min(-0.15)).normalize();
     let mut end = from + turned * (share(LENGTHS, chance.even()) * remains_m);
     end.z = end.z.max(lowest_m.min(from.z));
     wander(chance, (from, end), halvings, lowest_m.min(from.z))
 }
 
-/// A unit vector across `way`, any.
+/// Returns a random unit vector at right angles to `way`.
 fn aside(chance: &mut Chance, way: DVec3) -> DVec3 {
     let (a, b) = way.normalize_or(DVec3::Z).any_orthonormal_pair();
     let turn = 2.0 * std::f64::consts::PI * chance.even();
@@ -245,7 +245,7 @@ mod tests {
     use super::super::schedule::Storm;
     use super::*;
 
-    /// Photographs of ground flashes: branches point down, and end above the ground.
+    /// As on photographs of ground flashes, branches point down and end above the ground.
     #[test]
     fn branches_lead_down_and_end_above_the_ground() {
         for flash in &ground_flashes(2000.0, 1.0)[..20] {
@@ -264,7 +264,7 @@ mod tests {
         let flash = &ground_flashes(2000.0, 1.0)[0];
         let whole = Channel::new(flash, 5000.0, struck(flash, &[], 0.0));
         let mut channel = whole.clone();
-        // A roof over everything, 1000 m high.
+        // A roof above everything, 1000 m high.
         let roof = |a: DVec3, b: DVec3| (a.z > 1000.0 && b.z <= 1000.0).then(|| (a.z - 1000.0) / (a.z - b.z));
         assert!(channel.cut(roof));
         assert!((channel.end_m().z - 1000.0).abs() < 1e-6 && channel.length_m() < whole.length_m());
@@ -295,8 +295,8 @@ mod tests {
         assert_eq!(channel.points_m[POINTS - 1].z, 300.0);
     }
 
-    /// A mast of 50 m is struck at least ten times as often as ground of the area over which it draws lightning down
-    /// would be expected to be at its foot: a circle of 10 m about it against rings of the same area beside it.
+    /// A mast of 50 m is struck at least ten times as often as ground of the same area. The mast counts with a circle
+    /// of 10 m around it, the ground with rings of circles of that size beside it.
     #[test]
     fn a_mast_is_struck_far_more_often_than_the_ground_beside_it() {
         let mast = Mast { tip_m: DVec3::new(0.0, 0.0, 50.0) };
@@ -304,7 +304,7 @@ mod tests {
         for flash in ground_flashes(400.0, 40.0) {
             let end = struck(&flash, &[mast], 0.0);
             at_mast += usize::from(end == mast.tip_m);
-            // Forty circles of 10 m in a ring where the mast no longer reaches.
+            // A ring with the area of forty circles of 10 m, out of the mast's reach.
             let off = end.truncate().length();
             beside += usize::from(end != mast.tip_m && (300.0..306.6).contains(&off));
         }
@@ -314,7 +314,7 @@ mod tests {
         assert!(at_mast as f64 > 10.0 * one && beside > 20);
     }
 
-    /// Length over rulers of the straight way's eighth and sixty-fourth: the dimension is 1 + ln(ratio) / ln 8.
+    /// The length is measured with rulers of 2 and of 16 intervals. The dimension is 1 + ln(ratio) / ln 8.
     #[test]
     fn channels_are_as_rough_as_photographs_show() {
         let flashes = ground_flashes(2000.0, 2.0);

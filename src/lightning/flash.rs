@@ -1,21 +1,21 @@
-//! Flash: its kind, its place and time, and its strokes.
+//! A flash: its kind, place, time and strokes.
 
 use glam::DVec2;
 
-/// Most strokes: more have hardly been seen (26; Rakov and Uman 2003).
+/// Largest number of strokes. Flashes with more have hardly been seen (26; Rakov and Uman 2003).
 pub const MOST_STROKES: usize = 26;
 
-/// Where a flash goes.
+/// Kind of a flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlashKind {
-    /// Within the cloud.
+    /// Stays within the cloud.
     InCloud,
-    /// To the ground.
+    /// Strikes the ground.
     ToGround,
 }
 
 impl FlashKind {
-    /// Its name in the probe's answers.
+    /// Returns its name in the probe's answers.
     pub const fn name(self) -> &'static str {
         match self {
             Self::InCloud => "cloud",
@@ -27,7 +27,7 @@ impl FlashKind {
 /// One stroke of a flash.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Stroke {
-    /// After the flash began, s.
+    /// Time since the flash began, s.
     pub after_s: f64,
     /// Peak current, kA.
     pub peak_ka: f64,
@@ -36,30 +36,30 @@ pub struct Stroke {
 /// A flash.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flash {
-    /// Number of its own; seed of what chance decides of it.
+    /// Unique number, which is also the seed of its random properties.
     pub id: u64,
-    /// When its first stroke comes, s of simulation time.
+    /// Time of its first stroke, s of simulation time.
     pub time_s: f64,
-    /// Where it goes.
+    /// Kind of the flash.
     pub kind: FlashKind,
-    /// Where it starts, m east and north.
+    /// Place where it starts, m east and north.
     pub place_m: DVec2,
     pub(super) strokes: [Stroke; MOST_STROKES],
     pub(super) count: usize,
 }
 
 impl Flash {
-    /// Its strokes in order; those of a flash in the cloud are the steps of its light.
+    /// Returns its strokes in order. For a flash in the cloud they are the steps of its light.
     pub fn strokes(&self) -> &[Stroke] {
         &self.strokes[..self.count]
     }
 
-    /// When the last stroke comes, s of simulation time.
+    /// Returns the time of the last stroke, s of simulation time.
     pub fn last_s(&self) -> f64 {
         self.time_s + self.strokes().last().map_or(0.0, |s| s.after_s)
     }
 
-    /// Largest of its strokes' peak currents, kA.
+    /// Returns the largest peak current of its strokes, kA.
     pub fn peak_ka(&self) -> f64 {
         self.strokes().iter().fold(0.0, |most, s| most.max(s.peak_ka))
     }

@@ -1,4 +1,4 @@
-//! Glow around a flash, in f64: the twin of `shaders/between/flash.wgsl`.
+//! Glow around a flash, in f64: twin of `shaders/between/flash.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -6,14 +6,14 @@ use std::f64::consts::PI;
 use super::query::TAKES;
 use super::sources::LightSource;
 
-/// Reflectance of the clouds' base for a flash below it.
+/// Reflectance of the clouds' base for light of a flash below it.
 const BASE_REFLECTS: f64 = 0.8;
 /// `FLASH_ASYMMETRY` of the shader.
 #[cfg(test)]
 const ASYMMETRY: f64 = 0.75;
 
-/// Returns the intensity of the clouds' face in the light of a source, cd, `k` of the shader: seen from below, of the
-/// light that leaves through the base or is reflected by it.
+/// Returns the intensity of the clouds' face in the light of a source, cd: `k` of the shader. Seen from below, it is
+/// the light that leaves through the base or is reflected by it.
 pub(super) fn from_clouds_cd(source: &LightSource, from_below: bool) -> f64 {
     match (source.is_hidden(), from_below) {
         (true, true) => source.flux_lm * source.down_share / (2.0 * PI * PI),
@@ -23,14 +23,15 @@ pub(super) fn from_clouds_cd(source: &LightSource, from_below: bool) -> f64 {
     }
 }
 
-/// Luminance of the clouds' face at distance `r` along it from a source `h` from it, which sends `k` cd.
+/// Returns the luminance of the clouds' face. `h` is the distance of a source from the face, `r` the distance along the
+/// face, and `k` the intensity, cd.
 #[cfg(test)]
 fn on_clouds(k: f64, h: f64, r: f64) -> f64 {
     k * h / (r * r + h * h).powf(1.5)
 }
 
-/// Light that air of `scattering_per_m` before `range` scatters once towards the eye, of a source of 1 cd `along` the
-/// ray and `h` aside, by `steps` of the angle.
+/// Returns the light that air with `scattering_per_m` before `range` scatters once towards the eye. The source of 1 cd
+/// lies `along` the ray and `h` beside it. `steps` is the number of samples of the angle.
 #[cfg(test)]
 fn in_air(scattering_per_m: f64, (along, h): (f64, f64), range: f64, steps: u32) -> f64 {
     let phase = |c: f64| {
@@ -40,7 +41,7 @@ fn in_air(scattering_per_m: f64, (along, h): (f64, f64), range: f64, steps: u32)
     let first = (-along / h).atan();
     let whole = ((range - along) / h).atan() - first;
     let one = |k: u32| {
-        // Denser at the near end, where light hardly turns.
+        // Samples are denser at the near end, where light is hardly turned.
         let t = (f64::from(k) + 0.5) / f64::from(steps);
         let u = first + whole * t * t;
         2.0 * t * phase(-u.sin()) * (-TAKES * scattering_per_m * (along + h * u.tan() + h / u.cos())).exp()
@@ -52,7 +53,7 @@ fn in_air(scattering_per_m: f64, (along, h): (f64, f64), range: f64, steps: u32)
 mod tests {
     use super::*;
 
-    /// The base sends what leaves by it, and no more.
+    /// The integral of the base's light is the flux that leaves through the base.
     #[test]
     fn the_clouds_base_sends_the_light_that_leaves_by_it() {
         let source = LightSource { flux_lm: 1e9, depth_m: 800.0, down_share: 0.9, ..LightSource::default() };
@@ -67,7 +68,7 @@ mod tests {
         assert!((up / k - 0.1 / 0.9).abs() < 1e-9);
     }
 
-    /// Four samples of the angle are within a tenth of a fine sum, near the flash and away from it.
+    /// Four samples of the angle are within 10 % of a fine sum, near the flash and away from it.
     #[test]
     fn four_samples_are_enough_for_the_airs_glow() {
         for (along, h, range) in

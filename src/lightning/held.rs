@@ -1,4 +1,4 @@
-//! State of the lightning that a context holds: its settings, and the flashes that the host triggered.
+//! State of a context's lightning: its settings, and the flashes that the host triggered.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -13,15 +13,15 @@ use crate::{
     world::{HeldEffect, Within, World, parse_error},
 };
 
-/// How long a triggered flash is kept after it, s: its thunder has been heard then.
+/// Time for which a triggered flash is kept after it, s. Its thunder has passed by then.
 const KEPT_S: f64 = 120.0;
 
-/// The lightning of a context.
+/// Lightning of a context.
 #[derive(Clone, Default)]
 pub(crate) struct HeldLightning {
     pub settings: LightningSettings,
     pub triggered: Vec<FlashTrigger>,
-    /// Revision of both.
+    /// Revision of settings and triggered flashes.
     pub revision: u64,
 }
 
@@ -43,7 +43,7 @@ struct SavedTrigger {
     strokes: Option<u32>,
 }
 
-/// As a saved state has it.
+/// Saved form of the state.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Saved {
@@ -54,15 +54,15 @@ struct Saved {
     triggered: Vec<SavedTrigger>,
 }
 
-/// Where it is in a saved state.
+/// Keys of the lightning in a saved state.
 const TABLE: &str = "settings";
 const KEY: &str = "lightning";
 
 impl HeldLightning {
-    /// Takes its part out of a saved state.
+    /// Takes the lightning's part out of a saved state.
     ///
     /// # Errors
-    /// [`Status::Parse`] for what is no such part, [`Status::InvalidArgument`] naming what is out of range.
+    /// [`Status::Parse`] for a value of another form, [`Status::InvalidArgument`] naming a field that is out of range.
     pub fn read(&self, state: &mut toml::Table) -> Result<Self> {
         let revision = self.revision + 1;
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
@@ -99,11 +99,11 @@ impl HeldLightning {
         Ok(read)
     }
 
-    /// Takes one more flash, the present being `now_s`.
+    /// Adds a flash. `now_s` is the present.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field, or for more than [`MAX_TRIGGERED`]; [`Status::WrongOrder`] for one
-    /// of the past. Nothing changes then.
+    /// [`Status::InvalidArgument`] naming the field, or if there are [`MAX_TRIGGERED`] already; [`Status::WrongOrder`]
+    /// for a flash in the past. Nothing changes then.
     pub fn trigger(&mut self, flash: &FlashTrigger, now_s: f64) -> Result<()> {
         flash.validate()?;
         if flash.time_s < now_s {

@@ -1,55 +1,55 @@
-//! How bright a flash is, and for how long.
+//! Light of a flash over time.
 //!
-//! A return stroke of 30 kA sends 1e6 W from each metre of its channel at its peak, between 400 and 1100 nm (Guo and
-//! Krider 1982: first strokes 1.0e6 W/m, later ones 2.5e5 to 4.3e5 W/m), and 870 J in all (Krider, Dawson and Uman
-//! 1968). Light goes with the current (Idone and Orville 1985). Two falling exponentials have both figures: 0.85 of the
-//! peak fades with 150 us, the rest with 5 ms. That light is taken to be of a black body of 20 000 K: 163 lm/W of what
-//! lies between these wavelengths.
+//! A return stroke of 30 kA emits 1e6 W from each metre of its channel at its peak, between 400 and 1100 nm (Guo and
+//! Krider 1982: first strokes 1.0e6 W/m, later ones 2.5e5 to 4.3e5 W/m), and 870 J in all (Krider, Dawson and
+//! Uman 1968). The light is proportional to the current (Idone and Orville 1985). The sum of two exponentials has both
+//! figures: 0.85 of the peak decays with 150 us, the rest with 5 ms. The spectrum is taken to be that of a black body
+//! of 20 000 K, which has 163 lm/W between these wavelengths.
 //!
-//! Before a stroke a leader comes down: the first one at 2e5 m/s, later ones at 1e7 m/s (Rakov and Uman 2003, table
-//! 1.1). The tip of a later one, some 34 m long, has 0.1 of the stroke's light (Idone and Orville 1985; Orville and
-//! Idone 1982); the first one's steps are taken to have 0.02 of it for 1 us in each 50 us. The stroke runs up at a
-//! third of the speed of light.
+//! Before a stroke a leader comes down, the first one at 2e5 m/s, later ones at 1e7 m/s (Rakov and Uman 2003,
+//! table 1.1). The tip of a later leader, some 34 m long, has 0.1 of the stroke's light (Idone and Orville 1985;
+//! Orville and Idone 1982). The steps of the first one are taken to have 0.02 of it for 1 us in each 50 us. The stroke
+//! runs up at a third of the speed of light.
 
 use super::flash::{Flash, FlashKind, Stroke};
 
-/// Light of a stroke of [`OF_KA`] at its peak, W/m, and its current.
+/// Peak power of a stroke with a current of [`OF_KA`], W/m, and that current, kA.
 const PEAK_W_M: f64 = 1e6;
 const OF_KA: f64 = 30.0;
-/// Luminous efficacy of that light, lm/W.
+/// Luminous efficacy of the light, lm/W.
 pub(super) const LM_PER_W: f64 = 163.0;
-/// Shares of the peak, and times in which they fade by 1/e, s.
+/// Shares of the peak, and the times in which they decay to 1/e, s.
 const FADES: [(f64, f64); 2] = [(0.85, 150e-6), (0.15, 5e-3)];
-/// Light of a leader over that of its stroke, its speed, m/s, and how long a place shines that it has come to, s: of
-/// the first stroke and of later ones.
+/// Leaders of the first stroke and of later ones: light over that of the stroke, speed, m/s, and time for which a place
+/// shines after the tip has reached it, s.
 const LEADERS: [(f64, f64, f64); 2] = [(0.02 / 50.0, 2e5, f64::INFINITY), (0.1, 1e7, 3.4e-6)];
 /// Speed of the stroke, m/s.
 const STROKE_M_S: f64 = 1e8;
-/// Light of a step of a flash in the cloud over that of a stroke of its current: taken.
+/// Light of a step of a flash in the cloud over that of a stroke with the same current. An assumption.
 const IN_CLOUD: f64 = 0.3;
-/// Time in which the light of a flash fades by 1/e that is drawn for viewers whom flicker may harm, s.
+/// Time in which a flash drawn under the limit on flicker decays to 1/e, s.
 const SMOOTH_S: f64 = 0.15;
-/// Colour of a black body of 20 000 K in linear Rec. 709, of luminance 1.
+/// Colour of a black body of 20 000 K in linear Rec. 709, with luminance 1.
 pub const COLOR: [f64; 3] = [0.75, 0.99, 1.84];
 
-/// Longest time before its first stroke in which a flash gives light, and after its last, s.
+/// Longest time before its first stroke in which a flash gives light (`BEFORE_S`), and after its last, s.
 pub const BEFORE_S: f64 = 0.1;
 const AFTER_S: f64 = 0.06;
 const SMOOTH_AFTER_S: f64 = 1.5;
-/// Longest time from a flash's first stroke to its last, s: longer ones are hardly ever drawn by chance.
+/// Longest time from a flash's first stroke to its last, s. Longer ones hardly ever occur.
 pub const LONGEST_S: f64 = 4.0;
 
-/// A time over which light is averaged, s of simulation time; a moment where both are the same.
+/// Interval over which light is averaged, s of simulation time; a moment if both ends are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Its beginning.
+    /// Beginning, s.
     pub from_s: f64,
-    /// Its end.
+    /// End, s.
     pub until_s: f64,
 }
 
 impl Span {
-    /// Mean of a light over it that sets in with 1 at `start_s` and fades by 1/e in `fade_s`.
+    /// Returns the mean over the span of a light that starts with 1 at `start_s` and decays to 1/e in `fade_s`.
     fn mean_fading(&self, start_s: f64, fade_s: f64) -> f64 {
         let (from, until) = (self.from_s - start_s, self.until_s - start_s);
         if until < 0.0 {
@@ -62,7 +62,7 @@ impl Span {
         (sum(until) - sum(from)) / (until - from)
     }
 
-    /// Share of it that lies between two times.
+    /// Returns the share of the span between two times.
     fn share_between(&self, begin_s: f64, end_s: f64) -> f64 {
         if self.until_s <= self.from_s {
             return f64::from(u8::from((begin_s..end_s).contains(&self.until_s)));
@@ -72,12 +72,12 @@ impl Span {
     }
 }
 
-/// How the light of a flash goes with time.
+/// Course of a flash's light over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
     /// As in nature.
     Natural,
-    /// All of it rises once and fades.
+    /// Rises once and decays smoothly, with the same total light.
     Smooth,
 }
 
@@ -92,21 +92,21 @@ impl Course {
     }
 }
 
-/// A stretch of a channel as its light depends on it.
+/// Properties of a part of a channel on which its light depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// How far down the main channel, 0 at the upper end to 1; of a branch where a leader would be that had come as
-    /// far.
+    /// Position along the main channel, 0 at the upper end to 1. For a branch, the position that a leader reaches at
+    /// the same time.
     pub down: f64,
     /// Length of the main channel, m.
     pub length_m: f64,
-    /// Light over that of the main channel, and whether later strokes take this way.
+    /// Light over that of the main channel.
     pub strength: f64,
     /// Whether it is a branch, which later strokes do not take.
     pub is_branch: bool,
 }
 
-/// Light of a metre of a stretch, lm, on the mean of a span.
+/// Returns the luminous flux of a part per metre, lm/m, averaged over a span.
 pub fn flux_lm_m(flash: &Flash, stretch: &Stretch, span: &Span, course: Course) -> f64 {
     let used = if stretch.is_branch { 1 } else { flash.strokes().len() };
     let kind = if flash.kind == FlashKind::InCloud { IN_CLOUD } else { 1.0 };
@@ -175,7 +175,7 @@ mod tests {
         assert!((luminance(&COLOR) - 1.0).abs() < 0.01);
     }
 
-    /// A metre of a stroke of 30 kA sends 870 J.
+    /// A metre of a stroke of 30 kA emits 870 J.
     #[test]
     fn a_stroke_has_the_energy_that_was_measured() {
         let mut one = flash(FlashKind::ToGround);
@@ -198,7 +198,7 @@ mod tests {
         assert!((peak / LM_PER_W / 1e6 - 1.0).abs() < 1e-9, "{peak}");
     }
 
-    /// However time is divided into frames, the light of all of them is the same.
+    /// The light of all frames has the same sum, however time is divided into frames.
     #[test]
     fn frames_of_any_rate_add_up_to_the_same_light() {
         for (kind, course) in [
@@ -224,7 +224,7 @@ mod tests {
         let (natural, smooth) = (flash(FlashKind::ToGround), flash(FlashKind::ToGround));
         let all = Span { from_s: 0.0, until_s: 20.0 };
         let light = |f: &Flash, c| flux_lm_m(f, &MAIN, &all, c);
-        // Leaders are left out of what is drawn smoothly.
+        // The smooth course leaves leaders out.
         assert!((light(&natural, Course::Natural) / light(&smooth, Course::Smooth) - 1.0).abs() < 0.02);
     }
 

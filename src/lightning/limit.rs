@@ -1,22 +1,23 @@
-//! Fewer changes of luminance for viewers whom flicker may harm.
+//! Limit on changes of luminance for viewers whom flicker may harm.
 //!
-//! A flash that is drawn so rises once and fades: two changes. Of all flashes near a camera those are drawn that begin
-//! at least a second after the one drawn before, so any second has three changes at most (WCAG 2.2, success criterion
-//! 2.3.1, has three flashes, each of two changes). The choice begins anew every 10 s, with a second in which none is
-//! drawn: so it depends on the flashes of the last 10 s alone, and every channel and every way through time choose the
-//! same.
+//! With the limit a flash rises once and fades: two changes. Of the flashes near a camera, one is drawn only if it
+//! begins at least a second after the last drawn one. Any second then has at most three changes (WCAG 2.2, success
+//! criterion 2.3.1, allows three flashes of two changes each). The choice restarts every 10 s with a second in which
+//! none is drawn. It therefore depends only on the flashes of these 10 s, and is the same in every channel and for
+//! every order of times.
 
-/// Length of a stretch of time whose choice depends on no other, s.
+/// Length of an epoch, whose choice does not depend on other epochs, s.
 pub const EPOCH_S: f64 = 10.0;
-/// Least time from one drawn flash to the next, s.
+/// Least time between two drawn flashes, s.
 const APART_S: f64 = 1.0;
 
-/// Beginning of the stretch of time of a flash, s.
+/// Returns the beginning of the epoch of a time, s.
 pub fn epoch_s(time_s: f64) -> f64 {
     (time_s / EPOCH_S).floor() * EPOCH_S
 }
 
-/// Whether the flash that begins at `time_s` is drawn, of all that begin at `times_s` since its [`epoch_s`], in order.
+/// Whether the flash that begins at `time_s` is drawn. `times_s` has, in order, the times of all flashes since its
+/// [`epoch_s`].
 pub fn is_drawn(time_s: f64, times_s: &[f64]) -> bool {
     let mut drawn_s = epoch_s(time_s);
     for t in times_s.iter().copied().filter(|t| *t <= time_s) {

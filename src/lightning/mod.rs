@@ -1,43 +1,44 @@
-//! Lightning: when and where it strikes, how it looks, what light and thunder a place has of it.
+//! Lightning: when and where it strikes, what it looks like, and the light and thunder that reach a place.
 //!
-//! A thunderstorm flashes a few times a minute. Most flashes stay in the cloud and make it glow; the others strike the
-//! ground, in some strokes one after the other. Everything is a function of (seed, time, rate, storm cells): time may
-//! run back and forth, and all channels of a simulator see the same flash.
+//! A thunderstorm flashes a few times a minute. Most flashes stay in the cloud and make it glow. The others strike the
+//! ground, some with several strokes in succession. Everything is a function of (seed, time, rate, storm cells): time
+//! may run back and forth, and all channels of a simulator see the same flash.
 //!
 //! # Model
-//! * [`schedule`]: flashes of a storm come by chance, evenly in time (Poisson). Of a fixed stream of candidates, sixty
-//!   a minute, each has a number of its own from 0 to 1; those below the rate over sixty a minute strike. So a rate
-//!   that changes adds and takes flashes, and moves none. A flash stays in the cloud or goes to ground, has strokes
-//!   with pauses between, each with a peak current.
+//! * [`schedule`]: the flashes of a storm are a Poisson process, evenly spread in time. They are taken from a fixed
+//!   stream of sixty candidates a minute, each with a random number from 0 to 1. A candidate strikes if its number is
+//!   below the rate over sixty a minute. A changing rate therefore adds and removes flashes, but moves none. Each flash
+//!   stays in the cloud or goes to ground, and has strokes with pauses between them, each with a peak current.
 //! * Storm cells: one in each square of 20 km where the weather has thunder, or the host's ([`LightningSettings`]). A
-//!   host may trigger a flash of its own ([`FlashTrigger`]).
-//! * [`channel`]: the way of a flash, from its charge (where the air has -12 degrees Celsius) down to the ground or
-//!   through the cloud, with branches; what stands high draws it, and what stands in its way ends it. Thunder comes
-//!   from its nearest point.
-//! * [`light`]: watts of each metre over time, and what a frame has of them: the mean from the frame before it to its
-//!   own time.
-//! * Picture: a line of light before the host's picture, behind what the host drew and dimmed by air and fog as the
-//!   host's things are; its glow in air and rain (single scattering, Henyey-Greenstein, by equiangular quadrature) and
-//!   on the clouds' base. For a source of flux F in a cloud, d above its base, the base sends F s d / (2 pi (r^2 +
-//!   d^2)^(3/2)) at distance r on the plane, s its share of the light: all of it together F s.
+//!   host may also trigger single flashes ([`FlashTrigger`]).
+//! * [`channel`]: the path of a flash, from its charge (where the air has -12 degrees Celsius) down to the ground or
+//!   through the cloud, with branches. Tall objects attract it, and boxes in its path end it. Thunder comes from its
+//!   nearest point.
+//! * [`light`]: the power of each metre over time, W, and the light in a frame: the mean from the frame before to the
+//!   frame's own time.
+//! * Picture: a line of light in front of the host's picture. What the host drew hides it, and air and fog dim it as
+//!   they dim the host's objects. It glows in air and rain (single scattering, Henyey-Greenstein, by equiangular
+//!   quadrature) and on the clouds' base. For a source of flux F in a cloud, d above its base, the base sends F s d /
+//!   (2 pi (r^2 + d^2)^(3/2)) at distance r on the plane, where s is the base's share of the light. The integral over
+//!   the plane is F s.
 //! * [`limit`]: fewer flashes for viewers whom flicker may harm.
 //!
 //! # Settings
-//! [`LightningSettings`]: rate, cells, tall things, the limit. Default: 3 flashes a minute and cell in a thunderstorm.
+//! [`LightningSettings`]: rate, cells, tall objects, the limit. Default: 3 flashes a minute and cell in a thunderstorm.
 //!
 //! # Cost
-//! None without a storm: no pass, and the composition has no term for it. In a storm some 20 us on the CPU a frame to
-//! find that there is no flash. A flash costs a pass of some 1500 narrow quads and, a pixel, up to 8 sources with 4
-//! samples each.
+//! None without a storm: there is no pass, and the composition has no term for it. In a storm, finding that there is no
+//! flash takes some 20 us a frame on the CPU. A flash costs a pass of some 1500 narrow quads and, in each pixel, up to
+//! 8 sources with 4 samples each.
 //!
 //! # Error
-//! Frames of any rate add up to the same light within 1e-5 of it; drawn ones within 2 % (tests). Figures of light are
-//! those of [`light`]; a single flash differs from the mean by a factor of 2 or so. The glow has no structure of the
-//! cloud in it.
+//! The light of all frames sums to the same amount at any frame rate, within 1e-5; drawn frames within 2 % (tests).
+//! [`light`] has the sources of the light's figures; a single flash differs from the mean by a factor of about 2. The
+//! glow does not show the cloud's structure.
 //!
 //! # What is not here
-//! No `reference.rs`: flashes, channels and their light are computed on the CPU, in f64; shaders draw them only. No
-//! `candidates.rs`: a flash is drawn in one way, and no plan leaves it out.
+//! There is no `reference.rs`: flashes, channels and their light are computed on the CPU in f64, and shaders only draw
+//! them. There is no `candidates.rs`: there is one way to draw a flash, and the plan never leaves it out.
 
 pub mod channel;
 mod flash;

@@ -1,4 +1,4 @@
-//! The pass that draws channels into the layer before the picture.
+//! Pass that draws channels into the layer in front of the picture.
 
 use std::sync::Arc;
 
@@ -17,16 +17,15 @@ use crate::{
 };
 
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Most parts that are drawn: those of two or three flashes at once.
+/// Largest number of parts that are drawn: those of two or three simultaneous flashes.
 pub(super) const MOST_PARTS: usize = 4096;
-/// Pipelines held for a view: those of some weathers that change.
+/// Number of cached pipelines of a view, for the weathers that alternate.
 const MOST_PIPELINES: usize = 4;
 
-/// Key of a pipeline, beside the constants of the veil: whether the depth has several samples, and whether there is any
-/// depth.
+/// Key of a pipeline besides the veil's constants: whether the depth has several samples, and whether there is a depth.
 type DepthKey = (bool, bool);
 
-/// Made when there first is a channel to draw.
+/// Pass and its resources, created when there is a channel to draw.
 pub(super) struct ChannelPass {
     block: UniformBlock,
     parts: wgpu::Buffer,
@@ -38,7 +37,7 @@ pub(super) struct ChannelPass {
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
-    // The block of what lies between is another room's: any size.
+    // The block of the veil belongs to another room, so its size is left open.
     let slots = [
         (0, Slot::Uniform(size_of::<FrameUniform>())),
         (1, Slot::texels(multisampled)),
@@ -69,12 +68,12 @@ impl ChannelPass {
         }
     }
 
-    /// Bytes of GPU memory.
+    /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
         self.parts.size()
     }
 
-    /// Adds parts to the layer `target`, which is cleared first unless something lies in it already (`over`).
+    /// Adds parts to the layer `target`. The layer is cleared first unless it has content already (`over`).
     ///
     /// # Errors
     /// A missing shader file.
@@ -141,7 +140,7 @@ impl ChannelPass {
         self.bound = Some((depth.map(Layer::kept), hung.cloned(), between.clone(), group));
     }
 
-    /// The pipeline for what is drawn, compiled at its first use.
+    /// Returns the pipeline for these constants, compiled at its first use.
     fn pipeline(
         &mut self,
         device: &Arc<Device>,

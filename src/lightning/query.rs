@@ -1,4 +1,4 @@
-//! Queries of a host: which flashes there are near a place, when their thunder comes, and how much light arrives.
+//! Queries of a host: the flashes near a place, the time of their thunder, and the light that arrives.
 
 use glam::DVec3;
 
@@ -16,31 +16,31 @@ use crate::{
     world::World,
 };
 
-/// Longest time and farthest distance of one query.
+/// Longest time of one query, s.
 pub const MOST_SPAN_S: f64 = 3600.0;
-/// Farthest that flashes are asked for, m.
+/// Largest distance for which flashes can be queried, m.
 pub const MOST_DISTANCE_M: f64 = 50_000.0;
-/// Farthest that light is counted, m, on the map.
+/// Largest horizontal distance of flashes whose light counts, m.
 pub(crate) const LIGHT_REACH_M: f64 = 30_000.0;
-/// Longest exposure that light is averaged over, s.
+/// Longest exposure over which light is averaged, s.
 pub const MOST_EXPOSURE_S: f64 = 1.0;
-/// Share of the extinction that takes light away: what droplets scatter goes on nearly as before (asymmetry 0.8).
+/// Share of the extinction that counts as loss: light scattered by droplets goes on nearly straight (asymmetry 0.8).
 pub(crate) const TAKES: f64 = 0.2;
 
-/// A flash as a place has it.
+/// A flash as seen and heard from a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlashEvent {
-    /// Number of its own among the flashes of the context.
+    /// Unique number among the flashes of the context.
     pub id: u64,
-    /// When its first stroke comes, s of simulation time.
+    /// Time of its first stroke, s of simulation time.
     pub time_s: f64,
-    /// Where it goes.
+    /// Kind of the flash.
     pub kind: FlashKind,
-    /// Strokes, or steps of the light of one in the cloud.
+    /// Number of strokes, or of steps of the light for a flash in the cloud.
     pub strokes: u32,
     /// Largest peak current of its strokes, kA.
     pub peak_ka: f64,
-    /// Position of what it struck, or of the middle of its way in the cloud, in the host's world.
+    /// Position that it struck, or the middle of its path in the cloud, in the host's world, m.
     pub position: DVec3,
     /// Distance of the nearest point of its channel, m.
     pub distance_m: f64,
@@ -53,15 +53,16 @@ pub struct FlashEvent {
 /// Light of flashes at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightningLight {
-    /// Illuminance on surfaces that face each source, all together, lux a channel of linear Rec. 709.
+    /// Sum of the illuminances on surfaces that face each source, lux for each channel of linear Rec. 709.
     pub facing_lux: [f64; 3],
     /// Illuminance on level ground, lux.
     pub level_lux: f64,
-    /// Unit vector (east, north, up) towards the middle of the light; straight up where there is none.
+    /// Unit vector (east, north, up) towards the mean direction of the light; straight up without light.
     pub direction: DVec3,
 }
 
-/// All flashes from `from_s` on until `until_s` within `most_m` of a place on the map, in order of time.
+/// Returns all flashes from `from_s` until `until_s` within the horizontal distance `most_m` of a place, in order of
+/// time.
 pub(crate) fn events(
     world: &World,
     held: &HeldLightning,
@@ -95,7 +96,8 @@ pub(crate) fn events(
     Ok(found.iter().map(event).collect())
 }
 
-/// Light of flashes at a place on the mean of `exposure_s` before `time_s`; at 0 of that very moment.
+/// Returns the light of flashes at a place, averaged over `exposure_s` before `time_s`; with 0, the light at that
+/// moment.
 pub(crate) fn light_at(
     world: &World,
     held: &HeldLightning,

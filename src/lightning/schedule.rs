@@ -1,4 +1,4 @@
-//! When a storm flashes, and how.
+//! Schedule of a storm: the times, places and strokes of its flashes.
 
 use std::f64::consts::PI;
 
@@ -11,37 +11,38 @@ use crate::{
     error::{Result, check_range},
 };
 
-/// Candidates a minute: the largest rate of one storm.
+/// Number of candidates a minute: the highest rate of one storm.
 pub const MOST_PER_MINUTE: f64 = 60.0;
 /// Length of a window of time whose candidates are drawn together, s.
 const WINDOW_S: f64 = 10.0;
-/// Share of flashes that go to ground at middle latitudes: one in four (Prentice and Mackerras 1977).
+/// Share of flashes that strike the ground at middle latitudes: one in four (Prentice and Mackerras 1977).
 const TO_GROUND: f64 = 0.25;
-/// Share of ground flashes with one stroke (Rakov and Uman 2003, table 1.1), and the chance of another after each
-/// further one with which they have 3.5 on the mean.
+/// Share of ground flashes with one stroke (Rakov and Uman 2003, table 1.1); probability of another stroke after the
+/// second and each later one, chosen so that the mean is 3.5.
 const SINGLE: f64 = 0.2;
 const ANOTHER: f64 = 0.68;
-/// Pause between strokes: geometric mean, s, and spread of its logarithm (Rakov and Uman 2003, table 1.1).
+/// Pause between strokes: geometric mean, s, and standard deviation of its logarithm (Rakov and Uman 2003, table 1.1).
 const PAUSE_S: (f64, f64) = (0.06, 0.55);
-/// Peak current of first and of later strokes: median, kA, and spread of the logarithm (Berger et al. 1975).
+/// Peak current of first and of later strokes: median, kA, and standard deviation of its logarithm (Berger et
+/// al. 1975).
 const FIRST_KA: (f64, f64) = (30.0, 0.61);
 const LATER_KA: (f64, f64) = (12.0, 0.61);
 
-/// A storm that flashes at one rate.
+/// A storm that flashes at a constant rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Storm {
-    /// Chooses its flashes.
+    /// Seed of its flashes.
     pub seed: u64,
     /// Flashes a minute, [0, 60].
     pub per_minute: f64,
-    /// Middle, m east and north.
+    /// Middle of the storm, m east and north.
     pub middle_m: DVec2,
-    /// Distance from the middle within which two of three flashes start, m, [0, 1e5].
+    /// Distance from the middle within which two thirds of the flashes start, m, [0, 1e5].
     pub radius_m: f64,
 }
 
 impl Storm {
-    /// Refuses what is no storm, by name.
+    /// Checks the ranges; an error names the field.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -50,7 +51,7 @@ impl Storm {
         check_range("lightning.radius_m", self.radius_m, 0.0, 1e5, "m")
     }
 
-    /// Its flashes from `from_s` on until `until_s`, in order.
+    /// Returns its flashes from `from_s` until `until_s`, in order of time.
     pub fn flashes(&self, from_s: f64, until_s: f64) -> Vec<Flash> {
         let mut out = Vec::new();
         self.visit(from_s, until_s, |_| self.per_minute, |flash| out.push(*flash));
@@ -58,8 +59,8 @@ impl Storm {
         out
     }
 
-    /// Shows `see` its flashes from `from_s` on until `until_s` at a rate that depends on time, flashes a minute: in
-    /// the order of their windows. No memory is asked for.
+    /// Calls `see` with each flash from `from_s` until `until_s`, window after window. `rate` is the rate at a time,
+    /// flashes a minute. No memory is allocated.
     pub fn visit(&self, from_s: f64, until_s: f64, rate: impl Fn(f64) -> f64, mut see: impl FnMut(&Flash)) {
         let (first, last) = ((from_s / WINDOW_S).floor() as i64, (until_s / WINDOW_S).ceil() as i64);
         for window in first..last {
@@ -74,7 +75,7 @@ impl Storm {
         }
     }
 
-    /// The flash of a host that says when, where and what; what it leaves open is decided by chance.
+    /// Returns a flash triggered by a host. Properties that the trigger leaves open are random.
     pub fn triggered(seed: u64, trigger: &FlashTrigger, place_m: DVec2) -> Flash {
         let storm = Self { seed: seed ^ 0x7219_6765, per_minute: 0.0, middle_m: place_m, radius_m: 0.0 };
         let at = trigger.time_s.to_bits() ^ place_m.x.to_bits().rotate_left(21) ^ place_m.y.to_bits().rotate_left(42);
@@ -95,7 +96,7 @@ impl Storm {
         let kind = if chance.even() < TO_GROUND { FlashKind::ToGround } else { FlashKind::InCloud };
         let (distance, azimuth) = (self.radius_m * chance.normal(), PI * chance.even());
         let mut flash = Flash {
-            // Of two storms no two flashes look alike.
+            // The storm's seed makes flashes of two storms differ.
             id: number ^ self.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15),
             time_s,
             kind,
@@ -103,7 +104,7 @@ impl Storm {
             strokes: [Stroke::default(); MOST_STROKES],
             count: strokes(&mut chance),
         };
-        // A host may ask for more strokes than chance gives: all are there.
+        // All strokes are filled in, because a host may ask for more than the random count.
         let mut after_s = 0.0;
         for i in 0..MOST_STROKES {
             let (median, spread) = if i == 0 { FIRST_KA } else { LATER_KA };
@@ -114,7 +115,7 @@ impl Storm {
     }
 }
 
-/// Number of candidates in a window, spread as Poisson's law has it (by multiplication; Knuth 1969).
+/// Returns the number of candidates in a window, with a Poisson distribution (by multiplication; Knuth 1969).
 fn candidates(chance: &mut Chance) -> u64 {
     let least = libm::exp(-MOST_PER_MINUTE / 60.0 * WINDOW_S);
     let (mut product, mut count) = (chance.even(), 0);
@@ -144,7 +145,7 @@ mod tests {
         Storm { seed: 11, per_minute, middle_m: DVec2::new(2000.0, -500.0), radius_m: 3000.0 }
     }
 
-    /// Counts over minutes are spread as Poisson's law has it: their variance is their mean.
+    /// Counts over minutes have a Poisson distribution: their variance is their mean.
     #[test]
     fn flashes_come_by_chance_at_the_rate_asked_for() {
         for rate in [0.5, 6.0, 40.0] {
@@ -175,7 +176,7 @@ mod tests {
         let mut first: Vec<f64> = flashes.iter().map(|f| f.strokes()[0].peak_ka).collect();
         first.sort_by(f64::total_cmp);
         assert!((first[first.len() / 2] - 30.0).abs() < 0.6, "{}", first[first.len() / 2]);
-        // Five percent of first strokes exceed 80 kA (Berger et al. 1975).
+        // Five per cent of first strokes exceed 80 kA (Berger et al. 1975).
         assert!((first[first.len() * 95 / 100] - 80.0).abs() < 5.0, "{}", first[first.len() * 95 / 100]);
         let pauses: Vec<f64> = flashes
             .iter()

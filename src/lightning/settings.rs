@@ -1,4 +1,4 @@
-//! Settings of the lightning: rate, storm cells, tall things, the limit.
+//! Settings of the lightning: rate, storm cells, tall objects, and the limit on flicker.
 
 use glam::DVec3;
 
@@ -6,41 +6,41 @@ pub use super::trigger::FlashTrigger;
 use super::{schedule::MOST_PER_MINUTE, trigger::check_place};
 use crate::error::{Error, Result, check_range};
 
-/// Most storm cells of a host.
+/// Largest number of a host's storm cells.
 pub const MAX_CELLS: usize = 16;
-/// Most tall things of a host.
+/// Largest number of a host's tall objects.
 pub const MAX_MASTS: usize = 64;
-/// Most triggered flashes that are kept at a time.
+/// Largest number of triggered flashes that are kept at a time.
 pub const MAX_TRIGGERED: usize = 64;
-/// A storm cell of the host.
+/// A storm cell from the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StormCell {
-    /// Its middle in the host's world; the height does not matter.
+    /// Middle of the cell in the host's world, m; the height does not matter.
     pub position: DVec3,
-    /// Distance from the middle within which two of three flashes start, m, \[0, 1e5\].
+    /// Distance from the middle within which two thirds of the flashes start, m, \[0, 1e5\].
     pub radius_m: f64,
     /// Flashes a minute, \[0, 60\].
     pub flashes_per_minute: f64,
 }
 
-/// How a context flashes, and how its views show it.
+/// Settings of a context's flashes, and of how its views show them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightningSettings {
-    /// Flashes a minute of each storm cell, \[0, 60\], in place of those that the weather has (3 in a thunderstorm,
-    /// else none).
+    /// Flashes a minute of each storm cell, \[0, 60\]. It replaces the weather's rate (3 in a thunderstorm, otherwise
+    /// none).
     pub flashes_per_minute: Option<f64>,
-    /// The host's storm cells, at most [`MAX_CELLS`], in place of the weather's, one in each square of 20 km. Default
-    /// none.
+    /// The host's storm cells, at most [`MAX_CELLS`]. They replace the weather's, which are one in each square of 20
+    /// km. Default none.
     pub cells: Vec<StormCell>,
-    /// Tips of tall things in the host's world, at most [`MAX_MASTS`]: they draw ground flashes. Default none.
+    /// Tips of tall objects in the host's world, m, at most [`MAX_MASTS`]. They attract ground flashes. Default none.
     pub masts: Vec<DVec3>,
-    /// Views draw at most three changes of luminance a second, for viewers whom flicker may harm. Schedule and queries
-    /// stay. Default off.
+    /// Whether views draw at most three changes of luminance a second, for viewers whom flicker may harm. Schedule and
+    /// queries do not change. Default off.
     pub limits_flicker: bool,
 }
 
 impl LightningSettings {
-    /// Refuses what is out of range, by name.
+    /// Checks the ranges; an error names the field.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].

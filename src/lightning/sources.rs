@@ -1,5 +1,4 @@
-//! The few places from which the light of a flash is taken to come: parts of the open channel, and what glows in the
-//! cloud.
+//! Light sources of a flash: the few points that stand for the parts of its open channel and for its glow in the cloud.
 
 use std::f64::consts::PI;
 
@@ -10,33 +9,35 @@ use super::{
     strike::Strike,
 };
 
-/// Parts of the open channel, by height.
+/// Number of sources for the open channel, by height.
 const OPEN_PARTS: usize = 3;
-/// Parts of what is in the cloud, along the way.
+/// Number of sources in the cloud, along the path.
 const HIDDEN_PARTS: usize = 2;
 
-/// A place that light comes from.
+/// A point from which light comes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LightSource {
-    /// In the host's world, m.
+    /// Position in the host's world, m.
     pub position: DVec3,
-    /// Luminous flux, lm: of an open channel in all directions, of one in the cloud out of its base.
+    /// Luminous flux, lm: of an open channel in all directions; of a channel in a cloud, that leaving through base and
+    /// top.
     pub flux_lm: f64,
-    /// How far the light reaches about the position, m.
+    /// Extent of the light around the position, m.
     pub radius_m: f64,
-    /// Depth in the cloud above its base, m, and flux before the cloud's share, lm; 0 of an open channel.
+    /// Depth above the cloud's base, m; 0 for an open channel.
     pub depth_m: f64,
-    /// Share of the cloud's light that leaves by its base; the rest leaves by its top.
+    /// Share of the cloud's light that leaves through its base. The rest leaves through its top.
     pub down_share: f64,
 }
 
 impl LightSource {
-    /// Whether it glows in a cloud.
+    /// Whether it is in a cloud.
     pub fn is_hidden(&self) -> bool {
         self.depth_m > 0.0
     }
 
-    /// Luminous intensity along a way (east, north, up): of a cloud's base by Lambert's law, below it.
+    /// Returns the luminous intensity along a direction (east, north, up), cd. A cloud's base sends light by Lambert's
+    /// law, downwards only.
     pub fn intensity_cd(&self, way: DVec3) -> f64 {
         if self.is_hidden() {
             return self.flux_lm * self.down_share / PI * (-way.normalize_or(DVec3::Z).z).max(0.0);
@@ -59,9 +60,9 @@ impl FlashSources {
 }
 
 impl Strike {
-    /// Where its light comes from on the mean of a span. The base of a cloud of height H lets (1 - d/H) of the light of
-    /// a source d above it through, and its top the rest: droplets absorb hardly any, so light wanders about until it
-    /// gets out (gambler's ruin).
+    /// Returns the sources of its light, averaged over a span. A cloud of height H lets (1 - d/H) of the light of a
+    /// source d above its base out through the base, and the rest through the top. Droplets absorb hardly any light, so
+    /// it wanders until it leaves the cloud (gambler's ruin).
     pub fn sources(&self, span: &Span, course: Course) -> FlashSources {
         let mut sources = FlashSources::default();
         let ends = [self.channel.points_m[0], self.channel.end_m()];
@@ -105,7 +106,7 @@ impl Strike {
         sources
     }
 
-    /// Altitudes between which the open channel is, m.
+    /// Returns the range of altitudes of the open channel, m.
     fn open_altitudes(&self, base_m: f64) -> (f64, f64) {
         let ends = self.channel.ways().flatten().map(|p| self.altitude_m(*p));
         let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));

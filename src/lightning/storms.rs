@@ -1,4 +1,4 @@
-//! Flashes near a place within a time: those of the weather's cells, of the host's cells, and those that the host
+//! Flashes near a place within a time: from the weather's cells, from the host's cells, and those that the host
 //! triggered.
 
 use glam::{DVec2, DVec3};
@@ -6,15 +6,15 @@ use glam::{DVec2, DVec3};
 use super::{flash::Flash, held::HeldLightning, light::LONGEST_S, schedule::Storm, trigger::FlashTrigger};
 use crate::world::World;
 
-/// Side of the squares of the map of which each has one cell of a thunderstorm, m, and the cell's radius: common sizes
-/// of single cells (Byers and Braham 1949).
+/// Side of the map's squares that each have one cell in a thunderstorm, m, and the cell's radius, m. Both are common
+/// sizes of single cells (Byers and Braham 1949).
 pub(crate) const SQUARE_M: f64 = 20_000.0;
 const RADIUS_M: f64 = 2500.0;
-/// Flashes a minute of a cell where the weather says no more than that there is thunder: 1 to 5 are common (Rakov and
-/// Uman 2003, chapter 2).
+/// Flashes a minute of a cell where the weather has thunder and no rate is set: 1 to 5 are common (Rakov and Uman 2003,
+/// chapter 2).
 const PER_MINUTE: f64 = 3.0;
 
-/// The flashes of a context.
+/// Flashes of a context.
 #[derive(Clone, Copy)]
 pub(crate) struct Storms<'a> {
     pub world: &'a World,
@@ -33,8 +33,8 @@ impl Storms<'_> {
         !(by_host || by_weather && thunders())
     }
 
-    /// Shows `see` the flashes that begin from `from_s` on until `until_s` within `reach_m` of a place of the map, in
-    /// no order, and what triggered them.
+    /// Calls `see` with each flash that begins from `from_s` until `until_s` within `reach_m` of a place of the map,
+    /// and with its trigger if it has one. The order is arbitrary.
     pub fn visit(
         &self,
         (near_m, reach_m): (DVec2, f64),
@@ -94,18 +94,18 @@ impl Storms<'_> {
     }
 
     fn seed(&self, i: i64, j: i64) -> u64 {
-        // A sum: of xored products, (i, j) and (-i, -j) would often be the same.
+        // A sum, because the xor of two products would often be the same for (i, j) and (-i, -j).
         let (i, j) = (i as u64, j as u64);
         let mixed = i.wrapping_mul(0xa076_1d64_78bd_642f).wrapping_add(j.wrapping_mul(0xe703_7ed1_a0b4_28db));
         self.world.seed ^ (mixed ^ (mixed >> 32)).wrapping_mul(0x8ebc_6af0_9c88_c6e3)
     }
 
-    /// Place on the map of a position of the host's world.
+    /// Returns the place on the map of a position in the host's world.
     pub fn on_map(&self, position: DVec3) -> DVec2 {
         self.world.map_at(position)
     }
 
-    /// From when to when the flashes begin that may give light in a span.
+    /// Returns the range of times in which the flashes begin that may give light in a span.
     pub fn begin_within(from_s: f64, until_s: f64) -> (f64, f64) {
         (from_s - LONGEST_S, until_s + super::light::BEFORE_S)
     }

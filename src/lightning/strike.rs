@@ -1,4 +1,4 @@
-//! A flash in its place: its channel in the host's world, what of it clouds hide, and what light it sends from where.
+//! A flash in the host's world: its channel, the part of it that clouds hide, and its light.
 
 use glam::{DMat3, DVec3};
 
@@ -13,17 +13,17 @@ use crate::{
     world::World,
 };
 
-/// Temperature of the cloud's charge from which a flash starts, degrees Celsius (Krehbiel 1986: -10 to -25), and how
-/// fast air cools with height, K/m.
+/// Temperature of the cloud's charge from which a flash starts, degrees Celsius (Krehbiel 1986: -10 to -25), and the
+/// lapse rate of the air, K/m.
 const CHARGE_C: f64 = -12.0;
 const COOLS_K_M: f64 = 6.5e-3;
-/// Least height of that charge over the ground, m.
+/// Least height of that charge above the ground, m.
 const LEAST_M: f64 = 2500.0;
-/// Least depth of it in its cloud, from base and top, m; in a cloud of less than twice that it lies half way up.
+/// Least distance of it from the cloud's base and top, m. In a cloud less than twice as thick it lies half way up.
 const WITHIN_M: f64 = 800.0;
-/// Cover from which a layer of cloud hides a channel inside it.
+/// Least cover with which a layer of cloud hides a channel inside it.
 const HIDES_FROM: f64 = 0.2;
-/// Depth in cloud over which a channel fades by 1/e, m.
+/// Depth in cloud over which a channel fades to 1/e, m.
 const FADES_M: f64 = 60.0;
 
 /// Clouds that hide flashes: altitudes of their lowest base and highest top, m.
@@ -34,7 +34,7 @@ pub(crate) struct CloudSpan {
 }
 
 impl CloudSpan {
-    /// Returns the clouds of a weather that hide flashes, if it has any.
+    /// Returns the clouds of a weather that hide flashes, if there are any.
     pub fn of(c: &Conditions) -> Option<Self> {
         let station = c.air.station_altitude_m;
         let slabs = c.cloud_slabs().filter(|s| s.cover >= HIDES_FROM && s.optical_depth > 5.0);
@@ -53,13 +53,13 @@ impl CloudSpan {
 /// A part of a channel and its light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChannelPart {
-    /// Its ends in the host's world, m.
+    /// Ends in the host's world, m.
     pub ends: [DVec3; 2],
     /// Altitude of its middle, m.
     pub altitude_m: f64,
     /// Luminous flux, lm.
     pub flux_lm: f64,
-    /// Share of it that is not in a cloud.
+    /// Share of it outside clouds.
     pub open: f64,
 }
 
@@ -67,20 +67,20 @@ pub(crate) struct ChannelPart {
 #[derive(Clone, Debug)]
 pub(crate) struct Strike {
     pub flash: Flash,
-    /// In the host's world, m.
+    /// Path in the host's world, m.
     pub channel: Channel,
     pub clouds: Option<CloudSpan>,
-    /// Air at the ground, degrees Celsius.
+    /// Temperature of the air at the ground, degrees Celsius.
     pub temperature_c: f64,
     length_m: f64,
-    /// A place of the host's world, its altitude, and up there.
+    /// A position in the host's world, its altitude (`anchor_m`), and the direction up there.
     anchor: DVec3,
     anchor_m: f64,
     up: DVec3,
 }
 
 impl Strike {
-    /// Puts a flash in its place; `wanted` is where a host wants it.
+    /// Places a flash in the world. `wanted` is the position that a host asks for.
     pub fn new(world: &World, masts: &[DVec3], flash: Flash, wanted: Option<DVec3>) -> Self {
         let conditions = world.timeline.at(flash.time_s);
         let air = &conditions.air;
@@ -90,7 +90,7 @@ impl Strike {
         };
         let anchor = world.position_on_map(flash.place_m, ground_m);
         let local = world.frame.frame_at(anchor);
-        // Of a time that the weather has forgotten only its own clouds are known.
+        // For a time that the weather no longer has, only its own clouds are known.
         let over = world.clouds_over(&conditions, &local, anchor, flash.place_m, flash.time_s).unwrap_or_default();
         let clouds = CloudSpan::of(over.iter().flatten().last().unwrap_or(&conditions));
         let charge_m = air.station_altitude_m + ((air.temperature_c - CHARGE_C) / COOLS_K_M).max(LEAST_M);
@@ -123,7 +123,7 @@ impl Strike {
         Self { flash, channel, clouds, temperature_c, length_m, anchor, anchor_m: ground_m, up }
     }
 
-    /// Where it is said to be, in the host's world: what it struck, or the middle of its way.
+    /// Returns its position in the host's world: what it struck, or the middle of its path.
     pub fn position(&self) -> DVec3 {
         match self.flash.kind {
             FlashKind::ToGround => self.channel.end_m(),
@@ -135,7 +135,7 @@ impl Strike {
         self.anchor_m + (p - self.anchor).dot(self.up)
     }
 
-    /// Shows `see` its parts with their light on the mean of a span.
+    /// Calls `see` with each part and its light, averaged over a span.
     pub fn each_part(&self, span: &Span, course: Course, mut see: impl FnMut(&ChannelPart)) {
         let main = self.channel.points_m.as_slice();
         self.each_of(main, (0.0, 1.0), (1.0, false), (span, course), &mut see);
@@ -179,7 +179,7 @@ impl Strike {
     }
 }
 
-/// Tips of what is tall near a flash: the host's masts, and the tops of its shelters.
+/// Returns the tips of tall objects near a flash: the host's masts, and the tops of its shelters.
 fn tall_near(world: &World, masts: &[DVec3], flash: &Flash, to_enu: &DMat3) -> Vec<Mast> {
     let up = to_enu.transpose() * DVec3::Z;
     let top = |s: &Shelter| {

@@ -5,26 +5,26 @@ use glam::DVec3;
 use super::flash::{FlashKind, MOST_STROKES};
 use crate::error::{Error, Result, check_range};
 
-/// Farthest that a place of the host's world may be from its origin, m.
+/// Largest distance of a place from the origin of the host's world, m.
 const FARTHEST_M: f64 = 1e12;
 
 /// A flash that the host triggers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlashTrigger {
-    /// When its first stroke comes, s of simulation time: not before the present.
+    /// Time of its first stroke, s of simulation time; not before the present.
     pub time_s: f64,
-    /// Where it strikes, in the host's world; a flash in the cloud passes over it.
+    /// Position that it strikes, in the host's world, m. A flash in the cloud passes over it.
     pub position: DVec3,
-    /// Where it goes.
+    /// Kind of the flash.
     pub kind: FlashKind,
-    /// Largest peak current, kA, \[1, 500\]; by chance where there is none.
+    /// Largest peak current, kA, \[1, 500\]; `None` for a random one.
     pub peak_ka: Option<f64>,
-    /// Strokes, 1 to 26; by chance where there is none.
+    /// Number of strokes, 1 to 26; `None` for a random one.
     pub strokes: Option<u32>,
 }
 
 impl FlashTrigger {
-    /// Refuses what is out of range, by name.
+    /// Checks the ranges; an error names the field.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -41,7 +41,7 @@ impl FlashTrigger {
     }
 }
 
-/// Refuses a place that is too far from the origin of the host's world, by name.
+/// Refuses a place that is too far from the origin of the host's world; the error has its `name`.
 pub(super) fn check_place(name: &str, position: DVec3) -> Result<()> {
     if position.is_finite() && position.length() <= FARTHEST_M {
         return Ok(());

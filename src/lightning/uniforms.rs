@@ -1,4 +1,4 @@
-//! Data that the shaders of lightning read.
+//! Uniforms and instances of the lightning shaders.
 
 use glam::{DMat3, DMat4};
 
@@ -16,14 +16,14 @@ pub(super) struct ChannelUniform {
     pub radius: f32,
 }
 
-/// Radius of what shines of a channel, m: photographs show 2 to 10 cm across (Rakov and Uman 2003, section 4.6).
+/// Radius of the luminous channel, m: photographs show diameters of 2 to 10 cm (Rakov and Uman 2003, section 4.6).
 const RADIUS_M: f64 = 0.03;
 
 impl ChannelUniform {
-    /// Creates the block of a picture of `size` pixels.
+    /// Creates the uniforms for a picture of `size` pixels.
     ///
-    /// Rows x, y, w of the clip matrix M take a unit direction d to w (X, Y, 1): the cone over dX dY has the solid
-    /// angle |det M^-1| w^3 dX dY. Parallel rays have no w of their own: a pixel has an area then.
+    /// The rows x, y, w of the clip matrix M take a unit direction d to w (X, Y, 1). The cone over dX dY then has the
+    /// solid angle |det M^-1| w^3 dX dY. For parallel rays w is constant, and a pixel has an area instead.
     pub fn new(clip: &DMat4, size: [u32; 2]) -> Self {
         let rows = [0, 1, 3].map(|i| clip.row(i).truncate());
         let pixels = f64::from(size[0]) * f64::from(size[1]);
@@ -41,15 +41,15 @@ impl ChannelUniform {
     }
 }
 
-/// A part of a channel as the vertex stage reads it, 32 bytes.
+/// A part of a channel as an instance of the vertex stage, 32 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct PartInstance {
-    /// One end, camera-relative, m.
+    /// One end, relative to the camera, m.
     pub from: [f32; 3],
-    /// Luminous intensity with the exposure on it.
+    /// Luminous intensity times exposure, cd.
     pub intensity: f32,
-    /// The other.
+    /// Other end, relative to the camera, m.
     pub to: [f32; 3],
     pub pad: f32,
 }

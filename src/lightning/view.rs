@@ -1,4 +1,4 @@
-//! Flashes as a view draws them: lines of light in the layer before the picture, and their glow in the composition.
+//! Flashes of a view: lines of light in the layer in front of the picture, and their glow in the composition.
 
 use std::f64::consts::PI;
 
@@ -30,20 +30,21 @@ use crate::{
 
 /// Exposure of a frame without a predecessor, s.
 const FRAME_S: f64 = 1.0 / 60.0;
-/// Longest time between two frames whose light the second one has: after a longer one the host has jumped, s.
+/// Longest time between two frames for which the second has the light of that time, s. After a longer one the host has
+/// jumped.
 const LONGEST_FRAME_S: f64 = 0.5;
-/// Illuminance at the eye below which a flash is not drawn: lux, and over that of the ground by all other light.
+/// Illuminance at the eye below which a flash is not drawn: in lux, and as a share of all other light on the ground.
 const FAINTEST_LUX: f64 = 1e-7;
 const FAINTEST_SHARE: f64 = 1e-5;
 
-/// The time whose light a frame has.
+/// Time whose light a frame has.
 #[derive(Clone, Copy)]
 struct FrameTime {
     frame_id: u64,
     span: Span,
 }
 
-/// A flash that shines, as it stands in the world under what the host had set.
+/// A flash that shines, placed in the world under the host's settings.
 struct Shining {
     id: u64,
     revisions: [u64; 2],
@@ -59,14 +60,14 @@ struct Lit {
     count: usize,
     eye: DVec3,
     eye_m: f64,
-    /// Whether any of an open channel shines.
+    /// Whether a part of an open channel shines.
     has_line: bool,
 }
 
-/// The flashes of a view.
+/// Flashes of a view.
 #[derive(Default)]
 pub(crate) struct LightningView {
-    /// Whether there may be flashes.
+    /// Whether flashes are possible.
     storms: bool,
     frame: Option<FrameTime>,
     shining: Vec<Shining>,
@@ -75,14 +76,14 @@ pub(crate) struct LightningView {
     passes: Option<Box<ChannelPass>>,
     parts: Vec<PartInstance>,
     layer: Option<(wgpu::Texture, wgpu::TextureView)>,
-    /// The layer to draw into, and whether something lies in it already.
+    /// Layer to draw into, and whether it has content already.
     target: Option<(wgpu::TextureView, bool)>,
-    /// The light of the last draw.
+    /// Light of the last draw.
     shown: FlashBlock,
 }
 
-/// The time whose light a frame has: from the frame before it on; of one that follows none, a sixtieth of a second.
-/// While time stands, frames have the same.
+/// Returns the time whose light a frame has: since the frame before, or a sixtieth of a second without a predecessor.
+/// While time stands still, frames keep the same time.
 fn frame_time(last_frame: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: bool) -> FrameTime {
     let alone = Span { from_s: now_s - FRAME_S, until_s: now_s };
     let span = match last_frame {
@@ -96,7 +97,7 @@ fn frame_time(last_frame: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure:
 }
 
 impl LightningView {
-    /// Keeps those that shine in a span.
+    /// Finds the flashes that shine in a span, and drops the others.
     fn find(&mut self, storms: &Storms<'_>, now: &SceneMoment<'_>, span: &Span, course: Course) {
         let near = DVec2::from_array(now.scene.map_m);
         let revisions = [storms.held.revision, storms.world.surroundings_revision];
@@ -119,7 +120,7 @@ impl LightningView {
         self.shining.retain(|s| s.is_used);
     }
 
-    /// Finds the places that the light comes from, the brightest first, and makes lamps of them.
+    /// Finds the sources of light, the brightest first, and makes them the moment's lamps.
     fn light(&mut self, now: &SceneMoment<'_>, span: Span, course: Course) {
         self.found.clear();
         let taken_per_m = TAKES * now.scene.conditions.extinction_per_m;
@@ -159,7 +160,7 @@ impl LightningView {
             };
         }
         self.lit = Some(lit);
-        // A moment is worked out anew for each call.
+        // Each call has a new moment, so this is not set yet.
         let _ = now.flash.set(light);
     }
 
@@ -185,7 +186,7 @@ impl LightningView {
         made.1.clone()
     }
 
-    /// The parts of all open channels, camera-relative.
+    /// Gathers the parts of all open channels, relative to the camera.
     fn gather_parts(&mut self, context: &DrawContext<'_>) {
         self.parts.clear();
         let Some(lit) = &self.lit else { return };
@@ -203,8 +204,8 @@ impl LightningView {
     }
 }
 
-/// Whether a flash is drawn for viewers whom flicker may harm: of those near the square of the map that the camera is
-/// over.
+/// Whether a flash is drawn under the limit on flicker. The choice is among all flashes near the map's square below the
+/// camera.
 fn kept(storms: &Storms<'_>, near_m: DVec2, time_s: f64) -> bool {
     let middle = ((near_m / SQUARE_M).floor() + 0.5) * SQUARE_M;
     let mut times = Vec::new();
@@ -215,7 +216,7 @@ fn kept(storms: &Storms<'_>, near_m: DVec2, time_s: f64) -> bool {
     limit::is_drawn(time_s, &times)
 }
 
-/// Returns the scattering coefficient of the air about a camera, 1/m: air and haze, fog inside of it, and what falls
+/// Returns the scattering coefficient of the air around a camera, 1/m: air, haze, fog at its height, and precipitation
 /// below the clouds.
 fn scattering_per_m(c: &Conditions, altitude_m: f64) -> f64 {
     let height = altitude_m - c.air.station_altitude_m;
@@ -228,10 +229,10 @@ fn scattering_per_m(c: &Conditions, altitude_m: f64) -> f64 {
 }
 
 impl Lit {
-    /// Creates the block that the composition's glow reads.
+    /// Creates the uniforms of the composition's glow.
     fn block(&self, c: &Conditions) -> FlashBlock {
         let clouds = CloudSpan::of(c);
-        // From below the base is seen, from above the tops; inside, whichever is nearer.
+        // From below the base is visible, from above the tops; inside a cloud the nearer of the two is taken.
         let from_below = clouds.is_none_or(|s| self.eye_m < 0.5 * (s.base_m + s.top_m));
         let face_m = clouds.map_or(0.0, |s| if from_below { s.base_m } else { s.top_m });
         let cover = c.cloud_slabs().fold(1.0, |clear, s| clear * (1.0 - s.cover));
@@ -268,7 +269,8 @@ impl DrawnEffect for LightningView {
         Exchange { needs: &[Output::Rain, Output::Snow], ..Exchange::NONE }
     }
 
-    /// Finds the flashes that shine in a frame, and says so to what they light ([`SceneMoment::flash_lamps`]).
+    /// Finds the flashes that shine in a frame, and makes them known to the surfaces that they light
+    /// ([`SceneMoment::flash_lamps`]).
     fn gather(&mut self, context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
         let (now, held) = (context.now, context.held.of::<HeldLightning>()?);
         let time = frame_time(self.frame, context.frame.frame_id, now.time_s, context.frame.is_pure());
@@ -304,7 +306,7 @@ impl DrawnEffect for LightningView {
         let has_line = lit.has_line && context.stages.has(Stages::PARTICLES);
         self.shown = lit.block(&context.now.scene.conditions);
         if has_line {
-            // What falls has a layer already, into which the lines are drawn after it.
+            // Precipitation has a layer already; the lines are drawn into it afterwards.
             let over = given.before.is_some();
             let view = given.before.clone().unwrap_or_else(|| self.layer(context.device, context.picture()));
             to.set_texture(Texture::Before, Some(view.clone()));
@@ -314,7 +316,7 @@ impl DrawnEffect for LightningView {
         Ok(to)
     }
 
-    /// Draws the open channels into the layer before the picture.
+    /// Draws the open channels into the layer in front of the picture.
     fn draw(
         &mut self,
         context: &DrawContext<'_>,
@@ -356,7 +358,7 @@ mod tests {
         // Another call of the same frame, and a frame at the same time.
         assert_eq!(span(Some(second), 2, 10.033, false).span, second.span);
         assert_eq!(span(Some(second), 3, 10.033, false).span, second.span);
-        // A jump, a cut, and time that goes back begin anew.
+        // A jump, a cut, and time that goes back start a new span.
         for (now, pure) in [(11.0, false), (10.05, true), (9.0, false)] {
             let s = span(Some(second), 3, now, pure).span;
             assert!((s.from_s - (now - FRAME_S)).abs() < 1e-12 && s.until_s == now, "{now} {s:?}");

@@ -1,4 +1,4 @@
-//! Light on the small things about a camera: the sky and the ground, each by its mean, and the sun or moon.
+//! Light on small things around a camera, such as drops and flakes: mean sky, mean ground, and the sun or moon.
 
 use std::f64::consts::PI;
 
@@ -6,21 +6,21 @@ use glam::DVec3;
 
 use super::scene::Scene;
 
-/// Light on the things that fall about a camera, cd/m^2 and lux or these times an exposure.
+/// Light on the things that fall around a camera, in cd/m^2 and lux, or in these times an exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightAround {
     /// Mean radiance of the sky.
     pub above: DVec3,
-    /// That of the ground.
+    /// Mean radiance of the ground.
     pub below: DVec3,
-    /// Irradiance of the sun or moon.
+    /// Irradiance by the sun or the moon, whichever is brighter.
     pub sun: DVec3,
-    /// Where it stands: east, north, up.
+    /// Unit vector towards it, (east, north, up).
     pub to_sun: DVec3,
 }
 
 impl LightAround {
-    /// Creates the light of a scene: the mean of its sky and of its ground. In steady rain that is within 1 % of the
+    /// Creates the light of a scene from the mean of its sky and of its ground. In steady rain it is within 1 % of the
     /// light of the veil, so that no ring shows where the veil takes over.
     pub fn of(scene: &Scene) -> Self {
         let light = scene.brighter();
@@ -37,7 +37,7 @@ impl LightAround {
         }
     }
 
-    /// In the units of a picture that is exposed so.
+    /// Multiplies all light by `exposure`, for a picture with that exposure.
     pub fn exposed(self, exposure: f64) -> Self {
         Self { above: self.above * exposure, below: self.below * exposure, sun: self.sun * exposure, ..self }
     }

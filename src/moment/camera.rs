@@ -16,29 +16,29 @@ use crate::{
     wind::{Carrying, Detour, WindVolume},
 };
 
-/// State at a camera at a time: every effect draws from it. Its scene is worked out once for all calls of a frame.
+/// State at a camera at a time, from which every effect draws. The scene is computed once for all calls of a frame.
 pub(crate) struct SceneMoment<'a> {
     /// Place, lights, air and the weather there.
     pub scene: Scene,
-    /// The camera in the host's world, m.
+    /// Position of the camera in the host's world, m.
     pub eye: DVec3,
     /// Simulation time, s.
     pub time_s: f64,
-    /// Seed of everything that chance decides.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// From luminance to the display.
+    /// Tone curve from luminance to the display.
     pub tone: ToneCurve,
-    /// Exposure of frames that bring none.
+    /// Exposure of frames that give none.
     pub exposure: Exposure,
     /// Radius of the planet's ground, m.
     pub planet_radius_m: f64,
     /// The weather at other places and times.
     pub weather: WeatherOver<'a>,
-    /// That at the camera, with what falls in its region.
+    /// The weather at the camera, with the precipitation of its region.
     pub here: Conditions,
-    /// Extinction of what falls outside of all regions.
+    /// Extinction of the precipitation outside all regions.
     pub falling: FallingLayer,
-    /// Shelters, which keep rain off: the host's boxes, and its maps if there are any.
+    /// Shelters, which keep rain off: the host's boxes, and its occluder maps if there are any.
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
     /// The host's lamps.
@@ -46,14 +46,14 @@ pub(crate) struct SceneMoment<'a> {
     /// The wind that varies in space: a host's grid, or a solved field.
     pub wind_volume: Option<&'a WindVolume>,
     pub wind_texture: &'a WindTexture,
-    /// How that leads the patches of the weather's low layer, where they show it.
+    /// Detour that this wind gives the patches of the weather's low layer; `None` where no patches show it.
     pub detour: Option<Detour>,
     pub carried: OnceCell<Carrying<'a>>,
-    /// Light of flashes of lightning in this frame, once it is known.
+    /// Light of lightning flashes in this frame, once it is known.
     pub flash: OnceCell<FlashLight>,
 }
 
-/// Light of flashes of lightning: the places that it comes from.
+/// Light of lightning flashes, as the lamps that it comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FlashLight {
     pub lamps: [FlashLamp; MAX_FLASH_LAMPS],
@@ -61,10 +61,10 @@ pub(crate) struct FlashLight {
 }
 
 impl<'a> SceneMoment<'a> {
-    /// The wind that carries the air, up to now.
+    /// Returns the wind that carries the air, from time 0 until now.
     ///
     /// # Errors
-    /// For a time that the weather does not know.
+    /// As [`WeatherOver::check_time`].
     pub fn carrying(&self) -> Result<&Carrying<'a>> {
         if let Some(carrying) = self.carried.get() {
             return Ok(carrying);
@@ -73,37 +73,39 @@ impl<'a> SceneMoment<'a> {
         Ok(self.carried.get_or_init(|| carrying))
     }
 
-    /// The wind at a place of the host's world now, m/s (east, north, up), where the weather's is `weathers`: what
-    /// varies in space replaces it there, or is added to it.
+    /// Returns the wind now at a position of the host's world, m/s (east, north, up). `weathers` is the weather's wind
+    /// there; a wind that varies in space replaces it or is added to it.
     pub fn wind_about(&self, position: DVec3, weathers: DVec3) -> DVec3 {
         self.wind_volume.and_then(|volume| volume.wind(position, weathers)).unwrap_or(weathers)
     }
 
-    /// The wind that varies in space as shaders read it (`shaders/surroundings/wind.wgsl`), and where the camera is in
-    /// it; none where the weather's wind blows everywhere, and then the texture is one that nothing reads.
+    /// Returns the texture of the wind that varies in space, which shaders read (`shaders/surroundings/wind.wgsl`), and
+    /// the camera's mapping into it. `None` where the weather's wind blows everywhere: no shader then reads the
+    /// texture.
     pub fn wind_texture(&self, device: &Device) -> (WindView, Option<WindMap>) {
         let map = self.wind_volume.map(|volume| WindMap::new(volume, self.eye));
         (self.wind_texture.view(device, self.wind_volume), map)
     }
 
-    /// Light of flashes in this frame, as lamps: position relative to the camera, luminous flux, and whether it shines
-    /// inside a cloud.
+    /// Returns the light of the flashes in this frame, as lamps: position relative to the camera, luminous flux, and
+    /// whether the lamp is inside a cloud.
     pub fn flash_lamps(&self) -> &[FlashLamp] {
         self.flash.get().map_or(&[], |flash| &flash.lamps[..flash.count])
     }
 
-    /// Whether any lamp shines, of the host's or of a flash.
+    /// Whether any lamp shines: one of the host's or a flash.
     pub fn has_lamps(&self) -> bool {
         !(self.lamps.is_empty() && self.flash_lamps().is_empty())
     }
 
-    /// Whether any map of the host's shows anything.
+    /// Whether any occluder map of the host shows a surface.
     pub fn has_maps(&self) -> bool {
         self.maps.is_some_and(|m| m.ranges().is_some())
     }
 
-    /// The host's shelters, occluder maps and lamps as the camera needs them. `reach`: fall speed of the slowest of
-    /// what is drawn, m/s, and how far off any of it is, m; `exposure`: what it is exposed by.
+    /// Returns the host's shelters, occluder maps and lamps as the camera needs them. `reach`: fall speed of the
+    /// slowest particles drawn, m/s, and the largest distance at which they are drawn, m. `exposure`: exposure of the
+    /// picture.
     ///
     /// # Errors
     /// As [`SceneMoment::carrying`].

@@ -1,6 +1,6 @@
 //! State at a camera's place at a time: lights, air, clouds overhead, and the light on the ground.
 //!
-//! A context works it out ([`crate::context::Context::scene_at`]); every effect reads it.
+//! A context computes it ([`crate::context::Context::scene_at`]); every effect reads it.
 
 mod around;
 mod camera;

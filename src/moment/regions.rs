@@ -1,5 +1,4 @@
-//! The weather over all places and times of a context: its timeline, its wind, and the regions that have rain of their
-//! own.
+//! The weather over all places and times of a context: its timeline, its wind, and the regions with rain of their own.
 
 use std::sync::Arc;
 
@@ -18,18 +17,18 @@ use crate::{
     wind::{Blowing, Carrying, LayerDrifts, WindOver},
 };
 
-/// A region with rain of its own, and what is known of it.
+/// A region with rain of its own, and the displacement of the wind that belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Region {
     pub area: RainArea,
-    /// How far the wind had carried the air at the area's own time, m east and north: kept from when that time is past,
-    /// for the timeline forgets.
+    /// Distance over which the wind had carried the air at the area's own time, m east and north. Stored once that time
+    /// is past, because the timeline forgets the past.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub carried_m: Option<[f64; 2]>,
 }
 
-/// Height above the station for which the wind of a cloud that rains stands, m: the top of the surface layer, whose
-/// wind does not turn.
+/// Height above the station of the wind that moves a raining cloud, m: the top of the surface layer, in which the wind
+/// does not turn.
 const CLOUD_WIND_M: f64 = 100.0;
 
 /// The weather of a context over places and times.
@@ -38,22 +37,22 @@ pub(crate) struct WeatherOver<'a> {
     pub world: &'a WorldFrame,
     pub wind: WindOver<'a>,
     pub regions: &'a [Region],
-    /// Where over the ground layers of cloud stand, where the host says so.
+    /// The host's map of local cloud cover, if it has set one.
     pub cloud_map: Option<&'a Arc<CloudMap>>,
 }
 
 impl<'a> WeatherOver<'a> {
-    /// The weathers and the changes between them.
+    /// Returns the weathers and the transitions between them.
     pub fn timeline(&self) -> &'a Timeline {
         self.wind.timeline
     }
 
-    /// The weather at a time outside of all regions; before what the timeline knows, that of its first moment.
+    /// Returns the weather at a time outside all regions. Before the first known time it is the weather of that time.
     pub fn known(&self, time_s: f64) -> Conditions {
         self.timeline().at(time_s)
     }
 
-    /// Refuses a time of which the weather is not known.
+    /// Checks that the weather is known at a time.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if it is not finite, out of range, or forgotten.
@@ -66,7 +65,7 @@ impl<'a> WeatherOver<'a> {
         Ok(())
     }
 
-    /// The wind that carries the air, up to a moment.
+    /// Returns the wind that carries the air, from time 0 to a time.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -75,7 +74,7 @@ impl<'a> WeatherOver<'a> {
         Ok(self.wind.carrying_until(time_s))
     }
 
-    /// The wind at a moment.
+    /// Returns the wind at a time.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -84,7 +83,7 @@ impl<'a> WeatherOver<'a> {
         Ok(self.wind.at(time_s))
     }
 
-    /// How far the wind has carried the layers of cloud, up to a moment.
+    /// Returns how far the wind has carried the cloud layers by a time.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -93,8 +92,8 @@ impl<'a> WeatherOver<'a> {
         Ok(self.wind.layers_at(time_s))
     }
 
-    /// How far the wind had carried the air at the own time of a region, m east and north: nowhere at time 0, from
-    /// which it is counted, whatever the timeline has forgotten since.
+    /// Returns how far the wind had carried the air by a region's own time, m east and north. It is 0 at time 0, where
+    /// the count begins, whatever the timeline has forgotten since.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -102,7 +101,7 @@ impl<'a> WeatherOver<'a> {
         if at_s == 0.0 { Ok([0.0; 2]) } else { Ok(self.carrying_until(at_s)?.displacement_m().truncate().to_array()) }
     }
 
-    /// The regions at a time, in their order; `c` is the weather then.
+    /// Returns the regions at a time as shafts, in their order; `c` is the weather at that time.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -130,14 +129,14 @@ impl<'a> WeatherOver<'a> {
             let center = start + to_world * moved.extend(0.0);
             let sizes = DropSizes::new(&kept.area.falling(), factor);
             let median = sizes.speed_m_s(sizes.median_volume_diameter_mm());
-            // The drops fall through air that goes with the mean of the winds up there and at 10 m.
+            // Drops fall through air that moves with the mean of the winds at the cloud and at 10 m.
             let column = cloud - wind * (0.5 * (1.0 + shear));
             let altitude = self.world.frame_at(center).place.altitude_m;
             Some(Shaft::new(&kept.area, i as u32, (center, altitude), (median, column), ground_m))
         }))
     }
 
-    /// The drops of rain and drizzle in the air of a place; `c` is the weather then.
+    /// Returns the sizes of rain and drizzle drops in the air at a position; `c` is the weather at that time.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -162,8 +161,8 @@ impl<'a> WeatherOver<'a> {
         Ok(sizes)
     }
 
-    /// The weather `c` of a time with the rates of rain and drizzle that regions make at a place, and their extinction
-    /// in place of that of as much of its own rain.
+    /// Returns the weather `c` of a time with the rates of rain and drizzle that regions make at a place. The
+    /// extinction of the regions' drops replaces that of the share of the weather's own rain that they cover.
     pub fn at_place(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         if self.regions.is_empty() {
             return c;
@@ -179,8 +178,8 @@ impl<'a> WeatherOver<'a> {
         with_falling(c, falling)
     }
 
-    /// The weather `c` of a time as it is at a place: what falls is what falls there, in regions as by
-    /// [`WeatherOver::at_place`], and the weather's own below the cloud that it falls from alone.
+    /// Returns the weather `c` of a time as it is at a place. The weather's own precipitation falls only below its
+    /// cloud; the regions' rain is that of [`WeatherOver::at_place`].
     pub fn falling_at(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         let altitude_m = self.world.frame_at(position).place.altitude_m;
         let own = if altitude_m > c.falling_top_m() {
@@ -202,16 +201,16 @@ impl<'a> WeatherOver<'a> {
     }
 }
 
-/// The weather with something else that falls, and the total extinction to match.
+/// Returns the weather with `falling` in place of its precipitation, and the total extinction to match.
 fn with_falling(c: Conditions, falling: Falling) -> Conditions {
     let changed = falling.extinction_per_m() - c.precipitation.extinction_per_m();
-    // The least is the clear air's, whatever rounding leaves.
+    // Rounding must not bring the extinction below that of clear air.
     let extinction_per_m = (c.extinction_per_m + changed).max(c.air.rayleigh_extinction_per_m);
     Conditions { extinction_per_m, precipitation: falling, ..c }
 }
 
-/// Rates and extinction of drops where `region` lies with a share over `falling`, of which the share `begun` has left
-/// its cloud.
+/// Returns rates and extinction of drops where `region` covers `falling` by `share`. Of the region's rain, the share
+/// `begun` has already left its cloud.
 fn covered(falling: &Falling, region: &Falling, share: f64, begun: f64) -> Falling {
     let (kept, come) = (1.0 - share, share * begun);
     let rain = falling.rain_mm_h * kept + region.rain_mm_h * come;

@@ -1,4 +1,4 @@
-//! A texture of one channel of noise on the CPU: its bytes with mip levels, and what they say about cover.
+//! One-channel noise texture on the CPU: its bytes with mip levels, and the cover that clouds cut out of it have.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use super::reference::noise_at;
 use super::settings::{NoiseSettings, axes, levels_of, size_of_level, texels};
 use crate::error::{Error, Result, Status, check_range};
 
-/// A plane or a volume of bytes, one a texel, with mip levels.
+/// Two- or three-dimensional image with one byte per texel and mip levels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoiseImage {
     size: [u32; 3],
@@ -15,13 +15,14 @@ pub struct NoiseImage {
 }
 
 impl NoiseImage {
-    /// Noise in a texture of `size` texels: width, height and depth, powers of two from 8 on; a depth of 1 is a plane.
-    /// With a full chain of mip levels. The same bytes on every machine.
+    /// Computes noise in a texture of `size` texels, with a full chain of mip levels. Width, height and depth are
+    /// powers of two, at least 8; a depth of 1 makes a two-dimensional texture. The bytes are the same on every
+    /// machine.
     ///
     /// A volume of 128^3 takes about a second; [`super::NoiseTexture`] draws it faster.
     ///
     /// # Errors
-    /// Those of [`NoiseSettings::check`]; [`Status::OutOfMemory`].
+    /// The errors of [`NoiseSettings::check`]; [`Status::OutOfMemory`].
     pub fn generate(size: [u32; 3], settings: &NoiseSettings) -> Result<Self> {
         settings.check(size)?;
         let [width, height, depth] = size;
@@ -36,11 +37,12 @@ impl NoiseImage {
         Self::from_texels(size, bytes)
     }
 
-    /// An image of these bytes, x first, then y, then z, with a full chain of mip levels: each the mean of the 2 x 2 or
-    /// 2 x 2 x 2 texels above it. Where an edge has an odd number of texels its last one is left out.
+    /// Creates an image of these bytes, x first, then y, then z, with a full chain of mip levels. Each texel of a level
+    /// is the mean of 2 x 2 or 2 x 2 x 2 texels of the level above. Where an edge has an odd number of texels, its last
+    /// one is left out.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] where there are not as many bytes as texels; [`Status::OutOfMemory`].
+    /// [`Status::InvalidArgument`] if the number of bytes is not that of texels; [`Status::OutOfMemory`].
     pub fn from_texels(size: [u32; 3], bytes: Vec<u8>) -> Result<Self> {
         if texels(size) != bytes.len() as u64 || bytes.is_empty() {
             return Err(Error::range("bytes", &format!("one for each of {size:?} texels"), bytes.len()));
@@ -53,34 +55,35 @@ impl NoiseImage {
         Ok(Self { size, levels })
     }
 
-    /// An image as a file describes it.
+    /// Creates an image from the size and levels that a file gives.
     pub(super) fn of_levels(size: [u32; 3], levels: Vec<Vec<u8>>) -> Self {
         Self { size, levels }
     }
 
-    /// Width, height and depth of level 0, texels; a depth of 1 is a plane.
+    /// Returns width, height and depth of level 0, texels; a depth of 1 means two dimensions.
     pub fn size(&self) -> [u32; 3] {
         self.size
     }
 
-    /// Bytes of each mip level, level 0 first; x first, then y, then z.
+    /// Returns the bytes of each mip level, level 0 first; x first, then y, then z.
     pub fn levels(&self) -> &[Vec<u8>] {
         &self.levels
     }
 
-    /// Width, height and depth of a mip level, texels.
+    /// Returns width, height and depth of a mip level, texels.
     pub fn size_of_level(&self, level: u32) -> [u32; 3] {
         size_of_level(self.size, level)
     }
 
-    /// One slice of level 0 for a look at it: `width` x `height` bytes, rows from the top; `None` beyond the depth.
+    /// Returns one slice of level 0 for inspection: `width` x `height` bytes, rows from the top; `None` beyond the
+    /// depth.
     pub fn preview(&self, slice: u32) -> Option<&[u8]> {
         let area = self.size[0] as usize * self.size[1] as usize;
         self.levels[0].get(slice as usize * area..)?.get(..area)
     }
 
-    /// The image with the opacity of its texels in their place and new mip levels of it, so that a far cloud is as
-    /// dense in the mean as a near one.
+    /// Returns an image with the opacities of the texels in place of the noise, and with new mip levels computed from
+    /// them. A distant cloud is then on the mean as dense as a near one.
     ///
     /// # Errors
     /// [`Status::OutOfMemory`].
@@ -91,15 +94,16 @@ impl NoiseImage {
         Self::from_texels(self.size, bytes)
     }
 
-    /// Share of the texels of level 0 above `cutoff`: the cover that a cloud cut out there has, 0 to 1.
+    /// Returns the share of the texels of level 0 above `cutoff`, 0 to 1. It is the cover of a cloud cut out at that
+    /// value.
     pub fn cover(&self, cutoff: f64) -> f64 {
         let above = self.levels[0].iter().filter(|n| f64::from(**n) / 255.0 > cutoff).count();
         above as f64 / self.levels[0].len() as f64
     }
 
-    /// The cutoff that gives `cover`, 0 to 1, as near as bytes can: [`NoiseImage::cover`] differs by at most the share
-    /// of the texels at one level of 255. Between levels the cutoff follows as texels filtered by a sampler would fill
-    /// them.
+    /// Returns the cutoff that gives `cover`, 0 to 1, as closely as bytes allow: [`NoiseImage::cover`] differs by at
+    /// most the share of the texels at one of the 255 levels. Between levels the cutoff is interpolated as if filtered
+    /// texels filled them evenly.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a cover outside \[0, 1\].
@@ -112,7 +116,7 @@ impl NoiseImage {
         for (level, count) in counts.iter().enumerate().rev().filter(|(_, count)| **count > 0) {
             let count = *count as f64;
             if above + count >= wanted {
-                // A level stands for what rounds to it.
+                // A level stands for all values that round to it.
                 let cutoff = level as f64 + 0.5 - (wanted - above) / count;
                 return Ok((cutoff / 255.0).clamp(0.0, 1.0));
             }
@@ -122,12 +126,12 @@ impl NoiseImage {
     }
 }
 
-/// A value in [0, 1] as a byte.
+/// Converts a value in [0, 1] to a byte.
 fn byte_of(value: f64) -> u8 {
     (value * 255.0).round() as u8
 }
 
-/// Room for so many bytes.
+/// Returns an empty vector with room for this many bytes.
 pub(super) fn empty(bytes: u64) -> Result<Vec<u8>> {
     let full = || Error::new(Status::OutOfMemory, format!("there are no {bytes} bytes of memory for noise"));
     let mut room = Vec::new();
@@ -135,7 +139,8 @@ pub(super) fn empty(bytes: u64) -> Result<Vec<u8>> {
     Ok(room)
 }
 
-/// The mip level below one of `size` texels: means in whole bytes, a half rounded up (`shaders/noise/shrink.wgsl`).
+/// Returns the mip level below one of `size` texels: means in whole bytes, halves rounded up
+/// (`shaders/noise/shrink.wgsl`).
 fn halved(finer: &[u8], size: [u32; 3]) -> Result<Vec<u8>> {
     let [width, height, depth] = size_of_level(size, 1);
     let texel = |x: u32, y: u32, z: u32| {

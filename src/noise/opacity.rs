@@ -1,14 +1,14 @@
-//! From noise to opacity: cover by a threshold, density by an exponential (Tarantilis 2004, sections III.C.1 and
-//! III.B.4.d).
+//! Conversion of noise to opacity: cover by a threshold, density by an exponential (Tarantilis 2004, sections III.C.1
+//! and III.B.4.d).
 
 use crate::error::{Error, Result, check_range};
 
-/// Turns noise n into the opacity of a cloud, b (1 - exp(-k max(0, n - c))): nothing up to the cutoff c, then Beer and
-/// Lambert's law with the noise over it as the cloud's thickness.
+/// Conversion of noise n to the opacity of a cloud, b (1 - exp(-k max(0, n - c))). Up to the cutoff c the sky is clear.
+/// Above it the law of Beer and Lambert applies, with the excess of the noise as the cloud's thickness.
 ///
-/// The source prints two forms whose density does not mean the same. In 1 - d^(alpha - c) the exponent counts levels of
-/// 8 bits, so that k = -255 ln d; in b (1 - E^(n - c)) it counts from 0 to 1, so that k = -ln E. With E = d^255 they
-/// agree.
+/// The source prints two forms, in which the density has different meanings. In 1 - d^(alpha - c) the exponent is in
+/// levels of 8 bits, so that k = -255 ln d. In b (1 - E^(n - c)) it is from 0 to 1, so that k = -ln E. The two agree
+/// for E = d^255.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudFunction {
     cutoff: f64,
@@ -17,8 +17,8 @@ pub struct CloudFunction {
 }
 
 impl CloudFunction {
-    /// By the density d of the source's planes, 0 to 1: 0.99 gives soft veils, 0.95 firm clouds, 0 edges without any
-    /// softness, 1 nothing. `cutoff` is in \[0, 1\]; a greater one gives less cloud.
+    /// Creates the function from the density d of the source's two-dimensional clouds, 0 to 1: 0.99 gives soft veils,
+    /// 0.95 firm clouds, 0 completely hard edges, 1 no cloud. `cutoff` is in \[0, 1\]; a greater one gives less cloud.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a cutoff or density outside \[0, 1\].
@@ -33,8 +33,8 @@ impl CloudFunction {
         Self { cutoff, thickness: 255.0 * optical_thickness(density), bias: 1.0 }
     }
 
-    /// By the exponent E and the bias b of the source's dome, both in \[0, 1\]. An exponent of 0 gives edges without
-    /// any softness, and a clear sky stays clear with it.
+    /// Creates the function from the exponent E and the bias b of the source's cloud dome, both in \[0, 1\]. An
+    /// exponent of 0 gives completely hard edges; the clear sky stays clear even then.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a value outside \[0, 1\].
@@ -43,8 +43,8 @@ impl CloudFunction {
         Self::new(cutoff, optical_thickness(exponent), bias)
     }
 
-    /// By the optical thickness k of noise that exceeds the cutoff by 1; at least 0, and infinite for edges without any
-    /// softness.
+    /// Creates the function from the optical thickness k of noise that exceeds the cutoff by 1. It is at least 0;
+    /// infinity gives completely hard edges.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a cutoff or bias outside \[0, 1\] or a thickness below 0.
@@ -57,30 +57,30 @@ impl CloudFunction {
         Ok(Self { cutoff, thickness, bias })
     }
 
-    /// Noise up to this is clear sky.
+    /// Returns the cutoff: noise up to this value is clear sky.
     pub fn cutoff(&self) -> f64 {
         self.cutoff
     }
 
-    /// Optical thickness of noise that exceeds the cutoff by 1.
+    /// Returns the optical thickness of noise that exceeds the cutoff by 1.
     pub fn thickness(&self) -> f64 {
         self.thickness
     }
 
-    /// Greatest opacity.
+    /// Returns the bias: the greatest opacity.
     pub fn bias(&self) -> f64 {
         self.bias
     }
 
-    /// Opacity of noise in \[0, 1\]: 0 up to the cutoff, then rising, never above the bias.
+    /// Returns the opacity of noise in \[0, 1\]: 0 up to the cutoff, then rising, never above the bias.
     pub fn opacity(&self, noise: f64) -> f64 {
         let excess = noise - self.cutoff;
-        // An infinite thickness of nothing is nothing.
+        // Avoids infinity times 0 at the cutoff.
         if excess > 0.0 { self.bias * -libm::expm1(-self.thickness * excess) } else { 0.0 }
     }
 }
 
-/// -ln x for x in [0, 1], without a minus before the 0.
+/// Returns -ln x for x in [0, 1], without a negative zero.
 fn optical_thickness(x: f64) -> f64 {
     if x == 1.0 { 0.0 } else { -libm::log(x) }
 }

@@ -1,14 +1,14 @@
-//! Noise in f64 at any point: the twin of `shaders/noise/lattice.wgsl` and `slice.wgsl`.
+//! Noise in f64 at any point, the reference for `shaders/noise/lattice.wgsl` and `slice.wgsl`.
 
 use glam::{DVec2, DVec3, UVec2, UVec3, Vec2Swizzles as _};
 
 use super::settings::{NoiseKind, NoiseSettings, axes};
 
-/// Mean of cellular noise over the plane and over space, within 2e-4: what octaves too fine for a texture add. Summed
-/// over 4 million points.
+/// Means of cellular noise in two and in three dimensions, within 2e-4: the contribution of octaves too fine for a
+/// texture. From a sum over 4 million points.
 const CELLULAR_MEANS: [f64; 2] = [0.5705, 0.4796];
 
-/// Scrambles 32 bits, one to one (Wellons 2018, *Prospecting for Hash Functions*, lowbias32).
+/// Hashes 32 bits, one to one (Wellons 2018, *Prospecting for Hash Functions*, lowbias32).
 fn scramble(bits: u32) -> u32 {
     let mut v = bits;
     v = (v ^ (v >> 16)).wrapping_mul(0x7feb_352d);
@@ -16,19 +16,19 @@ fn scramble(bits: u32) -> u32 {
     v ^ (v >> 16)
 }
 
-/// Scrambles `key` with `more`.
+/// Hashes `key` together with `more`.
 fn scrambled(key: u32, more: u32) -> u32 {
     scramble(key.wrapping_add(more))
 }
 
-/// The lattice of a seed's gradient noise, and that of its cellular noise.
+/// Returns the keys of a seed's gradient noise and of its cellular noise.
 pub(super) fn keys_of(seed: u64) -> [u32; 2] {
     let seed = scrambled(scramble(seed as u32), (seed >> 32) as u32);
     [scrambled(seed, 0), scrambled(seed, 1)]
 }
 
-/// Weight of the far corner: 6 t^5 - 15 t^4 + 10 t^3, whose first and second derivatives are 0 at both ends (Perlin
-/// 2002, section 3).
+/// Returns the weight of the far corner: 6 t^5 - 15 t^4 + 10 t^3, whose first and second derivatives are 0 at both ends
+/// (Perlin 2002, section 3).
 fn fade(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
@@ -41,18 +41,19 @@ fn signed(value: f64, is_minus: bool) -> f64 {
     if is_minus { -value } else { value }
 }
 
-/// The plane's vectors: their greater and their lesser coordinate. They point 22.5 degrees off the axes and the
-/// diagonals, along which noise would show streaks. They are 1.25 long: with that noise deviates as much from its mean
-/// as it does in space, 0.27, and the same settings have the same cover in both.
+/// Greater and lesser coordinate of the gradient vectors in two dimensions. They point 22.5 degrees off the axes and
+/// the diagonals, along which the noise would show streaks. Their length is 1.25: the noise then deviates from its mean
+/// as much as in three dimensions, by 0.27, and the same settings give the same cover in both.
 const RAMP: DVec2 = DVec2::new(1.154_849_415_639_109, 0.478_354_290_456_363);
 
-/// Product of `from_corner` with one of eight vectors.
+/// Returns the dot product of `from_corner` with one of eight gradient vectors.
 fn ramp_2d(bits: u32, from_corner: DVec2) -> f64 {
     let along = RAMP * if bits & 0x8000_0000 == 0 { from_corner } else { from_corner.yx() };
     signed(along.x, bits & 0x4000_0000 != 0) + signed(along.y, bits & 0x2000_0000 != 0)
 }
 
-/// Product of `from_corner` with a vector to one of the twelve edges of a cube (Perlin 2002, section 4).
+/// Returns the dot product of `from_corner` with a vector to one of the twelve edges of a cube (Perlin 2002, section
+/// 4).
 fn ramp_3d(bits: u32, from_corner: DVec3) -> f64 {
     let plane = ((bits >> 16) * 3) >> 16;
     let u = if plane == 2 { from_corner.y } else { from_corner.x };
@@ -60,20 +61,20 @@ fn ramp_3d(bits: u32, from_corner: DVec3) -> f64 {
     signed(u, bits & 1 != 0) + signed(v, bits & 2 != 0)
 }
 
-/// The cell of a coordinate on a ring of `period` cells, and the place in it.
+/// Returns the cell of a coordinate on a ring of `period` cells, and the fraction within the cell.
 fn cell_of(x: f64, period: u32) -> (u32, f64) {
     let low = x.floor();
     (low.rem_euclid(f64::from(period)) as u32, x - low)
 }
 
-/// Cell `cell + step` on the ring.
+/// Returns cell `cell + step` on the ring.
 fn ring(cell: u32, step: i32, period: u32) -> u32 {
     (i64::from(cell) + i64::from(step)).rem_euclid(i64::from(period)) as u32
 }
 
-/// Gradient noise in the plane (Perlin 2002), of one octave: -0.85 to 0.85, 0 at the corners of cells, with continuous
-/// second derivatives. `position` is in cells; the pattern repeats after `period` cells, at least 1 along each axis.
-/// Another `key` is another pattern.
+/// Returns one octave of gradient noise in two dimensions (Perlin 2002): -0.85 to 0.85, 0 at the corners of cells, with
+/// continuous second derivatives. `position` is in cells. The pattern repeats after `period` cells, at least 1 along
+/// each axis. Each `key` gives another pattern.
 pub fn gradient_2d(position: DVec2, period: UVec2, key: u32) -> f64 {
     let ((i, u), (j, v)) = (cell_of(position.x, period.x), cell_of(position.y, period.y));
     let corner = |a: i32, b: i32| {
@@ -85,7 +86,8 @@ pub fn gradient_2d(position: DVec2, period: UVec2, key: u32) -> f64 {
     mix(row(0), row(1), fade(v))
 }
 
-/// As [`gradient_2d`], in space. Its extremes lie a few hundredths beyond -1 and 1.
+/// Returns gradient noise as [`gradient_2d`] does, in three dimensions. Its extremes are a few hundredths beyond -1
+/// and 1.
 pub fn gradient_3d(position: DVec3, period: UVec3, key: u32) -> f64 {
     let ((i, u), (j, v), (k, w)) =
         (cell_of(position.x, period.x), cell_of(position.y, period.y), cell_of(position.z, period.z));
@@ -100,16 +102,16 @@ pub fn gradient_3d(position: DVec3, period: UVec3, key: u32) -> f64 {
     mix(face(0), face(1), fade(w))
 }
 
-/// Coordinates of a cell's point, 0 to 1, from 10 bits each: the middle of one of 1024 steps.
+/// Returns the coordinates of a cell's point, 0 to 1, from 10 bits each: the middle of one of 1024 steps.
 fn point_of(bits: u32) -> DVec3 {
     let part = |bits: u32| (f64::from(bits & 1023) + 0.5) / 1024.0;
     DVec3::new(part(bits), part(bits >> 10), part(bits >> 22))
 }
 
-/// Cellular noise in the plane, of one octave: 1 minus the distance to the nearest point in cells, of which each has
-/// one, and 0 beyond (Worley 1996, F1). Coordinates as [`gradient_2d`]'s.
+/// Returns one octave of cellular noise in two dimensions (Worley 1996, F1): 1 minus the distance to the nearest point,
+/// in cells, and 0 for distances above 1. Each cell has one point. The arguments are those of [`gradient_2d`].
 ///
-/// Points two cells away are farther than 1, so that the cells about this one are enough.
+/// Points two cells away are farther than 1, so only this cell and its neighbours are searched.
 pub fn cellular_2d(position: DVec2, period: UVec2, key: u32) -> f64 {
     let ((i, u), (j, v)) = (cell_of(position.x, period.x), cell_of(position.y, period.y));
     let mut nearest = 1.0_f64;
@@ -124,7 +126,7 @@ pub fn cellular_2d(position: DVec2, period: UVec2, key: u32) -> f64 {
     1.0 - nearest.sqrt()
 }
 
-/// As [`cellular_2d`], in space.
+/// Returns cellular noise as [`cellular_2d`] does, in three dimensions.
 pub fn cellular_3d(position: DVec3, period: UVec3, key: u32) -> f64 {
     let ((i, u), (j, v), (k, w)) =
         (cell_of(position.x, period.x), cell_of(position.y, period.y), cell_of(position.z, period.z));
@@ -143,7 +145,7 @@ pub fn cellular_3d(position: DVec3, period: UVec3, key: u32) -> f64 {
     1.0 - nearest.sqrt()
 }
 
-/// Returns the means that octaves too fine for a texture of `size` texels add to its gradient and to its cellular
+/// Returns the means that octaves too fine for a texture of `size` texels add to its gradient noise and to its cellular
 /// noise.
 pub(super) fn rests(settings: &NoiseSettings, size: [u32; 3]) -> [f64; 2] {
     let held = settings.octaves_in(size);
@@ -151,17 +153,17 @@ pub(super) fn rests(settings: &NoiseSettings, size: [u32; 3]) -> [f64; 2] {
     [0.5 * sum, CELLULAR_MEANS[axes(size) - 2] * sum]
 }
 
-/// Amplitudes of the octaves, without end.
+/// Returns the amplitudes of the octaves, without end.
 fn amplitudes(settings: &NoiseSettings) -> impl Iterator<Item = f64> {
     let persistence = settings.persistence;
     std::iter::successors(Some(settings.amplitude), move |a| Some(a * persistence))
 }
 
-/// The noise at a point of a texture of `size` texels, 0 to 1, before it is rounded to a byte. `position` counts
-/// textures: 0 to 1 is one of them, and beyond it repeats. Texel i of n has its middle at (i + 0.5) / n. A texture with
-/// a depth of 1 is a plane.
+/// Returns the noise at a point of a texture of `size` texels, 0 to 1, before it is rounded to a byte. `position` is in
+/// textures: 0 to 1 is one texture, and the noise repeats beyond it. The middle of texel i of n is at (i + 0.5) / n. A
+/// depth of 1 means two dimensions.
 ///
-/// Settings that [`NoiseSettings::check`] refuses give a number without meaning.
+/// For settings that [`NoiseSettings::check`] refuses, the result is meaningless.
 pub fn noise_at(settings: &NoiseSettings, size: [u32; 3], position: DVec3) -> f64 {
     let is_plane = axes(size) == 2;
     let [gradient_key, cellular_key] = keys_of(settings.seed);
@@ -201,7 +203,7 @@ pub fn noise_at(settings: &NoiseSettings, size: [u32; 3], position: DVec3) -> f6
 mod tests {
     use super::*;
 
-    /// The distance to the nearest of all points of a period and of its images.
+    /// Returns the distance to the nearest of all points of a period and of its repetitions.
     fn distance(position: DVec3, period: UVec3, key: u32, axes: usize) -> f64 {
         let size = period.as_dvec3();
         let mut nearest = f64::MAX;

@@ -1,10 +1,10 @@
-//! Settings of a texture of noise, and how much of its noise a texture can hold.
+//! Settings of a noise texture, and the number of octaves that a texture can hold.
 
 use crate::error::{Error, Result, check_range};
 
-/// Most texels of a texture: those of a cube of 512.
+/// Largest number of texels of a texture: a cube of 512.
 pub(super) const MOST_TEXELS: u64 = 1 << 27;
-/// Longest edge of a plane and of a volume, texels.
+/// Longest edge of a two- and of a three-dimensional texture, texels.
 const LONGEST: [u32; 2] = [8192, 1024];
 /// Shortest edge, texels.
 const SHORTEST: u32 = 8;
@@ -15,28 +15,29 @@ const MOST_OCTAVES: u32 = 16;
 pub enum NoiseKind {
     /// Gradient noise (Perlin 2002): billows without a preferred direction. For cover.
     Gradient,
-    /// Cellular noise (Worley 1996), bright at its points: round lumps. For the edges of clouds.
+    /// Cellular noise (Worley 1996), bright at its feature points: round lumps. For the edges of clouds.
     Cellular,
     /// Gradient noise mapped from \[0, 1\] to \[cellular noise, 1\] (Schneider 2015): connected lumps. For the shape of
     /// clouds.
     GradientOverCellular,
 }
 
-/// Settings of a texture of noise. The default is that of Tarantilis (2004, section III.B.4.c) for a volume of 128^3.
+/// Settings of a noise texture. The default is that of Tarantilis (2004, section III.B.4.c) for a volume of 128^3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseSettings {
-    /// Kind of noise; gradient noise by default.
+    /// Kind of noise. Default: gradient noise.
     pub kind: NoiseKind,
-    /// Cells of the first octave to the texture along x, y and z, from 1 to half as many as texels. A whole number, so
-    /// that the texture repeats without a seam. Default 6. In a plane the third is not used.
+    /// Cells of the first octave across the texture along x, y and z, from 1 to half the number of texels. Whole
+    /// numbers, so that the texture repeats without a seam. Default 6. The third is not used in two dimensions.
     pub frequency: [u32; 3],
-    /// Octaves, 1 to 16; default 6. Those with less than two texels to a cell add their mean alone.
+    /// Octaves, 1 to 16; default 6. Octaves with less than two texels to a cell add only their mean.
     pub octaves: u32,
-    /// Amplitude of the first octave, 0 to 4; default 0.7. The sum of all should be 1 to 2, or most texels are alike.
+    /// Amplitude of the first octave, 0 to 4; default 0.7. The sum over all octaves should be 1 to 2, or most texels
+    /// are alike.
     pub amplitude: f64,
-    /// Amplitude of an octave over that of the one before, 0 to 1; default 0.5.
+    /// Ratio of an octave's amplitude to that of the one before, 0 to 1; default 0.5.
     pub persistence: f64,
-    /// Another number is another pattern; default 0.
+    /// Seed: each number gives another pattern. Default 0.
     pub seed: u64,
 }
 
@@ -47,16 +48,18 @@ impl Default for NoiseSettings {
 }
 
 impl NoiseSettings {
-    /// Octaves that a texture of `size` texels can hold: `octaves`, or as many as have two texels to a cell.
+    /// Returns the number of octaves that a texture of `size` texels can hold: `octaves`, or as many as have two texels
+    /// to a cell.
     pub fn octaves_in(&self, size: [u32; 3]) -> u32 {
         let held = |axis: usize| (size[axis] / (2 * self.frequency[axis]).max(1)).max(1).ilog2() + 1;
         (0..axes(size)).map(held).fold(self.octaves, u32::min)
     }
 
-    /// Checks that a texture of `size` texels (width, height, depth; a depth of 1 is a plane) can be made of these.
+    /// Checks that these settings suit a texture of `size` texels (width, height, depth; a depth of 1 means two
+    /// dimensions).
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] with the name of the field and what it accepts.
+    /// [`crate::Status::InvalidArgument`], which names the field and what it accepts.
     pub fn check(&self, size: [u32; 3]) -> Result<()> {
         check_size(size)?;
         for (axis, texels) in size.into_iter().enumerate().take(axes(size)) {
@@ -69,13 +72,13 @@ impl NoiseSettings {
     }
 }
 
-/// Axes of a texture: two of a plane, three of a volume.
+/// Returns the number of axes: 2 for a depth of 1, otherwise 3.
 pub(super) fn axes(size: [u32; 3]) -> usize {
     if size[2] == 1 { 2 } else { 3 }
 }
 
-/// Powers of two, so that every mip level is the exact mean of the one above, and cells lie exactly where they do on a
-/// GPU.
+/// Checks that edges are powers of two, so that every mip level is the exact mean of the one above and cells have
+/// exactly the same positions as on a GPU.
 fn check_size(size: [u32; 3]) -> Result<()> {
     let axes = axes(size);
     let longest = LONGEST[axes - 2];
@@ -91,17 +94,17 @@ fn check_size(size: [u32; 3]) -> Result<()> {
     Ok(())
 }
 
-/// Texels of a texture without its mip levels.
+/// Returns the number of texels without mip levels.
 pub(super) fn texels(size: [u32; 3]) -> u64 {
     size.into_iter().map(u64::from).product()
 }
 
-/// Mip levels of a full chain, the texture itself among them.
+/// Returns the number of mip levels of a full chain, with the texture itself.
 pub(super) fn levels_of(size: [u32; 3]) -> u32 {
     size.into_iter().max().unwrap_or(1).max(1).ilog2() + 1
 }
 
-/// Size of a mip level, texels.
+/// Returns the size of a mip level, texels.
 pub(super) fn size_of_level(size: [u32; 3], level: u32) -> [u32; 3] {
     size.map(|texels| (texels >> level).max(1))
 }
@@ -112,7 +115,7 @@ mod tests {
 
     #[test]
     fn octaves_finer_than_the_texels_are_left_out() {
-        // Table of the octaves that 2004's presets ask for and that their textures hold.
+        // Octaves that the presets of 2004 ask for, and the number that their textures can hold.
         for (texels, frequency, asked, held) in
             [(1024, 3, 10, 8), (1024, 6, 10, 7), (1024, 16, 8, 6), (128, 6, 6, 4), (128, 6, 2, 2), (8, 4, 9, 1)]
         {

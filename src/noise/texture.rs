@@ -1,4 +1,4 @@
-//! Noise drawn on the GPU, slice by slice, by fragment passes: tier 0.
+//! Noise texture drawn on the GPU, slice by slice, by fragment passes that also run on tier 0.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::gpu::bind::{self, Slot};
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
 use crate::gpu::{Device, readback};
 
-/// Blocks of a buffer lie so many bytes apart, as every device allows.
+/// Distance of the blocks in a buffer, bytes; a multiple of every device's alignment.
 const STEP: usize = 256;
 
 /// `Slice` of `shaders/noise/slice.wgsl`.
@@ -60,23 +60,24 @@ struct ShrinkUniform {
     z: u32,
 }
 
-/// A texture of noise on the GPU with all its mip levels, of one, two or four channels of 8 bits: R8, RG8 or RGBA8. It
-/// can be filtered, and repeats without a seam under `AddressMode::Repeat`.
+/// Noise texture on the GPU with all mip levels and one, two or four channels of 8 bits: R8, RG8 or RGBA8. It can be
+/// filtered, and repeats without a seam under `AddressMode::Repeat`.
 ///
-/// One thread at a time.
+/// Use it from one thread at a time.
 pub struct NoiseTexture {
     texture: wgpu::Texture,
-    /// Rest that is still to draw.
+    /// Passes that are still to be drawn.
     build: Option<Box<NoiseBuild>>,
 }
 
 impl NoiseTexture {
-    /// A texture of `size` texels (width, height and depth, powers of two from 8 on; a depth of 1 is a plane) with the
-    /// noise of one, two or four settings in its channels. Nothing is drawn yet: see [`NoiseTexture::step`].
+    /// Creates a texture of `size` texels with the noise of one, two or four settings in its channels. Width, height
+    /// and depth are powers of two, at least 8; a depth of 1 makes a two-dimensional texture. Nothing is drawn yet: see
+    /// [`NoiseTexture::step`].
     ///
     /// # Errors
-    /// Those of [`NoiseSettings::check`]; [`crate::Status::InvalidArgument`] for another number of channels;
-    /// [`crate::Status::Unsupported`] where the device has no textures so large; GPU faults.
+    /// The errors of [`NoiseSettings::check`]; [`crate::Status::InvalidArgument`] for another number of channels;
+    /// [`crate::Status::Unsupported`] if the device has no textures of this size; GPU faults.
     pub fn new(device: &Arc<Device>, size: [u32; 3], channels: &[NoiseSettings]) -> Result<Self> {
         let format = match channels.len() {
             1 => wgpu::TextureFormat::R8Unorm,
@@ -96,10 +97,10 @@ impl NoiseTexture {
         Ok(Self { texture, build: Some(Box::new(build)) })
     }
 
-    /// As [`NoiseTexture::new`], drawn and submitted at once, not waited for.
+    /// Creates the texture as [`NoiseTexture::new`] does, draws it and submits the work, without waiting for it.
     ///
     /// # Errors
-    /// As [`NoiseTexture::new`].
+    /// The errors of [`NoiseTexture::new`].
     pub fn generate(device: &Arc<Device>, size: [u32; 3], channels: &[NoiseSettings]) -> Result<Self> {
         let mut made = Self::new(device, size, channels)?;
         let _entered = device.enter()?;
@@ -110,10 +111,10 @@ impl NoiseTexture {
         Ok(made)
     }
 
-    /// A texture of one channel with the bytes of an image and its mip levels, from a file for instance.
+    /// Creates a texture of one channel with an image's bytes and mip levels, for instance from a file.
     ///
     /// # Errors
-    /// [`crate::Status::Unsupported`] where the device has no textures so large; GPU faults.
+    /// [`crate::Status::Unsupported`] if the device has no textures of this size; GPU faults.
     pub fn from_image(device: &Arc<Device>, image: &NoiseImage) -> Result<Self> {
         let _entered = device.enter()?;
         let levels = image.levels().len() as u32;
@@ -131,9 +132,10 @@ impl NoiseTexture {
         Ok(Self { texture, build: None })
     }
 
-    /// Records the next passes: rows of slices with about `texels` texels in all channels together, one row at least,
-    /// so that a frame does as much of it as it has room for. Mip levels follow the slices they are made of. True when
-    /// all is drawn. The passes of one call may go in a submission with other work; calls go in order.
+    /// Records the next passes: rows of slices with about `texels` texels in all channels together, but at least one
+    /// row. This lets a frame draw as much as it has time for. Mip levels follow the slices from which they are made.
+    /// Returns true when everything is drawn. The passes of one call may share a submission with other work; the calls
+    /// must be submitted in their order.
     pub fn step(&mut self, encoder: &mut wgpu::CommandEncoder, texels: u32) -> bool {
         if let Some(build) = &mut self.build
             && build.step(encoder, texels)
@@ -143,26 +145,26 @@ impl NoiseTexture {
         self.is_drawn()
     }
 
-    /// Whether all passes were recorded.
+    /// Whether all passes have been recorded.
     pub fn is_drawn(&self) -> bool {
         self.build.is_none()
     }
 
-    /// The texture; its format says how many channels it has.
+    /// Returns the texture; its format says how many channels it has.
     pub fn texture(&self) -> &wgpu::Texture {
         &self.texture
     }
 
-    /// All of it, as shaders read it: of two dimensions for a plane, of three for a volume.
+    /// Returns a view of the whole texture, in two or three dimensions.
     pub fn view(&self) -> wgpu::TextureView {
         self.texture.create_view(&Default::default())
     }
 
-    /// Reads one channel back with its mip levels. Waits for the GPU: not for frames.
+    /// Reads one channel back with its mip levels. Waits for the GPU, so not for use in frames.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a channel that there is not; [`crate::Status::WrongOrder`] before all is
-    /// drawn; [`crate::Status::DeviceLost`], [`crate::Status::OutOfMemory`] or a GPU fault.
+    /// [`crate::Status::InvalidArgument`] for a channel that the texture does not have; [`crate::Status::WrongOrder`]
+    /// before everything is drawn; [`crate::Status::DeviceLost`], [`crate::Status::OutOfMemory`] or a GPU fault.
     pub fn read(&self, device: &Device, channel: usize) -> Result<NoiseImage> {
         let channels = self.texture.format().components() as usize;
         if channel >= channels {
@@ -189,7 +191,7 @@ fn extent(size: [u32; 3]) -> wgpu::Extent3d {
     wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: size[2] }
 }
 
-/// An empty texture.
+/// Creates an empty texture.
 fn texture(device: &Device, size: [u32; 3], format: wgpu::TextureFormat, levels: u32) -> Result<wgpu::Texture> {
     use wgpu::TextureUsages as U;
     let limits = device.device.limits();
@@ -211,23 +213,23 @@ fn texture(device: &Device, size: [u32; 3], format: wgpu::TextureFormat, levels:
     }))
 }
 
-/// Rest of a texture that is still to draw.
+/// Passes of a texture that are still to be drawn.
 struct NoiseBuild {
     size: [u32; 3],
-    /// One view a mip level.
+    /// Views, one for each mip level.
     levels: Vec<wgpu::TextureView>,
-    /// Draw the noise of each channel.
+    /// Pipelines that draw the noise, one for each channel.
     noise: Vec<wgpu::RenderPipeline>,
     noise_group: wgpu::BindGroup,
-    /// Draws a mip level from the one above it.
+    /// Pipeline that draws a mip level from the one above it.
     shrink: wgpu::RenderPipeline,
-    /// How each level is read for that below it.
+    /// Bind groups in which each level is read to draw the one below it.
     shrink_groups: Vec<wgpu::BindGroup>,
-    /// The next pass.
+    /// Level, slice and row of the next pass.
     level: u32,
     slice: u32,
     row: u32,
-    /// Number of `slice` among those of all mip levels but the first.
+    /// Index of `slice` among the slices of all mip levels but the first.
     shrunk: u32,
 }
 
@@ -272,7 +274,7 @@ impl NoiseBuild {
         Ok(Self { size, levels, noise, noise_group, shrink, shrink_groups, level: 0, slice: 0, row: 0, shrunk: 0 })
     }
 
-    /// Records passes with about `texels` texels; true after the last one.
+    /// Records passes with about `texels` texels; returns true after the last one.
     fn step(&mut self, encoder: &mut wgpu::CommandEncoder, texels: u32) -> bool {
         let mut left = u64::from(texels.max(1));
         while left > 0 && !self.is_done() {
@@ -330,7 +332,7 @@ impl NoiseBuild {
     }
 }
 
-/// Entry point of `shaders/noise/slice.wgsl`.
+/// Returns the entry point in `shaders/noise/slice.wgsl`.
 fn entry(kind: NoiseKind, is_plane: bool) -> &'static str {
     match (kind, is_plane) {
         (NoiseKind::Gradient, true) => "gradient_plane",
@@ -355,7 +357,7 @@ fn pipeline(
     fullscreen(device, &FullscreenDesc { shader, entry, layouts: &[layout], targets: &[target], constants, samples: 1 })
 }
 
-/// A buffer of blocks, [`STEP`] apart.
+/// Creates a buffer with all blocks, [`STEP`] bytes apart.
 fn blocks<B: Pod>(device: &Device, all: impl Iterator<Item = B>) -> wgpu::Buffer {
     let mut bytes = Vec::new();
     for block in all {
@@ -367,7 +369,7 @@ fn blocks<B: Pod>(device: &Device, all: impl Iterator<Item = B>) -> wgpu::Buffer
     buffer
 }
 
-/// A group of one block of a buffer and, where there is one, a texture.
+/// Creates a bind group of one block of a buffer and, if given, a texture.
 fn group(
     device: &Device,
     layout: &wgpu::BindGroupLayout,

@@ -1,21 +1,21 @@
-//! Air that what falls near the camera is drawn in, and how much has set in below its cloud.
+//! Air in which things fall near the camera, and the share of them that has left the cloud.
 
 use glam::DVec3;
 
 use crate::{error::Result, moment::SceneMoment};
 
-/// The air that what is drawn falls in.
+/// Air in which drawn things fall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MovingAir {
     pub displacement_m: DVec3,
     pub velocity_m_s: DVec3,
     pub time_s: f64,
-    /// Extinction beside that of what falls, 1/m.
+    /// Extinction of everything except what falls, 1/m.
     pub extinction_per_m: f64,
 }
 
 impl MovingAir {
-    /// The air of a moment, as it carries what falls.
+    /// Returns the air of a moment, with the wind that carries what falls.
     ///
     /// # Errors
     /// As [`SceneMoment::carrying`].
@@ -30,11 +30,11 @@ impl MovingAir {
     }
 }
 
-/// Steps in which rain and snow set in below their cloud.
+/// Number of steps in which rain and snow set in below their cloud.
 const ONSET_STEPS: f64 = 32.0;
 
-/// Rounds up the share that has left its cloud, so that a climbing camera does not count drops or flakes anew in each
-/// frame.
+/// Rounds the share that has left the cloud up to a step, so that drops or flakes are not recounted in each frame of a
+/// climbing camera.
 pub(crate) fn begun_in_steps(begun: f64) -> f64 {
     (begun * ONSET_STEPS).ceil() / ONSET_STEPS
 }

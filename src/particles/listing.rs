@@ -1,50 +1,51 @@
-//! The list of things that a picture shows, of all that fall round the camera: a few in a hundred of a lattice.
+//! List of the falling things that are in the picture: a few in a hundred of a lattice around the camera.
 //!
-//! Three passes of compute shaders: each thing is asked whether it can be in the picture (a bit each); those that can
-//! are counted off in the order of their numbers (`shaders/falling/order.wgsl`, `list.wgsl`); and what draws each of
-//! them, shelter and lamps with it, is found once. The draw then only spreads corners. How many there are stays on the
-//! GPU.
+//! There are three compute passes. The first marks each thing that can be in the picture, with one bit. The second
+//! assigns the marked things their places in the list, in the order of their numbers (`shaders/falling/order.wgsl`,
+//! `list.wgsl`). The third computes the quad of each, including shelter and lamps, once. The draw then only computes
+//! corners. The number of things stays on the GPU.
 
 use crate::gpu::bind::{self, Slot};
 
-/// Bytes and things of a `Block` of `shaders/falling/list.wgsl`.
+/// Size of a `Block` of `shaders/falling/list.wgsl`, bytes, and number of things in it.
 const BLOCK_BYTES: u64 = 20;
 pub(crate) const BLOCK_THINGS: u32 = 128;
-/// Things of a workgroup that marks: 64 threads, a word of 32 bits each.
+/// Number of things per workgroup of the marking pass: 64 threads, a word of 32 bits each.
 const MARK_THINGS: u32 = 64 * 32;
-/// Bytes of `Found` of `shaders/falling/order.wgsl`, and where the workgroups stand in it.
+/// Size of `Found` of `shaders/falling/order.wgsl`, bytes, and offset of the workgroup counts in it.
 const FOUND_BYTES: u64 = 32;
 const GROUPS_AT: u64 = 16;
-/// Room of a list, whatever the lattice: beyond the share of it that [`room`] says.
+/// Smallest capacity of a list, if [`room`] would give less.
 const LEAST_ROOM: u64 = 16_384;
 
-/// A list, and the buffers it is made in.
+/// A list, and the buffers in which it is computed.
 pub(crate) struct Listing {
-    /// Bytes of what draws a thing.
+    /// Bytes of one listed thing.
     thing_bytes: u64,
-    /// Layouts of group 1: as things are marked and ordered, and as what draws them is made.
+    /// Layouts of group 1: for marking and ordering, and for computing the quads.
     pub layouts: [wgpu::BindGroupLayout; 2],
     found: wgpu::Buffer,
     held: Option<ListBuffers>,
-    /// In place of what follows from the lattice.
+    /// Capacity to use instead of that derived from the lattice.
     #[cfg(test)]
     pub room: Option<u64>,
 }
 
-/// Room for the things of a lattice.
+/// Buffers for the things of a lattice.
 struct ListBuffers {
     blocks: wgpu::Buffer,
     things: wgpu::Buffer,
     groups: [wgpu::BindGroup; 2],
 }
 
-/// Blocks for so many things a row. A number that grows makes lists anew now and then, not each frame.
+/// Returns the number of blocks for rows of things. It is rounded up to powers of two, so that a growing number of
+/// things replaces the buffers only now and then.
 fn blocks_of([things, rows]: [u32; 2]) -> u64 {
     u64::from(things.div_ceil(BLOCK_THINGS).next_power_of_two()) * u64::from(rows)
 }
 
-/// Most things that a list has room for, of `blocks`. Within a shell's own reach are half of its things at most, and
-/// four in ten of all; a picture 150 degrees wide shows half of those.
+/// Returns the capacity of a list for a number of blocks. At most half of a shell's things are within its reach, and
+/// four in ten of all things; a picture 150 degrees wide shows half of those.
 pub(crate) fn room(device: &wgpu::Device, blocks: u64, thing_bytes: u64) -> u64 {
     let most = device.limits().max_storage_buffer_binding_size / thing_bytes;
     (blocks * u64::from(BLOCK_THINGS) / 4).max(LEAST_ROOM).min(most)
@@ -69,8 +70,8 @@ impl Listing {
         self.held.as_ref().map_or(0, |h| h.blocks.size() + h.things.size())
     }
 
-    /// Makes room for so many things a row and so many rows; each row begins a block. A list that is too small is
-    /// replaced.
+    /// Makes room for a number of things in each row, and a number of rows; each row starts with a new block. Buffers
+    /// that are too small are replaced.
     pub fn make_room(&mut self, device: &wgpu::Device, things: [u32; 2]) {
         let blocks = blocks_of(things);
         if self.held.as_ref().is_some_and(|h| h.blocks.size() >= blocks * BLOCK_BYTES) {
@@ -89,7 +90,7 @@ impl Listing {
         self.held = Some(ListBuffers { blocks, things, groups });
     }
 
-    /// Marks the things of each row, orders them, and makes what draws them; the other groups are set.
+    /// Marks and orders the things of each row, and computes their quads. The caller has set the other bind groups.
     pub fn find(
         &self,
         pass: &mut wgpu::ComputePass<'_>,
@@ -107,7 +108,7 @@ impl Listing {
         pass.dispatch_workgroups_indirect(&self.found, GROUPS_AT);
     }
 
-    /// Draws a quad for each thing that was found; pipeline and groups are set.
+    /// Draws a quad for each listed thing. The caller has set the pipeline and the bind groups.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         if let Some(held) = &self.held {
             pass.set_vertex_buffer(0, held.things.slice(..));
@@ -115,13 +116,13 @@ impl Listing {
         }
     }
 
-    /// Forgets what it holds, which the next frame makes anew.
+    /// Frees the buffers; the next frame creates new ones.
     #[cfg(test)]
     pub fn forget(&mut self) {
         self.held = None;
     }
 
-    /// Returns the buffers of what is found, and of what draws it.
+    /// Returns the buffers of the counts and of the listed things.
     #[cfg(test)]
     pub fn buffers(&self) -> [&wgpu::Buffer; 2] {
         [&self.found, &self.held.as_ref().expect("a list was made").things]

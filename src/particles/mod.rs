@@ -1,9 +1,9 @@
-//! Drawing of what falls near the camera, shared by rain and snow: the streak camera and the layer before the picture
-//! ([`streak`]), the air that things fall in ([`air`]), the list of what a picture shows ([`listing`]), and things that
-//! are stepped through a wind that varies in space ([`stepping`]).
+//! Drawing of what falls near the camera, shared by rain and snow: the streak camera and the layer in front of the
+//! picture ([`streak`]), the air in which things fall ([`air`]), the list of things in the picture ([`listing`]), and
+//! particles stepped through a wind that varies in space ([`stepping`]).
 //!
-//! What falls, how fast and where it starts is `src/falling`'s; what a drop or a flake looks like is `src/rain`'s and
-//! `src/snow`'s.
+//! `src/falling` decides what falls, how fast and where it starts; `src/rain` and `src/snow` decide the look of a drop
+//! or a flake.
 
 mod air;
 pub(crate) mod listing;

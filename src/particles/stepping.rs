@@ -1,17 +1,18 @@
-//! Particles integrated through a wind that varies in space, such as that round a building.
+//! Particles integrated through a wind that varies in space, such as that around a building.
 //!
-//! Drops and flakes are those of their lattice, as many in the same shells, but each has a place and a velocity of its
-//! own, in a buffer of the view. In an even wind each starts where the lattice has it and stays there until it leaves
-//! the cell round the camera.
+//! Drops and flakes keep the shells and numbers of their lattice, but each has its own position and velocity, in a
+//! buffer of the view. Each starts at its place in the lattice. In an even wind it then stays at the place that the
+//! lattice gives, until it leaves the cell around the camera.
 //!
-//! A step goes by drag that is linear while it lasts, solved exactly ([`crate::falling::drag::step`]), so that no
-//! length of it is unstable. The rate is that of drag by the square at the step's first moment, so short steps converge
-//! to it; where a step is long against it, the rate at rest, which ends at the right fall.
+//! During a step the drag is linear and is solved exactly ([`crate::falling::drag::step`]), so steps of any length are
+//! stable. Its rate is that of quadratic drag at the start of the step, so short steps converge to the true motion. For
+//! a step that is long relative to this rate, the rate at terminal velocity is used, which ends at the right fall
+//! speed.
 //!
-//! What leaves its cell, or is left behind by the camera, comes in again on the opposite side at a place by chance
-//! (hash of its number and how often it has been there) at the speed that it has there at rest. As many leave as come
-//! in: neither dropped frames nor a camera at 300 m/s make gaps or bursts. After a jump of time, or of the camera where
-//! the host says so, all start anew.
+//! A particle that leaves its cell, or is left behind by the camera, enters again on the opposite side. Its new place
+//! is random (a hash of its number and of how often it has entered), its velocity is the terminal one there. As many
+//! particles enter as leave, so neither dropped frames nor a camera at 300 m/s cause gaps or bursts. After a jump in
+//! time, or of the camera if the host reports it, all particles start anew.
 
 use std::sync::Arc;
 
@@ -30,19 +31,19 @@ use crate::{
     surroundings::{WindMap, WindView},
 };
 
-/// Shells of the lattices of what falls.
+/// Number of shells of each lattice.
 pub(crate) const SHELLS: usize = 4;
-/// Bytes of one state: place and word, velocity.
+/// Size of one state, bytes: place and word, velocity.
 pub(crate) const STATE_BYTES: u64 = 32;
-/// Longest time that is stepped over, s; what is longer starts anew.
+/// Longest time between two frames that is stepped, s. After a longer time all particles start anew.
 const MOST_S: f64 = 10.0;
-/// Longest time of one of the steps that a frame is divided into, s, as long as there are no more than [`MOST_STEPS`].
+/// Longest step, s, unless a frame would then need more than [`MOST_STEPS`].
 const STEP_S: f64 = 1.0 / 60.0;
-/// Most steps of a frame.
+/// Largest number of steps in a frame.
 const MOST_STEPS: f64 = 8.0;
-/// Where the camera's places begin in the block, by themselves.
+/// Offset in the block of the camera's places, which are bound by themselves.
 const EYES: usize = 512;
-/// By how much more than asked for a buffer has room that has to grow.
+/// Factor by which a buffer that has to grow exceeds the requested size.
 const GROWTH: f64 = 1.5;
 
 /// `StepUniform` of `shaders/falling/step.wgsl`, which explains the fields.
@@ -64,35 +65,36 @@ pub(crate) struct ParticleStepUniform {
     pad: [u32; 3],
 }
 
-/// Inputs by which a frame steps.
+/// Inputs of one frame's step.
 pub(crate) struct Stepped<'a> {
-    /// Seed by which the places of those that come in are drawn.
+    /// Seed of the places where particles enter.
     pub seed: u32,
-    /// How many there are in each shell, and the side of its cell, m.
+    /// Number of particles in each shell, and side of the shell's cell, m.
     pub counts: [u32; SHELLS],
     pub sides_m: [f64; SHELLS],
-    /// Room that each shell has at least: more may come soon.
+    /// Smallest capacity of each shell, because more particles may come soon.
     pub least_room: u32,
-    /// Position of the camera: east, north, up of a point fixed to the world.
+    /// Position of the camera, m: east, north, up of a point fixed to the world.
     pub position_m: DVec3,
     pub time_s: f64,
-    /// Velocity of the air now, and its displacement since an earlier time.
+    /// Current velocity of the air, m/s, and its displacement since an earlier time (s), m.
     pub air_m_s: DVec3,
     pub carried: &'a dyn Fn(f64) -> DVec3,
-    /// Nothing of earlier frames may show.
+    /// Whether all particles start anew, because nothing of earlier frames may show.
     pub anew: bool,
-    /// The texture of the wind that varies in space, and where the camera is in it if there is one.
+    /// Texture of the wind that varies in space, and the camera's position in it if there is such a wind.
     pub wind: (WindView, Option<WindMap>),
 }
 
-/// Whether what falls up to `reach_m` from the camera is stepped: where the wind varies in space there, and then, so
-/// that nothing jumps, as long as the picture has a history. `was`: in the frame before.
+/// Whether things that fall within `reach_m` of the camera are stepped: where the wind varies in space there, and
+/// afterwards as long as the picture has a history, so that nothing jumps. `was` says whether they were stepped in the
+/// frame before.
 pub(crate) fn is_due(now: &SceneMoment<'_>, device: &Device, reach_m: f64, was: bool, is_pure: bool) -> bool {
     let varies = || now.wind_volume.is_some_and(|volume| volume.distance_m(now.eye) <= reach_m);
     device.caps().tier > 0 && ((was && !is_pure) || varies())
 }
 
-/// State that the last step left.
+/// State at the end of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Left {
     time_s: f64,
@@ -101,7 +103,7 @@ struct Left {
 }
 
 impl ParticleStepUniform {
-    /// From what was `left` to now; none where there is nothing to step.
+    /// Creates the block for the step from `left` to now; `None` if there is nothing to step.
     fn new(stepped: &Stepped<'_>, left: Option<Left>, rooms: &Rooms) -> Option<Self> {
         let v = |d: DVec3| d.as_vec3().to_array();
         let left = left.filter(|l| (0.0..=MOST_S).contains(&(stepped.time_s - l.time_s)));
@@ -143,12 +145,12 @@ impl ParticleStepUniform {
     }
 }
 
-/// How many states there is room for in each shell.
+/// Capacity of each shell, in states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rooms([u32; SHELLS]);
 
 impl Rooms {
-    /// Where each shell's states begin.
+    /// Returns the index of each shell's first state.
     fn begins(&self) -> [u32; SHELLS] {
         std::array::from_fn(|s| self.0[..s].iter().sum())
     }
@@ -161,7 +163,7 @@ impl Rooms {
         std::array::from_fn(|s| counts[s].min(self.0[s]))
     }
 
-    /// These, or larger ones where `counts` do not fit; of all shells no more than `most`.
+    /// Returns these capacities, or larger ones if `counts` do not fit; the sum of all shells is at most `most`.
     fn for_counts(&self, counts: [u32; SHELLS], least: u32, most: u64) -> Self {
         if self.0.iter().zip(counts).all(|(room, count)| *room >= count.max(least)) {
             return *self;
@@ -175,44 +177,45 @@ impl Rooms {
         if rooms.all() <= most {
             return rooms;
         }
-        // Without growth, and at last an even share of what there is.
+        // If growth does not fit, use the counts alone, and at last an equal share for each shell.
         let bare = Self(std::array::from_fn(|s| counts[s].max(least)));
         if bare.all() <= most { bare } else { Self([(most / SHELLS as u64) as u32; SHELLS]) }
     }
 }
 
-/// States on the GPU and the pass that steps them.
+/// States on the GPU, and the pass that steps them.
 pub(crate) struct StepPass {
-    /// Shader and entry point, and threads of one of its groups.
+    /// Shader and entry point, and number of threads in a workgroup.
     shader: (&'static str, &'static str),
     group: u32,
     block: UniformBlock,
     states: Option<(Rooms, wgpu::Buffer)>,
     left: Option<Left>,
-    /// The texture of the wind that is bound; one texel where there is none.
+    /// Bound texture of the wind; one texel if there is no wind that varies in space.
     wind: Option<WindView>,
     sampler: wgpu::Sampler,
-    /// Layouts of the effect's own block, of the step, and of what draws the states.
+    /// Layouts of the effect's own block, of the step, and of the states for passes that read them.
     layouts: [wgpu::BindGroupLayout; 3],
-    /// Without and with a wind that varies in space.
+    /// Pipelines without and with a wind that varies in space.
     steps: [Option<wgpu::ComputePipeline>; 2],
     groups: Option<[wgpu::BindGroup; 3]>,
 }
 
-/// Layout of stepped things for what lists them: the camera's places in the shells' cells with where their states
-/// begin, and the states.
+/// Creates the layout by which listing passes read stepped particles: the camera's place in each shell's cell with the
+/// index of the shell's first state, and the states.
 pub(crate) fn source_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let slots = [(0, Slot::Uniform(16 * SHELLS)), (1, Slot::StorageRead(STATE_BYTES))];
     bind::layout(device, "stepped", wgpu::ShaderStages::COMPUTE, &slots)
 }
 
 impl StepPass {
-    /// Most states that a device has room for.
+    /// Returns the largest number of states on a device.
     pub fn most(device: &Device) -> u64 {
         device.device.limits().max_storage_buffer_binding_size / STATE_BYTES
     }
 
-    /// By an entry point of a shader with groups of so many threads, which reads an own block of so many bytes.
+    /// Creates the pass for an entry point of a shader with workgroups of `group` threads, which reads the effect's own
+    /// block of `own_bytes` bytes.
     pub fn new(
         device: &Device,
         blocks: &Blocks,
@@ -252,7 +255,7 @@ impl StepPass {
         self.states.as_ref().map_or(0, |(_, b)| b.size())
     }
 
-    /// Makes room for the states, takes up the wind, and records the step. The effect's own block is up.
+    /// Makes room for the states, binds the wind, and records the step. The effect's own block is already uploaded.
     ///
     /// # Errors
     /// A missing shader file.
@@ -299,7 +302,7 @@ impl StepPass {
         Ok(())
     }
 
-    /// Makes room for more states, with those that there are.
+    /// Makes room for more states, and copies the existing ones.
     fn make_room(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, stepped: &Stepped<'_>) {
         let before = self.states.as_ref().map_or(Rooms::default(), |(rooms, _)| *rooms);
         let rooms = before.for_counts(stepped.counts, stepped.least_room, Self::most(device));
@@ -327,12 +330,12 @@ impl StepPass {
         (self.states, self.groups) = (Some((rooms, buffer)), None);
     }
 
-    /// The states as [`source_layout`] binds them, once there are any.
+    /// Returns the bind group of the states ([`source_layout`]), once there are any.
     pub fn states(&self) -> Option<&wgpu::BindGroup> {
         self.groups.as_ref().map(|[.., states]| states)
     }
 
-    /// Returns for each shell its states as a vertex buffer, and how many of them the last step left.
+    /// Returns the states of each shell as a vertex buffer, and their number after the last step.
     pub fn shells(&self) -> impl DoubleEndedIterator<Item = (wgpu::BufferSlice<'_>, u32)> {
         let counts = self.left.map_or([0; SHELLS], |left| left.counts);
         self.states.iter().flat_map(move |(rooms, buffer)| {
@@ -344,7 +347,7 @@ impl StepPass {
         })
     }
 
-    /// The states of each shell, as words.
+    /// Returns the states of each shell, as words.
     #[cfg(test)]
     pub fn read(&self, device: &Device) -> [Vec<[u32; 8]>; SHELLS] {
         let (rooms, states) = self.states.as_ref().expect("there are states");
@@ -412,7 +415,7 @@ mod tests {
         assert_eq!(first.for_counts([10, 0, 20, 0], 0, 1000), first, "what is there is kept");
         assert_eq!(first.for_counts([12, 0, 20, 0], 0, 1000), Rooms([18, 0, 30, 7]));
         assert_eq!(Rooms::default().for_counts([1, 1, 1, 1], 50, 1000), Rooms([50; 4]));
-        // Without growth where that is too much, and at last an even share.
+        // Without growth if that is too much, and at last an equal share for each shell.
         assert_eq!(first.for_counts([40, 0, 5, 0], 0, 50), Rooms([40, 0, 5, 0]));
         assert_eq!(first.for_counts([400, 0, 5, 0], 0, 48), Rooms([12; 4]));
         assert_eq!(Rooms([12; 4]).within([400, 0, 5, 0]), [12, 0, 5, 0]);

@@ -1,5 +1,5 @@
-//! Parts that effects share to draw what falls near the camera: its camera, the layer before the picture, and how much
-//! it stands out.
+//! Parts that effects share to draw what falls near the camera: the camera, the layer in front of the picture, and the
+//! contrast.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -12,30 +12,30 @@ use crate::{
     stage::{DrawContext, Tone},
 };
 
-/// Light of what falls times the picture's exposure, and the share of what lies behind that it hides.
+/// Format of the layer: premultiplied light times the picture's exposure, and opacity.
 pub(crate) const LAYER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// A streak or a flake is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/common/streak.wgsl`.
+/// Smallest drawn width of a streak or a flake, pixels: `LEAST_PIXELS` of `shaders/common/streak.wgsl`.
 pub(crate) const LEAST_PIXELS: f64 = 1.2;
 
-/// A camera among things that fall past it, as streaks while the shutter is open.
+/// Camera with an exposure time, during which falling things become streaks.
 pub(crate) struct StreakCamera<'a> {
-    /// From camera-relative east-north-up to clip space.
+    /// Matrix from camera-relative east, north, up to clip space.
     pub clip: DMat4,
     pub rays: &'a ViewRays,
     pub height: u32,
     pub y_sign: f32,
-    /// East, north, up of a point fixed to the world.
+    /// Position, m: east, north, up of a point fixed to the world.
     pub position_m: DVec3,
-    /// Velocity of the camera.
+    /// Velocity of the camera, m/s (east, north, up).
     pub velocity_m_s: DVec3,
     pub exposure_s: f64,
-    /// Contrast gain of what falls.
+    /// Contrast gain: factor by which what falls stands out more than in nature.
     pub gain: f64,
 }
 
 impl<'a> StreakCamera<'a> {
-    /// That of a shot whose shutter is open for `exposure_s`.
+    /// Creates the camera of a draw, with the exposure time `exposure_s`.
     pub fn new(context: &DrawContext<'a>, exposure_s: f64, gain: f64) -> Self {
         let scene = &context.now.scene;
         Self {
@@ -51,12 +51,12 @@ impl<'a> StreakCamera<'a> {
     }
 }
 
-/// How the fragment shaders of rain and snow read the host's depth.
+/// Properties by which the fragment shaders of rain and snow read the host's depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthRead {
-    /// Whether it has several samples.
+    /// Whether the depth is multisampled.
     pub multi: bool,
-    /// Whether there is any.
+    /// Whether there is a depth.
     pub any: bool,
     /// `DEPTH_KINDS` of `common/depth.wgsl`.
     pub kinds: u32,
@@ -67,29 +67,30 @@ impl DepthRead {
         Self { multi: depth.is_some_and(Layer::is_multisampled), any: depth.is_some(), kinds: rays.depth_kinds() }
     }
 
-    /// The shader file that reads it, of one which includes `common/host.wgsl`.
+    /// Returns the variant of a shader file that reads this depth. The file includes `common/host.wgsl`.
     pub fn shader(self, name: &str) -> String {
         format!("{name}{}", if self.multi { ":multi" } else { "" })
     }
 
-    /// The constants of its fragment shaders.
+    /// Returns the constants of the fragment shaders.
     pub fn constants(self) -> [(&'static str, f64); 2] {
         [("HAS_DEPTH", f64::from(u8::from(self.any))), ("DEPTH_KINDS", self.kinds.into())]
     }
 }
 
-/// Layer of what falls near the camera, as one more veil before the picture: premultiplied, one sample a pixel. The
-/// effects of a view that draw into it share it: clones are the same layer.
+/// Layer of what falls near the camera, composited as one more veil in front of the picture: premultiplied, one sample
+/// a pixel. All effects of a view that draw into it share it: clones are the same layer.
 #[derive(Clone, Default)]
 pub(crate) struct FallingTexture(Arc<Mutex<Option<(wgpu::Texture, wgpu::TextureView)>>>);
 
 impl FallingTexture {
     fn locked(&self) -> MutexGuard<'_, Option<(wgpu::Texture, wgpu::TextureView)>> {
-        // A panic elsewhere leaves a layer or none, both of which are whole.
+        // After a panic elsewhere there is a complete layer or none; both are valid.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
+    /// Returns the layer for a picture of this size, recreated if the size has changed. Its content is what was drawn
+    /// last.
     pub fn view(&self, device: &Device, size: wgpu::Extent3d) -> wgpu::TextureView {
         let mut held = self.locked();
         if held.as_ref().is_none_or(|(t, _)| (t.width(), t.height()) != (size.width, size.height)) {
@@ -112,23 +113,23 @@ impl FallingTexture {
         held.get_or_insert_with(make).1.clone()
     }
 
-    /// The layer as it is, if there is one.
+    /// Returns the existing layer, if there is one.
     pub fn held(&self) -> Option<wgpu::TextureView> {
         self.locked().as_ref().map(|(_, view)| view.clone())
     }
 
-    /// Bytes of GPU memory that it holds.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.locked().as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()))
     }
 
-    /// Lets the picture's layer go, which the driver may not have had memory for.
+    /// Drops the layer, for which the driver may not have had enough memory.
     pub fn forget(&self) {
         *self.locked() = None;
     }
 }
 
-/// Begins a pass that draws into the layer, which is cleared first unless it keeps what lies in it.
+/// Begins a pass that draws into the layer. It is cleared first, unless `keeps`.
 pub(crate) fn layer_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     label: &str,
@@ -148,26 +149,27 @@ pub(crate) fn layer_pass<'a>(
     })
 }
 
-/// Angles between line of sight and streaks at which the variance is tabulated.
+/// Number of angles between line of sight and streaks at which the variance is tabulated.
 const ANGLES: usize = 9;
 
-/// How much streaks stand out of a picture, for the planner.
+/// Contrast of streaks in a picture, for the plan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StreakContrast {
     rays: ViewRays,
     y_sign: f64,
-    /// Where the things go as seen from the camera.
+    /// Direction of the things' motion relative to the camera.
     axis: DVec3,
-    /// Deviation of what they hide, by the sine of the angle from there.
+    /// Standard deviation of the covered share, by the sine of the angle from the axis.
     deviations: [f64; ANGLES],
     tone: Tone,
-    /// Lamps may make them as bright as they like.
+    /// Whether there are lamps, which may make things arbitrarily bright.
     lamps: bool,
 }
 
 impl StreakContrast {
-    /// Creates the contrast of things that go with a velocity before a camera. `variance` is that from pixel to pixel
-    /// of the share that they hide, where they go so many metres across the line of sight during the exposure.
+    /// Creates the contrast of things that move with a velocity in front of a camera. `variance` returns the variance
+    /// from pixel to pixel of the share that they cover, for their motion across the line of sight during the exposure,
+    /// m.
     pub fn new(
         shot: &StreakCamera<'_>,
         velocity_m_s: DVec3,
@@ -181,9 +183,9 @@ impl StreakContrast {
         Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, tone, lamps }
     }
 
-    /// Returns the change of pixel number `i` by things that are bright as `radiance` says in a direction, over its
-    /// luminance and a hundredth of white; and by how much they are brighter than it. The changes of many pixels
-    /// together spread as those of pictures do.
+    /// Returns two numbers for pixel number `i`: its change by things whose radiance in a direction is `radiance`,
+    /// relative to the pixel's luminance plus a hundredth of white, and their contrast with it. The changes of many
+    /// pixels together have the distribution of those in pictures.
     pub fn at(&self, i: usize, ndc: DVec2, picture: f64, radiance: impl Fn(DVec3) -> DVec3) -> [f64; 2] {
         let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
         let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;
@@ -192,7 +194,8 @@ impl StreakContrast {
         let deviation = self.deviations[low] * (1.0 - part) + self.deviations[low + 1] * part;
         let bright = (self.tone)(luminance(&radiance(d).to_array()));
         let contrast = if self.lamps { 1e3 } else { (bright - picture) / (picture + 0.01) };
-        // Evenly spread in two dimensions (Roberts 2018), and normal (Box and Muller 1958).
+        // Low-discrepancy points in two dimensions (Roberts 2018), mapped to a normal distribution (Box and Muller
+        // 1958).
         let spread = |step: f64| ((i as f64 + 0.5) * step).fract();
         let (u, v) = (spread(0.754_877_666_246_692_8), spread(0.569_840_290_998_053_3));
         let normal = (-2.0 * libm::log(1.0 - u)).sqrt() * libm::cos(std::f64::consts::TAU * v);

@@ -1,5 +1,5 @@
-//! Options in a gauged picture, and the choice among them: within the tolerance the least work, and if that takes too
-//! long what is missed least.
+//! Choice of the steps to take in a gauged picture: those with the least work within the tolerance or, if that picture
+//! takes too long, those whose loss matters least.
 
 use super::{
     estimate::{Estimate, Estimator},
@@ -8,7 +8,8 @@ use super::{
     search::{Free, Search, least_missed},
 };
 
-/// Leaving out takes a tenth more certainty than staying out, so that a picture at the border does not flicker.
+/// Share of the tolerance that a new set of steps must keep; the present set may use all of it. A picture at the border
+/// then does not flicker.
 const CERTAINTY: f64 = 0.9;
 
 /// Demands on a picture.
@@ -16,22 +17,22 @@ const CERTAINTY: f64 = 0.9;
 pub(super) struct Asked {
     pub tolerance: Option<f64>,
     pub milliseconds: Option<f64>,
-    /// How much each part matters.
+    /// Importance of each part.
     pub importance: [f64; MOST_PARTS],
-    /// Parts that may not be chosen about, by all of their steps, and the steps of them that are taken.
+    /// Steps of the pinned parts, about which nothing is chosen: all of them, and those that are taken.
     pub pinned: (Set, Set),
 }
 
-/// Everything that one gauge told, until the next.
+/// Findings of one gauge, valid until the next.
 pub(super) struct Choices {
     pub ladder: Ladder,
     pub estimator: Estimator,
     search: Search,
     /// Work of the picture with everything.
     pub all: WorkAmount,
-    /// Error of the picture after this step and those above it, and nothing else.
+    /// Error of the picture if only this step and those above it are taken.
     pub worth: [Estimate; MOST_STEPS],
-    /// Steps of the parts that are there.
+    /// Steps of the parts that are present.
     there: Set,
     /// Steps that keep the tolerance with the least work.
     cheapest: Option<Set>,
@@ -50,8 +51,8 @@ impl Choices {
         }
     }
 
-    /// Takes a picture that the estimator has seen: its work, the steps of what is there, what is asked, and what is
-    /// left out now.
+    /// Takes a picture that the estimator has seen: its work with everything (`all`), the steps of the parts that are
+    /// present (`there`), the host's demands (`asked`), and the steps taken now (`previous`).
     pub fn take(&mut self, all: WorkAmount, there: Set, governor: &Governor, asked: &Asked, previous: Set) {
         (self.all, self.there) = (all, there);
         let Self { ladder, estimator, search, worth, .. } = self;
@@ -74,7 +75,7 @@ impl Choices {
         };
     }
 
-    /// The steps to take, where those of `previous` are taken now.
+    /// Chooses the steps to take; `previous` are those taken now.
     pub fn choose(&self, governor: &Governor, asked: &Asked, previous: Set) -> (Set, GaveWay) {
         let now = self.all.without(previous);
         let fits = |set: Set| governor.fits(&self.all.without(set), asked.milliseconds, &now);
@@ -87,7 +88,7 @@ impl Choices {
         (set, if fits { GaveWay::Tolerance } else { GaveWay::Time })
     }
 
-    /// Returns how much is missed of a picture: what its parts are worth in it times how much they matter.
+    /// Returns the loss of a picture: the sum over parts of their error at their rung, times their importance.
     fn loss(&self, set: Set, asked: &Asked) -> f64 {
         let of = |part: usize| match self.ladder.rung(set, part) {
             0 => 0.0,

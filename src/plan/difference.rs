@@ -1,23 +1,23 @@
-//! The one measure of error: how far apart two pictures are in luminance.
+//! Measure of error: the difference in luminance of two pictures. The whole crate uses this one.
 
 use crate::error::{Error, Result};
 
-/// How far a picture is from another, relative to its luminance with a floor of a hundredth of white.
+/// Difference of a picture from another, relative to the other's luminance plus a hundredth of white.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// Half of the pixels are nearer.
+    /// Median over the pixels.
     pub median: f64,
-    /// 95 % of the pixels are nearer: the error as Welkin states it.
+    /// 95th percentile over the pixels: the error as Welkin states it.
     pub p95: f64,
-    /// The worst pixel.
+    /// Largest difference of a pixel.
     pub worst: f64,
 }
 
-/// |a - b| / (b + 0.01 white) over all pixels. `a` and `b` are luminances, cd/m^2, and `white` is the one that the
-/// exposure shows as white; a value that is not finite counts as an infinite error.
+/// Computes |a - b| / (b + 0.01 white) over all pixels. `a` and `b` are luminances, cd/m^2, and `white` is the
+/// luminance that the exposure shows as white. A value that is not finite counts as an infinite error.
 ///
 /// # Errors
-/// [`crate::Status::InvalidArgument`] for pictures of no or different size, or a white that is not above 0.
+/// [`crate::Status::InvalidArgument`] for empty pictures or pictures of different size, or if `white` is not above 0.
 pub fn difference(a: &[f64], b: &[f64], white: f64) -> Result<Difference> {
     if a.len() != b.len() || a.is_empty() {
         return Err(Error::range(
@@ -38,7 +38,7 @@ pub fn difference(a: &[f64], b: &[f64], white: f64) -> Result<Difference> {
     Ok(Difference { median: percentile(&errors, 0.5), p95: percentile(&errors, 0.95), worst: errors[errors.len() - 1] })
 }
 
-/// The least of `sorted` numbers that at least `share` of them do not exceed; 0 of none.
+/// Returns the smallest of the `sorted` numbers that at least `share` of them do not exceed; 0 for an empty list.
 pub fn percentile(sorted: &[f64], share: f64) -> f64 {
     let rank = (sorted.len() as f64 * share).ceil() as usize;
     sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(0.0)
@@ -54,7 +54,7 @@ mod tests {
         let a: Vec<f64> = (1..=100).map(|i| 1.0 + f64::from(i) * 0.0101).collect();
         let d = difference(&a, &b, 1.0).unwrap();
         assert!((d.median - 0.5).abs() < 1e-9 && (d.p95 - 0.95).abs() < 1e-9 && (d.worst - 1.0).abs() < 1e-9, "{d:?}");
-        // 0.001 of white against nothing is a tenth, not infinity.
+        // 0.001 of white against black is an error of a tenth, not infinite.
         assert!((difference(&[0.1], &[0.0], 100.0).unwrap().p95 - 0.1).abs() < 1e-12);
     }
 

@@ -1,12 +1,12 @@
-//! How wrong a picture is without some of its parts, from the pixels that the gauge saw.
+//! Estimate of a picture's error without some of its parts, from the pixels that the gauge saw.
 //!
-//! *Error* is that of the whole library: |Y' - Y| / (Y + 0.01 white) after exposure, its 95th percentile over pixels. A
-//! tolerance also bounds the worst pixel, by [`WORST`] times as much: a far ridge in a twentieth of the picture keeps
-//! its haze.
+//! The *error* is that of the whole crate: the 95th percentile over pixels of |Y' - Y| / (Y + 0.01 white) after
+//! exposure. A tolerance also bounds the worst pixel, by [`WORST`] times as much. So a far ridge keeps its haze even if
+//! it fills only a twentieth of the picture.
 
 use super::parts::{Ladder, MOST_STEPS, Set};
 
-/// The worst pixel may err by so many times the tolerance of the 95th percentile.
+/// Largest error of the worst pixel, in tolerances of the 95th percentile.
 pub const WORST: f64 = 10.0;
 
 /// Error of a picture from which parts were left out.
@@ -16,28 +16,28 @@ pub struct Estimate {
     pub p95: f64,
     /// Upper end of the one-sided 95 % confidence interval of that percentile over all pixels.
     pub bound: f64,
-    /// The worst gauged pixel.
+    /// Largest error of a gauged pixel.
     pub worst: f64,
 }
 
 impl Estimate {
-    /// Whether it keeps a tolerance.
+    /// Whether the error is within a tolerance.
     pub fn keeps(&self, tolerance: f64) -> bool {
         self.strain(tolerance) <= 1.0
     }
 
-    /// How much of a tolerance it takes; above 1 it does not keep it.
+    /// Returns the share of a tolerance that the error uses up; above 1 it exceeds the tolerance.
     pub(super) fn strain(&self, tolerance: f64) -> f64 {
         (self.bound / tolerance).max(self.worst / (WORST * tolerance))
     }
 }
 
-/// Estimates that are kept until the next gauge.
+/// Number of estimates that are cached until the next gauge.
 const KEPT: usize = 8;
 
-/// Findings of the gauge about a picture, and the estimates that follow; holds its memory between calls.
+/// Findings of the gauge about a picture, and the estimates from them. Its buffers are reused between calls.
 pub(super) struct Estimator {
-    /// Change of luminance at each pixel by each step, with the steps above it taken too.
+    /// Change of luminance at each pixel by each step, taken together with the steps above it.
     changes: Vec<[f32; MOST_STEPS]>,
     scratch: Vec<f32>,
     kept: [(Set, Estimate); KEPT],
@@ -45,13 +45,13 @@ pub(super) struct Estimator {
 }
 
 impl Estimator {
-    /// With room for so many pixels.
+    /// Creates an estimator with room for `pixels` pixels.
     pub fn new(pixels: usize) -> Self {
         let kept = [(0, Estimate::default()); KEPT];
         Self { changes: Vec::with_capacity(pixels), scratch: Vec::with_capacity(pixels), kept, next: 0 }
     }
 
-    /// Room for so many pixels.
+    /// Reserves room for `pixels` pixels.
     pub fn reserve(&mut self, pixels: usize) {
         self.changes.reserve(pixels);
         self.scratch.reserve(pixels);
@@ -63,12 +63,12 @@ impl Estimator {
         self.kept.fill((0, Estimate::default()));
     }
 
-    /// Adds a pixel that counts.
+    /// Adds a pixel that is not masked.
     pub fn see(&mut self, changes: [f32; MOST_STEPS]) {
         self.changes.push(changes);
     }
 
-    /// The error of taking the steps of `set`.
+    /// Estimates the error of a picture that takes the steps of `set`.
     pub fn estimate(&mut self, ladder: &Ladder, set: Set) -> Estimate {
         if set == 0 || self.changes.is_empty() {
             return Estimate::default();
@@ -76,7 +76,7 @@ impl Estimator {
         if let Some((_, known)) = self.kept.iter().find(|k| k.0 == set) {
             return *known;
         }
-        // Of each part the lowest step says what all of them change.
+        // The lowest step taken of each part has the change by all steps of that part.
         let mut lowest = [0; MOST_STEPS];
         let mut count = 0;
         for part in 0..ladder.parts.len() {
@@ -100,7 +100,7 @@ impl Estimator {
 
 fn percentile(errors: &mut [f32]) -> Estimate {
     let n = errors.len();
-    // The order statistic above which a binomial count of 5 % falls in 95 % of draws.
+    // Rank above which 5 % of the population lie with a confidence of 95 % (normal approximation of the binomial).
     let spread = 1.645 * (0.95 * 0.05 / n as f64).sqrt();
     let rank = |share: f64| ((share * n as f64).ceil() as usize).clamp(1, n) - 1;
     let (low, high) = (rank(0.95), rank((0.95 + spread).min(1.0)));

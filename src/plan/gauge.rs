@@ -1,7 +1,9 @@
-//! The gauge: one small pass that sees what each part of the weather is worth in a picture, read back without waiting.
+//! The gauge: one small pass that measures what each part of the weather contributes to a picture. Its result is read
+//! back without waiting.
 //!
-//! A few frames lie between the pass and its answer, so a plan follows a picture, never leads it. Costs 2304 pixels of
-//! four compositions (seven with clouds): a hundredth of a picture of 1280 x 720, and only in every [`EVERY`]th frame.
+//! A few frames lie between the pass and its result, so a plan follows the picture with a delay. The pass composes 2304
+//! pixels four or five times (eight times with clouds): 1 to 2 % of the pixels of a picture of 1280 x 720, in every
+//! [`EVERY`]th frame.
 
 use std::sync::{
     Arc,
@@ -21,7 +23,7 @@ pub const GRID: (u32, u32) = (64, 36);
 /// Frames from one gauge to the next.
 pub const EVERY: u32 = 8;
 
-/// Upper halves of numbers, two in each.
+/// Format of the target: each channel packs the upper halves of two numbers.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 const BYTES_PER_ROW: u32 = GRID.0 * 16;
 
@@ -31,22 +33,23 @@ const MAPPING: u32 = 2;
 const READY: u32 = 3;
 const FAILED: u32 = 4;
 
-/// Values of `override` constants.
+/// Names and values of `override` constants.
 type OverrideValues = Vec<(&'static str, f64)>;
 
-/// Most channels whose worth the gauge finds.
+/// Most channels, each of which has the change by one part.
 pub const CHANNELS: usize = 5;
 
-/// Finding of the gauge at one pixel.
+/// Result of the gauge at one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GaugeSample {
-    /// Change of luminance in each channel.
+    /// Relative change of luminance without the part of each channel.
     pub composed: [f32; CHANNELS],
-    /// Whether the host drew there (1), did not (-1), or keeps the pixel for itself (0).
+    /// Kind of the pixel: 1 where the host drew something, -1 where it did not, 0 where the host keeps the pixel for
+    /// itself.
     pub kind: f32,
     /// Luminance with everything but drops, 1 = white.
     pub luminance: f32,
-    /// Optical depth of what drops hide on the mean.
+    /// Mean optical depth of what drops hide.
     pub hidden: f32,
 }
 
@@ -56,7 +59,7 @@ pub(crate) struct Gauge {
     view: wgpu::TextureView,
     buffer: wgpu::Buffer,
     state: Arc<AtomicU32>,
-    /// Made for a number of samples (one or several) and `override` constants.
+    /// Pipeline, with the number of samples (one or several) and the `override` constants that it was created for.
     pipeline: Option<(&'static str, OverrideValues, wgpu::RenderPipeline)>,
     samples: Vec<GaugeSample>,
 }
@@ -93,8 +96,8 @@ impl Gauge {
         self.state.load(Ordering::Acquire) == IDLE
     }
 
-    /// Records the pass; `groups`, `layouts` and `constants` are those of the composition, `shader` is for the samples
-    /// that the host's colour and depth have.
+    /// Records the pass. `groups`, `layouts` and `constants` are those of the composition; `shader` fits the number of
+    /// samples of the host's colour and depth.
     pub fn record(
         &mut self,
         device: &Arc<Device>,
@@ -126,8 +129,8 @@ impl Gauge {
         Ok(())
     }
 
-    /// Goes on with a readback under way, without waiting: call once a frame, after the host has submitted what was
-    /// recorded. The samples, when they have arrived.
+    /// Advances a readback under way, without waiting, and returns the samples once they have arrived. Call it once a
+    /// frame, after the host has submitted what was recorded.
     pub fn advance(&mut self, device: &Device) -> Option<&[GaugeSample]> {
         if self.state.load(Ordering::Acquire) == RECORDED {
             self.state.store(MAPPING, Ordering::Release);

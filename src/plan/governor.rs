@@ -1,42 +1,42 @@
-//! The governor: what a picture takes on this machine, by the times that the host reports.
+//! The governor: predicts the time of a picture on this machine from the times that the host reports.
 //!
-//! A picture's time is taken as proportional to its work, by a factor that reported times correct: the median of the
-//! last five. What a part costs beside a plain pixel differs from machine to machine; whenever a part comes or goes,
-//! the step in the reported times corrects its share, so that a part which is dearer here than it was where the
-//! constants were measured does not come back into a picture that has no time for it.
+//! The time of a picture is modelled as its work times a factor, the median of the last five reported times per unit of
+//! work. The cost of a part relative to a plain pixel differs from machine to machine. Whenever a part appears or
+//! disappears, the change in the reported times corrects that part's cost. A part that is dearer on this machine than
+//! the constants say therefore does not return into a picture that has no time for it.
 //!
-//! More is drawn again only when it would leave room to spare, so that a load at the border does not swing.
+//! More is drawn again only if time remains to spare afterwards, so that a load at the border does not oscillate.
 
 use super::parts::{MOST_STEPS, Set};
 
-/// More is drawn again where it would take no more than this share of the budget.
+/// Largest share of the budget that a picture may take for more to be drawn again.
 const ROOM: f64 = 0.85;
 
-/// Limit that had to give way.
+/// Limit of the budget that could not be kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GaveWay {
-    /// Nothing: what was asked holds, by the estimates.
+    /// None: by the estimates the picture keeps all limits.
     #[default]
     Nothing,
     /// The tolerance: the time allows no better picture.
     Tolerance,
-    /// Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes
-    /// longer than the budget.
+    /// The time, and perhaps the tolerance too: even with every part left out, or with the parts that are pinned, the
+    /// picture takes longer than the budget.
     Time,
 }
 
-/// Work of a picture, in pixels with none of the parts: those pixels, what each step of a part saves that may be taken,
-/// and what two parts cost beside each other, beyond what each does.
+/// Work of a picture, in pixels without any parts: those pixels, the work that each step saves, and the extra work of
+/// two parts that are drawn together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct WorkAmount {
     pub pixels: f64,
     pub steps: [f64; MOST_STEPS],
-    /// The first steps of both, and the work, which costs what the first one's does.
+    /// First steps of both parts, and their extra work, which has the cost ratio of the first one.
     pub together: ([usize; 2], f64),
 }
 
 impl WorkAmount {
-    /// After the steps of `set`.
+    /// Returns the amount that is left after the steps of `set`.
     pub fn without(mut self, set: Set) -> Self {
         (0..MOST_STEPS).filter(|i| set & (1 << i) != 0).for_each(|i| self.steps[i] = 0.0);
         if self.together.0.iter().any(|i| set & (1 << i) != 0) {
@@ -45,7 +45,7 @@ impl WorkAmount {
         self
     }
 
-    /// All of it, by the constants.
+    /// Returns the whole work, by the constants.
     pub fn total(&self) -> f64 {
         self.weighed(&[1.0; MOST_STEPS])
     }
@@ -56,27 +56,28 @@ impl WorkAmount {
     }
 }
 
-/// A host's timer may answer so many frames late: that many reports after a part came or went say nothing yet.
+/// Number of reports that are ignored after a part came or went, since a host's timer may answer this many frames late.
 const LATE: u32 = 4;
-/// Reports that are remembered.
+/// Number of reports that are kept.
 const SEEN: usize = 5;
-/// No part costs more, or less than its inverse, of what the constants say.
+/// Largest ratio of a part's cost here to the constants' cost; its inverse is the smallest.
 const MOST_RATIO: f64 = 8.0;
-/// A step of the times that is this share of the picture's is half believed: smaller ones drown in noise.
+/// Cost of the changed parts, as a share of the rest of the picture, at which a correction counts half. Smaller parts
+/// drown in noise and count less.
 const HALF_BELIEVED: f64 = 0.1;
 
-/// Times as reported, and what they say of this machine.
+/// Reported times, and the costs on this machine that follow from them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Governor {
-    /// Milliseconds of a unit of work.
+    /// Recent times for a unit of work, ms.
     recent: [f64; SEEN],
     reports: usize,
-    /// Ratios of what the steps save here to what the constants say.
+    /// Ratios of the work that steps save on this machine to what the constants say.
     ratios: [f64; MOST_STEPS],
-    /// The set that was absent at the last report, and how many reports it has been.
+    /// Steps taken at the last report, and the number of reports since they changed.
     absent: Set,
     since: u32,
-    /// Before parts came or went: the set then absent, and what a unit of work took.
+    /// Steps taken before parts came or went, and the time for a unit of work then.
     before: Option<(Set, f64)>,
 }
 
@@ -87,7 +88,7 @@ impl Default for Governor {
 }
 
 impl Governor {
-    /// A frame took so long; everything in it would be `all`, and the parts of `absent` were left out.
+    /// Takes the time of a frame whose work with everything is `all`, and in which the steps of `absent` were taken.
     pub fn report(&mut self, ms: f64, all: &WorkAmount, absent: Set) {
         if absent != self.absent {
             let from = self.before.map_or(self.absent, |b| b.0);
@@ -110,11 +111,11 @@ impl Governor {
         }
     }
 
-    /// Parts came or went between two sets with these times a unit of work: were it not for them the times would be
-    /// one.
+    /// Corrects the costs of the parts by which two sets differ, from the time for a unit of work with each. With
+    /// correct costs both times would be the same.
     fn learn(&mut self, all: &WorkAmount, (from, k_from): (Set, f64), (to, k_to): (Set, f64)) {
         let time = |set: Set, k: f64| k * all.without(set).weighed(&self.ratios);
-        // With the parts and without; where some come while others go, neither is told apart.
+        // Times with the parts and without them. If some parts come while others go, their costs cannot be told apart.
         let (more, less, parts) = match (from & !to, to & !from) {
             (0, gone) => (time(from, k_from), time(to, k_to), gone),
             (come, 0) => (time(to, k_to), time(from, k_from), come),
@@ -135,7 +136,8 @@ impl Governor {
         self.recent.iter_mut().for_each(|k| *k *= before / after);
     }
 
-    /// Milliseconds of a unit of work, as before parts came or went while that still settles; `None` before a report.
+    /// Returns the time for a unit of work, ms; until a change of parts has settled, the time before it. `None` before
+    /// a report.
     fn ms_per_work(&self) -> Option<f64> {
         match self.before {
             Some((_, k)) => Some(k),
@@ -143,8 +145,8 @@ impl Governor {
         }
     }
 
-    /// Returns the median of the last reports, so that a slow frame or two change nothing; of an even number the lower
-    /// one.
+    /// Returns the median of the last reports, so that a slow frame or two have no effect. Of an even number it is the
+    /// lower middle one.
     fn median(&self) -> f64 {
         let mut sorted = self.recent;
         let seen = &mut sorted[..self.reports.clamp(1, SEEN)];
@@ -152,18 +154,18 @@ impl Governor {
         seen[(seen.len() - 1) / 2]
     }
 
-    /// Returns the time that a picture of so much work should take, ms; `None` before the first report.
+    /// Returns the predicted time of a picture of this work, ms; `None` before the first report.
     pub fn ms(&self, amount: &WorkAmount) -> Option<f64> {
         self.ms_per_work().map(|k| k * amount.weighed(&self.ratios))
     }
 
-    /// Work of a picture by what steps cost here.
+    /// Returns the work of a picture by the costs on this machine.
     pub fn work(&self, amount: &WorkAmount) -> f64 {
         amount.weighed(&self.ratios)
     }
 
-    /// Whether a picture keeps a budget of time. One of more work than is drawn now leaves room to spare, so that a
-    /// load at the border does not swing.
+    /// Whether a picture keeps a budget of time. If it has more work than the present one, it must leave room to spare,
+    /// so that a load at the border does not oscillate.
     pub fn fits(&self, amount: &WorkAmount, budget_ms: Option<f64>, now: &WorkAmount) -> bool {
         match (budget_ms, self.ms(amount)) {
             (Some(budget), Some(ms)) => {
@@ -188,7 +190,7 @@ mod tests {
         Part { name: "part", rungs: &["all", "none"], importance, worth: Worth::Composed(0) }
     }
 
-    /// Air, fog and sky.
+    /// List of three parts: air, fog and sky.
     const PARTS: [Part; 3] = [part(0.9), part(0.9), part(0.2)];
 
     fn steps(v: [f64; 3]) -> [f64; MOST_STEPS] {
@@ -203,7 +205,7 @@ mod tests {
     }
 
     impl Picture {
-        /// Parts worth so much, on a picture of work 1 + their work.
+        /// Creates a picture of work 1 plus that of its `parts`; `worth` is the error without each of them.
         fn new(worth: [f64; 3], parts: [f64; 3]) -> Self {
             let all = WorkAmount { pixels: 1.0, steps: steps(parts), ..WorkAmount::default() };
             Self { choices: Choices::new(&PARTS), worth, all }
@@ -236,7 +238,7 @@ mod tests {
             }
             assert_eq!(gave_way == GaveWay::Nothing, set == 0, "{frame}");
         }
-        // Down and up again in two or three steps each, as the median follows, and never back and forth.
+        // Parts go in two or three steps as the median follows, and return likewise, without oscillation.
         assert!((2..=5).contains(&switches.len()), "{switches:?}");
         assert!(switches.iter().all(|f| (30..40).contains(f) || (90..100).contains(f)), "{switches:?}");
     }
@@ -261,7 +263,7 @@ mod tests {
         let mut picture = Picture::new([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
         let mut governor = Governor::default();
         governor.report(21.0, &picture.all, 0);
-        // Everything 21 ms; without sky 19, air 17, both 15, fog 16, everything left out 10.
+        // Times: everything 21 ms; without sky 19, without air 17, without both 15, without fog 16, without all 10.
         let mut at = |ms, tolerance| picture.choose(&governor, tolerance, ms, 0);
         assert_eq!(at(25.0, None), (0b000, GaveWay::Nothing));
         assert_eq!(at(19.5, None), (0b100, GaveWay::Tolerance));
@@ -291,7 +293,7 @@ mod tests {
         assert!(governor.ratios[0] > 1.1 && governor.ratios[1] == 1.0, "{:?}", governor.ratios);
     }
 
-    /// A machine whose parts cost other shares of a pixel than the constants say, with a timer that answers late.
+    /// A machine whose parts cost other shares of a pixel than the constants say, and whose timer answers late.
     struct Machine {
         ms: f64,
         ratios: [f64; MOST_STEPS],
@@ -311,7 +313,7 @@ mod tests {
 
     #[test]
     fn a_part_that_is_dearer_here_than_where_it_was_measured_does_not_swing() {
-        // Everything 19.9 ms of 19: by the constants air would leave enough room to come back.
+        // Everything takes 19.9 ms of a budget of 19. By the constants there would be enough room for air to return.
         let mut picture = Picture::new([0.05, 0.3, 0.02], [0.41, 0.17, 0.0]);
         let mut machine = Machine { ms: 10.0, ratios: steps([2.0, 1.0, 1.0]), late: 2, noise: 0.02, drawn: Vec::new() };
         let (mut governor, mut random, mut set, mut switches) = (Governor::default(), Chance::seeded(7), 0, Vec::new());
@@ -338,7 +340,7 @@ mod tests {
             let (ms, late) = (between(0.2, 30.0), between(0.0, 4.99) as usize);
             let mut machine = Machine { ms, ratios, late, noise: 0.05, drawn: Vec::new() };
             let mut governor = Governor::default();
-            // Every part comes and goes in a hundred frames each, under scenes with more or less of it.
+            // Every part comes and goes, a hundred frames each, in scenes with more or less of it.
             for step in 0..12 {
                 let objects = between(0.3, 0.9);
                 let steps = steps([0.4 * objects, 0.27, 0.07 * (1.0 - objects)]);

@@ -1,10 +1,11 @@
-//! Plan of a picture: what the parts of the weather are worth in it, and which of them it does with less of.
+//! Plan of a picture: how much each part of the weather matters in it, and which parts are drawn in less detail.
 //!
-//! Ways to draw an effect have their [`Work`], a deterministic model of cost, and their [`Difference`] from the truth
-//! (`src/candidates.rs`). A view with a [`Budget`] gauges its own picture (a coarse grid of its pixels, read back
-//! without waiting), chooses at which rung each [`Part`] of the weather is drawn ([`parts`]), and fades between them so
-//! that nothing pops. [`Plan`] says what was chosen and why, and the error to expect; [`Prediction`] holds that against
-//! what was. A plan can be saved and pinned elsewhere ([`View::save_plan`](crate::frame::View::save_plan)).
+//! Each way to draw an effect has its [`Work`], a deterministic model of its cost, and its [`Difference`] from the
+//! truth (`src/candidates.rs`). A view with a [`Budget`] gauges its own picture: it composes a coarse grid of its
+//! pixels and reads the grid back without waiting. From the gauge it chooses the rung at which each [`Part`] of the
+//! weather is drawn ([`parts`]), and fades between rungs so that nothing pops. [`Plan`] says what was chosen and why,
+//! and which error to expect. [`Prediction`] compares the predicted error with the measured one. A plan can be saved
+//! and pinned in other views ([`View::save_plan`](crate::frame::View::save_plan)).
 
 mod budget;
 mod choice;

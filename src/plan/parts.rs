@@ -1,65 +1,65 @@
-//! Parts of the weather that a picture may do with less of, and the steps by which it does.
+//! Parts of the weather that a picture can draw in less detail, and the steps of detail.
 //!
-//! A part is drawn at one of its rungs: the first is all of it, the last is nothing of it or the cheapest that stands
-//! for it. Each room registers its own parts ([`crate::frame::PARTS`] lists them); what follows from the list (budgets,
-//! plans, the C API, saved plans) grows with it.
+//! A part is drawn at one of its rungs. The first rung is all of the part. The last is nothing, or the cheapest
+//! stand-in. Each room registers its own parts ([`crate::frame::PARTS`] lists them). Budgets, plans, the C API and
+//! saved plans follow from that list and grow with it.
 
-/// Most parts that a list may have.
+/// Largest number of parts in a list.
 pub const MOST_PARTS: usize = 16;
-/// Most rungs of a part.
+/// Largest number of rungs of a part.
 pub const MOST_RUNGS: usize = 4;
-/// Most steps down of all parts together.
+/// Largest number of steps down of all parts together.
 pub const MOST_STEPS: usize = 32;
 
 /// A part of the weather, as its room registers it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Name in plans, budgets and messages: lower case, unique.
+    /// Name of the part in plans, budgets and messages: lower case, unique.
     pub name: &'static str,
-    /// Names of the ways to draw it, from all of it to the cheapest. Two to [`MOST_RUNGS`].
+    /// Names of its rungs, from all of it to the cheapest: two to [`MOST_RUNGS`].
     pub rungs: &'static [&'static str],
-    /// How much it matters to those who look, [0, 1], where a budget does not say.
+    /// Importance to viewers, [0, 1], unless a budget sets another.
     pub importance: f64,
-    /// How the gauge learns what it is worth.
+    /// Way in which the gauge finds the change by leaving the part out.
     pub worth: Worth,
 }
 
-/// How the gauge learns what a part is worth in a picture.
+/// Way in which the gauge finds the change of a picture by leaving a part out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worth {
-    /// The gauge composes the picture without it, in this channel; parts that share one are taken to be worth as much
-    /// together as each.
+    /// The gauge composes the picture without the part, in this channel. Parts that share a channel each count with the
+    /// change by all of them together.
     Composed(usize),
-    /// A closed form says what each rung changes (`plan::Unseen`); to the last rung the gauge adds what then stands in
-    /// the part's place, in this channel.
+    /// A closed form gives the change by each rung (`plan::Unseen`). For the last rung the gauge adds the change by the
+    /// part's stand-in, in this channel.
     Unseen(usize),
-    /// The gauge estimates it in this channel, whether the part is drawn now or not: the error of the whole picture,
-    /// not where in it.
+    /// The gauge estimates the change in this channel, whether the part is drawn now or not. The estimate has the error
+    /// of the whole picture, but not its place in the picture.
     Estimated(usize),
 }
 
-/// Why a part is drawn as it is.
+/// Reason for a part's rung.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reason {
-    /// The host pinned it.
+    /// The host pinned the part.
     Pinned,
     /// No tolerance was given: everything is drawn.
     #[default]
     EverythingAsked,
-    /// This picture has not been gauged yet, or may not depend on earlier ones: everything is drawn.
+    /// This picture has not been gauged yet, or must not depend on earlier ones: everything is drawn.
     NotGauged,
-    /// The weather has none of it, or the stages recorded do not draw it.
+    /// The weather does not have the part, or the recorded stages do not draw it.
     Absent,
-    /// With less of it the error would be beyond the tolerance.
+    /// With less of the part the error would exceed the tolerance.
     Needed,
-    /// The error with less of it is within the tolerance.
+    /// The error with less of the part is within the tolerance.
     WithinTolerance,
-    /// The time allows no more.
+    /// There is no time for more of the part.
     OutOfTime,
 }
 
 impl Reason {
-    /// In a few words.
+    /// Returns the reason in a few words.
     pub const fn text(self) -> &'static std::ffi::CStr {
         match self {
             Self::Pinned => c"the host pinned it",
@@ -73,26 +73,25 @@ impl Reason {
     }
 }
 
-/// Work of one step of a part in a picture, in pixels with none of the parts: for each pixel in which the host drew
-/// something, for each in which it drew nothing, and whatever the picture is.
+/// Work of one step of a part in a picture, in pixels without any parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepWork {
-    /// For each pixel in which the host drew something.
+    /// Work for each pixel in which the host drew something.
     pub object: f64,
-    /// For each other pixel.
+    /// Work for each other pixel.
     pub sky: f64,
-    /// For the whole picture.
+    /// Work for the whole picture, whatever its size.
     pub fixed: f64,
 }
 
-/// A set of steps that are taken down from everything: bit i is step i of the [`Ladder`].
+/// Set of steps that are taken, starting from everything drawn: bit i is step i of the [`Ladder`].
 pub(super) type Set = u32;
 
-/// The steps of all parts, in the order of the list.
+/// Steps of all parts, in the order of the list.
 #[derive(Clone, Debug)]
 pub(super) struct Ladder {
     pub parts: &'static [Part],
-    /// Number of each part's first step, and of all.
+    /// Index of each part's first step, and last the number of all steps.
     first: Vec<usize>,
 }
 
@@ -109,28 +108,28 @@ impl Ladder {
         self.first[self.parts.len()]
     }
 
-    /// Steps of a part.
+    /// Returns the steps of a part.
     pub fn steps(&self, part: usize) -> std::ops::Range<usize> {
         self.first[part]..self.first[part + 1]
     }
 
-    /// The set in which `part` alone is at `rung`.
+    /// Returns the set in which only `part` is reduced, to `rung`.
     pub fn set(&self, part: usize, rung: usize) -> Set {
         let rung = rung.min(self.parts[part].rungs.len() - 1);
         ((1 << rung) - 1) << self.first[part]
     }
 
-    /// All steps of a part.
+    /// Returns the set of all steps of a part.
     pub fn whole(&self, part: usize) -> Set {
         self.set(part, MOST_RUNGS)
     }
 
-    /// The rung of a part in a set.
+    /// Returns the rung of a part in a set.
     pub fn rung(&self, set: Set, part: usize) -> usize {
         (set & self.whole(part)).count_ones() as usize
     }
 
-    /// The set with `part` at another rung.
+    /// Returns the set with `part` moved to another rung.
     pub fn with(&self, set: Set, part: usize, rung: usize) -> Set {
         set & !self.whole(part) | self.set(part, rung)
     }

@@ -1,4 +1,4 @@
-//! A view's planner: from gauged pictures to parts that are drawn, faded or left out.
+//! Planner of a view: turns gauged pictures into parts that are drawn, faded or left out.
 
 use glam::{DVec2, DVec3};
 
@@ -19,42 +19,43 @@ use crate::{
 /// A part of the weather in a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartPlan {
-    /// Part that is planned.
+    /// Part that this entry plans.
     pub part: &'static Part,
-    /// The rung at which it is drawn once it has faded; 0, all of it, if there is none of it.
+    /// Rung at which the part is drawn once its fade has ended; 0, all of it, if the picture has none of it.
     pub rung: usize,
-    /// How much of it is drawn: 1 all, 0 its last rung, between while it fades or on another.
+    /// Share of the part that is drawn: 1 all of it, 0 its last rung. It lies between them during a fade and on middle
+    /// rungs.
     pub share: f32,
-    /// Why.
+    /// Reason for the rung.
     pub reason: Reason,
-    /// Error of the picture with this part alone at each rung, as last gauged; that of the first is 0.
+    /// Error of the picture with only this part at each rung, as last gauged; that of the first rung is 0.
     pub worth: [Estimate; MOST_RUNGS],
-    /// Work that all of it adds to this picture with everything, or would add, in units of a pixel with none of the
-    /// parts.
+    /// Work of all of this part beside everything else in this picture, whether it is drawn or not, in units of a pixel
+    /// without any parts.
     pub work: f64,
-    /// Steps that it has gone down, a part of one while it fades.
+    /// Steps that the part has gone down; a fraction during a fade.
     depth: f32,
 }
 
 impl PartPlan {
-    /// Error of the picture with this part alone at its last rung, as last gauged.
+    /// Returns the error of the picture with only this part at its last rung, as last gauged.
     pub fn last(&self) -> Estimate {
         self.worth[self.part.rungs.len() - 1]
     }
 }
 
-/// Plan of a view: what it draws, and why.
+/// Plan of a view: what the view draws, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// One entry for each of [`frame::PARTS`](crate::frame::PARTS).
     pub parts: Vec<PartPlan>,
-    /// Estimated error of all that is left out together.
+    /// Estimated error of everything that is left out together.
     pub error: Estimate,
-    /// Work of the picture as planned, in units of a pixel with none of the parts.
+    /// Work of the picture as planned, in units of a pixel without any parts.
     pub work: f64,
     /// Work of the picture with everything.
     pub work_of_everything: f64,
-    /// Time that the picture should take, ms, by the times reported so far; `None` before the first.
+    /// Predicted time of the picture, ms, by the times reported so far; `None` before the first report.
     pub milliseconds: Option<f64>,
     /// Limit of the budget that could not be kept.
     pub gave_way: GaveWay,
@@ -81,37 +82,36 @@ impl Plan {
         }
     }
 
-    /// Nothing is known of the picture.
+    /// Forgets everything about the picture.
     fn forget(&mut self) {
         (self.error, self.work, self.work_of_everything) = (Estimate::default(), 0.0, 0.0);
         (self.milliseconds, self.gave_way) = (None, GaveWay::Nothing);
     }
 
-    /// The rung of every part once it has faded; that of a part that there is none of is all of it.
+    /// Returns the rung of every part once its fade has ended; 0, all of it, for a part of which the picture has none.
     pub fn rungs(&self) -> Vec<usize> {
         self.parts.iter().map(|p| p.rung).collect()
     }
 }
 
-/// Prediction for a frame, to be compared with what it was.
+/// Prediction for a frame, to be compared with the measured values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prediction {
-    /// Time that the weather should take in this frame, ms; `None` before the first gauge, and before the first
-    /// reported time.
+    /// Predicted time of the weather in this frame, ms; `None` before the first gauge, and before the first reported
+    /// time.
     pub milliseconds: Option<f64>,
     /// Error of what this frame leaves out, parts that still fade not counted; `None` before the first gauge.
     pub error: Option<Estimate>,
-    /// The newest gauge's picture: the bound that had been predicted for what it left out, and the error that was
-    /// found.
+    /// Check on the newest gauged picture: the predicted bound for the error of what it left out, and the error found.
     pub checked: Option<[f64; 2]>,
 }
 
 /// Presence of a part in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PartNow {
-    /// Whether weather and stages draw it at all.
+    /// Whether the weather has the part and the recorded stages draw it.
     pub is_there: bool,
-    /// Work of its steps.
+    /// Work of each of its steps.
     pub steps: [StepWork; MOST_RUNGS],
 }
 
@@ -120,12 +120,12 @@ pub(crate) struct PartNow {
 pub(crate) struct Presence {
     pub pixels: u64,
     pub parts: [PartNow; MOST_PARTS],
-    /// Two parts that cost more beside each other, and how much.
+    /// Two parts that cost extra work if both are drawn, and that work.
     pub together: ([usize; 2], StepWork),
 }
 
 impl Presence {
-    /// Work of the picture if the host drew something everywhere.
+    /// Returns the work of the picture if the host drew something in every pixel.
     fn most_work(&self) -> f64 {
         let pixels = self.pixels as f64;
         let work = |step: &StepWork| step.object * pixels + step.fixed;
@@ -136,14 +136,14 @@ impl Presence {
     }
 }
 
-/// Changes that the gauge cannot see, in closed form.
+/// Source of changes that the gauge cannot see, in closed form.
 pub(crate) trait Unseen {
-    /// Returns the changes by the first steps of a part at pixel number `pixel` of the gauge, at `ndc`, where the
-    /// picture has this luminance and what drops hide this optical depth.
+    /// Returns the changes by the first steps of a part at pixel number `pixel` of the gauge, at `ndc`. `picture` is
+    /// the luminance there, and the optical depth of what drops hide.
     fn change(&self, part: &Part, pixel: usize, ndc: DVec2, picture: [f64; 2]) -> [f32; MOST_RUNGS - 1];
 }
 
-/// Situation in which a gauge was made: a picture far from it needs another.
+/// Situation in which a picture was gauged. A picture in a very different situation needs another gauge.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Situation {
     pub position: DVec3,
@@ -153,7 +153,7 @@ pub(crate) struct Situation {
 }
 
 impl Situation {
-    /// Whether what was gauged there still says something here.
+    /// Whether a gauge made in this situation is still valid in `other`.
     fn is_near(&self, other: &Self) -> bool {
         let reach = (0.02 * self.conditions.visibility_m()).max(20.0);
         self.position.distance(other.position) <= reach
@@ -162,7 +162,7 @@ impl Situation {
             && self.conditions == other.conditions
     }
 
-    /// Whether the next frame shows another picture altogether: nothing fades then.
+    /// Whether the next frame is a cut to a very different picture. Parts then change without a fade.
     fn is_cut(&self, next: &Self) -> bool {
         let (a, b) = (self.conditions.visibility_m(), next.conditions.visibility_m());
         self.position.distance(next.position) > (0.05 * a.min(b)).max(100.0)
@@ -172,31 +172,32 @@ impl Situation {
     }
 }
 
-/// A gauge under way: of which picture, which steps that leaves out, and the bound predicted for its error.
+/// A gauge under way: the situation of its picture, the steps taken in it, and the predicted bound for its error.
 struct Gauging<U> {
     there: Situation,
     absent: Set,
     bound: Option<f64>,
-    /// Changes that the gauge cannot see of it, where a part has any.
+    /// Closed form of the changes that the gauge cannot see, if a part has any.
     unseen: Option<U>,
 }
 
-/// Least share of a build of the sky's tables with the default settings that one frame pays, since finer strips are not
-/// cut, and the share that it pays where there is time.
+/// Shares of a build of the sky's tables (default settings) that one frame does: the least one, because finer strips
+/// are not cut, and the usual one where there is time.
 const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
-/// Where that is less than this share of a picture's own work, it pays so much: no frame takes half as much again.
+/// Work on the tables, as a share of the picture's own work, that replaces the usual share where it is more. No frame
+/// then takes half as long again.
 const SLICE: f64 = 0.3;
 
-/// A part changes a pixel by no more than this in a frame while it fades, and takes at least and at most so many
-/// frames.
+/// Largest change of a pixel in one frame while a part fades. `FADE_FRAMES` has the fewest and the most frames of a
+/// fade.
 const FADE_STEP: f64 = 0.005;
 const FADE_FRAMES: (f64, f64) = (8.0, 128.0);
 
-/// Plans the pictures of a view. `U` says what the gauge cannot see.
+/// Planner of a view's pictures. `U` gives the changes that the gauge cannot see.
 pub(crate) struct Planner<U> {
     budget: Budget,
     asked: Asked,
-    /// Work of building the sky's default tables, in pixels with none of the parts.
+    /// Work of building the sky's default tables, in pixels without any parts.
     pub rebuild: f64,
     /// Work of the last picture with everything, in the same units; 0 before the first.
     work: f64,
@@ -204,7 +205,7 @@ pub(crate) struct Planner<U> {
     choices: Choices,
     governor: Governor,
     gauging: Option<Gauging<U>>,
-    /// Situation of the gauge that the choices stand on.
+    /// Situation of the gauge on which the present choice is based.
     planned: Option<Situation>,
     last: Option<Situation>,
     left_out: Set,
@@ -214,7 +215,8 @@ pub(crate) struct Planner<U> {
 }
 
 impl<U: Unseen> Planner<U> {
-    /// For a list of parts. `rebuild`: work of building the sky's default tables, in pixels with none of the parts.
+    /// Creates a planner for a list of parts. `rebuild` is the work of building the sky's default tables, in pixels
+    /// without any parts.
     pub fn new(parts: &'static [Part], rebuild: f64) -> Self {
         let mut planner = Self {
             rebuild,
@@ -289,20 +291,20 @@ impl<U: Unseen> Planner<U> {
         Ok(())
     }
 
-    /// The steps of which nothing is drawn: one that fades is paid whole.
+    /// Returns the steps that are taken in full: a step that still fades costs its whole work.
     fn absent(&self) -> Set {
         let ladder = &self.choices.ladder;
         let gone = |part: usize| ladder.set(part, self.plan.parts[part].depth as usize) & self.left_out;
         (0..ladder.parts.len()).fold(0, |set, part| set | gone(part))
     }
 
-    /// Draw everything until the next gauge answers.
+    /// Draws everything until the next gauge has an answer.
     fn forget(&mut self) {
         (self.planned, self.gauging, self.left_out, self.frames) = (None, None, 0, EVERY);
     }
 
-    /// Once a frame: takes a gauge's answer, chooses, fades, predicts. `pure`: the picture may not depend on earlier
-    /// ones.
+    /// Begins a frame: takes the gauge's answer, chooses, fades and predicts. `pure` means that the picture must not
+    /// depend on earlier ones.
     pub fn begin(&mut self, device: &Device, here: &Situation, present: &Presence, pure: bool) {
         let mut pure = pure;
         self.work = present.most_work();
@@ -351,7 +353,7 @@ impl<U: Unseen> Planner<U> {
         self.planned = Some(gauging.there);
     }
 
-    /// Parts appear and go at once where they are pinned.
+    /// Moves pinned parts to their rungs at once, without a fade.
     fn pin(&mut self) {
         let (whole, set) = self.asked.pinned;
         self.left_out = self.left_out & !whole | set;
@@ -371,11 +373,12 @@ impl<U: Unseen> Planner<U> {
             if pure {
                 part.depth = 0.0;
             } else if part.depth != wanted {
-                // The step that it is on, or goes up to.
+                // The step under way: the present one, or the next one down.
                 let lower = if wanted > part.depth { part.depth.floor() + 1.0 } else { part.depth.ceil() } as usize;
                 let worth = part.worth[lower.min(MOST_RUNGS - 1)];
                 let p99 = worth.worst.min(2.0 * worth.p95);
-                // A pixel that loses half of its light sees each step twice as large at the end.
+                // If a pixel loses half of its light, the same step is relatively twice as large at the end of the
+                // fade.
                 let frames = p99 / (FADE_STEP * (1.0 - p99).max(0.2));
                 let step = 1.0 / frames.clamp(FADE_FRAMES.0, FADE_FRAMES.1) as f32;
                 part.depth += (wanted - part.depth).clamp(-step, step);
@@ -384,7 +387,7 @@ impl<U: Unseen> Planner<U> {
         }
     }
 
-    /// Chooses anew among what was gauged last: a reported time may ask for another set in any frame.
+    /// Chooses again from the last gauge's findings: a newly reported time may require another set in any frame.
     fn choose(&mut self, present: &Presence) {
         let (set, gave_way) = self.choices.choose(&self.governor, &self.asked, self.left_out);
         self.left_out = set;
@@ -409,7 +412,7 @@ impl<U: Unseen> Planner<U> {
         self.plan.gave_way = gave_way;
     }
 
-    /// The share of a build of the sky's default tables that a frame has time for.
+    /// Returns the share of a build of the sky's default tables for which a frame has time.
     pub fn share_of_tables(&self) -> f32 {
         let frame = self.governor.ms(&self.choices.all.without(self.absent()));
         let spare = self.budget.milliseconds.zip(frame).map(|(budget, ms)| budget - ms);
@@ -419,19 +422,20 @@ impl<U: Unseen> Planner<U> {
         share as f32
     }
 
-    /// How much is drawn of what a part has at `rung` and not at the next one.
+    /// Returns the drawn share of what a part has at `rung` but not at the next rung.
     pub fn drawn_share(&self, part: usize, rung: usize) -> f32 {
         1.0 - (self.plan.parts[part].depth - rung as f32).clamp(0.0, 1.0)
     }
 
-    /// How often the gauge composes: once more for what it cannot see alone.
+    /// Returns the number of compositions of the gauge; `unseen` adds one, for parts that the gauge cannot see alone.
     pub fn compositions(&self, unseen: bool) -> u32 {
         let channel = |part: &Part| if let Worth::Composed(channel) = part.worth { channel + 1 } else { 0 };
         let composed = self.choices.ladder.parts.iter().map(channel).max().unwrap_or(0);
         1 + composed as u32 + u32::from(unseen)
     }
 
-    /// The gauge, if this frame should be gauged. `unseen` says what it cannot see, if there is such a part.
+    /// Returns the gauge if this frame should be gauged. `unseen` gives the changes that it cannot see, if a part has
+    /// any.
     pub fn due(&mut self, here: &Situation, unseen: impl FnOnce() -> Option<U>) -> Option<&mut Gauge> {
         let absent = self.absent();
         let gauge = self.gauge.as_mut()?;
@@ -452,7 +456,7 @@ impl PartPlan {
 }
 
 impl Choices {
-    /// Takes what the gauge saw, and adds what it could not.
+    /// Takes the samples of the gauge, and adds the changes that it cannot see.
     fn see(&mut self, samples: &[GaugeSample], unseen: Option<&impl Unseen>) {
         let half = |i: usize, n: u32| (i as f64 + 0.5) / f64::from(n) * 2.0 - 1.0;
         self.estimator.clear();
@@ -472,7 +476,7 @@ impl Choices {
                         changes[steps.clone()].copy_from_slice(&found[..steps.len()]);
                         changes[last] += sample.composed[channel];
                     }
-                    // Without them what stands in the part's place says nothing either.
+                    // Without the closed form the change by the part's stand-in means nothing either.
                     (Worth::Unseen(_), None) => {}
                 }
             }
@@ -480,7 +484,8 @@ impl Choices {
         }
     }
 
-    /// Work of the picture with everything, and the steps of what is there; that of every part goes into the plan.
+    /// Returns the work of the picture with everything, and the steps of the parts that are present. Writes the work of
+    /// each part into the plan.
     fn weigh(&self, samples: &[GaugeSample], present: &Presence, plan: &mut Plan) -> (WorkAmount, Set) {
         let share = |kind: f32| samples.iter().filter(|s| s.kind == kind).count() as f64 / samples.len().max(1) as f64;
         let (objects, sky, pixels) = (share(1.0), share(-1.0), present.pixels as f64);

@@ -1,29 +1,29 @@
-//! A plan as text, so that other channels and later sessions draw alike.
+//! A plan as text, so that other channels and later sessions draw the same.
 //!
-//! Beside the parts that are drawn it holds the sky's settings: views of a context with others would not draw alike,
-//! and refuse it.
+//! Beside the rungs of the parts the text holds the sky's settings. Views of a context with other settings would draw
+//! differently, so they refuse the plan.
 
 use toml::{Table, Value};
 
 use super::parts::Part;
 use crate::error::{Error, Result, Status, listed, toml_fault};
 
-/// 2 since rain has parts, 3 since parts have rungs.
+/// Version of the text: 2 since rain has parts, 3 since parts have rungs.
 const VERSION: u32 = 3;
-/// A plan has some hundreds.
+/// Largest size of a saved plan, bytes; a usual one has some hundreds.
 const MOST_BYTES: usize = 1 << 16;
 
-/// Settings of the context's sky: what a plan was made under.
+/// Settings of the context's sky under which a plan was made.
 pub(crate) struct PlanSettings<'a> {
-    /// Name of the model.
+    /// Name of the sky's model.
     pub model: &'a str,
-    /// Refuses a name that no model has.
+    /// Check that refuses a name that no model has.
     pub check_model: fn(&str) -> Result<()>,
-    /// Name, value, least and largest of every number.
+    /// Name, value, minimum and maximum of every number.
     pub numbers: Vec<(&'static str, u32, u32, u32)>,
 }
 
-/// The rungs that are drawn, under these settings.
+/// Writes the rungs of all parts, with the sky's settings.
 pub(crate) fn write(parts: &[Part], rungs: &[usize], sky: &PlanSettings<'_>) -> String {
     let mut text = format!("version = {VERSION}\n\n[sky]\nmodel = \"{}\"\n", sky.model);
     for (name, value, ..) in &sky.numbers {
@@ -36,18 +36,18 @@ pub(crate) fn write(parts: &[Part], rungs: &[usize], sky: &PlanSettings<'_>) -> 
     text
 }
 
-/// The rungs that a plan draws, where the settings are its own.
+/// Reads the rungs of a saved plan whose sky settings are those of this context.
 ///
 /// # Errors
-/// [`Status::Parse`] for what is no plan or of another version, by line and column or by the field's name;
-/// [`Status::InvalidArgument`] if the settings are others.
+/// [`Status::Parse`] for text that is not a plan or is of another version, by line and column or by the field's name;
+/// [`Status::InvalidArgument`] if its settings differ.
 pub(crate) fn read(bytes: &[u8], parts: &[Part], sky: &PlanSettings<'_>) -> Result<Vec<usize>> {
     if bytes.len() > MOST_BYTES {
         return Err(fault("", format_args!("must have at most {MOST_BYTES} bytes, got {}", bytes.len())));
     }
     let text = std::str::from_utf8(bytes).map_err(|e| unread(&e))?;
     let whole: Table = toml::from_str(text).map_err(|e| unread(&toml_fault(text, &e)))?;
-    // First: what else a plan of another version holds is not known.
+    // The version comes first: other fields of another version are unknown.
     let version = whole.get("version");
     if version != Some(&Value::from(i64::from(VERSION))) {
         return Err(fault(".version", format_args!("must be {VERSION}, got {}", shown(version))));
@@ -83,12 +83,12 @@ fn rung_of(drawn: &Table, part: &Part) -> Result<usize> {
     })
 }
 
-/// A fault of the plan's part at `path`.
+/// Builds the error about the field at `path`.
 fn fault(path: &str, rest: impl std::fmt::Display) -> Error {
     Error::about(Status::Parse, format!("plan{path}"), rest)
 }
 
-/// A plan that is no TOML.
+/// Builds the error for text that is not TOML.
 fn unread(why: &dyn std::fmt::Display) -> Error {
     Error::new(Status::Parse, why.to_string()).within("plan")
 }
@@ -119,7 +119,7 @@ fn text_of<'a>(table: &'a Table, name: &str) -> Result<&'a str> {
         .ok_or_else(|| fault(&format!(".sky.{name}"), format_args!("must be a text, got {}", shown(found))))
 }
 
-/// Views draw alike only with the same sky.
+/// Checks that a setting equals the saved one: views draw the same only with the same sky.
 fn differs<T: PartialEq + std::fmt::Display>(name: &str, saved: T, own: T) -> Result<()> {
     if saved == own {
         return Ok(());

@@ -1,36 +1,37 @@
-//! Search for the steps down to take: those that save most work within a tolerance, or those that are missed least in
+//! Search for the steps to take: those that save the most work within a tolerance, or those whose loss is least within
 //! the time.
 //!
-//! A handful of steps is searched whole. Of more, sets are tried from the least work upwards, a limited number of them:
-//! the first that keeps the tolerance is the best. If none did, steps are added one at a time to the few best sets, and
-//! then exchanged as long as that saves more. The number of trials grows with the square of the number of steps.
+//! If there are few sets of steps, all are tried. Otherwise a limited number of sets is tried in order of increasing
+//! work, and the first one that keeps the tolerance is the best. If none of these does, steps are added one at a time
+//! to the few best sets, and then exchanged as long as that saves more. The number of trials grows with the square of
+//! the number of steps.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 use super::parts::{Ladder, Set};
 
-/// Sets that are searched whole, and trials from the least work upwards for each pair of steps.
+/// Number of sets up to which all are tried. `TRIALS`: trials in order of increasing work, for each pair of steps.
 const WHOLE: usize = 64;
 const TRIALS: usize = 3;
-/// Sets of each kind that steps go on from.
+/// Number of sets by each criterion to which further steps are added.
 const FRONT: usize = 3;
-/// More than this strain is not taken back by other parts.
+/// Strain above which other parts are not expected to compensate.
 const MOST_STRAIN: f64 = 3.0;
-/// So that a set that strains nothing is not infinitely good.
+/// Added to a strain, so that a set without strain is not infinitely good.
 const LEAST_STRAIN: f64 = 0.1;
 
-/// Steps that may be taken, on top of those that are taken whatever comes.
+/// Free steps, on top of the pinned ones.
 #[derive(Clone, Copy)]
 pub(super) struct Free<'a> {
     pub ladder: &'a Ladder,
-    /// Steps that may be taken: whole parts.
+    /// Steps that may be taken, always all those of a part.
     pub steps: Set,
-    /// Steps of pinned parts.
+    /// Steps of pinned parts that are taken.
     pub pinned: Set,
 }
 
 impl Free<'_> {
-    /// Parts with any choice.
+    /// Returns the parts with free steps.
     fn parts(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.ladder.parts.len()).filter(|p| self.steps & self.ladder.whole(*p) != 0)
     }
@@ -39,7 +40,7 @@ impl Free<'_> {
         self.parts().map(|p| self.ladder.steps(p).len() + 1).product()
     }
 
-    /// Every set, none twice.
+    /// Visits every set once.
     fn each(&self, mut visit: impl FnMut(Set)) {
         for i in 0..self.sets() {
             let (mut i, mut set) = (i, self.pinned);
@@ -52,7 +53,7 @@ impl Free<'_> {
         }
     }
 
-    /// The set with one step more of a part, if there is one.
+    /// Returns the set with one more step of a part, if the part has one.
     fn lower(&self, set: Set, part: usize) -> Option<Set> {
         let rung = self.ladder.rung(set, part);
         (rung < self.ladder.steps(part).len()).then(|| self.ladder.with(set, part, rung + 1))
@@ -63,14 +64,14 @@ impl Free<'_> {
     }
 }
 
-/// A picture that might be drawn: its work as bits, which numbers above 0 are ordered by, the steps taken, and the part
-/// from which on it may still be raised.
+/// Candidate set: its work as bits (whose order is that of positive numbers), its steps, and the first part that may
+/// still be raised in it.
 type Next = Reverse<(u64, Set, usize)>;
 
-/// A set, the work that it saves, and how much it strains the tolerance.
+/// A set, the work that it saves, and its strain: the share of the tolerance that it uses up.
 type Tried = (Set, f64, f64);
 
-/// Holds its memory between calls.
+/// Buffers of the search, reused between calls.
 #[derive(Default)]
 pub(super) struct Search {
     next: BinaryHeap<Next>,
@@ -79,8 +80,8 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// The set of least work that keeps a tolerance: that strains it by at most 1. `None` if no set was found that
-    /// does.
+    /// Finds the set of least work that keeps a tolerance, that is, whose strain is at most 1. `None` if no such set
+    /// was found.
     pub fn cheapest(
         &mut self,
         free: Free<'_>,
@@ -105,7 +106,7 @@ impl Search {
         Some(exchanged(free, best, &work, &mut strain))
     }
 
-    /// Tries sets from the least work upwards; the first that keeps the tolerance.
+    /// Tries sets in order of increasing work, and returns the first that keeps the tolerance.
     fn upwards(
         &mut self,
         free: Free<'_>,
@@ -132,8 +133,8 @@ impl Search {
         None
     }
 
-    /// Takes one step more at a time from some sets at once: those that save most, and those that save most for their
-    /// strain, which may be too much, since what another part changes may take it back.
+    /// Adds one step at a time to several sets at once: to those that save most, and to those that save most for their
+    /// strain. The strain may exceed 1 on the way, since the change by another part may compensate.
     fn downwards(
         &mut self,
         free: Free<'_>,
@@ -174,7 +175,7 @@ impl Search {
     }
 }
 
-/// Takes one step after the other that keeps the tolerance and saves most.
+/// Takes one step after another: each time the one that saves most within the tolerance.
 fn greedy(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mut impl FnMut(Set) -> f64) -> Set {
     let mut set = start;
     loop {
@@ -187,14 +188,14 @@ fn greedy(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mut i
     }
 }
 
-/// Gives one part back for others that then fit, while that saves more.
+/// Gives steps of one part back so that others fit, as long as that saves more.
 fn exchanged(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mut impl FnMut(Set) -> f64) -> Set {
     let mut best = start;
     for part in free.parts() {
         for rung in 0..free.ladder.rung(best, part) {
             let given_back = free.ladder.with(best, part, rung);
             let mut other = given_back;
-            // Not the same step again first.
+            // Other parts first, so that the same step is not taken again at once.
             let rest = Free { steps: free.steps & !free.ladder.whole(part), ..free };
             other = greedy(rest, other, work, strain);
             other = greedy(free, other, work, strain);
@@ -207,7 +208,7 @@ fn exchanged(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mu
     best
 }
 
-/// The set that fits with the least loss, or that of least work if none fits.
+/// Finds the set that fits with the least loss, or the one of least work if none fits.
 pub(super) fn least_missed(
     free: Free<'_>,
     work: impl Fn(Set) -> f64,
@@ -233,7 +234,8 @@ pub(super) fn least_missed(
             None => return (set, false),
         }
     }
-    // What came first may not be needed beside what came later: the dearest loss that there is room for comes back.
+    // Later steps may have made earlier ones unnecessary: as long as there is time, the step whose return lowers the
+    // loss most is given back.
     loop {
         let raised = |p: usize| Some(free.ladder.with(set, p, free.ladder.rung(set, p).checked_sub(1)?));
         let back = free.parts().filter_map(raised).filter(|s| fits(*s)).min_by(|a, b| loss(*a).total_cmp(&loss(*b)));
@@ -244,7 +246,7 @@ pub(super) fn least_missed(
     }
 }
 
-/// Finds the set with the least work; of equal work that with more in it.
+/// Finds the set with the least work; of sets with equal work, the one that draws more.
 fn cheapest_of_all(free: Free<'_>, work: &impl Fn(Set) -> f64) -> Set {
     let mut best = (work(free.pinned), free.pinned);
     free.each(|set| {

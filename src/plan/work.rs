@@ -5,7 +5,7 @@
 pub struct Listed<M> {
     /// Unique within the effect, lower case with hyphens.
     pub name: &'static str,
-    /// With what it is built.
+    /// Parameters with which the method is built.
     pub method: M,
     /// Cost of the method.
     pub work: Work,
@@ -23,7 +23,7 @@ pub struct Units {
 }
 
 impl Units {
-    /// This and `times` times another.
+    /// Returns the sum of these amounts and `times` times `other`.
     pub fn plus(self, other: Self, times: f64) -> Self {
         Self {
             samples: self.samples + times * other.samples,
@@ -32,7 +32,7 @@ impl Units {
         }
     }
 
-    /// The amounts as one number, in samples.
+    /// Returns the amounts as one number, in samples.
     pub fn at(self, price: &Price) -> f64 {
         self.samples + price.texel * self.texels + price.byte * self.bytes
     }
@@ -54,23 +54,24 @@ impl Default for Price {
     }
 }
 
-/// The cost of a candidate by what causes it.
+/// Cost of a candidate, by its cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
-    /// Whenever the air changes, once for all views.
+    /// Work whenever the air changes, once for all views.
     pub rebuild: Units,
-    /// Whenever a view's altitude, its sun or the air changes, per view and lamp.
+    /// Work whenever a view's altitude, its sun or the air changes, per view and lamp.
     pub view: Units,
-    /// Every pixel of every frame, per lamp.
+    /// Work for every pixel of every frame, per lamp.
     pub pixel: Units,
-    /// Bytes held once for all views.
+    /// Memory held once for all views, bytes.
     pub shared_bytes: u64,
-    /// Bytes held by each view.
+    /// Memory held by each view, bytes.
     pub view_bytes: u64,
 }
 
 impl Work {
-    /// The work of one view's frame under one lamp. `follows`: whether its altitude, sun or air changed.
+    /// Returns the work of one view's frame under one lamp. `follows` says whether the view's altitude, the sun or the
+    /// air changed.
     pub fn frame(&self, pixels: u64, follows: bool) -> Units {
         let view = if follows { self.view } else { Units::default() };
         view.plus(self.pixel, pixels as f64)

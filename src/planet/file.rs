@@ -1,4 +1,4 @@
-//! Reads planet files: TOML in, a checked [`Planet`] or a sentence with line, column, key, unit and range out.
+//! Reads planet files: from TOML to a checked [`Planet`], or to an error with line, column, key, unit and range.
 
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
@@ -6,12 +6,12 @@ use toml::de::{DeArray, DeTable, DeValue};
 use super::model::{FIELDS, Mie, Planet, PlanetField};
 use crate::error::{Error, Result, Status, listed, shown, toml_message};
 
-/// The one section that a file may lack: the weather says the haze then.
+/// The only optional section. Without it the weather gives the haze.
 const HAZE: &str = "mie";
 
 impl Planet {
-    /// Reads a planet file (TOML; every key of [`Planet`] by its name, sections `rayleigh`, `mie`, `absorption`).
-    /// Without `mie` the haze is the Earth's at the file's wavelengths.
+    /// Reads a planet file (TOML; every field of [`Planet`] as a key of its name, sections `rayleigh`, `mie`,
+    /// `absorption`). Without `mie` the haze is the Earth's at the file's wavelengths.
     ///
     /// # Errors
     /// [`crate::Status::Parse`] with line and column for what is not TOML, for a key that is missing, unknown or of the
@@ -41,7 +41,7 @@ fn parse(text: &str) -> Result<Planet> {
     Ok(planet)
 }
 
-/// Refuses keys and sections that no field has: a misspelt key must not silently leave a default in place.
+/// Refuses keys and sections that are no field: a misspelt key must not silently leave a default in place.
 fn refuse_unknown(text: &str, table: &DeTable<'_>, section: &str) -> Result<()> {
     for (key, value) in table.iter() {
         let name = key.get_ref().as_ref();
@@ -97,7 +97,7 @@ fn numbers_of(list: &DeArray<'_>) -> Option<Vec<f64>> {
     list.iter().map(number).collect()
 }
 
-/// A TOML float or integer (`6360000` says the same as `6360000.0`).
+/// Returns a TOML float or integer as a number (`6360000` means the same as `6360000.0`).
 fn number(value: &Spanned<DeValue<'_>>) -> Option<f64> {
     match value.get_ref() {
         DeValue::Float(f) => f.as_str().parse().ok(),
@@ -106,7 +106,7 @@ fn number(value: &Spanned<DeValue<'_>>) -> Option<f64> {
     }
 }
 
-/// An error of a planet file at a place in its text.
+/// Returns an error of a planet file with its place in the text.
 pub(crate) fn file_error(text: &str, byte: usize, error: Error) -> Error {
     let before = &text[..byte.min(text.len())];
     let line = before.matches('\n').count() + 1;
@@ -180,7 +180,7 @@ mod tests {
         let golden = Planet::from_toml(GOLDEN).unwrap();
         assert_eq!(without, Planet { mie: Mie::earth_at(golden.wavelengths_nm), ..golden });
         assert_eq!((without.own_haze(), golden.own_haze()), (None, Some(golden.mie)));
-        // As another machine rounds it.
+        // Numbers that differ by rounding, as on another machine, count as the Earth's.
         let mut rounded = without;
         rounded.mie.extinction_per_m[0] *= 1.0 + 1e-14;
         assert_eq!(rounded.own_haze(), None);
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(rounded.own_haze(), Some(rounded.mie));
         rounded.mie.extinction_per_m = [0.0; 3];
         assert_eq!(rounded.own_haze(), None, "there is none");
-        // Half a section is no section.
+        // A section must be complete.
         refused("asymmetry_g = 0.8", "", Status::Parse, &["`mie.asymmetry_g` is missing"]);
     }
 

@@ -1,7 +1,7 @@
 //! Properties of a planet that the sky needs: its air, its ground and its sun, with units and accepted ranges.
 //!
-//! A [`Planet`] is plain data. Everything that walks over its fields (range checks, the planet file, the hash that
-//! names cached tables) reads one list, `FIELDS`, so that a new field cannot be forgotten in one of them.
+//! A [`Planet`] is plain data. Everything that goes through all its fields (range checks, the planet file, the hash
+//! that names cached tables) reads one list, `FIELDS`, so that none of them can miss a new field.
 
 mod file;
 mod model;
@@ -21,7 +21,7 @@ mod tests {
 
     #[test]
     fn every_field_is_in_the_list_and_changes_the_hash() {
-        // 9 triples and 9 single numbers stand in the struct; the list must reach each of them.
+        // The struct has 9 triples and 9 single numbers; the list must reach each of them.
         let numbers: usize = FIELDS.iter().map(|f| (f.get)(&Planet::earth()).len()).sum();
         assert_eq!(numbers * 8, std::mem::size_of::<Planet>());
         let earth = Planet::earth();
@@ -37,13 +37,13 @@ mod tests {
 
     #[test]
     fn hash_is_the_same_on_every_machine() {
-        // Names of cached tables: a change of this number says that old caches are not read any more.
+        // The hash names cached tables: a change of this number means that old caches are no longer read.
         assert_eq!(golden().hash(), 0x03d2_538b_fb47_2cc1);
     }
 
     #[test]
     fn rayleigh_follows_bodhaine() {
-        // Bodhaine et al. 1999, equation 30, and the coefficient at 15 C, computed apart.
+        // Bodhaine et al. 1999, equation 30, and the coefficient at 15 C, computed independently.
         let table = [
             (400.0, 0.36021, 42.64),
             (440.0, 0.24261, 28.72),
@@ -99,7 +99,7 @@ mod tests {
             for i in 0..(field.get)(&earth).len() {
                 let (a, b) = ((field.get)(&earth)[i], (field.get)(&same)[i]);
                 assert!((a - b).abs() <= 1e-12 * a.abs(), "{} {a} {b}", field.name());
-                // Between and outside the own wavelengths the laws hold.
+                // Between the planet's own wavelengths and outside them the laws hold.
                 let (a, b) = ((field.get)(&apart)[i], (field.get)(&laws)[i]);
                 assert!((a - b).abs() <= 1e-9 * b.abs(), "{} {a} {b}", field.name());
             }

@@ -1,4 +1,5 @@
-//! Planet: its fields with their ranges, the Earth, the same planet at other wavelengths, its file's text and its hash.
+//! The planet: its fields with their ranges, the Earth, a planet at other wavelengths, the text of its file, and its
+//! hash.
 
 use std::fmt::Write as _;
 
@@ -13,17 +14,17 @@ use crate::{
     light::EARTH_WAVELENGTHS_NM,
 };
 
-/// Gas: scatters without absorbing, density falling exponentially with altitude.
+/// Gas: scatters without absorbing; its density falls exponentially with altitude.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rayleigh {
     /// Scattering coefficient at altitude 0 per wavelength, 1/m, `[0, 10]`.
     pub scattering_per_m: [f64; 3],
-    /// Altitude over which the density falls by e, m, `[0, 1e6]`; 0 means that there is no gas above the ground.
+    /// Scale height, m, `[0, 1e6]`: the density falls to 1/e over it; 0 means that there is no gas above the ground.
     pub scale_height_m: f64,
 }
 
-/// Haze: scatters with a forward peak (Cornette and Shanks 1992) and absorbs, density falling exponentially.
+/// Haze: scatters with a forward peak (Cornette and Shanks 1992) and absorbs; its density falls exponentially.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mie {
@@ -31,14 +32,14 @@ pub struct Mie {
     pub scattering_per_m: [f64; 3],
     /// Extinction coefficient (scattering + absorption) at altitude 0 per wavelength, 1/m, `[0, 10]`.
     pub extinction_per_m: [f64; 3],
-    /// Altitude over which the density falls by e, m, `[0, 1e6]`; 0 means that there is no haze above the ground.
+    /// Scale height, m, `[0, 1e6]`: the density falls to 1/e over it; 0 means that there is no haze above the ground.
     pub scale_height_m: f64,
-    /// Parameter g of the phase function, `[-0.9999, 0.9999]`; positive scatters forward, away from the sun.
+    /// Parameter g of the phase function, `[-0.9999, 0.9999]`; a positive one scatters forward, away from the sun.
     pub asymmetry_g: f64,
 }
 
 impl Mie {
-    /// The haze of [`Planet::earth`] at three wavelengths, nm.
+    /// Returns the haze of [`Planet::earth`] at three wavelengths, nm.
     pub fn earth_at(wavelengths_nm: [f64; 3]) -> Self {
         let haze = wavelengths_nm.map(|nm: f64| 2.5e-5 * (nm / 550.0).powf(-1.3));
         Self {
@@ -50,7 +51,8 @@ impl Mie {
     }
 }
 
-/// Ozone: absorbs without scattering. A tent: 1 at the centre, falling linearly to 0 at the half width on both sides.
+/// Ozone: absorbs without scattering. Its density profile is a tent: 1 at the centre, falling linearly to 0 at the half
+/// width on both sides.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Absorption {
@@ -63,34 +65,35 @@ pub struct Absorption {
 }
 
 /// A planet with its air, ground and sun. Fields are public plain data: call [`Planet::check`] after setting them by
-/// hand; every function of the crate that takes a planet does so too.
+/// hand. Every function of the crate that takes a planet also calls it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Planet {
-    /// The three wavelengths that are carried through, nm, each in `[200, 4000]`. The order is the order of every
-    /// other triple; Welkin's own colours expect red, green, blue but any order is right for radiances.
+    /// The three wavelengths that are computed, nm, each in `[200, 4000]`. Every other triple has the same order.
+    /// Welkin's own colours require red, green, blue; radiances are right in any order.
     pub wavelengths_nm: [f64; 3],
-    /// Spectral irradiance of the sun at the top of the air on a surface facing it, W m^-2 nm^-1, `[0, 1e6]`.
-    /// Radiances are in W m^-2 sr^-1 nm^-1 with it; [`super::spectral`] turns them into luminous colours. With 1 they
-    /// are radiances per unit irradiance.
+    /// Spectral irradiance of the sun at the top of the air on a surface facing it, W m^-2 nm^-1, `[0, 1e6]`. Radiances
+    /// are then in W m^-2 sr^-1 nm^-1; [`super::spectral`] converts them to luminous colours. With an irradiance of 1
+    /// they are radiances per unit irradiance.
     pub solar_irradiance: [f64; 3],
-    /// Half the angle that the sun's disc subtends, degrees, `[0, 10]`; 0 is a point.
+    /// Angular radius of the sun's disc, degrees, `[0, 10]`; 0 is a point.
     pub sun_angular_radius_deg: f64,
     /// Radius of the ground's sphere (altitude 0), m, `[1e3, 1e9]`.
     pub bottom_radius_m: f64,
     /// Radius where the air ends, m, above the bottom radius, at most 2e9. The air's density is cut to 0 there.
     pub top_radius_m: f64,
-    /// Share of light that the ground reflects, the same in all directions (Lambert), per wavelength, `[0, 1]`.
+    /// Albedo of the ground, which reflects equally in all directions (Lambert), per wavelength, `[0, 1]`.
     pub ground_albedo: [f64; 3],
     /// Gas.
     pub rayleigh: Rayleigh,
-    /// Haze. The Earth's stands for what the weather says; any other is the planet's own ([`Planet::own_haze`]).
+    /// Haze. The Earth's means that the weather alone gives the haze; any other is the planet's own
+    /// ([`Planet::own_haze`]).
     pub mie: Mie,
     /// Ozone.
     pub absorption: Absorption,
 }
 
-/// One line of a planet file: where it stands, what it means, what it accepts, and where it lives in [`Planet`].
+/// One line of a planet file: section and key, unit, accepted range, and access to the field in [`Planet`].
 pub(crate) struct PlanetField {
     pub section: &'static str,
     pub key: &'static str,
@@ -132,7 +135,7 @@ pub(crate) const FIELDS: [PlanetField; 15] = [
 ];
 
 impl PlanetField {
-    /// Name as the planet file says it: `mie.asymmetry_g`.
+    /// Returns the name in the planet file: `mie.asymmetry_g`.
     pub fn name(&self) -> String {
         if self.section.is_empty() { self.key.to_owned() } else { format!("{}.{}", self.section, self.key) }
     }
@@ -154,7 +157,7 @@ impl PlanetField {
 }
 
 impl Planet {
-    /// The Earth on a clear day.
+    /// Returns the Earth on a clear day.
     ///
     /// - Wavelengths [`EARTH_WAVELENGTHS_NM`].
     /// - Gas: [`rayleigh_scattering_per_m`] (Bodhaine et al. 1999) at 15 C and 1013.25 hPa; the scale height is the one
@@ -168,7 +171,7 @@ impl Planet {
         Self::earth_at(EARTH_WAVELENGTHS_NM)
     }
 
-    /// [`Planet::earth`] at other wavelengths, nm, each in `[365, 835]`.
+    /// Returns [`Planet::earth`] at other wavelengths, nm, each in `[365, 835]`.
     pub fn earth_at(wavelengths_nm: [f64; 3]) -> Self {
         Self {
             wavelengths_nm,
@@ -191,8 +194,8 @@ impl Planet {
         }
     }
 
-    /// The planet's own haze, which lies in its air beside what the weather says; `None` where the weather alone says
-    /// it: where it is the Earth's ([`Mie::earth_at`], to 1e-9 of each number), or there is none.
+    /// Returns the planet's own haze, which is in its air besides the weather's haze. `None` if the weather alone gives
+    /// the haze: if the planet's haze is the Earth's ([`Mie::earth_at`], to 1e-9 of each number), or there is none.
     pub fn own_haze(&self) -> Option<Mie> {
         let numbers = |m: &Mie| {
             let [s, e] = [m.scattering_per_m, m.extinction_per_m];
@@ -204,10 +207,10 @@ impl Planet {
         (differs && is_there).then_some(self.mie)
     }
 
-    /// Returns the planet at three other wavelengths, nm, each in `[365, 835]`: every spectrum is taken as the Earth's
-    /// (Bodhaine's gas, ozone's cross-section, the sun's spectrum; a flat one for the ground) times a factor that runs
-    /// linearly between this planet's three wavelengths and is constant outside; haze follows a power of the wavelength
-    /// between two of them (Angstrom 1929) and goes on beyond. At its own wavelengths it is itself.
+    /// Returns the planet at three other wavelengths, nm, each in `[365, 835]`. Every spectrum is the Earth's
+    /// (Bodhaine's gas, ozone's cross-section, the sun's spectrum; a flat one for the ground) times a factor, which is
+    /// linear between this planet's three wavelengths and constant outside. Haze follows a power of the wavelength
+    /// between two of them (Angstrom 1929), also extrapolated beyond. At the planet's own wavelengths it is unchanged.
     pub fn at_wavelengths(&self, wavelengths_nm: [f64; 3]) -> Self {
         let shaped = |own: [f64; 3], law: &dyn Fn(f64) -> f64| {
             let factor = |i: usize| own[i] / law(self.wavelengths_nm[i]).max(f64::MIN_POSITIVE);
@@ -229,7 +232,7 @@ impl Planet {
         out
     }
 
-    /// The air of this planet with everything in it thinner or thicker by `factor` (1 = as it is).
+    /// Returns the planet with everything in its air thinner or thicker by `factor` (1 = as it is).
     pub fn with_air_scaled(mut self, factor: f64) -> Self {
         for list in [
             &mut self.rayleigh.scattering_per_m,
@@ -242,7 +245,7 @@ impl Planet {
         self
     }
 
-    /// Thickness of the air, m.
+    /// Returns the thickness of the air, m.
     pub fn thickness_m(&self) -> f64 {
         self.top_radius_m - self.bottom_radius_m
     }
@@ -282,8 +285,8 @@ impl Planet {
         Ok(())
     }
 
-    /// A number that names this planet: equal for equal fields, the same on every machine and in every version in which
-    /// the fields mean the same. For the names of cached tables. (FNV-1a, 64 bits, over the fields' bits.)
+    /// Returns a hash that names cached tables of this planet (FNV-1a, 64 bits, over the fields' bits). It is equal for
+    /// equal fields on every machine, and in every version in which the fields mean the same.
     pub fn hash(&self) -> u64 {
         let mut h: u64 = 0xcbf2_9ce4_8422_2325;
         let mut eat = |bytes: &[u8]| {
@@ -294,7 +297,7 @@ impl Planet {
         for field in &FIELDS {
             eat(field.name().as_bytes());
             for v in (field.get)(self) {
-                // + 0.0 makes -0 and 0, which mean the same, one number.
+                // + 0.0 turns -0 into 0, because the two mean the same.
                 eat(&(v + 0.0).to_bits().to_le_bytes());
             }
         }

@@ -1,4 +1,4 @@
-//! Spectra: the sun's above the air, ozone's absorption, and lines through values at three wavelengths.
+//! Spectra: the sun's above the air, ozone's absorption, and interpolation between values at three wavelengths.
 
 use crate::light::spectrum::black_body;
 
@@ -24,7 +24,7 @@ const OZONE_CROSS_SECTION: [f64; 48] = [
 /// Centre of the first bin and width of the bins of the tables above, nm.
 const BINS_NM: (f64, f64) = (365.0, 10.0);
 
-/// Linear interpolation between the bins' centres; `None` outside of them.
+/// Interpolates linearly between the bins' centres; `None` outside of them.
 fn tabulated(table: &[f64; 48], wavelength_nm: f64) -> Option<f64> {
     let x = (wavelength_nm - BINS_NM.0) / BINS_NM.1;
     let last = (table.len() - 1) as f64;
@@ -36,8 +36,8 @@ fn tabulated(table: &[f64; 48], wavelength_nm: f64) -> Option<f64> {
     Some(table[i] * (1.0 - f) + table[i + 1] * f)
 }
 
-/// The sun's spectral irradiance at 1 au above the air, W m^-2 nm^-1 (ASTM G173-03, means over 10 nm, interpolated).
-/// Between 365 and 835 nm; outside a black body of 5772 K that joins on at the table's ends.
+/// Returns the sun's spectral irradiance at 1 au above the air, W m^-2 nm^-1. From 365 to 835 nm it is ASTM G173-03,
+/// means over 10 nm, interpolated; outside, a black body of 5772 K that continues the table's ends.
 pub fn solar_irradiance(wavelength_nm: f64) -> f64 {
     tabulated(&SOLAR_IRRADIANCE, wavelength_nm).unwrap_or_else(|| {
         let last = SOLAR_IRRADIANCE.len() - 1;
@@ -47,13 +47,13 @@ pub fn solar_irradiance(wavelength_nm: f64) -> f64 {
     })
 }
 
-/// Ozone's absorption cross-section at 233 K, m^2 (Serdyuchenko et al. 2014, means over 10 nm, interpolated).
-/// Between 365 and 835 nm; 0 outside, where the bands beside Chappuis's are not tabulated.
+/// Returns ozone's absorption cross-section at 233 K, m^2. From 365 to 835 nm it is that of Serdyuchenko et al. 2014,
+/// means over 10 nm, interpolated; outside it is 0, because bands other than Chappuis's are not tabulated.
 pub fn ozone_cross_section_m2(wavelength_nm: f64) -> f64 {
     tabulated(&OZONE_CROSS_SECTION, wavelength_nm).map_or(0.0, |s| s * 1e-26)
 }
 
-/// Value at `x` of the broken line through three points in any order, constant outside.
+/// Interpolates linearly at `x` between three points in any order, constant outside.
 pub(crate) fn between(points: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| points[*a].total_cmp(&points[*b]));
@@ -66,8 +66,8 @@ pub(crate) fn between(points: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     if x < points[b] { line(a, b) } else { line(b, c) }
 }
 
-/// Value at `x` of the powers of x through neighbours of three points in any order, going on beyond the outer two; of
-/// the broken line where a value is 0 or two points coincide.
+/// Interpolates at `x` by powers of x between neighbours of three points in any order, and extrapolates beyond the
+/// outer two. Linear where a value is 0 or two points coincide.
 pub(crate) fn power_between(points: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| points[*a].total_cmp(&points[*b]));

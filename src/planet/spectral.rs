@@ -1,10 +1,10 @@
-//! Light by wavelength: the sun's spectrum, ozone's absorption, the eye, and how a spectrum becomes a linear Rec. 709
-//! colour: from a set of many wavelengths, or from three.
+//! Light by wavelength: the sun's spectrum, ozone's absorption, the eye's response, and the conversion of a spectrum to
+//! a linear Rec. 709 colour, from a set of many wavelengths or from three.
 //!
-//! A colour is a triple of linear Rec. 709 luminances: `0.2126 r + 0.7152 g + 0.0722 b` is the luminance in cd/m^2 (the
-//! illuminance in lux) of what it describes. *Transfer* is radiance over the sun's irradiance at the same wavelength
-//! (1/sr), or the share of irradiance that arrives (1): what the sky does to sunlight. It is smooth where the sun's
-//! spectrum is not, so conversions weigh transfers and carry the sun's spectrum themselves.
+//! A colour is a triple of linear Rec. 709 luminances: `0.2126 r + 0.7152 g + 0.0722 b` is the luminance in cd/m^2, or
+//! the illuminance in lux. A *transfer* is radiance over the sun's irradiance at the same wavelength (1/sr), or the
+//! share of irradiance that arrives (1): the effect of the air on sunlight. Transfers are smooth over wavelength, while
+//! the sun's spectrum is not. Conversions therefore take transfers and multiply by the sun's spectrum themselves.
 
 use std::sync::LazyLock;
 
@@ -19,7 +19,7 @@ use crate::{
     light::luminance,
 };
 
-/// Colour of something whose transfer is `transfer` at every wavelength, under the sun of 1 au: sums of 1 nm.
+/// Returns the colour of light with `transfer` at every wavelength, under the sun at 1 au: sums in steps of 1 nm.
 pub fn rec709_of_transfer(transfer: impl Fn(f64) -> f64) -> [f64; 3] {
     let mut out = [0.0; 3];
     for nm in 360..=830 {
@@ -31,26 +31,26 @@ pub fn rec709_of_transfer(transfer: impl Fn(f64) -> f64) -> [f64; 3] {
     out
 }
 
-/// Colour of sunlight above the air at 1 au as illuminance on a surface facing it: about 133 klx, a little bluer than
-/// D65's white is warm.
+/// Returns the colour of sunlight above the air at 1 au as illuminance on a surface facing it: about 133 klx, slightly
+/// warmer than D65's white.
 pub fn sun_rec709() -> [f64; 3] {
     static SUN: LazyLock<[f64; 3]> = LazyLock::new(|| rec709_of_transfer(|_| 1.0));
     *SUN
 }
 
-/// A set of wavelengths and what each adds to the colour of a transfer.
+/// A set of wavelengths, each with its weight in the colour of a transfer.
 #[derive(Clone, Debug)]
 pub struct SpectralSet {
     /// Wavelengths, nm, ascending.
     pub wavelengths_nm: Vec<f64>,
-    /// Colour per transfer at that wavelength, cd/m^2: the sun and the eye, integrated in steps of 1 nm over the hat
-    /// that linear interpolation between the wavelengths puts there.
+    /// Colour of a unit transfer at each wavelength, cd/m^2: the sun's spectrum times the eye's response, integrated in
+    /// steps of 1 nm over the hat function of linear interpolation between the wavelengths.
     pub weights: Vec<[f64; 3]>,
 }
 
 impl SpectralSet {
-    /// `count` wavelengths from 390 to 710 nm, `[2, 200]`; beyond them the end values go on, where the eye sees less
-    /// than 0.1 % of white.
+    /// Creates the set of `count` wavelengths, `[2, 200]`, from 390 to 710 nm. Beyond the ends, where the eye's
+    /// response is less than 0.1 % of white, the end values are used.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for another count.
@@ -68,7 +68,7 @@ impl SpectralSet {
         Ok(Self { wavelengths_nm, weights })
     }
 
-    /// Colour from transfers at the set's wavelengths.
+    /// Returns the colour of transfers at the set's wavelengths.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if there are not as many transfers as wavelengths.
@@ -85,8 +85,8 @@ impl SpectralSet {
 }
 
 impl SpectralSet {
-    /// The planet at the set's wavelengths, three by three (the last ones repeated to fill the last planet), under a
-    /// sun of irradiance 1, so that what is computed for them are transfers.
+    /// Returns planets at the set's wavelengths, three by three (the last one repeated to fill the last planet). Their
+    /// sun's irradiance is 1, so that radiances computed for them are transfers.
     pub fn planets(&self, planet: &Planet) -> Vec<Planet> {
         let three = |chunk: &[f64]| {
             let last = chunk[chunk.len() - 1];
@@ -96,7 +96,7 @@ impl SpectralSet {
         self.wavelengths_nm.chunks(3).map(three).collect()
     }
 
-    /// Colour from the triples that the [`SpectralSet::planets`] gave, in their order.
+    /// Returns the colour of the triples computed for [`SpectralSet::planets`], in the same order.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if there are not as many triples as planets.
@@ -110,19 +110,19 @@ impl SpectralSet {
     }
 }
 
-/// A planet at three of a set's wavelengths, and what light there counts among the three that stand for all.
+/// A planet at three wavelengths of a set, and their weights in transfers at the whole planet's own three wavelengths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpectralTriple {
-    /// The planet there; lights do not matter.
+    /// Planet at these wavelengths; its solar irradiance does not matter.
     pub planet: Planet,
-    /// Columns: what a transfer at each wavelength adds to the three transfers at the whole planet's wavelengths that
-    /// look the same.
+    /// Columns of a matrix: for each of these wavelengths, the three transfers at the whole planet's own wavelengths
+    /// that have the same colour as a unit transfer.
     pub columns: [[f64; 3]; 3],
 }
 
-/// `planet` as a set of `count` wavelengths, a multiple of 3. The set's colour, taken back by the conversion of the
-/// planet's own wavelengths, is a triple of transfers: whoever converts these sees the set's colour. With 3 it is the
-/// planet itself.
+/// Splits `planet` into planets for a set of `count` wavelengths, a multiple of 3. The sum of all transfers, each times
+/// its column, is a triple of transfers at the planet's own wavelengths, and the conversion of those wavelengths turns
+/// it into the set's colour. With a count of 3 the only part is the planet itself.
 ///
 /// # Errors
 /// As [`SpectralSet::new`].
@@ -140,7 +140,7 @@ pub(crate) fn parts(planet: &Planet, count: u32) -> Result<Vec<SpectralTriple>> 
     Ok(set.planets(planet).into_iter().zip(set.weights.chunks(3)).map(part).collect())
 }
 
-/// Inverse of a matrix that has one, by its adjugate.
+/// Returns the inverse of an invertible matrix, by its adjugate.
 fn inverse(m: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let minor = |r: usize, c: usize| {
         let (a, b) = ((r + 1) % 3, (r + 2) % 3);
@@ -151,17 +151,17 @@ fn inverse(m: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     std::array::from_fn(|r| std::array::from_fn(|c| minor(c, r) / determinant))
 }
 
-/// How the transfers at three wavelengths become a colour.
+/// Conversion of the transfers at three wavelengths to a colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conversion {
-    /// Colour, cd/m^2 (lux), from the three transfers.
+    /// Matrix from the three transfers to a colour, cd/m^2 (lux).
     pub matrix: [[f64; 3]; 3],
 }
 
 impl Conversion {
-    /// Each wavelength stands for one channel: its transfer times the sun's component. The wavelengths must stand for
-    /// red, green and blue in this order (`EARTH_WAVELENGTHS_NM` do, as well as three can). Always positive, and what
-    /// lamps, fog and clouds given in Rec. 709 can share.
+    /// Creates the conversion in which each wavelength stands for one channel: its transfer times the sun's component.
+    /// The wavelengths must stand for red, green and blue in this order (`EARTH_WAVELENGTHS_NM` do, as well as three
+    /// can). Colours are never negative, and the conversion also suits lamps, fog and clouds given in Rec. 709.
     pub fn per_channel() -> Self {
         let sun = sun_rec709();
         let mut matrix = [[0.0; 3]; 3];
@@ -169,17 +169,18 @@ impl Conversion {
         Self { matrix }
     }
 
-    /// That of a planet's wavelengths: fitted, or per channel where two of them are too close to tell colours apart.
+    /// Creates the conversion of a planet's wavelengths: fitted, or per channel if two of them are too close to tell
+    /// colours apart.
     pub fn of(planet: &Planet) -> Self {
         Self::fitted(&planet.wavelengths_nm).unwrap_or_else(|_| Self::per_channel())
     }
 
-    /// The matrix that fits best in relative least squares for a family of transfers of air: direct sunlight, thin and
-    /// thick skies under suns of 1 to 20 air masses, three amounts of haze, ozone crossed once or twice as often as
-    /// gas. Sunlight that is only dimmed keeps its colour exactly. For wavelengths in any order. At
-    /// `EARTH_WAVELENGTHS_NM` it is a little better than [`Conversion::per_channel`] in clear air (9 against 13 % of
-    /// the luminance in the worst channel, rms over skies and suns) and worse in haze (20 against 12 %): use that one
-    /// there.
+    /// Creates the conversion that fits best, in relative least squares, a family of transfers of air: direct sunlight,
+    /// thin and thick skies under suns of 1 to 20 air masses, three amounts of haze, ozone crossed once or twice as
+    /// often as gas. Sunlight that is dimmed equally at all wavelengths keeps its colour exactly. Wavelengths may be in
+    /// any order. At `EARTH_WAVELENGTHS_NM` it is a little better than [`Conversion::per_channel`] in clear air (9
+    /// against 13 % of the luminance in the worst channel, rms over skies and suns) and worse in haze (20 against 12
+    /// %): use [`Conversion::per_channel`] there.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] unless the three wavelengths differ by 5 nm at least and lie in `[365, 835]`.
@@ -197,7 +198,7 @@ impl Conversion {
             let exact = rec709_of_transfer(|nm| air.transfer(nm));
             let y = luminance(&exact);
             let s = wavelengths_nm.map(|nm| air.transfer(nm) / y);
-            // White is kept by the third column: sun less the other two.
+            // The third column keeps white: it is the sun less the other two.
             let x = [s[0] - s[2], s[1] - s[2]];
             for i in 0..2 {
                 (0..2).for_each(|j| normal[i][j] += x[i] * x[j]);
@@ -213,19 +214,19 @@ impl Conversion {
         Ok(Self { matrix })
     }
 
-    /// Colour of three transfers.
+    /// Returns the colour of three transfers.
     pub fn rec709(&self, transfers: &[f64; 3]) -> [f64; 3] {
         apply(&self.matrix, transfers)
     }
 
-    /// Colour of three spectral radiances, W m^-2 sr^-1 nm^-1 (irradiances, W m^-2 nm^-1), as the planet's
-    /// [`Planet::solar_irradiance`] gives them; `wavelengths_nm` are the planet's.
+    /// Returns the colour of three spectral radiances, W m^-2 sr^-1 nm^-1 (or irradiances, W m^-2 nm^-1), computed with
+    /// the planet's [`Planet::solar_irradiance`]; `wavelengths_nm` are the planet's.
     pub fn rec709_of_radiance(&self, wavelengths_nm: &[f64; 3], radiance: &[f64; 3]) -> [f64; 3] {
         self.rec709(&std::array::from_fn(|c| radiance[c] / solar_irradiance(wavelengths_nm[c])))
     }
 }
 
-/// A plain model of what air does to sunlight, for the fit.
+/// A simple model of the transfer of air, for the fit.
 struct AirSample {
     haze: f64,
     sun_masses: f64,
@@ -234,8 +235,8 @@ struct AirSample {
     kind: u8,
 }
 
-/// The family of the fit. A list made by plain loops: chained flattening iterators compile to a read of an inner
-/// iterator that is not there yet, harmless but reported by valgrind in a host's program.
+/// Returns the airs of the fit. They are indexed by arithmetic, because chained flattening iterators compile to a read
+/// of an inner iterator that does not exist yet: harmless, but reported by valgrind in a host's program.
 fn airs() -> [AirSample; 144] {
     const HAZES: [f64; 3] = [0.03, 0.2, 0.6];
     const SUN_MASSES: [f64; 6] = [1.0, 1.5, 2.5, 5.0, 10.0, 20.0];
@@ -251,7 +252,7 @@ impl AirSample {
         let gas = rayleigh_optical_depth(nm);
         let haze = self.haze * (nm / 550.0).powf(-1.3);
         let ozone = self.ozone_masses * 300.0 * DOBSON_UNIT_PER_M2 * ozone_cross_section_m2(nm);
-        // Scattered light has crossed a part of the air only.
+        // Scattered light has crossed only a part of the air.
         let dimmed = |share: f64| (-share * self.sun_masses * (gas + haze) - ozone).exp();
         match self.kind {
             0 => dimmed(1.0),
@@ -262,8 +263,8 @@ impl AirSample {
     }
 }
 
-/// The sun's limb darkening: brightness over the centre's at a point of the disc where the line of sight meets the
-/// photosphere at an angle of cosine `mu` (1 at the centre, 0 at the limb). 1 - u - v + u mu + v mu^2 with the
+/// Returns the sun's limb darkening: brightness relative to the disc's centre at a point where the line of sight meets
+/// the photosphere at an angle of cosine `mu` (1 at the centre, 0 at the limb). 1 - u - v + u mu + v mu^2 with the
 /// coefficients of Cox 2000 (Allen's Astrophysical Quantities, section 14.7), linear between wavelengths.
 pub fn limb_darkening(wavelength_nm: f64, mu: f64) -> f64 {
     const TABLE: [(f64, f64, f64); 8] = [
@@ -300,7 +301,7 @@ mod tests {
         for c in 0..3 {
             assert!((sun[c] / luminance(&sun) / equal[c] - 1.0).abs() < 0.01, "{sun:?} {equal:?}");
         }
-        // The solar constant's part between 360 and 830 nm.
+        // Part of the solar constant between 360 and 830 nm.
         assert!((sum(&solar_irradiance) - 730.0).abs() < 15.0, "{}", sum(&solar_irradiance));
     }
 
@@ -362,7 +363,7 @@ mod tests {
             for mu in [1.0, 0.8, 0.6, 0.4, 0.3f64] {
                 assert!((limb_darkening(nm, mu) - mu.powf(a)).abs() < 0.02, "{nm} {mu}");
             }
-            // Over the disc, 2 mu dmu.
+            // Mean over the disc, with the weight 2 mu dmu.
             let n = 2000;
             let mus = (0..n).map(|i| ((f64::from(i) + 0.5) / f64::from(n)).sqrt());
             let mean = mus.map(|mu| limb_darkening(nm, mu)).sum::<f64>() / f64::from(n);

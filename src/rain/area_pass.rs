@@ -1,4 +1,4 @@
-//! The columns of rain under rain areas, drawn as veils into the layer that lies before the picture.
+//! The pass that draws the columns of rain areas as veils into the layer in front of the picture.
 
 use std::sync::Arc;
 
@@ -50,7 +50,7 @@ struct ShaftUniform {
     waves: [[f32; 4]; WAVES],
 }
 
-/// Both blocks, as one upload.
+/// `Columns` and `ShaftUniform` as one upload.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct AreaBlocks {
@@ -61,7 +61,7 @@ struct AreaBlocks {
 
 const SHAFT_AT: usize = size_of::<ColumnsUniform>().next_multiple_of(256);
 
-/// Properties that decide which pipeline draws, beside the constants of the veil.
+/// Properties that select the pipeline, in addition to the constants of the veil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ShaftKind {
     pub multi: bool,
@@ -70,10 +70,10 @@ pub(super) struct ShaftKind {
     pub polygons: bool,
 }
 
-/// Pipelines held for a view: those of some weathers that change.
+/// Number of pipelines held for a view: enough for a few weathers that alternate.
 const MOST_PIPELINES: usize = 16;
 
-/// The pass, made when there first are areas.
+/// The pass, created when a view first has rain areas.
 pub(super) struct AreaPass {
     blocks: UniformBlock,
     layouts: [wgpu::BindGroupLayout; 2],
@@ -85,7 +85,7 @@ pub(super) struct AreaPass {
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
-    // The block of what lies between is another room's: any size.
+    // The size of the block `Between` is set by another room, so any size is accepted.
     let slots = [
         (0, Slot::Uniform(size_of::<FrameUniform>())),
         (1, Slot::texels(multisampled)),
@@ -97,8 +97,8 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
     bind::layout(device, "rain areas", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
 
-/// The part of the picture that a column may be in, ndc; `None` if it is in none. `clip` takes camera-relative east,
-/// north, up.
+/// Returns the rectangle of the picture in which a column may be, ndc; `None` if it is outside the picture. `clip`
+/// takes camera-relative east, north, up.
 fn part_of_picture(column: &RainColumn, own_top: f64, clip: &DMat4) -> Option<[f32; 4]> {
     let r = column.shaft().radius_m;
     let [mut low, mut high] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
@@ -108,7 +108,7 @@ fn part_of_picture(column: &RainColumn, own_top: f64, clip: &DMat4) -> Option<[f
         let middle = column.center + column.shaft().lean * (z - column.ground);
         let at = *clip * (middle + glam::DVec2::new(side(1), side(2)) * r).extend(z).extend(1.0);
         if at.w < 1.0 {
-            // It reaches behind the camera, or round it.
+            // The column reaches behind the camera, or the camera is inside it.
             return Some([-1.0, -1.0, 1.0, 1.0]);
         }
         let ndc = at.truncate() / at.w;
@@ -118,17 +118,17 @@ fn part_of_picture(column: &RainColumn, own_top: f64, clip: &DMat4) -> Option<[f
     (part[0] < part[2] && part[1] < part[3]).then(|| part.map(|v| v as f32))
 }
 
-/// A frame's columns.
+/// Columns of one frame.
 pub(super) struct Columns<'a> {
     pub field: &'a AreaField,
     pub scene: &'a Scene,
     pub clip: DMat4,
-    /// Whether the fog, with the weather's own rain in it, lies before the picture.
+    /// Whether the fog, which contains the weather's own rain, is drawn in front of the picture.
     pub veiled: bool,
 }
 
 impl Columns<'_> {
-    /// The blocks, and how many columns are in the picture.
+    /// Returns the blocks, and the number of columns in the picture.
     fn blocks(&self) -> (AreaBlocks, u32) {
         let mut blocks: AreaBlocks = bytemuck::Zeroable::zeroed();
         let field = self.field;
@@ -136,7 +136,7 @@ impl Columns<'_> {
         for (to, column) in blocks.columns.list.iter_mut().zip(&field.columns) {
             *to = column.uniform();
         }
-        // The pass puts the exposure on.
+        // The shader applies the exposure.
         let light = DropLight::of(self.scene);
         let v = |d: DVec3| d.as_vec3().to_array();
         let s = &mut blocks.shaft;
@@ -178,7 +178,8 @@ impl AreaPass {
         }
     }
 
-    /// Uploads the columns and binds them for the veil of the host's own shaders: layout and group.
+    /// Uploads the columns and binds them for the veil of the host's own shaders. Returns the layout and the bind
+    /// group.
     pub fn bound(
         &mut self,
         device: &Device,
@@ -193,7 +194,7 @@ impl AreaPass {
         self.bound.as_ref().map(|(.., group)| (self.layouts[usize::from(multi)].clone(), group.clone()))
     }
 
-    /// Draws the columns into the layer `target`, which is cleared first.
+    /// Clears the layer `target` and draws the columns into it.
     ///
     /// # Errors
     /// A missing shader file.
@@ -250,7 +251,7 @@ impl AreaPass {
         self.bound = Some((depth.map(Layer::kept), hung.cloned(), group));
     }
 
-    /// The pipeline for what is drawn, compiled at its first use.
+    /// Returns the pipeline of a kind, compiled at its first use.
     fn pipeline(
         &mut self,
         device: &Arc<Device>,

@@ -1,49 +1,51 @@
-//! The ways to draw rain that are charted against each other, with what they cost.
+//! Ways to draw rain that the lab charts against each other, and their cost.
 
 use super::settings::{RainModel, RainSettings};
 use crate::particles::stepping::STATE_BYTES;
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Streaks and splashes of rain, at three rungs: single drops near the camera, cones in their place, or neither, so
-/// that all rain is extinction in the fog's layer. Importance: that of particles in the machinery trainer's thesis.
+/// Streaks and splashes of rain, with three rungs: single drops near the camera; cones instead; neither, so that all
+/// rain is extinction in the fog's layer. The importance is that of particles in the experiment of the machinery
+/// trainer's thesis.
 pub const RAIN: Part =
     Part { name: "rain", rungs: &["drops", "cones", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work of the layer of rain, its cones and splashes a pixel, and of a drop of the lattice that is drawn one by one,
-/// measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts.
+/// Work of the rain layer with its cones and splashes, per pixel, and of one drawn drop of the lattice, in units of a
+/// pixel with none of the parts. Measured on a software driver (`cargo bench -- parts`).
 const LAYER_OF_PIXEL: f64 = 0.3;
 const ONE_DROP: f64 = 1.4;
 
-/// Work of the steps from drops to cones and from cones to a veil, in a picture of so many pixels and drops.
+/// Returns the work saved by the step from drops to cones, and by that from cones to a veil, for a picture of `pixels`
+/// pixels with `drops` drops.
 pub(crate) fn rain_work(pixels: u64, drops: u32) -> [StepWork; 2] {
     [ONE_DROP * f64::from(drops), LAYER_OF_PIXEL * pixels as f64].map(|fixed| StepWork { fixed, ..StepWork::default() })
 }
 
-/// Work of a drop of the lattice: to ask whether the picture shows it, and the streaks of the few that it shows; as
-/// measured against cones over 640 x 360.
+/// Work of one drop of the lattice: the test whether it is in the picture, and the streaks of the few that are.
+/// Measured against cones at 640 x 360.
 const DROP: Units = Units { samples: 20.0, texels: 1.0, bytes: 13.0 };
-/// Work of stepping one: an exponential, a look at the wind, its state read and written.
+/// Work of stepping one drop: an exponential, a look-up of the wind, and its state read and written.
 const STEP: Units = Units { samples: 2.0, texels: 1.0, bytes: 32.0 };
-/// Work that every pixel pays once anything falls: the layer cleared, read and put before the picture.
+/// Work of each pixel whenever rain falls: the layer is cleared, read and composited.
 const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
-/// A pixel's place on three cones, and six looks at the streaks.
+/// Work of the cones per pixel: its place on three cones, and six look-ups of streaks.
 const CONES: Units = Units { samples: 3.0, texels: 6.0, bytes: 0.0 };
 
-/// The cost of a setting.
+/// Returns the cost of the settings.
 pub fn work(s: &RainSettings) -> Work {
     let most = s.most_drops.unwrap_or(400_000);
     let drops = Work {
-        // They move: every frame.
+        // Drops move, so all are tested in every frame.
         view: Units::default().plus(DROP, f64::from(most)),
         pixel: LAYER,
         ..Work::default()
     };
     match s.model {
-        // As much as the fog does anyway, and no layer.
+        // The fog does this much anyway; there is no layer.
         RainModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
         RainModel::Cones => Work { pixel: LAYER.plus(CONES, 1.0), ..Work::default() },
-        // The farther cones, and as many drops as one shell of four has.
+        // The outer cones, and the drops of one shell of the four.
         RainModel::Automatic => Work {
             view: Units::default().plus(DROP, 0.25 * f64::from(most)),
             pixel: LAYER.plus(CONES, 0.9),
@@ -56,7 +58,7 @@ pub fn work(s: &RainSettings) -> Work {
     }
 }
 
-/// All candidates.
+/// Returns all candidates.
 pub fn candidates() -> Vec<Listed<RainSettings>> {
     let of = |model, most_drops| RainSettings { model, most_drops, ..RainSettings::default() };
     let drops = |n| of(RainModel::Drops, Some(n));

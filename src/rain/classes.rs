@@ -1,4 +1,4 @@
-//! Classes of drops: how many of each diameter one shell of the lattice holds.
+//! Classes of drop diameter, and the number of drops of each class in one shell of the lattice.
 
 use super::{
     shells::{CLASSES, SHELLS, SIDE_M, SPEED_UNIT},
@@ -6,27 +6,27 @@ use super::{
 };
 use crate::weather::Falling;
 
-/// Diameters that are drawn as drops, mm: what is smaller shows as a veil only.
+/// Range of diameters drawn as drops, mm. Smaller drops show only as a veil.
 const DRAWN_MM: (f64, f64) = (0.5, 6.0);
 
-/// How many drops of each class one shell holds, as the shader wants them.
+/// Number of drops of each class in one shell, in the layout of the shader.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Classes {
-    /// Diameter (m), speed units, drops of the classes up to and with this one.
+    /// Per class: diameter (m), fall speed (speed units), number of drops of the classes up to and including this one.
     pub table: [[f32; 4]; CLASSES],
-    /// Drops of a shell.
+    /// Number of drops in a shell.
     pub per_shell: u32,
-    /// Drops that each of them stands for.
+    /// Number of drops that each drawn drop of the innermost shell stands for.
     pub weight: f64,
-    /// Extinction of the drops that they stand for, 1/m.
+    /// Extinction of the drops that the drawn ones stand for, 1/m.
     pub extinction_per_m: f64,
     /// Diameter (mm), fall speed (m/s) and flux on level ground (1/(m^2 s)) of each class.
     pub flux: [(f64, f64, f64); CLASSES],
 }
 
 impl Classes {
-    /// Creates the classes of what falls at an altitude that makes drops faster by `density_factor`
-    /// ([`super::drops::factor_in`]), at most `most` drops in all shells together.
+    /// Creates the classes of what falls at an altitude where drops fall `density_factor` times as fast as at sea level
+    /// ([`super::drops::factor_in`]), with at most `most` drops in all shells together.
     pub fn new(falling: &Falling, density_factor: f64, most: u32) -> Self {
         let (low, high) = DRAWN_MM;
         let step = (high / low).powf(1.0 / CLASSES as f64);
@@ -81,7 +81,7 @@ mod tests {
             }) / SIDE_M.powi(3)
                 * 3.6e6
         };
-        // Drops below half a millimetre carry the rest.
+        // Drops below 0.5 mm carry the rest.
         assert!((18.0..20.2).contains(&falls), "{falls} mm/h");
     }
 }

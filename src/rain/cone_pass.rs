@@ -1,5 +1,5 @@
-//! The cones on the GPU: their texture, their block, one full-screen draw, and before it what keeps rain off them, if
-//! anything does.
+//! Rain on cones on the GPU: the texture of streaks, the uniform block, and one full-screen draw. Where something near
+//! shelters the cones, a grid of open shares is drawn first.
 
 use super::{
     cones::{ConeUniform, SIDE, STRETCHES, texture},
@@ -18,13 +18,13 @@ use crate::{
     surroundings::SurroundingsBlock,
 };
 
-/// State for rain on cones that a view holds, made when it first draws them.
+/// State for rain on cones that a view holds, created when it first draws them.
 pub(super) struct ConePass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,
     streaks: wgpu::TextureView,
     samplers: [wgpu::Sampler; 2],
-    /// With a grid of open shares, or one that is not read.
+    /// Bind group with the grid of open shares, or with a grid of one cell that is not read.
     group: wgpu::BindGroup,
     open: Option<OpenPass>,
     bytes: u64,
@@ -44,7 +44,8 @@ impl ConePass {
                 address_mode_v: mode,
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
-                // Levels hardly change over a picture; looking at two of them would cost half as much again.
+                // The level of detail hardly changes across a picture. Blending two levels would cost half as much
+                // again.
                 mipmap_filter: wgpu::MipmapFilterMode::Nearest,
                 ..Default::default()
             })
@@ -60,8 +61,7 @@ impl ConePass {
         self.bytes + self.open.as_ref().map_or(0, OpenPass::bytes)
     }
 
-    /// Brings the block up and makes the pipeline for a kind of depth, with or without anything that keeps rain off, if
-    /// it is not there.
+    /// Uploads the block, and compiles the pipeline for `kind` if it does not exist yet.
     ///
     /// # Errors
     /// A missing shader file.
@@ -77,8 +77,8 @@ impl ConePass {
         self.pipelines.prepare(kind, |_| pipeline(device, &[frame, own, around], kind, counts))
     }
 
-    /// Asks what keeps rain off for a picture of this size, maps among it or not; `blocks` begin with the rain's,
-    /// `layout` is that of the surroundings.
+    /// Draws the grid of open shares for a picture of this size. `maps` says whether there are occluder maps. `blocks`
+    /// begins with the rain's block; `layout` is that of the surroundings.
     ///
     /// # Errors
     /// A missing shader file.
@@ -101,7 +101,7 @@ impl ConePass {
         open.draw(device, recording.encoder, (layout, surroundings.bind_group()), maps)
     }
 
-    /// Draws what was prepared; the other groups are set.
+    /// Draws the prepared cones. The caller has set the other bind groups.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: ConeKind) {
         if let Some(pipeline) = self.pipelines.get(&kind) {
             pass.set_pipeline(pipeline);
@@ -111,20 +111,20 @@ impl ConePass {
     }
 }
 
-/// Properties that decide which pipeline draws.
+/// Properties that select the pipeline.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct ConeKind {
     pub depth: DepthRead,
-    /// Something near keeps rain off.
+    /// Whether something near the camera keeps rain off.
     pub sheltered: bool,
-    /// The rim of a rain area is near.
+    /// Whether the rim of a rain area is near.
     pub areas: bool,
     pub lamps: bool,
-    /// Columns of rain areas lie in the layer.
+    /// Whether the layer already contains columns of rain areas.
     pub over: bool,
-    /// The innermost cone shows anything: not all near drops are drawn one by one.
+    /// Whether the innermost cone shows anything, because not all near drops are drawn one by one.
     pub innermost: bool,
-    /// A set of streaks grows in the place of another.
+    /// Whether one set of streaks is replacing another.
     pub growing: bool,
 }
 
@@ -193,7 +193,7 @@ fn group(
     })
 }
 
-/// The texture of streaks, and its bytes.
+/// Uploads the texture of streaks. Returns its view and its bytes.
 fn upload(device: &Device) -> (wgpu::TextureView, u64) {
     let levels = texture();
     let made = device.device.create_texture(&wgpu::TextureDescriptor {

@@ -1,22 +1,22 @@
-//! Rain on three nested cones about the camera (after Wang and Wade 2004): a texture of streaks, made once, moved as
-//! drops move.
+//! Rain on three nested cones around the camera (after Wang and Wade 2004): a texture of streaks, created once, moves
+//! as the drops do.
 //!
-//! Each cone stands for the drops of a band of distances, the outer ones 2.8 times as far as the last. Seen from the
-//! camera, a drop at distance r that moves with velocity V relative to it keeps its azimuth about V and goes along
-//! Mercator's latitude s = ln tan(theta / 2), theta counted from V, at the even speed |V| / r; its streak is |V| x
-//! exposure / r long there, at any theta. So the texture is laid over (azimuth, s) and goes along s: streaks converge
-//! on both ends of V as they should. Towards these ends the azimuth is divided into half as many tiles for each halving
-//! of sin theta, so streaks keep their width. The cone of the sources was narrowed to a tip, where every streak met in
-//! a point.
+//! Each cone stands for the drops in a band of distances; the far end of each outer band is 2.8 times its near end. Let
+//! a drop at distance r move with velocity V relative to the camera. Seen from there it keeps its azimuth about V and
+//! moves along Mercator's latitude s = ln tan(theta / 2), with theta measured from V, at the constant speed |V| / r.
+//! Its streak has the length |V| x exposure / r in s, at any theta. The texture is therefore mapped to (azimuth, s) and
+//! moves along s, and streaks converge at both ends of V as they should. Towards these ends the number of tiles around
+//! the azimuth is halved each time sin theta is halved, so streaks keep their width. Wang and Wade narrowed the cone to
+//! a tip, where all streaks met in a point.
 //!
-//! A cone shows as many streaks as there are drops in its band: the texture's four channels hold 1, 4, 16 and 64 parts
-//! of the streaks, of which as many are taken as are wanted; where more are wanted than there are, contrast goes down
-//! as that of drops would. What they hide on the mean is the optical depth of the band's drops.
+//! A cone shows as many streaks as there are drops in its band. The texture's four channels hold 1, 4, 16 and 64 parts
+//! of the streaks, and as many channels are summed as are needed. If a band has more drops than the texture has
+//! streaks, the contrast is reduced as that of the drops would be. The mean optical depth is that of the band's drops.
 //!
-//! Nothing is carried from frame to frame. A cone shows a set of streaks, with an offset by chance and moved by what
-//! the air, the fall and the camera have done since its birth, a second ago at most: exact at any time, and the same on
-//! every channel. Then another grows in its place, in no two cones at once, so that one more look a pixel does for all
-//! cones.
+//! No state is carried from frame to frame. A cone shows a set of streaks at a random offset, moved by the wind, the
+//! fall and the camera's motion since the set's birth, at most a second ago. This is exact at any time, and the same on
+//! every channel. Then another set replaces it. At any time this happens in only one cone, so that one more look-up a
+//! pixel suffices for all cones.
 
 use glam::{DVec2, DVec3};
 use half::f16;
@@ -31,33 +31,33 @@ use crate::{
     particles::{MovingAir, StreakCamera},
 };
 
-/// Cones.
+/// Number of cones.
 pub const CONES: usize = 3;
-/// Distances, m, between which the drops of each cone are.
+/// Ends of the cones' bands of distances, m.
 pub const BANDS_M: [f64; CONES + 1] = {
-    // Single drops of the innermost shell fade out about the far end of the first band.
+    // Single drops of the innermost shell fade out around the far end of the first band.
     let drops = HIDDEN_M;
     [0.1875, 0.5 * drops, 0.5 * FURTHER * drops, 4.0 * drops]
 };
-/// Far ends of the outer two bands over their near ones: the root of 8.
+/// Ratio of the far end to the near end of each of the outer two bands: the square root of 8.
 const FURTHER: f64 = 2.828_427_124_746_190_3;
-/// Stretches along a ray of which it is asked what keeps rain off: a band each, the outermost in two halves.
+/// Number of stretches of a ray that are tested for shelter: one per band, and two halves of the outermost.
 pub(super) const STRETCHES: usize = CONES + 1;
-/// Texels along either side of the texture.
+/// Width and height of the texture, texels.
 pub(crate) const SIDE: u32 = 256;
-/// Streaks in each channel.
+/// Number of streaks in each channel.
 pub(crate) const STREAKS: [u32; 4] = [48, 192, 768, 3072];
 /// Mean length of a streak, texels.
 const LENGTH: f64 = 5.0;
-/// Half of a streak's width, texels: its profile is a parabola.
+/// Half the width of a streak, texels; its profile is a parabola.
 const HALF_WIDTH: f64 = 0.8;
-/// Time from a set of the innermost cone to the next, s; in each further one twice as long.
+/// Time from one set of the innermost cone to the next, s; in each further cone it is twice as long.
 const LIFE_S: f64 = 0.2;
-/// When sets come in, over the innermost cone's time: so that no two grow at once.
+/// Times at which sets are born, in lives of the innermost cone; chosen so that no two cones replace a set at once.
 const PHASES: [f64; CONES] = [0.5, 1.0, 0.0];
-/// Share of its time in which a set grows.
+/// Share of a set's life in which it grows.
 const GROWS: f64 = 0.1;
-/// [`ConeUniform::growing`] where none does.
+/// Value of [`ConeUniform::growing`] where no set grows.
 pub(crate) const NONE_GROWS: u32 = CONES as u32;
 
 /// `ConeUniform` of `shaders/rain/cone_block.wgsl`, which explains the fields.
@@ -77,13 +77,14 @@ pub(crate) struct ConeUniform {
     pub sets: [[f32; 4]; CONES + 1],
 }
 
-/// Means over all drops that are drawn.
+/// Means over all drawn drops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mean {
-    /// By what they hide: diameter, m, and fall speed, m/s.
+    /// Diameter, m, and fall speed, m/s, weighted by the area of the drops' discs.
     diameter_m: f64,
     fall_m_s: f64,
-    /// Time to fall a metre, s: how far wind drives them in under a roof goes with it.
+    /// Time to fall one metre, s, weighted likewise. The distance that wind drives drops in under a roof is
+    /// proportional to it.
     fall_s_per_m: f64,
 }
 
@@ -107,18 +108,18 @@ impl Mean {
     }
 }
 
-/// A frame (x, y, `axis`) that turns as little as possible from (east, north, down) on.
+/// Returns the axes x and y of a frame (x, y, `axis`), turned from (east, north, down) by the shortest rotation.
 fn frame(axis: DVec3) -> (DVec3, DVec3) {
     let turn = glam::DQuat::from_rotation_arc(DVec3::NEG_Z, axis);
     (turn * DVec3::X, turn * DVec3::Y)
 }
 
-/// When set `number` of cone `j` is born, s: the same in every frame of its life.
+/// Returns the birth time of set `number` of cone `j`, s: the same in every frame of its life.
 fn set_born_s(j: usize, number: f64) -> f64 {
     LIFE_S * (PHASES[j] + number * f64::from(1u32 << j))
 }
 
-/// Number of the youngest set of cone `j` at a time, when it was born, and how far it has grown, 0 to 1.
+/// Returns the number of the youngest set of cone `j` at a time, its birth time, and how far it has grown, 0 to 1.
 fn set_at(j: usize, time_s: f64) -> (f64, f64, f64) {
     let life = LIFE_S * f64::from(1u32 << j);
     let number = ((time_s - set_born_s(j, 0.0)) / life).floor();
@@ -126,11 +127,11 @@ fn set_at(j: usize, time_s: f64) -> (f64, f64, f64) {
     (number, born_s, ((time_s - born_s) / (GROWS * life)).clamp(0.0, 1.0))
 }
 
-/// How far the wind has carried the air since a moment (s), m.
+/// Displacement of the air by the wind since a time (s), m.
 pub(crate) type Carried<'a> = &'a dyn Fn(f64) -> DVec3;
 
 impl ConeUniform {
-    /// For a camera in the air; `carried` answers how far the wind has gone since a moment.
+    /// Creates the block for a camera. `carried` returns the displacement of the air since a time.
     pub fn new(seed: u32, classes: &Classes, shot: &StreakCamera<'_>, air: &MovingAir, carried: Carried<'_>) -> Self {
         let mean = Mean::of(classes);
         let fall = DVec3::Z * mean.fall_m_s;
@@ -150,7 +151,7 @@ impl ConeUniform {
         for j in 0..CONES {
             let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
             let middle = 0.5 * (near + far);
-            // A streak is a little wider than a pixel, or than a drop.
+            // A streak is slightly wider than a pixel, or as wide as a drop if that is more.
             let texel = (0.7 * pixel).max(mean.diameter_m / middle / (2.0 * HALF_WIDTH));
             let tiles = (std::f64::consts::TAU / (f64::from(SIDE) * texel)).round().max(1.0);
             let length = (relative.length() * shot.exposure_s + mean.diameter_m) / middle;
@@ -183,8 +184,8 @@ impl ConeUniform {
         c
     }
 
-    /// Where so large a share of the drops nearer than `distance_m` is drawn one by one, and all of what falls hides
-    /// `share` times what it does. Single drops may reach into a band: its cone begins where they end.
+    /// Adapts the cones to single drops: the share `drops` of all drops nearer than `distance_m` is drawn one by one,
+    /// and optical depths are multiplied by `share`. If single drops reach into a band, its cone begins where they end.
     pub fn behind(mut self, (distance_m, drops): (f64, f64), share: f64) -> Self {
         for (j, band) in self.bands.iter_mut().enumerate() {
             let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
@@ -207,7 +208,7 @@ impl ConeUniform {
     }
 }
 
-/// A streak of the texture: place and half its length, texels, and what it hides.
+/// A streak of the texture: its middle and half its length, texels, its optical depth, and its channel.
 struct Streak {
     middle: DVec2,
     half_length: f64,
@@ -215,7 +216,7 @@ struct Streak {
     channel: usize,
 }
 
-/// Streaks of drops of 0.5 mm on in rain of 10 mm/h, in one of the outer bands.
+/// Returns streaks for the drops above 0.5 mm in one of the outer bands, in rain of 10 mm/h.
 fn streaks() -> Vec<Streak> {
     let sizes = DropSizes::of_rain(10.0, 1.0);
     let table = sizes.diameter_table(Weight::Number, 0.5);
@@ -225,7 +226,7 @@ fn streaks() -> Vec<Streak> {
         for i in 0..count {
             let [a, b] = [0, 1].map(|k| random3([0x5712_ea45, k << 8 | channel as u32, i]).map(share));
             let d = super::sizes::table_diameter_mm(&table, a[2]);
-            // Over that of a band's middle.
+            // In units of the distance of the band's middle.
             let distance = libm::cbrt(1.0 + (FURTHER.powi(3) - 1.0) * b[0]) / (0.5 * (1.0 + FURTHER));
             all.push(Streak {
                 middle: DVec2::new(a[0], a[1]) * f64::from(SIDE),
@@ -238,8 +239,8 @@ fn streaks() -> Vec<Streak> {
     all
 }
 
-/// The texture with all its mip levels: optical depth over the mean of all channels together. The mean of each channel
-/// is exactly its share of the streaks.
+/// Returns the texture with all its mip levels: optical depth over the mean of all channels together. The mean of each
+/// channel is exactly its share of the streaks.
 pub(crate) fn texture() -> Vec<Vec<[f16; 4]>> {
     let n = SIDE as i64;
     let mut level = vec![[0.0f64; 4]; (n * n) as usize];
@@ -298,7 +299,7 @@ mod tests {
             let reach = super::super::lattice::hidden_m(shells);
             let cones = whole.behind((reach, drops), 1.0);
             let depth: f64 = cones.bands.iter().map(|b| f64::from(b[3])).sum();
-            // What drops hide from where they fade in, and cones from there on.
+            // Depth of the drops from the distance at which they fade in, and of the cones beyond.
             let all = depth + drops * (reach - BANDS_M[0]).max(0.0);
             assert!((all / (BANDS_M[CONES] - BANDS_M[0]) - 1.0).abs() < 1e-6, "{shells} {drops}: {all}");
             let begins = cones.bands.iter().filter(|b| b[3] > 0.0).map(|b| f64::from(b[0])).fold(f64::MAX, f64::min);
@@ -323,7 +324,7 @@ mod tests {
                 assert!((0.0..0.006).contains(&step), "{time_s}: cone {j} grows by {step}");
             }
         }
-        // Three cones, a tenth of the time each.
+        // There are three cones, each growing for a tenth of the time.
         assert!((growing as f64 / 160_000.0 - 0.3).abs() < 0.01, "{growing}");
     }
 }

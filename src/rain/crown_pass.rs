@@ -1,6 +1,6 @@
-//! Splashes where there are compute shaders: a list of the slots whose splash the picture may show
-//! ([`crate::particles::listing`]), for each of which the place of its crown is sought in the picture's depth once.
-//! Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
+//! Splashes on devices with compute shaders. A list has the slots whose splash may be in the picture
+//! ([`crate::particles::listing`]). For each of them the place of its crown is searched for in the picture's depth,
+//! once. Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
 
 use super::cull_pass::{ListedQuads, listed_pipeline};
 use crate::{
@@ -12,20 +12,21 @@ use crate::{
     particles::{DepthRead, listing::Listing},
 };
 
-/// Bytes of a `Crown` of `shaders/rain/splash.wgsl`.
+/// Size of a `Crown` of `shaders/rain/splash.wgsl`, bytes.
 const CROWN_BYTES: u64 = 64;
 
-/// State that a view holds to make crowns.
+/// State that a view holds to draw crowns.
 pub(super) struct CrownPass {
     listing: Listing,
-    /// Pipelines that mark and order, by whether rims of areas are near and depth has several samples.
+    /// Pipelines of `mark` and `order`, by whether rims of areas are near and whether depth is multisampled.
     marks: Made<[bool; 2], [wgpu::ComputePipeline; 2]>,
     makes: Made<CrownKind, wgpu::ComputePipeline>,
     draws: Made<DepthRead, wgpu::RenderPipeline>,
     counts: bool,
 }
 
-/// Kind of the shaders that a frame needs: for what depth, with rims of areas near, with occluder maps.
+/// Properties that select the pipelines: the kind of depth, whether rims of areas are near, whether there are occluder
+/// maps.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct CrownKind {
     pub depth: DepthRead,
@@ -44,8 +45,8 @@ impl CrownPass {
         self.listing.bytes()
     }
 
-    /// Makes the pipelines that a frame needs, if they are not there. `frame` and `around` are the layouts of the
-    /// drops' own groups.
+    /// Compiles the pipelines for `kind` that do not exist yet. `frame` and `around` are the layouts of the drops' own
+    /// groups.
     ///
     /// # Errors
     /// A missing shader file.
@@ -78,7 +79,7 @@ impl CrownPass {
         self.draws.prepare(depth, |_| listed_pipeline(device, frame, &listed, depth, counts))
     }
 
-    /// Makes the crowns of that many slots; `frame` and `around` are bound as groups 0 and 2.
+    /// Computes the crowns of `slots` slots. `frame` and `around` are bound as groups 0 and 2.
     pub fn make(
         &mut self,
         device: &wgpu::Device,
@@ -98,7 +99,7 @@ impl CrownPass {
         self.listing.find(pass, [mark, order, make], [slots, 1]);
     }
 
-    /// Draws them; group 0 is set.
+    /// Draws the crowns. The caller has set group 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: CrownKind) {
         if let Some(draw) = self.draws.get(&kind.depth) {
             pass.set_pipeline(draw);

@@ -1,5 +1,5 @@
-//! Drops by a list of those that the picture shows ([`crate::particles::listing`]): its shaders are
-//! `shaders/rain/cull.wgsl` and `cull_streaks.wgsl`.
+//! Drops on devices with compute shaders: only the drops in the picture are drawn, by a list
+//! ([`crate::particles::listing`]). Shaders: `shaders/rain/cull.wgsl` and `cull_streaks.wgsl`.
 
 use super::{
     local::{COLUMNS_BYTES, LOCAL, LocalUniform},
@@ -21,7 +21,7 @@ use crate::{
     },
 };
 
-/// Bytes of a `Streak` of `shaders/rain/drops.wgsl`.
+/// Size of a `Streak` of `shaders/rain/drops.wgsl`, bytes.
 const STREAK_BYTES: u64 = 48;
 
 /// State that a view holds to draw drops by lists.
@@ -29,24 +29,24 @@ pub(super) struct CullPass {
     /// Layouts of the frame's blocks, and of stepped drops.
     layouts: [wgpu::BindGroupLayout; 2],
     frame: wgpu::BindGroup,
-    /// In place of stepped drops.
+    /// Bind group of placeholders where no drops are stepped.
     unstepped: wgpu::BindGroup,
     listing: Listing,
-    /// By whether drops are stepped.
+    /// Pipelines of `mark`, by whether drops are stepped.
     marks: Made<bool, wgpu::ComputePipeline>,
     order: Option<wgpu::ComputePipeline>,
-    /// By whether drops are stepped, and whether area rims and occluder maps are in use.
+    /// Pipelines of `make_streaks`, by whether drops are stepped, and whether area rims and occluder maps are in use.
     makes: Made<[bool; 3], wgpu::ComputePipeline>,
     draws: Made<DepthRead, wgpu::RenderPipeline>,
     counts: bool,
 }
 
-/// The drops of a frame.
+/// Drops of one frame.
 #[derive(Clone, Copy)]
 pub(super) struct DropLattice<'a> {
     pub shells: u32,
     pub per_shell: u32,
-    /// Their states, if they are stepped: [`source_layout`].
+    /// States of the drops, if they are stepped: [`source_layout`].
     pub states: Option<&'a wgpu::BindGroup>,
     /// Whether a rim of a rain area is near, and whether there are occluder maps.
     pub areas: bool,
@@ -54,12 +54,12 @@ pub(super) struct DropLattice<'a> {
 }
 
 impl CullPass {
-    /// Whether `device` can.
+    /// Whether `device` can draw drops by lists.
     pub fn serves(device: &Device) -> bool {
         device.caps().tier > 0
     }
 
-    /// For the drops of the rain's block, and of its areas'.
+    /// Creates the state for the drops in the rain's block `rain` and in the block `local` of rain areas.
     pub fn new(device: &wgpu::Device, (rain, local): (&BlockView, &wgpu::Buffer), counts: bool) -> Self {
         let slots = [
             (0, Slot::Uniform(size_of::<RainUniform>())),
@@ -102,7 +102,7 @@ impl CullPass {
         self.listing.bytes()
     }
 
-    /// Records what finds the drops that the picture shows. The rain's blocks are up.
+    /// Records the passes that find the drops in the picture. The rain's blocks are already uploaded.
     ///
     /// # Errors
     /// A missing shader file.
@@ -129,7 +129,7 @@ impl CullPass {
         Ok(())
     }
 
-    /// Makes the draw's pipeline for a kind of depth, if it is not there.
+    /// Compiles the pipeline of the draw for a kind of depth if it does not exist yet.
     ///
     /// # Errors
     /// A missing shader file.
@@ -145,7 +145,7 @@ impl CullPass {
         self.draws.prepare(depth, |_| listed_pipeline(device, frame, &listed, depth, self.counts))
     }
 
-    /// Draws what was found; group 0 is set.
+    /// Draws the listed drops. The caller has set group 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, depth: DepthRead) {
         if let Some(pipeline) = self.draws.get(&depth) {
             pass.set_pipeline(pipeline);
@@ -174,7 +174,7 @@ impl CullPass {
             self.order = Some(compute("rain/cull.wgsl", "order", &[Some(frame), Some(found)], &[])?);
         }
         self.makes.prepare([is_stepped, areas, maps], |_| {
-            // Mixtures take each column by itself: what lies over what is in their order.
+            // Mixtures use each column by itself: the order of the columns takes care of overlaps.
             let constants = [stepped, flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps)];
             let layouts = [Some(frame), Some(streaks), Some(surroundings), Some(source)];
             compute("rain/cull_streaks.wgsl", "make_streaks", &layouts, &constants)
@@ -182,16 +182,16 @@ impl CullPass {
     }
 }
 
-/// Quads that compute shaders have made.
+/// Quads that compute shaders have written.
 pub(super) struct ListedQuads<'a> {
     /// Entry points of the vertex and the fragment shader.
     pub entries: [&'static str; 2],
-    /// Attributes of each instance, and its bytes.
+    /// Vertex attributes of an instance, and its size in bytes.
     pub attributes: &'a [wgpu::VertexAttribute],
     pub bytes: u64,
 }
 
-/// The pipeline that draws listed quads.
+/// Creates the pipeline that draws listed quads.
 pub(super) fn listed_pipeline(
     device: &Device,
     frame: &wgpu::BindGroupLayout,

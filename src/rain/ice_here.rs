@@ -1,4 +1,4 @@
-//! Hail and ice pellets of a view: what falls round its camera, counted once.
+//! Hail and ice pellets around a view's camera, recounted only when what falls changes.
 
 use super::{
     settings::{RainModel, RainSettings},
@@ -14,23 +14,24 @@ use crate::{
 #[derive(Default)]
 pub(super) struct Ice {
     here: Option<Falling>,
-    /// Stones as last counted, after what they were counted for: what falls, how fast, the most of them.
+    /// Stones as last counted, preceded by what they were counted for: precipitation, speed factor, largest number.
     counted: Option<(Falling, f64, u32, Stones)>,
 }
 
 impl Ice {
-    /// Takes what falls at the camera.
+    /// Reads what falls at the camera.
     pub fn gather(&mut self, now: &SceneMoment<'_>) {
         let falling = now.weather.falling_at(now.eye, now.time_s, now.scene.conditions).precipitation;
         self.here = (falling.ice_pellets_mm_h + falling.hail_mm_h > 0.0).then_some(falling);
     }
 
-    /// Whether a view of these settings draws any.
+    /// Whether a view with these settings draws any stones.
     pub fn is_drawn(&self, settings: &RainSettings) -> bool {
         self.here.is_some() && settings.model != RainModel::Veil
     }
 
-    /// Returns the stones that a view of these settings draws, if any; at most as many as it may draw drops.
+    /// Returns the stones that a view with these settings draws, if any. `most` is the largest number of drawn drops,
+    /// and also of stones.
     pub fn stones(&mut self, scene: &Scene, settings: &RainSettings, most: u32) -> Option<Stones> {
         let falling = self.here.filter(|_| self.is_drawn(settings))?;
         let air = &scene.conditions.air;

@@ -1,5 +1,5 @@
-//! Drops that are stepped through a wind that varies in space: their lattice as `particles::stepping` wants it, which
-//! has the model. `cull_pass` draws them.
+//! Stepped drops: the inputs of `particles::stepping`, which has the model, for the drops of the lattice in a wind that
+//! varies in space. `cull_pass` draws them.
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ use crate::{
     surroundings::{WindMap, WindView},
 };
 
-/// Sets the places of drops that come in apart from those of the lattice.
+/// Seed offset that makes the places where drops enter independent of those of the lattice.
 const COMES_IN: u32 = 0x9e37_79b9;
 
 /// Creates the pass that steps drops.
@@ -23,17 +23,17 @@ pub(super) fn pass(device: &Device, blocks: &Blocks) -> StepPass {
     StepPass::new(device, blocks, ("rain/step.wgsl", "step_drops"), 64, size_of::<RainUniform>())
 }
 
-/// The drops of the lattice that are stepped in a frame.
+/// Drops of the lattice that are stepped in a frame.
 pub(super) struct SteppedDrops<'a> {
     pub seed: u64,
     pub classes: &'a Classes,
-    /// Shells of the lattice that are drawn.
+    /// Number of drawn shells of the lattice.
     pub shells: usize,
-    /// Drops of all shells that may come soon, as at the rims of rain areas.
+    /// Number of drops in all shells to allocate for: more may come soon, for example at the rims of rain areas.
     pub most: u32,
 }
 
-/// Returns the inputs by which drops are stepped.
+/// Returns the inputs for stepping the drops.
 pub(super) fn stepped<'a>(
     drops: &SteppedDrops<'_>,
     (camera, air): (&StreakCamera<'_>, &MovingAir),

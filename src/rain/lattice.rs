@@ -1,15 +1,16 @@
-//! Where drops are that have no state: a lattice of cells that the air carries along, each drop in one place of its
-//! cell, falling at its own speed.
+//! Places of drops without a state: a lattice of cells that moves with the air. Each drop has one place in its cell and
+//! falls through it at its own speed.
 //!
-//! A shell is a cube of side L filled with drops at random places, repeated through all space; what a camera sees of it
-//! is the copy nearest to it. Everything is a fraction of L in 32 bits, and adding wraps as the lattice does, so
-//! positions are exact at any time and place: place = random(seed, shell, class, index) + displacement of the air -
-//! speed x fall phase. Fall speeds are whole multiples of [`SPEED_UNIT`], the phase is the distance that one such unit
-//! has fallen.
+//! A shell is a cube of side L, filled with drops at random places and repeated in all directions; each drop is drawn
+//! at the copy nearest to the camera. Positions are fractions of L in 32 bits, and their addition wraps as the lattice
+//! does, so they are exact at any time and place: place = random(seed, shell, class, index) + displacement of the air -
+//! speed x fall phase. Fall speeds are integer multiples of [`SPEED_UNIT`]; the fall phase is the distance fallen at a
+//! speed of one unit.
 //!
-//! The innermost shell holds every drop of its volume. Each further one is wider by the cube root of 2 and holds as
-//! many drops, each of which stands for twice as many as one of the last: so streaks make together the contrast that
-//! all drops would, those included that are too far to be drawn (`docs/lab/README.md`, the chart of rain).
+//! The innermost shell holds every drop of its volume. Each further shell is wider by the cube root of 2 and holds the
+//! same number of drops, each of which stands for twice as many as a drop of the shell before. Together the streaks
+//! have the contrast that all drops would have, including those too far to be drawn (`docs/lab/README.md`, the chart of
+//! rain).
 
 use glam::DVec3;
 
@@ -25,20 +26,20 @@ pub use crate::falling::{
 /// One drop of the lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drop {
-    /// Its shell, class and number: what it is known by.
+    /// Identity of the drop: shell, class and index.
     pub id: (u32, u32, u32),
-    /// Its place in the cell, as [`Moment::place`] says.
+    /// Place in the cell, from [`Moment::place`].
     pub place: [u32; 3],
-    /// From the camera to its nearest copy, m.
+    /// Position of the nearest copy relative to the camera, m.
     pub position_m: DVec3,
     /// Diameter, m.
     pub diameter_m: f64,
-    /// Share of it that its shell shows at this distance, 0 to 1.
+    /// Share of the drop that its shell shows at this distance, 0 to 1.
     pub share: f64,
 }
 
-/// All drops of `classes` as a camera at `position_m` (east, north, up of a point fixed to the world) sees them, after
-/// the air has moved by `displacement_m` in `time_s`. Equal ids of two cameras are the same drop.
+/// Returns all drops of `classes` as seen by a camera at `position_m` (east, north, up of a point fixed to the world),
+/// after the air has moved by `displacement_m` in `time_s`. Two cameras see the same drop under the same id.
 pub fn drops(
     classes: &Classes,
     seed: u64,
@@ -101,7 +102,7 @@ mod tests {
             let p = at(50.0).place(1, 1, 5, i, 300);
             octants[p.iter().fold(0, |o, v| o * 2 + (v >> 31) as usize)] += 1;
         }
-        // Poisson: 1000 +- 32 each.
+        // Poisson distribution: 1000 +- 32 each.
         assert!(octants.iter().all(|o| o.abs_diff(1000) < 150), "{octants:?}");
     }
 

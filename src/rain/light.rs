@@ -1,4 +1,4 @@
-//! Light on a drop: the sky and the ground that it shows, small and upside down, and the sun or moon through it.
+//! Light on a drop: the sky and the ground, seen small and upside down in it, and the sun or moon through it.
 
 use std::f64::consts::PI;
 
@@ -6,27 +6,29 @@ use glam::DVec3;
 
 pub use crate::moment::LightAround as DropLight;
 
-/// Returns the phase function of a drop, 4 pi on the whole, for light from an angle of cosine `c`, 1 straight behind
-/// it: rays through the sphere and the backward share that makes rainbows, as two lobes of Henyey and Greenstein (1941)
-/// whose asymmetry is 0.81 together. As `drop_phase` of `shaders/rain/phase.wgsl`.
+/// Returns the phase function of a drop, whose integral over all directions is 4 pi. `c` is the cosine of the
+/// scattering angle: 1 for light from straight behind the drop. Two lobes of Henyey and Greenstein (1941), with a joint
+/// asymmetry of 0.81, stand for the rays through the sphere and for the backward share that makes rainbows. Twin of
+/// `drop_phase` in `shaders/rain/phase.wgsl`.
 pub fn phase(c: f64) -> f64 {
     let lobe = |g: f64| (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5);
     0.93 * lobe(0.9) + 0.07 * lobe(-0.35)
 }
 
-/// The share of what surrounds a drop above the horizon in what it shows along a ray that rises by a sine `z`.
+/// Returns the share of the light above the horizon in what a drop shows along a ray that rises with the sine `z`; the
+/// rest is light from below the horizon.
 ///
-/// Most of a drop's disc shows what lies near the ray's own direction, upside down: half of the disc turns rays by less
-/// than 26 degrees, its rim by 83. So a drop a little above the horizon shows more sky than ground already. Fitted to
-/// rays that are refracted and reflected by Snell's and Fresnel's laws, with which it agrees within 0.01
-/// (`tests/rain/photometry.rs`). As `sky_share` of `shaders/rain/phase.wgsl`.
+/// Most of a drop's disc shows the surroundings near the ray's own direction, upside down: half of the disc turns rays
+/// by less than 26 degrees, its rim by 83 degrees. A drop slightly above the horizon therefore already shows more sky
+/// than ground. Fitted to rays refracted and reflected by the laws of Snell and Fresnel, within 0.01
+/// (`tests/rain/photometry.rs`). Twin of `sky_share` in `shaders/rain/phase.wgsl`.
 pub fn sky_share(z: f64) -> f64 {
     let level = 1.0 - z.abs().min(1.0);
     0.5 + z.signum() * 0.4415 * (1.0 - level * level * level.sqrt())
 }
 
 impl DropLight {
-    /// Radiance of a drop seen along the unit vector `d`, without lamps.
+    /// Returns the radiance of a drop seen along the unit vector `d`, without lamps.
     pub fn radiance(&self, d: DVec3) -> DVec3 {
         self.below.lerp(self.above, sky_share(d.z)) + self.sun * (phase(d.dot(self.to_sun)) / (4.0 * PI))
     }

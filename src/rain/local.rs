@@ -1,8 +1,9 @@
-//! Drops round a camera that stands in or near the rim of rain areas: how many of each class fall at each place.
+//! Drops around a camera in or near the rim of rain areas: how many of each class fall at each place.
 //!
-//! The weather and each area have their own count of every class. A place keeps the drops whose number lies below the
-//! mixture of the counts there. The number of a drop has nothing to do with its place, so that thins evenly, and the
-//! same drop stays or goes on every channel. A camera that no rim is near sees one pure rain and needs none of this.
+//! The weather and each area have their own number of drops in every class. At each place these numbers are mixed by
+//! the areas' shares, and only the drops whose index is below the mixed number are drawn. A drop's index has nothing to
+//! do with its place, so this thins the rain evenly, and every channel keeps the same drops. A camera with no rim
+//! nearby sees one rain and needs none of this.
 
 use std::ops::Range;
 
@@ -14,12 +15,12 @@ use super::{
 };
 use crate::{falling::MAX_AREAS, weather::Falling};
 
-/// Rains of a mixture: the weather's and each area's.
+/// Number of rains in a mixture: the weather's and each area's.
 const STATES: usize = MAX_AREAS + 1;
-/// Vectors of four that hold a number for each.
+/// Number of vectors of four that hold one number per rain.
 const ROWS: usize = STATES.div_ceil(4);
 
-/// `Columns` of `shaders/rain/area.wgsl` and behind it `Local` of `shaders/rain/local.wgsl`, as one upload.
+/// `Columns` of `shaders/rain/area.wgsl`, followed by `Local` of `shaders/rain/local.wgsl`, as one upload.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct LocalUniform {
@@ -32,33 +33,33 @@ pub(crate) struct LocalUniform {
     pub cones: [[f32; 4]; ROWS],
 }
 
-/// The columns of [`LocalUniform`], which are a block of their own.
+/// Size of the columns of [`LocalUniform`], which are bound as a block of their own.
 pub(super) const COLUMNS_BYTES: usize = std::mem::offset_of!(LocalUniform, counts);
-/// Where the drops of areas begin behind their columns, and where they end.
+/// Range of bytes of `Local` in the buffer, after the columns.
 pub(super) const LOCAL: Range<usize> = {
     let at = COLUMNS_BYTES.next_multiple_of(256);
     at..at + size_of::<LocalUniform>() - COLUMNS_BYTES
 };
 
-/// Drops of a column that reach a camera.
+/// Rain of one column that reaches the camera.
 pub(crate) struct LocalColumn<'a> {
     pub uniform: ColumnUniform,
-    /// Share of its rain that has left its cloud at the camera.
+    /// Share of its rain that has left its cloud at the camera's altitude.
     pub begun: f64,
     pub classes: &'a Classes,
 }
 
-/// Rains that fall within reach of a camera.
+/// Rain that falls within reach of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Local {
-    /// One for all of it.
+    /// One rain, equal everywhere.
     Pure(Falling),
-    /// A mixture of the weather's and of those columns, a bit each.
+    /// A mixture of the weather's rain and that of some columns: bit `i` is set for column `i`.
     Mixed(Falling, u32),
 }
 
 impl Local {
-    /// At a camera, under columns that lie about it, as far as `reach_m`.
+    /// Finds the rain within `reach_m` of a camera under the columns of `field`.
     pub fn new(weather: &Falling, field: &AreaField, eye: EyeInWorld<'_>, reach_m: f64) -> Self {
         let mut local = Self::Pure(*weather);
         for (i, column) in field.columns.iter().enumerate() {
@@ -75,7 +76,7 @@ impl Local {
         local
     }
 
-    /// Whether drops are in it.
+    /// Whether the rain contains drops.
     pub fn has_drops(&self, field: &AreaField) -> bool {
         let wet = |f: &Falling| f.rain_mm_h + f.drizzle_mm_h > 0.0;
         match self {
@@ -89,7 +90,7 @@ impl Local {
 }
 
 impl Classes {
-    /// As many of each class as the fullest of both has.
+    /// Returns classes with the larger of both numbers in each class.
     pub(crate) fn enveloped(&self, other: &Self) -> Self {
         let (mut upto, mut envelope) = (0.0, *self);
         for k in 0..CLASSES {
@@ -103,7 +104,8 @@ impl Classes {
         envelope
     }
 
-    /// A part of them in number, each for itself.
+    /// Returns `share` of the drops: flux, extinction and the number that the drawn drops stand for are multiplied by
+    /// it, and the weight is 1.
     pub(crate) fn part(&self, share: f64) -> Self {
         let mut part = *self;
         part.flux.iter_mut().for_each(|c| c.2 *= share);
@@ -113,7 +115,7 @@ impl Classes {
         part
     }
 
-    /// These, and a part of others: in numbers, flux and extinction, the table of counts aside.
+    /// Adds a share of `other` to the number, flux and extinction. The table of counts is unchanged.
     pub(crate) fn with(&self, share: f64, other: &Self) -> Self {
         let (mut sum, other) = (*self, other.part(share));
         for (to, from) in sum.flux.iter_mut().zip(other.flux) {
@@ -124,7 +126,7 @@ impl Classes {
         sum
     }
 
-    /// Drops of a class in a shell.
+    /// Returns the number of drops of a class in a shell.
     pub(crate) fn count(&self, class: usize) -> f64 {
         let before = if class > 0 { self.table[class - 1][2] } else { 0.0 };
         f64::from(self.table[class][2] - before)
@@ -132,7 +134,8 @@ impl Classes {
 }
 
 impl LocalUniform {
-    /// A mixture of the `weather`'s drops with those of some columns, and the classes that hold enough for all of them.
+    /// Creates the mixture of the `weather`'s drops with those of some columns, and classes with enough drops for all
+    /// of them.
     pub fn new<'a>(weather: &Classes, columns: impl Iterator<Item = LocalColumn<'a>>) -> (Self, Classes) {
         let mut block: Self = bytemuck::Zeroable::zeroed();
         let mut envelope = *weather;
@@ -142,7 +145,7 @@ impl LocalUniform {
                 block.counts[k * ROWS + row][at] = (classes.count(k) * begun) as f32;
             }
             block.weights[row][at] = classes.weight as f32;
-            // As a rate for now.
+            // A rate for now; divided by the largest rate below.
             block.splashes[row][at] = (Splashes::new(classes).drawn_per_m2_s * begun) as f32;
             block.cones[row][at] = (classes.extinction_per_m * begun) as f32;
         };
@@ -163,7 +166,8 @@ impl LocalUniform {
         (block, envelope)
     }
 
-    /// For cones whose block is made for drops of this extinction.
+    /// Makes the cones' extinctions relative to `extinction_per_m`, the extinction of the drops that the cones' block
+    /// is made for.
     pub fn set_cones(&mut self, extinction_per_m: f64) {
         let all = extinction_per_m.max(1e-12) as f32;
         self.cones.iter_mut().flatten().for_each(|v| *v /= all);

@@ -1,16 +1,20 @@
-//! Rain: sized by its rate, falling at the speeds that drops have, each drop where (seed, id, time) puts it.
+//! Rain, hail and ice pellets near the camera, and rain areas seen from outside. The rain rate sets the drops' sizes
+//! and fall speeds; the place of each drop follows from (seed, id, time).
 //!
-//! The model: [`drops`] has the physics of one drop in f64, [`sizes`] that of many, [`ice`] that of hail and pellets.
-//! [`lattice`] has the places: a repeated cell of air full of drops that a camera sees the nearest copy of, with no
-//! state and no update. One quad draws a drop's streak, as faint as the drop's disc is small against the way it falls
-//! during the exposure, by a list of those that the picture shows where there are compute shaders; [`cones`] show what
-//! falls farther off, [`contrast`] says what all of it is worth. Streaks make a layer of their own, which the
-//! composition puts before the picture. What is too small or too far is the fog's extinction; under a rain area of its
-//! own ([`RainArea`]) it is a column of rain, whose drops fall thinned by the area's rim near the camera and as a veil
-//! beyond.
+//! *Drops*. [`drops`] has the physics of one drop in f64, [`sizes`] the size distribution, [`ice`] hail and pellets.
+//! [`lattice`] has the places of drops: a cell of air full of drops that repeats in all directions. Each drop is drawn
+//! at the copy nearest to the camera; no state is kept or updated. One quad draws a drop's streak. Its opacity is the
+//! area of the drop's disc over the area that the disc sweeps during the exposure. On devices with compute shaders only
+//! the drops in the picture are drawn, by a list. The streaks go into a layer of their own, which the composition puts
+//! in front of the picture.
 //!
-//! No `reference.rs`: each file has the f64 side of its own shader. No `held.rs`: drops follow from seed
-//! and time; those that are stepped ([`RainModel::Integrated`]) belong to a view and are not saved.
+//! *Near and far*. [`cones`] show rain beyond the single drops. Rain that is too small or too far for either is
+//! extinction, drawn with the fog. A rain area ([`RainArea`]) is a column of rain. Near the camera its drops are
+//! thinned by the area's rim; beyond, the column is drawn as a veil. [`contrast`] estimates how much all of this
+//! changes a picture.
+//!
+//! There is no `reference.rs`: each file has the f64 side of its own shader. There is no `held.rs`: drops follow from
+//! seed and time. Stepped drops ([`RainModel::Integrated`]) belong to a view and are not saved.
 
 mod area_pass;
 #[cfg(not(feature = "lab"))]

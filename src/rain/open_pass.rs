@@ -1,5 +1,5 @@
-//! Shares of the rain that come through to the cones, on a coarse grid over the picture: each stretch's open shares,
-//! asked once a cell and looked up by every pixel. Drawn only where something near keeps rain off.
+//! Shares of the rain that reach the cones past shelters, on a coarse grid over the picture. Each cell is tested once
+//! for every stretch of its ray, and every pixel looks the result up. Drawn only where something near keeps rain off.
 
 use std::sync::Arc;
 
@@ -17,24 +17,24 @@ use crate::{
     },
 };
 
-/// Pixels along a cell's side, and fewest cells along the picture's.
+/// Side of a cell, pixels, and smallest number of cells along each side of the picture.
 const CELL: u32 = 10;
 const FEWEST: u32 = 40;
-/// Four quarters of a stretch.
+/// Format with one channel for each quarter of a stretch.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// The grid of a view, made when it first needs one.
+/// The grid of a view, created when it is first needed.
 pub(super) struct OpenPass {
     layouts: [wgpu::BindGroupLayout; 2],
     groups: [wgpu::BindGroup; 2],
-    /// Without and with occluder maps.
+    /// Pipelines without and with occluder maps.
     pipelines: [Option<wgpu::RenderPipeline>; 2],
     grid: wgpu::Texture,
-    /// A layer for each stretch.
+    /// One layer for each stretch.
     layers: [wgpu::TextureView; STRETCHES],
 }
 
-/// Cells of a grid over a picture.
+/// Returns the number of cells of the grid over a picture.
 fn cells(picture: wgpu::Extent3d) -> wgpu::Extent3d {
     let along = |pixels: u32| pixels.div_ceil(CELL).max(FEWEST);
     wgpu::Extent3d {
@@ -44,7 +44,7 @@ fn cells(picture: wgpu::Extent3d) -> wgpu::Extent3d {
     }
 }
 
-/// A grid, which may be one cell for the cones to bind where nothing is asked.
+/// Creates a grid. A grid of one cell can be bound where nothing is tested.
 pub(super) fn grid(device: &wgpu::Device, size: wgpu::Extent3d) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("open shares"),
@@ -63,7 +63,7 @@ fn layer(grid: &wgpu::Texture, index: usize) -> wgpu::TextureView {
 }
 
 impl OpenPass {
-    /// `blocks` begin with the rain's, `cones` is theirs.
+    /// Creates the grid. `blocks` begins with the rain's block; `cones` is the cones' block.
     pub fn new(device: &wgpu::Device, [blocks, cones]: [&BlockView; 2], picture: wgpu::Extent3d) -> Self {
         let sizes = [size_of::<RainUniform>(), size_of::<ConeUniform>()];
         let layouts = sizes
@@ -86,7 +86,7 @@ impl OpenPass {
         4 * STRETCHES as u64 * u64::from(size.width) * u64::from(size.height)
     }
 
-    /// The grid for a picture of this size, and whether it is a new one.
+    /// Returns the grid for a picture of this size, and whether it has been created anew.
     pub fn fit(&mut self, device: &wgpu::Device, picture: wgpu::Extent3d) -> (&wgpu::Texture, bool) {
         let size = cells(picture);
         let anew = self.grid.size() != size;
@@ -97,7 +97,8 @@ impl OpenPass {
         (&self.grid, anew)
     }
 
-    /// Asks what keeps rain off, maps among it or not, of the group `around`.
+    /// Tests the cells for shelter by the surroundings in the group `around`; `maps` says whether they contain occluder
+    /// maps.
     ///
     /// # Errors
     /// A missing shader file.

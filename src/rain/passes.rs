@@ -1,4 +1,4 @@
-//! The layer of drops before a picture: its texture, its pipelines, and the draw.
+//! The layer of rain in front of a picture: its texture, its pipelines and the draw.
 
 use std::ops::Range;
 
@@ -31,11 +31,11 @@ use crate::{
     surroundings::{self, SurroundingsBlock},
 };
 
-/// Drops as one more veil before the picture: premultiplied, one sample a pixel.
+/// Layer of drops, composited as one more veil in front of the picture: premultiplied, one sample a pixel.
 pub(crate) struct RainLayer {
-    /// Block of drops, and behind it that of splashes.
+    /// Block of drops, followed by that of splashes.
     block: UniformBlock,
-    /// Columns of areas, and behind them their drops: read and written where a rim of an area is near.
+    /// Columns of areas, followed by their drops; used where a rim of an area is near.
     local: wgpu::Buffer,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
@@ -45,35 +45,35 @@ pub(crate) struct RainLayer {
     listed: Option<Box<(CullPass, CrownPass)>>,
     cones: Option<ConePass>,
     stepped: Option<Box<StepPass>>,
-    /// Hail and pellets, when some fell.
+    /// Pass for hail and pellets, created when the first fall.
     stones: Option<StonePass>,
-    /// Whether it counts how often its pixels are drawn, in place of the drops' light.
+    /// Whether the layer counts how often its pixels are drawn, instead of showing the drops' light.
     counts: bool,
     none: Option<wgpu::TextureView>,
     texture: FallingTexture,
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
-/// Inputs of a frame's draw into the layer before the picture.
+/// Inputs of one frame's draw into the layer.
 pub(crate) struct LayerDraw<'a> {
     pub rain: &'a RainUniform,
-    /// Cones in place of drops and splashes, or beyond the drops.
+    /// Cones, instead of drops and splashes or beyond the drops.
     pub cones: Option<&'a ConeUniform>,
-    /// Drops that are stepped in place of those without a state.
+    /// Drops that are stepped, instead of drops without a state.
     pub stepped: Option<&'a Stepped<'a>>,
     /// View rays of the camera.
     pub rays: &'a ViewRays,
     /// Surroundings: what keeps rain off, and lamps.
     pub surroundings: &'a SurroundingsBlock,
-    /// Whether maps are among it, and lamps.
+    /// Whether the surroundings contain occluder maps, and lamps.
     pub maps: bool,
     pub lamps: bool,
-    /// Splashes, and how many slots of them there are.
+    /// Splashes, and the number of their slots.
     pub splash: &'a SplashUniform,
     pub splashes: u32,
-    /// How many drops fall where, if a rim of a rain area is near.
+    /// Number of drops at each place, if a rim of a rain area is near.
     pub local: Option<&'a LocalUniform>,
-    /// Whether something lies in the layer already, before which the drops come.
+    /// Whether the layer already contains something; drops are then drawn in front of it.
     pub over: bool,
     /// Hail and pellets, if any fall.
     pub stones: Option<StoneDraw>,
@@ -91,13 +91,13 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
     bind::layout(device, "rain", all, &slots)
 }
 
-/// Where the splashes begin behind the rain, and where they end.
+/// Range of bytes of the splashes in the block, after the rain.
 pub(super) const SPLASHES: Range<usize> = {
     let at = size_of::<RainUniform>().next_multiple_of(256);
     at..at + size_of::<SplashUniform>()
 };
 impl RainLayer {
-    /// A layer of light, or one that counts how often its pixels are drawn.
+    /// Creates a layer of light, or one that counts how often its pixels are drawn.
     pub fn new(device: &Device, blocks: &Blocks, texture: FallingTexture, counts: bool) -> Self {
         Self {
             counts,
@@ -116,7 +116,7 @@ impl RainLayer {
         }
     }
 
-    /// Whether it counts.
+    /// Whether the layer counts its draws.
     pub fn counts(&self) -> bool {
         self.counts
     }
@@ -128,12 +128,12 @@ impl RainLayer {
         self.texture.bytes() + cones + listed + self.stepped.as_ref().map_or(0, |s| s.bytes())
     }
 
-    /// The layer before the picture, which other effects may share.
+    /// Returns the texture of the layer, which other effects may share.
     pub fn texture(&self) -> &FallingTexture {
         &self.texture
     }
 
-    /// Makes stones and cones ready, and what keeps rain off these.
+    /// Prepares stones and cones, and the test of shelter for the cones.
     fn prepare_far(
         &mut self,
         recording: &mut Recording<'_>,
@@ -157,7 +157,8 @@ impl RainLayer {
         Ok(())
     }
 
-    /// Draws the drops for a picture like `color` with the host's `depth`, and where there is depth their splashes.
+    /// Draws the drops for a picture of the size of `color` with the host's `depth`, and their splashes if there is
+    /// depth.
     ///
     /// # Errors
     /// A missing shader file.
@@ -211,8 +212,8 @@ impl RainLayer {
         self.draw_into(recording.encoder, drawn.over, surroundings, |pass, layer| {
             if drawn.cones.is_some() {
                 layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
-                // The drops' layout lacks a group before this one. wgpu 30 does not see that on OpenGL it then lies
-                // elsewhere, nor that a group is set, if it is the same one.
+                // The drops' pipeline layout has no group before this one. On OpenGL the group then has other binding
+                // points, and wgpu 30 does not notice this, nor that a group has been set if it is the same one.
                 pass.set_bind_group(2, None, &[]);
                 pass.set_bind_group(2, surroundings, &[]);
             }
@@ -236,7 +237,7 @@ impl RainLayer {
         Ok(())
     }
 
-    /// Finds the drops and splashes that the picture shows.
+    /// Lists the drops and splashes in the picture.
     fn list(
         &mut self,
         device: &Device,
@@ -269,7 +270,7 @@ impl RainLayer {
         }
     }
 
-    /// Draws into the layer, which is cleared first unless it keeps what lies in it.
+    /// Draws into the layer. It is cleared first, unless `keeps`.
     fn draw_into(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -323,7 +324,7 @@ fn pipeline(
     counts: bool,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(&depth.shader("rain/drops_view.wgsl"))?;
-    // Mixtures take each column by itself: what lies over what is in their order.
+    // Mixtures use each column by itself: the order of the columns takes care of overlaps.
     let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
     pass::quads(
         device,

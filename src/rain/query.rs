@@ -1,4 +1,4 @@
-//! Precipitation at a place, and on a surface there.
+//! Queries of precipitation at a place, and on a surface there.
 
 use glam::DVec3;
 
@@ -16,61 +16,61 @@ use crate::{
 /// Precipitation at a place: rain and drizzle, hail and ice pellets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainAt {
-    /// On level ground, mm/h.
+    /// Rain and drizzle on level ground, mm/h.
     pub rate_mm_h: f64,
-    /// Drops from 0.1 to 6 mm, 1/m^3.
+    /// Number of drops from 0.1 to 6 mm, 1/m^3.
     pub number_per_m3: f64,
-    /// Water in the air, g/m^3.
+    /// Liquid water in the air, g/m^3.
     pub liquid_g_m3: f64,
     /// Extinction by the drops, 1/m.
     pub extinction_per_m: f64,
     /// Mean diameter of the drops in the air, mm.
     pub mean_diameter_mm: f64,
-    /// Diameter below which half of the water in the air is, mm.
+    /// Diameter, mm, below which half of the liquid water in the air is.
     pub median_volume_diameter_mm: f64,
-    /// Drops that land on level ground, 1/(m^2 s).
+    /// Number of drops that land on level ground, 1/(m^2 s).
     pub drops_per_m2_s: f64,
-    /// Velocity of the drop that divides the water that falls into halves, m/s (east, north, up): one half comes
-    /// steeper, the other flatter. Along it an occluder's picture is taken. 0 without rain.
+    /// Velocity, m/s (east, north, up), of the drop that divides the falling water into halves: one half falls more
+    /// steeply, the other less. Take occluder maps along this direction. 0 without rain.
     pub fall_velocity_m_s: DVec3,
     /// Hail and ice pellets on level ground, mm/h of melted water.
     pub ice_mm_h: f64,
-    /// Stones in the air, 1/m^3.
+    /// Number of stones (hail and ice pellets) in the air, 1/m^3.
     pub stones_per_m3: f64,
     /// Extinction by the stones, 1/m.
     pub stone_extinction_per_m: f64,
     /// Mean diameter of the stones in the air, mm.
     pub stone_diameter_mm: f64,
-    /// Stones that land on level ground, 1/(m^2 s).
+    /// Number of stones that land on level ground, 1/(m^2 s).
     pub stones_per_m2_s: f64,
 }
 
-/// How far before a surface a drop is asked for the box that kept it off, m.
+/// Distance in front of a surface at which boxes are tested for sheltering it, m.
 const BEFORE_M: f64 = 0.05;
 
-/// A surface that rain may land on, or a window that it may come through.
+/// A surface on which rain may land, or a window through which it may come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainSurface {
-    /// Where, in the host's world.
+    /// Position in the host's world.
     pub position: DVec3,
-    /// The way that its wet side faces, (east, north, up) of the place; any length but 0.
+    /// Direction that the wet side faces, (east, north, up) at the position; any length but 0.
     pub normal: DVec3,
-    /// How it moves, m/s (east, north, up), each within \[-1000, 1000\].
+    /// Velocity of the surface, m/s (east, north, up), each within \[-1000, 1000\].
     pub velocity_m_s: DVec3,
-    /// Its size, m^2, \[0, 1e6\].
+    /// Area, m^2, \[0, 1e6\].
     pub area_m2: f64,
 }
 
 /// Precipitation that lands on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainOn {
-    /// Water, mm/h: litres a square metre and hour.
+    /// Water, mm/h: litres per square metre and hour.
     pub rate_mm_h: f64,
-    /// Drops on all of it, 1/s.
+    /// Number of drops on the whole surface, 1/s.
     pub drops_per_s: f64,
     /// Hail and ice pellets, mm/h of melted water.
     pub ice_mm_h: f64,
-    /// Stones on all of it, 1/s.
+    /// Number of stones on the whole surface, 1/s.
     pub stones_per_s: f64,
 }
 
@@ -87,9 +87,10 @@ impl RainSurface {
     }
 }
 
-/// The drops and stones in the air of a place, and the wind that carries them: that at 10 m with its gusts, or what
-/// varies in space there. Above the cloud that they fall from there are none. In rain areas
-/// ([`Context::set_rain_areas`](crate::context::Context::set_rain_areas)) they are theirs, mixed by their rims.
+/// Returns the drops and stones in the air at a place, and the wind that carries them: the wind at 10 m with its gusts,
+/// or the wind that varies in space there. There are none above the cloud that they fall from. Within rain areas
+/// ([`Context::set_rain_areas`](crate::context::Context::set_rain_areas)) they are those of the areas, mixed with the
+/// rest at the rims.
 fn drops_at(world: &World, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
     let place = world.frame.place_at("position", position)?.place;
     let c = world.weather_at(time_s)?;
@@ -98,7 +99,7 @@ fn drops_at(world: &World, position: DVec3, time_s: f64) -> Result<(DropSizes, S
     Ok((world.over().sizes_at(position, time_s, &c)?, stones, world.carrying_at(position, time_s)?))
 }
 
-/// See [`Context::rain_at`](crate::context::Context::rain_at).
+/// Implements [`Context::rain_at`](crate::context::Context::rain_at).
 pub(crate) fn rain_at(world: &World, position: DVec3, time_s: f64) -> Result<RainAt> {
     let (sizes, stones, wind) = drops_at(world, position, time_s)?;
     let (level, landed) = (sizes.on_level_ground(), stones.on_surface(DVec3::Z, DVec3::ZERO));
@@ -121,7 +122,7 @@ pub(crate) fn rain_at(world: &World, position: DVec3, time_s: f64) -> Result<Rai
     })
 }
 
-/// See [`Context::rain_on`](crate::context::Context::rain_on).
+/// Implements [`Context::rain_on`](crate::context::Context::rain_on).
 pub(crate) fn rain_on(world: &World, surface: &RainSurface, time_s: f64) -> Result<RainOn> {
     surface.validate()?;
     let (sizes, stones, wind) = drops_at(world, surface.position, time_s)?;
@@ -129,7 +130,7 @@ pub(crate) fn rain_on(world: &World, surface: &RainSurface, time_s: f64) -> Resu
     let to_world = world.frame.frame_at(surface.position).world_to_enu.transpose();
     let before = surface.position + to_world * (normal * BEFORE_M);
     let since_s = time_s - world.time_s;
-    // A box was elsewhere by as much as the point lies elsewhere before it now.
+    // Boxes are stored as they stand at the world's time, so the point is moved back by each box's motion since then.
     let comes = |falls_m_s: f64| {
         let velocity = to_world * (wind - DVec3::Z * falls_m_s);
         !world.set.shelters.iter().any(|b| sheltered(b, before - b.velocity_m_s * since_s, velocity))

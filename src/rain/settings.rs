@@ -1,4 +1,4 @@
-//! Settings of the rain's picture that a host may ask for.
+//! Settings for drawing rain.
 
 use crate::{
     error::{Error, Result, check_range},
@@ -6,43 +6,42 @@ use crate::{
     particles::stepping::StepPass,
 };
 
-/// With what a view draws rain; what falls is the same.
+/// Method by which a view draws rain. It does not change what falls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RainModel {
-    /// Each drop to 1.9 m, and cones beyond, to 14.8 m; under a budget ([`crate::plan`]) less if the picture does not
-    /// need it.
+    /// Single drops to 1.9 m, and cones beyond, to 14.8 m. Under a budget ([`crate::plan`]) less is drawn where the
+    /// picture does not need it.
     #[default]
     Automatic,
-    /// No drops: all rain is extinction. Costs nothing beyond the fog.
+    /// No drops: all rain is extinction. Costs nothing in addition to the fog.
     Veil,
-    /// Streaks on three nested cones about the camera ([`super::cones`]). The cost depends only on the picture's size;
-    /// it is below that of drops only without compute shaders. No splashes.
+    /// Streaks on three nested cones around the camera ([`super::cones`]), without splashes. The cost depends only on
+    /// the picture's size; it is below that of drops only on devices without compute shaders.
     Cones,
-    /// Drops alone, to 4 m, each where (seed, number, time) puts it, without a state ([`super::lattice`]); cones beyond
-    /// where lamps light the rain.
+    /// Single drops only, to 4 m. Each drop's place follows from (seed, number, time), without a state
+    /// ([`super::lattice`]). Cones are added beyond them where lamps light the rain.
     Drops,
-    /// Drops that are stepped through a wind that varies in space (`particles::stepping`), to 4 m. Needs compute
-    /// shaders.
+    /// Drops stepped through a wind that varies in space (`particles::stepping`), to 4 m. Needs compute shaders.
     Integrated,
 }
 
-/// How a view draws what falls: rain, hail and their splashes. What falls, and where each drop is, does not depend on
-/// it.
+/// Settings by which a view draws rain, hail and their splashes. They do not change what falls or where each drop is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainSettings {
-    /// Time for which a picture is exposed, s, [1e-4, 0.1]: it makes streaks of drops, the longer and the fainter the
-    /// longer it is. Default [`RainSettings::SHUTTER_CAMERA_60_S`].
+    /// Exposure time of the picture, s, [1e-4, 0.1]. A longer exposure makes streaks longer and fainter. Default
+    /// [`RainSettings::SHUTTER_CAMERA_60_S`].
     pub shutter_s: f64,
-    /// Most drops that are drawn, [1000, 8 000 000]; further ones are stood for by those that are. `None`, the default:
-    /// 400 000, or 100 000 on a software driver.
+    /// Largest number of drawn drops, [1000, 8 000 000]. If more would be drawn, each drawn drop stands for several.
+    /// `None`, the default: 400 000, or 100 000 on a software driver.
     pub most_drops: Option<u32>,
-    /// With what it is drawn.
+    /// Method by which rain is drawn.
     pub model: RainModel,
-    /// By how much what falls stands out of the picture more than it does in nature, [1, 16]. 1, the default: as it
-    /// does. Beyond that streaks, stones and splashes hide as much as so many of them one before the other, which is
-    /// not how rain looks but how an instructor's trainee sees it on a display; the veil gives way by as much, so what
-    /// lies some tens of metres off keeps its mean. Nothing else depends on it: no light, no visibility, no water, no
-    /// query. Set it alike on all channels of a simulator. [`RainSettings::TRAINER`] has the one for trainers.
+    /// Factor by which falling rain and hail stand out more than in nature, [1, 16]. Default 1: as in nature. With a
+    /// gain g, each streak, stone and splash is as opaque as g of them one in front of the other. Real rain does not
+    /// look like that; the gain makes rain visible to trainees on a simulator's display. The extinction of the veil is
+    /// reduced accordingly, so that whatever lies some tens of metres away keeps its mean. The gain does not affect
+    /// light, visibility, water or queries. Set the same value on all channels of a simulator.
+    /// [`RainSettings::TRAINER`] has the value for trainers.
     pub contrast_gain: f64,
 }
 
@@ -53,16 +52,16 @@ impl Default for RainSettings {
 }
 
 impl RainSettings {
-    /// The time over which an eye adds up what it sees by day, s: streaks as one who stands in the rain sees them
-    /// (Bloch's law holds up to some 40 to 100 ms, Barlow 1958).
+    /// Time over which an eye integrates light by day, s: streaks look as they do to a person in the rain. Bloch's law
+    /// holds up to some 40 to 100 ms (Barlow 1958).
     pub const SHUTTER_EYE_S: f64 = 1.0 / 20.0;
-    /// A video camera's shutter that is open for a whole frame of 60 a second, s.
+    /// Exposure of a video camera whose shutter is open for a whole frame at 60 frames a second, s.
     pub const SHUTTER_CAMERA_60_S: f64 = 1.0 / 60.0;
-    /// A camera's short exposure in good light, s: drops are short streaks.
+    /// Short exposure of a camera in good light, s: drops are short streaks.
     pub const SHUTTER_CAMERA_500_S: f64 = 1.0 / 500.0;
-    /// The contrast gain for trainers: rain by day shows on a display of eight bits as it does in a film.
+    /// Contrast gain for trainers: rain by day is as visible on an 8-bit display as in a film.
     pub const GAIN_TRAINER: f64 = 4.0;
-    /// Rain for trainers: [`RainSettings::GAIN_TRAINER`], the rest by default.
+    /// Rain for trainers: [`RainSettings::GAIN_TRAINER`], all else at its default.
     pub const TRAINER: Self = Self {
         shutter_s: Self::SHUTTER_CAMERA_60_S,
         most_drops: None,
@@ -70,22 +69,22 @@ impl RainSettings {
         contrast_gain: Self::GAIN_TRAINER,
     };
 
-    /// Refuses what is outside of its range, by name.
+    /// Checks that every setting is within its range.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the setting.
     pub fn validate(&self) -> Result<()> {
         check_range("rain.shutter_s", self.shutter_s, 1e-4, 0.1, "s")?;
         check_range("rain.contrast_gain", self.contrast_gain, 1.0, 16.0, "")?;
         self.most_drops.map_or(Ok(()), |n| check_range("rain.most_drops", f64::from(n), 1e3, 8e6, ""))
     }
 
-    /// Most drops that are drawn on `device`.
+    /// Returns the largest number of drops drawn on `device`.
     pub(crate) fn most_on(&self, device: &Device) -> u32 {
         self.most_drops.unwrap_or(if device.caps().software { 100_000 } else { 400_000 })
     }
 
-    /// Refuses what `device` cannot draw, by name.
+    /// Checks the settings, also against the limits of `device`.
     pub(crate) fn validate_on(&self, device: &Device) -> Result<()> {
         self.validate()?;
         if self.model != RainModel::Integrated {

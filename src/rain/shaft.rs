@@ -1,10 +1,12 @@
-//! Rain areas seen from a camera: the columns of their rain, and what one ray meets of them. The shaders' twin in f64.
+//! Rain areas seen from a camera: the columns of their rain, and their optical depth along a ray. F64 twin of the
+//! shaders.
 //!
-//! A column is the region's plan carried up to its cloud along the lean of the falling drops. A ray's way through it is
-//! found exactly (an ellipse or a convex polygon in the plan, two levels in height) and cut where the rim and the soft
-//! top end; on each of the four pieces what falls is integrated by Gauss's four points. The pattern of curtains, a sum
-//! of waves that fall as the drops do, multiplies it by its exact mean, of the first half kilometre and of the rest.
-//! Columns count by how much more they take than the weather's own rain, which is drawn with the fog.
+//! A column is the area's plan carried up to its cloud along the slant of the falling drops. The part of a ray inside
+//! it is found exactly: the intersection with an ellipse or a convex polygon in the plan and with two levels in height.
+//! It is cut where the rim and the soft top end, and the rain on each of the four pieces is integrated with four Gauss
+//! points. The pattern of curtains is a sum of waves that fall as the drops do. It multiplies the result by its exact
+//! mean over the first half kilometre and over the rest. The weather's own rain is drawn with the fog, so a column
+//! counts only the difference of its extinction from that rain.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -21,9 +23,9 @@ use crate::{
     scene::depth::RANGE_SKY_M,
 };
 
-/// How far below the station's altitude columns reach, m: into the valleys.
+/// Depth of the columns below the station's altitude, m: they reach into valleys.
 pub(crate) const BELOW_M: f64 = 1000.0;
-/// Way into a dense column from which most of its light comes, m.
+/// Distance into a dense column from which most of its light comes, m.
 const FRONT_M: f64 = 500.0;
 
 /// `Column` of `shaders/rain/area.wgsl`, which explains the fields.
@@ -72,53 +74,54 @@ impl ColumnUniform {
     };
 }
 
-/// An eye in the host's world, about which columns stand.
+/// Eye in the host's world, around which columns stand.
 #[derive(Clone, Copy)]
 pub(crate) struct EyeInWorld<'a> {
-    /// In the host's world, m.
+    /// Position in the host's world, m.
     pub position: DVec3,
-    /// Turns the host's axes at the eye to east, north, up.
+    /// Rotation from the host's axes at the eye to east, north, up.
     pub to_enu: &'a DMat3,
     pub altitude_m: f64,
 }
 
-/// A column about a camera: east, north, up of it.
+/// Column near a camera, in camera-relative east, north, up, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RainColumn {
     pub center: DVec2,
     shaft: Shaft,
-    /// Height of the level at which the plan holds, and of the cloud, m.
+    /// Height of the level at which the plan is given, and of the cloud, m.
     pub ground: f64,
     pub top: f64,
-    /// 1/m; fades with the distance of what is too far to be seen.
+    /// Extinction, 1/m. It fades to 0 at distances where the column is too far to be seen.
     extinction: f64,
-    /// Extinction by which drops of it hide near the camera, 1/m.
+    /// Extinction of the drops that are drawn near the camera, 1/m.
     pub near: f64,
-    /// Distance that its drops have fallen, m, in the pattern's period.
+    /// Distance that the drops have fallen, m, modulo the pattern's period.
     fallen: f64,
-    /// Later columns that lie over it, a bit each.
+    /// Later columns that overlap it: bit `j` is set for column `j`.
     pub later: u32,
 }
 
-/// All columns about a camera.
+/// All columns around a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AreaField {
     pub columns: Vec<RainColumn>,
     pub own: FallingLayer,
-    /// Upper end of what falls outside of them over the camera, m, and what its drops hide near it, 1/m.
+    /// Top of the rain outside the columns, relative to the camera, m, and the extinction of its drops that are drawn
+    /// near the camera, 1/m.
     pub own_top: f64,
     pub own_near: f64,
-    /// Distance up to which drops or cones are drawn in place of the veil, m.
+    /// Distance up to which drops or cones are drawn instead of the veil, m.
     pub near_m: f64,
-    /// Wave numbers to the right, ahead and up (1/m), and phases (rad) of the pattern.
+    /// Wave numbers of the pattern to the right, ahead and up (1/m), and phases (rad).
     pub waves: [[f64; 4]; WAVES],
 }
 
-/// Mean of a ramp that is 1 from `soft` below `top` down and 0 above it, between two heights.
+/// Returns the mean, between the heights `a` and `b`, of a ramp that is 0 above `top` and 1 below `top - soft`.
 fn ramp_mean(top: f64, soft: f64, a: f64, b: f64) -> f64 {
     let below = |z: f64| {
         let x = ((top - z) / soft).clamp(0.0, 1.0);
-        // Integral from the top down, over soft.
+        // Integral from the top down, before the factor `soft`.
         (((top - z) / soft - x).max(0.0) + 0.5 * x * x) * soft
     };
     if (b - a).abs() < 0.01 * soft {
@@ -131,12 +134,12 @@ impl RainColumn {
     fn new(shaft: Shaft, eye: EyeInWorld<'_>, own: &FallingLayer, time_s: f64) -> Option<Self> {
         let away = eye.to_enu * (shaft.center - eye.position);
         let distance = away.length() - shaft.radius_m;
-        // Nothing of it shows from so far away; it goes without a jump.
+        // The column fades out at a distance from which nothing of it can be seen, so it does not vanish abruptly.
         let shown = 1.0 - smoothstep(1.5e5, 2.5e5, distance);
         if shown <= 0.0 || shaft.top_m.max(own.top_m) <= shaft.ground_m - BELOW_M {
             return None;
         }
-        // On a round planet it stands as low as its centre's place does.
+        // On a curved planet a far column stands lower: as far below as the place at its centre.
         let level = |altitude: f64| {
             let sunk = away.z - (shaft.center_altitude_m - eye.altitude_m);
             altitude - eye.altitude_m + sunk
@@ -153,14 +156,14 @@ impl RainColumn {
         })
     }
 
-    /// Returns the shaft of what falls in it.
+    /// Returns the area's shaft.
     pub fn shaft(&self) -> &Shaft {
         &self.shaft
     }
 
-    /// Whether two columns may have a place in common.
+    /// Whether two columns may overlap.
     fn meets(&self, other: &Self) -> bool {
-        // Seen from the cloud down to the valleys, each moves aside by its own lean.
+        // Each column is displaced sideways by its own slant, over the height from the cloud down to the valleys.
         let height = (self.top.max(other.top) - self.ground.min(other.ground) + BELOW_M).max(0.0);
         let aside = (self.shaft.lean - other.shaft.lean).length() * height;
         (self.center - other.center).length() < self.shaft.radius_m + other.shaft.radius_m + aside
@@ -170,13 +173,13 @@ impl RainColumn {
         self.shaft.turned(plan)
     }
 
-    /// Share of the rain at a camera-relative place that is this column's.
+    /// Share of the rain at a camera-relative place that belongs to this column.
     fn share(&self, p: DVec3) -> f64 {
         let q = p.truncate() - self.center - self.shaft.lean * (p.z - self.ground);
         smoothstep(0.0, self.shaft.rim_m, self.shaft.outline.depth(self.turned(q)))
     }
 
-    /// Interval of `t` in which a ray's plan, `q + u t`, is at least `inset` inside the outline.
+    /// Returns the interval of `t` in which a ray's plan, `q + u t`, is at least `inset` inside the outline.
     fn chord(&self, q: DVec2, u: DVec2, inset: f64) -> Option<[f64; 2]> {
         match &self.shaft.outline {
             Outline::Ellipse(semi) => {
@@ -197,7 +200,7 @@ impl RainColumn {
                 let (mut first, mut last) = (-1e9f64, 1e9f64);
                 for e in &edges[..*count] {
                     let (f, g) = (e.depth(q) - inset, e.normal.dot(u));
-                    // Minus zero too leads neither in nor out.
+                    // A ray parallel to the edge, with g = 0 or -0, gets a far crossing of the right sign.
                     let t = -f
                         / if g.abs() >= 1e-9 {
                             g
@@ -213,7 +216,7 @@ impl RainColumn {
         }
     }
 
-    /// Mean of the pattern between two distances of the ray; 1 on the mean over all places.
+    /// Returns the mean of the pattern between two distances along the ray. The mean over all places is 1.
     fn pattern(&self, waves: &[[f64; 4]; WAVES], q: DVec2, u: DVec2, (z, dz): (f64, f64), [a, b]: [f64; 2]) -> f64 {
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let fine = self.fine();
@@ -229,17 +232,17 @@ impl RainColumn {
         (1.0 + AMOUNT * shown * sum).max(0.0)
     }
 
-    /// Each column has a pattern of its own.
+    /// Phase offset that gives each column its own pattern, rad.
     fn turn(&self) -> f64 {
         f64::from(self.shaft.index) * 2.4
     }
 
-    /// How much finer the pattern of a small area is.
+    /// Factor by which the pattern of a small area is finer.
     fn fine(&self) -> f64 {
         (2000.0 / self.shaft.radius_m).clamp(1.0, 10.0)
     }
 
-    /// The block of the shaders.
+    /// Returns the column in the layout of the shaders.
     pub fn uniform(&self) -> ColumnUniform {
         let two = |v: DVec2| v.as_vec2().to_array();
         let (semi, corners, mut edges) = match &self.shaft.outline {
@@ -249,7 +252,7 @@ impl RainColumn {
                 (DVec2::ONE, *count as u32, e.map(row))
             }
         };
-        // What is not a side must not be infinite.
+        // Unused edges must not hold infinite numbers.
         edges[corners as usize..].fill([0.0; 4]);
         ColumnUniform {
             center: two(self.center),
@@ -274,20 +277,20 @@ impl RainColumn {
 }
 
 impl AreaField {
-    /// No columns.
+    /// Creates a field without columns.
     pub fn empty() -> Self {
         let own = FallingLayer::NONE;
         Self { columns: Vec::new(), own, own_top: 0.0, own_near: 0.0, near_m: HIDDEN_M, waves: [[0.0; 4]; WAVES] }
     }
 
-    /// About an eye.
+    /// Creates the field around an eye.
     pub fn new(shafts: impl Iterator<Item = Shaft>, eye: EyeInWorld<'_>, own: &FallingLayer, time_s: f64) -> Self {
         let mut field = Self::empty();
         field.set(shafts, eye, own, time_s);
         field
     }
 
-    /// As [`AreaField::new`], in the place of what was there.
+    /// Replaces the columns, as [`AreaField::new`] would create them.
     pub fn set(&mut self, shafts: impl Iterator<Item = Shaft>, eye: EyeInWorld<'_>, own: &FallingLayer, time_s: f64) {
         self.columns.clear();
         self.columns.reserve_exact(MAX_AREAS);
@@ -299,27 +302,29 @@ impl AreaField {
         }
     }
 
-    /// Share of the rain at a camera-relative place that is of column `i`, those over it taken off.
+    /// Returns the share of the rain at a camera-relative place that belongs to column `i`, with the columns over it
+    /// subtracted.
     pub fn share(&self, i: usize, p: DVec3) -> f64 {
         let over = |j: &usize| self.columns[i].later & (1 << j) != 0;
         let left: f64 = (i + 1..self.columns.len()).filter(over).map(|j| 1.0 - self.columns[j].share(p)).product();
         self.columns[i].share(p) * left
     }
 
-    /// Optical depth that a ray from `origin` (relative to the camera) along `d` meets in column `i` before `range`,
-    /// `None` if it misses it.
+    /// Returns the optical depth that column `i` adds to a ray from `origin` (relative to the camera) along `d`, up to
+    /// the distance `range`. `None` if the ray misses the column.
     pub fn met(&self, i: usize, origin: DVec3, d: DVec3, range: f64, patterned: bool) -> Option<f64> {
         let c = &self.columns[i];
         let lean = c.shaft.lean;
         let q = c.turned(origin.truncate() - c.center - lean * (origin.z - c.ground));
         let u = c.turned(d.truncate() - lean * d.z);
         let [first, last] = c.chord(q, u, 0.0)?;
-        // Between the valleys and the higher of both clouds: above its own it keeps the weather's rain away too.
+        // From the valleys to the higher of the two clouds: above its own cloud the column still replaces the weather's
+        // rain.
         let up = if d.z.abs() < 1e-6 { 1e-6f64.copysign(d.z) } else { d.z };
         let [a, b] = [(c.ground - BELOW_M - origin.z) / up, (c.top.max(self.own_top) - origin.z) / up];
         let mut end = range.min(a.max(b)).min(last);
         if range >= RANGE_SKY_M && d.z < 0.0 && origin.z > c.ground {
-            // Where the host drew nothing, the ground ends it.
+            // A ray without an object ends at the ground.
             end = end.min((c.ground - origin.z) / up);
         }
         let begin = first.max(a.min(b)).max(0.0);
@@ -348,21 +353,21 @@ impl AreaField {
             fell += length * fallen;
         }
         if patterned {
-            // The curtains that show first, and the rest.
+            // Pattern of the front of the column, which shows most, and of the rest.
             let cut = (begin + FRONT_M).min(end);
             let [front, rest] = [[begin, cut], [cut, end]]
                 .map(|way| (way[1] - way[0]) * c.pattern(&self.waves, q, u, (origin.z, d.z), way));
             fell *= (front + rest) / (end - begin);
         }
         let mut depth = c.extinction * fell - self.own.liquid_per_m * shared;
-        // What drops near the eye hide is drawn as drops.
+        // The part of the extinction that is drawn as drops near the eye is subtracted.
         let near = range.min(self.near_m);
         let half = origin + d * (0.5 * near);
         depth -= (c.near - self.own_near) * near * self.share(i, half);
         Some(depth)
     }
 
-    /// Optical depth that all columns add before `range`, on the mean over their pattern.
+    /// Returns the optical depth that all columns add up to `range`, averaged over their pattern.
     pub fn depth_along(&self, origin: DVec3, d: DVec3, range: f64) -> f64 {
         (0..self.columns.len()).filter_map(|i| self.met(i, origin, d, range, false)).sum()
     }
@@ -374,7 +379,7 @@ mod tests {
     use crate::falling::curtain::{self, COLUMN_LENGTHS_M};
     use crate::rain::{AreaMotion, AreaShape, RainArea};
 
-    /// The extinction that a column adds at a place, from its description alone.
+    /// Extinction that a column adds at a place, from its description alone.
     fn added(field: &AreaField, i: usize, p: DVec3, patterned: bool) -> f64 {
         let c = &field.columns[i];
         if p.z < c.ground - BELOW_M || p.z > c.top.max(field.own_top) {
@@ -427,7 +432,7 @@ mod tests {
         field
     }
 
-    /// Every ray's closed form against a sum of small steps.
+    /// Compares the closed form with a sum of small steps for each ray.
     #[test]
     fn what_a_ray_meets_is_the_integral_along_it() {
         for areas in [&areas()[..1], &areas()[1..2], &areas()[..]] {

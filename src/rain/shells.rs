@@ -1,4 +1,5 @@
-//! Shells of the drops' lattice: their sides, how far each has come at a moment, and what it shows at a distance.
+//! Shells of the drops' lattice: their sizes, their motion up to a time, and the share of their drops shown at a
+//! distance.
 
 use glam::DVec3;
 
@@ -7,47 +8,49 @@ use crate::{
     numerics::smoothstep,
 };
 
-/// Shells of the lattice.
+/// Number of shells of the lattice.
 pub const SHELLS: usize = 4;
-/// Classes of diameter.
+/// Number of classes of diameter.
 pub const CLASSES: usize = 32;
 /// Side of the innermost shell's cell, m.
 pub const SIDE_M: f64 = 4.0;
-/// Unit of which fall speeds are multiples, m/s.
+/// Unit of fall speeds, m/s. Fall speeds are integer multiples of it.
 pub const SPEED_UNIT: f64 = 1.0 / 64.0;
-/// Sides over that of the innermost shell: 2^(1/3) from each to the next.
+/// Sides of the shells' cells over that of the innermost: each is 2^(1/3) times the one before.
 const WIDER: [f64; SHELLS] = [1.0, 1.259_921_049_894_873_2, 1.587_401_051_968_199_4, 2.0];
 /// Distance from the camera beyond which no drop of the lattice is drawn, m.
 pub const REACH_M: f64 = 0.5 * SIDE_M * WIDER[SHELLS - 1];
 
-/// A shell takes over from the smaller one, and hands on to the larger, between this share of its reach and all of it.
+/// Share of its reach at which a shell begins to fade out and the next larger one to fade in. Both end at the full
+/// reach.
 pub(crate) const FADE: f64 = 0.85;
-/// Distance from the camera up to which the drops hide what all drops would, m: to the middle of their fading.
+/// Distance from the camera up to which drawn drops account for the extinction of all drops, m: the middle of their
+/// fade.
 pub const HIDDEN_M: f64 = 0.5 * (1.0 + FADE) * REACH_M;
-/// Drops nearer than this fade away, m: `NEAREST` of `shaders/rain/drops.wgsl`.
+/// Distance below which drops fade out, m: `NEAREST` of `shaders/rain/drops.wgsl`.
 const NEAREST_M: f64 = 0.25;
 
-/// [`HIDDEN_M`] of so many shells alone, m.
+/// Returns [`HIDDEN_M`] for the first `shells` shells alone, m.
 pub fn hidden_m(shells: usize) -> f64 {
     shells.checked_sub(1).map_or(0.0, |last| 0.25 * (1.0 + FADE) * side_m(last))
 }
 
-/// Side of a shell's cell, m.
+/// Returns the side of a shell's cell, m.
 pub fn side_m(shell: usize) -> f64 {
     SIDE_M * WIDER[shell]
 }
 
-/// How far the lattice of one shell has come at a moment, in 2^-32 of its side.
+/// Displacement of a shell's lattice at a time, in 2^-32 of the cell's side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Moment {
-    /// Displacement of the air (east, north, up).
+    /// Displacement of the air, (east, north, up).
     pub air: [u32; 3],
-    /// Distance that a drop of one speed unit has fallen.
+    /// Distance fallen at a speed of one unit.
     pub fall: u32,
 }
 
 impl Moment {
-    /// Creates the moment of `shell`, after the air has moved by `displacement_m` and drops have fallen for `time_s`.
+    /// Creates the moment of `shell` after the air has moved by `displacement_m` and drops have fallen for `time_s`.
     pub fn new(shell: usize, displacement_m: DVec3, time_s: f64) -> Self {
         let side = side_m(shell);
         Self {
@@ -56,7 +59,7 @@ impl Moment {
         }
     }
 
-    /// Place of a drop in its cell.
+    /// Returns the place of a drop in its cell.
     pub fn place(&self, seed: u32, shell: usize, class: usize, index: u32, speed_units: u32) -> [u32; 3] {
         let start = random3([seed, (shell as u32) << 8 | class as u32, index]);
         let mut place = [0, 1, 2].map(|i| start[i].wrapping_add(self.air[i]));
@@ -64,16 +67,16 @@ impl Moment {
         place
     }
 
-    /// Where a camera at `position_m` (east, north, up of a point fixed to the world) stands in the cell of the moving
-    /// air: a drop's start less this is what lies between them.
+    /// Returns the place of a camera at `position_m` (east, north, up of a point fixed to the world) in the cell that
+    /// moves with the air. A drop's start and its fall, less this place, is its position relative to the camera.
     pub fn camera(&self, shell: usize, position_m: DVec3) -> [u32; 3] {
         let p = position_m.to_array().map(|x| fraction(x, side_m(shell)));
         [0, 1, 2].map(|i| p[i].wrapping_sub(self.air[i]))
     }
 }
 
-/// Share of its drops that `shell` shows at `distance_m`: it takes over from the smaller shell and hands on to the
-/// larger.
+/// Returns the share of its drops that `shell` shows at `distance_m`: it fades in where the smaller shell fades out,
+/// and fades out where the larger one fades in.
 pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     let reach = 0.5 * side_m(shell);
     let outer = 1.0 - smoothstep(FADE * reach, reach, distance_m);

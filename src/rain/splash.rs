@@ -1,4 +1,4 @@
-//! Splashes: slots of a grid on the ground, each of which takes one drop after the other, as many as the flux brings.
+//! Splashes: a grid of slots on the ground. Drops land in each slot one after another, as many as the flux brings.
 
 use glam::{DVec2, DVec3};
 
@@ -7,20 +7,20 @@ use crate::falling::{lattice::short_seed, random3};
 
 /// Side of a cell of the grid, m.
 const SIDE_M: f64 = 0.5;
-/// Cells along one side of the square round the camera.
+/// Number of cells along one side of the square around the camera.
 const CELLS: u32 = 40;
-/// Time that a crown stands, s: some milliseconds per millimetre of drop, and its droplets' flight.
+/// Lifetime of a splash, s: some milliseconds per millimetre of the drop for the crown, and the flight of its droplets.
 pub const LIFE_S: f64 = 0.08;
 /// Distance at which splashes have faded, m.
 pub const REACH_M: f64 = 0.5 * SIDE_M * CELLS as f64;
-/// Most slots of a cell.
+/// Largest number of slots in a cell.
 const MOST_SLOTS: u32 = 8;
-/// Drops below this diameter make no crown that could be seen, mm.
+/// Smallest diameter of drops whose crown can be seen, mm.
 pub const LEAST_MM: f64 = 1.2;
 
-/// Parts, equal in number, that drops have the mean size of.
+/// Number of groups of drops, equal in number; each group has its mean size.
 const SIZES: usize = 8;
-/// More slots than level ground fills: slopes to windward get more.
+/// Ratio of slots to those that level ground fills: slopes to windward get more drops.
 const MARGIN: f64 = 1.25;
 
 /// `SplashUniform` of `shaders/rain/splash.wgsl`, which explains the fields.
@@ -43,34 +43,36 @@ pub(crate) struct SplashUniform {
     pub sizes: [[f32; 4]; SIZES],
 }
 
-/// A splash that stands.
+/// Splash that is visible at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landing {
-    /// From the camera, east and north, m.
+    /// Position relative to the camera, east and north, m.
     pub xy_m: DVec2,
-    /// 0 when it has landed, 1 when it is gone.
+    /// Age: 0 when the drop lands, 1 when the splash is gone.
     pub age: f64,
-    /// Diameter of its drop, mm.
+    /// Diameter of the drop, mm.
     pub diameter_mm: f64,
-    /// Speed of its drop, m/s.
+    /// Fall speed of the drop, m/s.
     pub speed_m_s: f64,
-    /// Acceptance threshold: the share of what level ground gets from which on the drop lands; below 1 on level ground.
+    /// Acceptance threshold: the drop lands where the ground gets at least this share of the flux on level ground.
+    /// Below 1, it lands on level ground.
     pub chance: f64,
 }
 
-/// How many splash, and of what size.
+/// Number and sizes of splashes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Splashes {
-    /// Splashes a second and m^2 of level ground that are drawn.
+    /// Number of drawn splashes per second and m^2 of level ground.
     pub drawn_per_m2_s: f64,
-    /// And those that the slots have no room for: the smallest.
+    /// Number of splashes for which there are no slots, per second and m^2. These are the smallest.
     pub left_out_per_m2_s: f64,
-    /// Mean diameter, mm, and fall speed, m/s, of equal parts in number of those that are drawn, the largest first.
+    /// Mean diameter, mm, and fall speed, m/s, of groups of drawn splashes that are equal in number, the largest first.
     pub sizes: [(f64, f64); SIZES],
 }
 
 impl Splashes {
-    /// From the drops of each class: diameter (mm), fall speed (m/s), flux (1/(m^2 s)); the largest first to be drawn.
+    /// Creates the splashes from each class's diameter (mm), fall speed (m/s) and flux (1/(m^2 s)). The largest drops
+    /// get slots first.
     pub fn new(classes: &Classes) -> Self {
         let room = f64::from(MOST_SLOTS) / (LIFE_S * SIDE_M * SIDE_M);
         let mut s = Self { drawn_per_m2_s: 0.0, left_out_per_m2_s: 0.0, sizes: [(0.0, 0.0); SIZES] };
@@ -84,7 +86,7 @@ impl Splashes {
         for (i, size) in s.sizes.iter_mut().enumerate().filter(|_| part > 0.0) {
             let (first, mut before) = (part * i as f64, 0.0);
             for &(d, v, flux) in largest_first() {
-                // What this class has in this part.
+                // Share of this group that the class has.
                 let inside = ((before + flux).min(first + part) - f64::max(before, first)).max(0.0) / part;
                 *size = (size.0 + d * inside, size.1 + v * inside);
                 before += flux;
@@ -93,19 +95,19 @@ impl Splashes {
         s
     }
 
-    /// Splashes that stand at a time in one cell, on the mean.
+    /// Mean number of splashes visible in one cell.
     fn standing(&self) -> f64 {
         self.drawn_per_m2_s * LIFE_S * SIDE_M * SIDE_M
     }
 
-    /// Slots that are looked at in one draw.
+    /// Number of slots tested in one draw.
     pub(crate) fn instances(&self) -> u32 {
         CELLS * CELLS * self.slots()
     }
 
-    /// Returns the drops that may have landed and stand at `time_s`, on slopes that get more than level ground too,
-    /// around a camera at `position_m` (east, north, up of a point fixed to the world), ten metres to either side: the
-    /// twin of `arrival_of` in `shaders/rain/splash.wgsl`, whatever lies below.
+    /// Returns the drops that may have landed and whose splash is visible at `time_s`, within ten metres to each side
+    /// of a camera at `position_m` (east, north, up of a point fixed to the world). They include drops that land only
+    /// on slopes that get more than level ground. Twin of `arrival_of` in `shaders/rain/splash.wgsl`, for any ground.
     pub fn landings(&self, seed: u64, position_m: DVec3, time_s: f64) -> impl Iterator<Item = Landing> {
         let (u, seed) = (self.uniform((position_m, 0.0), time_s, 1.0, [0.0; 2]), short_seed(seed));
         let sizes = self.sizes;
@@ -131,8 +133,9 @@ impl Splashes {
         ((MARGIN * self.standing()).ceil() as u32).min(MOST_SLOTS)
     }
 
-    /// For a camera at a place (east, north, up of a point fixed to the world, m) so high above the ground, m; so large
-    /// a share of them is shown. The host's depth may be off by `depth_grain`, a step and a part of it.
+    /// Returns the block for a camera at a place (east, north, up of a point fixed to the world, m) and a height above
+    /// the ground, m. The share `shown` of the splashes is drawn. `depth_grain` is the error of the host's depth: an
+    /// absolute step, and a relative part.
     pub(crate) fn uniform(
         &self,
         (position_m, height_m): (DVec3, f64),
@@ -144,7 +147,7 @@ impl Splashes {
         let turns = time_s / LIFE_S;
         let part = turns - turns.floor();
         SplashUniform {
-            // Wraps after 10^9 m.
+            // Wraps around after 10^9 m.
             cell: [position_m.x, position_m.y].map(|x| cell(x) as i64 as i32),
             place: [position_m.x, position_m.y].map(|x| (x - cell(x) * SIDE_M) as f32),
             side: SIDE_M as f32,

@@ -1,4 +1,4 @@
-//! Stones on the GPU: their block and their two draws, in the drops' pass.
+//! Stones (hail and ice pellets) on the GPU: their block and their two draws in the drops' pass.
 
 use super::stones::{StoneUniform, Stones};
 use crate::{
@@ -16,7 +16,7 @@ use crate::{
 #[derive(Clone, Copy)]
 pub(crate) struct StoneDraw {
     pub block: StoneUniform,
-    /// Stones in the air, and slots of landings.
+    /// Number of stones in the air, and of slots of landings.
     pub falling: u32,
     pub landings: u32,
 }
@@ -27,17 +27,17 @@ impl StoneDraw {
     }
 }
 
-/// State for stones that a view holds, made when the first ones fall.
+/// State for stones that a view holds, created when the first ones fall.
 pub(super) struct StonePass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
-    /// Falling and hopping.
+    /// Pipelines of falling and of hopping stones.
     pipelines: Made<StoneKind, [wgpu::RenderPipeline; 2]>,
     counts: bool,
 }
 
-/// Kind of the pipelines that draw: with what depth, and whether there are occluder maps.
+/// Properties that select the pipelines: the kind of depth, and whether there are occluder maps.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct StoneKind {
     pub depth: DepthRead,
@@ -58,8 +58,8 @@ impl StonePass {
         Self { block, layout, group, pipelines: Made::NONE, counts }
     }
 
-    /// Brings the block up, and makes the pipelines for a kind of depth if they are not there. `rain` and `around` are
-    /// the layouts of the drops' own groups, `format` that of their layer.
+    /// Uploads the block, and compiles the pipelines for a kind of depth if they do not exist yet. `rain` and `around`
+    /// are the layouts of the drops' own groups, `format` is that of their layer.
     ///
     /// # Errors
     /// A missing shader file.
@@ -77,7 +77,7 @@ impl StonePass {
         self.pipelines.prepare(kind, |_| Ok([make("falling_vertex")?, make("hopping_vertex")?]))
     }
 
-    /// Draws what was prepared, in a pass whose group 0 is the drops'.
+    /// Draws the prepared stones in a pass whose group 0 is that of the drops.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: StoneKind, drawn: &StoneDraw) {
         let Some([falling, hopping]) = self.pipelines.get(&kind) else { return };
         pass.set_bind_group(1, &self.group, &[]);

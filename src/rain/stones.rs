@@ -1,9 +1,9 @@
-//! Stones of ice among the drops: how many of which size each shell of the lattice holds, and where they hop after
-//! landing.
+//! Stones of ice (hail and ice pellets) among the drops: the number of each size in each shell of the lattice, and
+//! their landings on the ground, where they hop.
 //!
-//! They have a lattice of their own, of the same kind as the drops' ([`super::lattice`]): each shell twice as wide as
-//! the one before, and all stones of its volume in it, since hail is rare and seen from afar. Of pellets, for which
-//! there is no room, each stands for some, and the shells where it would stand for many are left to the veil.
+//! Stones have their own lattice, similar to the drops' ([`super::lattice`]). Each shell is twice as wide as the one
+//! before and holds all stones of its volume, because hail is rare and seen from afar. Pellets are too many for that:
+//! each drawn pellet stands for several, and shells in which it would stand for too many are left to the veil.
 
 use glam::DVec3;
 
@@ -14,23 +14,23 @@ use super::{
 };
 use crate::{falling::lattice::fraction, weather::Falling};
 
-/// Shells of the lattice, and the side of the innermost one's cell, m.
+/// Number of shells of the lattice, and the side of the innermost one's cell, m.
 const SHELLS: usize = 4;
 const SIDE_M: f64 = 4.0;
-/// Most stones that one may stand for.
+/// Largest number of stones that one drawn stone may stand for.
 const MOST_WEIGHT: f64 = 16.0;
-/// Classes of diameter, of pellets and hail each.
+/// Number of classes of diameter, for pellets and for hail each.
 const CLASSES: usize = 8;
-/// Classes of pellets and hail together.
+/// Number of classes of pellets and hail together.
 pub(crate) const STONE_CLASSES: usize = 2 * CLASSES;
 
 /// Side of a cell of the grid of landings, m.
 const SIDE: f64 = 0.5;
-/// Cells along one side of the square round the camera.
+/// Number of cells along one side of the square around the camera.
 const CELLS: u32 = 40;
-/// Time for which a stone is followed after its landing, s: its hops, and then it lies.
+/// Time for which a stone is drawn after its landing, s: it hops, then lies.
 const LIFE_S: f64 = 1.0;
-/// Most slots of a cell.
+/// Largest number of slots in a cell.
 const MOST_SLOTS: u32 = 16;
 
 /// `StoneUniform` of `shaders/rain/stones.wgsl`, which explains the fields.
@@ -62,12 +62,12 @@ fn side_m(shell: usize) -> f64 {
     SIDE_M * f64::from(1u32 << shell)
 }
 
-/// Properties that the stones of one class have in common.
+/// Properties shared by the stones of one class.
 struct StoneClass {
     stone: Stone,
     diameter_mm: f64,
     speed_m_s: f64,
-    /// In a cubic metre of air.
+    /// Number of stones in a cubic metre of air.
     number_per_m3: f64,
 }
 
@@ -90,24 +90,26 @@ impl StoneClass {
 /// Stones in the air and on the ground around a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stones {
-    /// Diameter (m), fall speed (speed units), share of landings of the classes up to this one, 1 for clear ice.
+    /// Per class: diameter (m), fall speed (speed units), share of landings of the classes up to this one, 1 for clear
+    /// ice.
     table: [[f32; 4]; STONE_CLASSES],
-    /// Per class and shell: stones of the classes up to this one, and how many each stands for.
+    /// Per class and shell: number of stones of the classes up to this one, and number that each drawn stone stands
+    /// for.
     upto: [[u32; SHELLS]; STONE_CLASSES],
     weight: [[f32; SHELLS]; STONE_CLASSES],
-    /// Stones that are drawn in the air.
+    /// Number of stones drawn in the air.
     pub drawn: u32,
-    /// How far pellets and hail are drawn, m, and the extinction of those that they stand for, 1/m.
+    /// Distance up to which pellets and hail are drawn, m, and extinction of the stones that they stand for, 1/m.
     reach: [(f64, f64); 2],
-    /// Landings a second and m^2 of level ground that are followed.
+    /// Number of drawn landings per second and m^2 of level ground.
     pub landings_per_m2_s: f64,
-    /// And those for which there is no room: the smallest.
+    /// Number of landings for which there are no slots, per second and m^2. These are the smallest.
     pub left_out_per_m2_s: f64,
 }
 
 impl Stones {
-    /// Creates the stones of what falls where drops are `speed_factor` times as fast as at sea level; at most `most`
-    /// are drawn.
+    /// Creates the stones of what falls where drops fall `speed_factor` times as fast as at sea level. At most `most`
+    /// stones are drawn.
     pub fn new(falling: &Falling, speed_factor: f64, most: u32) -> Self {
         let sizes = StoneSizes::new(falling, speed_factor);
         let volume = SIDE_M.powi(3);
@@ -121,7 +123,7 @@ impl Stones {
             landings_per_m2_s: 0.0,
             left_out_per_m2_s: 0.0,
         };
-        // The large ones first: they are seen farthest.
+        // Hail first: large stones are seen farthest.
         let mut left = f64::from(most);
         for kind in [Stone::Hail, Stone::Pellet] {
             let own = kind as usize * CLASSES..(kind as usize + 1) * CLASSES;
@@ -147,7 +149,7 @@ impl Stones {
         s
     }
 
-    /// Adds up numbers of classes that are in 256ths so far, and what lands.
+    /// Sums the numbers of the classes, which are in 256ths until then, and the landings.
     fn count(&mut self, classes: &[StoneClass; STONE_CLASSES]) {
         let room = f64::from(MOST_SLOTS) / (LIFE_S * SIDE * SIDE);
         let mut landings = [0.0; STONE_CLASSES];
@@ -175,19 +177,19 @@ impl Stones {
         }
     }
 
-    /// Returns the optical depth by which the drawn ones hide what lies beyond all of them: their discs, half of their
-    /// extinction; the rest is diffraction.
+    /// Returns the optical depth of all drawn stones for what lies beyond them: that of their discs, which is half of
+    /// their extinction; the other half is diffraction.
     pub fn hidden_depth(&self) -> f64 {
         let edge = 0.5 * (1.0 + FADE);
         self.reach.iter().map(|(reach, extinction)| 0.5 * extinction * edge * reach).sum()
     }
 
-    /// Distance beyond which none is drawn, m.
+    /// Returns the distance beyond which no stone is drawn, m.
     pub fn reach_m(&self) -> f64 {
         self.reach[0].0.max(self.reach[1].0)
     }
 
-    /// Slots of landings that are looked at in one draw.
+    /// Returns the number of slots of landings tested in one draw.
     pub fn landings(&self) -> u32 {
         CELLS * CELLS * self.slots()
     }
@@ -200,8 +202,8 @@ impl Stones {
         self.standing().ceil() as u32
     }
 
-    /// For a camera at `position_m` (east, north, up of a point fixed to the world) `height_m` above the ground, after
-    /// the air has moved by `displacement_m`.
+    /// Returns the block for a camera at `position_m` (east, north, up of a point fixed to the world), `height_m` above
+    /// the ground, after the air has moved by `displacement_m`.
     pub(crate) fn uniform(&self, position_m: DVec3, height_m: f64, displacement_m: DVec3, time_s: f64) -> StoneUniform {
         let cell = |x: f64| (x / SIDE).floor();
         let turns = time_s / LIFE_S;
@@ -222,7 +224,7 @@ impl Stones {
             upto: self.upto,
             classes: self.table,
             weight: self.weight,
-            // Wraps after 10^9 m.
+            // Wraps around after 10^9 m.
             cell: [position_m.x, position_m.y].map(|x| cell(x) as i64 as i32),
             place: [position_m.x, position_m.y].map(|x| (x - cell(x) * SIDE) as f32),
             side: SIDE as f32,

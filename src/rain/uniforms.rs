@@ -1,4 +1,4 @@
-//! From the weather and a camera to what the drops' shader reads.
+//! Uniform block of the drops' shader, computed from the weather and a camera.
 
 use glam::DVec3;
 
@@ -13,7 +13,7 @@ use crate::{
     scene::DepthUniform,
 };
 
-/// [`RainUniform::shell`] and the rest as `RainUniform` of `shaders/rain/drops.wgsl` has them.
+/// `RainUniform` of `shaders/rain/drops.wgsl`, which explains the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct RainUniform {

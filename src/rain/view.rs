@@ -1,4 +1,4 @@
-//! The rain of a view: what it draws of what falls, from scene and camera.
+//! The rain of a view: what it draws for a scene and a camera.
 
 use glam::DVec3;
 
@@ -39,34 +39,34 @@ use crate::{
     wind::Remembered,
 };
 
-/// State that a view holds for its drops.
+/// State that a view holds for its rain.
 pub(crate) struct RainView {
     blocks: Blocks,
     layer: RainLayer,
     pub settings: RainSettings,
-    /// Shares of all that falls, and of the drops near the camera, that are drawn: the planner's.
+    /// Shares set by the plan: of all that falls, and of the near drops that are drawn as single drops.
     shares: [f32; 2],
-    /// Drops a class of each rain of late, and what they were counted for.
+    /// Recently counted classes of drops, preceded by what they were counted for.
     counted: Vec<(Falling, f64, u32, Classes)>,
-    /// The weather's own rain, as much of it as has left its cloud at the camera.
+    /// The weather's own rain, reduced to the share that has left its cloud at the camera.
     own: Falling,
-    /// Columns of rain areas about the camera, and what they let fall round it.
+    /// Columns of rain areas around the camera, and the rain that falls around it.
     field: AreaField,
     local: Option<Local>,
     areas: Option<Box<AreaPass>>,
     ice: Ice,
-    /// The wind when sets of cones were born.
+    /// Memory of the wind at the births of the cones' sets.
     births: Remembered,
     /// Whether drops were stepped in the last frame.
     is_stepped: bool,
-    /// Frame that was drawn last, and what was drawn in it.
+    /// Number of the last drawn frame, and what was drawn in it.
     drawn: (u64, RainReport),
 }
 
-/// Rains whose drops are kept counted: more than the weather's and all areas'.
+/// Number of rains whose classes are kept: more than the weather's and all areas' together.
 const COUNTED: usize = 32;
 
-/// Least weight of a nearby rain area, so that cones exist before the camera enters it.
+/// Smallest weight of a nearby rain area, so that cones exist before the camera enters it.
 const LEAST_OF_CONES: f64 = 1e-2;
 
 impl RainView {
@@ -88,8 +88,8 @@ impl RainView {
         }
     }
 
-    /// Says whether the layer counts how often its pixels are drawn, in place of their light; its passes are made anew
-    /// where that changes.
+    /// Sets whether the layer counts how often its pixels are drawn, instead of showing their light. A change recreates
+    /// the layer's passes.
     pub fn set_counting(&mut self, device: &Device, counts: bool) {
         if self.layer.counts() != counts {
             let layer = self.layer.texture().clone();
@@ -97,7 +97,7 @@ impl RainView {
         }
     }
 
-    /// Returns the presence of what falls that the settings draw before the picture.
+    /// Returns the presence of what falls, as far as the settings draw it.
     fn presence(&self) -> RainPresence {
         RainPresence {
             drops: self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.has_drops(&self.field)),
@@ -112,12 +112,13 @@ impl RainView {
         RainPresence { drops: presence.drops && self.shares[0] > 0.0, ..presence }
     }
 
-    /// How many drops are drawn round the camera.
+    /// Returns the number of drops drawn around the camera.
     fn drops(&mut self, device: &Device, scene: &Scene) -> u32 {
         self.classes(device, scene, &{ self.own }).per_shell * self.shells() as u32
     }
 
-    /// Whether drops are stepped: by choice, and near a wind that varies in space where no model was asked for.
+    /// Whether drops are stepped: if the host asked for it, and with the automatic model near a wind that varies in
+    /// space.
     fn steps(&self, now: &SceneMoment<'_>, device: &Device, is_pure: bool) -> bool {
         match self.settings.model {
             RainModel::Integrated => true,
@@ -126,7 +127,7 @@ impl RainView {
         }
     }
 
-    /// Shells of the lattice that are drawn.
+    /// Returns the number of drawn shells of the lattice.
     fn shells(&self) -> usize {
         match self.settings.model {
             RainModel::Drops | RainModel::Integrated => SHELLS,
@@ -135,7 +136,7 @@ impl RainView {
         }
     }
 
-    /// Whether the plan decides how much of the rain is drawn: where no model was asked for.
+    /// Whether the plan decides how much of the rain is drawn: with the automatic model only.
     pub fn is_planned(&self) -> bool {
         self.settings.model == RainModel::Automatic && self.presence().drops
     }
@@ -145,15 +146,15 @@ impl RainView {
         self.shares = if self.is_planned() { shares } else { [1.0; 2] };
     }
 
-    /// Returns the extinction by which drops or cones of the weather's own rain hide where all are drawn (their discs:
-    /// half of their extinction, the rest is diffraction; times the contrast's gain), the distance up to which they do,
-    /// and the share of it that is drawn.
+    /// Returns three numbers for the weather's own rain: the extinction of its drops or cones if all are drawn, the
+    /// distance up to which they are drawn, and the share that is drawn. The extinction is that of the drops' discs,
+    /// which is half of the total (the other half is diffraction), times the contrast gain.
     fn hidden(&mut self, device: &Device, now: &SceneMoment<'_>) -> ([f32; 2], f32) {
         let scene = &now.scene;
         let falling = self.own;
         let reach = self.reach(now);
         let most = self.settings.most_on(device);
-        // Stones are rare: they hide as much as if they did within the drops' reach.
+        // Stones are rare. Their optical depth is spread over the drops' reach.
         let ice = self.ice.stones(scene, &self.settings, most).map_or(0.0, |s| s.hidden_depth());
         let rain = self.near(device, scene, &falling);
         let share =
@@ -162,8 +163,8 @@ impl RainView {
         ([hidden, reach].map(|v| v as f32), share as f32)
     }
 
-    /// Whether there are cones: always, by choice, and beyond the drops where lamps light what the veil does not know
-    /// of.
+    /// Whether there are cones: with the models that always have them, and beyond single drops where there are lamps,
+    /// because the veil is not lit by lamps.
     fn has_cones(&self, now: &SceneMoment<'_>) -> bool {
         match self.settings.model {
             RainModel::Automatic | RainModel::Cones => true,
@@ -172,12 +173,12 @@ impl RainView {
         }
     }
 
-    /// Distance up to which what falls is drawn, m.
+    /// Returns the distance up to which drops or cones are drawn, m.
     fn reach(&self, now: &SceneMoment<'_>) -> f64 {
         if self.has_cones(now) { BANDS_M[CONES] } else { HIDDEN_M }
     }
 
-    /// Share of the near drops that is drawn one by one, the rest on cones.
+    /// Returns the share of the near drops that is drawn one by one; the rest is drawn on cones.
     fn share_of_drops(&self) -> f64 {
         match self.settings.model {
             RainModel::Automatic => self.shares[1].into(),
@@ -186,7 +187,7 @@ impl RainView {
         }
     }
 
-    /// Extinction that drops or cones of a rain near the camera take off its veil, 1/m.
+    /// Returns the extinction that is drawn as drops or cones near the camera and subtracted from the rain's veil, 1/m.
     fn near(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> f64 {
         match self.settings.model {
             RainModel::Veil => 0.0,
@@ -194,16 +195,16 @@ impl RainView {
         }
     }
 
-    /// Fall speed of the slowest of what is drawn, m/s, and how far from the camera any of it is, m.
+    /// Returns the lowest fall speed of what is drawn, m/s, and its largest distance from the camera, m.
     fn shelter_reach(&mut self, device: &Device, scene: &Scene) -> ShelterReach {
         let stones = self.ice.stones(scene, &self.settings, self.settings.most_on(device)).map_or(0.0, |s| s.reach_m());
         let reach_m = BANDS_M.into_iter().fold(REACH_M.max(splash::REACH_M).max(stones), f64::max);
-        // The smallest stones are a tenth slower than the smallest drops.
+        // The smallest stones fall a tenth slower than the smallest drops.
         ShelterReach { slowest_m_s: 0.9 * self.classes(device, scene, &{ self.own }).flux[0].1, reach_m }
     }
 
     fn classes(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> Classes {
-        // Those that are not drawn leave their room to the rest.
+        // Shells that are not drawn leave their drops to the others.
         let most = self.settings.most_on(device).saturating_mul((SHELLS / self.shells().max(1)) as u32);
         let station = &scene.conditions.air;
         let factor = drops::factor_in(station, station.station_altitude_m);
@@ -220,12 +221,13 @@ impl RainView {
         classes
     }
 
-    /// Takes what is drawn as drops near the camera off the columns of rain areas, and gives them their pattern.
+    /// Sets the pattern of the columns of rain areas, and the extinction that is drawn as drops near the camera and
+    /// subtracted from them.
     fn set_near(&mut self, device: &Device, now: &SceneMoment<'_>) {
         let scene = &now.scene;
         let falling = self.own;
         self.field.near_m = self.reach(now);
-        // No veil gives way to more than all of it, which is twice what its drops' discs hide.
+        // At most the whole extinction, which is twice that of the drops' discs, is subtracted from a veil.
         let share = f64::from(self.shares[0]) * self.settings.contrast_gain.min(2.0);
         self.field.own_near = share * self.near(device, scene, &falling);
         for i in 0..self.field.columns.len() {
@@ -236,7 +238,7 @@ impl RainView {
         self.field.waves = curtain::waves(now.seed as u32, curtain::COLUMN_LENGTHS_M);
     }
 
-    /// Draws the columns of rain areas into the layer; whether there are any.
+    /// Draws the columns of rain areas into the layer. Returns whether there are any.
     fn draw_areas(
         &mut self,
         context: &DrawContext<'_>,
@@ -261,7 +263,7 @@ impl RainView {
         Ok(true)
     }
 
-    /// The drops of what falls round the camera, and how many fall where if that differs.
+    /// Returns the drops that fall around the camera, and the block for their numbers at each place if these differ.
     fn falling_here(&mut self, device: &Device, scene: &Scene) -> (Classes, Option<LocalUniform>) {
         let weather = self.own;
         match self.local.unwrap_or(Local::Pure(weather)) {
@@ -287,8 +289,8 @@ impl RainView {
         }
     }
 
-    /// The rain that cones are made for: that at the camera, plus a small share of each rain area nearby, so that cones
-    /// exist before the camera enters it.
+    /// Returns the rain for which cones are made: that at the camera, plus a small share of each rain area nearby, so
+    /// that cones exist before the camera enters it.
     fn falling_at(&mut self, device: &Device, scene: &Scene) -> Classes {
         let weather = self.own;
         let (base, bits) = match self.local.unwrap_or(Local::Pure(weather)) {
@@ -313,7 +315,7 @@ impl RainView {
         StreakCamera::new(context, self.settings.shutter_s, self.settings.contrast_gain)
     }
 
-    /// Returns what streaks are worth in a picture, if the plan decides about them.
+    /// Returns the contrast of the streaks in a picture, if the plan decides about them.
     pub fn streaks(&mut self, context: &DrawContext<'_>) -> Option<Streaks> {
         if !self.is_planned() {
             return None;
@@ -325,7 +327,8 @@ impl RainView {
         Some(Streaks::new((&classes, wind), &self.camera(context), light, now.has_lamps()))
     }
 
-    /// Draws the drops round the camera into the layer, `over_columns` if some lie in it already; answers what of them.
+    /// Draws what falls around the camera into the layer, which already contains columns if `over_columns`. Returns the
+    /// report.
     fn draw_near(
         &mut self,
         context: &DrawContext<'_>,
@@ -345,14 +348,14 @@ impl RainView {
         let [share, shown] = self.shares.map(f64::from);
         let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
-        // Hail may fall alone.
+        // Hail may fall without rain.
         let wet = self.kept().drops;
         block.shells = if wet && near > 0.0 { self.shells() as u32 } else { 0 };
         let splashes = Splashes::new(&classes);
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - scene.conditions.air.station_altitude_m;
-        // Taken out, since what follows changes the rest.
+        // Taken out of `self`, because the calls below need it mutably.
         let births = std::mem::take(&mut self.births);
         let carried = |from| wind.since(from, &births);
         let cones = (wet && self.has_cones(now)).then(|| {
@@ -402,7 +405,7 @@ impl RainView {
 }
 
 impl DrawnEffect for RainView {
-    /// Columns of rain areas are drawn before what stands in the sky, which they show.
+    /// Columns of rain areas are drawn in front of the sky, so the sky's output must exist first.
     fn composes(&self) -> Exchange {
         Exchange { needs: &[Output::Sky], gives: &[Output::Rain] }
     }
@@ -455,7 +458,7 @@ impl DrawnEffect for RainView {
         Ok(to)
     }
 
-    /// Draws the layer before the picture: columns of rain areas, and what falls near the camera.
+    /// Draws the layer in front of the picture: columns of rain areas, and what falls near the camera.
     fn draw(
         &mut self,
         context: &DrawContext<'_>,
@@ -471,7 +474,7 @@ impl DrawnEffect for RainView {
         Ok(())
     }
 
-    /// The columns of rain areas in the veil of the host's own shaders.
+    /// Returns the columns of rain areas for the veil of the host's own shaders.
     fn veil(
         &mut self,
         context: &DrawContext<'_>,

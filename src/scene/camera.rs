@@ -1,22 +1,23 @@
-//! One camera: where it is, how it is turned, and how it projects.
+//! Camera of the host: position, orientation and projection.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use crate::error::{Error, Result};
 
-/// One camera of the host. Column-major matrices, column vectors, as OpenGL, Vulkan and glam write them.
+/// One camera of the host. Matrices are column-major and act on column vectors, as in OpenGL, Vulkan and glam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Position in the host's world, m.
     pub position: DVec3,
-    /// World to eye; only its rotation is used, since `position` holds the place at full precision.
+    /// World to eye. Only its rotation is used; `position` holds the translation at full precision.
     pub view: DMat4,
     /// Eye to clip: any projection, off-axis, stereo, orthographic, reversed or infinite.
     pub projection: DMat4,
 }
 
 impl Camera {
-    /// A perspective camera at `position` looking along `forward`, reversed infinite depth, zero-to-one clip space.
+    /// Creates a perspective camera at `position` that looks along `forward`, with reversed infinite depth and
+    /// zero-to-one clip space.
     pub fn look_to(
         position: DVec3,
         forward: DVec3,
@@ -38,7 +39,7 @@ impl Camera {
         Self { position, view, projection }
     }
 
-    /// Refuses matrices that are not finite, not a rotation, or cannot be inverted, by name.
+    /// Checks that the matrices are finite and invertible and that `view` holds a rotation; the error names the field.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -59,12 +60,12 @@ impl Camera {
         Ok(())
     }
 
-    /// World to eye, rotation only.
+    /// Returns the rotation of `view`, world to eye.
     pub fn rotation(&self) -> DMat3 {
         DMat3::from_mat4(self.view)
     }
 
-    /// Whether rays run parallel.
+    /// Whether the rays are parallel.
     pub fn is_orthographic(&self) -> bool {
         let r = self.projection.row(3);
         r.x == 0.0 && r.y == 0.0 && r.z == 0.0

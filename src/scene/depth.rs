@@ -1,28 +1,28 @@
-//! Depth conventions: from a host's depth sample and projection to a ray of the world and metres along it.
+//! Depth conventions: conversion of a host's depth samples and projection to rays in the world and metres along them.
 //!
 //! A depth buffer holds the ratio of two linear forms of the eye-space point p = (x, y, z, 1), d = (r_z . p) / (r_w .
 //! p), with r_z and r_w rows of the host's projection (r_z halved with r_w where clip space runs from -1 to 1). A
 //! pixel's ray solves (r_x - x r_w) . p = (r_y - y r_w) . p = 0, which leaves one unknown, the distance. [`ViewRays`]
-//! does this algebra in f64 once a frame, so a pixel costs three multiply-adds and one division, in f32, without a
+//! does this algebra in f64 once a frame. A pixel then costs three multiply-adds and one division in f32, without
 //! cancellation:
 //!
 //! * the depth is first turned so that 0 is far (e = d or 1 - d; the latter is exact in f32 for d >= 1/2), and the
 //!   constants 1/far and 1/near - 1/far are formed in f64, never as a difference on the GPU;
 //! * the ray's direction is an affine function of the pixel (its three coefficients come rotated to world axes), not
 //!   the difference of two unprojected points;
-//! * everything is relative to the camera, so where the world's origin lies does not matter.
+//! * everything is relative to the camera, so the position of the world's origin does not matter.
 //!
-//! What remains is the host's own depth resolution ([`ViewRays::resolution_m`]): with a near plane of 0.1 m, a
-//! standard f32 buffer cannot tell 10 km from 10.06 km, a reversed one resolves 0.9 mm there.
+//! The remaining error is the host's own depth resolution ([`ViewRays::resolution_m`]). With a near plane of 0.1 m, a
+//! standard f32 buffer cannot tell 10 km from 10.06 km; a reversed one resolves 0.9 mm there.
 //!
-//! The same functions run on the GPU: `shaders/common/depth.wgsl`, same names and order of parameters.
+//! The same functions run on the GPU, with the same names and order of parameters: `shaders/common/depth.wgsl`.
 
 use glam::{DMat3, DVec2, DVec3, DVec4};
 
 use super::Camera;
 use crate::error::{Error, Result, check_range};
 
-/// Distance that stands for "nothing was drawn here": the pixel shows the sky. Every real distance is below it.
+/// Distance of a pixel in which the host drew nothing: it shows the sky. Every real distance is smaller.
 pub const RANGE_SKY_M: f64 = 1e12;
 
 /// Range of clip-space z before the viewport maps it to the depth buffer's 0 to 1.
@@ -35,10 +35,10 @@ pub enum ClipSpace {
     ZeroToOne,
 }
 
-/// How depth grows with distance.
+/// Relation of depth to distance.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum DepthKind {
-    /// Perspective with finite or infinite far plane: the matrix says which.
+    /// Perspective with a finite or infinite far plane, as the matrix has it.
     #[default]
     Perspective,
     /// Parallel rays; depth is linear.
@@ -52,19 +52,19 @@ pub enum DepthKind {
     },
 }
 
-/// Meaning of the numbers in the host's depth buffer, beside the projection matrix.
+/// Interpretation of the host's depth buffer, together with the projection matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct DepthMapping {
     /// Perspective, orthographic or logarithmic.
     pub kind: DepthKind,
-    /// Whether 1 is near and 0 far. False (default): 0 is near.
+    /// Whether depth 1 is near and 0 far. False (default): 0 is near.
     pub reversed: bool,
-    /// Range of clip-space z; of no meaning to logarithmic depth.
+    /// Range of clip-space z; not used for logarithmic depth.
     pub clip: ClipSpace,
 }
 
 impl DepthMapping {
-    /// Refuses logarithmic constants out of range, by name.
+    /// Checks the constants of logarithmic depth; the error names the field.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -76,7 +76,7 @@ impl DepthMapping {
         Ok(())
     }
 
-    /// The depth value of the far end: what a host clears to.
+    /// Returns the depth value of the far end, to which a host clears its buffer.
     pub fn far_depth(&self) -> f64 {
         if self.reversed { 0.0 } else { 1.0 }
     }
@@ -94,7 +94,7 @@ pub enum DepthFormat {
 }
 
 impl DepthFormat {
-    /// Distance between neighbouring representable depths at `depth`.
+    /// Returns the distance between neighbouring representable values at `depth`.
     pub fn step(self, depth: f64) -> f64 {
         match self {
             Self::Unorm16 => 1.0 / 65_535.0,
@@ -108,7 +108,7 @@ impl DepthFormat {
 /// One pixel's ray, in the host's axes relative to [`Camera::position`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRay {
-    /// Where the ray begins: the centre of projection, or the plane through it if rays are parallel; m.
+    /// Start of the ray, m: the centre of projection, or a point of the plane through it if rays are parallel.
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,
@@ -120,13 +120,13 @@ const KIND_PERSPECTIVE: u32 = 0;
 const KIND_PARALLEL: u32 = 1;
 const KIND_LOGARITHMIC: u32 = 2;
 
-/// A camera's rays and the way back from its depth buffer; made once a view and frame, in f64.
+/// Rays of a camera and the inverse of its depth buffer's mapping; computed in f64 once per view and frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRays {
     kind: u32,
-    /// e = turn.x + turn.y * depth is 0 at the far end (logarithmic: at the near one).
+    /// Coefficients of e = turn.x + turn.y * depth, which is 0 at the far end (for logarithmic depth at the near one).
     turn: DVec2,
-    /// Ray origin and (unnormalised) direction at the picture's centre and their change per unit of ndc x and y.
+    /// Ray origin and (unnormalised) direction at the picture's centre, and their change per unit of ndc x and y.
     origin: [DVec3; 3],
     direction: [DVec3; 3],
     /// Perspective: w = scale / (e - pole . (1, x, y)); parallel: t = (e - pole . (1, x, y)) * scale.
@@ -134,16 +134,17 @@ pub struct ViewRays {
     scale: f64,
     /// Plane distance per unit of w.
     plane_scale: f64,
-    /// ln(c far + 1) and 1/c of logarithmic depth.
+    /// Logarithmic depth: ln(c far + 1), and below it 1/c.
     log_far: f64,
     inverse_c: f64,
 }
 
 impl ViewRays {
-    /// Prepares the rays of `camera` whose depth buffer follows `mapping`.
+    /// Computes the rays of `camera`, whose depth buffer follows `mapping`.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the matrix cannot be inverted or contradicts the mapping, by name.
+    /// [`crate::Status::InvalidArgument`] naming the field, if the matrix cannot be inverted or contradicts the
+    /// mapping.
     pub fn new(camera: &Camera, mapping: &DepthMapping) -> Result<Self> {
         camera.validate()?;
         mapping.validate()?;
@@ -181,10 +182,11 @@ impl ViewRays {
                 det,
             ));
         }
-        // Directions d with (r_x - x r_w) . d = (r_y - y r_w) . d = 0 and r_w . d = 1, so that clip w counts along
-        // them.
+        // Directions d with (r_x - x r_w) . d = (r_y - y r_w) . d = 0 and r_w . d = 1: clip w is then the distance in
+        // units of d.
         let direction = [x3.cross(y3) / det, y3.cross(w3) / det, w3.cross(x3) / det];
-        // The centre of projection: where x, y and w all vanish; not the eye-space origin for some stereo matrices.
+        // The centre of projection is the point where x, y and w all vanish. In some stereo matrices it is not the
+        // eye-space origin.
         let eye = -DMat3::from_cols(x3, y3, w3).transpose().inverse() * DVec3::new(x.w, y.w, w.w);
         let turn = if mapping.reversed { DVec2::new(0.0, 1.0) } else { DVec2::new(1.0, -1.0) };
         let mut rays = Self {
@@ -200,7 +202,8 @@ impl ViewRays {
         };
         if let DepthKind::Logarithmic { c, far_m } = mapping.kind {
             rays.kind = KIND_LOGARITHMIC;
-            // Here 0 is near: what is close has a small depth, of which 1 - depth would lose the digits.
+            // Logarithmic depth has its 0 at the near end. Near depths are small, and 1 - depth would lose their
+            // digits.
             rays.turn = if mapping.reversed { DVec2::new(1.0, -1.0) } else { DVec2::new(0.0, 1.0) };
             rays.log_far = (c * far_m).ln_1p();
             rays.inverse_c = 1.0 / c;
@@ -222,7 +225,7 @@ impl ViewRays {
         let [x3, y3, z3] = [x.truncate(), y.truncate(), depth.truncate()];
         let turn = if reversed { DVec2::new(0.0, 1.0) } else { DVec2::new(1.0, -1.0) };
         let mut forward = x3.cross(y3).normalize_or_zero();
-        // e falls with distance, from 1 at the near plane to 0 at the far one.
+        // e decreases with distance, from 1 at the near plane to 0 at the far one.
         if turn.y * z3.dot(forward) > 0.0 {
             forward = -forward;
         }
@@ -247,14 +250,14 @@ impl ViewRays {
         })
     }
 
-    /// Returns the rays in axes turned by `to_world`.
+    /// Returns the rays rotated by `to_world`.
     fn turned(mut self, to_world: DMat3) -> Self {
         self.origin = self.origin.map(|v| to_world * v);
         self.direction = self.direction.map(|v| to_world * v);
         self
     }
 
-    /// The ray through `ndc` (x right, y up, each -1 to 1 over the picture).
+    /// Returns the ray through `ndc` (x right, y up, each -1 to 1 over the picture).
     pub fn view_ray(&self, ndc: DVec2) -> ViewRay {
         let origin = self.origin[0] + ndc.x * self.origin[1] + ndc.y * self.origin[2];
         let d = self.direction[0] + ndc.x * self.direction[1] + ndc.y * self.direction[2];
@@ -262,8 +265,8 @@ impl ViewRays {
         ViewRay { origin, direction: d / slant, slant }
     }
 
-    /// Clip w (perspective, logarithmic) or metres along the ray (parallel) of a depth sample; [`RANGE_SKY_M`] for
-    /// the far end, what lies beyond it, and NaN: a pixel of which nothing is known shows the sky.
+    /// Returns clip w (perspective, logarithmic) or metres along the ray (parallel) of a depth sample. [`RANGE_SKY_M`]
+    /// at and beyond the far end, and for NaN: a pixel of unknown depth shows the sky.
     pub fn view_depth(&self, depth: f64, ndc: DVec2) -> f64 {
         let e = self.turn.x + self.turn.y * depth;
         let far = if self.kind == KIND_LOGARITHMIC { e >= 1.0 } else { e <= 0.0 };
@@ -281,18 +284,20 @@ impl ViewRays {
         w.clamp(0.0, RANGE_SKY_M)
     }
 
-    /// Metres along the pixel's ray to what the host drew there, [`RANGE_SKY_M`] if nothing.
+    /// Returns the distance along the pixel's ray to the surface that the host drew there, m; [`RANGE_SKY_M`] without
+    /// one.
     pub fn view_range(&self, depth: f64, ndc: DVec2) -> f64 {
         (self.view_depth(depth, ndc) * self.view_ray(ndc).slant).min(RANGE_SKY_M)
     }
 
-    /// Distance from the camera's plane, m (N-51 of the compatibility laws), [`RANGE_SKY_M`] if nothing was drawn.
+    /// Returns the distance of that surface from the camera's plane, m (N-51 of the compatibility laws);
+    /// [`RANGE_SKY_M`] without one.
     pub fn view_plane(&self, depth: f64, ndc: DVec2) -> f64 {
         (self.view_depth(depth, ndc) * self.plane_scale).min(RANGE_SKY_M)
     }
 
-    /// The depth that a host's buffer would hold at `range_m` along the ray through `ndc`, before rounding: the
-    /// inverse of [`view_range`](Self::view_range).
+    /// Returns the depth, before rounding, that a host's buffer holds for a surface at `range_m` along the ray through
+    /// `ndc`: the inverse of [`view_range`](Self::view_range).
     pub fn depth_at(&self, range_m: f64, ndc: DVec2) -> f64 {
         let w = range_m / self.view_ray(ndc).slant;
         let pole = self.pole.x + ndc.x * self.pole.y + ndc.y * self.pole.z;
@@ -304,7 +309,7 @@ impl ViewRays {
         (e - self.turn.x) / self.turn.y
     }
 
-    /// How far two surfaces must lie apart at `range_m` to have different depths in a buffer of `format`, m.
+    /// Returns the least distance between two surfaces at `range_m` whose depths differ in a buffer of `format`, m.
     pub fn resolution_m(&self, range_m: f64, ndc: DVec2, format: DepthFormat) -> f64 {
         let depth = self.depth_at(range_m, ndc);
         let h = range_m * 1e-4;
@@ -312,19 +317,19 @@ impl ViewRays {
         format.step(depth) / slope.abs()
     }
 
-    /// Angle between the rays of two neighbouring pixels in the picture's middle, `height` pixels high; 0 for parallel
-    /// rays.
+    /// Returns the angle between the rays of two neighbouring pixels in the middle of a picture `height` pixels high; 0
+    /// for parallel rays.
     pub fn pixel_angle(&self, height: u32) -> f64 {
         2.0 * self.direction[2].length() / (self.direction[0].length() * f64::from(height.max(1)))
     }
 
-    /// Value of the shaders' `override` constant `DEPTH_KINDS` with which a pipeline reads this camera's depth and no
-    /// other kind.
+    /// Returns the value of the shaders' `override` constant `DEPTH_KINDS` with which a pipeline reads only this
+    /// camera's kind of depth.
     pub fn depth_kinds(&self) -> u32 {
         1 << self.kind
     }
 
-    /// The form the shaders read (`DepthUniform` of `common/depth.wgsl`).
+    /// Returns the rays in the form that shaders read (`DepthUniform` of `common/depth.wgsl`).
     pub fn uniform(&self) -> DepthUniform {
         let [o, ox, oy] = self.origin.map(|v| v.as_vec3().to_array());
         let [d, dx, dy] = self.direction.map(|v| v.as_vec3().to_array());
@@ -351,7 +356,7 @@ fn contradiction(field: &str, what: &str) -> Error {
     Error::invalid(field, format_args!("says {what}"))
 }
 
-/// [`ViewRays`] as shaders read it; offsets are tested against naga's.
+/// [`ViewRays`] as shaders read them; a test compares the offsets with naga's.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.

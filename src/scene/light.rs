@@ -1,73 +1,75 @@
-//! The host's own lamps: head lights, work lights, search lights. They light what Welkin draws in their beams.
+//! The host's own lamps, such as head lights, work lights and search lights. They light what Welkin draws in their
+//! beams.
 
 use glam::{DMat3, DVec3};
 
 use crate::error::{Error, Result, check_range};
 
-/// Most lamps at a time.
+/// Maximum number of lamps at a time.
 pub const MAX_LIGHTS: usize = 64;
 
 /// A lamp of the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostLight {
-    /// Where it is in the host's world, m.
+    /// Position in the host's world, m.
     pub position_m: DVec3,
-    /// Where it shines to, in the host's world; any length but 0.
+    /// Direction of the beam in the host's world; any length but 0.
     pub direction: DVec3,
-    /// Luminous intensity in its middle, cd a channel of linear Rec. 709, \[0, 1e9\].
+    /// Luminous intensity in the middle of the beam, cd per channel of linear Rec. 709, \[0, 1e9\].
     pub intensity_cd: [f64; 3],
-    /// Angle from the middle up to which the beam is full, degrees, \[0, 180\].
+    /// Angle from the middle up to which the beam has its full intensity, degrees, \[0, 180\].
     pub inner_deg: f64,
-    /// Angle from the middle at which the beam has ended, degrees, from `inner_deg` to 180. Both 180: a bulb.
+    /// Angle from the middle at which the beam ends, degrees, from `inner_deg` to 180. If both are 180, the lamp shines
+    /// to all sides.
     pub outer_deg: f64,
 }
 
-/// As shaders read it.
+/// Lamp as shaders read it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct LightUniform {
-    /// Camera-relative, east-north-up, m.
+    /// Position relative to the camera, (east, north, up), m.
     pub position: [f32; 3],
-    /// Cosine of the beam's end.
+    /// Cosine of the angle at which the beam ends.
     pub end: f32,
     pub direction: [f32; 3],
-    /// 1/(cosine of where the beam is full - that of its end).
+    /// Inverse of the difference between the cosines of `inner_deg` and `outer_deg`.
     pub steepness: f32,
     pub intensity: [f32; 3],
     pub pad: f32,
 }
 
-/// Light of a flash of lightning as a frame has it: what lies near the camera is lit by it as by a lamp.
+/// Light of a lightning flash in a frame, as a lamp that lights what is near the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FlashLamp {
-    /// Camera-relative, east-north-up, m.
+    /// Position relative to the camera, (east, north, up), m.
     pub position: DVec3,
-    /// Luminous flux, lm a channel of linear Rec. 709, on the mean of the frame's time.
+    /// Luminous flux, lm per channel of linear Rec. 709, as a mean over the frame's time.
     pub flux_lm: [f64; 3],
-    /// How far its light reaches about that, m.
+    /// Distance from `position` to which the light reaches, m.
     pub radius_m: f64,
-    /// Share of its light that leaves by the cloud's base, of a source inside a cloud; none of one that is open to all
-    /// sides.
+    /// Share of the light that leaves through the base of the cloud, for a flash inside a cloud. `None` for one that is
+    /// open to all sides.
     pub down_share: Option<f64>,
 }
 
-/// Most of them.
+/// Maximum number of flash lamps.
 pub(crate) const MAX_FLASH_LAMPS: usize = 8;
 
 impl FlashLamp {
-    /// Luminous intensity, cd a channel: to all sides, or straight down from a cloud's base, which shines by Lambert's
-    /// law.
+    /// Returns the luminous intensity, cd per channel: the same to all sides, or straight down from the base of a
+    /// cloud, which emits by Lambert's law.
     pub fn intensity_cd(&self) -> [f64; 3] {
         let share = self.down_share.map_or(0.25, |share| share) / std::f64::consts::PI;
         self.flux_lm.map(|lm| lm * share)
     }
 
-    /// With the picture's `exposure` on it.
+    /// Returns the lamp as shaders read it, with the picture's `exposure` applied.
     pub(crate) fn uniform(&self, exposure: f64) -> LightUniform {
         let hidden = self.down_share.is_some();
         LightUniform {
             position: self.position.as_vec3().to_array(),
-            // A smooth step from the horizon to straight down stands for the cosine.
+            // A smooth step from the horizon to straight down approximates the cosine.
             end: if hidden { 0.0 } else { -2.0 },
             direction: [0.0, 0.0, -1.0],
             steepness: 1.0,
@@ -78,7 +80,7 @@ impl FlashLamp {
 }
 
 impl HostLight {
-    /// Refuses what is no lamp, by name.
+    /// Checks that every field is in range; the error names the one that is not.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -96,13 +98,14 @@ impl HostLight {
         check_range("light.outer_deg", self.outer_deg, self.inner_deg, 180.0, "degrees")
     }
 
-    /// For a camera at `eye` whose axes `to_enu` turns, with the picture's `exposure` on it.
+    /// Returns the lamp as shaders read it, for a camera at `eye` with axes `to_enu`, with the picture's `exposure`
+    /// applied.
     pub(crate) fn uniform(&self, eye: DVec3, to_enu: DMat3, exposure: f64) -> LightUniform {
         let v = |d: DVec3| d.as_vec3().to_array();
         let [inner, outer] = [self.inner_deg, self.outer_deg].map(|a| a.to_radians().cos());
         LightUniform {
             position: v(to_enu * (self.position_m - eye)),
-            // A bulb's beam has no end.
+            // A lamp that shines to all sides has a beam without an end.
             end: if self.outer_deg >= 180.0 { -2.0 } else { outer as f32 },
             direction: v((to_enu * self.direction).normalize()),
             steepness: (1.0 / (inner - if self.outer_deg >= 180.0 { -2.0 } else { outer }).max(1e-4)) as f32,
@@ -111,7 +114,7 @@ impl HostLight {
         }
     }
 
-    /// Illuminance on a surface at `p` that faces the lamp, lux a channel.
+    /// Returns the illuminance on a surface at `p` that faces the lamp, lux per channel.
     pub fn illuminance_lux(&self, p: DVec3) -> [f64; 3] {
         let to = p - self.position_m;
         let d2 = to.length_squared().max(0.01);

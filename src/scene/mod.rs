@@ -1,7 +1,7 @@
-//! Cameras, depth conventions and world frames: where things are.
+//! Cameras, depth conventions and world frames: the geometry between the host's world and the planet.
 //!
-//! The host's coordinates stay its own; rooms obtain up, altitude, north and place only through
-//! [`WorldFrame::frame_at`]. Positions are f64 in the host's frame, everything on the GPU is camera-relative.
+//! The host's coordinates stay as they are: rooms obtain up, altitude, north and place only through
+//! [`WorldFrame::frame_at`]. Positions are f64 in the host's frame; everything on the GPU is relative to the camera.
 
 mod camera;
 pub mod depth;

@@ -1,26 +1,27 @@
-//! Rotations and angles by `libm`: a state must have the same bits on every machine.
+//! Rotations and angles computed by `libm`, so that a state has the same bits on every machine.
 
 use glam::{DMat3, DVec3};
 
-/// Rotation by an angle about the x axis, with the same bits on every machine, which glam's does not promise.
+/// Returns the rotation by an angle about the x axis. It has the same bits on every machine, which glam's does not
+/// promise.
 pub(crate) fn turn_x(angle: f64) -> DMat3 {
     let (s, c) = libm::sincos(angle);
     DMat3::from_cols(DVec3::X, DVec3::new(0.0, c, s), DVec3::new(0.0, -s, c))
 }
 
-/// Rotation about the y axis, as [`turn_x`].
+/// Returns the rotation about the y axis, as [`turn_x`].
 pub(crate) fn turn_y(angle: f64) -> DMat3 {
     let (s, c) = libm::sincos(angle);
     DMat3::from_cols(DVec3::new(c, 0.0, -s), DVec3::Y, DVec3::new(s, 0.0, c))
 }
 
-/// Rotation about the z axis, as [`turn_x`].
+/// Returns the rotation about the z axis, as [`turn_x`].
 pub(crate) fn turn_z(angle: f64) -> DMat3 {
     let (s, c) = libm::sincos(angle);
     DMat3::from_cols(DVec3::new(c, s, 0.0), DVec3::new(-s, c, 0.0), DVec3::Z)
 }
 
-/// Angle between two directions, as [`turn_x`].
+/// Returns the angle between two directions, as [`turn_x`].
 pub(crate) fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::acos((a.dot(b) / (a.length_squared() * b.length_squared()).sqrt()).clamp(-1.0, 1.0))
 }

@@ -1,4 +1,4 @@
-//! World frames: from the host's coordinates to up, north, altitude and place.
+//! World frames: mapping from the host's coordinates to up, north, altitude and place.
 
 use glam::{DMat3, DVec3};
 
@@ -10,13 +10,13 @@ const WGS84_A: f64 = 6_378_137.0;
 /// First eccentricity squared of the WGS 84 ellipsoid (NIMA TR8350.2, 2000).
 const WGS84_E2: f64 = 6.694_379_990_141_4e-3;
 
-/// Farthest that mean sea level lies above or below the ellipsoid, m: from -107 m south of India to 86 m at New Guinea
-/// (EGM2008, Pavlis et al. 2012), and some more for other surfaces of reference.
+/// Largest difference between mean sea level and the ellipsoid, m: it is -107 m south of India and 86 m at New Guinea
+/// (EGM2008, Pavlis et al. 2012). The rest is a margin for other reference surfaces.
 const GEOID_M: f64 = 120.0;
 /// Lowest and highest altitude of a place, m.
 const ALTITUDES_M: [f64; 2] = [-1e4, 1e9];
-/// By so much the altitude of a position may lie outside and count as at the end, m: at 1e9 m coordinates are rounded
-/// to a ten-millionth of a metre, and what is computed of them to some more.
+/// Tolerance of the altitude range, m: an altitude outside by at most this counts as the end of the range. At 1e9 m
+/// coordinates are rounded to 1e-7 m, and values computed from them to somewhat more.
 const ROUNDING_M: f64 = 1e-3;
 /// Farthest position from the world's origin, m.
 const FARTHEST_M: f64 = 1e12;
@@ -33,7 +33,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Refuses what is not a place, by name.
+    /// Checks that every field is in range; the error names the one that is not.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -43,8 +43,8 @@ impl Place {
         check_range("altitude_m", self.altitude_m, ALTITUDES_M[0], ALTITUDES_M[1], "m")
     }
 
-    /// Earth-centred coordinates on WGS 84, m, where mean sea level is the ellipsoid ([`WorldFrame::geoid_height_m`] is
-    /// 0).
+    /// Returns Earth-centred coordinates on WGS 84, m, with mean sea level at the ellipsoid
+    /// ([`WorldFrame::geoid_height_m`] 0).
     pub fn to_ecef(&self) -> DVec3 {
         let (sp, cp) = libm::sincos(self.latitude_deg.to_radians());
         let (sl, cl) = libm::sincos(self.longitude_deg.to_radians());
@@ -53,8 +53,8 @@ impl Place {
         DVec3::new(r * cl, r * sl, (n * (1.0 - WGS84_E2) + self.altitude_m) * sp)
     }
 
-    /// The place of Earth-centred coordinates, its altitude above the ellipsoid, by Bowring's iteration (Bowring 1976);
-    /// within 1e-6 m of the inverse from the centre's neighbourhood (1 km) to 1e9 m.
+    /// Computes the place of Earth-centred coordinates, with its altitude above the ellipsoid, by Bowring's iteration
+    /// (Bowring 1976). It inverts [`Self::to_ecef`] within 1e-6 m, from 1 km from the Earth's centre up to 1e9 m.
     pub fn from_ecef(p: DVec3) -> Self {
         let rho = libm::hypot(p.x, p.y);
         let longitude = libm::atan2(p.y, p.x);
@@ -70,7 +70,7 @@ impl Place {
         Self { latitude_deg: latitude.to_degrees(), longitude_deg: longitude.to_degrees(), altitude_m: altitude }
     }
 
-    /// From Earth-centred axes to (east, north, up) at this place.
+    /// Returns the rotation from Earth-centred axes to (east, north, up) at this place.
     pub(crate) fn ecef_to_enu(&self) -> DMat3 {
         let (sp, cp) = libm::sincos(self.latitude_deg.to_radians());
         let (sl, cl) = libm::sincos(self.longitude_deg.to_radians());
@@ -91,15 +91,15 @@ pub enum Axes {
     YUp,
 }
 
-/// How the host's world lies on the planet.
+/// Relation of the host's world to the planet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum WorldKind {
-    /// A plane: altitude is the up coordinate plus the origin's, up is the same everywhere.
+    /// A plane: up is the same everywhere, and altitude is the up coordinate plus the origin's altitude.
     #[default]
     Flat,
-    /// East-north-up at the origin's place with the curved planet below.
+    /// A tangent plane: axes east, north and up at the origin's place, with the curved planet below.
     Tangent,
-    /// Earth-centred, Earth-fixed (WGS 84); axes do not matter, and the origin only for the sunlight on simulated
+    /// Earth-centred, Earth-fixed (WGS 84). The axes are not used, and the origin only for the sunlight on simulated
     /// ground. Altitudes count from mean sea level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
     Ecef,
 }
@@ -111,13 +111,13 @@ pub struct WorldFrame {
     pub kind: WorldKind,
     /// Axes of flat and tangent worlds.
     pub axes: Axes,
-    /// Where the host's (0, 0, 0) lies.
+    /// Place of the host's (0, 0, 0).
     pub origin: Place,
     /// Bearing of the world's north axis, degrees clockwise from true north, [-360, 360].
     pub grid_bearing_deg: f64,
     /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place, m, [-120, 120]: 47.8 m at
-    /// Frankfurt, -30 m at New York. One number for all of the world; it varies by some metres over 100 km. For
-    /// Earth-centred worlds, whose coordinates know the ellipsoid alone. Default 0.
+    /// Frankfurt, -30 m at New York. It varies by some metres over 100 km; one value holds for all of the world. Used
+    /// only by Earth-centred worlds, whose coordinates refer to the ellipsoid. Default 0.
     pub geoid_height_m: f64,
 }
 
@@ -133,12 +133,12 @@ impl Default for WorldFrame {
 pub struct LocalFrame {
     /// Latitude, longitude and altitude of the point.
     pub place: Place,
-    /// Turns the host's axes into (east, north, up) at the point.
+    /// Rotation from the host's axes to (east, north, up) at the point.
     pub world_to_enu: DMat3,
 }
 
 impl WorldFrame {
-    /// Refuses what is not a frame, by name.
+    /// Checks that every field is in range; the error names the one that is not.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -148,10 +148,10 @@ impl WorldFrame {
         check_range("geoid_height_m", self.geoid_height_m, -GEOID_M, GEOID_M, "m")
     }
 
-    /// Up, north, altitude and place at a position of the host's world that the host names `name`.
+    /// Returns up, north, altitude and place at `position` of the host's world. `name` names the position in an error.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] by that name if the position is not finite, farther than 1e12 m from the
+    /// [`crate::Status::InvalidArgument`] naming `name` if the position is not finite, farther than 1e12 m from the
     /// world's origin, or not at an altitude in \[-1e4, 1e9\] m.
     pub fn place_at(&self, name: &str, position: DVec3) -> Result<LocalFrame> {
         if !(position.is_finite() && position.length() <= FARTHEST_M) {
@@ -168,7 +168,7 @@ impl WorldFrame {
         Ok(local)
     }
 
-    /// Up, north, altitude and place at `position` of the host's world, whatever it is.
+    /// Returns up, north, altitude and place at `position` of the host's world, without checking it.
     pub fn frame_at(&self, position: DVec3) -> LocalFrame {
         match self.kind {
             WorldKind::Flat => {
@@ -192,7 +192,7 @@ impl WorldFrame {
         }
     }
 
-    /// Where a place on the planet lies in a tangent or Earth-centred host's world; the inverse of
+    /// Returns the position of a place on the planet in a tangent or Earth-centred host's world: the inverse of
     /// [`WorldFrame::frame_at`].
     pub(crate) fn position_of(&self, place: &Place) -> DVec3 {
         match self.kind {
@@ -204,13 +204,13 @@ impl WorldFrame {
         }
     }
 
-    /// Host axes to (east, north, up), grid bearing included.
+    /// Returns the rotation from the host's axes to (east, north, up), with the grid bearing.
     fn axes_to_enu(&self) -> DMat3 {
         let axes = match self.axes {
             Axes::ZUp => DMat3::IDENTITY,
             Axes::YUp => DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y),
         };
-        // A grid whose north points east of true north turns its vectors clockwise.
+        // If the grid's north points east of true north, vectors turn clockwise.
         turn_z(-self.grid_bearing_deg.to_radians()) * axes
     }
 }
@@ -256,7 +256,7 @@ mod tests {
             assert!((local.place.altitude_m - 111.0).abs() < 1e-6, "{local:?}");
             assert_eq!(world.place_at("position", above).unwrap(), local);
             assert!((world.position_of(&frankfurt) - above).length() < 1e-6);
-            // Where altitudes are the host's own the ellipsoid does not matter.
+            // Where the host gives altitudes itself, the ellipsoid does not matter.
             for kind in [WorldKind::Flat, WorldKind::Tangent] {
                 let world = WorldFrame { kind, origin: frankfurt, ..world };
                 let without = WorldFrame { geoid_height_m: 0.0, ..world };

@@ -1,8 +1,9 @@
-//! Finished tables on disk, under a hash of the planet, the settings and the shaders that made them.
+//! Cache of finished tables on disk. The file name contains a hash of the planet, the settings and the shaders that
+//! built the tables.
 //!
-//! Off unless the host names a directory. A file that is of another length, damaged, of another version or of another
-//! key, that holds a number that is none, or that is no file but a link or a pipe, is passed over and the tables are
-//! built anew; nothing is ever read half.
+//! The cache is off unless the host names a directory. A file is ignored, and the tables are built again, if its
+//! length, checksum, version or key is wrong, if it contains a value that is not finite, or if it is no regular file (a
+//! link or a pipe). No file is ever used in part.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -18,10 +19,10 @@ use crate::error::{Error, Result, Status};
 use crate::gpu::shader;
 use crate::planet::spectral::parts;
 
-/// First bytes of a file; the digits are the version of its layout.
+/// First bytes of a file; the numbers are the version of its layout.
 const MAGIC: &[u8; 8] = b"WKSKY\x00\x01\n";
 
-/// FNV-1a, 64 bits: the same on every machine.
+/// FNV-1a hash of 64 bits, equal on every machine.
 fn fnv(mut h: u64, bytes: &[u8]) -> u64 {
     for b in bytes {
         h = (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3);
@@ -31,10 +32,10 @@ fn fnv(mut h: u64, bytes: &[u8]) -> u64 {
 
 const SEED: u64 = 0xcbf2_9ce4_8422_2325;
 
-/// The key of a planet's tables.
+/// Key of a planet's tables.
 ///
 /// # Errors
-/// A missing shader file.
+/// Fails if a shader file is missing.
 pub(crate) fn key(planet: &Planet, settings: &SkySettings) -> Result<u64> {
     let h = fnv(SEED, &planet.hash().to_le_bytes());
     let h = fnv(h, settings.model.name().as_bytes());
@@ -44,18 +45,18 @@ pub(crate) fn key(planet: &Planet, settings: &SkySettings) -> Result<u64> {
     Ok(fnv(h, shader::assemble("sky/build.wgsl")?.as_bytes()))
 }
 
-/// Where the tables of a key lie.
+/// Path of the file with the tables of a key.
 pub(crate) fn path(directory: &Path, key: u64) -> PathBuf {
     directory.join(format!("sky-{key:016x}.tables"))
 }
 
-/// Whether all texels, half floats, are finite.
+/// Whether all texels, which are half floats, are finite.
 fn are_finite(table: &[u8]) -> bool {
     const ENDLESS: u16 = 0x7c00;
     table.as_chunks::<2>().0.iter().all(|half| u16::from_ne_bytes(*half) & ENDLESS != ENDLESS)
 }
 
-/// Bytes of a file of tables.
+/// Size of a file of tables, bytes.
 fn file_size(settings: &SkySettings) -> u64 {
     let table = |name: &Name| {
         let (width, height) = name.result_size(settings);
@@ -64,10 +65,11 @@ fn file_size(settings: &SkySettings) -> u64 {
     Name::RESULTS.iter().map(table).sum::<u64>() + (MAGIC.len() + 8 + 8) as u64
 }
 
-/// Writes tables (in the order of [`Name::RESULTS`]) so that a reader sees the old file or the whole new one.
+/// Writes tables in the order of [`Name::RESULTS`]. The write is atomic: a reader sees the old file or the complete new
+/// one.
 ///
 /// # Errors
-/// [`Status::Io`] naming the file, or for tables that no reader would take.
+/// [`Status::Io`] naming the file, also for tables with values that are not finite.
 pub(crate) fn write(directory: &Path, key: u64, tables: &[Vec<u8>]) -> Result<PathBuf> {
     let target = path(directory, key);
     if !tables.iter().all(|table| are_finite(table)) {
@@ -80,11 +82,11 @@ pub(crate) fn write(directory: &Path, key: u64, tables: &[Vec<u8>]) -> Result<Pa
         file.extend(table);
     }
     file.extend(fnv(SEED, &file).to_le_bytes());
-    // Two processes may write at once: each its own file, and the last name given stands.
+    // Two processes may write at once. Each writes its own file, and the last rename wins.
     let part = directory.join(format!("sky-{key:016x}.{}.part", std::process::id()));
     let failed = |e: std::io::Error| Error::new(Status::Io, format!("{}: {e}", target.display()));
     fs::create_dir_all(directory).map_err(failed)?;
-    // What lies there under this name is left over, or leads elsewhere: it is never written into.
+    // A file of this name is left over, or is a link to somewhere else. It is removed instead of written to.
     let _ = fs::remove_file(&part);
     let made = fs::File::options().write(true).create_new(true).open(&part);
     let written = made.and_then(|mut to| to.write_all(&file)).and_then(|()| fs::rename(&part, &target));
@@ -96,7 +98,7 @@ pub(crate) fn write(directory: &Path, key: u64, tables: &[Vec<u8>]) -> Result<Pa
     Ok(target)
 }
 
-/// Files that are kept in a directory: every weather makes one.
+/// Largest number of files kept in a directory; every weather makes one.
 const MOST_FILES: usize = 32;
 
 /// Removes the oldest tables beyond [`MOST_FILES`].
@@ -116,15 +118,15 @@ fn forget_oldest(directory: &Path) -> std::io::Result<()> {
     files[..excess].iter().try_for_each(|(_, path)| fs::remove_file(path))
 }
 
-/// Reads tables of a key; `None` if there is no file.
+/// Reads the tables of a key; `None` if there is no file.
 ///
 /// # Errors
-/// [`Status::Io`] naming the file, if it cannot be read, is none, or is not whole.
+/// [`Status::Io`] naming the file, if it cannot be read, is no regular file, or is damaged.
 pub(crate) fn read(directory: &Path, key: u64, settings: &SkySettings) -> Result<Option<Vec<Vec<u8>>>> {
     let path = path(directory, key);
     let failed = |e: std::io::Error| Error::new(Status::Io, format!("{}: {e}", path.display()));
     let unfit = |what: &str| Error::new(Status::Io, format!("{} {what}", path.display()));
-    // Asked before it is opened: a pipe never ends, and a link leads anywhere.
+    // Checked before the file is opened: reading a pipe might never end, and a link could lead anywhere.
     let about = match fs::symlink_metadata(&path) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         about => about.map_err(failed)?,
@@ -180,7 +182,7 @@ fn small() -> SkySettings {
     }
 }
 
-/// Tables of zeros as they lie in a file between its key and its sum, for fuzzers.
+/// Tables of zeros in the form that they have in a file between key and checksum, for fuzzers.
 pub fn body_of_tables() -> Vec<u8> {
     let table = |name: &Name| {
         let (width, height) = name.result_size(&small());
@@ -190,8 +192,8 @@ pub fn body_of_tables() -> Vec<u8> {
     Name::RESULTS.iter().flat_map(table).collect()
 }
 
-/// Whether a file with this body is taken, for fuzzers: it gets the right key and the right sum, at which they would
-/// stop.
+/// Whether a file with this body is accepted, for fuzzers. The file gets a correct key and checksum, which fuzzers
+/// could not find.
 pub fn takes_tables(body: &[u8]) -> bool {
     let mut file = [MAGIC, 0_u64.to_le_bytes().as_slice(), body].concat();
     file.extend(fnv(SEED, &file).to_le_bytes());
@@ -242,10 +244,10 @@ mod tests {
         };
         let file = write(&directory, 1, &tables).unwrap();
         assert!(read(&directory, 1, &settings).unwrap().is_some());
-        // Another key's file under this name.
+        // A file of another key under this name.
         fs::copy(&file, path(&directory, 2)).unwrap();
         refused(2, "damaged");
-        // NaN and infinity, under a checksum that fits.
+        // NaN and infinity, with a checksum that matches.
         for (bits, at) in [(0x7e00_u16, 0), (0x7c00, 5000), (0xfc00, 77), (0xffff, 1)] {
             let mut odd = tables.clone();
             odd[1][2 * at..2 * at + 2].copy_from_slice(&bits.to_ne_bytes());
@@ -260,9 +262,9 @@ mod tests {
             refused(1, "no number");
             write(&directory, 1, &tables).unwrap();
         }
-        // A file of a terabyte, which is not read into memory, and a directory. The file is closed at once: on Windows
-        // nobody removes a folder with an open one. Where the disk's format cannot have such a file (it would be
-        // filled), a large one serves.
+        // A file of a terabyte, which must not be read into memory, and a directory. The file is closed at once,
+        // because Windows does not remove a folder that contains an open file. File systems without sparse files would
+        // fill it; there a large file is used instead.
         let huge = fs::File::create(path(&directory, 4)).unwrap();
         if cfg!(windows) || huge.set_len(1 << 40).is_err() {
             huge.set_len(1 << 28).unwrap();
@@ -278,7 +280,7 @@ mod tests {
             refused(6, "link");
             symlink("/dev/zero", path(&directory, 7)).unwrap();
             refused(7, "link");
-            // What a link leads to is not written into.
+            // The target of a link is not written to.
             let precious = directory.join("precious");
             fs::write(&precious, b"the user's own").unwrap();
             symlink(&precious, path(&directory, 8)).unwrap();

@@ -1,38 +1,39 @@
-//! The ways to draw a sky that are charted against each other, with what they cost.
+//! Candidate methods of drawing the sky, which the lab compares by cost and error.
 
 use super::recipe::{Name, PassKind, passes};
 use super::settings::{SkyModel, SkySettings};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Air and haze between the camera and what the host drew. How much it matters: atmosphere on objects, of the
-/// importance weights in the experiment of the machinery trainer's thesis.
+/// Air and haze between the camera and what the host drew. The importance is that of "atmosphere on objects" in the
+/// experiment of the machinery trainer's thesis.
 pub const AIR: Part = Part { name: "air", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(0) };
-/// The clear sky above the horizon, behind clouds: a closed deck hides it.
+/// Clear sky above the horizon, behind clouds; a closed deck hides it.
 pub const SKY: Part = Part { name: "sky", rungs: &["all", "none"], importance: 0.2, worth: Worth::Composed(2) };
 
-/// Work of a pixel, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts:
-/// air between and clear sky for one lamp and for each further one.
+/// Work of a pixel for air and for clear sky, with one lamp and for each further lamp. Measured on a software driver
+/// (`cargo bench -- parts`), in units of a pixel without any part.
 const AIR_WORK: (f64, f64) = (0.4, 0.2);
 const SKY_WORK: (f64, f64) = (0.07, 0.05);
-/// Where the host drew nothing, the pixel's way to the air costs this share of it all the same.
+/// Share of the air's work that a pixel costs where the host drew nothing.
 const AIR_UNDRAWN: f64 = 0.6;
-/// The air before the fog, where there are both; more with the lamps, as the air itself.
+/// Work of the air in front of fog, where there are both, with one lamp; it grows with the number of lamps as the air's
+/// own does.
 const AIR_BEFORE_FOG: f64 = 0.3;
 
-/// Work of the air of a picture under so many lamps.
+/// Work of the air in a picture with `lamps` lamps.
 pub(crate) fn air_work(lamps: u32) -> StepWork {
     let pixel = AIR_WORK.0 + AIR_WORK.1 * f64::from(lamps.saturating_sub(1));
     StepWork { object: pixel, sky: AIR_UNDRAWN * pixel, fixed: 0.0 }
 }
 
-/// Work of the air before the fog, beyond that of either.
+/// Work of the air in front of the fog, in addition to that of both.
 pub(crate) fn air_before_fog_work(lamps: u32) -> StepWork {
     let pixel = AIR_BEFORE_FOG / AIR_WORK.0 * air_work(lamps).object;
     StepWork { object: pixel, sky: pixel, fixed: 0.0 }
 }
 
-/// Work of the clear sky of a picture under so many lamps.
+/// Work of the clear sky in a picture with `lamps` lamps.
 pub(crate) fn sky_work(lamps: u32) -> StepWork {
     let sky = SKY_WORK.0 + SKY_WORK.1 * f64::from(lamps.saturating_sub(1));
     StepWork { sky, ..StepWork::default() }
@@ -48,7 +49,7 @@ pub fn candidates() -> Vec<Listed<SkySettings>> {
     add("directional-half", half(Directional));
     add("directional", SkySettings::default());
     add("directional-double", double(Directional));
-    // What of the doubling pays: the planet's tables, or the observer's.
+    // These tell which half of the doubling helps: the planet's tables or the observer's.
     add("directional-fine-planet", SkySettings { orders: 6, ..planet_sizes(double(Directional)) });
     add("directional-fine-view", SkySettings { orders: 5, ..view_sizes(double(Directional)) });
     add("isotropic-eighth", coarsest(IsotropicTables));
@@ -158,7 +159,7 @@ fn double(model: SkyModel) -> SkySettings {
     }
 }
 
-/// The default with the planet's tables of `s`.
+/// The default settings with the sizes of the planet's tables from `s`.
 fn planet_sizes(s: SkySettings) -> SkySettings {
     SkySettings {
         suns: s.suns,
@@ -172,7 +173,7 @@ fn planet_sizes(s: SkySettings) -> SkySettings {
     }
 }
 
-/// The default with the observer's tables of `s`.
+/// The default settings with the sizes of the observer's tables from `s`.
 fn view_sizes(s: SkySettings) -> SkySettings {
     SkySettings {
         sky_azimuths: s.sky_azimuths,
@@ -188,9 +189,9 @@ fn view_sizes(s: SkySettings) -> SkySettings {
     }
 }
 
-/// Bytes of a texel of every table.
+/// Size of a texel of every table, bytes.
 const TEXEL_BYTES: f64 = 8.0;
-/// Look-ups of a source that knows directions, and of one that does not.
+/// Number of look-ups of the source in one sample: 4 if the source depends on direction, 1 if it does not.
 fn source_texels(s: &SkySettings) -> f64 {
     match s.model {
         SkyModel::Table3d => 0.0,
@@ -199,7 +200,7 @@ fn source_texels(s: &SkySettings) -> f64 {
     }
 }
 
-/// The cost of a setting: its planet's tables, its observer's, and a pixel.
+/// Work of one setting: for the planet's tables, for the observer's tables, and for a pixel.
 pub fn work(s: &SkySettings) -> Work {
     let area = |(width, height): (u32, u32)| f64::from(width) * f64::from(height);
     let texels = |name: Name| area(name.size(s));
@@ -218,7 +219,7 @@ pub fn work(s: &SkySettings) -> Work {
         let bytes = TEXEL_BYTES * pass.draws.len() as f64;
         rebuild = rebuild.plus(Units { samples, texels: lookups, bytes }, count);
     }
-    // Scratch of a build, and two airs: the one that is shown and the one that follows it.
+    // Scratch of a build, and two sets of tables: the one that is shown and the one being built.
     let kept = |name: &Name| area(name.result_size(s));
     let shared: f64 = Name::SCRATCH.iter().map(|n| texels(*n)).sum::<f64>()
         + 2.0 * Name::RESULTS.iter().map(kept).sum::<f64>()
@@ -235,7 +236,7 @@ pub fn work(s: &SkySettings) -> Work {
         let nodes = f64::from(s.march_cells.next_multiple_of(4));
         Units { samples: nodes, texels: nodes * source_texels(s), bytes: TEXEL_BYTES }
     } else {
-        // Sky 2 look-ups, air 4 and a column: half of the pixels each.
+        // The sky takes 2 look-ups, the air 4 and a column; half of the pixels show each.
         Units { samples: 1.0, texels: 3.0, bytes: TEXEL_BYTES }
     };
     Work {
@@ -243,7 +244,7 @@ pub fn work(s: &SkySettings) -> Work {
         view,
         pixel,
         shared_bytes: (TEXEL_BYTES * shared) as u64,
-        // Two layers for each of two lamps.
+        // Two layers for each of the two lamps.
         view_bytes: (4.0 * TEXEL_BYTES * area(s.observer_size())) as u64,
     }
 }
@@ -274,7 +275,7 @@ mod tests {
     #[test]
     fn bytes_are_those_of_the_textures() {
         let s = SkySettings::default();
-        // 40 x 120 of the sky and 24 x 16 x 40 of the air, two layers a lamp, two lamps, 8 bytes.
+        // Sky of 40 x 120, air of 24 x 16 x 40, two layers a lamp, two lamps, 8 bytes.
         assert_eq!(work(&s).view_bytes, (40 * 120 + 24 * 16 * 40) * 4 * 8);
         assert!(work(&s).shared_bytes > 2 * 64 * 22 * 17 * 10 * 8);
     }

@@ -1,13 +1,14 @@
-//! The air before the discs of sun and moon above the level of the eye: its optical depth by the sine of elevation, in
-//! a stretch of it that holds what is seen of a disc. So a pixel of the sky asks for no path through the air.
+//! Optical depth of the air in front of the discs of sun and moon above the eye's level. It is a function of the sine
+//! of elevation over a short interval that contains the visible disc, so that a pixel of the sky needs no integral
+//! along its path.
 //!
 //! # Model
-//! Refraction lifts a disc by less than 0.6 degrees, and what is seen of it goes through the air where it is seen.
-//! Within the stretch the logarithm of the depth is a polynomial of the third degree in the root of the share of the
-//! stretch, through four depths of the reference (`reference::ray`).
+//! Refraction lifts a disc by less than 0.6 degrees. The light of each point of the disc passes through the air in the
+//! direction in which the point is seen. Within the interval the logarithm of the depth is a cubic polynomial in the
+//! square root of the relative position. It passes through four depths of the reference (`reference::ray`).
 //!
 //! # Error
-//! Of the transmittance, anywhere on a disc of the size of the sun: below 0.5 %; of one of 11 degrees: below 6 %
+//! The transmittance is within 0.5 % anywhere on a disc of the sun's size, and within 6 % on a disc of 11 degrees
 //! (test).
 
 use super::{
@@ -15,19 +16,19 @@ use super::{
     uniforms::{AirUniform, LampUniform},
 };
 
-/// Most that refraction lifts a disc, rad.
+/// Largest lift by refraction, rad.
 const LIFT: f64 = 0.0105;
-/// Sine of elevation from which on the lift is less than the stretch's room beside the disc.
+/// Sine of elevation above which the lift is less than the interval's margin.
 const NOT_LIFTED: f64 = 0.2;
-/// How far a stretch reaches beyond a disc on both sides, rad, and how far the lamp may go and its size change before
-/// it is laid anew.
+/// Margin of the interval beyond a disc on both sides, rad; and the largest change of the lamp's sine of elevation and
+/// radius together before the interval is computed again.
 const ROOM: (f64, f64) = (2e-3, 1e-3);
-/// Change of altitude after which it is laid anew, of itself and m.
+/// Change of altitude after which the interval is computed again: relative, and in m.
 const CLIMB: (f64, f64) = (1e-3, 1.0);
-/// Least depth, of which the logarithm is taken.
+/// Smallest depth, which keeps the logarithm finite.
 const LEAST: f64 = 1e-9;
 
-/// The optical depth before a lamp's disc.
+/// Optical depth in front of a lamp's disc.
 #[derive(Clone, Copy)]
 pub(super) struct DiscDepth {
     air: AirUniform,
@@ -41,7 +42,7 @@ pub(super) struct DiscDepth {
 }
 
 impl DiscDepth {
-    /// Computes the depth before the disc of a lamp at a sine of elevation with an angular radius, rad.
+    /// Computes the depth in front of a lamp's disc with a sine of elevation and an angular radius, rad.
     pub fn new(air: &AirUniform, altitude_m: f64, sine: f64, radius: f64) -> Self {
         let medium = air.medium();
         let lift = if sine < NOT_LIFTED { LIFT } else { 0.0 };
@@ -54,14 +55,14 @@ impl DiscDepth {
             medium.optical_depth(&columns).map(|depth| depth.max(LEAST).ln())
         };
         let at: [[f64; 3]; 4] = std::array::from_fn(log);
-        // The polynomial through four places apart by thirds.
+        // Cubic polynomial through values at 0, 1/3, 2/3 and 1.
         const FIT: [[f64; 4]; 4] =
             [[1.0, 0.0, 0.0, 0.0], [-5.5, 9.0, -4.5, 1.0], [9.0, -22.5, 18.0, -4.5], [-4.5, 13.5, -13.5, 4.5]];
         let terms = FIT.map(|row| std::array::from_fn(|c| (0..4).map(|i| row[i] * at[i][c]).sum()));
         Self { air: *air, altitude_m, sine, radius, from, scale: 1.0 / span, terms }
     }
 
-    /// Whether it still serves.
+    /// Whether the stored depth is still accurate enough for these inputs.
     pub fn serves(&self, air: &AirUniform, altitude_m: f64, sine: f64, radius: f64) -> bool {
         self.air == *air
             && (self.sine - sine).abs() + (self.radius - radius).abs() <= ROOM.1
@@ -79,7 +80,7 @@ mod tests {
     use super::*;
     use crate::{planet::Planet, sky::reference::medium::Medium};
 
-    /// The distance of sun and moon changes with every moment, and with it their size.
+    /// The distances of sun and moon change continuously, and with them the sizes of their discs.
     #[test]
     fn a_disc_serves_while_it_hardly_changes() {
         let air = AirUniform::of(&Planet::earth());
@@ -100,7 +101,7 @@ mod tests {
                 for sine in [-0.01, -0.002, 0.0, 0.004, 0.01, 0.03, 0.1, 0.19, 0.21, 0.5, 0.9, 0.999] {
                     let depth = DiscDepth::new(&air, altitude_m, sine, radius);
                     for k in -10..=10 {
-                        // Lifted by refraction near the horizon.
+                        // Refraction lifts it near the horizon.
                         let lift = if sine < 0.03 { 0.009 } else { 0.0 };
                         let seen: f64 = sine + lift + radius * f64::from(k) / 10.0;
                         if !(0.0..=1.0).contains(&seen) {

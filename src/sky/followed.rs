@@ -1,4 +1,4 @@
-//! Tables of the sky that are led after the weather's air by parts, at most once a frame however many views there are.
+//! Tables of the sky that follow changes of the weather's air by parts, at most once a frame for all views.
 
 use std::{
     ops::{Deref, DerefMut},
@@ -13,7 +13,7 @@ use crate::{error::Result, gpu::Device};
 pub(crate) struct FollowedSky {
     tables: SkyTables,
     cache: Option<PathBuf>,
-    /// The first planet, until its tables are in the cache.
+    /// First planet, until its tables are in the cache.
     first: Option<Planet>,
     frame_id: Option<u64>,
     light: Option<(u64, Arc<LightTable>)>,
@@ -36,15 +36,15 @@ impl FollowedSky {
         })
     }
 
-    /// Where finished tables are kept, if anywhere.
+    /// Directory of the cache for finished tables, if there is one.
     pub fn cache_dir(&self) -> Option<PathBuf> {
         self.cache.clone()
     }
 
-    /// Takes other settings up: nothing is shown until the next call, as at the beginning.
+    /// Changes the settings. Nothing is shown until the next call, as for new tables.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the setting; GPU faults. Everything stays as it was then.
+    /// [`crate::Status::InvalidArgument`] naming the setting; GPU faults. Nothing changes then.
     pub fn set_settings(&mut self, device: &Arc<Device>, library: &SkyLibrary, settings: &SkySettings) -> Result<()> {
         if self.tables.settings() != settings {
             *self = Self::new(device, library, settings, self.cache.clone())?;
@@ -52,7 +52,7 @@ impl FollowedSky {
         Ok(())
     }
 
-    /// Forgets the tables of another body. With a cache, the first planet comes from it.
+    /// Forgets the tables of another body. With a cache, the tables of the first planet are loaded from it.
     fn begin(&mut self, planet: &Planet) -> Result<()> {
         if self.tables.planet().is_some_and(|shown| !is_same_body(shown, planet)) {
             self.tables.forget();
@@ -65,8 +65,8 @@ impl FollowedSky {
         Ok(())
     }
 
-    /// With a cache, the tables of the first planet go into it once they are built. Later ones do not, since a changing
-    /// weather makes one after the other.
+    /// Writes the tables of the first planet to the cache, if there is one, once they are built. Later tables are not
+    /// kept, because a changing weather makes many.
     fn keep_first(&mut self) {
         if let (Some(set), Some(first), Some(cache)) = (self.tables.shown_whole(), self.first, &self.cache)
             && set.planet == first
@@ -76,9 +76,9 @@ impl FollowedSky {
         }
     }
 
-    /// Builds the tables of `planet` on by a `share` of the work of a build with the default settings. The first frame
-    /// has a draft; a share of 1 builds them whole, for pictures that may not depend on earlier ones. Answers whether
-    /// anything was built.
+    /// Continues building the tables of `planet`. `share` is the work to do, as a share of a build with the default
+    /// settings. The first frame gets a draft. A share of 1 builds the tables whole, for pictures that may not depend
+    /// on earlier ones. Returns whether anything was built.
     pub fn build_toward(
         &mut self,
         device: &Device,
@@ -99,7 +99,8 @@ impl FollowedSky {
         Ok(progress.work > 0.0)
     }
 
-    /// The light of the tables as they are shown, read back once a revision; built for `planet` if nothing is yet.
+    /// Light of the tables that are shown, read back from the GPU once a revision. If there are no tables yet, those of
+    /// `planet` are built.
     pub fn light_table(&mut self, device: &Device, planet: &Planet) -> Result<Arc<LightTable>> {
         self.begin(planet)?;
         if self.tables.planet().is_none() {
@@ -120,7 +121,8 @@ impl FollowedSky {
     }
 }
 
-/// Whether two planets differ in their air and in the albedo of their ground at most, as one under two weathers does.
+/// Whether two planets are the same body, perhaps under different weathers: they may differ in air and ground albedo
+/// only.
 fn is_same_body(a: &Planet, b: &Planet) -> bool {
     let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm);
     body(a) == body(b)

@@ -1,9 +1,9 @@
-//! Resources that all tables of one device and one setting share: pipelines, builds under way, and the finished tables
-//! of every planet that someone still shows.
+//! Resources that all tables of one device with the same settings share: pipelines, builds in progress, and the
+//! finished tables of every planet that is still shown.
 //!
-//! A planet is built once, whoever asks: a second one who wants it joins the build or takes what is finished. Every
-//! part of a build is a submission of its own under the kit's lock, so that parts lie on the queue in their order
-//! whichever frames they belong to. Nothing here keeps tables alive: they go with the last who shows them.
+//! A planet is built once for all who request it: a later request joins the build or takes the finished tables. Each
+//! part of a build is submitted separately under the kit's lock, so that parts reach the queue in order, whichever
+//! frames they belong to. The kit does not keep tables alive; they are freed when nobody shows them any more.
 
 mod empty_set;
 mod first;
@@ -23,14 +23,14 @@ use super::settings::{SkyModel, SkySettings};
 use crate::error::{Error, Result, Status};
 use crate::gpu::{Device, readback};
 
-/// The kits of a device: one a setting that is in use. Any thread.
+/// Kits of a device, one for each setting in use. Any thread.
 #[derive(Default)]
 pub struct SkyLibrary {
     kits: Mutex<Vec<Weak<Kit>>>,
 }
 
 impl SkyLibrary {
-    /// The kit of these settings, made if nobody has it.
+    /// Kit of these settings; it is created if none exists.
     pub(crate) fn kit(&self, device: &Arc<Device>, settings: &SkySettings) -> Result<Arc<Kit>> {
         settings.check()?;
         let mut kits = self.kits.lock().unwrap_or_else(PoisonError::into_inner);
@@ -44,30 +44,30 @@ impl SkyLibrary {
     }
 }
 
-/// Share of a whole build in one submission: none may keep a GPU from the host's own work for long.
+/// Largest share of a whole build in one submission, so that none keeps the GPU from the host's own work for long.
 const SUBMISSION_SHARE: f64 = 1.0 / 8.0;
 
-/// Builds of less than so much work, in cells of a march, need no draft: 0.2 s on the software driver.
+/// Work, in cells of a march, below which a build needs no draft: 0.2 s on the software driver.
 const DRAFT_FROM: f64 = 4e6;
-/// A build may be so much faster and slower, in shares of its work, than one of the default settings: what a frame pays
-/// is the same but for very large tables.
+/// Limits of [`Kit::pace`], the factor on the share of a build's work that one frame does. Within them a frame costs
+/// the same with all settings; beyond them very large tables cost more.
 const PACE: (f64, f64) = (0.5, 5.0);
 
-/// Tables that only a build under way needs.
+/// Tables that are needed only during a build.
 struct Scratch(Vec<(Name, SkyTable)>);
 
-/// A claim on a build: it goes on as long as someone holds one.
+/// Claim on a build, which goes on as long as someone holds one.
 pub(crate) struct Ticket {
     set: Arc<TableSet>,
 }
 
 impl Ticket {
-    /// The planet that is built.
+    /// Planet that is being built.
     pub fn planet(&self) -> &Planet {
         &self.set.planet
     }
 
-    /// How finely.
+    /// Detail of the build.
     pub fn detail(&self) -> Detail {
         self.set.detail
     }
@@ -83,11 +83,12 @@ struct Build {
     ticket: Weak<Ticket>,
     set: Arc<TableSet>,
     scratch: Scratch,
-    /// For each triple of wavelengths: what its passes share, and how its light is added to the others'.
+    /// For each triple of wavelengths: the bind group that its passes share, and the one that adds its light to the
+    /// others'.
     triples: Vec<(wgpu::BindGroup, Option<wgpu::BindGroup>)>,
-    /// Tables that each pass reads.
+    /// Bind group of the tables that each pass reads.
     reads: Vec<wgpu::BindGroup>,
-    /// Strips done, of all triples.
+    /// Number of strips done, over all triples.
     next: usize,
 }
 
@@ -99,36 +100,36 @@ struct BuildQueue {
     count: u64,
 }
 
-/// The table that passes draw and read under a name: that of one triple where there are several.
+/// Table that passes draw and read under a name. With several triples it is that of one triple.
 fn table_named<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Option<&'a SkyTable> {
     scratch.0.iter().chain(set.tables()).find(|(n, _)| *n == name).map(|(_, t)| t)
 }
 
-/// Result of one step of a build: its work as a share of a whole build, and the share of this one that is done.
+/// Result of one step of a build: its work as a share of a whole build, and the share of this build that is done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BuildStep {
     pub work: f64,
     pub done: f64,
 }
 
-/// Pipelines and builds of one setting on one device. Any thread; its lock is the last that is taken.
+/// Pipelines and builds for one setting on one device. Any thread; its lock must be the last that a thread takes.
 pub(crate) struct Kit {
     pub device: Arc<Device>,
     pub settings: SkySettings,
     pub builder: Builder,
     pub fades: FadePasses,
     pub observer_layouts: ObserverLayouts,
-    /// Stands for tables that a model does not have.
+    /// Placeholder for tables that a model does not have.
     pub nothing: SkyTable,
     observers: OnceLock<ObserverPasses>,
-    /// Work of a whole build with the default settings over that of one here.
+    /// Work of a whole build with the default settings relative to one with these settings.
     pub pace: f64,
     whole: Level,
-    /// Where it saves anything.
+    /// Draft level, where it saves work.
     draft: Option<Level>,
-    /// Where there are several triples.
+    /// Pass that adds up triples, where there are several.
     parts: Option<PartPass>,
-    /// Whether the first texel was drawn.
+    /// Whether the first texel has been drawn.
     begun: AtomicBool,
     work: Mutex<BuildQueue>,
 }
@@ -137,7 +138,7 @@ impl Kit {
     fn new(device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
         let whole = Level::new(device, settings, None);
         let draft = settings.draft();
-        // Where pixels march through the tables, they read them at the settings' sizes.
+        // A model that marches in the pixels reads the tables at the sizes of the settings, so it has no draft.
         let drafts = whole.total_cost >= DRAFT_FROM && settings.model != SkyModel::BruteForce;
         let strip_cost = STRIP_SHARE * whole.total_cost / f64::from(settings.layers());
         let parts = if settings.layers() > 1 { Some(PartPass::new(device)?) } else { None };
@@ -162,7 +163,7 @@ impl Kit {
         Ok(kit)
     }
 
-    /// How tables of this detail are built.
+    /// Passes and sizes with which tables of this detail are built.
     pub fn level(&self, detail: Detail) -> &Level {
         match detail {
             Detail::Draft => self.draft.as_ref().unwrap_or(&self.whole),
@@ -179,7 +180,7 @@ impl Kit {
         self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Pipelines of the observers' tables, made for the first of them.
+    /// Pipelines of the observers' tables, created for the first observer.
     pub fn observer_passes(&self) -> Result<&ObserverPasses> {
         if let Some(known) = self.observers.get() {
             return Ok(known);
@@ -188,13 +189,13 @@ impl Kit {
         Ok(self.observers.get_or_init(|| made))
     }
 
-    /// Planets built so far, from the cache's files not counted.
+    /// Number of planets built so far, not counting those loaded from the cache.
     pub fn builds(&self) -> u64 {
         self.lock().count
     }
 
-    /// Finished tables of a checked planet, or a claim on its build, which may be another's. Whole tables that are
-    /// finished stand for a draft.
+    /// Returns the finished tables of a checked planet, or a claim on its build, which may be under way already.
+    /// Finished whole tables also serve a request for a draft.
     ///
     /// # Errors
     /// GPU faults.
@@ -220,7 +221,7 @@ impl Kit {
         Ok(Claim::Building(ticket))
     }
 
-    /// Takes back the scratch of builds that nobody wants any more.
+    /// Takes back the scratch tables of builds that nobody claims any more.
     fn sweep(&self, work: &mut BuildQueue) {
         while let Some(i) = work.builds.iter().position(|b| b.ticket.strong_count() == 0) {
             let build = work.builds.swap_remove(i);
@@ -247,12 +248,13 @@ impl Kit {
         Build { ticket, set, scratch, triples, reads, next: 0 }
     }
 
-    /// Submits strips up to `share` of a whole build; the tables when the last one is submitted.
+    /// Submits strips with up to `share` of the work of a whole build. Returns the tables once the last strip is
+    /// submitted.
     pub fn advance(&self, ticket: &Arc<Ticket>, share: f64) -> Result<(BuildStep, Option<Arc<TableSet>>)> {
         let mut guard = self.lock();
         let work = &mut *guard;
         let Some(i) = work.builds.iter().position(|b| Arc::ptr_eq(&b.set, &ticket.set)) else {
-            // Another who wanted it has finished it.
+            // Someone else who wanted these tables has finished them.
             return Ok((BuildStep { work: 0.0, done: 1.0 }, Some(ticket.set.clone())));
         };
         self.begin(&work.builds[i])?;
@@ -290,7 +292,8 @@ impl Kit {
         build.map_or(1.0, |b| level.cost_of(b.next) / level.total_cost)
     }
 
-    /// Submits strips worth at most `budget`, or the next one if `at_least_one` is asked; answers their cost.
+    /// Submits strips with a cost of at most `budget`, or with `at_least_one` the next strip whatever its cost. Returns
+    /// their cost.
     fn submit_some(&self, build: &mut Build, budget: f64, at_least_one: bool) -> Result<f64> {
         let level = self.level(build.set.detail);
         let (mut cost, mut end) = (0.0, build.next);
@@ -312,7 +315,7 @@ impl Kit {
         Ok(cost)
     }
 
-    /// Records strips up to `end`, those of one pass in one render pass; a triple that is done joins the others.
+    /// Records the strips up to `end`, those of one pass in one render pass. A finished triple is added to the others.
     fn record(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, end: usize) {
         let level = self.level(build.set.detail);
         let count = level.strips.len();
@@ -328,7 +331,7 @@ impl Kit {
         }
     }
 
-    /// Records strips, or so much of them at their first corner.
+    /// Records strips; with `part` only a corner of that size.
     fn record_strips(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -366,7 +369,8 @@ impl Kit {
         }
     }
 
-    /// Puts a triple's sources below those before it, and adds its light to theirs. With one triple they are in place.
+    /// Copies a triple's sources below those of the triples before it, and adds its light to theirs. With a single
+    /// triple both are already in place.
     fn record_part(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, triple: usize) {
         let (Some(parts), Some(light)) = (&self.parts, &build.triples[triple].1) else { return };
         let Some(from) = table_named(&build.set, &build.scratch, Name::Sources) else { return };
@@ -376,9 +380,10 @@ impl Kit {
         parts.add(encoder, build.set.result(Name::Lights), light, triple == 0);
     }
 
-    /// Tables of a checked planet: those that someone shows, those of the cache's file, or new ones, built in sixteen
-    /// parts with a wait for the GPU after each; the cache is written afterwards. The host's context is entered for
-    /// each part and left while `progress` is told the share done; when that answers false the build ends.
+    /// Returns the tables of a checked planet: those that someone shows, those from the cache's file, or new ones. New
+    /// ones are built in sixteen parts, with a wait for the GPU after each, and then written to the cache. The host's
+    /// context is entered for each part and left during each call of `progress`, which gets the share done. The build
+    /// ends if `progress` returns false.
     pub fn build(
         &self,
         planet: &Planet,
@@ -412,7 +417,7 @@ impl Kit {
                     return Ok(set);
                 }
                 (Err(e), set) => {
-                    // What is given up goes in the host's context.
+                    // The abandoned tables are freed in the host's context.
                     let _entered = self.device.enter()?;
                     drop((set, ticket));
                     return Err(e);
@@ -421,12 +426,12 @@ impl Kit {
         }
     }
 
-    /// Whether this device's tables are worth a file: the `noop` backend computes nothing.
+    /// Whether this device's tables are worth a file; the `noop` backend computes nothing.
     fn is_real(&self) -> bool {
         self.device.caps().backend != wgpu::Backend::Noop
     }
 
-    /// As [`Kit::claim`], with a look into the cache where nobody has finished the planet.
+    /// Claims tables as [`Kit::claim`] does, but looks into the cache first if they are not finished.
     ///
     /// # Errors
     /// As [`Kit::claim`].
@@ -439,7 +444,7 @@ impl Kit {
         })
     }
 
-    /// Whole tables that are finished, or lie in the cache's file.
+    /// Whole tables that are finished or in the cache's file.
     ///
     /// # Errors
     /// GPU faults.
@@ -451,7 +456,7 @@ impl Kit {
         }
     }
 
-    /// Tables from the cache's file; what is wrong with it is logged.
+    /// Tables from the cache's file; an error in the file is logged.
     fn load(&self, planet: &Planet, directory: &Path) -> Result<Option<Arc<TableSet>>> {
         if !self.is_real() {
             return Ok(None);
@@ -472,7 +477,7 @@ impl Kit {
         }
     }
 
-    /// Writes finished tables to the cache; what goes wrong is logged. Waits for the GPU.
+    /// Writes finished tables to the cache; an error is logged. Waits for the GPU.
     pub fn keep(&self, set: &TableSet, directory: &Path) {
         if !self.is_real() {
             return;

@@ -1,11 +1,11 @@
-//! How the tables of one detail are built: passes, cut into strips of even work.
+//! Build plan for tables of one detail: passes, cut into strips of about equal work.
 
 use super::passes::BuildBuffers;
 use super::recipe::{Pass, passes};
 use super::settings::SkySettings;
 use crate::gpu::Device;
 
-/// A part of a pass: rows of its target.
+/// Part of a pass: some rows of its target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strip {
     pub pass: usize,
@@ -14,18 +14,18 @@ pub(crate) struct Strip {
     pub cost: f64,
 }
 
-/// A pass is cut into strips of at most this share of a whole build.
+/// Largest share of a whole build in one strip.
 pub(crate) const STRIP_SHARE: f64 = 1.0 / 1024.0;
-/// How fine tables over a planet are.
+/// Detail of a planet's tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Detail {
-    /// As [`SkySettings::draft`] has them: soon built, shown until the whole ones are.
+    /// Coarse tables by [`SkySettings::draft`]: built quickly, and shown until the whole ones are finished.
     Draft,
-    /// As the settings say.
+    /// Tables with the sizes of the settings.
     Whole,
 }
 
-/// How the tables of one detail are built.
+/// Build plan for tables of one detail.
 pub(crate) struct Level {
     pub settings: SkySettings,
     pub blocks: BuildBuffers,
@@ -37,7 +37,7 @@ pub(crate) struct Level {
 }
 
 impl Level {
-    /// With strips of at most `strip_cost`, or of a share of the whole.
+    /// Creates the plan with strips that cost at most `strip_cost`, or at most [`STRIP_SHARE`] of the whole.
     pub fn new(device: &Device, settings: &SkySettings, strip_cost: Option<f64>) -> Self {
         let passes = passes(settings);
         let (strips, cost) = strips(settings, &passes, strip_cost);
@@ -50,12 +50,12 @@ impl Level {
         }
     }
 
-    /// Strips of all triples.
+    /// Number of strips of all triples.
     pub fn strip_count(&self) -> usize {
         self.strips.len() * self.settings.layers() as usize
     }
 
-    /// Cost of the first `count` of them.
+    /// Cost of the first `count` strips.
     pub fn cost_of(&self, count: usize) -> f64 {
         let (whole, rest) = (count / self.strips.len(), count % self.strips.len());
         let triple = self.total_cost / f64::from(self.settings.layers());
@@ -63,7 +63,8 @@ impl Level {
     }
 }
 
-/// Cuts the passes into strips of at most `most`, or of [`STRIP_SHARE`] of all; also the cost of all.
+/// Cuts the passes into strips that cost at most `most`, or at most [`STRIP_SHARE`] of the total. Also returns the
+/// total cost.
 pub(crate) fn strips(settings: &SkySettings, passes: &[Pass], most: Option<f64>) -> (Vec<Strip>, f64) {
     let row_cost = |p: &Pass| f64::from(p.draws[0].size(settings).0) * p.texel_time(settings);
     let total: f64 = passes.iter().map(|p| row_cost(p) * f64::from(p.draws[0].size(settings).1)).sum();

@@ -1,7 +1,7 @@
-//! Light of the sky for hosts: irradiance and nine spherical harmonics at any altitude and sun angle, on the CPU.
+//! Light of the sky for hosts, on the CPU: irradiance and nine spherical harmonics at any altitude and sun angle.
 //!
-//! Built with the tables on the GPU from the radiances of every order, read back once a build, then looked up without
-//! the GPU. Everything is per unit irradiance of the lamp.
+//! The GPU builds the table together with the others from the radiances of every order. It is read back once a build;
+//! look-ups then need no GPU. Everything is per unit irradiance of the lamp.
 
 use half::f16;
 
@@ -11,25 +11,25 @@ use crate::gpu::{Device, readback};
 use crate::{Result, sky::passes::SkyTable};
 
 /// Nine coefficients of the sky's radiance in real spherical harmonics, per wavelength, in the order 00; 1y, 1z, 1x;
-/// 2xy, 2yz, 2zz, 2xz, 2xx-yy (as Ramamoorthi and Hanrahan 2001). The planet's lit ground is the lower half.
+/// 2xy, 2yz, 2zz, 2xz, 2xx-yy (Ramamoorthi and Hanrahan 2001). The lower hemisphere is the planet's lit ground.
 pub type Sh9 = [[f32; 3]; 9];
 
-/// Light of one planet's sky over altitudes and sun angles.
+/// Light of one planet's sky as a function of altitude and sun angle.
 #[derive(Clone, Debug)]
 pub struct LightTable {
     air: AirUniform,
     suns: usize,
     altitudes: usize,
-    /// [altitude][tile][sun angle].
+    /// Values in the order [altitude][tile][sun angle].
     values: Vec<[f32; 3]>,
 }
 
-/// `SUN_SPREAD` and `SUN_BELOW` of `sky/maps.wgsl`.
+/// Constants `SUN_SPREAD` and `SUN_BELOW` of `sky/maps.wgsl`.
 const SUN_SPREAD: f32 = 0.3;
 const SUN_BELOW: f32 = 0.22;
 
 impl LightTable {
-    /// No light.
+    /// Creates a table without light.
     pub(crate) fn dark(settings: &SkySettings, air: AirUniform) -> Self {
         let (suns, altitudes) = (settings.suns as usize, settings.altitudes as usize);
         Self { air, suns, altitudes, values: vec![[0.0; 3]; suns * LIGHT_TILES as usize * altitudes] }
@@ -44,7 +44,7 @@ impl LightTable {
         Ok(Self { air, suns: width / LIGHT_TILES as usize, altitudes: height, values })
     }
 
-    /// Returns the same light in a table of other sizes.
+    /// Returns the table resampled to other sizes.
     pub(crate) fn resized(self, suns: usize, altitudes: usize) -> Self {
         if (self.suns, self.altitudes) == (suns, altitudes) {
             return self;
@@ -63,21 +63,21 @@ impl LightTable {
         Self { suns, altitudes, values, ..self }
     }
 
-    /// Between this and another of the same sizes.
+    /// Interpolates between this table and another of the same sizes.
     pub(crate) fn mix(&self, other: &Self, t: f32) -> Self {
         let between = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|c| a[c] + (b[c] - a[c]) * t);
         let values = self.values.iter().zip(&other.values).map(between).collect();
         Self { air: self.air.mix(&other.air, t), values, ..*self }
     }
 
-    /// Irradiance of the sky on a level surface facing up, per unit irradiance of the lamp. `mu_s`: cosine of the
+    /// Irradiance of the sky on a level surface facing up, per unit irradiance of the lamp. `mu_s` is the cosine of the
     /// lamp's geometric zenith angle. Thread-safe.
     pub fn irradiance(&self, altitude_m: f64, mu_s: f64) -> [f32; 3] {
         self.tile(0, altitude_m, mu_s).map(|v| v.max(0.0))
     }
 
-    /// The sky's radiance in spherical harmonics in the frame in which `direction` (unit, z up) points at the lamp, per
-    /// unit irradiance of the lamp. Thread-safe.
+    /// Radiance of the sky in spherical harmonics, per unit irradiance of the lamp, in the frame in which `direction`
+    /// (unit, z up) points at the lamp. Thread-safe.
     pub fn sh9(&self, altitude_m: f64, direction: [f64; 3]) -> Sh9 {
         let m: [[f32; 3]; 6] = std::array::from_fn(|i| self.tile(i + 1, altitude_m, direction[2]));
         let level = direction[0].hypot(direction[1]);
@@ -89,7 +89,7 @@ impl LightTable {
         [l0, times(x, s), z, times(x, c), times(xx, s2), times(xz, s), zz, times(xz, c), times(xx, c2)]
     }
 
-    /// Bilinear, as the GPU does it.
+    /// Bilinear interpolation, as on the GPU.
     fn tile(&self, tile: usize, altitude_m: f64, mu_s: f64) -> [f32; 3] {
         let x = self.sun_coordinate(mu_s as f32) * (self.suns - 1) as f32;
         let share = (altitude_m as f32 / self.air.thickness_m).clamp(0.0, 1.0);
@@ -98,14 +98,15 @@ impl LightTable {
         self.between(tile, (i, x - i as f32), (j, y - j as f32))
     }
 
-    /// Between four values of a tile, each way from the first by a share of the step.
+    /// Interpolates between four values of a tile; each axis has the index of the lower value and the share of the
+    /// upper one.
     fn between(&self, tile: usize, (i, fx): (usize, f32), (j, fy): (usize, f32)) -> [f32; 3] {
         let at = |i: usize, j: usize| self.values[(j * LIGHT_TILES as usize + tile) * self.suns + i];
         let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1));
         std::array::from_fn(|k| (a[k] * (1.0 - fx) + b[k] * fx) * (1.0 - fy) + (c[k] * (1.0 - fx) + d[k] * fx) * fy)
     }
 
-    /// `sun_coordinate` of `sky/maps.wgsl`.
+    /// Coordinate of a sun angle in the table: `sun_coordinate` of `sky/maps.wgsl`.
     fn sun_coordinate(&self, mu_s: f32) -> f32 {
         let dip = self.air.top_dip;
         let center = -0.5 * dip;

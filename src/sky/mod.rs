@@ -2,13 +2,13 @@
 //!
 //! # What is drawn
 //! [`SkyTables`] hold what depends on the planet alone: light scattered more than once, by altitude, sun angle and
-//! direction, and the light on level ground. They are built by fragment passes into fp16 textures (every tier), at once
-//! or by parts. [`SkyVolume`] holds what depends on an observer's altitude and the lamps' zenith angles: the sky by
-//! direction, and the air in front of things. Turning the camera touches neither. Shaders look both up through
+//! direction, and the light on level ground. Fragment passes build them into fp16 textures (on every tier), at once or
+//! by parts. [`SkyVolume`] holds what depends on an observer's altitude and the lamps' zenith angles: the sky by
+//! direction, and the air in front of things. Turning the camera changes neither. Shaders read both through
 //! `shaders/sky/lookup.wgsl` (functions `sky_radiance`, `aerial`, `sky_transmittance`, `ground_radiance`, ..) and
 //! `shaders/sky/disc.wgsl` (`disc_radiance`) with [`SkyVolume::bind_group`] as group 1.
 //!
-//! Those who show the same planet with the same settings through one [`SkyLibrary`] (all contexts of a device do) share
+//! All users of one [`SkyLibrary`] (all contexts of a device) that show the same planet with the same settings share
 //! its tables and the work of building them.
 //!
 //! ```text
@@ -20,12 +20,12 @@
 //!
 //! # Units
 //! Tables are per unit irradiance of a lamp; look-ups multiply by [`Lamp::irradiance`]. The observer's frame is level:
-//! z up, x and y any two level axes, the same for directions and lamps.
+//! z up, x and y any two level axes. Directions and lamps use the same frame.
 //!
 //! # Errors of the default
-//! Against [`mod@reference`] solved finely, at altitudes from 1 m to 200 km, with the sun down to 95 degrees from the
-//! zenith, in all directions and at distances from 700 m. `cargo test --test sky_gpu default_model` prints these
-//! figures and fails where they are exceeded:
+//! The default settings are compared with [`mod@reference`] at a fine resolution: altitudes from 1 m to 200 km, the sun
+//! down to 95 degrees from the zenith, all directions, and distances from 700 m.
+//! `cargo test --test sky_gpu default_model` prints these figures and fails where they are exceeded:
 //!
 //! | air | median | 95th percentile | worst | worst transmittance above 1 % |
 //! |---|---|---|---|---|
@@ -33,24 +33,25 @@
 //! | with ozone | 0.35 % | 1.8 % | 40 % | 0.05 % |
 //! | haze of 49 km visibility | 0.35 % | 2.4 % | 80 % | 0.07 % |
 //!
-//! The worst place is the night side of the limb, seen from 200 km away from a sun 5 degrees below the horizon: 3e-8 of
-//! the sun's irradiance. `docs/lab` charts cost and error of every model.
+//! The largest error is on the night side of the limb, seen from an altitude of 200 km in the direction away from the
+//! sun, which is 5 degrees below the horizon. The light there is 3e-8 of the sun's irradiance. `docs/lab` charts cost
+//! and error of every model.
 //!
 //! # Wavelengths
-//! Three by default, converted by [`spectral::Conversion`]. A set of [`SkySettings::wavelengths`] is summed while the
-//! tables are built to the three transfers that look the same ([`spectral`]), so that look-ups and pixels do not know
-//! of it. The tables cost in proportion. Error of the worst channel over the luminance, rms over the sky with the sun
-//! at 30, 60, 85 and 90 degrees from the zenith, Earth's air with ozone, against 15 wavelengths of the reference: 6 %
-//! with 3 wavelengths, 2.4 % with 9 (`cargo test --test sky_gpu spectral_set`; the long suite holds 15 wavelengths to 1
-//! % against 40). Transmittance, and with it the disc and the ground's direct light, stays that of the three
-//! wavelengths.
+//! The default is three wavelengths, converted by [`spectral::Conversion`]. With more ([`SkySettings::wavelengths`])
+//! the build sums them into the three transfers that look the same ([`spectral`]), so that look-ups and pixels do not
+//! change. The cost of the tables is proportional to the number of wavelengths. The error of the worst channel relative
+//! to the luminance is 6 % with 3 wavelengths and 2.4 % with 9, against 15 wavelengths of the reference. It is the rms
+//! over the sky in Earth's air with ozone, with the sun at 30, 60, 85 and 90 degrees from the zenith
+//! (`cargo test --test sky_gpu spectral_set`; the long suite holds 15 wavelengths to 1 % against 40). Transmittance,
+//! and with it the disc and the direct light on the ground, always uses the three wavelengths.
 //!
 //! # Models
-//! [`SkyModel`] names them with their errors. Transmittance is a closed form (`columns_along` in
+//! [`SkyModel`] lists the models with their errors. Transmittance is a closed form (`columns_along` in
 //! `shaders/sky/ray.wgsl`), not a table.
 //!
 //! # What is not here
-//! No `held.rs`: the tables follow from planet, place and lights, so that there is no state to lead through time or to
+//! There is no `held.rs`: the tables follow from planet, place and lights, so that there is no state to advance or to
 //! save.
 
 mod cache;

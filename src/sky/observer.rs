@@ -1,4 +1,4 @@
-//! Who looks at the sky, and which lamps hang in it.
+//! Observer of the sky, and the lamps in it.
 
 use super::Planet;
 use super::uniforms::LampUniform;
@@ -7,34 +7,36 @@ use crate::error::{Error, Result, check_range};
 /// Appearance of a lamp's disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Disc {
-    /// A sun: dark towards the limb by wavelength (Hestroffer and Magnan 1998).
+    /// A sun with limb darkening by wavelength (Hestroffer and Magnan 1998).
     Sun,
-    /// A moon, lit from the unit direction given (towards the sun), in the observer's frame; its law is that of Lommel
-    /// and Seeliger.
+    /// A moon, lit from the given unit direction in the observer's frame, with the reflectance law of Lommel and
+    /// Seeliger.
     Moon {
         /// Unit direction towards the sun.
         lit_from: [f64; 3],
     },
 }
 
-/// A far light: the sun, or the moon.
+/// A distant light: the sun or the moon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lamp {
-    /// Unit direction towards it in the observer's level frame (z up; x and y any level axes), geometric, not
-    /// refracted.
+    /// Unit direction towards the lamp in the observer's level frame (z up; x and y any level axes), geometric, without
+    /// refraction.
     pub toward: [f64; 3],
-    /// Irradiance at the top of the air on a surface facing it, per wavelength of the planet; 0 switches it off.
+    /// Irradiance at the top of the air on a surface facing the lamp, per wavelength of the planet, W m^-2 nm^-1,
+    /// `[0, 1e6]`; 0 switches the lamp off.
     pub irradiance: [f64; 3],
-    /// Half the angle of its disc, rad, `[0, 0.2]`; 0 draws no disc.
+    /// Angular radius of the disc, rad, `[0, 0.2]`; 0 draws no disc.
     pub angular_radius: f64,
-    /// The look of its disc.
+    /// Appearance of the disc.
     pub disc: Disc,
-    /// Whether its light in the air is drawn; else only its disc is, for next to nothing. Default true.
+    /// Whether the lamp's light in the air is drawn. If not, only its disc is, which costs almost nothing. Default
+    /// true.
     pub lights_air: bool,
 }
 
 impl Lamp {
-    /// The planet's sun at a direction.
+    /// Creates the planet's sun in a direction.
     pub fn sun(planet: &Planet, direction: [f64; 3]) -> Self {
         Self {
             toward: direction,
@@ -45,12 +47,12 @@ impl Lamp {
         }
     }
 
-    /// Returns the planet's sun over the x axis at a zenith angle, rad.
+    /// Returns the planet's sun above the x axis at a zenith angle, rad.
     pub fn sun_at_zenith_angle(planet: &Planet, zenith_angle: f64) -> Self {
         Self::sun(planet, [zenith_angle.sin(), 0.0, zenith_angle.cos()])
     }
 
-    /// Whether it sends any light.
+    /// Whether the lamp sends any light.
     pub fn is_lit(&self) -> bool {
         self.irradiance.iter().any(|e| *e > 0.0)
     }
@@ -69,7 +71,7 @@ impl Lamp {
         check_range("lamp.angular_radius", self.angular_radius, 0.0, 0.2, "rad")
     }
 
-    /// As the look-ups read it.
+    /// Values of the lamp as the look-ups read them.
     pub(crate) fn uniform(&self, planet: &Planet, layer: u32) -> LampUniform {
         let f = |v: [f64; 3]| v.map(|x| x as f32);
         let level = self.toward[0].hypot(self.toward[1]);
@@ -101,13 +103,13 @@ impl Lamp {
     }
 }
 
-/// Exponent of the sun's limb darkening, I = mu^a: Hestroffer and Magnan 1998, their fit over 416 to 1099 nm.
+/// Exponent of the sun's limb darkening, I = mu^a: the fit of Hestroffer and Magnan 1998 over 416 to 1099 nm.
 fn limb_exponent(wavelength_nm: f64) -> f64 {
     -0.023 + 0.292 / (wavelength_nm * 1e-3).clamp(0.4, 1.1)
 }
 
-/// Mean of Lommel and Seeliger's law over the moon's disc as seen, so that the disc sends the irradiance that was
-/// given.
+/// Mean of Lommel and Seeliger's law over the visible disc of the moon. Division by it gives the disc the irradiance of
+/// the lamp.
 fn moon_mean(direction: &[f64; 3], lit_from: &[f64; 3]) -> f64 {
     let cos_apart = direction.iter().zip(lit_from).map(|(a, b)| a * b).sum::<f64>().clamp(-1.0, 1.0);
     let sin_apart = (1.0 - cos_apart * cos_apart).sqrt();
@@ -125,32 +127,32 @@ fn moon_mean(direction: &[f64; 3], lit_from: &[f64; 3]) -> f64 {
             }
         }
     }
-    // A new moon sends no light; what little is asked of it is spread over the disc.
+    // A new moon sends no light; the limit spreads what little is given over the whole disc.
     (sum / (std::f64::consts::FRAC_PI_4 * f64::from(n * n))).max(1e-4)
 }
 
-/// Where the sky is looked at from.
+/// Position from which the sky is seen, and its lamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observer {
-    /// Altitude over the planet's sphere, m, `[-1e4, 1e8]`; below 0 the sky is that of altitude 0.
+    /// Altitude above the planet's sphere, m, `[-1e4, 1e8]`; below 0 the sky is that of altitude 0.
     pub altitude_m: f64,
-    /// Up to two lamps; unlit ones cost nothing.
+    /// Up to two lamps; lamps without light cost nothing.
     pub lamps: [Option<Lamp>; 2],
-    /// Share of standard refraction with which discs are drawn, `[0, 1]`.
+    /// Strength of refraction for the discs, as a share of the standard one, `[0, 1]`.
     pub refraction: f64,
-    /// Follow every change of altitude and sun, however small. Else the tables are kept while altitude changes by less
-    /// than 0.2 % and a lamp by less than 2e-5 rad, which nobody sees.
+    /// Whether the tables follow every change of altitude and sun, however small. Otherwise they are kept while the
+    /// altitude changes by less than 0.2 % and a lamp by less than 2e-5 rad, which nobody sees.
     pub exact: bool,
 }
 
 impl Observer {
-    /// One sun over the x axis at `zenith_angle`, rad, seen from `altitude_m`.
+    /// Creates an observer at `altitude_m` with one sun above the x axis at `zenith_angle`, rad.
     pub fn under_sun(planet: &Planet, altitude_m: f64, zenith_angle: f64) -> Self {
         let lamps = [Some(Lamp::sun_at_zenith_angle(planet, zenith_angle)), None];
         Self { altitude_m, lamps, refraction: 1.0, exact: true }
     }
 
-    /// Checks ranges.
+    /// Checks that every field is within its range.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.

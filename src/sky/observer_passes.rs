@@ -1,4 +1,4 @@
-//! Passes that draw observers' tables: their layouts and pipelines.
+//! Layouts and pipelines of the passes that draw observers' tables.
 
 use super::passes::{TABLE_FORMAT, bind, layout, tex};
 use super::settings::{SkyModel, SkySettings};
@@ -13,7 +13,7 @@ pub(super) fn view_layout(device: &Device) -> wgpu::BindGroupLayout {
     layout(device, "sky view", &[Slot::Uniform(0), FilteredArray, Filtered, Sampler])
 }
 
-/// Layouts of what observers bind.
+/// Layouts of the bind groups that observers use.
 pub(crate) struct ObserverLayouts {
     planet: wgpu::BindGroupLayout,
     pub observer: wgpu::BindGroupLayout,
@@ -31,7 +31,8 @@ impl ObserverLayouts {
         }
     }
 
-    /// A planet's tables as observers read them: of light scattered more than once, and once by gas and by haze.
+    /// Bind group of a planet's tables for observers: light scattered more than once, and light scattered once by gas
+    /// and by haze.
     pub fn planet_group(
         &self,
         device: &Device,

@@ -1,5 +1,5 @@
-//! GPU resources of the tables over the planet: textures, layouts and pipelines. Everything is a full-screen fragment
-//! pass into rgba16float, so that one code path serves every tier.
+//! GPU resources of the tables over the planet: textures, layouts and pipelines. Every pass is a full-screen fragment
+//! pass into rgba16float, so that one code path serves all tiers.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::gpu::pass::{FullscreenDesc, fullscreen};
 /// Format of every table.
 pub(crate) const TABLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// A table: texture and its whole view.
+/// A table: its texture, and a view of all of it.
 pub(crate) struct SkyTable {
     pub texture: wgpu::Texture,
     pub view: wgpu::TextureView,
@@ -31,7 +31,7 @@ impl SkyTable {
     }
 }
 
-/// A texture that passes draw into and look-ups read; also copied, for the cache and for queries.
+/// Creates a texture that passes draw into, that look-ups read, and that is copied for the cache and for queries.
 pub(crate) fn table_texture(device: &Device, label: &str, size: (u32, u32), layers: u32) -> wgpu::Texture {
     device.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -48,7 +48,7 @@ pub(crate) fn table_texture(device: &Device, label: &str, size: (u32, u32), laye
     })
 }
 
-/// A uniform buffer with contents.
+/// Creates a uniform buffer with contents.
 pub(crate) fn uniform_buffer(device: &Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
     device.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some(label),
@@ -57,13 +57,13 @@ pub(crate) fn uniform_buffer(device: &Device, label: &str, contents: &[u8]) -> w
     })
 }
 
-/// A layout of `slots`, numbered from 0.
+/// Creates a layout of `slots`, numbered from 0.
 pub(crate) fn layout(device: &Device, label: &str, slots: &[Slot]) -> wgpu::BindGroupLayout {
     let numbered: Vec<_> = (0..).zip(slots.iter().copied()).collect();
     bind::layout(&device.device, label, wgpu::ShaderStages::FRAGMENT, &numbered)
 }
 
-/// A bind group of `resources`, numbered from 0.
+/// Creates a bind group of `resources`, numbered from 0.
 pub(crate) fn bind(
     device: &Device,
     layout: &wgpu::BindGroupLayout,
@@ -77,12 +77,12 @@ pub(crate) fn bind(
     device.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }
 
-/// A texture view as a binding.
+/// Resource that binds a texture view.
 pub(crate) fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(view)
 }
 
-/// The linear sampler of all tables.
+/// Creates the linear sampler of all tables.
 pub(crate) fn linear_sampler(device: &Device) -> wgpu::Sampler {
     device.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("sky tables"),
@@ -92,7 +92,7 @@ pub(crate) fn linear_sampler(device: &Device) -> wgpu::Sampler {
     })
 }
 
-/// Pipelines and what all builds of one setting share.
+/// Pipelines, layouts and sampler that all builds of one setting share.
 pub(crate) struct Builder {
     shared_layout: wgpu::BindGroupLayout,
     tables_layout: wgpu::BindGroupLayout,
@@ -100,7 +100,7 @@ pub(crate) struct Builder {
     pub sampler: wgpu::Sampler,
 }
 
-/// Buffers that the builds of one detail share: sizes, directions to sum over, and what each pass is to do.
+/// Buffers that all builds of one detail share: table sizes, directions to sum over, and the job of each pass.
 pub(crate) struct BuildBuffers {
     pub dims: wgpu::Buffer,
     rule: wgpu::Buffer,
@@ -125,7 +125,7 @@ impl BuildBuffers {
         }
     }
 
-    /// Offset of pass `index` among the jobs.
+    /// Offset of pass `index` in the buffer of jobs.
     pub fn job_offset(&self, index: usize) -> u32 {
         self.job_stride * index as u32
     }
@@ -147,12 +147,12 @@ impl Builder {
         Ok(Self { pipelines, sampler: linear_sampler(device), shared_layout, tables_layout })
     }
 
-    /// The pipeline of a kind that is among the passes given to `new`.
+    /// Pipeline of a kind that was among the passes given to `new`.
     pub fn pipeline(&self, kind: PassKind) -> Option<&wgpu::RenderPipeline> {
         self.pipelines.iter().find(|(k, _)| *k == kind).map(|(_, p)| p)
     }
 
-    /// Uniforms and sampler of a build, for an air.
+    /// Bind group of the uniforms and the sampler of a build, for one air.
     pub fn shared_group(&self, device: &Device, blocks: &BuildBuffers, air: &wgpu::Buffer) -> wgpu::BindGroup {
         let job = wgpu::BufferBinding { buffer: &blocks.jobs, offset: 0, size: wgpu::BufferSize::new(16) };
         let resources = [
@@ -165,13 +165,13 @@ impl Builder {
         bind(device, &self.shared_layout, &resources)
     }
 
-    /// The tables that a pass reads.
+    /// Bind group of the tables that a pass reads.
     pub fn tables_group(&self, device: &Device, reads: [&wgpu::TextureView; 6]) -> wgpu::BindGroup {
         bind(device, &self.tables_layout, &reads.map(tex))
     }
 }
 
-/// Draws over what is there by a share: out = share * new + (1 - share) * old.
+/// Blend state that mixes a share of the new colour into the target: out = share * new + (1 - share) * old.
 pub(crate) fn fade_blend() -> wgpu::BlendState {
     let over = wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::Constant,
@@ -181,14 +181,14 @@ pub(crate) fn fade_blend() -> wgpu::BlendState {
     wgpu::BlendState { color: over, alpha: over }
 }
 
-/// Shows tables out of two, faded.
+/// Passes that draw tables as a mix of two, for fades.
 pub(crate) struct FadePasses {
     layout: wgpu::BindGroupLayout,
-    /// Pipeline that fades the light, from tables of any size.
+    /// Pipeline that fades the light; the tables may have any size.
     light: wgpu::RenderPipeline,
     /// Pipeline that fades texel by texel.
     texels: wgpu::RenderPipeline,
-    /// Texels of the light.
+    /// Size of the light table, texels.
     light_size: (u32, u32),
 }
 
@@ -216,12 +216,12 @@ impl FadePasses {
         Ok(Self { layout, light, texels, light_size: Name::Lights.size(settings) })
     }
 
-    /// How a table is read.
+    /// Bind group that reads a table.
     pub fn group(&self, device: &Device, table: &wgpu::TextureView) -> wgpu::BindGroup {
         bind(device, &self.layout, &[tex(table)])
     }
 
-    /// Draws the light `first` into `target`, and a share of the other over it.
+    /// Draws the light of `first` into `target`, and over it the other's with its share.
     pub fn show_light(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -232,7 +232,7 @@ impl FadePasses {
         draw_over(encoder, &self.light, target, Some(self.light_size), [Some((first, 1.0)), other]);
     }
 
-    /// Draws into `target` what lies between two tables of its size.
+    /// Draws into `target` the mix of two tables of the same size as it.
     pub fn between(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -244,7 +244,7 @@ impl FadePasses {
     }
 }
 
-/// Draws shares of tables over a target, or over so much of it; the rest is cleared.
+/// Draws tables over a target, each with its share. `size` limits the draw to a corner; the rest is cleared.
 fn draw_over(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,
@@ -274,7 +274,7 @@ fn draw_over(
     }
 }
 
-/// Gathers what is built of several triples of wavelengths one after the other.
+/// Pass that adds up the results for several triples of wavelengths, which are built one after the other.
 pub(crate) struct PartPass {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
@@ -302,12 +302,12 @@ impl PartPass {
         Ok(Self { layout, pipeline })
     }
 
-    /// One triple's table and air.
+    /// Bind group of one triple's table and air.
     pub fn group(&self, device: &Device, table: &wgpu::TextureView, air: &wgpu::Buffer) -> wgpu::BindGroup {
         bind(device, &self.layout, &[tex(table), air.as_entire_binding()])
     }
 
-    /// Adds a triple to `target`; the first one clears it.
+    /// Adds a triple to `target`, which the first one clears.
     pub fn add(&self, encoder: &mut wgpu::CommandEncoder, target: &SkyTable, triple: &wgpu::BindGroup, first: bool) {
         let load = if first { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -354,7 +354,7 @@ fn pipeline(
     fullscreen(device, &desc)
 }
 
-/// Both rules of the sum over directions as the shaders read them.
+/// Nodes of both quadrature rules over directions, in the form that the shaders read.
 fn rule(settings: &SkySettings) -> [[f32; 4]; 24] {
     let mut out = gauss(settings.rule_zeniths as usize);
     let n = settings.rule_azimuths as usize;
@@ -365,11 +365,11 @@ fn rule(settings: &SkySettings) -> [[f32; 4]; 24] {
     out
 }
 
-/// Gauss and Legendre's rule of `n` nodes on (0, 1): (node, weight, 0, 0).
+/// Gauss-Legendre rule with `n` nodes on (0, 1): (node, weight, 0, 0).
 fn gauss(n: usize) -> [[f32; 4]; 24] {
     let mut out = [[0.0; 4]; 24];
     for (i, slot) in out.iter_mut().enumerate().take(n) {
-        // Newton's iteration on P_n from Tricomi's estimate of its root.
+        // Newton's iteration for a root of P_n, starting from Tricomi's estimate.
         let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
         let mut slope = 1.0;
         for _ in 0..50 {

@@ -1,6 +1,7 @@
-//! Asks the drawn sky: radiance and transmittance along single rays, by the look-ups that every picture uses.
+//! Queries of the drawn sky: radiance and transmittance along single rays, through the same look-ups that every picture
+//! uses.
 //!
-//! Waits for the GPU: for queries, programs and tests, not for frames.
+//! A query waits for the GPU. It is for programs and tests, not for frames.
 
 use super::observer::Observer;
 use super::passes::{bind, layout};
@@ -13,16 +14,16 @@ use crate::gpu::bind::Slot;
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
 use crate::gpu::{Device, flat_texture, readback};
 
-/// Quantity that is asked for along a ray.
+/// Quantity to compute along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// Radiance of the air along a whole ray, and transmittance to space (0 if the ray meets the ground).
+    /// Radiance of the air along the whole ray, and transmittance to space (0 if the ray meets the ground).
     Sky,
-    /// Radiance of the air between observer and distance, and transmittance from there.
+    /// Radiance of the air between the observer and the distance, and transmittance over that path.
     Aerial,
-    /// Irradiance on a level surface at the observer: direct in `radiance`, of the sky in `transmittance`.
+    /// Irradiance on a level surface at the observer: direct light in `radiance`, light of the sky in `transmittance`.
     Irradiance,
-    /// Radiance of the planet's ground as seen in `radiance`, of the lamps' discs in `transmittance`.
+    /// Radiance of the visible ground in `radiance`, and of the lamps' discs in `transmittance`.
     Ground,
 }
 
@@ -47,7 +48,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// From zenith angle and azimuth (counted from the x axis), rad.
+    /// Creates a ray from zenith angle and azimuth (counted from the x axis), rad.
     pub fn at(zenith_angle: f64, azimuth: f64, distance_m: f64) -> Self {
         let (s, c) = zenith_angle.sin_cos();
         Self { direction: [s * azimuth.cos(), s * azimuth.sin(), c], distance_m }
@@ -57,13 +58,13 @@ impl Ray {
 /// Answer of the drawn sky, per wavelength of the planet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Answer {
-    /// W m^-2 sr^-1 nm^-1, per the lamps' irradiance as given.
+    /// Radiance, W m^-2 sr^-1 nm^-1, for the lamps' irradiance as given.
     pub radiance: [f32; 3],
-    /// 1.
+    /// Transmittance, dimensionless, or the second quantity that the [`Question`] names.
     pub transmittance: [f32; 3],
 }
 
-/// A sky that can be asked.
+/// Tables and pipelines that answer queries of one planet's sky.
 pub struct Probe {
     tables: SkyTables,
     volume: SkyVolume,
@@ -72,14 +73,14 @@ pub struct Probe {
     pipelines: Vec<(Question, wgpu::RenderPipeline)>,
 }
 
-/// Questions of one pass.
+/// Number of rays in a row of the texture of one pass.
 const WIDTH: u32 = 256;
 
 impl Probe {
-    /// Builds the tables of `planet`.
+    /// Creates a probe and builds the tables of `planet`.
     ///
     /// # Errors
-    /// Settings or planet out of range; GPU faults.
+    /// Fails for settings or a planet out of range, and for GPU faults.
     pub fn new(device: &std::sync::Arc<Device>, settings: &SkySettings, planet: &Planet) -> Result<Self> {
         let mut tables = SkyTables::new(device, settings)?;
         let mut encoder = device.device.create_command_encoder(&Default::default());
@@ -88,7 +89,7 @@ impl Probe {
         Self::with_tables(tables, planet)
     }
 
-    /// Takes ready tables of `planet`.
+    /// Creates a probe from finished tables of `planet`.
     ///
     /// # Errors
     /// GPU faults.
@@ -98,12 +99,12 @@ impl Probe {
         Ok(Self { tables, volume, planet: *planet, layout, pipelines: Vec::new() })
     }
 
-    /// The tables that are asked.
+    /// Tables that the probe reads.
     pub fn tables(&mut self) -> &mut SkyTables {
         &mut self.tables
     }
 
-    /// Answers under one sun over the x axis at `sun_zenith_angle`, rad.
+    /// Computes the answers under one sun above the x axis at `sun_zenith_angle`, rad.
     ///
     /// # Errors
     /// Numbers out of range; GPU faults.
@@ -118,7 +119,7 @@ impl Probe {
         self.ask(question, &Observer { altitude_m, lamps, refraction: 0.0, exact: true }, rays)
     }
 
-    /// Answers for an observer.
+    /// Computes the answers for an observer.
     ///
     /// # Errors
     /// Numbers out of range; GPU faults.

@@ -1,4 +1,5 @@
-//! In which order a model's tables over the planet are built: a list of passes, each with what it reads and draws.
+//! Order in which a model's tables over the planet are built: a list of passes, each with the tables that it reads and
+//! draws.
 
 use super::settings::{LIGHT_TILES, SkyModel, SkySettings};
 
@@ -14,7 +15,7 @@ pub(crate) enum PassKind {
     Once,
 }
 
-/// The tables that a build knows. `Sources`, `Lights` and the two `Once` are its results.
+/// Tables of a build. `Sources`, `Lights` and the two `Once` are its results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Name {
     Nothing,
@@ -32,7 +33,7 @@ pub(crate) enum Name {
 }
 
 impl Name {
-    /// Tables that are kept while a build is under way only.
+    /// Tables that exist only during a build.
     pub const SCRATCH: [Name; 10] = [
         Name::Nothing,
         Name::Norms,
@@ -45,19 +46,19 @@ impl Name {
         Name::PartSources,
         Name::PartLights,
     ];
-    /// Tables that a finished build leaves.
+    /// Tables that remain after a build.
     pub const RESULTS: [Name; 4] = [Name::Sources, Name::Lights, Name::OnceGas, Name::OnceHaze];
 
-    /// Tables that a build makes of one triple of wavelengths at a time, where there are several.
+    /// Tables that a build makes for one triple of wavelengths at a time, where there are several triples.
     pub const OF_A_TRIPLE: [Name; 2] = [Name::Sources, Name::Lights];
 
-    /// Size in texels of a result: triples of wavelengths lie one below the other where they are kept apart.
+    /// Size of a result, texels. Sources of several triples are kept apart, one below the other.
     pub fn result_size(self, s: &SkySettings) -> (u32, u32) {
         let (width, height) = self.size(s);
         (width, if self == Name::Sources { height * s.layers() } else { height })
     }
 
-    /// Size in texels of a planet's light as it is shown, with the sources below it where pixels march through them.
+    /// Size, texels, of the planet's light as it is shown. Where pixels march, the sources lie below it.
     pub fn shown_size(s: &SkySettings) -> (u32, u32) {
         let (light, sources) = (Self::Lights.size(s), Self::Sources.size(s));
         match s.model {
@@ -66,7 +67,7 @@ impl Name {
         }
     }
 
-    /// Size in texels of what a build draws.
+    /// Size of a table as a build draws it, texels.
     pub fn size(self, s: &SkySettings) -> (u32, u32) {
         let (x, y) = match self {
             Name::Nothing => return (1, 1),
@@ -83,14 +84,15 @@ impl Name {
     }
 }
 
-/// One pass.
+/// One pass of a build.
 #[derive(Clone, Debug)]
 pub(crate) struct Pass {
     pub kind: PassKind,
-    /// Order that is gathered, and whether the orders after it are added as a series.
+    /// Order that is gathered, and whether the orders after it are added as a geometric series.
     pub order: u32,
     pub last: bool,
-    /// Sources, radiances, light, sum of sources, sum of light, norms, as `sky/build.wgsl` binds them.
+    /// Tables that the pass reads: sources, radiances, light, sum of sources, sum of light, norms, as `sky/build.wgsl`
+    /// binds them.
     pub reads: [Name; 6],
     pub draws: Vec<Name>,
 }
@@ -100,7 +102,7 @@ impl Pass {
         Self { kind, order, last, reads, draws: draws.to_vec() }
     }
 
-    /// Work of one texel, in cells of a march, as measured on the software driver.
+    /// Work of one texel, in cells of a march, measured on the software driver.
     pub fn texel_cost(&self, s: &SkySettings) -> f64 {
         let directions = f64::from(2 * s.rule_zeniths * s.rule_azimuths);
         match self.kind {
@@ -111,8 +113,8 @@ impl Pass {
         }
     }
 
-    /// Time of one texel, in that of a cell of a march, as measured on the software driver: slices of a build are cut
-    /// by it, so that each frame pays the same.
+    /// Time of one texel, in units of the time of a march's cell, measured on the software driver. Strips of a build
+    /// are cut by it, so that each frame takes the same time.
     pub fn texel_time(&self, s: &SkySettings) -> f64 {
         match self.kind {
             PassKind::Scatter => 0.24 * self.texel_cost(s),
@@ -122,7 +124,7 @@ impl Pass {
     }
 }
 
-/// The passes of a model.
+/// Passes of a model.
 pub(crate) fn passes(s: &SkySettings) -> Vec<Pass> {
     let mut out = vec![Pass::new(PassKind::Norm, 0, false, [Name::Nothing; 6], &[Name::Norms])];
     match s.model {
@@ -133,13 +135,13 @@ pub(crate) fn passes(s: &SkySettings) -> Vec<Pass> {
     out
 }
 
-/// Light that is gathered along the quadrature: reads the order's source and the light of the order before.
+/// Pass that gathers light along the quadrature; it reads the order's source and the light of the order before.
 fn gather(order: u32, source: Name, light: Name) -> Pass {
     let reads = [source, Name::Nothing, light, Name::Nothing, Name::Nothing, Name::Norms];
     Pass::new(PassKind::Gather, order, false, reads, &[Name::Radiances])
 }
 
-/// Adds the light of what was gathered last to that of table `sum`; the result is drawn into `target`.
+/// Pass that adds the light gathered last to the table `sum` and draws the result into `target`.
 fn light(order: u32, last: bool, sum: Name, target: Name) -> Pass {
     let n = order as usize;
     let (previous, now) = (Name::OrderLight((n + 1) % 2), Name::OrderLight(n % 2));
@@ -152,7 +154,7 @@ fn directional(s: &SkySettings, passes: &mut Vec<Pass>) {
     for order in 1..=count {
         let last = order == count;
         let n = order as usize;
-        // The sums go to and fro so that the last lies in the result.
+        // The sums alternate between two tables so that the last one is the result.
         let to_result = (count - order).is_multiple_of(2);
         let pick = |result, part| if to_result { (part, result) } else { (result, part) };
         let (before, now) = (Name::Order((n + 1) % 2), Name::Order(n % 2));
@@ -171,7 +173,7 @@ fn isotropic(passes: &mut Vec<Pass>) {
     passes.push(Pass::new(PassKind::IsotropicScatter, 1, false, reads, &[Name::Sources]));
     passes.push(gather(1, Name::Nothing, Name::Nothing));
     passes.push(light(1, false, Name::Lights, Name::PartLights));
-    // All orders after the first at once.
+    // Gathers all orders after the first at once.
     passes.push(gather(2, Name::Sources, Name::OrderLight(1)));
     passes.push(light(2, false, Name::PartLights, Name::Lights));
 }

@@ -1,4 +1,4 @@
-//! The finished tables of one planet, which all that show it share.
+//! Finished tables of one planet, shared by all that show it.
 
 use std::sync::{Arc, OnceLock};
 
@@ -12,35 +12,35 @@ use super::uniforms::AirUniform;
 use crate::error::Result;
 use crate::gpu::Device;
 
-/// One planet's tables, and how observers and fades read them.
+/// Tables of one planet, and the bind groups with which observers and fades read them.
 pub(crate) struct TableSet {
     pub planet: Planet,
     pub detail: Detail,
-    /// Unique to each set.
+    /// Number that is unique to each set.
     pub id: u64,
-    /// The air at each triple of wavelengths.
+    /// Air at each triple of wavelengths.
     pub airs: Vec<wgpu::Buffer>,
     /// Group 0 of the observers' passes.
     pub observer_group: wgpu::BindGroup,
-    /// The light, for a fade.
+    /// Bind group of the light, for a fade.
     pub light_group: wgpu::BindGroup,
     pub(super) results: Vec<(Name, SkyTable)>,
-    /// Its light on the CPU, once it was asked for.
+    /// Light on the CPU, once it has been requested.
     pub(super) light: OnceLock<Arc<LightTable>>,
 }
 
 impl TableSet {
-    /// One of [`Name::RESULTS`].
+    /// Table of one of the [`Name::RESULTS`].
     pub fn result(&self, name: Name) -> &SkyTable {
         find(&self.results, name)
     }
 
-    /// All of them.
+    /// All tables of the set.
     pub fn tables(&self) -> std::slice::Iter<'_, (Name, SkyTable)> {
         self.results.iter()
     }
 
-    /// Fills them with a cache's bytes, in the order of [`Name::RESULTS`].
+    /// Fills the tables with bytes from a cache file, in the order of [`Name::RESULTS`].
     pub fn fill(&self, device: &Device, tables: &[Vec<u8>]) {
         for (name, bytes) in Name::RESULTS.iter().zip(tables) {
             let texture = &self.result(*name).texture;
@@ -53,8 +53,7 @@ impl TableSet {
         }
     }
 
-    /// The light on the CPU, of the size that `settings` say; read back when it is first asked for, which waits for the
-    /// GPU.
+    /// Light on the CPU, in the sizes of `settings`. The first call reads it back, which waits for the GPU.
     pub fn read_light(&self, device: &Device, settings: &SkySettings) -> Result<Arc<LightTable>> {
         if let Some(known) = self.light.get() {
             return Ok(known.clone());
@@ -65,7 +64,8 @@ impl TableSet {
     }
 }
 
-/// Made of exactly these names; the first stands in for one that cannot be asked for.
+/// Finds the table `name`. The set always has all results; the first table only stands in for a name that is not among
+/// them.
 pub(super) fn find(results: &[(Name, SkyTable)], name: Name) -> &SkyTable {
     &results.iter().find(|(n, _)| *n == name).unwrap_or(&results[0]).1
 }

@@ -1,27 +1,28 @@
-//! How the sky is drawn: which model, and with how many nodes, cells and texels.
+//! Settings of the sky: the model, and the numbers of nodes, cells and texels.
 
 use crate::error::{Error, Result};
 
-/// The ways to draw one sky. All share the same look-ups, so that a frame never asks which it is.
+/// Model of the sky. All models share the same look-ups, so that a frame does not depend on the choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SkyModel {
-    /// Light scattered once, from a table over (altitude, view angle, sun angle) with the phase functions put on
-    /// afterwards (Elek 2008). Its azimuth is that of the sun: right by day to 3 %, wrong by a factor of 2 to 3 at
-    /// sunset away from the sun, worse from space; all light scattered more than once is missing (20 to 50 %).
+    /// Light scattered once, from a table over (altitude, view angle, sun angle); the phase functions are applied
+    /// afterwards (Elek 2008). The table has the sun's azimuth only. By day it is within 3 %; at sunset, away from the
+    /// sun, it is wrong by a factor of 2 to 3, and by more from space. Light scattered more than once is missing (20 to
+    /// 50 %).
     Table3d,
-    /// Light scattered more than once is the same in all directions (Hillaire 2020). Errs by -3 to -6 % near the
-    /// horizon and +3 % at the zenith; built in a tenth of the default's time.
+    /// Light scattered more than once is taken as equal in all directions (Hillaire 2020). The error is -3 to -6 % near
+    /// the horizon and +3 % at the zenith. The tables take a tenth of the default's time to build.
     IsotropicTables,
-    /// Light scattered more than once keeps its direction, order by order. The default.
+    /// Light scattered more than once depends on direction, order by order. The default.
     #[default]
     Directional,
-    /// As the default, but light scattered once is marched in every pixel with [`SkySettings::march_cells`] nodes: what
-    /// the tables are measured against.
+    /// The default model, but light scattered once is marched in every pixel with [`SkySettings::march_cells`] nodes.
+    /// The tables are measured against it.
     BruteForce,
 }
 
 impl SkyModel {
-    /// All models with the names that programs use for them.
+    /// All models, with the names that programs use for them.
     pub const NAMES: [(&'static str, SkyModel); 4] = [
         ("table3d", SkyModel::Table3d),
         ("isotropic", SkyModel::IsotropicTables),
@@ -29,86 +30,88 @@ impl SkyModel {
         ("brute-force", SkyModel::BruteForce),
     ];
 
-    /// The model of that name.
+    /// Returns the model with this name.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] with the known names.
+    /// [`crate::Status::InvalidArgument`] listing the known names.
     pub fn from_name(name: &str) -> Result<Self> {
         let known = Self::NAMES.map(|(n, _)| n).join(", ");
         let found = Self::NAMES.iter().find(|(n, _)| *n == name);
         found.map(|(_, m)| *m).ok_or_else(|| Error::range("model", &format!("one of {known}"), name))
     }
 
-    /// Whether light scattered more than once keeps its direction.
+    /// Whether light scattered more than once depends on direction.
     pub(crate) fn is_directional(self) -> bool {
         matches!(self, Self::Directional | Self::BruteForce)
     }
 
-    /// Its name.
+    /// Name of the model.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, m)| *m == self).map_or("", |(n, _)| n)
     }
 }
 
-/// Numbers of the sky's tables. The defaults hold the errors stated in the documentation of [`crate::sky`]. With every
-/// number at its least at once the default model's median error is 5 % in clear air, 6 % with ozone and in haze of 30
-/// km visibility (95th percentile 26 to 48 %, at twilight and in the sun's glow); in haze of 9 km the orders' tail is
-/// missed (15 %, which 16 orders bring to 9 %). `tests/sky_gpu.rs` holds the border.
+/// Sizes and counts of the sky's tables. The defaults have the errors stated in the documentation of [`crate::sky`].
+/// With all numbers at their minimum the median error of the default model is 5 % in clear air, and 6 % with ozone and
+/// in haze of 30 km visibility (95th percentile 26 to 48 %, in twilight and in the sun's glow). In haze of 9 km it is
+/// 15 %, because the tail of the orders is missed; 16 orders bring it to 9 %. `tests/sky_gpu.rs` checks these limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SkySettings {
-    /// Model that draws, default [`SkyModel::Directional`].
+    /// Model of the sky, default [`SkyModel::Directional`].
     pub model: SkyModel,
-    /// Wavelengths that the tables are built for, a multiple of 3 in `[3, 15]`, default 3: the planet's own. More of
-    /// them are spread over what the eye sees, and summed to the three transfers at the planet's wavelengths that look
-    /// the same (models [`SkyModel::Directional`] and [`SkyModel::IsotropicTables`]): colours are then right where
-    /// three cannot tell them, at the price of building every table so many times. See [`crate::sky`] for errors and
-    /// costs.
+    /// Number of wavelengths that the tables are built for, a multiple of 3 in `[3, 15]`. The default, 3, are the
+    /// planet's own. More wavelengths are spread over the visible range, and summed to the three transfers at the
+    /// planet's wavelengths that look the same (models [`SkyModel::Directional`] and [`SkyModel::IsotropicTables`]).
+    /// Colours are then right where three wavelengths are too few, but the build takes that many times as long. See
+    /// [`crate::sky`] for errors and costs.
     pub wavelengths: u32,
-    /// Orders of scattering that are carried one by one, `[3, 16]`, default 5; the rest is a geometric series.
+    /// Number of scattering orders that are computed one by one, `[3, 16]`, default 5; the rest is added as a geometric
+    /// series.
     pub orders: u32,
-    /// Sun angles of the planet's tables, `[16, 128]`, default 64.
+    /// Number of sun angles in the planet's tables, `[16, 128]`, default 64.
     pub suns: u32,
-    /// Altitudes of the planet's tables, `[8, 64]`, default 22.
+    /// Number of altitudes in the planet's tables, `[8, 64]`, default 22.
     pub altitudes: u32,
-    /// Zenith angles in which a source is known, `[4, 32]`, default 17.
+    /// Number of zenith angles in a source table, `[4, 32]`, default 17.
     pub zeniths: u32,
-    /// Azimuths on `[0, pi]` in which a source is known, `[3, 24]`, default 10.
+    /// Number of azimuths on `[0, pi]` in a source table, `[3, 24]`, default 10.
     pub azimuths: u32,
-    /// Zenith angles on each side of the horizon that are summed over, `[3, 16]`, default 8.
+    /// Number of zenith angles on each side of the horizon in the sum over directions, `[3, 16]`, default 8.
     pub rule_zeniths: u32,
-    /// Azimuths on `[0, pi]` that are summed over, `[3, 24]`, default 12.
+    /// Number of azimuths on `[0, pi]` in the sum over directions, `[3, 24]`, default 12.
     pub rule_azimuths: u32,
-    /// Panels (of 4 nodes) of a ray's march while the planet's tables are built, `[1, 16]`, default 3.
+    /// Number of panels (of 4 nodes) in a ray's march while the planet's tables are built, `[1, 16]`, default 3.
     pub build_panels: u32,
-    /// Azimuths on `[0, pi]` of an observer's sky, `[8, 256]`, default 40.
+    /// Number of azimuths on `[0, pi]` in an observer's sky, `[8, 256]`, default 40.
     pub sky_azimuths: u32,
-    /// Rows of it above the horizon, `[8, 256]`, default 80.
+    /// Number of rows above the horizon in an observer's sky, `[8, 256]`, default 80.
     pub sky_above: u32,
-    /// Rows of it below the horizon, `[8, 256]`, default 40.
+    /// Number of rows below the horizon in an observer's sky, `[8, 256]`, default 40.
     pub sky_below: u32,
-    /// Panels of its rays' marches, `[1, 32]`, default 5.
+    /// Number of panels in a march for an observer's sky, `[1, 32]`, default 5.
     pub sky_panels: u32,
-    /// Azimuths on `[0, pi]` of the air in front of things, `[4, 64]`, default 24.
+    /// Number of azimuths on `[0, pi]` in the table of the air in front of things, `[4, 64]`, default 24.
     pub air_azimuths: u32,
-    /// Rows of it above the horizon, `[4, 128]`, default 20.
+    /// Number of rows above the horizon in the table of the air, `[4, 128]`, default 20.
     pub air_above: u32,
-    /// Rows of it below the horizon, `[4, 128]`, default 20.
+    /// Number of rows below the horizon in the table of the air, `[4, 128]`, default 20.
     pub air_below: u32,
-    /// Distances of it, `[4, 64]`, default 16.
+    /// Number of distances in the table of the air, `[4, 64]`, default 16.
     pub air_slices: u32,
-    /// Panels of a march to one of them, `[1, 16]`, default 2.
+    /// Number of panels in a march to one of these distances, `[1, 16]`, default 2.
     pub air_panels: u32,
-    /// Nodes of a march per pixel, rounded up to fours ([`SkyModel::BruteForce`]), `[1, 4096]`, default 64.
+    /// Number of nodes in a pixel's march ([`SkyModel::BruteForce`]), rounded up to a multiple of 4, `[1, 4096]`,
+    /// default 64.
     pub march_cells: u32,
 }
 
-/// Most wavelengths of a set, as `sky/observer.wgsl` has room for.
+/// Largest number of wavelengths, for which `sky/observer.wgsl` has room.
 pub(crate) const MOST_WAVELENGTHS: u32 = 15;
 
-/// Tiles of the table of light: irradiance and six moments.
+/// Number of tiles in the table of light: irradiance and six moments.
 pub(crate) const LIGHT_TILES: u32 = 7;
 
-/// Every device draws into so many texels; an atlas must not be wider.
+/// Largest width of a table, texels, which every device supports.
 const WIDEST: u32 = 2048;
 
 impl Default for SkySettings {
@@ -139,14 +142,14 @@ impl Default for SkySettings {
 }
 
 impl SkySettings {
-    /// The default numbers with another model.
+    /// The default settings with another model.
     pub fn with_model(model: SkyModel) -> Self {
         Self { model, ..Self::default() }
     }
 
-    /// Returns the settings of the same sky from small tables over the planet, a twentieth of the work with the default
-    /// numbers: these tables are shown until those of the full settings are built. Light scattered once, which the
-    /// observer's tables march, stays as fine.
+    /// Returns settings for a draft: small tables over the planet, a twentieth of the work with the default settings,
+    /// which are shown until the full tables are built. Light scattered once keeps its resolution, because the
+    /// observer's tables march it.
     pub(crate) fn draft(&self) -> Self {
         Self {
             orders: self.orders.min(4),
@@ -155,42 +158,42 @@ impl SkySettings {
             zeniths: self.zeniths.min(9),
             azimuths: self.azimuths.min(6),
             rule_zeniths: self.rule_zeniths.min(5),
-            // The radiances' width is no power of two then, as that of the whole ones: llvmpipe compiles a pass anew
-            // where it becomes one.
+            // With 9, the width of the radiances is no power of two, like that of the full tables. llvmpipe compiles a
+            // pass again if a width becomes a power of two.
             rule_azimuths: self.rule_azimuths.min(9),
             build_panels: self.build_panels.min(2),
             ..*self
         }
     }
 
-    /// Triples of wavelengths.
+    /// Number of triples of wavelengths.
     pub(crate) fn layers(&self) -> u32 {
         self.wavelengths / 3
     }
 
-    /// Size in texels of the air in front of things: its slices lie side by side.
+    /// Size of the table of the air, texels; its slices lie side by side.
     pub(crate) fn air_size(&self) -> (u32, u32) {
         (self.air_azimuths * self.air_slices, self.air_above + self.air_below)
     }
 
-    /// Size in texels of an observer's sky, turned by a quarter: rows along x, azimuths along y.
+    /// Size of an observer's sky, texels. It is transposed: rows along x, azimuths along y.
     pub(crate) fn sky_size(&self) -> (u32, u32) {
         (self.sky_above + self.sky_below, self.sky_azimuths)
     }
 
-    /// First texel of the sky in an observer's tables: beside the air, or below it where that would be too wide.
+    /// First texel of the sky in an observer's tables: beside the air, or below it if the texture would be too wide.
     pub(crate) fn sky_corner(&self) -> (u32, u32) {
         let (air, sky) = (self.air_size(), self.sky_size());
         if air.0 + sky.0 <= WIDEST { (air.0, 0) } else { (0, air.1) }
     }
 
-    /// Size in texels of an observer's tables: the air and the sky.
+    /// Size of an observer's tables (air and sky together), texels.
     pub(crate) fn observer_size(&self) -> (u32, u32) {
         let (corner, air, sky) = (self.sky_corner(), self.air_size(), self.sky_size());
         (air.0.max(corner.0 + sky.0), air.1.max(corner.1 + sky.1))
     }
 
-    /// Every number with its name and range.
+    /// All numbers with their names and ranges.
     pub(crate) fn numbers(&self) -> [(&'static str, u32, u32, u32); 19] {
         [
             ("wavelengths", self.wavelengths, 3, MOST_WAVELENGTHS),

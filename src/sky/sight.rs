@@ -1,5 +1,5 @@
-//! Who sees what through clear air: sunlight at a point, and one point from another. In f64, at once, without tables or
-//! a device, for any planet. Fog, clouds and precipitation are other rooms'.
+//! Visibility through clear air: sunlight at a point, and the line of sight between two points. Computed in f64 at
+//! once, without tables or a device, for any planet. Other rooms add fog, clouds and precipitation.
 
 use std::f64::consts::PI;
 
@@ -9,52 +9,52 @@ use super::reference::sun::{disc_strips, sun_transmittance};
 use crate::error::{Error, Result, check_range};
 use crate::planet::Planet;
 
-/// Contrast below which a black target is lost against the horizon sky by definition of the meteorological optical
-/// range (WMO).
+/// Contrast below which a black target cannot be seen against the horizon sky, by definition of the meteorological
+/// optical range (WMO).
 pub const LEAST_CONTRAST: f64 = 0.05;
 
-/// Strips of the sun's disc: the light of a half-set sun is within 0.3 % of 200 strips.
+/// Number of strips of the sun's disc. The light of a half-set sun is within 0.3 % of that with 200 strips.
 const STRIPS: usize = 24;
 
-/// A line that dips no deeper than this below the ground's sphere is not hidden by it: two points on level ground see
-/// each other over 200 m.
+/// Depth below the ground's sphere down to which a line of sight is not hidden, m. With it two points on level ground
+/// see each other over 200 m.
 const GRAZE_M: f64 = 1e-3;
 
-/// Sunlight that reaches a point.
+/// Sunlight at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sunlight {
-    /// Irradiance of a surface that faces the sun, per wavelength, in the unit of [`Planet::solar_irradiance`].
+    /// Irradiance of a surface facing the sun, per wavelength, in the unit of [`Planet::solar_irradiance`].
     pub irradiance: [f64; 3],
-    /// Share of it that the air let through and the ground did not hide.
+    /// Share of the irradiance above the air that the air lets through and the ground does not hide.
     pub transmittance: [f64; 3],
-    /// Share of the disc that stands above the horizon, `[0, 1]`.
+    /// Share of the disc above the horizon, `[0, 1]`.
     pub visible_share: f64,
 }
 
 /// Line of sight between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// Straight distance, m.
+    /// Straight-line distance, m.
     pub distance_m: f64,
-    /// Whether the planet's sphere stands between them.
+    /// Whether the planet's sphere hides one point from the other.
     pub hidden: bool,
-    /// Transmittance of the air per wavelength of the planet; 0 if hidden.
+    /// Transmittance of the air, per wavelength of the planet; 0 if hidden.
     pub transmittance: [f64; 3],
-    /// Contrast of a black target against the horizon sky behind it, as Koschmieder 1924 has it: the transmittance at
-    /// 550 nm; 0 if hidden.
+    /// Contrast of a black target against the horizon sky behind it (Koschmieder 1924): the transmittance at 550 nm; 0
+    /// if hidden.
     pub contrast: f64,
 }
 
 impl Sight {
-    /// Whether a black target is seen: not hidden, and its contrast at least `least_contrast` ([`LEAST_CONTRAST`] where
-    /// nothing else is meant).
+    /// Whether a black target can be seen: it is not hidden, and its contrast is at least `least_contrast` (usually
+    /// [`LEAST_CONTRAST`]).
     pub fn is_visible(&self, least_contrast: f64) -> bool {
         !self.hidden && self.contrast >= least_contrast
     }
 }
 
-/// Sunlight at an altitude under a sun at a geometric zenith angle (radians, `[0, pi]`). The sun is a disc that sets
-/// behind the sphere; refraction is left out.
+/// Computes the sunlight at an altitude for a geometric zenith angle of the sun (radians, `[0, pi]`). The sun is a disc
+/// that sets behind the sphere; refraction is left out.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a planet, an altitude (`[-1e5, 1e12]` m) or an angle out of range.
@@ -78,12 +78,12 @@ pub fn sunlight(planet: &Planet, altitude_m: f64, sun_zenith: f64) -> Result<Sun
     Ok(out)
 }
 
-/// Finds what one point sees of another. Positions in metres from the planet's centre, any axes. The ground is the
-/// sphere of the bottom radius, lowered to the lower point if that lies below.
+/// Computes the line of sight from one point to another. Positions are in metres from the planet's centre, in any axes.
+/// The ground is the sphere of the bottom radius, lowered to the lower point if that is below it.
 ///
 /// # Errors
-/// [`crate::Status::InvalidArgument`] for a planet out of range, a position that is not finite, lies farther than
-/// 1e12 m or deeper than 1e5 m below the ground's sphere.
+/// [`crate::Status::InvalidArgument`] for a planet out of range, or for a position that is not finite, farther than
+/// 1e12 m, or deeper than 1e5 m below the ground's sphere.
 pub fn sight(planet: &Planet, from_m: [f64; 3], to_m: [f64; 3]) -> Result<Sight> {
     planet.check()?;
     let altitude = |name: &str, p: &[f64; 3]| -> Result<f64> {
@@ -103,7 +103,7 @@ pub fn sight(planet: &Planet, from_m: [f64; 3], to_m: [f64; 3]) -> Result<Sight>
     let medium = Medium::of(planet);
     let mu = way.iter().zip(&from_m).map(|(w, p)| w * p).sum::<f64>() / distance_m / (medium.bottom_m + h);
     let ray = Ray::new(&medium, h, mu);
-    // The lowest point of the way, if it is neither end.
+    // The lowest point of the line counts only if it lies between the ends.
     let to_perigee = -ray.radius_m() * ray.mu;
     let dips = to_perigee > 0.0 && to_perigee < distance_m;
     let hidden = dips && ray.perigee_altitude_m() < h.min(h_to).min(0.0) - GRAZE_M;
@@ -126,7 +126,7 @@ mod tests {
 
     const R: f64 = 6_371_000.0;
 
-    /// A point at an altitude, `distance` along the ground from the pole.
+    /// Position at an altitude, `distance` along the ground from the pole.
     fn place(altitude: f64, distance: f64) -> [f64; 3] {
         let a = distance / R;
         [(R + altitude) * a.sin(), 0.0, (R + altitude) * a.cos()]
@@ -143,7 +143,8 @@ mod tests {
 
     #[test]
     fn black_target_at_the_optical_range_is_at_the_threshold() {
-        // Curved, stratified air, eye and target's line 2 m up: a little more than 5 % arrives (haze of 1.2 km).
+        // The air is curved and stratified, and eye and target are 2 m up: a little more than 5 % arrives (haze of 1.2
+        // km).
         for (visibility, contrast) in [(50.0, 0.05), (5000.0, 0.0503), (50_000.0, 0.0572)] {
             let level = [visibility, 0.0, R + 2.0];
             let seen = sight(&fog(visibility), place(2.0, 0.0), level).unwrap();
@@ -156,7 +157,7 @@ mod tests {
 
     #[test]
     fn the_sphere_hides_what_is_beyond_the_horizon() {
-        // Two eyes at 100 m see each other over twice 35.7 km, less a little.
+        // Two eyes at 100 m see each other over almost twice 35.7 km.
         let reach = 2.0 * f64::sqrt(2.0 * R * 100.0);
         let clear = Planet::earth();
         assert!(!sight(&clear, place(100.0, 0.0), place(100.0, 0.999 * reach)).unwrap().hidden);
@@ -189,7 +190,7 @@ mod tests {
             assert!(now.transmittance[0] >= now.transmittance[2], "red goes last");
             before = now.transmittance[0];
         }
-        // From an aeroplane the sun is up while it has set below.
+        // From an aeroplane the sun is visible after it has set on the ground.
         assert!(sunlight(&planet, 11_000.0, 92f64.to_radians()).unwrap().visible_share > 0.99);
     }
 

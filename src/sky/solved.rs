@@ -1,4 +1,4 @@
-//! Skies of the f64 reference that are kept once they are solved, for queries.
+//! Cache of skies solved by the f64 reference, for queries.
 
 use std::{
     collections::BTreeMap,
@@ -16,10 +16,10 @@ use crate::{
     gpu::recent::LruCache,
 };
 
-/// Airs whose skies are kept. Each takes about 1 MB.
+/// Number of skies that are kept. Each takes about 1 MB.
 const MOST: usize = 4;
 
-/// The reference solved for the airs that were asked for last. Any thread.
+/// Reference solutions for the most recently requested airs. Any thread.
 pub(crate) struct SolvedSkies(Mutex<LruCache<Planet, Arc<SolvedSky>, MOST>>);
 
 impl Default for SolvedSkies {
@@ -29,7 +29,8 @@ impl Default for SolvedSkies {
 }
 
 impl SolvedSkies {
-    /// The sky of an air. Solves it at the first call, which takes about a second; other threads that ask then wait.
+    /// Sky of an air. The first call solves it, which takes about a second; other threads that request a sky wait
+    /// meanwhile.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a planet out of range; [`Status::Poisoned`] after a panic.
@@ -40,16 +41,16 @@ impl SolvedSkies {
     }
 }
 
-/// Longer than any ray through the air, m.
+/// Distance longer than any ray through the air, m.
 const WHOLE_M: f64 = 1e12;
-/// Steps of the sun's zenith angle between which the ground's light is interpolated, a degree.
+/// Steps of the sun's zenith angle per degree at which the ground's light is computed; between them it is interpolated.
 const STEPS_PER_DEG: f64 = 2.0;
-/// Below this the logarithm of a light is taken of it.
+/// Smallest light whose logarithm is taken.
 const LEAST: f64 = 1e-30;
 
-/// How an air is solved for queries: a quarter to a third of the time of [`Options::default`], whose
-/// luminance 95 % of directions meet within 2 %. Few
-/// altitudes and ray points suffice; fewer sun angles err in twilight, fewer zeniths and azimuths in haze.
+/// Options for queries. Solving takes a quarter to a third of the time with [`Options::default`]; for 95 % of
+/// directions the luminance is within 2 % of that solution's. Few altitudes and ray points suffice. Fewer sun angles
+/// would cause errors in twilight, and fewer zeniths and azimuths in haze.
 const QUERY: Options = Options {
     orders: Orders::Converged { tolerance: 0.1, limit: 7 },
     resolution: Resolution {
@@ -60,19 +61,19 @@ const QUERY: Options = Options {
         panel_points: 2,
         haze_directions: (25, 13),
     },
-    // As the tests that hold the drawn sky against the reference.
+    // The same number as in the tests that compare the drawn sky with the reference.
     disc_strips: 3,
     threads: 1,
 };
 
-/// The sky of one air, per unit of a lamp's irradiance above the air.
+/// Sky of one air, per unit of a lamp's irradiance above the air.
 pub(crate) struct SolvedSky {
     reference: Reference,
-    /// Logarithms of the light on level ground by steps of the sun's zenith angle, as far as they were asked for.
+    /// Logarithms of the light on level ground, by step of the sun's zenith angle; computed when first needed.
     ground: Mutex<BTreeMap<i64, [f64; 3]>>,
 }
 
-/// Where and towards what a ray goes, in (east, north, up) of the observer.
+/// Ray of a query and the direction of its lamp, in (east, north, up) of the observer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sightline {
     pub altitude_m: f64,
@@ -99,7 +100,7 @@ impl SolvedSky {
         Ok(Self { reference: Reference::solve(&planet, &QUERY)?, ground: Mutex::default() })
     }
 
-    /// Radiance of the air along a whole ray and of the ground that it meets, a wavelength.
+    /// Radiance of the air along a whole ray, and of the ground if the ray meets it, per wavelength.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a number out of range.
@@ -112,7 +113,7 @@ impl SolvedSky {
         Ok([0, 1, 2].map(|i| along.radiance[i] + ground[i] * along.transmittance[i]))
     }
 
-    /// All of a ray through the air: what it scatters, what it lets through, and whether it meets the ground.
+    /// Light along a whole ray: radiance scattered by the air, transmittance, and whether the ray meets the ground.
     ///
     /// # Errors
     /// As [`SolvedSky::radiance`].
@@ -120,8 +121,8 @@ impl SolvedSky {
         self.reference.aerial(&line.view(), WHOLE_M)
     }
 
-    /// Radiance that the air scatters into the first `distance_m` of a ray, and what it lets through there, a
-    /// wavelength.
+    /// Radiance that the air scatters into the first `distance_m` of a ray, and the transmittance over that distance,
+    /// per wavelength.
     ///
     /// # Errors
     /// As [`SolvedSky::radiance`].
@@ -130,11 +131,11 @@ impl SolvedSky {
         Ok((along.radiance, along.transmittance))
     }
 
-    /// Radiance of the planet's ground, a Lambert surface, where a ray meets it.
+    /// Radiance of the planet's ground, a Lambert surface, at the point where a ray meets it.
     fn ground_radiance(&self, line: &Sightline) -> Result<[f64; 3]> {
         let planet = self.reference.planet();
         let (bottom, up) = (planet.bottom_radius_m, line.altitude_m.max(0.0));
-        // The smaller root of |r + t d| = bottom, without cancellation.
+        // Smaller root of |r + t d| = bottom, in a form without cancellation.
         let r = bottom + up;
         let (mu, c) = (line.direction.z, up * (2.0 * bottom + up));
         let distance = c / (-r * mu + (r * r * mu * mu - c).max(0.0).sqrt()).max(1e-9);
@@ -144,7 +145,7 @@ impl SolvedSky {
         Ok([0, 1, 2].map(|i| planet.ground_albedo[i] / std::f64::consts::PI * lit[i]))
     }
 
-    /// Irradiance of level ground under a lamp's zenith angle: its logarithm is linear between steps.
+    /// Irradiance of level ground for a zenith angle of the lamp. Its logarithm is interpolated linearly between steps.
     fn ground_light(&self, zenith: f64) -> Result<[f64; 3]> {
         let at = zenith.to_degrees() * STEPS_PER_DEG;
         let near = at.floor();
@@ -176,7 +177,7 @@ mod tests {
         assert!(Arc::ptr_eq(&first, &skies.of(&Planet::earth()).unwrap()));
     }
 
-    /// Prints the times of both: `cargo test --lib solved -- --nocapture`.
+    /// Prints the times of both solutions: `cargo test --lib solved -- --nocapture`.
     #[test]
     fn luminance_asked_for_is_within_two_percent_of_a_finer_solution() {
         let clear = Planet { solar_irradiance: [1.0; 3], ..Planet::earth() };

@@ -1,5 +1,5 @@
-//! The tables over a planet as one simulator shows them: built at once or by parts, and followed through a change of
-//! its air without a jump.
+//! Tables over a planet as one simulator shows them. They are built at once or by parts, and follow a change of the
+//! planet's air without a jump.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,54 +18,56 @@ use crate::gpu::Device;
 
 enum State {
     Idle,
-    /// A build of the tables to show next, and in how many calls it has been led on.
+    /// Build of the tables to show next, and the number of calls since it began.
     Building(Arc<Ticket>, u32),
-    /// The tables to show next, and their share in what is shown; 0 in the call that lets observers draw them.
+    /// Tables to show next, and their share in what is shown. The share is 0 in the call in which observers draw them
+    /// for the first time.
     Fading(Arc<TableSet>, f32),
-    /// Built by the last call.
+    /// Tables that the last call has finished.
     Built(Arc<TableSet>),
 }
 
-/// One call in so many leaves a build alone, so that observers may follow sun and height in it.
+/// Number of calls of which one leaves the build alone, so that observers can follow sun and altitude in it.
 const REST: u32 = 8;
-/// A fade's share per call, whatever the time: it costs as much in a frame however long it lasts.
+/// Smallest step of a fade's share per call. A fade costs the same in each frame, however long it lasts.
 const FADE: f32 = 1.0 / 16.0;
-/// Airs whose optical depth differs by more than this share need a draft before the whole tables: it errs by less.
+/// Relative change of optical depth above which a draft is built before the whole tables. The draft's own error is
+/// smaller.
 const FAR: f64 = 0.03;
 
-/// Albedos of the ground that differ by more than this need a draft before the whole tables.
+/// Change of the ground's albedo above which a draft is built before the whole tables.
 const FAR_ALBEDO: f64 = 0.1;
 
-/// Progress that [`SkyTables::update`] made.
+/// Progress made by [`SkyTables::update`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TablesProgress {
-    /// Work submitted by this call, as a share of a whole build; 0 where another has built the planet.
+    /// Work submitted by this call, as a share of a whole build; 0 if someone else has built the planet.
     pub work: f32,
-    /// Share of the way to the whole tables of the last planet given: 0 while a draft of it is made, 0.5 when they are
-    /// built, 1 when they are shown.
+    /// Progress towards the whole tables of the planet given last: 0 while a draft is built, 0.5 when the whole tables
+    /// are built, 1 when they are shown.
     pub done: f32,
 }
 
 /// Tables over a planet for one model: light scattered more than once, and the light at every altitude and sun angle.
-/// They hold radiances per unit irradiance of the light, so sun and moon share them.
+/// They hold radiances per unit irradiance of a lamp, so that sun and moon share them.
 ///
-/// Those who show the same planet with the same settings through one [`SkyLibrary`] share its tables and the work of
+/// All that show the same planet with the same settings through one [`SkyLibrary`] share its tables and the work of
 /// building them. One thread at a time.
 pub struct SkyTables {
     pub(crate) device: Arc<Device>,
     kit: Arc<Kit>,
-    /// The light as it is shown: that of one planet, or of two while one fades into the other. Where pixels march, the
-    /// sources of the shown planet lie below it.
+    /// Light that is shown: that of one planet, or a mix of two during a fade. Where pixels march, the texture also
+    /// holds the sources of the shown planet, below the light.
     pub(crate) light: SkyTable,
     shown: Option<Arc<TableSet>>,
     state: State,
     revision: u64,
-    /// Whether the last call worked on tables, or faded some in.
+    /// Whether the last call worked on tables or on a fade.
     busy: bool,
 }
 
 impl SkyTables {
-    /// Makes tables that share nothing; nothing is built until [`SkyTables::update`].
+    /// Creates tables that share nothing with others. Nothing is built until [`SkyTables::update`].
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for settings out of range; GPU faults.
@@ -73,7 +75,8 @@ impl SkyTables {
         Self::of_library(&SkyLibrary::default(), device, settings)
     }
 
-    /// As [`SkyTables::new`], sharing pipelines, tables and builds with all others of `library`, which is `device`'s.
+    /// Creates tables as [`SkyTables::new`] does, but shares pipelines, tables and builds with all others of `library`,
+    /// which must belong to `device`.
     ///
     /// # Errors
     /// As [`SkyTables::new`].
@@ -84,39 +87,42 @@ impl SkyTables {
         Ok(Self { device: device.clone(), kit, light, shown: None, state: State::Idle, revision: 0, busy: false })
     }
 
-    /// The settings of these tables.
+    /// Settings of these tables.
     pub fn settings(&self) -> &SkySettings {
         &self.kit.settings
     }
 
-    /// The planet whose tables are shown; while a change fades in, the older one.
+    /// Planet whose tables are shown; during a fade, the older one.
     pub fn planet(&self) -> Option<&Planet> {
         self.shown.as_ref().map(|s| &s.planet)
     }
 
-    /// Changes whenever something shown changes, so that an observer's tables follow.
+    /// Revision that changes whenever something shown changes, so that an observer's tables can follow.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Planets that were built for the settings of these tables, by all who share them.
+    /// Number of planets built with the settings of these tables, by all that share them.
     pub fn builds(&self) -> u64 {
         self.kit.builds()
     }
 
-    /// Values of `override` constants for every pipeline whose shader includes `sky/lookup.wgsl`.
+    /// Values of the `override` constants for every pipeline whose shader includes `sky/lookup.wgsl`.
     pub fn pipeline_constants(&self) -> [(&'static str, f64); 1] {
         [("SKY_MARCH", crate::stage::flag(self.settings().model == SkyModel::BruteForce))]
     }
 
-    /// Follows `planet`, with at most `fraction` of the work of a whole build in this call (about: a strip of 1/1024 is
-    /// not cut). At `fraction` 1 its tables are built and shown at once. Else the first planet is shown at once as a
-    /// draft, and so is, faded in over sixteen calls, one whose air is another than that shown; the whole tables are
-    /// built beside what is shown over 8/7 of 1/fraction calls, every eighth of which rests, and fade in like the
-    /// draft. A planet that is given meanwhile comes after them, or ends their build if they were far from it.
+    /// Follows `planet`, with at most about `fraction` of the work of a whole build in this call (strips of 1/1024 are
+    /// not divided).
     ///
-    /// What is shown depends on the calls alone, on nothing that is timed. What is built is submitted by this call;
-    /// what is shown of it is recorded into `encoder`, to be submitted after.
+    /// With a `fraction` of 1 the tables of `planet` are built and shown at once. Otherwise the first planet is shown
+    /// at once as a draft. A later planet whose air differs much from the shown one's also gets a draft, which fades in
+    /// over sixteen calls. The whole tables are built meanwhile over 8/7 of 1/`fraction` calls, because every eighth
+    /// call rests, and then fade in like a draft. If another planet is given during that build, it follows afterwards;
+    /// if it differs much, the build is abandoned for it.
+    ///
+    /// The result depends only on the sequence of calls, not on time. This call submits what it builds. It records what
+    /// it shows into `encoder`, which must be submitted afterwards.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a planet or fraction out of range; GPU faults.
@@ -143,7 +149,7 @@ impl SkyTables {
         Ok(TablesProgress { work, done: self.done(planet) })
     }
 
-    /// Builds what is asked to its end and shows it. The work.
+    /// Builds the requested tables to the end and shows them. Returns the work.
     fn show_at_once(&mut self, encoder: &mut wgpu::CommandEncoder, planet: &Planet, detail: Detail) -> Result<f32> {
         let shows = |s: &Arc<TableSet>| s.planet == *planet && s.detail == detail;
         if self.shown.as_ref().is_some_and(shows) {
@@ -164,7 +170,7 @@ impl SkyTables {
         Ok(work)
     }
 
-    /// Decides what to show next, if nothing is under way that leads there.
+    /// Chooses the tables to show next, unless a build or a fade towards them is in progress.
     fn choose(&mut self, planet: &Planet) -> Result<()> {
         let Some(shown) = &self.shown else { return Ok(()) };
         let free = match &self.state {
@@ -184,7 +190,7 @@ impl SkyTables {
         Ok(())
     }
 
-    /// Goes on with a build or a fade; the work.
+    /// Continues a build or a fade. Returns the work.
     fn step(&mut self, encoder: &mut wgpu::CommandEncoder, share: f32) -> Result<f32> {
         match &mut self.state {
             State::Idle => Ok(0.0),
@@ -219,7 +225,7 @@ impl SkyTables {
         }
     }
 
-    /// Share of the way to the whole tables of `planet`.
+    /// Progress towards the whole tables of `planet`, 0 to 1.
     fn done(&self, planet: &Planet) -> f32 {
         let leads = |set: &TableSet| set.detail == Detail::Whole && set.planet == *planet;
         match &self.state {
@@ -233,9 +239,9 @@ impl SkyTables {
         }
     }
 
-    /// The light of the sky over altitudes and sun angles as it is shown. Each build is read back once, when it is
-    /// first asked for, which waits for the GPU; later calls, and all look-ups in the answer, do not. Dark before the
-    /// first planet is shown.
+    /// Light of the sky as it is shown, over altitudes and sun angles. The first call after a build reads it back,
+    /// which waits for the GPU; later calls, and all look-ups in the result, do not wait. It is dark before the first
+    /// planet is shown.
     ///
     /// # Errors
     /// GPU faults.
@@ -250,13 +256,14 @@ impl SkyTables {
         })
     }
 
-    /// Builds and shows the tables of `planet` now, in sixteen parts with a wait for the GPU after each, or reads them
-    /// from `cache`, a directory in which the tables are kept afterwards. `progress` is told the share done after each
-    /// part; when it answers false the build ends, and what was shown before stays. A cache's file that is damaged or
-    /// cannot be written is logged, and the tables are built and shown nonetheless.
+    /// Builds and shows the tables of `planet` now, in sixteen parts with a wait for the GPU after each; or reads them
+    /// from the directory `cache`, in which new tables are kept afterwards. `progress` gets the share done after each
+    /// part. If it returns false the build ends, and what was shown before stays. If a file of the cache is damaged or
+    /// cannot be written, this is logged, and the tables are built and shown all the same.
     ///
     /// # Errors
-    /// [`crate::Status::Aborted`]; [`crate::Status::InvalidArgument`] for the planet; GPU faults.
+    /// [`crate::Status::Aborted`] if `progress` returned false; [`crate::Status::InvalidArgument`] for the planet; GPU
+    /// faults.
     pub fn build(
         &mut self,
         planet: &Planet,
@@ -268,7 +275,7 @@ impl SkyTables {
         self.show_now(set)
     }
 
-    /// The kit of these tables, which builds without them.
+    /// Kit of these tables, which does the building.
     pub(crate) fn kit(&self) -> &Arc<Kit> {
         &self.kit
     }
@@ -283,13 +290,13 @@ impl SkyTables {
         device.check()
     }
 
-    /// Shows nothing any more, as before the first planet.
+    /// Shows no tables any more, as before the first planet.
     pub(crate) fn forget(&mut self) {
         (self.shown, self.state) = (None, State::Idle);
         self.revision += 1;
     }
 
-    /// Shows the tables of the first planet, if they lie in a cache or another shows them.
+    /// Shows the tables of the first planet, if they are in the cache or shown by others.
     pub(crate) fn begin_with(&mut self, planet: &Planet, cache: &Path) -> Result<()> {
         planet.check()?;
         match self.kit.finished_or_kept(planet, cache)? {
@@ -303,8 +310,8 @@ impl SkyTables {
         self.shown.as_ref()
     }
 
-    /// The share of a build that is as much work as `share` of one with the default settings; small tables take sixteen
-    /// calls all the same.
+    /// Share of a build that is as much work as `share` of a build with the default settings. At most 1/16, so that
+    /// small tables take sixteen calls too.
     pub(crate) fn paced(&self, share: f32) -> f32 {
         (share * self.kit.pace as f32).min(FADE)
     }
@@ -314,7 +321,7 @@ impl SkyTables {
         self.shown.as_ref().filter(|s| s.detail == Detail::Whole)
     }
 
-    /// Returns the tables that fade in, with their share; 0 in the one call before the first step.
+    /// Returns the tables that fade in, with their share. The share is 0 in the call before the first step.
     pub(crate) fn fading(&self) -> Option<(&Arc<TableSet>, f32)> {
         match &self.state {
             State::Fading(set, t) => Some((set, *t)),
@@ -322,12 +329,12 @@ impl SkyTables {
         }
     }
 
-    /// Whether this frame has work on tables to pay already.
+    /// Whether this frame already has work on tables to pay for.
     pub(crate) fn is_busy(&self) -> bool {
         self.busy
     }
 
-    /// The air that look-ups use: between two while one fades into the other.
+    /// Air that look-ups use; during a fade, the mix of two.
     pub(crate) fn air(&self) -> AirUniform {
         let shown = AirUniform::of(self.planet().unwrap_or(&Planet::earth()));
         self.fading().map_or(shown, |(set, t)| shown.mix(&AirUniform::of(&set.planet), t))
@@ -354,7 +361,7 @@ impl SkyTables {
     }
 }
 
-/// Whether tables of one planet are so wrong over the other that a draft is nearer.
+/// Whether the tables of one planet are so wrong for the other that a draft is closer.
 fn is_far(a: &Planet, b: &Planet) -> bool {
     // Optical depth straight up of gas, haze and ozone at a wavelength.
     let depths = |p: &Planet, i: usize| {

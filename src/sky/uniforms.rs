@@ -1,4 +1,4 @@
-//! Uniform buffers that the sky's shaders read, field for field as `shaders/sky` declares them.
+//! Uniform buffers of the sky's shaders, field for field as `shaders/sky` declares them.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -6,10 +6,10 @@ use super::Planet;
 use super::reference::medium::Medium;
 use super::settings::SkySettings;
 use crate::planet::spectral::SpectralTriple;
-/// Factor with which that table is kept.
+/// Factor on the values of the table of light.
 pub(crate) const LIGHT_SCALE: f32 = 4096.0;
 
-/// `SkyAir` of `sky/air.wgsl`.
+/// Mirrors `SkyAir` of `sky/air.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct AirUniform {
@@ -41,7 +41,8 @@ pub fn air_uniform(planet: &Planet) -> Vec<u8> {
 }
 
 impl AirUniform {
-    /// The planet in f32. Media without thickness become thin ones without effect, so that no shader divides by 0.
+    /// Values of the planet in f32. Media without thickness become thin ones without effect, so that no shader divides
+    /// by 0.
     pub fn of(planet: &Planet) -> Self {
         let f = |v: [f64; 3]| v.map(|x| x as f32);
         let unless_flat = |flat: bool, v: [f64; 3]| if flat { [0.0; 3] } else { f(v) };
@@ -73,7 +74,7 @@ impl AirUniform {
         }
     }
 
-    /// As the reference integrates it.
+    /// Converts the air to the medium that the reference integrates.
     pub fn medium(&self) -> Medium {
         let f = |v: [f32; 3]| v.map(f64::from);
         Medium {
@@ -87,7 +88,7 @@ impl AirUniform {
         }
     }
 
-    /// All triples of wavelengths of a set.
+    /// Airs of all triples of wavelengths of a set.
     pub fn of_parts(parts: &[SpectralTriple]) -> Vec<Self> {
         let one = |(layer, part): (usize, &SpectralTriple)| {
             let [part_a, part_b, part_c] = part.columns.map(|c| c.map(|v| v as f32));
@@ -97,7 +98,7 @@ impl AirUniform {
         parts.iter().enumerate().map(one).collect()
     }
 
-    /// Between two airs: how look-ups follow a change while the tables fade.
+    /// Interpolates between two airs, for look-ups during a fade of the tables.
     pub fn mix(&self, other: &Self, t: f32) -> Self {
         let a: [f32; 36] = bytemuck::cast(*self);
         let b: [f32; 36] = bytemuck::cast(*other);
@@ -107,7 +108,7 @@ impl AirUniform {
     }
 }
 
-/// `SkyDims` of `sky/maps.wgsl`.
+/// Mirrors `SkyDims` of `sky/maps.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub(crate) struct DimsUniform {
@@ -161,8 +162,8 @@ impl DimsUniform {
         }
     }
 
-    /// Texture coordinates of the sky above the horizon: of the centre of its first texel, and from there to that of
-    /// its last one.
+    /// Texture coordinates of the sky above the horizon: the centre of its first texel, and the offset from there to
+    /// the centre of its last texel.
     pub fn sky_above(&self) -> [f32; 4] {
         let [x, y, above, azimuths] =
             [self.sky_x, self.sky_y, self.sky_above - 1, self.sky_azimuths - 1].map(f64::from);
@@ -171,7 +172,7 @@ impl DimsUniform {
     }
 }
 
-/// `SkyJob` of `sky/build.wgsl`.
+/// Mirrors `SkyJob` of `sky/build.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct JobUniform {
@@ -180,7 +181,7 @@ pub(crate) struct JobUniform {
     pub unused: [u32; 2],
 }
 
-/// `SkyObserver` of `sky/observer.wgsl`.
+/// Mirrors `SkyObserver` of `sky/observer.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct ObserverUniform {
@@ -191,7 +192,7 @@ pub(crate) struct ObserverUniform {
     pub edges: EdgesUniform,
 }
 
-/// `SkyEdges` of `sky/view.wgsl`, formed in f64.
+/// Mirrors `SkyEdges` of `sky/view.wgsl`; computed in f64.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct EdgesUniform {
@@ -221,7 +222,7 @@ impl EdgesUniform {
     }
 }
 
-/// `SkyLamp` of `sky/lookup.wgsl`.
+/// Mirrors `SkyLamp` of `sky/lookup.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct LampUniform {
@@ -241,7 +242,7 @@ pub(crate) struct LampUniform {
     pub depth: [[f32; 4]; 4],
 }
 
-/// `SkyView` of `sky/lookup.wgsl`.
+/// Mirrors `SkyView` of `sky/lookup.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct ViewUniform {

@@ -1,4 +1,4 @@
-//! Sky and clear air as a view draws them: its tables as seen from the camera's height.
+//! Sky and clear air of a view: the tables for its camera's altitude.
 
 use std::sync::{Arc, Mutex};
 
@@ -19,12 +19,12 @@ use crate::{
 pub(crate) struct SkyView {
     tables: Arc<Mutex<FollowedSky>>,
     volume: SkyVolume,
-    /// See [`SkyView::rebuild_work`].
+    /// Value of [`SkyView::rebuild_work`] for the present settings.
     rebuild_work: f64,
 }
 
 impl SkyView {
-    /// Over the tables of a context.
+    /// Creates the view's sky over the tables of a context.
     ///
     /// # Errors
     /// A GPU fault.
@@ -38,12 +38,12 @@ impl SkyView {
         self.rebuild_work
     }
 
-    /// How the sky of the last frame was drawn.
+    /// Settings with which the last frame's sky was drawn.
     pub fn settings(&self) -> &SkySettings {
         self.volume.settings()
     }
 
-    /// How that of the next one will be.
+    /// Settings with which the next frame's sky will be drawn.
     pub fn next_settings(&self) -> SkySettings {
         self.tables.lock().map_or(*self.settings(), |tables| *tables.settings())
     }
@@ -63,7 +63,7 @@ impl DrawnEffect for SkyView {
         Stages::BACKGROUND.with(Stages::MEDIUM)
     }
 
-    /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
+    /// Updates the tables for air, position and lights. Nothing is drawn if they are up to date.
     fn prepare(&mut self, context: &FrameContext<'_>, recording: &mut Recording<'_>) -> Result<()> {
         let mut tables = self.tables.lock().map_err(|_| poisoned())?;
         if !self.volume.is_of(&tables) {
@@ -114,7 +114,7 @@ impl DrawnEffect for SkyView {
 }
 
 impl Observer {
-    /// A camera in a scene.
+    /// Creates the observer for a camera in a scene.
     pub(crate) fn of(scene: &Scene, exact: bool) -> Self {
         let lamp = |light: &Light, disc| Lamp {
             lights_air: light.matters,
@@ -133,17 +133,17 @@ impl Observer {
     }
 }
 
-/// Sine of the angle below the horizon at which nothing of the moon's disc shows any more.
+/// Sine of the angle below the horizon below which nothing of the moon's disc is visible.
 const BELOW_HORIZON: f64 = 0.02;
 
-/// Whether the moon's disc may stand above the horizon.
+/// Whether the moon's disc may be above the horizon.
 fn moon_shows(scene: &Scene) -> bool {
     let (radius, h) = (scene.planet.bottom_radius_m, scene.place.altitude_m.max(0.0));
     let horizon = -(h * (h + 2.0 * radius)).sqrt() / (radius + h);
     scene.moon.matters || scene.moon.apparent.z > horizon - BELOW_HORIZON
 }
 
-/// The sun's direction as the moon's face sees it: in the plane of moon and bright limb, at the phase's angle.
+/// Direction of the sun as seen from the moon's face: in the plane of the moon and its bright limb, at the phase angle.
 fn moon_lit_from(moon: &Light) -> DVec3 {
     let cos_phase = (2.0 * moon.lit - 1.0).clamp(-1.0, 1.0);
     let sin_phase = (1.0 - cos_phase * cos_phase).sqrt();

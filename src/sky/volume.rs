@@ -1,4 +1,4 @@
-//! One observer's tables: the sky by direction and the air in front of things, for each lamp.
+//! Tables of one observer, for each lamp: the sky by direction, and the air in front of things.
 
 use std::sync::Arc;
 
@@ -17,11 +17,11 @@ use crate::error::Result;
 use crate::gpu::bind::as_layers;
 use crate::gpu::{Device, Layer};
 
-/// Layers of a lamp: what is complete, and light scattered once by haze without its phase function.
+/// Layers for each lamp: complete light, and light scattered once by haze without its phase function.
 const LAYERS: u32 = 2;
 const LAMPS: usize = 2;
 
-/// An observer's air and, beside or below it, the sky: an array texture that passes draw into layer by layer.
+/// Table of an observer's air with the sky beside or below it: an array texture that passes draw layer by layer.
 struct Layered {
     texture: wgpu::Texture,
     whole: wgpu::TextureView,
@@ -37,7 +37,7 @@ impl Layered {
         Self { texture, whole, layers }
     }
 
-    /// Copies a lamp's layers to others of the same size.
+    /// Copies the layers of a lamp to textures of the same size.
     fn copy(&self, encoder: &mut wgpu::CommandEncoder, lamp: usize, copies: &Apart) {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..self.texture.size() };
         for z in LAYERS * lamp as u32..LAYERS * (lamp as u32 + 1) {
@@ -48,8 +48,8 @@ impl Layered {
     }
 }
 
-/// Layers as in [`Layered`], each a texture of its own that passes read: OpenGL finds nothing in a single layer of
-/// several.
+/// Layers as in [`Layered`], but each in its own texture, for passes to read. On OpenGL a view of a single layer of an
+/// array reads as nothing.
 struct Apart {
     layers: Vec<wgpu::TextureView>,
 }
@@ -61,24 +61,24 @@ impl Apart {
     }
 }
 
-/// Inputs that a lamp's tables were drawn for.
+/// Inputs for which a lamp's tables were drawn.
 #[derive(Clone, Copy, PartialEq)]
 struct DrawnFor {
-    /// The planet's tables.
+    /// Id of the planet's tables.
     set: u64,
-    /// Tables that lie over them, and their share.
+    /// Id of the tables that fade in over them, and their share.
     over: Option<(u64, f32)>,
     altitude_m: f64,
     mu_s: f64,
 }
 
-/// Tables of which one fades into the other: each is drawn once, and every step lays one over the other.
+/// Fade between two tables. Each is drawn once; every step then mixes them.
 struct Fade {
-    /// Layers that fade out, and (`next`) those that fade in.
+    /// Layers that fade out (`first`), and layers that fade in (`next`).
     first: Apart,
     next: Apart,
     drawn: [Option<DrawnFor>; LAMPS],
-    /// How each layer of both is read.
+    /// Bind groups that read each layer of both.
     groups: [Vec<wgpu::BindGroup>; 2],
 }
 
@@ -91,25 +91,26 @@ impl Fade {
     }
 }
 
-/// Tables follow a sun that has moved by so much, rad; in frames that have other tables to pay, by so much.
+/// Movement of the sun after which the tables follow it, rad; and the same in frames that already have work on other
+/// tables.
 const SUN_STEP: (f64, f64) = (2e-5, 2e-4);
 
-/// An observer's tables, and the bind group with which shaders look them up (`shaders/sky/lookup.wgsl`, group 1).
+/// Tables of an observer, and the bind group with which shaders look them up (`shaders/sky/lookup.wgsl`, group 1).
 ///
-/// One thread at a time; one [`SkyVolume::prepare`] a submission, since it writes uniforms through the queue.
+/// One thread at a time. Call [`SkyVolume::prepare`] once a submission, because it writes uniforms through the queue.
 pub struct SkyVolume {
     device: Arc<Device>,
     kit: Arc<Kit>,
     tables: Layered,
-    /// By lamp: of the sky, and of the air.
+    /// Bind groups for each lamp: of the sky, and of the air.
     observer_groups: [[wgpu::BindGroup; 2]; LAMPS],
     observers: [[wgpu::Buffer; 2]; LAMPS],
     view: wgpu::Buffer,
     view_group: wgpu::BindGroup,
-    /// The tables' light, which the group holds.
+    /// Light of the tables, which is bound in `view_group`.
     light: wgpu::TextureView,
     drawn: [Option<DrawnFor>; LAMPS],
-    /// Made when first something fades in.
+    /// Fade, created when tables fade in for the first time.
     fade: Option<Box<Fade>>,
     written: ViewUniform,
     discs: u32,
@@ -117,7 +118,7 @@ pub struct SkyVolume {
 }
 
 impl SkyVolume {
-    /// Makes an observer's textures for `tables`; nothing is drawn yet.
+    /// Creates an observer's textures for `tables`; nothing is drawn yet.
     ///
     /// # Errors
     /// GPU faults.
@@ -150,22 +151,22 @@ impl SkyVolume {
         })
     }
 
-    /// Whether it was made for `tables`.
+    /// Whether this volume was created for `tables`.
     pub(super) fn is_of(&self, tables: &SkyTables) -> bool {
         self.light == tables.light.view
     }
 
-    /// Returns the settings of the tables that it was made for.
+    /// Returns the settings of the tables for which this volume was created.
     pub fn settings(&self) -> &SkySettings {
         &self.kit.settings
     }
 
-    /// Lamps that light the air, as of the last [`SkyVolume::prepare`].
+    /// Number of lamps that light the air, as of the last [`SkyVolume::prepare`].
     pub(crate) fn lamp_count(&self) -> u32 {
         self.written.lamp_count
     }
 
-    /// Lamps of which discs are drawn: those, and behind them those that show nothing else.
+    /// Number of lamps with a drawn disc: those that light the air, then those of which only the disc is drawn.
     pub(crate) fn disc_count(&self) -> u32 {
         self.discs
     }
@@ -175,18 +176,18 @@ impl SkyVolume {
         view_layout(device)
     }
 
-    /// The layout that this volume's group was made with.
+    /// Layout with which this volume's bind group was created.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.kit.observer_layouts.view
     }
 
-    /// Group 1 of every shader that includes `sky/lookup.wgsl`.
+    /// Bind group 1 of every shader that includes `sky/lookup.wgsl`.
     pub fn bind_group(&self) -> &wgpu::BindGroup {
         &self.view_group
     }
 
-    /// Brings the tables up to date and says whether anything had to be drawn. Nothing is, when neither altitude nor
-    /// sun nor air changed: turning the camera is free.
+    /// Updates the tables and returns whether anything had to be drawn. Nothing is drawn if altitude, sun and air are
+    /// unchanged: turning the camera is free.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for an observer out of range.
@@ -199,7 +200,7 @@ impl SkyVolume {
         observer.check()?;
         let air = tables.air();
         let planet = tables.planet().copied().unwrap_or_else(super::Planet::earth);
-        // Lamps that light the air come first, and tables are drawn for these alone; all tables are of one altitude.
+        // Lamps that light the air come first, and only they have tables. All tables have the same altitude.
         let lit = |in_air: bool| observer.lamps.iter().flatten().filter(move |l| l.is_lit() && l.lights_air == in_air);
         let lamps = || lit(true);
         let discs = || lit(true).chain(lit(false));
@@ -239,7 +240,7 @@ impl SkyVolume {
         Ok(drawn)
     }
 
-    /// Draws what of the lamps' tables does not serve any more; whether there was anything.
+    /// Draws the tables of lamps that are out of date. Returns whether any was drawn.
     fn update_lamps(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -260,7 +261,7 @@ impl SkyVolume {
         };
         let lamps = || mu_s.iter().enumerate().filter_map(|(i, mu_s)| mu_s.map(|mu_s| (i, mu_s)));
         let fading = tables.fading();
-        // The altitude of all lamps' tables is one.
+        // If one lamp's tables are out of date all are drawn, because they share the altitude.
         let moved = lamps().any(|(i, mu_s)| serves(&self.drawn[i], mu_s).is_none());
         let mut drawn = false;
         for (i, mu_s) in lamps() {
@@ -269,7 +270,7 @@ impl SkyVolume {
             let over = fading.map(|(next, share)| (next.id, share));
             match kept {
                 Some(d) if (d.set, d.over) == (shown.id, over.filter(|(_, share)| *share > 0.0)) => {}
-                // What has faded in wholly.
+                // A fade is complete: the tables that faded in become the shown ones.
                 Some(d)
                     if over.is_none()
                         && d.over.is_some_and(|(id, _)| id == shown.id)
@@ -305,7 +306,7 @@ impl SkyVolume {
         Ok(drawn)
     }
 
-    /// Whether lamp `i`'s tables of what fades in are those of `set`, for the place of `d`.
+    /// Whether lamp `i`'s tables that fade in are those of `set`, for the altitude and sun of `d`.
     fn is_ready(&self, i: usize, d: &DrawnFor, set: &TableSet) -> bool {
         let wanted = DrawnFor { set: set.id, over: None, ..*d };
         self.fade.as_ref().is_some_and(|f| f.drawn[i] == Some(wanted))
@@ -320,7 +321,7 @@ impl SkyVolume {
         }
     }
 
-    /// Lays a share of what fades in over lamp `i`'s tables.
+    /// Mixes the tables that fade in, with their share, into lamp `i`'s tables.
     fn lay_over(&self, encoder: &mut wgpu::CommandEncoder, i: usize, share: f32) {
         let Some(fade) = &self.fade else { return };
         let [first, next] = &fade.groups;
@@ -329,7 +330,7 @@ impl SkyVolume {
         }
     }
 
-    /// Draws lamp `i`'s tables of a planet's, for looking up or for laying over those.
+    /// Draws lamp `i`'s tables from a planet's tables: for look-ups, or with `is_next` for a fade.
     fn march(&mut self, encoder: &mut wgpu::CommandEncoder, set: &TableSet, i: usize, is_next: bool) -> Result<()> {
         if self.kit.settings.model == SkyModel::BruteForce {
             return Ok(());
@@ -370,7 +371,7 @@ impl SkyVolume {
     }
 }
 
-/// Creates the bind group of what shaders look up: the observer's sky and air, and the planet's light.
+/// Creates the bind group for look-ups: the observer's sky and air, and the planet's light.
 fn view_group(kit: &Kit, view: &wgpu::Buffer, [tables, light]: [&wgpu::TextureView; 2]) -> wgpu::BindGroup {
     let sampler = wgpu::BindingResource::Sampler(&kit.builder.sampler);
     bind(&kit.device, &kit.observer_layouts.view, &[view.as_entire_binding(), tex(tables), tex(light), sampler])

@@ -1,35 +1,36 @@
-//! The ways to draw falling snow that are charted against each other, with what they cost.
+//! Ways to draw falling snow that the lab charts against each other, and their cost.
 
 use super::settings::{SnowModel, SnowSettings};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Flakes, at two rungs: each near the camera, or none, so that all snow is extinction in the fog's layer. Importance:
-/// as of rain.
+/// Flakes, with two rungs: single flakes near the camera, or none, so that all snow is extinction in the fog's layer.
+/// The importance is that of rain.
 pub const SNOW: Part = Part { name: "snow", rungs: &["flakes", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work of the layer of what falls a pixel, and of a flake of the lattice, in units of a pixel with none of the parts:
-/// from the copies that `cargo bench --bench speed -- falling` prints.
+/// Work of the layer of falling things, per pixel, and of one flake of the lattice, in units of a pixel with none of
+/// the parts. Derived from the copies that `cargo bench --bench speed -- falling` prints.
 const LAYER_OF_PIXEL: f64 = 0.1;
 const ONE_FLAKE: f64 = 0.5;
 
-/// Work of the step from flakes to a veil, in a picture of so many pixels and flakes.
+/// Returns the work saved by the step from flakes to a veil, for a picture of `pixels` pixels with `flakes` flakes.
 pub(crate) fn snow_work(pixels: u64, flakes: u32) -> [StepWork; 1] {
     let fixed = ONE_FLAKE * f64::from(flakes) + LAYER_OF_PIXEL * pixels as f64;
     [StepWork { fixed, ..StepWork::default() }]
 }
 
-/// Work of a flake of the lattice: its place, whether the picture shows it, and the pixels of the few that it shows.
+/// Work of one flake of the lattice: its place, the test whether it is in the picture, and the pixels of the few that
+/// are.
 const FLAKE: Units = Units { samples: 8.0, texels: 1.0, bytes: 8.0 };
-/// Work that every pixel pays once anything falls: the layer cleared, read and put before the picture.
+/// Work of each pixel whenever snow falls: the layer is cleared, read and composited.
 const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
 
 fn work(settings: &SnowSettings) -> Work {
     match settings.model {
-        // As much as the fog does anyway, and no layer.
+        // The fog does this much anyway; there is no layer.
         SnowModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
         SnowModel::Automatic | SnowModel::Flakes => Work {
-            // They move: every frame.
+            // Flakes move, so all are tested in every frame.
             view: Units::default().plus(FLAKE, f64::from(settings.most_flakes.unwrap_or(1_000_000))),
             pixel: LAYER,
             ..Work::default()
@@ -37,7 +38,7 @@ fn work(settings: &SnowSettings) -> Work {
     }
 }
 
-/// All candidates.
+/// Returns all candidates.
 pub fn candidates() -> Vec<Listed<SnowSettings>> {
     let flakes = |n| SnowSettings { model: SnowModel::Flakes, most_flakes: Some(n), ..SnowSettings::default() };
     let named = [

@@ -1,10 +1,10 @@
-//! How much flakes stand out of a picture, in closed form, for the planner.
+//! Contrast that flakes add to a picture, in closed form, for the plan.
 //!
-//! Flakes are thrown at random, so the variance of what they hide from pixel to pixel is the sum of their squared
-//! covers (Campbell 1909). A flake that hides an area A, drawn L long and w wide at a distance r, hides on the mean A /
-//! ((L + w) w) of that; n / k a volume, each standing for k, make (n / k) (k A)^2 / ((L + w) w) dr. The mean square of
-//! a disc's chords is 32 / (3 pi^2) = 1.08 times the square of their mean. Unlike drops flakes are summed over
-//! distances, since a farther shell's stand for more.
+//! Flakes lie at random places, so the variance of the covered share from pixel to pixel is the sum of their squared
+//! covers (Campbell 1909). A flake that covers the area A is drawn L long and w wide at a distance r; its mean cover
+//! over this is A / ((L + w) w). With n / k drawn flakes a volume, each of which stands for k, those in dr add (n / k)
+//! (k A)^2 / ((L + w) w) dr. The mean square of a disc's chords is 32 / (3 pi^2) = 1.08 times the square of their mean.
+//! The sum over distances is numerical, unlike that of drops, because flakes of farther shells stand for more.
 
 use glam::{DVec2, DVec3};
 
@@ -20,11 +20,11 @@ use crate::{
     stage::Tone,
 };
 
-/// Panels of the sum over distances.
+/// Number of panels of the sum over distances.
 const PANELS: usize = 24;
 
-/// Variance from pixel to pixel of the share that flakes hide, for a camera whose pixels span an angle (rad) and before
-/// which they move `along_m` across the line of sight during the exposure.
+/// Returns the variance from pixel to pixel of the share that flakes cover. `pixel_angle` is the angle of a pixel, rad;
+/// `along_m` is the motion of flakes across the line of sight during the exposure, m.
 pub fn cover_variance(flakes: &Flakes, pixel_angle: f64, along_m: f64) -> f64 {
     let step = libm::log(flakes.reach_m().max(NEAREST_M) / NEAREST_M) / PANELS as f64;
     let at = |panel: usize| {
@@ -52,7 +52,7 @@ pub(crate) struct FlakeContrast {
 }
 
 impl FlakeContrast {
-    /// For a camera; the light is exposed, and passed through what the picture has been.
+    /// Creates the contrast for a camera. `light` includes the exposure; `tone` maps it to the picture's values.
     pub fn new(
         (flakes, wind_m_s): (&Flakes, DVec3),
         shot: &StreakCamera<'_>,
@@ -65,9 +65,9 @@ impl FlakeContrast {
         Self { seen: StreakContrast::new(shot, wind_m_s - fall, variance, (tone, lamps)), light }
     }
 
-    /// Returns the change that flakes make to pixel number `i` of a picture without flakes, over the pixel's luminance
-    /// and a hundredth of white, beside what the veil in their place adds. `picture` and `hidden` are its luminance
-    /// without flakes and the optical depth of what they hide.
+    /// Returns the change of pixel number `i` if flakes are left out, relative to the pixel's luminance plus a
+    /// hundredth of white. The light that the veil adds in place of the flakes is not counted. `picture` is the
+    /// luminance without flakes, `hidden` the optical depth of the flakes.
     pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let [flakes, contrast] = self.seen.at(i, ndc, picture, |d| flake_radiance(&self.light, d));
         [(flakes - hidden * contrast) as f32, 0.0, 0.0]

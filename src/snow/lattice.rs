@@ -1,17 +1,18 @@
-//! Where flakes are: a lattice of cells of air that the wind carries along, each flake at a place of its cell by
-//! chance, falling at its own speed on a helix of its own, with no state.
+//! Places of flakes without a state: a lattice of cells that moves with the air. Each flake has a random place in its
+//! cell and falls through it at its own speed, on its own helix.
 //!
-//! A shell is a cube of side L full of flakes, repeated through all space; a camera sees of each flake the copy nearest
-//! to it. Places, falls and turns are fractions in 32 bits and wrap as the lattice does (`src/falling/lattice.rs`):
-//! place = random(seed, shell, class, index) + displacement of the air - speed x fall phase, and the flake stands
-//! beside it by its helix, at the angle random + turns x turn phase. Speeds and turns are whole multiples of
-//! [`SPEED_UNIT`] and [`TURN_UNIT`], and so exact at any time; within a class each flake has its own, up to an eighth
-//! faster or slower (flakes of one size scatter by as much about Locatelli and Hobbs's lines).
+//! A shell is a cube of side L full of flakes, repeated in all directions; each flake is drawn at the copy nearest to
+//! the camera. Places, falls and turns are fractions in 32 bits and wrap as the lattice does
+//! (`src/falling/lattice.rs`): place = random(seed, shell, class, index) + displacement of the air - speed x fall
+//! phase. The helix adds an offset at the angle random + turns x turn phase. Speeds and turns are integer multiples of
+//! [`SPEED_UNIT`] and [`TURN_UNIT`], and therefore exact at any time. Within a class each flake has its own, up to an
+//! eighth faster or slower: flakes of one size scatter by as much about the lines of Locatelli and Hobbs.
 //!
-//! Each shell is twice as wide as the last. A shell that has no room for all its flakes draws some that stand for
-//! others: of each class so many that all drawn flakes hide as much as each other, which of all choices leaves the
-//! contrast closest to that of all flakes (importance sampling by area). Shells whose contrast would be off by more
-//! than the square root of 3 are left to the veil.
+//! Each shell is twice as wide as the one before. If a shell has no room for all its flakes, it draws some that stand
+//! for others. The numbers per class are chosen so that every drawn flake covers the same area, together with the
+//! flakes for which it stands: of all choices, this keeps the contrast closest to that of all flakes (importance
+//! sampling by area). Shells whose contrast would be too high by more than a factor of the square root of 3 are left to
+//! the veil.
 
 use glam::DVec3;
 
@@ -22,54 +23,55 @@ use crate::falling::{
 };
 use crate::numerics::smoothstep;
 
-/// Shells of the lattice.
+/// Number of shells of the lattice.
 pub const SHELLS: usize = 4;
-/// Classes of size, of all kinds.
+/// Number of classes of size, of all kinds together.
 pub const CLASSES: usize = 32;
-/// Classes of aggregates, grains and crystals.
+/// Number of classes of aggregates, grains and crystals.
 const CLASSES_OF: [usize; PARTS] = [20, 6, 6];
 /// Side of the innermost shell's cell, m.
 pub const SIDE_M: f64 = 4.0;
-/// Unit of which fall speeds are multiples, m/s.
+/// Unit of fall speeds, m/s. Fall speeds are integer multiples of it.
 pub const SPEED_UNIT: f64 = 1.0 / 1024.0;
-/// Unit of which turns are multiples, 1/s.
+/// Unit of turns, 1/s. Turns are integer multiples of it.
 pub const TURN_UNIT: f64 = 1.0 / 256.0;
-/// A shell takes over from the smaller one, and hands on to the larger, between this share of its reach and all of it.
+/// Share of its reach at which a shell begins to fade out and the next larger one to fade in. Both end at the full
+/// reach.
 pub const FADE: f64 = 0.85;
-/// Flakes nearer than this fade away, m: `NEAREST` of `shaders/snow/flakes.wgsl`.
+/// Distance below which flakes fade out, m: `NEAREST` of `shaders/snow/flakes.wgsl`.
 pub const NEAREST_M: f64 = 0.3;
-/// Variance of what drawn flakes hide over that of all flakes, up to which a shell is drawn.
+/// Largest ratio of the variance of drawn flakes to that of all flakes up to which a shell is drawn.
 const MOST_NOISE: f64 = 3.0;
-/// Number that sets flakes apart from drops in the random numbers of places: `SALT` of `shaders/snow/flakes.wgsl`.
+/// Offset that gives flakes other random numbers than drops: `SALT` of `shaders/snow/flakes.wgsl`.
 pub(super) const SALT: u32 = 0x5e0_0000;
 
-/// Side of a shell's cell, m.
+/// Returns the side of a shell's cell, m.
 pub fn side_m(shell: usize) -> f64 {
     SIDE_M * f64::from(1u32 << shell)
 }
 
-/// How many flakes of which class each shell holds.
+/// Number of flakes of each class in each shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flakes {
-    /// Diameter (m), fall speed (speed units), radius of the helix (m), turns (turn units) of each class.
+    /// Per class: diameter (m), fall speed (speed units), radius of the helix (m), turns (turn units).
     pub table: [[f32; 4]; CLASSES],
-    /// Per class and shell: flakes of the classes up to this one.
+    /// Per class and shell: number of flakes of the classes up to this one.
     pub upto: [[u32; SHELLS]; CLASSES],
-    /// Per class and shell: flakes that each of them stands for.
+    /// Per class and shell: number of flakes that each drawn flake stands for.
     pub weight: [[f32; SHELLS]; CLASSES],
-    /// Flakes of each class in a cubic metre of air.
+    /// Number of flakes of each class in a cubic metre of air.
     pub number_per_m3: [f64; CLASSES],
-    /// Shells that are drawn; 0 where there are no flakes.
+    /// Number of drawn shells; 0 if there are no flakes.
     pub shells: usize,
-    /// Flakes of all shells.
+    /// Number of drawn flakes in all shells.
     pub drawn: u32,
-    /// Extinction of the flakes along a way that hides the background, 1/m: their ice, half of their extinction; the
-    /// rest is diffraction.
+    /// Extinction of the flakes that covers the background, 1/m: that of their ice, which is half of the total; the
+    /// other half is diffraction.
     pub hidden_per_m: f64,
 }
 
-/// Flakes that stand for all of a volume: how many each of a class stands for, and the variance of what they hide over
-/// that of all.
+/// Returns the number of flakes that a drawn flake of each class stands for, so that `room` drawn flakes stand for all
+/// flakes of a volume, and the ratio of the variance of their cover to that of all flakes.
 fn thinned(numbers: &[f64; CLASSES], areas: &[f64; CLASSES], volume_m3: f64, room: f64) -> ([f64; CLASSES], f64) {
     let weights = |level: f64| areas.map(|a| (level / a.max(1e-12)).max(1.0));
     let count = |w: &[f64; CLASSES]| numbers.iter().zip(w).map(|(n, w)| n * volume_m3 / w).sum::<f64>();
@@ -88,8 +90,8 @@ fn thinned(numbers: &[f64; CLASSES], areas: &[f64; CLASSES], volume_m3: f64, roo
 }
 
 impl Flakes {
-    /// Creates the flakes of these sizes, at most `most` of them drawn; only the share `begun` of them at the edge of
-    /// the cloud that they fall from.
+    /// Creates the flakes of these sizes. At most `most` are drawn. `begun` is the share of the flakes that has left
+    /// the cloud.
     pub fn new(sizes: &FlakeSizes, begun: f64, most: u32) -> Self {
         let mut this = Self {
             table: [[0.0; 4]; CLASSES],
@@ -126,7 +128,7 @@ impl Flakes {
         this
     }
 
-    /// Chooses how many shells there is room for, and fills them from the innermost.
+    /// Chooses the largest number of shells for which there is room, and fills them from the innermost.
     fn fill(&mut self, areas: &[f64; CLASSES], most: f64) {
         let all: f64 = self.number_per_m3.iter().sum();
         for shells in (1..=SHELLS).rev() {
@@ -155,42 +157,43 @@ impl Flakes {
         }
     }
 
-    /// Flakes of each shell.
+    /// Returns the number of flakes in each shell.
     pub fn counts(&self) -> [u32; SHELLS] {
         std::array::from_fn(|s| if s < self.shells { self.upto[CLASSES - 1][s] } else { 0 })
     }
 
-    /// Distance beyond which none is drawn, m.
+    /// Returns the distance beyond which no flake is drawn, m.
     pub fn reach_m(&self) -> f64 {
         self.shells.checked_sub(1).map_or(0.0, |last| 0.5 * side_m(last))
     }
 
-    /// Distance up to which the flakes hide what all flakes would, m: to the middle of their fading.
+    /// Returns the distance up to which drawn flakes account for the extinction of all flakes, m: the middle of their
+    /// fade.
     pub fn hidden_m(&self) -> f64 {
         0.5 * (1.0 + FADE) * self.reach_m()
     }
 
-    /// Fall speed of the slowest, m/s, their scatter included.
+    /// Returns the lowest fall speed, m/s, including the scatter within a class.
     pub fn slowest_m_s(&self) -> f64 {
         let there = (0..CLASSES).filter(|k| self.number_per_m3[*k] > 0.0);
         there.map(|k| f64::from(self.table[k][1]) * SPEED_UNIT * 0.87).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// How far a shell's lattice has come at a moment, in 2^-32 of its side, and how far flakes have turned, in 2^-32 of a
+/// Displacement of a shell's lattice at a time, in 2^-32 of the cell's side, and the turn of its flakes, in 2^-32 of a
 /// turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Moment {
-    /// Displacement of the air (east, north, up).
+    /// Displacement of the air, (east, north, up).
     pub air: [u32; 3],
-    /// Distance that a flake of one speed unit has fallen.
+    /// Distance fallen at a speed of one unit.
     pub fall: u32,
-    /// How far a flake of one turn unit has turned.
+    /// Turn at a rate of one turn unit.
     pub turn: u32,
 }
 
 impl Moment {
-    /// Creates the moment of `shell`, after the air has moved by `displacement_m` and flakes have fallen for `time_s`.
+    /// Creates the moment of `shell` after the air has moved by `displacement_m` and flakes have fallen for `time_s`.
     pub fn new(shell: usize, displacement_m: DVec3, time_s: f64) -> Self {
         let side = side_m(shell);
         Self {
@@ -204,25 +207,26 @@ impl Moment {
 /// One flake of the lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flake {
-    /// Its shell, class and number: what it is known by.
+    /// Identity of the flake: shell, class and index.
     pub id: (u32, u32, u32),
-    /// Its place in the cell, without its helix.
+    /// Place in the cell, without the helix.
     pub place: [u32; 3],
-    /// Where on its helix it is, in 2^-32 of a turn.
+    /// Angle on the helix, in 2^-32 of a turn.
     pub angle: u32,
-    /// From the camera to its nearest copy, m, its helix included.
+    /// Position of the nearest copy relative to the camera, with the helix, m.
     pub position_m: DVec3,
     /// Velocity relative to the air, m/s.
     pub velocity_m_s: DVec3,
     /// Diameter, m.
     pub diameter_m: f64,
-    /// Share of it that its shell shows at this distance, 0 to 1.
+    /// Share of the flake that its shell shows at this distance, 0 to 1.
     pub share: f64,
-    /// Flakes that it stands for.
+    /// Number of flakes that it stands for.
     pub weight: f64,
 }
 
-/// Speed units, turn units (wrapping) and first angle of a flake of a class, from its three random words.
+/// Returns the fall speed (speed units), the turns (turn units, wrapping) and the first angle of a flake of a class,
+/// from its three random words.
 fn own(random: [u32; 3], class: &[f32; 4]) -> (u32, u32, u32) {
     let scattered = |units: u32, random: u32| {
         let scatter = (random & 255) as i32 - 128;
@@ -233,7 +237,7 @@ fn own(random: [u32; 3], class: &[f32; 4]) -> (u32, u32, u32) {
     (scattered(class[1] as u32, random[0]), turns, random[2] << 16)
 }
 
-/// Share of its flakes that `shell` of so many shows at `distance_m`.
+/// Returns the share of its flakes that `shell` shows at `distance_m`.
 pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     let reach = 0.5 * side_m(shell);
     let outer = 1.0 - smoothstep(FADE * reach, reach, distance_m);
@@ -245,9 +249,9 @@ pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     inner * outer
 }
 
-/// All flakes as a camera at `position_m` (east, north, up of a point fixed to the world) sees them, after the air has
-/// moved by `displacement_m` in `time_s`. Equal ids of two cameras are the same flake. The f64 side of `flake_of` in
-/// `shaders/snow/flakes.wgsl`.
+/// Returns all flakes as seen by a camera at `position_m` (east, north, up of a point fixed to the world), after the
+/// air has moved by `displacement_m` in `time_s`. Two cameras see the same flake under the same id. F64 twin of
+/// `flake_of` in `shaders/snow/flakes.wgsl`.
 pub fn flakes(
     flakes: &Flakes,
     seed: u64,

@@ -1,24 +1,25 @@
-//! Falling snow: flakes sized by rate, kind and temperature, each where (seed, id, time and the wind's displacement)
-//! puts it.
+//! Falling snow near the camera, flake by flake. Rate, kind and temperature set the sizes of flakes; the place of each
+//! flake follows from (seed, id, time) and the wind's displacement.
 //!
-//! The model: [`flakes`] has sizes, numbers, fall speeds and the helix that a flake falls on; [`lattice`] has the
-//! places: repeated cells of air that a camera sees the nearest copies of, with no state and no update; [`shape`] what
-//! a near flake looks like. One quad draws a flake: its shape where it is some pixels wide and moves by less than
-//! itself while the shutter is open, else a disc, or a streak, as faint as its ice is thin; below a pixel it gets
-//! fainter in place of smaller. Light is that of the sky, the ground, sun or moon, and lamps, scattered as ice does
-//! ([`mod@reference`]). Flakes go into the layer that all that falls shares, behind the host's depth, and not under its
-//! shelters and maps.
+//! The model: [`flakes`] has sizes, numbers and fall speeds, and the helix on which a flake falls. [`lattice`] has the
+//! places: cells of air that repeat in all directions. Each flake is drawn at the copy nearest to the camera; no state
+//! is kept or updated. [`shape`] has the look of a near flake. One quad draws a flake. A flake that is some pixels wide
+//! and moves by less than its own width during the exposure shows its shape. Other flakes are discs or streaks, whose
+//! opacity is their share of ice. A flake smaller than a pixel gets fainter instead of smaller. Flakes are lit by the
+//! sky, the ground, the sun or moon and lamps, with the phase function of ice ([`mod@reference`]). They go into the
+//! layer that all falling things share, behind the host's depth, and not under its shelters and occluder maps.
 //!
-//! *Near and far*: all snow is extinction in the fog's layer; of that the veil leaves to the flakes what they hide,
-//! within their reach, so neither the mean nor the visibility depends on how many are drawn.
+//! *Near and far*: the fog's layer contains the extinction of all snow. Within the flakes' reach, the extinction of the
+//! drawn flakes is subtracted from it. So neither the mean nor the visibility depends on how many flakes are drawn.
 //!
-//! *Settings*: [`SnowSettings`]. *Cost*: linear in the flakes drawn, and nothing where no snow falls. *Error*:
-//! [`contrast`] says what all flakes together are worth in a picture; `docs/lab` what fewer of them cost in contrast.
+//! *Settings*: [`SnowSettings`]. *Cost*: proportional to the number of drawn flakes; none where no snow falls. *Error*:
+//! [`contrast`] estimates how much all flakes together change a picture; `docs/lab` has the contrast lost with fewer
+//! flakes.
 //!
-//! Near a wind that varies in space (`SceneMoment::wind_volume`) flakes are stepped (`particles::stepping`), from where
-//! the lattice has them; on devices without compute shaders they go with the weather's wind.
+//! Near a wind that varies in space (`SceneMoment::wind_volume`) flakes are stepped (`particles::stepping`), starting
+//! from their places in the lattice. On devices without compute shaders they move with the weather's wind instead.
 //!
-//! No `held.rs`: flakes follow from seed and time, and those that are stepped belong to a view and are not saved.
+//! There is no `held.rs`: flakes follow from seed and time. Stepped flakes belong to a view and are not saved.
 
 #[cfg(not(feature = "lab"))]
 pub(crate) mod candidates;

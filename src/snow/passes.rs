@@ -1,4 +1,5 @@
-//! Flakes on the GPU: their block, their step where they are stepped, and their draw into the layer before the picture.
+//! Flakes on the GPU: their block, their step if they are stepped, and their draw into the layer in front of the
+//! picture.
 
 use super::{stepped, uniforms::FlakesUniform};
 use crate::{
@@ -20,39 +21,39 @@ use crate::{
     surroundings::{self, SurroundingsBlock},
 };
 
-/// Bytes of a `Spot` of `shaders/snow/flakes.wgsl`.
+/// Size of a `Spot` of `shaders/snow/flakes.wgsl`, bytes.
 const SPOT_BYTES: u64 = 64;
 
-/// Inputs and target of a frame's flakes.
+/// Inputs and target of one frame's flakes.
 pub(super) struct FlakeDraw<'a> {
     pub block: &'a FlakesUniform,
-    /// By what they are stepped, if they are.
+    /// Inputs of the step, if the flakes are stepped.
     pub stepped: Option<&'a Stepped<'a>>,
-    /// Rays of the camera.
+    /// View rays of the camera.
     pub rays: &'a ViewRays,
     pub surroundings: &'a SurroundingsBlock,
-    /// Whether occluder maps are among them.
+    /// Whether the surroundings contain occluder maps.
     pub maps: bool,
-    /// The layer before the picture, and whether something lies in it already, before which the flakes come.
+    /// Layer in front of the picture, and whether it already contains something; flakes are then drawn in front of it.
     pub target: &'a wgpu::TextureView,
     pub over: bool,
     /// The host's depth.
     pub depth: Option<Layer<'a>>,
 }
 
-/// GPU resources of a view for flakes, made when the first ones fall.
+/// GPU resources for the flakes of a view, created when the first ones fall.
 pub(super) struct SnowPass {
     block: UniformBlock,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     surroundings: wgpu::BindGroupLayout,
     pipelines: Made<FlakeVariant, wgpu::RenderPipeline>,
-    /// List of the flakes that the picture shows, where there are compute shaders and no steps.
+    /// List of the flakes in the picture, on devices with compute shaders while flakes are not stepped.
     listed: Option<Box<ListedFlakes>>,
     step: Option<Box<StepPass>>,
     none: wgpu::TextureView,
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
-    /// Whether it counts how often pixels are drawn, in place of the flakes' light.
+    /// Whether the pass counts how often pixels are drawn, instead of showing the flakes' light.
     counts: bool,
 }
 
@@ -76,12 +77,12 @@ impl SnowPass {
         }
     }
 
-    /// Whether it counts.
+    /// Whether the pass counts its draws.
     pub fn counts(&self) -> bool {
         self.counts
     }
 
-    /// Bytes of GPU memory that it holds.
+    /// Bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.step.as_ref().map_or(0, |step| step.bytes()) + self.listed.as_ref().map_or(0, |l| l.listing.bytes())
     }
@@ -122,7 +123,7 @@ impl SnowPass {
         pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
         pass.set_pipeline(pipeline);
         match (&self.step, &self.listed) {
-            // The farthest first.
+            // Draw the farthest shell first.
             (Some(step), _) => step.shells().rev().for_each(|(states, count)| {
                 pass.set_vertex_buffer(0, states);
                 pass.draw(0..4, 0..count);
@@ -148,7 +149,7 @@ impl SnowPass {
     }
 }
 
-/// Where flakes that are drawn come from: the lattice, the list of those that show, or their states.
+/// Source of the drawn flakes: all of the lattice, the list of those in the picture, or their states.
 #[derive(Clone, Copy, PartialEq)]
 enum FlakeSource {
     All,
@@ -156,7 +157,7 @@ enum FlakeSource {
     Stepped,
 }
 
-/// Variant of the pipeline that draws: how it reads depth, whether there are occluder maps, and the source of the
+/// Properties that select the pipeline: how depth is read, whether there are occluder maps, and the source of the
 /// flakes.
 #[derive(Clone, Copy, PartialEq)]
 struct FlakeVariant {
@@ -198,15 +199,15 @@ fn pipeline(
     )
 }
 
-/// The flakes that a picture shows ([`crate::particles::listing`]): shaders are `shaders/snow/cull.wgsl` and
+/// List of the flakes in a picture ([`crate::particles::listing`]). Shaders: `shaders/snow/cull.wgsl` and
 /// `cull_spots.wgsl`.
 struct ListedFlakes {
     layout: wgpu::BindGroupLayout,
-    /// The flakes' block.
+    /// Bind group with the flakes' block.
     group: wgpu::BindGroup,
     listing: Listing,
     mark: Option<[wgpu::ComputePipeline; 2]>,
-    /// By whether there are occluder maps.
+    /// Pipelines of `make_spots`, by whether there are occluder maps.
     makes: Made<bool, wgpu::ComputePipeline>,
 }
 
@@ -222,7 +223,7 @@ impl ListedFlakes {
         Self { layout, group, listing: Listing::new(device, SPOT_BYTES), mark: None, makes: Made::NONE }
     }
 
-    /// Records what finds them. The flakes' block is up.
+    /// Records the passes that find the flakes in the picture. The flakes' block is already uploaded.
     fn find(
         &mut self,
         recording: &mut Recording<'_>,

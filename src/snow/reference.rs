@@ -1,31 +1,31 @@
-//! Reference of the shaders of snow, in f64: the light that a flake scatters, and the sky that it passes on.
+//! Reference of the snow shaders, in f64: the light that a flake scatters, from beams and from the sky and ground.
 
 use glam::DVec3;
 
 use crate::moment::LightAround;
 
-/// Asymmetry of what a flake's ice scatters beside diffraction.
+/// Asymmetry of the scattering by a flake's ice, without diffraction.
 ///
 /// Aggregates of ice crystals have an asymmetry of about 0.77 in visible light (Raisanen et al. 2015 fit 0.78 to
-/// measurements of blowing snow). Half of what a large particle takes from a beam is diffraction, straight on: (0.77 -
-/// 0.5) / 0.5 is left for the rest.
+/// measurements of blowing snow). Half of the extinction of a large particle is diffraction, which goes straight on.
+/// The rest therefore has an asymmetry of (0.77 - 0.5) / 0.5.
 pub const ASYMMETRY: f64 = 0.54;
 
-/// Returns the light that a flake scatters of a beam at the cosine `c`, 1 straight on; 4 pi on the whole. Ice takes
-/// next to nothing of visible light.
+/// Returns the phase function of a flake, whose integral over all directions is 4 pi. `c` is the cosine of the
+/// scattering angle: 1 is straight on. Ice absorbs next to no visible light.
 pub fn flake_phase(c: f64) -> f64 {
     let g = ASYMMETRY;
     (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5)
 }
 
-/// The share of what surrounds a flake above the horizon in what it sends along a ray that rises by a sine `z`:
-/// [`flake_phase`] over a half space. By the Legendre series of both, 1/2 + (3/4) g z - (7/16) g^3 P3(z), cut there;
-/// within 0.02 of the integral.
+/// Returns the share of the light above the horizon in what a flake sends along a ray that rises with the sine `z`: the
+/// integral of [`flake_phase`] over a half space. The Legendre series of both gives 1/2 + (3/4) g z - (7/16) g^3 P3(z),
+/// truncated there; within 0.02 of the integral.
 pub fn flake_sky_share(z: f64) -> f64 {
     0.5 + z * (0.50835 - 0.17222 * z * z)
 }
 
-/// Radiance of a flake seen along the unit vector `d`, without lamps.
+/// Returns the radiance of a flake seen along the unit vector `d`, without lamps.
 pub fn flake_radiance(light: &LightAround, d: DVec3) -> DVec3 {
     light.below.lerp(light.above, flake_sky_share(d.z))
         + light.sun * (flake_phase(d.dot(light.to_sun)) / (4.0 * std::f64::consts::PI))

@@ -1,18 +1,18 @@
-//! The shape of a flake, as `shaders/snow/shape.wgsl` draws it.
+//! Shape of a flake, as `shaders/snow/shape.wgsl` draws it.
 //!
-//! Each flake is a disc that noise eats away at: value = max(1 - exp(-5 W), 0) with W = offset + strength n - r^2, of r
-//! in radii and noise n of the flake's own (the procedural flake of the older system that the shape is from, with n
-//! from -1 to 1 in place of a noise that may leave a hole where the flake should be). Offset and strength are such that
-//! the mean over discs is the share of a flake that is ice, so near flakes hide what far ones, drawn as faint discs,
-//! do.
+//! A flake is a disc eroded by noise: value = max(1 - exp(-5 W), 0) with W = offset + strength n - r^2, where r is the
+//! distance from the middle in radii and n the flake's own noise. The formula is that of an older system's procedural
+//! flake, with n from -1 to 1 instead of a noise that may leave a hole instead of a flake. Offset and strength are such
+//! that the mean over discs is the share of ice in a flake's disc. Near flakes therefore cover as much as far ones,
+//! which are drawn as faint discs.
 
 use crate::{falling::random3, numerics::smooth};
 
-/// Octaves of the noise.
+/// Number of octaves of the noise.
 const OCTAVES: u32 = 4;
-/// Cells of the coarsest in a radius.
+/// Number of cells of the coarsest octave in a radius.
 const CELLS: f64 = 2.2;
-/// Constant that is added to the noise.
+/// Constant added to the noise.
 const OFFSET: f64 = 0.8563;
 /// Weight of the noise.
 const NOISE: f64 = 2.0;
@@ -29,7 +29,7 @@ fn noise(p: [f64; 2], seed: u32) -> f64 {
     mix(mix(at(0, 0), at(1, 0), w[0]), mix(at(0, 1), at(1, 1), w[0]), w[1])
 }
 
-/// How much the flake of a seed hides at a place in radii, 0 to 1.
+/// Returns the opacity of the flake of a seed at a place, in radii, 0 to 1.
 pub fn flake_shape(place: [f64; 2], seed: u32) -> f64 {
     let square = place[0] * place[0] + place[1] * place[1];
     if square >= 1.0 {

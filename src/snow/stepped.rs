@@ -1,5 +1,6 @@
-//! Flakes that are stepped through a wind that varies in space: their lattice as [`crate::particles::stepping`] wants
-//! it, which has the model. Their helix is none of the step; it is drawn about the place where a flake is.
+//! Stepped flakes: the inputs of [`crate::particles::stepping`], which has the model, for the flakes of the lattice in
+//! a wind that varies in space. The step leaves out their helix, which is added around the stepped place when they are
+//! drawn.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! From the flakes and a camera to what their shader reads.
+//! Uniform block of the flakes' shader, computed from the flakes and a camera.
 
 use glam::DVec3;
 
@@ -41,7 +41,7 @@ pub(crate) struct FlakesUniform {
 }
 
 impl FlakesUniform {
-    /// Creates the block of flakes, for a camera in moving air; `light` is exposed.
+    /// Creates the block of flakes for a camera in moving air. `light` includes the exposure.
     pub fn new(seed: u64, flakes: &Flakes, light: &LightAround, shot: &StreakCamera<'_>, air: &MovingAir) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let last = flakes.upto[CLASSES - 1];

@@ -1,4 +1,4 @@
-//! The falling snow of a view: what it draws of it, from moment and camera.
+//! Falling snow of a view: what it draws for a moment and a camera.
 
 use super::{
     candidates,
@@ -37,24 +37,24 @@ struct Counted {
     most: u32,
 }
 
-/// State of the flakes that a view keeps.
+/// State that a view keeps for its flakes.
 pub(crate) struct SnowView {
     pub settings: SnowSettings,
-    /// The layer before the picture, which what else falls shares.
+    /// Layer in front of the picture, shared by all that falls.
     layer: FallingTexture,
     pass: Option<Box<SnowPass>>,
-    /// Flakes as they were counted last.
+    /// Flakes as last counted, and what they were counted for.
     counted: Option<Box<(Counted, Flakes)>>,
-    /// Whether there are any at the camera.
+    /// Whether flakes fall at the camera.
     is_there: bool,
-    /// Whether pixels are counted in place of the flakes' light.
+    /// Whether the pass counts how often pixels are drawn, instead of showing the flakes' light.
     counts: bool,
-    /// Share of the flakes that the plan draws, and whether something else lies in the layer in this frame.
+    /// Share of the flakes that the plan draws, and whether the layer already contains something in this frame.
     share: f32,
     over: bool,
     /// Whether flakes were stepped in the last frame.
     is_stepped: bool,
-    /// The wind then.
+    /// Memory of the wind in the last frame.
     last_wind: Remembered,
     drawn: (u64, SnowReport),
 }
@@ -80,12 +80,12 @@ impl SnowView {
         self.counted.as_ref().map(|kept| &kept.1)
     }
 
-    /// Whether the plan decides about them.
+    /// Whether the plan decides about the flakes.
     pub fn is_planned(&self) -> bool {
         self.settings.model == SnowModel::Automatic && self.is_there
     }
 
-    /// Whether the plan keeps any in this frame.
+    /// Whether the plan keeps any flakes in this frame.
     fn is_kept(&self) -> bool {
         self.is_there && self.share > 0.0
     }
@@ -150,7 +150,7 @@ impl DrawnEffect for SnowView {
         put(&candidates::SNOW, is_there, &candidates::snow_work(context.pixels(), flakes));
     }
 
-    /// Leaves to the flakes what they hide, beside what else falls and is drawn.
+    /// Sets the extinction that is drawn as flakes, to be subtracted from the fog, in addition to that of rain.
     fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
         self.share = if self.is_planned() { context.share(&candidates::SNOW, 0) } else { 1.0 };
@@ -213,7 +213,7 @@ impl DrawnEffect for SnowView {
         Ok(())
     }
 
-    /// The layer is counted by the rain, which always holds it.
+    /// Returns the bytes without those of the layer, which the rain always holds and counts.
     fn bytes(&self) -> u64 {
         self.pass.as_ref().map_or(0, |pass| pass.bytes())
     }

@@ -1,26 +1,26 @@
-//! One column of lying snow, in whole units of mass and depth: what it was given and what it gave add up to the last
-//! bit.
+//! One column of lying snow, in whole units of mass and depth, so that its mass balance is exact to the last bit.
 
 use super::laws;
 use crate::weather::{Conditions, Falling};
 
-/// Units of mass in a kg/m^2, and of depth in a metre.
+/// Units per kg/m^2 of mass, and per metre of depth.
 pub(super) const UNITS: f64 = 16_777_216.0;
 /// Units of an albedo of 1.
 const ALBEDO_UNITS: f64 = 1_073_741_824.0;
-/// Steps of density for which settling is tabulated, kg/m^3.
+/// Step of the densities for which settling is tabulated, kg/m^3.
 const DENSITY_STEP: f64 = 4.0;
 const DENSITIES: usize = 232;
 
-/// Snow over a square metre. A column without ice has no snow and is all 0.
+/// Snow over a square metre. A column without ice holds no snow, and all its values are 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Column {
-    /// Ice and held water, in units of mass.
+    /// Ice, in units of mass.
     pub ice: i64,
+    /// Liquid water, in units of mass.
     pub water: i64,
-    /// In units of depth.
+    /// Depth, in units of depth.
     pub depth: i64,
-    /// Albedo of visible light.
+    /// Albedo of visible light, in units of [`ALBEDO_UNITS`].
     pub albedo: i64,
 }
 
@@ -38,7 +38,7 @@ impl SnowParcel {
     }
 }
 
-/// Mass that a step took and gave, in units of mass.
+/// Mass that a column gained and lost in a step, in units of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct MassExchange {
     pub fallen: i64,
@@ -46,24 +46,27 @@ pub(super) struct MassExchange {
     pub sublimated: i64,
 }
 
-/// Forcing of columns during a step: equal for all of a field but for what is kept off.
+/// Forcing of columns during a step: the same for a whole field, apart from shelter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ColumnForcing {
-    /// Units of ice that fall, their depth as they land, and the share of the albedo's way to that of new snow that
-    /// they go.
+    /// Ice that falls, in units of mass.
     ice: i64,
+    /// Depth of that ice as it lands, in units of depth.
     depth: i64,
+    /// Share by which the albedo approaches that of new snow.
     renewed: f64,
     rain: i64,
-    /// Units that may melt in the dark, and more for an albedo of 0.
+    /// Melt without sunlight, in units of mass.
     melt: f64,
+    /// Additional melt by sunlight for an albedo of 0, in units of mass.
     melt_by_sun: f64,
     refreezing: i64,
     sublimation: i64,
     albedo_kept: f64,
 }
 
-/// How snow settles in a step, per step of density: by its grains while it is dry, and per unit of the mass above.
+/// Settling in a step, tabulated by density: the rate by grain changes in dry snow, and the rate per unit of the
+/// column's mass.
 #[derive(Clone, Debug)]
 pub(super) struct Settling(Box<[[f64; 2]; DENSITIES]>);
 
@@ -72,7 +75,7 @@ impl Settling {
         Self(Box::new([[0.0; 2]; DENSITIES]))
     }
 
-    /// Sets the factors for air of this temperature, in a step so long.
+    /// Computes the table for air of this temperature and a step of this length.
     pub fn set(&mut self, temperature_c: f64, seconds: f64) {
         for (i, settling) in self.0.iter_mut().enumerate() {
             let density = DENSITY_STEP * (i as f64 + 0.5);
@@ -86,13 +89,13 @@ fn units(amount: f64) -> i64 {
     (amount * UNITS).round() as i64
 }
 
-/// `part` of `whole` of a number, rounded down: exact enough for depths, which no books are kept of.
+/// Returns the share `part / whole` of a number, rounded down. This is exact enough for depths, which have no balance.
 fn share(number: i64, part: i64, whole: i64) -> i64 {
     (number as f64 * (part as f64 / whole as f64)) as i64
 }
 
 impl ColumnForcing {
-    /// Creates the forcing of a weather in which `falling` falls, under sunlight in W/m^2.
+    /// Creates the forcing for a weather in which `falling` falls, under sunlight in W/m^2.
     pub fn new(c: &Conditions, falling: &Falling, sunlight_w_m2: f64, seconds: f64) -> Self {
         let hours = seconds / 3600.0;
         let (t, wind) = (c.air.temperature_c, c.wind.speed_m_s());
@@ -121,7 +124,7 @@ impl ColumnForcing {
 }
 
 impl Column {
-    /// New snow of this depth, m, and density, kg/m^3.
+    /// Creates new snow of this depth, m, and density, kg/m^3.
     pub fn of(depth_m: f64, density_kg_m3: f64) -> Self {
         let depth = units(depth_m.max(0.0));
         let ice = units(depth_m.max(0.0) * density_kg_m3);
@@ -141,12 +144,12 @@ impl Column {
         self.depth as f64 / UNITS
     }
 
-    /// kg/m^3; 0 without snow.
+    /// Returns the density, kg/m^3; 0 without snow.
     pub fn density_kg_m3(&self) -> f64 {
         if self.depth > 0 { self.mass() as f64 / self.depth as f64 } else { 0.0 }
     }
 
-    /// Held water over what the snow can hold.
+    /// Returns the liquid water over the most that the snow can hold, at most 1.
     pub fn wetness(&self) -> f64 {
         if self.ice > 0 { (self.water as f64 / (laws::HELD_SHARE * self.ice as f64)).min(1.0) } else { 0.0 }
     }
@@ -155,12 +158,12 @@ impl Column {
         self.water as f64 > laws::WET_SHARE * self.ice as f64
     }
 
-    /// 0 without snow.
+    /// Returns the albedo; 0 without snow.
     pub fn albedo(&self) -> f64 {
         self.albedo as f64 / ALBEDO_UNITS
     }
 
-    /// Leads the column through a step in which `open` of what falls gets to it.
+    /// Steps the column. The share `open` of what falls arrives on it.
     pub fn step(&mut self, f: &ColumnForcing, settling: &Settling, open: f64) -> MassExchange {
         let mut gone = MassExchange::default();
         let ice = if open == 1.0 { f.ice } else { (f.ice as f64 * open) as i64 };
@@ -183,7 +186,7 @@ impl Column {
         gone
     }
 
-    /// The snow settles under half of its own load, and its albedo goes to that of old snow.
+    /// Lets the snow settle under half of its own load, and moves its albedo towards that of old snow.
     fn settle(&mut self, f: &ColumnForcing, settling: &Settling) {
         if self.depth == 0 {
             return;
@@ -205,7 +208,7 @@ impl Column {
         self.depth += depth;
     }
 
-    /// Takes ice away with its depth; answers how much there was of it.
+    /// Removes ice with its share of the depth. Returns the amount removed.
     fn lose(&mut self, wanted: i64) -> i64 {
         let lost = wanted.min(self.ice);
         if lost > 0 {
@@ -223,7 +226,7 @@ impl Column {
         self.ice += freezes;
     }
 
-    /// No snow is denser than ice, and none is without ice.
+    /// Keeps the density at most that of ice, and resets a column without mass.
     fn tidy(&mut self) {
         if self.mass() == 0 {
             *self = Self::default();
@@ -232,7 +235,7 @@ impl Column {
         }
     }
 
-    /// Takes `part` of `whole` of the column away.
+    /// Removes the share `part / whole` of the column.
     pub fn take(&mut self, part: i64, whole: i64) -> SnowParcel {
         let exact = |v: i64| (i128::from(v) * i128::from(part) / i128::from(whole)) as i64;
         let taken = SnowParcel { ice: exact(self.ice), water: exact(self.water), depth: exact(self.depth) };
@@ -243,14 +246,14 @@ impl Column {
         taken
     }
 
-    /// Takes ice of this mass away as the wind does it: the snow left is as dense as before.
+    /// Removes ice of this mass by wind erosion; the density of the rest stays the same. Returns the amount removed.
     pub fn erode(&mut self, wanted: i64) -> i64 {
         let lost = self.lose(wanted);
         self.tidy();
         lost
     }
 
-    /// Adds what comes from elsewhere; `albedo` is what it had there.
+    /// Adds snow from elsewhere; `albedo` is its albedo there.
     pub fn add(&mut self, part: SnowParcel, albedo: i64) {
         let mass = self.mass() + part.mass();
         if mass > 0 && part.mass() > 0 {
@@ -262,7 +265,7 @@ impl Column {
         self.tidy();
     }
 
-    /// Presses `covered` of the column to this density, if it is less dense.
+    /// Presses the share `covered` of the column to this density, if it is less dense.
     pub fn press(&mut self, density_kg_m3: f64, covered: f64) {
         let pressed = (self.mass() as f64 / density_kg_m3) as i64;
         if pressed < self.depth {
@@ -271,14 +274,14 @@ impl Column {
         }
     }
 
-    /// Whether a saved one can be one of ours.
+    /// Whether the values of a saved column are in range.
     pub fn is_sound(&self) -> bool {
         let most = (1e5 * UNITS) as i64;
         let within = [self.ice, self.water, self.depth].iter().all(|v| (0..=most).contains(v));
         within && (0..=ALBEDO_UNITS as i64).contains(&self.albedo) && (self.mass() == 0) == (self.depth == 0)
     }
 
-    /// Albedo of dry snow that the wind lays down, which breaks its grains: that of new snow.
+    /// Albedo of dry snow that the wind lays down: that of new snow, since the wind breaks its grains.
     pub fn drifted_albedo() -> i64 {
         (laws::NEW_ALBEDO * ALBEDO_UNITS) as i64
     }

@@ -1,24 +1,25 @@
-//! Snow that the wind carries along the ground: from where it blows to where it is weaker.
+//! Snow that the wind carries along the ground: it erodes where the wind is strong and lands where it is weaker.
 //!
-//! **Wind at the surface.** A wind that varies in space is taken as it is, with its direction, but for what blows
-//! against the mean wind. Else the surface's shape bends the mean wind: slopes that face it quicken it and lee slopes
-//! calm it by 0.58 of their slope (Liston and Elder 2006), crests quicken it and hollows calm it by 2 H / L (Jackson
-//! and Hunt 1975). Behind what stands up the wind is calmed below a line that falls by 1 in [`LEE_RUN`] from its top:
-//! the idea of Winstral and Marks (2002), with the length of drifts behind solid fences (Tabler 2003). Before it a line
-//! rises as steeply to its top, and the wind below is calmed by the fourth power of how far below: a tenth five heights
-//! before a wall and two thirds one height before it. The drift there ends up half as high as the wall, as fences get
-//! it to windward (Tabler 1980, J. Glaciol. 26, 405).
+//! **Wind at the surface.** A wind that varies in space is used as it is, with its direction, except for components
+//! against the mean wind. Otherwise the surface's shape changes the mean wind. Slopes that face the wind speed it up
+//! and lee slopes slow it down by 0.58 of their slope (Liston and Elder 2006); crests speed it up and hollows slow it
+//! down by 2 H / L (Jackson and Hunt 1975). Behind an obstacle the wind is calmed below a line that falls by 1 in
+//! [`LEE_RUN`] from its top: the idea of Winstral and Marks (2002), with the length of drifts behind solid fences
+//! (Tabler 2003). In front of an obstacle a line rises to its top with the same slope, and the wind below is calmed by
+//! the fourth power of the depth below it: by a tenth at five heights before a wall and by three fifths at one height.
+//! The drift there ends up half as high as the wall, as is found on the windward side of fences (Tabler 1980, J.
+//! Glaciol. 26, 405).
 //!
-//! **Transport.** Along the wind the flux goes to what the wind can carry ([`saltation_kg_m_s`]): upwards over
-//! [`ERODING_M`] where there is loose snow, downwards over [`LANDING_M`]. One sweep down the wind does this for a whole
-//! step, whatever its length and the cells' size: what leaves a cell enters the next ones, what leaves the last ones is
-//! blown out. As much comes in from the country about the field as its snow yields. What hops ([`saltation_kg_m_s`])
-//! and what is suspended ([`suspension_kg_m_s`]) are carried side by side: the second grows over [`LIFTING_M`] and
-//! lands over [`SINKING_M`], so that it reaches farther into a lee.
+//! **Transport.** Along the wind the flux approaches what the wind can carry ([`saltation_kg_m_s`]): it grows over the
+//! length [`ERODING_M`] where there is loose snow, and falls over [`LANDING_M`]. One sweep down the wind does this for
+//! a whole step, for any length of step and size of cells. Snow that leaves a cell enters the next ones, and snow that
+//! leaves the last ones is blown out. The country around the field supplies as much as its own snow yields. Saltating
+//! ([`saltation_kg_m_s`]) and suspended snow ([`suspension_kg_m_s`]) are carried separately: suspended snow grows over
+//! [`LIFTING_M`] and lands over [`SINKING_M`], so it reaches farther into a lee.
 //!
-//! The sweep goes from patch to patch down the wind, as from cell to cell: what leaves the last cells of one, and the
-//! line of a lee over them, is what comes to the next. Patches that have no snow, get none and have none to their lee
-//! are left out.
+//! The sweep goes from patch to patch down the wind as it does from cell to cell: the snow that leaves the last cells
+//! of one patch, and the lee's line over them, enter the next. Patches are left out if they have no snow, receive none
+//! and have no snow to their lee.
 
 use glam::DVec2;
 
@@ -33,32 +34,34 @@ use super::{
 
 use crate::numerics::smoothstep;
 
-/// Ways over which the flux of what hops grows and falls to 1/e, m.
+/// Length over which the flux of saltating snow grows to within 1/e of what the wind can carry, m.
 const ERODING_M: f64 = 30.0;
+/// Length over which an excess of saltating snow falls to 1/e, m.
 const LANDING_M: f64 = 3.0;
-/// Ways over which the flux of suspended snow grows and falls to 1/e, m: it is fully developed after some 500 to 1000 m
-/// (Takeuchi 1980), and sinks half a metre at 0.4 m/s in a wind of 12 m/s.
+/// Length over which the flux of suspended snow grows to within 1/e, m: the flux is fully developed after some 500 to
+/// 1000 m (Takeuchi 1980).
 const LIFTING_M: f64 = 250.0;
+/// Length over which an excess of suspended snow falls to 1/e, m: it sinks half a metre at 0.4 m/s in a wind of 12 m/s.
 const SINKING_M: f64 = 15.0;
-/// Run of the line below which the wind is calmed, over its fall.
+/// Run over fall of the line below which a lee is calmed.
 const LEE_RUN: f64 = 12.0;
-/// Share of the wind that the calm takes.
+/// Largest share of the wind that a calm takes away.
 const CALMED: f64 = 0.85;
-/// Least height of what casts a lee, m.
+/// Least height that is assumed for an object that casts a lee, m.
 const LEAST_M: f64 = 1.0;
-/// Distances over which slope and curvature of the surface are taken, m.
+/// Distances over which the surface's slope and curvature are measured, m.
 const SHAPES_M: [f64; 3] = [6.0, 10.0, 15.0];
 
-/// How a sweep goes down the wind.
+/// Direction of a sweep down the wind.
 struct Way {
     /// Shares of the flux that go east or west, and north or south.
     shares: [f64; 2],
-    /// Whether it goes west, and south.
+    /// Whether the sweep goes west, and whether it goes south.
     back: [bool; 2],
-    /// Direction of the wind, unit.
+    /// Unit vector along the wind.
     unit: DVec2,
     speed: f64,
-    /// Way through a cell, m.
+    /// Length of the path through a cell, m.
     through_m: f64,
 }
 
@@ -76,40 +79,40 @@ impl Way {
         }
     }
 
-    /// The patch up or down the wind along an axis.
+    /// Returns the neighbouring patch to leeward or to windward along an axis.
     fn beside(&self, patch: &Patch, axis: usize, leeward: bool) -> u32 {
         patch.near[2 * axis + usize::from(self.back[axis] != leeward)]
     }
 }
 
-/// Inputs of a whole sweep.
+/// Inputs that all cells of a sweep share.
 struct Sweep<'a> {
     way: &'a Way,
-    /// Along the mean wind.
+    /// Passage through a cell along the mean wind.
     mean: Through,
-    /// Units of mass for a flux of 1 kg/(m s) over the length of a cell's side.
+    /// Units of mass for a flux of 1 kg/(m s) over the side of a cell.
     per_flux: f64,
     cell_m: f64,
     landing_kg_m3: f64,
-    /// The wind over cells is that at their places.
+    /// Whether the wind varies in space and is given for each cell.
     is_local: bool,
     revision: u64,
 }
 
-/// How the wind goes through a cell.
+/// Passage of the wind through a cell.
 #[derive(Clone, Copy)]
 struct Through {
-    /// Lengths of its direction's parts, together.
+    /// Sum of the absolute components of its unit direction.
     sum: f64,
     /// Share of the flux that goes east or west.
     across: f64,
-    /// Share of the way to its new flux that drift goes within a cell, where it grows and where it falls: of hopping
-    /// and of suspended snow.
+    /// Share by which the flux approaches its new value within a cell, when it grows and when it falls: for saltating
+    /// and for suspended snow.
     grown: [[f64; 2]; 2],
 }
 
 impl Through {
-    /// In this direction: the lengths of its parts.
+    /// Creates the passage for a direction, given by the absolute values of its components.
     fn new([x, y]: [f64; 2], cell_m: f64) -> Self {
         let sum = x + y;
         let share = |l: f64| 1.0 - libm::exp(-cell_m / (sum * l));
@@ -118,8 +121,8 @@ impl Through {
     }
 }
 
-/// Height of ground and snow so many cells along an axis from a cell, m, and how many they were: fewer at the end of
-/// the ground, and none where something stands.
+/// Returns the height of ground and snow, m, at `cells` cells along an axis from a cell, and the number of cells
+/// actually gone: fewer at the edge of the ground, and 0 if that cell is blocked.
 fn along(
     field: &SnowField,
     (patch, place): (usize, [usize; 2]),
@@ -145,8 +148,8 @@ fn along(
     if patch.is_blocked(cell) { (f64::NAN, 0) } else { (patch.surface_m(cell), cells - left) }
 }
 
-/// Factor on the wind at a cell by the surface's slope and curvature, in the mean of several distances: over a single
-/// one each drift would be repeated at that distance up the wind.
+/// Returns the factor on the wind at a cell by the surface's slope and curvature, averaged over several distances: with
+/// a single distance each drift would repeat itself at that distance upwind.
 fn shaped(field: &SnowField, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
     let here = field.patches[patch].surface_m(place[1] * field.size[0] + place[0]);
     let (mut steep, mut crest) = (0.0, 0.0);
@@ -169,8 +172,8 @@ fn shaped(field: &SnowField, patch: usize, place: [usize; 2], unit: DVec2) -> f6
     1.0 + 0.58 * (share * steep).clamp(-0.5, 0.5) + (share * crest).clamp(-0.4, 0.4)
 }
 
-/// A calm's line over a cell, from the lines over its two neighbours on the side of what casts it: its height, m, lower
-/// by the way through the cell, and the height of what casts it, m.
+/// Returns a calm's line over a cell, from the lines over its two neighbours on the side of the object that casts it:
+/// the height of the line, m, lowered over the path through the cell, and the height of the object, m.
 fn fallen(way: &Way, neighbours: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
     for (share, known) in way.shares.into_iter().zip(neighbours).filter_map(|(share, known)| Some((share, known?))) {
@@ -181,7 +184,7 @@ fn fallen(way: &Way, neighbours: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     (sum > 0.0).then(|| [line / sum - way.through_m / LEE_RUN, caster / sum])
 }
 
-/// Returns the share of the wind that a lee leaves at a cell, up to a factor, and the line over it.
+/// Returns the factor by which a lee calms the wind at a cell, and the lee's line over the cell.
 fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, windward.map(|air| air.lee)).map(|[line, caster]| [line, caster.max(LEAST_M)]);
     if patch.is_hole(cell) {
@@ -195,8 +198,8 @@ fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f
     }
 }
 
-/// Returns the share of the wind that is left at a cell by the calm before what stands to the lee, up to a factor, and
-/// the line over it.
+/// Returns the factor by which the calm in front of obstacles to leeward slows the wind at a cell, and its line over
+/// the cell.
 fn dammed(patch: &Patch, cell: usize, way: &Way, leeward: [Option<[f64; 2]>; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, leeward);
     if patch.is_hole(cell) {
@@ -214,7 +217,7 @@ fn dammed(patch: &Patch, cell: usize, way: &Way, leeward: [Option<[f64; 2]>; 2])
 }
 
 impl DriftSweep {
-    /// Carries snow by the wind of a step, if that is strong enough anywhere.
+    /// Carries snow by the wind of a step, if the wind is strong enough anywhere.
     pub fn blow(&mut self, field: &mut SnowField, step: &SnowStep<'_>) {
         let mean = step.wind.mean;
         let lies = field.patches.iter().any(|p| !p.is_bare());
@@ -252,8 +255,7 @@ impl DriftSweep {
         }
     }
 
-    /// Puts the patches in the order of the wind, and finds which of them snow may reach and which have such in their
-    /// lee.
+    /// Sorts the patches down the wind, and finds those that snow may reach and those with such patches to their lee.
     fn choose(&mut self, field: &mut SnowField, way: &Way, comes_in: bool) {
         self.order.clear();
         self.order.extend(0..field.patches.len() as u32);
@@ -279,7 +281,7 @@ impl DriftSweep {
         }
     }
 
-    /// Finds the wind over the cells that snow may reach. Answers the strongest, m/s.
+    /// Finds the wind over the cells that snow may reach. Returns the highest speed, m/s.
     fn winds(&self, field: &mut SnowField, step: &SnowStep<'_>, way: &Way) -> f64 {
         let mut strongest: f64 = if step.wind.local.is_some() { 0.0 } else { 1.7 * way.speed };
         let columns = field.size[0];
@@ -296,7 +298,7 @@ impl DriftSweep {
                 let on = [0, 1].map(|i| patch.key[i] * field.size[i] as i32 + place[i] as i32);
                 let found = local(on, patch.surface_m(cell));
                 strongest = strongest.max(found.length());
-                // Against the mean wind nothing is carried: there the air turns round behind something.
+                // Against the mean wind nothing is carried: there the air recirculates behind an object.
                 let along = |axis: usize| (if way.back[axis] { -found[axis] } else { found[axis] }).max(0.0);
                 [along(0), along(1)]
             }));
@@ -305,7 +307,7 @@ impl DriftSweep {
         strongest
     }
 
-    /// Calms the wind before what stands up, from patch to patch against the wind.
+    /// Calms the wind in front of obstacles, from patch to patch against the wind.
     fn dam(&mut self, field: &mut SnowField, way: &Way) {
         let [nx, ny] = field.size;
         for at in self.order.iter().rev().map(|at| *at as usize) {
@@ -339,7 +341,7 @@ impl DriftSweep {
         }
     }
 
-    /// Finds what comes to a patch: from those up the wind, or what the country about the field yields.
+    /// Finds the fluxes that enter a patch: from the patches to windward, or from the country around the field.
     fn come(&mut self, field: &mut SnowField, patch: usize, way: &Way, inflow: [[i64; 2]; 2]) {
         for (axis, inflow) in inflow.into_iter().enumerate() {
             let before = way.beside(&field.patches[patch], axis, false);
@@ -356,7 +358,7 @@ impl DriftSweep {
         }
     }
 
-    /// Sweeps over a patch: what comes to it becomes what leaves it.
+    /// Sweeps over a patch: turns the fluxes that enter it into those that leave it.
     fn sweep(&mut self, field: &mut SnowField, patch: usize, sweep: &Sweep<'_>) {
         let way = sweep.way;
         let [nx, ny] = field.size;
@@ -388,8 +390,9 @@ impl DriftSweep {
 }
 
 impl Sweep<'_> {
-    /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell along the row and along
-    /// the column, hopping and suspended, the lee's line over it, and whether its column of snow has changed.
+    /// Exchanges snow between the air over a cell and its column. Returns the snow that leaves the cell along the row
+    /// and along the column, each saltating and suspended; the lee's line over the cell; and whether its column has
+    /// changed.
     fn cell(
         &self,
         patch: &mut Patch,
@@ -403,7 +406,7 @@ impl Sweep<'_> {
         }
         let (speed, through) = self.wind(patch.edges.wind[cell], calm);
         let mut changes = false;
-        // Over what stands there, and over holes, it only passes.
+        // Over obstacles and holes the snow only passes.
         if !patch.is_blocked(cell) {
             let mut column = patch.column(cell);
             for (kind, flux) in [saltation_kg_m_s, suspension_kg_m_s].into_iter().enumerate() {
@@ -421,7 +424,8 @@ impl Sweep<'_> {
         ([across, [leaving[0] - across[0], leaving[1] - across[1]]], lee, changes)
     }
 
-    /// Speed of the wind over a cell, m/s, and how it goes through: as it blows there, or along the mean wind.
+    /// Returns the speed of the wind over a cell, m/s, and its passage through the cell: along the local wind, or along
+    /// the mean wind.
     fn wind(&self, own: [f64; 2], calm: f64) -> (f64, Through) {
         if !self.is_local {
             return (self.way.speed * calm * own[0], self.mean);
@@ -431,7 +435,7 @@ impl Sweep<'_> {
     }
 }
 
-/// Returns the snow that the country about a field yields to each row and each column of cells at its border.
+/// Returns the snow that the surrounding country supplies to each row and each column of cells at the field's border.
 fn inflow(field: &SnowField, step: &SnowStep<'_>, way: &Way) -> [[i64; 2]; 2] {
     let country = step.country;
     let threshold = threshold_m_s(country.is_wet(), country.density_kg_m3());
@@ -443,7 +447,8 @@ fn inflow(field: &SnowField, step: &SnowStep<'_>, way: &Way) -> [[i64; 2]; 2] {
     [way.unit.x.abs(), way.unit.y.abs()].map(|part| fluxes.map(|flux| (flux * part) as i64))
 }
 
-/// Takes from a column towards `lacking` more in the air, or lands what is too much; answers what the air has gained.
+/// Erodes a column if the air lacks snow (`lacking` above 0), or lands snow if it has too much. Returns the gain of the
+/// air.
 fn exchange(column: &mut Column, lacking: i64, speed: f64, [eroded, landed]: [f64; 2], landing_kg_m3: f64) -> i64 {
     if lacking > 0 {
         let loose = column.ice > 0 && speed > threshold_m_s(column.is_wet(), column.density_kg_m3());

@@ -1,39 +1,42 @@
-//! State of drifting snow: what crosses the borders of cells and patches with the wind, and the room for a sweep.
+//! State of drifting snow: fluxes across the borders of cells and patches, and scratch space for a sweep.
 
 /// Snow and lee that cross a cell's border with the wind.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct DriftFlux {
-    /// Snow that hops and that is suspended, in units of mass.
+    /// Saltating and suspended snow, in units of mass.
     pub snow: [i64; 2],
-    /// Height of the lee's line there, and of what casts it, m; none at the end of the ground.
+    /// Height of the lee's line there, and of the object that casts it, m; `None` at the edge of the ground.
     pub lee: Option<[f64; 2]>,
 }
 
-/// State of a sweep for a patch.
+/// State of a patch in a sweep.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Edges {
-    /// Air that has left it down the wind: along each row to the east or west, along each column to the north or south.
+    /// Fluxes that have left the patch down the wind: along each row to the east or west, along each column to the
+    /// north or south.
     pub left: [Vec<DriftFlux>; 2],
-    /// Wind over each cell: its parts along the sweep, m/s, or its speed over the mean wind's and nothing.
+    /// Wind over each cell. A wind that varies in space is given by its components along the sweep, m/s; else the first
+    /// number is its ratio to the mean wind, and the second is 0.
     pub wind: Vec<[f64; 2]>,
-    /// The line of the calm before what stands to its lee, along each row and each column where the wind comes in: its
-    /// height and that of what casts it, m. Empty where nothing stands.
+    /// Line of the calm in front of obstacles to leeward, where the wind enters each row and each column: height of the
+    /// line and of the obstacle that casts it, m. Empty if no obstacle stands there.
     pub fronts: [Vec<Option<[f64; 2]>>; 2],
-    /// Number of the sweep that it was in last.
+    /// Number of the last sweep in which the patch took part.
     pub swept: u64,
-    /// Snow may lie on it or come to it in this sweep; and some may lie to its lee.
+    /// Whether snow may lie on the patch or reach it in this sweep.
     pub has_snow: bool,
+    /// Whether snow may lie on a patch to its lee.
     pub has_lee: bool,
 }
 
-/// Room for a sweep.
+/// Scratch space of a sweep.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DriftSweep {
-    /// Numbers of the patches down the wind.
+    /// Numbers of the patches, from windward to leeward.
     pub order: Vec<u32>,
-    /// Air that comes to a patch: along each row, and along each column.
+    /// Fluxes that enter a patch: along each row, and along each column.
     pub coming: [Vec<DriftFlux>; 2],
-    /// Fronts of the patches to the lee: see [`Edges`].
+    /// Fronts of the patches to leeward; see [`Edges`].
     pub fronts: [Vec<Option<[f64; 2]>>; 2],
     pub sweeps: u64,
 }

@@ -1,23 +1,23 @@
-//! Columns of snow side by side on patches of ground, and the books of their mass.
+//! Columns of snow on patches of ground, and their mass balance.
 //!
-//! A **patch** is a rectangle of cells; all of a field have the same size and lie on one lattice, side by side or
-//! apart. A grid of the host's is one patch, its tiles are many. Nothing depends on where one patch ends and the next
-//! begins: sums are of whole numbers, what goes with the wind goes from patch to patch ([`super::drift`]), and what
-//! slides does so in the order of the lattice's rows ([`super::slides`]). A patch without snow has no columns and is
-//! passed over until something falls, drifts or slides onto it.
+//! A **patch** is a rectangle of cells. All patches of a field have the same size and lie on one lattice, side by side
+//! or apart. A host's grid is one patch; its tiles are many. Results do not depend on where patches end: sums are of
+//! whole numbers, drifting snow passes from patch to patch ([`super::drift`]), and sliding snow is processed in the
+//! order of the lattice's rows ([`super::slides`]). A patch without snow has no columns and is skipped until snow
+//! falls, drifts or slides onto it.
 //!
-//! The ground is abstract here: heights, what stands on cells, where there is none, and which cells what falls gets to.
-//! Where these come from is `site.rs`'s part.
+//! The ground is abstract here: heights, obstacles, holes, and the cells that are sheltered from snowfall. `site.rs`
+//! finds these from the host's data.
 
 use super::{
     drift_state::DriftSweep,
     patch::{NONE, Patch},
 };
 
-/// Where the mass of a field came from and went, in units of mass times cells since it began.
+/// Mass balance of a field since it began, in units of mass times cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Books {
-    /// Mass that lay when its ground was set.
+    /// Mass that lay on ground when it was set.
     pub began: i64,
     pub fallen: i64,
     pub blown_in: i64,
@@ -36,7 +36,7 @@ impl Books {
         Self { began, fallen, blown_in, blown_out, ran_off, sublimated, taken }
     }
 
-    /// Returns the mass that must lie.
+    /// Returns the mass that lies according to the balance.
     pub fn balance(&self) -> i64 {
         self.began + self.fallen + self.blown_in - self.blown_out - self.ran_off - self.sublimated - self.taken
     }
@@ -45,27 +45,28 @@ impl Books {
 /// Lying snow on patches of ground.
 #[derive(Clone, Debug)]
 pub(super) struct SnowField {
-    /// Cells of a patch, east and north.
+    /// Number of cells of a patch, east and north.
     pub size: [usize; 2],
     pub cell_m: f64,
-    /// Lattice of tiles: the origin and the cells, m. None for a grid.
+    /// Lattice of tiles: its origin and cell size, m. `None` for a grid.
     pub lattice: Option<[f64; 4]>,
-    /// By their keys: rows from the south, in each from the west.
+    /// Patches, sorted by key: rows from the south, each from the west.
     #[expect(clippy::vec_box, reason = "a new one is put among the others, which are many and large")]
     pub patches: Vec<Box<Patch>>,
     pub books: Books,
-    /// Mean run-off of the last step, mm/h, and the share of the ground that snow covered.
+    /// Mean run-off in the last step, mm/h.
     pub runoff_mm_h: f64,
+    /// Share of the ground under snow after the last step.
     pub cover: f64,
-    /// Whether all patches know their neighbours.
+    /// Whether all patches know their present neighbours.
     joined: bool,
     pub drift: DriftSweep,
-    /// Room for what slides.
+    /// Scratch space for sliding snow.
     pub moving: Vec<(u32, u32)>,
 }
 
 impl SnowField {
-    /// Without patches.
+    /// Creates a field without patches.
     pub fn new(size: [usize; 2], cell_m: f64) -> Self {
         Self {
             size,
@@ -81,7 +82,7 @@ impl SnowField {
         }
     }
 
-    /// All cells.
+    /// Returns the number of cells.
     pub fn len(&self) -> usize {
         self.patches.len() * self.size[0] * self.size[1]
     }
@@ -91,12 +92,12 @@ impl SnowField {
         self.patches.iter().map(|p| p.lying()).sum()
     }
 
-    /// The number of a patch, or where it would be.
+    /// Returns the index of a patch, or the index at which to insert it.
     pub fn find(&self, key: [i32; 2]) -> Result<usize, usize> {
         self.patches.binary_search_by_key(&[key[1], key[0]], |p| [p.key[1], p.key[0]])
     }
 
-    /// Adds a patch where there is none. What lies on it lay there when it began.
+    /// Adds a patch if there is none at its place. Its snow counts as lying there from the beginning.
     pub fn add(&mut self, patch: Patch) {
         if let Err(at) = self.find(patch.key) {
             self.books.began += patch.lying();
@@ -105,13 +106,13 @@ impl SnowField {
         }
     }
 
-    /// Takes a patch away with its snow.
+    /// Removes a patch and its snow.
     pub fn remove(&mut self, number: usize) {
         self.books.taken += self.patches.remove(number).lying();
         self.joined = false;
     }
 
-    /// The patch and the cell at a place of the lattice, if there is ground.
+    /// Returns the patch and the cell at a place of the lattice, if there is ground.
     pub fn cell_at(&self, place: [i32; 2]) -> Option<(usize, usize)> {
         let size = self.size.map(|n| n as i32);
         let at = self.find([0, 1].map(|i| place[i].div_euclid(size[i]))).ok()?;
@@ -120,7 +121,7 @@ impl SnowField {
         (!self.patches[at].is_hole(cell)).then_some((at, cell))
     }
 
-    /// Takes snow off cells on which something new stands, or that are no ground any more.
+    /// Removes the snow from cells that are newly blocked by an object or are no longer ground.
     pub fn clear_blocked(&mut self, revision: u64) {
         for patch in &mut self.patches {
             let taken = patch.clear_blocked();
@@ -131,7 +132,7 @@ impl SnowField {
         }
     }
 
-    /// Lets all patches know their neighbours.
+    /// Updates the neighbours of all patches.
     pub fn join(&mut self) {
         if std::mem::replace(&mut self.joined, true) {
             return;

@@ -1,4 +1,4 @@
-//! Lying snow as a context holds it: as the weather reports it, or led over the timeline if the host asked for that.
+//! Lying snow as a context holds it: as the weather reports it, or simulated over the timeline if the host asks for it.
 
 use std::sync::Arc;
 
@@ -21,49 +21,51 @@ use crate::{
     world::{HeldEffect, Within, World, parse_error},
 };
 
-/// Where the lying snow comes from.
+/// Source of the lying snow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LyingSnowModel {
-    /// From the weather of the moment: as deep as it is reported, everywhere.
+    /// Snow of the depth that the weather reports at the moment, everywhere.
     #[default]
     Reported,
-    /// A state that snowfall fills and that settles, drifts, slides and melts ([`crate::snowpack`]). It begins as deep
-    /// as the weather reports it. An update that moves time by more than a day is fast-forward
-    /// ([`crate::context::Context::accumulate`]); of one of more than 30 days its last 30 count.
+    /// Simulated state: snowfall fills it, and it settles, drifts, slides and melts ([`crate::snowpack`]). It begins
+    /// with the depth that the weather reports. An update that moves time by more than a day is done in fast-forward
+    /// ([`crate::context::Context::accumulate`]); of more than 30 days only the last 30 are simulated.
     Simulated,
 }
 
-/// Sunlight for melting is looked up this often, s.
+/// Interval at which the sunlight for melting is updated, s.
 const SUN_EVERY_S: f64 = 300.0;
-/// Beyond this an update is fast-forward, s, and beyond this the rest is left out.
+/// Length of an update above which it is done in fast-forward, s.
 const LONGEST_S: f64 = 86_400.0;
+/// Longest time that an update simulates, s; earlier time is left out.
 const MOST_S: f64 = 30.0 * 86_400.0;
-/// Where it is in a saved state.
+/// Key of the snow in a saved state.
 const KEY: &str = "lying_snow";
 
-/// The lying snow of a context.
+/// Lying snow of a context.
 pub(crate) struct HeldSnow {
     pub model: LyingSnowModel,
-    /// Updates are fast-forward.
+    /// Whether updates are done in fast-forward.
     pub is_fast: bool,
     state: Option<SnowState>,
     site: Option<Site>,
-    /// Tiles that were changed while steps remained, on the terrain as it was then.
+    /// Tiles that changed while steps remained, each with the terrain after the change.
     waiting: Vec<(TileKey, Arc<Terrain>)>,
-    /// Grounds that the host has set since the snow last settled, in order: one ground, or none and one.
+    /// Grounds that the host has set since the snow was last settled on one, in order: either one ground, or none
+    /// followed by one.
     grounds: Vec<SnowGround>,
     settling: Settling,
-    /// Steps that end up to here are coarse.
+    /// End of the time that is simulated in fast-forward, s.
     coarse_until_s: f64,
     revision: u64,
     published: u64,
-    /// Meltwater that has come from under the snow since it was last published: from when on, for how long, s.
+    /// Meltwater from the snow since it was last published: beginning and length of each step, s, and its water.
     melts: Vec<(f64, f64, Meltwater)>,
-    /// Flag: what was published belongs to another past.
+    /// Whether the meltwater published before belongs to another past.
     forgets: bool,
 }
 
-/// Ground that the host has set and snow lies on: a grid, tiles, or neither.
+/// Ground of the host on which snow lies: a grid, tiles, or neither.
 #[derive(Clone)]
 struct SnowGround {
     grid: Option<Arc<TerrainHeights>>,
@@ -75,7 +77,7 @@ impl SnowGround {
         Self { grid: world.set.terrain.clone(), tiles: world.set.tiles.clone() }
     }
 
-    /// Whether snow on `other` stays where this comes in its place.
+    /// Whether snow on `other` stays if this ground replaces it.
     fn keeps_snow_of(&self, other: &Self) -> bool {
         match (self, other) {
             (Self { grid: Some(a), .. }, Self { grid: Some(b), .. }) => a.has_nodes_of(b),
@@ -85,7 +87,7 @@ impl SnowGround {
     }
 }
 
-/// A saved snow that can be shown.
+/// Snow of a saved state, not yet active.
 pub(crate) struct LoadedSnow(Option<SnowState>);
 
 impl HeldSnow {
@@ -106,7 +108,7 @@ impl HeldSnow {
         }
     }
 
-    /// Snow on level, open ground.
+    /// Returns the snow on level, open ground.
     pub(super) fn country(&self, world: &World) -> Column {
         match &self.state {
             Some(state) => state.country,
@@ -123,22 +125,22 @@ impl HeldSnow {
         Some((self.site.as_ref()?, self.state.as_mut()?.field.as_mut()?))
     }
 
-    /// Time that fast-forward has laid, s.
+    /// Returns the time that was simulated in fast-forward, s.
     pub fn coarse_s(&self) -> f64 {
         self.state.as_ref().map_or(0.0, |s| s.coarse_s)
     }
 
-    /// Returns the revision of patches that change now.
+    /// Returns the revision for patches that change now.
     pub(super) fn next_revision(&self) -> u64 {
         self.revision + 1
     }
 
-    /// Says that the snow is another than before.
+    /// Marks the snow as changed.
     pub(super) fn changed(&mut self) {
         self.revision += 1;
     }
 
-    /// Makes the state be there, and lie on the world's terrain.
+    /// Creates the state if it is missing, and settles it on the world's terrain.
     pub(super) fn be_there(&mut self, world: &World) -> Result<()> {
         if self.model == LyingSnowModel::Simulated && self.state.is_none() {
             self.state = Some(SnowState::first(world, world.time_s)?);
@@ -147,7 +149,7 @@ impl HeldSnow {
         Ok(())
     }
 
-    /// Notes the ground that the host has set in place of another.
+    /// Notes that the host has replaced the ground.
     pub fn ground_replaced(&mut self, world: &World) {
         let ground = SnowGround::of(world);
         match self.grounds.last_mut() {
@@ -157,8 +159,7 @@ impl HeldSnow {
         }
     }
 
-    /// Takes the terrain as it is by now: the snow stays on cells that stay; on new ones it is as deep as on level
-    /// ground.
+    /// Adapts the snow to a terrain: it stays on cells that stay; new ones start with the depth on level ground.
     fn settle_on(&mut self, ground: &SnowGround) {
         match (&ground.grid, &ground.tiles) {
             (Some(grid), _) => {
@@ -204,7 +205,7 @@ impl HeldSnow {
         self.revision = revision;
     }
 
-    /// Lets the snow follow a change of one tile. Before it all of that terrain was known.
+    /// Updates the snow after a change of one tile. The rest of the terrain must already be known.
     fn follow_tile(&mut self, terrain: &Terrain, key: TileKey) {
         let revision = self.next_revision();
         let Some(SnowState { field: Some(field), country, .. }) = &mut self.state else { return };
@@ -214,7 +215,8 @@ impl HeldSnow {
         self.revision = revision;
     }
 
-    /// Takes a tile that the host has set, changed or removed. `waits`: steps remain of what was set before.
+    /// Notes that the host has set, changed or removed a tile. If `waits`, steps from before the change are still to be
+    /// done.
     pub fn tile_changed(&mut self, world: &mut World, key: TileKey, waits: bool) {
         let Some(terrain) = world.set.tiles.clone().filter(|_| self.state.is_some()) else { return };
         if waits {
@@ -229,7 +231,7 @@ impl HeldSnow {
         self.publish(world);
     }
 
-    /// Leads the snow through its next step.
+    /// Steps the snow.
     fn step(&mut self, world: &World, end_s: f64) -> Result<()> {
         let Some(state) = &mut self.state else { return Ok(()) };
         let (from_s, seconds) = (state.time_s, end_s - state.time_s);
@@ -258,7 +260,7 @@ impl HeldSnow {
         };
         if let (Some(site), Some(field)) = (&mut self.site, &mut state.field) {
             let revision = self.revision + 1;
-            // Asked as it stands at the step's end: of a solved field nothing earlier is known.
+            // The wind is that at the end of the step: a solved field has no earlier one.
             let air = site.air(world, end_s, &c);
             if site.shade(field, &c, &world.set.shelters, air.as_ref()) {
                 field.clear_blocked(revision);
@@ -289,10 +291,10 @@ impl HeldSnow {
         Ok(())
     }
 
-    /// Takes its part out of a saved state.
+    /// Takes the snow's part out of a saved state.
     ///
     /// # Errors
-    /// [`Status::Parse`] for what can be no snow of this context.
+    /// [`Status::Parse`] for values that cannot be snow of this context.
     pub fn read(&self, saved: &mut toml::Table) -> Result<LoadedSnow> {
         let saved: Option<SavedSnow> =
             saved.remove(KEY).map(|v| v.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))).transpose()?;
@@ -301,7 +303,7 @@ impl HeldSnow {
         state.map_or(Ok(LoadedSnow(None)), |s| Ok(LoadedSnow(Some(s.ok_or_else(|| parse_error(wanted))?))))
     }
 
-    /// Shows a loaded snow, and leaves the one before in its place.
+    /// Activates a loaded snow; `other` then holds the previous one.
     pub fn swap_in(&mut self, world: &mut World, other: &mut LoadedSnow) {
         std::mem::swap(&mut self.state, &mut other.0);
         self.site = None;
@@ -324,14 +326,15 @@ impl HeldEffect for HeldSnow {
         if self.is_fast || time_s - world.time_s > LONGEST_S {
             self.coarse_until_s = time_s;
         }
-        // Before that only time passes: on the grid of long steps, so that leaps that end a little apart begin alike.
+        // Before this, time passes without steps. The start is on the grid of long steps, so leaps that end at slightly
+        // different times start alike.
         let earliest_s = ((time_s - MOST_S) / COARSE_STEP_S).floor() * COARSE_STEP_S;
         state.time_s = state.time_s.max(earliest_s);
         Ok(())
     }
 
     fn settle(&mut self, world: &World) {
-        // Each in turn, also where the first is set again in the end: its snow went with it.
+        // All are applied in turn: if the first ground is set again at the end, its snow is still lost in between.
         for ground in std::mem::take(&mut self.grounds) {
             self.settle_on(&ground);
         }

@@ -1,35 +1,37 @@
-//! Inputs of a step of a field of snow: what falls, the wind, and the country about it.
+//! Inputs of a step of a snow field: what falls, the wind, and the open country around the field.
 
 use glam::DVec2;
 
 use super::column::{Column, ColumnForcing, Settling};
 
-/// Function that returns the forcing at a place of the lattice whose ground is so high, m.
+/// Function that returns the forcing at a place of the lattice from the height of its ground, m.
 pub(super) type FallsAt<'a> = &'a dyn Fn([i32; 2], f64) -> ColumnForcing;
 
-/// The wind at 10 m over a place of the lattice whose snow reaches so high, m; m/s east and north.
+/// Function that returns the wind at 10 m over a place of the lattice, m/s east and north, from the height of the
+/// snow's surface there, m.
 pub(super) type CellWind<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
 
-/// The wind over a field at 10 m, m/s east and north.
+/// Wind at 10 m over a field, m/s east and north.
 #[derive(Clone, Copy)]
 pub(super) struct FieldWind<'a> {
     pub mean: DVec2,
-    /// Where it varies in space; else the surface's shape decides.
+    /// Wind at each place, if it varies in space; else it follows from the mean wind and the surface's shape.
     pub local: Option<CellWind<'a>>,
 }
 
-/// Inputs of a step.
+/// Inputs of a step of a field.
 pub(super) struct SnowStep<'a> {
     pub seconds: f64,
-    /// Forcing of all cells, and the function that replaces it where it varies from place to place.
+    /// Forcing of all cells.
     pub even: &'a ColumnForcing,
+    /// Function that replaces `even` where the forcing varies from place to place.
     pub falls: Option<FallsAt<'a>>,
     pub settling: &'a Settling,
     pub wind: FieldWind<'a>,
-    /// The level, open country about the field, which drifting snow comes from.
+    /// Snow of the level, open country around the field, from which snow drifts in.
     pub country: &'a Column,
-    /// Steep snow slides in this step.
+    /// Whether steep snow slides in this step.
     pub slides: bool,
-    /// Revision given to the patches that it changes.
+    /// Revision for the patches that change in this step.
     pub revision: u64,
 }

@@ -1,64 +1,65 @@
-//! The laws of lying snow, in f64: how dense it lands, how it settles, melts and refreezes, when the wind moves it and
-//! how much.
+//! Laws of lying snow, in f64: the density of new snow; settling, melt and refreezing; the winds that move snow, and
+//! the fluxes.
 //!
-//! Each is a closed form with its source. The columns (`column.rs`) and the drift (`drift.rs`) take whole units of mass
-//! from them, so no mass is lost to rounding.
+//! Each law is a closed form with its source. The columns (`column.rs`) and the drift (`drift.rs`) convert its results
+//! to whole units of mass, so no mass is lost to rounding.
 
 use crate::weather::{Conditions, lifting::drift_friction_velocity_m_s, saturation_pressure_hpa};
 
 /// Density of ice, kg/m^3.
 pub const ICE_KG_M3: f64 = 917.0;
-/// Density of ice pellets and hail as they lie, kg/m^3: spheres of ice, packed loosely (0.6).
+/// Density of lying ice pellets and hail, kg/m^3: spheres of ice, loosely packed (0.6).
 pub const PELLETS_KG_M3: f64 = 550.0;
 /// Albedo of new snow, of visible light.
 pub const NEW_ALBEDO: f64 = 0.88;
-/// Least albedo of old snow: Wiscombe and Warren (1980) find 0.6 to 0.7 for old, wet and dirty snow.
+/// Lower limit of the albedo of old snow: Wiscombe and Warren (1980) find 0.6 to 0.7 for old, wet and dirty snow.
 pub const OLD_ALBEDO: f64 = 0.6;
-/// New snow that restores most of the albedo, kg/m^2 (Douville, Royer and Mahfouf 1995; Essery 2015).
+/// Mass of new snow that restores most of the albedo, kg/m^2 (Douville, Royer and Mahfouf 1995; Essery 2015).
 pub const RENEWING_KG_M2: f64 = 10.0;
-/// Times in which the albedo falls by 1/e in frost and in thaw, s (the same).
+/// Times in which the albedo falls to 1/e in frost and in thaw, s (same sources).
 const FROST_S: f64 = 3.6e6;
 const THAW_S: f64 = 3.6e5;
-/// Share of the ice's mass that snow holds as liquid water (Bergstroem 1976).
+/// Share of the ice's mass that snow can hold as liquid water (Bergstroem 1976).
 pub const HELD_SHARE: f64 = 0.1;
-/// Snow with more liquid than this share of its ice is wet: its grains stick.
+/// Liquid water, as a share of the ice, above which snow counts as wet: its grains stick.
 pub const WET_SHARE: f64 = 0.005;
 /// Wind at 10 m above which dry snow moves, m/s (Li and Pomeroy 1997).
 pub const DRY_THRESHOLD_M_S: f64 = 7.7;
 /// Wind at 10 m above which wet snow moves, m/s (Li and Pomeroy 1997).
 pub const WET_THRESHOLD_M_S: f64 = 9.9;
-/// Slope up to which loose snow lies.
+/// Steepest slope on which loose snow lies, degrees.
 pub const REPOSE_DEG: f64 = 38.0;
-/// Latent heat of melting over the specific heat of water, C.
+/// Latent heat of melting over the specific heat of water, degrees C.
 const MELTING_C: f64 = 3.34e5 / 4186.0;
 
-/// Density of new snow, kg/m^3, at an air temperature in C and a wind at 10 m in m/s (Pahaut 1976 in Vionnet et al.
-/// 2012, eq. 1).
+/// Returns the density of new snow, kg/m^3, at an air temperature in C and a wind at 10 m in m/s (Pahaut 1976 in
+/// Vionnet et al. 2012, eq. 1).
 pub fn new_density_kg_m3(temperature_c: f64, wind_m_s: f64) -> f64 {
     (109.0 + 6.0 * temperature_c + 26.0 * wind_m_s.max(0.0).sqrt()).clamp(50.0, 400.0)
 }
 
-/// How fast snow settles by the change of its grains, 1/s (Anderson 1976 in Jordan 1991, eq. 29): slower above 100
-/// kg/m^3, twice as fast where it is wet.
+/// Returns the rate at which snow settles as its grains change, 1/s (Anderson 1976 in Jordan 1991, eq. 29): lower above
+/// 100 kg/m^3, twice as high in wet snow.
 pub fn metamorphism_per_s(temperature_c: f64, density_kg_m3: f64, wet: bool) -> f64 {
     let cold = (-temperature_c).max(0.0);
     let dense = (density_kg_m3 - 100.0).max(0.0);
     2.777e-6 * if wet { 2.0 } else { 1.0 } * libm::exp(-0.04 * cold - 0.046 * dense)
 }
 
-/// Viscosity of snow, kg s/m^2: a load in kg/m^2 over it is how fast the snow below settles, 1/s (Anderson 1976).
+/// Returns the viscosity of snow, kg s/m^2 (Anderson 1976): a load in kg/m^2 over it is the rate at which the snow
+/// below settles, 1/s.
 pub fn viscosity(temperature_c: f64, density_kg_m3: f64) -> f64 {
     9e5 * libm::exp(0.08 * (-temperature_c).max(0.0) + 0.023 * density_kg_m3)
 }
 
-/// Share of the albedo's way to that of old snow that is left after `seconds`.
+/// Returns the share of the albedo's excess over that of old snow that is left after `seconds`.
 pub fn albedo_kept(thaws: bool, seconds: f64) -> f64 {
     libm::exp(-seconds / if thaws { THAW_S } else { FROST_S })
 }
 
-/// Returns the melting rate, mm/h: without the sun, and per W/m^2 of sunlight that the snow takes up. By temperature
-/// and sun with the factors of Pellicciotti et al. (2005), above 1 C; rain adds its own heat, and with it the moist
-/// wind that the US Army Corps of Engineers (1956) counts in the open, 0.24 mm a day for each degree and m/s.
+/// Returns the melting rate, mm/h: without the sun, and per W/m^2 of sunlight that the snow absorbs. Temperature and
+/// sun act above 1 C, with the factors of Pellicciotti et al. (2005). Rain adds its own heat, and with it the heat of
+/// moist wind in the open, 0.24 mm per day for each degree and m/s (US Army Corps of Engineers 1956).
 pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
     let t = c.air.temperature_c;
     let rain = if rain_mm_h > 0.0 && t > 0.0 {
@@ -69,14 +70,14 @@ pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
     if t > 1.0 { (0.05 * t + rain, 0.0094) } else { (rain, 0.0) }
 }
 
-/// Returns the rate at which the liquid refreezes, mm/h (Bergstroem 1976: 0.05 of 3.5 mm a day for each degree of
+/// Returns the rate at which liquid water refreezes, mm/h (Bergstroem 1976: 0.05 of 3.5 mm per day for each degree of
 /// frost).
 pub fn refreezing_mm_h(temperature_c: f64) -> f64 {
     0.05 * 3.5 / 24.0 * (-temperature_c).max(0.0)
 }
 
-/// Returns the loss of snow to dry air, mm/h, by the bulk formula over a roughness of 1 mm: rho (k / ln(2 / z0))^2 U
-/// (qs - q), nothing where the air is moister than its surface.
+/// Returns the loss of snow to dry air, mm/h, by the bulk formula over a roughness z0 of 1 mm: rho (k / ln(2 / z0))^2 U
+/// (qs - q), and 0 where the air is moister than the snow's surface.
 pub fn sublimation_mm_h(c: &Conditions) -> f64 {
     let t = c.air.temperature_c.min(0.0);
     let pressure = c.air.station_pressure_hpa;
@@ -88,15 +89,15 @@ pub fn sublimation_mm_h(c: &Conditions) -> f64 {
     (3600.0 * air * exchange * c.wind.speed_at_height_m_s(2.0) * dry).max(0.0)
 }
 
-/// Wind at 10 m above which snow moves, m/s: denser snow is bound harder, above 300 kg/m^3 by the growth of Liston et
-/// al. (2007, eq. 20).
+/// Returns the wind at 10 m above which snow moves, m/s. Denser snow is bound more strongly: above 300 kg/m^3 the
+/// threshold grows as in Liston et al. (2007, eq. 20).
 pub fn threshold_m_s(wet: bool, density_kg_m3: f64) -> f64 {
     let loose = if wet { WET_THRESHOLD_M_S } else { DRY_THRESHOLD_M_S };
     loose * libm::exp(0.013 * (density_kg_m3 - 300.0).max(0.0))
 }
 
-/// Returns the flux of snow that hops along the ground, kg/(m s): Pomeroy and Gray (1990), 0.68 rho / (u* g) u*t
-/// (u*^2 - u*t^2), for winds at 10 m.
+/// Returns the flux of saltating snow, kg/(m s), for winds at 10 m: 0.68 rho / (u* g) u*t (u*^2 - u*t^2) (Pomeroy and
+/// Gray 1990).
 pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;
@@ -105,9 +106,9 @@ pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     0.68 * 1.3 / (u * 9.81) * t * (u * u - t * t)
 }
 
-/// Returns the flux of suspended snow over the ground where the wind has blown long enough, kg/(m s), for winds at 10
-/// m: Tabler's (1990, U^3.8 / 233847) for all snow up to 5 m less what hops, from the threshold on by the share of the
-/// friction that is over it, as in what hops.
+/// Returns the flux of suspended snow, kg/(m s), for winds at 10 m, where it is fully developed: Tabler's flux of all
+/// snow up to 5 m (1990, U^3.8 / 233847), less saltation. The flux of all snow is multiplied by 1 - u*t^2 / u*^2, as in
+/// saltation, so it begins at the threshold.
 pub fn suspension_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;
@@ -141,7 +142,7 @@ mod tests {
 
     #[test]
     fn settling_has_the_published_rates() {
-        // 1 % an hour of light snow at the melting point, a quarter of it at 130 kg/m^3.
+        // Light snow at the melting point settles by 1 % per hour; at 130 kg/m^3 by a quarter of that.
         assert!((metamorphism_per_s(0.0, 80.0, false) * 3600.0 - 0.01).abs() < 1e-5);
         let slower = metamorphism_per_s(0.0, 130.0, false) / metamorphism_per_s(0.0, 100.0, false);
         assert!((slower - 0.2516).abs() < 1e-3, "{slower}");
@@ -166,7 +167,7 @@ mod tests {
         assert_eq!((threshold_m_s(false, 200.0), threshold_m_s(true, 200.0)), (7.7, 9.9));
         assert!(threshold_m_s(false, 450.0) > 40.0, "pressed snow stays");
         assert_eq!(saltation_kg_m_s(7.7, 7.7), 0.0);
-        // Friction velocities of 0.27 to 0.69 m/s at the thresholds of the literature's range.
+        // The literature's thresholds are friction velocities of 0.27 to 0.69 m/s.
         assert!(
             (0.27..0.69).contains(&drift_friction_velocity_m_s(7.7))
                 && (0.27..0.69).contains(&drift_friction_velocity_m_s(9.9))
@@ -175,7 +176,7 @@ mod tests {
         assert!((0.01..0.03).contains(&q), "{q} kg/(m s)");
         assert!(saltation_kg_m_s(7.8, 7.7) < 0.02 * q);
         assert_eq!(suspension_kg_m_s(7.7, 7.7), 0.0);
-        // Far above the threshold all is Tabler's: 0.376 kg/(m s) at 20 m/s. Most of it is suspended.
+        // Far above the threshold the sum is Tabler's flux: 0.376 kg/(m s) at 20 m/s. Most of it is suspended.
         let (hops, floats) = (saltation_kg_m_s(20.0, 7.7), suspension_kg_m_s(20.0, 7.7));
         assert!(((hops + floats) / 0.376 - 1.0).abs() < 0.15 && floats > 5.0 * hops, "{hops} {floats}");
         let near = suspension_kg_m_s(8.0, 7.7);

@@ -1,22 +1,22 @@
-//! Snow that lies: how deep, how dense and how wet, on level, open ground and cell by cell on the host's terrain.
+//! Lying snow: depth, density and liquid water, on level, open ground and for each cell of the host's terrain.
 //!
-//! **A column** (`column.rs`) has ice, held water, depth and an albedo, in whole units of 2^-24 kg/m^2 and m, so that
-//! nothing is lost: what falls lands with the density of its temperature and wind (Pahaut 1976), settles by the change
-//! of its grains and under its load (Anderson 1976), melts by temperature, sun and rain (Pellicciotti et al. 2005; US
-//! Army Corps of Engineers 1956), holds a tenth of its mass as water, refreezes (Bergstroem 1976), and gives the rest
-//! to the ground. `laws.rs` has these forms, each with its equation.
+//! **A column** (`column.rs`) has ice, liquid water, depth and an albedo. Mass and depth are whole numbers of 2^-24
+//! kg/m^2 and m, so nothing is lost to rounding. New snow lands with a density by temperature and wind (Pahaut 1976).
+//! The snow settles as its grains change and under its own load (Anderson 1976). It melts by temperature, sun and rain
+//! (Pellicciotti et al. 2005; US Army Corps of Engineers 1956), holds a tenth of its mass as water, refreezes
+//! (Bergstroem 1976), and gives the rest of the water to the ground. `laws.rs` has these laws, each with its equation.
 //!
-//! **A field** (`field.rs`) has a column for each node of the terrain: one patch of a grid, or a patch for each tile,
-//! of which those without snow are passed over. Wind above the threshold (Li and Pomeroy 1997) carries its snow along
-//! (`drift.rs`; Pomeroy and Gray 1990), and what lies steeper than 38 degrees slides (`slides.rs`). Standing boxes keep
-//! off what falls, stop the wind, and cast lees. `site.rs` alone knows where heights, boxes and wind come from.
+//! **A field** (`field.rs`) has a column for each node of the terrain. It consists of one patch for a grid, or of a
+//! patch for each tile; patches without snow are skipped. Wind above the threshold (Li and Pomeroy 1997) carries snow
+//! along (`drift.rs`; Pomeroy and Gray 1990), and snow steeper than 38 degrees slides (`slides.rs`). Boxes that stand
+//! still keep snowfall off, stop the wind, and cast lees. Only `site.rs` knows where heights, boxes and wind come from.
 //!
-//! Steps of [`STEP_S`] begin at whole multiples of it, so that the state does not depend on how often it is led.
-//! Fast-forward takes steps of [`COARSE_STEP_S`] with the same laws, and the state remembers how much of it was laid
-//! so. One column is one layer: no hard crust under new snow, no frozen ground.
+//! Steps of [`STEP_S`] begin at whole multiples of it, so the state does not depend on how often it is updated.
+//! Fast-forward takes steps of [`COARSE_STEP_S`] with the same laws, and the state records how much time was covered
+//! this way. A column is a single layer: there is no hard crust under new snow, and no frozen ground.
 //!
-//! Nothing here is drawn: what draws snow, runs from under it or is lit by it reads `LyingSnow` of the world. So there
-//! are no `view.rs`, `passes.rs` and `candidates.rs`, and no `reference.rs`: `laws.rs` is the physics in f64.
+//! This room draws nothing. Whatever draws snow, takes its meltwater or is lit by it reads the world's `LyingSnow`. So
+//! there are no `view.rs`, `passes.rs` and `candidates.rs`, and no `reference.rs`: `laws.rs` is the physics in f64.
 
 mod column;
 mod drift;

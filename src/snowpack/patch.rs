@@ -4,40 +4,41 @@ use std::sync::OnceLock;
 
 use super::{column::Column, drift_state::Edges};
 
-/// In the place of a patch's number: there is none.
+/// Number that stands for no patch.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// A rectangle of ground and the snow on it, by rows from the south-west.
+/// Rectangle of ground and the snow on it, by rows from the south-west.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Patch {
-    /// Where it lies on the lattice, in patches east and north.
+    /// Position on the lattice, in patches east and north.
     pub key: [i32; 2],
     /// Revision of the host's tile from which the ground was taken.
     pub tile_revision: u64,
     /// Height of each cell, m. Empty until the ground is known.
     pub heights_m: Vec<f32>,
-    /// At most as high as any of them, m.
+    /// Lower bound of the heights, m.
     pub lowest_m: f64,
-    /// Where there is no ground; empty where there is ground everywhere. And how many cells have some.
+    /// Whether each cell is a hole in the ground; empty if there are no holes.
     pub holes: Vec<bool>,
+    /// Number of cells with ground.
     pub ground_cells: usize,
-    /// Height of what stands on each cell and stops the wind, m; 0 without, empty where nothing stands anywhere.
+    /// Height of the object on each cell that stops the wind, m; 0 without one. Empty if there are no objects.
     pub obstacles_m: Vec<f64>,
-    /// Whether something keeps off each cell what falls; empty where nothing does.
+    /// Whether each cell is sheltered from what falls; empty if none is.
     pub sheltered: Vec<bool>,
-    /// Empty while no snow lies on it.
+    /// Snow of each cell; empty while no snow lies on the patch.
     pub columns: Vec<Column>,
-    /// Other whenever its snow may be.
+    /// Revision of the snow, changed whenever the snow may have changed.
     pub revision: u64,
-    /// West, east, south, north of it.
+    /// Neighbours to the west, east, south and north.
     pub near: [u32; 4],
-    /// Snow that the wind carries over its borders, and the wind's speed.
+    /// Snow that the wind carries over the borders, and the wind's speed.
     pub edges: Edges,
     hash: OnceLock<u64>,
 }
 
 impl Patch {
-    /// With these heights and the same snow everywhere but on holes.
+    /// Creates a patch with these heights, and the same snow everywhere except on holes.
     pub fn new(key: [i32; 2], heights_m: Vec<f32>, holes: Vec<bool>, column: Column) -> Self {
         let mut patch = Self { key, ..Self::default() };
         patch.set_ground(heights_m, holes);
@@ -48,12 +49,12 @@ impl Patch {
         patch
     }
 
-    /// With this snow, on ground that is still to be known.
+    /// Creates a patch of saved snow, whose ground is not known yet.
     pub fn loaded(key: [i32; 2], columns: Vec<Column>) -> Self {
         Self { key, columns, ..Self::default() }
     }
 
-    /// Takes other ground of the same size. The snow stays.
+    /// Replaces the ground by another of the same size. The snow stays.
     pub fn set_ground(&mut self, heights_m: Vec<f32>, holes: Vec<bool>) {
         self.lowest_m = f64::from(heights_m.iter().fold(f32::MAX, |low, h| h.min(low)));
         self.ground_cells = heights_m.len() - holes.iter().filter(|hole| **hole).count();
@@ -68,7 +69,7 @@ impl Patch {
         self.columns.get(cell).copied().unwrap_or_default()
     }
 
-    /// Puts another column into a cell.
+    /// Replaces the column of a cell.
     pub fn put(&mut self, cell: usize, column: Column) {
         self.wake();
         self.columns[cell] = column;
@@ -92,7 +93,7 @@ impl Patch {
         self.obstacles_m.iter().any(|height| *height > 0.0)
     }
 
-    /// Whether no snow lies on a cell because something stands on it or there is no ground.
+    /// Whether no snow can lie on a cell, because an object stands on it or there is no ground.
     pub fn is_blocked(&self, cell: usize) -> bool {
         self.obstacle_m(cell) > 0.0 || self.is_hole(cell)
     }
@@ -101,7 +102,7 @@ impl Patch {
         if self.sheltered.get(cell).copied().unwrap_or(false) { 0.0 } else { 1.0 }
     }
 
-    /// Height of ground and snow, m.
+    /// Returns the height of ground and snow, m.
     pub fn surface_m(&self, cell: usize) -> f64 {
         f64::from(self.heights_m[cell]) + self.columns.get(cell).map_or(0.0, Column::depth_m)
     }
@@ -119,13 +120,13 @@ impl Patch {
         })
     }
 
-    /// Says that its snow is other than before.
+    /// Marks the snow as changed.
     pub fn changed(&mut self, revision: u64) {
         self.revision = revision;
         self.hash.take();
     }
 
-    /// Takes the snow off cells on which none can lie. Answers its mass.
+    /// Removes the snow from blocked cells. Returns its mass.
     pub fn clear_blocked(&mut self) -> i64 {
         let mut taken = 0;
         for cell in 0..self.columns.len() {

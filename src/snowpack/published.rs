@@ -1,11 +1,11 @@
-//! Lying snow as what draws it reads it.
+//! Lying snow in the form in which other rooms read it.
 
 use half::f16;
 
 use super::{column::Column, field::SnowField};
 use crate::surroundings::{LyingSnow, SnowHere};
 
-/// As what draws snow reads it.
+/// Returns a column in the form that other rooms read.
 pub(super) fn seen(column: &Column) -> SnowHere {
     SnowHere {
         depth_m: column.depth_m(),
@@ -20,7 +20,7 @@ fn texel(column: &Column) -> [f32; 4] {
     [s.depth_m, s.density_kg_m3, s.wetness, s.albedo].map(|v| v as f32)
 }
 
-/// Puts what lies on a field's cells where what draws it reads it.
+/// Copies the snow on a field's cells to where other rooms read it.
 pub(super) fn publish(field: &SnowField, snow: &mut LyingSnow) {
     if field.lattice.is_none() {
         let cells = field.patches.first().map_or(0, |patch| patch.heights_m.len());

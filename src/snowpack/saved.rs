@@ -1,4 +1,4 @@
-//! Lying snow as text, and back. Units are whole numbers; runs of equal ones are "bits*times".
+//! Saved form of lying snow as text. Amounts are whole numbers; a run of equal ones is written as "bits*times".
 
 use serde::{Deserialize, Serialize};
 
@@ -13,10 +13,10 @@ use crate::{
     world::{values, words},
 };
 
-/// Most cells of a terrain.
+/// Largest number of cells of a terrain.
 const MOST_CELLS: usize = 1 << 26;
 
-/// A state as it is saved.
+/// Saved state.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedSnow {
@@ -24,24 +24,24 @@ pub(super) struct SavedSnow {
     sunlight_w_m2: f64,
     country: [i64; 4],
     melted: [f64; 2],
-    /// Left out where nothing was laid by fast-forward.
+    /// Left out if no time was simulated in fast-forward.
     #[serde(default, skip_serializing_if = "is_zero")]
     coarse_s: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     field: Option<SavedCells>,
 }
 
-/// Cells of a grid, or of each tile.
+/// Saved cells of a grid or of each tile.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedCells {
     cells: usize,
-    /// Columns of a grid: ice, water, depth and albedo.
+    /// Columns of a grid: lists of ice, water, depth and albedo.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     columns: Option<[String; 4]>,
     books: [i64; 7],
     melted: [f64; 2],
-    /// Lattice of tiles: the origin and the cells, m.
+    /// Lattice of tiles: its origin and cell size, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     lattice: Option<[f64; 4]>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -52,10 +52,10 @@ struct SavedCells {
 #[serde(deny_unknown_fields)]
 struct SavedTile {
     tile: [i32; 2],
-    /// As of a grid; left out without snow.
+    /// Columns, as for a grid; left out without snow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     columns: Option<[String; 4]>,
-    /// In their place where the state is only hashed.
+    /// Hash that replaces the columns when the state is only hashed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     hash: Option<String>,
 }
@@ -72,12 +72,12 @@ fn column([ice, water, depth, albedo]: [i64; 4]) -> Option<Column> {
     Some(Column { ice, water, depth, albedo }).filter(Column::is_sound)
 }
 
-/// The numbers of all columns, as lists.
+/// Returns the numbers of all columns as lists.
 fn lists(patch: &Patch, cells: usize) -> [String; 4] {
     [0, 1, 2, 3].map(|i| words((0..cells).map(move |cell| numbers(&patch.column(cell))[i] as u64)))
 }
 
-/// The columns that [`lists`] wrote, if they can be so many.
+/// Returns the columns that [`lists`] wrote; `None` if they cannot be `cells` columns.
 fn of_lists(columns: &[String; 4], cells: usize) -> Option<Vec<Column>> {
     let [ice, water, depth, albedo] = [0, 1, 2, 3].map(|i| values(&columns[i], cells));
     let (ice, water, depth, albedo) = (ice?, water?, depth?, albedo?);
@@ -111,7 +111,7 @@ impl SavedCells {
         }
     }
 
-    /// Returns the saved field, on ground that is still to be known.
+    /// Returns the saved field, whose ground is not known yet.
     fn field(&self) -> Option<SnowField> {
         if self.cells.saturating_mul(self.tiles.len().max(1)) > MOST_CELLS
             || self.columns.is_some() == self.lattice.is_some()
@@ -139,7 +139,7 @@ impl SavedCells {
 }
 
 impl SavedSnow {
-    /// `for_hash`: of each tile's snow its hash alone.
+    /// Creates the saved form. If `for_hash`, the snow of each tile is given only by its hash.
     pub fn of(state: &SnowState, for_hash: bool) -> Self {
         Self {
             time_s: state.time_s,
@@ -151,7 +151,7 @@ impl SavedSnow {
         }
     }
 
-    /// Returns the saved state; none if it cannot be one of ours.
+    /// Returns the saved state, or `None` if it is not valid.
     pub fn state(&self) -> Option<SnowState> {
         let field = match &self.field {
             Some(field) => Some(field.field()?),

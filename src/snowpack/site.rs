@@ -1,7 +1,7 @@
-//! Where a field of snow lies: the heights of the world's grid or tiles, the standing boxes on them, and the wind over
+//! Site of a snow field: the heights of the world's grid or tiles, the boxes that stand on them, and the wind over
 //! them.
 //!
-//! All that the snow knows of the host's terrain goes through here.
+//! Lying snow reads the host's terrain only through this file.
 
 use std::sync::Arc;
 
@@ -22,29 +22,30 @@ use crate::{
 
 /// Height above the ground at which shelter is tested, m.
 const SURFACE_M: f64 = 0.02;
-/// A box whose underside is higher above the ground than this lets the wind through, m.
+/// Height of a box's underside above the ground from which on it lets the wind through, m.
 const GAP_M: f64 = 0.3;
 /// Height above the snow from which on a queried place counts as being on an object, m.
 const ABOVE_M: f64 = 3.0;
-/// Height at which a wind that varies in space is asked, m.
+/// Height over the snow at which a wind that varies in space is sampled, m.
 const ASKED_M: f64 = 2.0;
-/// Parts of a flake's way back from the ground to the top of a box in calm air, and the most that are looked at.
+/// Number of steps in which a flake's path is followed back from the ground to the top of a box in calm air.
 const WAY_PARTS: f64 = 12.0;
+/// Limit of these steps in wind.
 const MOST_PARTS: u32 = 24;
-/// The flakes whose fall decides what boxes keep off, mm.
+/// Diameter of the flakes whose path decides what boxes keep off, mm.
 const FLAKE_MM: f64 = 4.0;
 
-/// Kind of the ground.
+/// Source of the ground.
 enum Ground {
     Grid(Arc<TerrainHeights>),
-    /// Tiles of the terrain with this number, as of a revision.
+    /// Tiles of the terrain with this identity, up to a revision.
     Tiles {
         id: u64,
         revision: u64,
     },
 }
 
-/// The ground of a field of snow.
+/// Ground of a snow field.
 pub(super) struct Site {
     ground: Ground,
     origin: DVec3,
@@ -52,14 +53,14 @@ pub(super) struct Site {
     cell_m: f64,
     boxes: Vec<Shelter>,
     slant: DVec3,
-    /// The wind that varies in space in which the boxes were looked at, if it did.
+    /// Key of the wind that varies in space for which shelter was found last; `None` for a uniform wind.
     air: Option<ShadedIn>,
-    /// Ground has changed since the boxes were looked at.
+    /// Whether the ground has changed since shelter was found last.
     stale: bool,
 }
 
-/// All that flakes go with in a wind that varies in space: shade that was found in another is not what a loaded state
-/// would find.
+/// Inputs of the flakes' paths in a wind that varies in space. Shelter is found again when any of them changes:
+/// otherwise a loaded state would have another shelter.
 #[derive(Clone, Copy, PartialEq)]
 struct ShadedIn {
     revision: u64,
@@ -68,7 +69,7 @@ struct ShadedIn {
     fall: f64,
 }
 
-/// The four cells about a place, each by its patch, and their shares.
+/// Four cells around a place, each with its patch, and their weights.
 pub(super) type CornerShares = [Option<((usize, usize), f64)>; 4];
 
 impl Site {
@@ -76,8 +77,8 @@ impl Site {
         Self { ground, origin, to_enu, cell_m, boxes: Vec::new(), slant: DVec3::ZERO, air: None, stale: true }
     }
 
-    /// Creates the site of a grid. The snow that lies on one with nodes at the same places stays, be it `old`'s or
-    /// loaded; on another it is as deep as on level ground.
+    /// Creates the site of a grid. Snow stays if the nodes are at the same places: those of the grid of `old`, or of a
+    /// loaded state. On another grid it is as deep as on level ground.
     pub fn of_grid(
         terrain: &Arc<TerrainHeights>,
         old: Option<&Self>,
@@ -106,7 +107,7 @@ impl Site {
         Self::new(Ground::Grid(t.clone()), (t.origin, t.to_enu), t.cell_m)
     }
 
-    /// Creates the site of tiles, none of which is known yet. The snow on tiles of the same lattice stays.
+    /// Creates the site of a tiled terrain whose tiles are not known yet. Loaded snow of the same lattice stays.
     pub fn of_tiles(terrain: &Terrain, old: Option<&Self>, field: &mut Option<SnowField>) -> Self {
         let lattice = [terrain.desc.origin.x, terrain.desc.origin.y, terrain.desc.origin.z, terrain.desc.cell_m];
         let fits = |f: &SnowField| f.lattice == Some(lattice) && f.size == [terrain.side(); 2];
@@ -119,12 +120,12 @@ impl Site {
         Self::new(ground, (terrain.desc.origin, terrain.to_enu), terrain.desc.cell_m)
     }
 
-    /// Whether it is of this grid.
+    /// Whether this is the site of this grid.
     pub fn is_of(&self, terrain: &Arc<TerrainHeights>) -> bool {
         matches!(&self.ground, Ground::Grid(own) if Arc::ptr_eq(own, terrain) || own.hash == terrain.hash)
     }
 
-    /// Whether it is of these tiles, and their revision when they were last looked at.
+    /// Returns the revision of these tiles up to which the site knows them; `None` for other ground.
     pub fn seen(&self, terrain: &Terrain) -> Option<u64> {
         match self.ground {
             Ground::Tiles { id, revision } if id == terrain.id => Some(revision),
@@ -132,7 +133,7 @@ impl Site {
         }
     }
 
-    /// Takes all tiles as the terrain has them by now.
+    /// Synchronises all tiles with the terrain.
     pub fn follow_all(&mut self, terrain: &Terrain, field: &mut SnowField, country: Column, revision: u64) {
         for at in (0..field.patches.len()).rev() {
             let [east, north] = field.patches[at].key;
@@ -146,8 +147,8 @@ impl Site {
         self.mark_known(terrain);
     }
 
-    /// Synchronises one tile with the terrain: a removed one loses its snow, a new one starts with that of the country,
-    /// a changed one keeps its own wherever there is ground.
+    /// Synchronises one tile with the terrain: a removed tile loses its snow, a new one starts with the snow of the
+    /// open country, a changed one keeps its snow wherever there is ground.
     pub fn follow(&mut self, terrain: &Terrain, key: TileKey, field: &mut SnowField, country: Column, revision: u64) {
         let at = field.find([key.east, key.north]);
         let tile = terrain.slot(key).map(|slot| terrain.tile(slot));
@@ -185,14 +186,14 @@ impl Site {
         self.stale = true;
     }
 
-    /// Marks all of the terrain as known.
+    /// Marks the whole terrain as known.
     pub fn mark_known(&mut self, terrain: &Terrain) {
         if let Ground::Tiles { revision, .. } = &mut self.ground {
             *revision = terrain.revision;
         }
     }
 
-    /// East and north of the first cell of the lattice, m, and the height over it.
+    /// Returns a position in metres east and north of the first cell of the lattice, and its height over the origin.
     pub fn local(&self, position: DVec3) -> DVec3 {
         self.to_enu * (position - self.origin)
     }
@@ -201,12 +202,12 @@ impl Site {
         self.origin + self.to_enu.transpose() * local
     }
 
-    /// A place of the lattice at a height.
+    /// Returns the position of a place of the lattice at a height.
     pub fn place(&self, place: [i32; 2], height_m: f64) -> DVec3 {
         self.position((DVec2::new(f64::from(place[0]), f64::from(place[1])) * self.cell_m).extend(height_m))
     }
 
-    /// The cells about a position and their shares; `None` off the terrain and on what stands above it.
+    /// Returns the cells around a position and their weights; `None` off the terrain, and on objects that stand on it.
     pub fn about(&self, field: &SnowField, position: DVec3) -> Option<CornerShares> {
         let p = self.local(position);
         let c = p.truncate() / self.cell_m;
@@ -233,8 +234,9 @@ impl Site {
         (p.z <= ground_m(field, &about) + ABOVE_M).then_some(about)
     }
 
-    /// Finds the cells that standing boxes shelter from falling snow, and those that they stand on. Flakes go with
-    /// `air` where the wind varies in space. Says whether the boxes or the ground have changed.
+    /// Finds the cells that boxes shelter from falling snow, and the cells on which boxes stand. Only boxes that stand
+    /// still count. Flakes move with `air` where the wind varies in space. Returns whether the boxes or the ground have
+    /// changed.
     pub fn shade(
         &mut self,
         field: &mut SnowField,
@@ -281,7 +283,7 @@ impl Site {
         let radius = shelter.half_size_m.length() + self.cell_m;
         let over = (middle.z + radius - patch.lowest_m).max(0.0);
         let (back, on) = match air {
-            // Whichever way the wind turns round it.
+            // The wind may turn in any direction around the box.
             Some(_) => (DVec2::splat(-over), DVec2::splat(over)),
             None => (self.slant.truncate().min(DVec2::ZERO) * over, self.slant.truncate().max(DVec2::ZERO) * over),
         };
@@ -315,7 +317,7 @@ impl Site {
         }
     }
 
-    /// Whether flakes on their way to a place of the host's world meet a box: the way is followed back until it is
+    /// Whether flakes on their way to a place of the host's world meet a box. The path is followed back until it is
     /// above the box.
     fn meets(&self, shelter: &Shelter, landed: DVec3, air: &SiteWind<'_>, fall: f64) -> bool {
         let up = self.to_enu.row(2);
@@ -338,7 +340,8 @@ impl Site {
         false
     }
 
-    /// How high a box that reaches the ground stands over it at a cell, m; 0 where it does not.
+    /// Returns the height, m, by which a box that reaches the ground rises over it at a cell; 0 if the box is not
+    /// there.
     fn stands_on(&self, shelter: &Shelter, ground: DVec3, upward: DVec3) -> f64 {
         let half_height = (shelter.axes.transpose() * upward).abs().dot(shelter.half_size_m);
         let over = upward.dot(shelter.center_m - ground);
@@ -346,7 +349,7 @@ impl Site {
         if bottom > GAP_M || top <= 0.0 {
             return 0.0;
         }
-        // At the box's own height, since it may lean; cells that it only touches count.
+        // Tested at the height of the box's centre, since it may lean. Cells that the box only touches count.
         let at = shelter.axes.transpose() * (ground + upward * over - shelter.center_m);
         let upright = (shelter.axes.transpose() * upward).abs();
         let touches = (0..3).all(|i| {
@@ -356,7 +359,7 @@ impl Site {
         if touches { top } else { 0.0 }
     }
 
-    /// The wind where it varies in space; none where it does not at that time in the weather `c`.
+    /// Returns the wind that varies in space at a time in the weather `c`; `None` if the wind is uniform then.
     pub fn air<'w>(&self, world: &'w World, time_s: f64, c: &'w Conditions) -> Option<SiteWind<'w>> {
         let volume = world.wind_volume(time_s)?;
         let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
@@ -364,10 +367,10 @@ impl Site {
     }
 }
 
-/// A wind that varies in space, over a site.
+/// Wind that varies in space, over a site.
 pub(super) struct SiteWind<'w> {
     volume: &'w WindVolume,
-    /// The weather's at 10 m, m/s.
+    /// Wind of the weather at 10 m, east and north, m/s.
     mean: DVec2,
     c: &'w Conditions,
     origin: DVec3,
@@ -376,19 +379,20 @@ pub(super) struct SiteWind<'w> {
 }
 
 impl SiteWind<'_> {
-    /// The weather's wind so high over the ground, over that at 10 m.
+    /// Returns the ratio of the weather's wind at this height over the ground to that at 10 m.
     fn lower(&self, height_m: f64) -> f64 {
         let speed = self.c.wind.speed_m_s();
         if speed > 0.0 { self.c.wind.speed_at_height_m_s(height_m) / speed } else { 1.0 }
     }
 
-    /// At a place of the host's world, so high over the ground: east, north, up, m/s.
+    /// Returns the wind at a place of the host's world and this height over the ground: east, north, up, m/s.
     fn at(&self, position: DVec3, height_m: f64) -> DVec3 {
         let weathers = (self.mean * self.lower(height_m)).extend(0.0);
         self.volume.wind(position, weathers).unwrap_or(weathers)
     }
 
-    /// At 10 m over a place of the lattice, by the logarithmic law from 2 m over the snow.
+    /// Returns the wind at 10 m over a place of the lattice: the wind at 2 m over the snow, extrapolated by the
+    /// logarithmic law.
     pub fn over(&self, place: [i32; 2], surface_m: f64) -> DVec2 {
         let asked_m = ASKED_M.max(self.volume.cell_m.z);
         let lower = self.lower(asked_m);
@@ -399,18 +403,18 @@ impl SiteWind<'_> {
     }
 }
 
-/// How flakes of this fall speed go with a wind, m/s: eddies bring them into the lee, so that no shadow is longer than
-/// its box is high.
+/// Returns the horizontal velocity with which flakes of this fall speed move in a wind, m/s. It is at most the fall
+/// speed: eddies bring flakes into the lee, so a shadow is never longer than its box is high.
 fn slanted(wind: DVec2, fall: f64) -> DVec2 {
     wind * (fall / wind.length().max(fall))
 }
 
-/// Returns the way of flakes with a wind over their fall, in sixteenths.
+/// Returns the direction of flakes in a wind, relative to their fall and rounded to sixteenths.
 fn slant(wind: DVec2, fall: f64) -> DVec3 {
     (slanted(wind, fall) / fall * 16.0).round().extend(-16.0) / 16.0
 }
 
-/// Height of the ground about a place, m.
+/// Returns the height of the ground at a place, m.
 pub(super) fn ground_m(field: &SnowField, corners: &CornerShares) -> f64 {
     corners
         .iter()

@@ -1,14 +1,14 @@
-//! Snow that is too steep slides down until no slope is above the angle of repose: to the neighbour below that is
-//! steepest, by half of what is too much. Cells are looked at by the rows of the lattice, whatever patches they lie in.
+//! Sliding of steep snow, until no slope exceeds the angle of repose. Snow slides to the steepest lower neighbour, by
+//! half of the excess height. Cells are visited in the order of the lattice's rows, across patches.
 
 use super::{column::UNITS, field::SnowField, laws::REPOSE_DEG, patch::NONE};
 
-/// Heights too great by less than this stay, m.
+/// Excess heights below this are tolerated, m.
 const SLACK_M: f64 = 5e-4;
-/// Most moves a cell of the field; what is left slides in the next call.
+/// Limit of moves per cell of the field; the rest slides in the next call.
 const MOST_MOVES: usize = 40;
 
-/// Places of the eight neighbours and how far away they are, in cells.
+/// Offsets of the eight neighbours, and their distances in cells.
 const AROUND: [([i32; 2], f64); 8] = [
     ([1, 0], 1.0),
     ([0, 1], 1.0),
@@ -20,7 +20,7 @@ const AROUND: [([i32; 2], f64); 8] = [
     ([1, -1], std::f64::consts::SQRT_2),
 ];
 
-/// The cell that lies so far from one, in whatever patch.
+/// Returns the cell at an offset from another, in whichever patch it lies.
 fn beside(field: &SnowField, (patch, cell): (u32, u32), [dx, dy]: [i32; 2]) -> Option<(u32, u32)> {
     let size = field.size.map(|n| n as i32);
     let (x, y) = (cell as i32 % size[0] + dx, cell as i32 / size[0] + dy);
@@ -37,7 +37,7 @@ fn beside(field: &SnowField, (patch, cell): (u32, u32), [dx, dy]: [i32; 2]) -> O
     (at != NONE).then(|| (at, (y.rem_euclid(size[1]) * size[0] + x.rem_euclid(size[0])) as u32))
 }
 
-/// The neighbours of a cell on which snow can lie, and how far away they are, m.
+/// Returns the neighbours of a cell on which snow can lie, and their distances, m.
 fn around(field: &SnowField, cell: (u32, u32)) -> impl Iterator<Item = ((u32, u32), f64)> + '_ {
     AROUND.iter().filter_map(move |(way, cells)| {
         let to = beside(field, cell, *way)?;
@@ -49,7 +49,7 @@ fn surface_m(field: &SnowField, (patch, cell): (u32, u32)) -> f64 {
     field.patches[patch as usize].surface_m(cell as usize)
 }
 
-/// The neighbour to which the snow of a cell slides, and how much higher it is than it may be, m.
+/// Returns the neighbour to which the snow of a cell slides, and the excess height, m.
 fn steepest(field: &SnowField, cell: (u32, u32), rise: f64) -> Option<((u32, u32), f64)> {
     let here = surface_m(field, cell);
     let over = |(to, way): ((u32, u32), f64)| (to, here - surface_m(field, to) - rise * way);
@@ -57,8 +57,8 @@ fn steepest(field: &SnowField, cell: (u32, u32), rise: f64) -> Option<((u32, u32
     found.reduce(|a, b| if b.1 > a.1 { b } else { a })
 }
 
-/// Lets the snow of a cell slide, and what loses its hold by that. Answers whether it has come to rest before `left`
-/// moves are done.
+/// Lets the snow of a cell slide, and then the snow that loses its hold. Returns whether all of it has come to rest
+/// before `left` moves are used up.
 fn settle(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, rise: f64, left: &mut usize, revision: u64) -> bool {
     while let Some(cell) = moving.pop() {
         let column = field.patches[cell.0 as usize].column(cell.1 as usize);
@@ -79,7 +79,7 @@ fn settle(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, rise: f64, left: 
             patch.put(at.1 as usize, column);
             patch.changed(revision);
         }
-        // Both may slide on, and what lies above the cell has lost its hold.
+        // Both may slide on, and the snow above the cell has lost its hold.
         moving.push(to);
         moving.push(cell);
         moving.extend(around(field, cell).map(|(above, _)| above));
@@ -87,14 +87,14 @@ fn settle(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, rise: f64, left: 
     true
 }
 
-/// Lets all snow slide that lies too steep. `moving`: room for it. Answers whether all of it has come to rest.
+/// Lets all snow slide that lies too steep. `moving` is scratch space. Returns whether all of it has come to rest.
 pub(super) fn relax(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, revision: u64) -> bool {
     let rise = libm::tan(REPOSE_DEG.to_radians());
     let mut left = MOST_MOVES * field.len();
     let [columns, rows] = field.size;
     let mut first = 0;
     while first < field.patches.len() {
-        // Patches beside each other from west to east.
+        // Neighbouring patches of one row, from west to east.
         let north = field.patches[first].key[1];
         let end = first + field.patches[first..].iter().take_while(|p| p.key[1] == north).count();
         if field.patches[first..end].iter().all(|p| p.is_bare()) {
@@ -104,7 +104,7 @@ pub(super) fn relax(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, revisio
         for row in 0..rows {
             for patch in first..end {
                 for cell in row * columns..(row + 1) * columns {
-                    // What is bare now may get snow from above.
+                    // A cell that is bare now may receive snow from above.
                     if field.patches[patch].columns.get(cell).is_some_and(|c| c.depth > 0) {
                         moving.clear();
                         moving.push((patch as u32, cell as u32));

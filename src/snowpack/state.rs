@@ -1,4 +1,4 @@
-//! State of lying snow that is led through time, and the lengths of its steps.
+//! State of lying snow that is stepped through time, and the lengths of its steps.
 
 use super::{column::Column, field::SnowField};
 use crate::{error::Result, surroundings::Meltwater, world::World};
@@ -6,24 +6,24 @@ use crate::{error::Result, surroundings::Meltwater, world::World};
 /// Length of a step, s.
 pub const STEP_S: f64 = 60.0;
 
-/// Length of a step of fast-forward, s. Steep snow slides this often, too.
+/// Length of a fast-forward step, s. Steep snow also slides at this interval.
 pub const COARSE_STEP_S: f64 = 600.0;
 
-/// Density of snow of which only the depth is reported, kg/m^3: a seasonal pack's (Sturm et al. 1995, "prairie").
+/// Density of snow that is reported only by depth, kg/m^3: that of a seasonal pack (Sturm et al. 1995, "prairie").
 const REPORTED_KG_M3: f64 = 250.0;
 
-/// The snow and what its next step needs.
+/// Simulated snow, and what its next step needs.
 #[derive(Clone, Debug)]
 pub(super) struct SnowState {
     pub time_s: f64,
-    /// Sunlight on level ground since the last look at it.
+    /// Sunlight on level ground at its last update, W/m^2.
     pub sunlight_w_m2: f64,
-    /// On level, open ground.
+    /// Snow on level, open ground.
     pub country: Column,
     pub melted: Meltwater,
-    /// Time that was laid by fast-forward, s.
+    /// Time that was simulated in fast-forward, s.
     pub coarse_s: f64,
-    /// On the host's terrain, once it has any.
+    /// Snow on the host's terrain, once there is one.
     pub field: Option<SnowField>,
 }
 
@@ -43,7 +43,7 @@ impl SnowState {
         })
     }
 
-    /// Where its next step ends, s.
+    /// Returns the end of the next step, s.
     pub fn next_s(&self, coarse_until_s: f64) -> f64 {
         let after = |length: f64| ((self.time_s / length).floor() + 1.0) * length;
         let coarse = after(COARSE_STEP_S);

@@ -1,4 +1,4 @@
-//! Step of a field of snow: its columns, the drift, what slides, and the books of it.
+//! Step of a snow field: its columns, drift, slides, and mass balance.
 
 use super::{
     column::{Column, MassExchange, UNITS},
@@ -9,18 +9,18 @@ use super::{
 };
 use crate::weather::snow_cover;
 
-/// Side of the square blocks of cells that ask once what falls on them.
+/// Side of the square blocks of cells that share one evaluation of what falls on them.
 const BLOCK: usize = 16;
-/// Units of a share of 1, so that sums do not depend on their order.
+/// Integer units of a share of 1: sums of integers do not depend on their order.
 const SHARE_UNITS: f64 = 4_294_967_296.0;
 
-/// Sums over the columns of a field: what they gave and what they have.
+/// Sums over the columns of a field.
 #[derive(Default)]
 struct Sums {
     fallen: i64,
     ran_off: i64,
     sublimated: i64,
-    /// In units of a share.
+    /// Sum of the cover, in [`SHARE_UNITS`].
     covered: i64,
 }
 
@@ -34,7 +34,7 @@ impl Sums {
 }
 
 impl Patch {
-    /// Leads its columns through a step, block by block.
+    /// Steps the patch's columns, block by block.
     fn step(&mut self, size: [usize; 2], step: &SnowStep<'_>, sums: &mut Sums) {
         let side = if step.falls.is_some() { [BLOCK; 2] } else { size };
         let (mut lies, was_bare) = (false, self.is_bare());
@@ -73,7 +73,7 @@ impl Patch {
 }
 
 impl SnowField {
-    /// Leads the snow through a step.
+    /// Steps the snow of the field.
     pub fn step(&mut self, step: &SnowStep<'_>) {
         self.join();
         let mut sums = Sums::default();

@@ -1,5 +1,5 @@
-//! Actions of the host on lying snow: it ploughs and digs it away, and its wheels press tracks. Both are strips along a
-//! path.
+//! Actions of the host on lying snow along a path: clearing it (by ploughs or shovels), and pressing tracks (by
+//! wheels).
 
 use glam::{DVec2, DVec3};
 
@@ -14,24 +14,24 @@ use crate::{
     world::World,
 };
 
-/// Most points of a strip.
+/// Largest number of points of a strip.
 pub const MAX_STRIP_POINTS: usize = 1024;
 /// Density to which wheels press snow, kg/m^3: packed roads have 450 to 600.
 const PRESSED_KG_M3: f64 = 500.0;
-/// Samples of a cell a side, by which its covered share is counted.
+/// Samples per side of a cell from which the covered share is counted.
 const SAMPLES: usize = 4;
 
-/// A strip of ground: a path with a width. Two points and a width make a rectangle.
+/// Strip of ground: a path with a width. Two points and a width make a rectangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SnowStrip {
-    /// Its middle line in the host's world, m; 2 to 1024 points. Heights do not matter.
+    /// Centre line in the host's world, m; 2 to 1024 points. Heights do not matter.
     pub points: Vec<DVec3>,
-    /// From side to side, m, \[0.01, 1000\].
+    /// Full width, m, \[0.01, 1000\].
     pub width_m: f64,
 }
 
 impl SnowStrip {
-    /// Refuses what is no strip, by name.
+    /// Checks the strip; the error names the field at fault.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`].
@@ -47,7 +47,7 @@ impl SnowStrip {
     }
 }
 
-/// Whether a place lies on a path of this half width: its ends are cut straight, its bends are round.
+/// Whether a place lies on a path of this half width. The ends of the path are cut straight; its bends are round.
 fn lies_on(path: &[DVec2], half_m: f64, p: DVec2) -> bool {
     let along = path.windows(2).any(|ends| {
         let (way, from) = (ends[1] - ends[0], p - ends[0]);
@@ -57,8 +57,8 @@ fn lies_on(path: &[DVec2], half_m: f64, p: DVec2) -> bool {
     along || path[1..path.len() - 1].iter().any(|bend| p.distance(*bend) <= half_m)
 }
 
-/// Does `act` to the columns under a strip, with the share of each that it covers, and counts what it says. Patches on
-/// which it has acted are of this revision then.
+/// Applies `act` to each column under a strip, with the share of the cell that the strip covers. Returns the sum of the
+/// results of `act`. Patches on which it has acted get this revision.
 fn each_under(
     (site, field): (&Site, &mut SnowField),
     strip: &SnowStrip,
@@ -74,7 +74,7 @@ fn each_under(
     let mut sum = 0;
     for patch in field.patches.iter_mut().filter(|patch| !patch.is_bare()) {
         let corner = [0, 1].map(|i| f64::from(patch.key[i]) * size[i] as f64);
-        // Cells at half the width from it too.
+        // Cells at half the width from the path are included.
         let span = |i: usize| {
             let low = (low[i] / cell_m - 0.5).floor() - corner[i];
             let high = (high[i] / cell_m + 0.5).ceil() - corner[i] + 1.0;
@@ -100,7 +100,7 @@ fn each_under(
 }
 
 impl HeldSnow {
-    /// The terrain's snow, to be changed now.
+    /// Returns the terrain's snow, to be changed by the host.
     fn field_for_change(&mut self, world: &World, strip: &SnowStrip) -> Result<(&Site, &mut SnowField)> {
         strip.validate()?;
         let wanted = "lying snow is changed on the host's terrain, where WK_LYING_SNOW_SIMULATED leads it";
@@ -112,10 +112,10 @@ impl HeldSnow {
         self.field_mut().ok_or_else(|| Error::new(Status::WrongOrder, wanted))
     }
 
-    /// Takes snow away; see [`Context::take_snow`](crate::context::Context::take_snow).
+    /// Removes snow; see [`Context::take_snow`](crate::context::Context::take_snow).
     ///
     /// # Errors
-    /// As there.
+    /// As for that function.
     pub fn take(&mut self, world: &World, strip: &SnowStrip, left_m: f64) -> Result<f64> {
         check_range("left_m", left_m, 0.0, 100.0, "m")?;
         let revision = self.next_revision();
@@ -134,7 +134,7 @@ impl HeldSnow {
     /// Presses tracks; see [`Context::press_snow`](crate::context::Context::press_snow).
     ///
     /// # Errors
-    /// As there.
+    /// As for that function.
     pub fn press(&mut self, world: &World, strip: &SnowStrip) -> Result<()> {
         let revision = self.next_revision();
         let (site, field) = self.field_for_change(world, strip)?;

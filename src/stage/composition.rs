@@ -1,4 +1,5 @@
-//! The one full-screen draw of a call: what each effect contributes to it, and what the frame merges of that.
+//! The composition, the one full-screen draw of a call: what each effect contributes to it, and how the frame merges
+//! that.
 
 use super::{
     stages::Stages,
@@ -12,12 +13,12 @@ use crate::{
 /// Name and value of an `override` constant.
 pub(crate) type Constant = (&'static str, f64);
 
-/// As the value of an `override` constant.
+/// Converts a flag to the value of an `override` constant.
 pub(crate) fn flag(b: bool) -> f64 {
     f64::from(u8::from(b))
 }
 
-/// Most constants that the effects may add.
+/// Most constants that all effects together may add.
 const MOST: usize = 56;
 
 /// A list of constants, without allocation.
@@ -28,10 +29,10 @@ pub(crate) struct Constants {
 }
 
 impl Constants {
-    /// None.
+    /// The empty list.
     pub const NONE: Self = Self { list: [("", 0.0); MOST], count: 0 };
 
-    /// Adds one. There is room for those of all effects.
+    /// Adds a constant. The list has room for those of all effects.
     pub fn push(&mut self, constant: Constant) {
         debug_assert!(self.count < MOST, "room for {constant:?}");
         if let Some(place) = self.list.get_mut(self.count) {
@@ -40,17 +41,17 @@ impl Constants {
         }
     }
 
-    /// All of them.
+    /// All constants of the list.
     pub fn all(&self) -> &[Constant] {
         &self.list[..self.count]
     }
 
-    /// Adds all of a list.
+    /// Adds all constants of a slice.
     pub fn extend(&mut self, constants: &[Constant]) {
         constants.iter().for_each(|c| self.push(*c));
     }
 
-    /// The value of one, 0 where there is none of that name.
+    /// Value of the constant `name`; 0 if the list has none of that name.
     pub fn value(&self, name: &str) -> f64 {
         self.all().iter().find(|c| c.0 == name).map_or(0.0, |c| c.1)
     }
@@ -62,49 +63,48 @@ impl PartialEq for Constants {
     }
 }
 
-/// Places for textures of the effects, which all that are drawn alike share. Their bindings are those of
-/// `shaders/frame/composite.wgsl`.
+/// Slots for textures of the effects, shared by all draws of the composition. `shaders/frame/composite.wgsl` has their
+/// bindings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Texture {
-    /// A layer before the picture: colour with the exposure on it, and cover.
+    /// Layer in front of the picture: exposed colour, and cover.
     Before = 0,
-    /// Cover that lies on the ground, by cells of the host's terrain.
+    /// Cover that lies on the ground, one value for each cell of the host's terrain.
     OnGround = 1,
     /// Heights and classes of the host's terrain.
     Terrain = 2,
-    /// Layers of the sky. The last is what stands behind the sky's own light: radiance over [`FrameUniform::behind`].
-    /// Before it may be two of what hangs before the sky: light with the exposure on it and what it lets through, and
-    /// how far away it is (`shaders/between/hung.wgsl`).
+    /// Layers of the sky. The last layer stands behind the sky's own light: radiance over [`FrameUniform::behind`]. Two
+    /// layers of clouds may come first: exposed light with transmittance, and distance (`shaders/between/hung.wgsl`).
     Behind = 3,
 }
 
-/// Places for blocks of the effects.
+/// Slots for uniform blocks of the effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Block {
-    /// Block of what lies between the eye and a place.
+    /// Block for what lies between the eye and a place; the fog sets it.
     Between = 0,
-    /// Block of what lies on surfaces.
+    /// Block for what lies on surfaces; the ground sets it.
     OnSurfaces = 1,
 }
 
 /// Properties of the weather that select the shader's variant and the kinds of pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Traits {
-    /// Something lies before every pixel, those too on which the host drew nothing.
+    /// The weather veils every pixel, including those on which the host drew nothing.
     pub veils_all: bool,
-    /// Something lies before what the host drew.
+    /// The weather veils what the host drew.
     pub veils_drawn: bool,
-    /// Rays are marched in every pixel alike: nothing is gained by a draw for each kind of pixels.
+    /// Every pixel marches a ray, so that separate draws for each kind of pixels would gain nothing.
     pub is_marched: bool,
-    /// Something is in the picture that changes from pixel to pixel, as stars do: it cannot be looked up in a grid.
+    /// The picture contains detail that changes from pixel to pixel, as stars do, and that the coarse grid cannot hold.
     pub is_fine: bool,
-    /// Each pixel lays clouds over what it looks up in the grid. Fog lies before clouds: where both are, nothing is
-    /// looked up.
+    /// Each pixel composites clouds over what it looks up in the coarse grid. Fog lies in front of clouds; where there
+    /// are both, nothing is looked up.
     pub is_overlaid: bool,
 }
 
 impl Traits {
-    /// Returns the traits that either has.
+    /// Returns the traits that `self` or `other` has.
     fn or(self, other: Self) -> Self {
         Self {
             veils_all: self.veils_all | other.veils_all,
@@ -116,7 +116,7 @@ impl Traits {
     }
 }
 
-/// The constants of a pipeline, and what follows of them for the frame.
+/// Constants of a pipeline, and the traits that come with them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pipeline {
     /// Constants of every shader that applies air, cloud and fog.
@@ -130,7 +130,7 @@ pub(crate) struct Pipeline {
 }
 
 impl Pipeline {
-    /// None.
+    /// Pipeline of a frame without effects.
     pub const NONE: Self = Self {
         between: Constants::NONE,
         of_veil: Constants::NONE,
@@ -139,7 +139,7 @@ impl Pipeline {
     };
 }
 
-/// The shaders that a constant is for.
+/// Shaders that a constant is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Scope {
     /// Every shader that applies air, cloud and fog.
@@ -150,7 +150,8 @@ enum Scope {
     Composition,
 }
 
-/// A constant: its value where every part is drawn, and where only what shows now is.
+/// A constant with two values: `whole` for the pipeline that draws every part, `least` for the pipeline that draws only
+/// the parts that show now.
 #[derive(Clone, Copy)]
 struct ScopedConstant {
     scope: Scope,
@@ -167,9 +168,9 @@ const MOST_OF_ONE: usize = 12;
 pub(crate) struct Contribution<'a> {
     constants: [ScopedConstant; MOST_OF_ONE],
     count: usize,
-    /// Where every part is drawn, and where only what shows now is.
+    /// Traits where every part is drawn, and where only the parts that show now are drawn.
     traits: [Traits; 2],
-    /// Its fields of the frame's block.
+    /// Fields that the effect writes into the frame's block.
     block: Option<FrameBlock<'a>>,
     own_block: Option<(Block, BlockView)>,
     textures: [Option<wgpu::TextureView>; 4],
@@ -179,7 +180,7 @@ pub(crate) struct Contribution<'a> {
 }
 
 impl<'a> Contribution<'a> {
-    /// Nothing.
+    /// A contribution that adds nothing.
     pub fn none() -> Self {
         let none = ScopedConstant { scope: Scope::Composition, name: "", whole: 0.0, least: 0.0 };
         Self {
@@ -203,69 +204,70 @@ impl<'a> Contribution<'a> {
         }
     }
 
-    /// Adds a constant of what lies between: its value where every part is drawn, and where only what shows now is.
+    /// Adds a constant for every shader that applies air, cloud and fog. `whole` is its value where every part is
+    /// drawn, `least` where only the parts that show now are drawn.
     pub fn between(&mut self, name: &'static str, whole: f64, least: f64) {
         self.push(Scope::Between, name, whole, least);
     }
 
-    /// Adds as [`Self::between`] does, to the constants of the veil too.
+    /// Adds a constant as [`Self::between`] does, and gives it to the veil for hosts' shaders too.
     pub fn between_and_veil(&mut self, name: &'static str, whole: f64, least: f64) {
         self.push(Scope::BetweenAndVeil, name, whole, least);
     }
 
-    /// Adds as [`Self::between`] does a constant of the composition alone.
+    /// Adds a constant as [`Self::between`] does, but for the composition alone.
     pub fn constant(&mut self, name: &'static str, whole: f64, least: f64) {
         self.push(Scope::Composition, name, whole, least);
     }
 
-    /// Says what is in the picture where every part is drawn, and where only what shows now is.
+    /// Sets the traits where every part is drawn (`whole`), and where only the parts that show now are drawn (`least`).
     pub fn set_traits(&mut self, whole: Traits, least: Traits) {
         self.traits = [whole, least];
     }
 
-    /// Gives its fields of the frame's block.
+    /// Sets the fields that the effect writes into the frame's block.
     pub fn set_frame_block(&mut self, block: FrameBlock<'a>) {
         self.block = Some(block);
     }
 
-    /// Gives a block of its own.
+    /// Sets a uniform block of the effect's own.
     pub fn set_block(&mut self, place: Block, block: &BlockView) {
         self.own_block = Some((place, block.clone()));
     }
 
-    /// Gives a texture. At [`Texture::Behind`] and [`Texture::Before`] it takes the place of what it names as its
-    /// input.
+    /// Sets a texture. At [`Texture::Behind`] and [`Texture::Before`] it replaces the texture that the effect took as
+    /// an input.
     pub fn set_texture(&mut self, place: Texture, view: Option<wgpu::TextureView>) {
         self.textures[place as usize] = view;
     }
 
-    /// Whether any of the stars shows.
+    /// Whether any star shows.
     pub fn shows_stars(&self) -> bool {
         matches!(self.block, Some(FrameBlock::Stars { behind }) if behind[1] > 0.0)
     }
 
-    /// The texture that it gives at a place.
+    /// Texture that the effect has set at a slot.
     pub fn texture(&self, place: Texture) -> Option<&wgpu::TextureView> {
         self.textures[place as usize].as_ref()
     }
 
-    /// Gives the look-up tables of what lies behind and between.
+    /// Sets the look-up tables of sky, air and fog (group 1).
     pub fn set_tables(&mut self, layout: &wgpu::BindGroupLayout, group: &wgpu::BindGroup) {
         self.tables = Some((layout.clone(), group.clone()));
     }
 
-    /// Says that something shows what stands about the camera outside of the picture too: mirrors, a cube map.
+    /// Requests a panorama: mirrors or a cube map show surroundings that lie outside the picture.
     pub fn require_panorama(&mut self) {
         self.needs_panorama = true;
     }
 
-    /// Says which drops or flakes are drawn near the camera.
+    /// Sets the reach and the slowest fall speed of the drops or flakes drawn near the camera.
     pub fn set_near(&mut self, reach: ShelterReach) {
         self.near = Some(reach);
     }
 }
 
-/// A draw with what all effects have added to it.
+/// One draw, with everything that the effects have added to it.
 pub(crate) struct Composition {
     stages: Stages,
     block: FrameUniform,
@@ -279,7 +281,7 @@ pub(crate) struct Composition {
 }
 
 impl Composition {
-    /// With nothing of any effect.
+    /// Creates a composition to which no effect has added anything.
     pub fn new(stages: Stages, block: FrameUniform) -> Self {
         Self {
             stages,
@@ -294,7 +296,7 @@ impl Composition {
         }
     }
 
-    /// Takes what one effect adds out of its contribution.
+    /// Merges the contribution of one effect; its textures and blocks are moved out.
     pub fn merge(&mut self, contribution: &mut Contribution<'_>) {
         for c in &contribution.constants[..contribution.count] {
             for (pipeline, value) in [(&mut self.whole, c.whole), (&mut self.least, c.least)] {
@@ -329,7 +331,7 @@ impl Composition {
         };
     }
 
-    /// Ends the merging: there is no stage of what falls where no effect has a layer before the picture.
+    /// Ends the merging. Stage PARTICLES is left out if no effect has a layer in front of the picture.
     pub fn finish(&mut self, has_cube_map: bool) {
         if self.texture(Texture::Before).is_none() {
             self.stages = self.stages.without(Stages::PARTICLES);
@@ -338,25 +340,25 @@ impl Composition {
         self.block.finish();
     }
 
-    /// Adds a constant of the frame's own to what lies between.
+    /// Adds a constant of the frame itself for every shader that applies air, cloud and fog.
     pub fn set_between(&mut self, name: &'static str, value: f64) {
         self.whole.between.push((name, value));
         self.least.between.push((name, value));
     }
 
-    /// Adds a constant of the frame's own to the composition: its value where every part is drawn, and where only what
-    /// shows now is.
+    /// Adds a constant of the frame itself for the composition: its value where every part is drawn, and where only the
+    /// parts that show now are drawn.
     pub fn set_constant(&mut self, name: &'static str, whole: f64, least: f64) {
         self.whole.composed.push((name, whole));
         self.least.composed.push((name, least));
     }
 
-    /// Takes out a stage that has nothing to draw.
+    /// Removes a stage that has nothing to draw.
     pub fn leave_out(&mut self, stage: Stages) {
         self.stages = self.stages.without(stage);
     }
 
-    /// Says how many draws of the same kind the planner counts.
+    /// Sets how many draws of the same kind the planner counts.
     pub fn set_compositions(&mut self, count: u32) {
         self.block.compositions = count;
     }
@@ -366,54 +368,54 @@ impl Composition {
         self.stages
     }
 
-    /// The frame's block.
+    /// Values of the frame's block.
     pub fn block(&self) -> &FrameUniform {
         &self.block
     }
 
-    /// Constants of a pipeline that can draw every part.
+    /// Constants of the pipeline that can draw every part.
     pub fn whole(&self) -> &Pipeline {
         &self.whole
     }
 
-    /// Constants of a pipeline without the parts of which nothing is drawn now: cheaper than a branch on a software
-    /// driver, which takes both ways.
+    /// Constants of the pipeline that leaves out the parts of which nothing is drawn now. That is cheaper than a branch
+    /// on a software driver, which executes both sides.
     pub fn least(&self) -> &Pipeline {
         &self.least
     }
 
-    /// The block at a place, if an effect has given one.
+    /// Block at a slot, if an effect has set one.
     pub fn own_block(&self, place: Block) -> Option<&BlockView> {
         self.blocks[place as usize].as_ref()
     }
 
-    /// The texture at a place, if an effect has given one.
+    /// Texture at a slot, if an effect has set one.
     pub fn texture(&self, place: Texture) -> Option<&wgpu::TextureView> {
         self.textures[place as usize].as_ref()
     }
 
-    /// Textures by [`Texture`].
+    /// Textures, indexed by [`Texture`].
     pub fn textures(&self) -> &[Option<wgpu::TextureView>; 4] {
         &self.textures
     }
 
-    /// Look-up tables of what lies behind and between (group 1), and their layout.
+    /// Look-up tables of sky, air and fog (group 1), with their layout.
     pub fn tables(&self) -> Option<(&wgpu::BindGroupLayout, &wgpu::BindGroup)> {
         self.tables.as_ref().map(|(layout, group)| (layout, group))
     }
 
-    /// Whether something shows what stands about the camera outside of the picture too.
+    /// Whether the frame needs a panorama: mirrors or a cube map show surroundings that lie outside the picture.
     pub fn needs_panorama(&self) -> bool {
         self.needs_panorama
     }
 
-    /// Drops and flakes that are drawn near the camera.
+    /// Reach and speed of the drops and flakes drawn near the camera; [`ShelterReach::NONE`] without any.
     pub fn near(&self) -> ShelterReach {
         self.near.unwrap_or(ShelterReach::NONE)
     }
 }
 
-/// A finished composition with the frame's blocks on the GPU: what the effects' own passes draw with.
+/// A finished composition and the frame's blocks on the GPU, with which the effects' own passes draw.
 #[derive(Clone, Copy)]
 pub(crate) struct MergedFrame<'a> {
     pub composition: &'a Composition,

@@ -1,5 +1,4 @@
-//! Contexts of a frame that effects read: one from its gathering to its first pass, one for each of its draws. Both are
-//! read-only.
+//! Read-only contexts of a frame for its effects: one from gathering to the first pass, and one for each draw.
 
 use std::sync::Arc;
 
@@ -18,18 +17,18 @@ use crate::{
     world::{HeldEffects, World},
 };
 
-/// A frame before anything of it is drawn.
+/// A frame before any of it is drawn.
 pub(crate) struct FrameContext<'a> {
     pub device: &'a Arc<Device>,
-    /// Camera, flags and images of the host.
+    /// Camera, flags and images from the host.
     pub frame: &'a Frame<'a>,
     pub now: &'a SceneMoment<'a>,
     pub world: &'a World,
     /// Simulation state of the effects.
     pub held: HeldEffects<'a>,
-    /// Stages of the call.
+    /// Stages that the call asks for.
     pub asked: Stages,
-    /// Work for tables in this frame, as a share of building all of them.
+    /// Work on tables in this frame, as a share of the work of building them all.
     pub table_share: f32,
 }
 
@@ -40,7 +39,7 @@ pub(crate) struct DrawTarget<'a> {
     pub rays: &'a ViewRays,
     /// Display units per cd/m^2.
     pub exposure: f64,
-    /// Fog and air lie before the picture in this call, or have been drawn in an earlier one of the frame.
+    /// Whether fog and air are drawn over the picture in this call, or have been in an earlier call of the frame.
     pub is_veiled: bool,
 }
 
@@ -49,17 +48,17 @@ pub(crate) struct DrawTarget<'a> {
 pub(crate) struct PlannedShares {
     parts: &'static [Part],
     shares: [[f32; MOST_RUNGS - 1]; MOST_PARTS],
-    /// The plan gauges what parts are worth.
+    /// Whether the plan gauges what each part is worth.
     pub is_gauged: bool,
 }
 
 impl PlannedShares {
-    /// Everything is drawn.
+    /// Shares with which everything is drawn.
     pub fn whole(parts: &'static [Part]) -> Self {
         Self { parts, shares: [[1.0; MOST_RUNGS - 1]; MOST_PARTS], is_gauged: false }
     }
 
-    /// `share` answers for a part's place in the list and its step.
+    /// Creates the shares from `share`, which takes a part's index in the list and its step.
     pub fn new(parts: &'static [Part], is_gauged: bool, share: impl Fn(usize, usize) -> f32) -> Self {
         let mut planned = Self { is_gauged, ..Self::whole(parts) };
         for (part, shares) in planned.shares.iter_mut().enumerate().take(parts.len()) {
@@ -70,21 +69,21 @@ impl PlannedShares {
         planned
     }
 
-    /// Share of a part's step that is drawn.
+    /// Drawn share of a part's step; 1 for a part that is not in the list.
     pub fn share(&self, part: &Part, step: usize) -> f32 {
         let place = self.parts.iter().position(|p| p.name == part.name);
         place.map_or(1.0, |i| self.shares[i][step])
     }
 }
 
-/// Tone curve that has been applied to exposed light in a picture.
+/// Tone curve that a picture's exposed light has gone through.
 pub(crate) type Tone = fn(f64) -> f64;
 
 /// One draw of a frame into the host's picture.
 #[derive(Clone, Copy)]
 pub(crate) struct DrawContext<'a> {
     pub device: &'a Arc<Device>,
-    /// Camera, flags and images of the host.
+    /// Camera, flags and images from the host.
     pub frame: &'a Frame<'a>,
     pub now: &'a SceneMoment<'a>,
     pub target: DrawTarget<'a>,
@@ -94,7 +93,7 @@ pub(crate) struct DrawContext<'a> {
 }
 
 impl DrawContext<'_> {
-    /// Share of a part's step that is drawn.
+    /// Drawn share of a part's step.
     pub fn share(&self, part: &Part, step: usize) -> f32 {
         self.plan.share(part, step)
     }
@@ -104,12 +103,12 @@ impl DrawContext<'_> {
         self.target.color.texture
     }
 
-    /// Pixels of the picture.
+    /// Number of pixels of the picture.
     pub fn pixels(&self) -> u64 {
         u64::from(self.picture().width()) * u64::from(self.picture().height())
     }
 
-    /// Returns the tone curve that is applied to exposed light in its picture.
+    /// Returns the tone curve that is applied to exposed light in this picture.
     pub fn tone(&self) -> Tone {
         match (self.frame.color_space, self.now.tone) {
             (ColorSpace::SceneLinear, _) | (_, ToneCurve::Linear) => |x| x,
@@ -118,7 +117,7 @@ impl DrawContext<'_> {
         }
     }
 
-    /// From camera-relative east-north-up to clip space.
+    /// Matrix from camera-relative (east, north, up) to clip space.
     pub fn clip(&self) -> DMat4 {
         let camera = &self.frame.camera;
         camera.projection * DMat4::from_mat3(camera.rotation() * self.now.scene.world_to_enu.transpose())

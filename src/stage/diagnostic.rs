@@ -1,41 +1,42 @@
-//! Pictures of a frame's numbers in place of the frame itself, for developers.
+//! Diagnostic pictures for developers: numbers of a frame in false colour, in place of the frame itself.
 
 use super::stages::Stages;
 
-/// A false-colour picture in place of a frame's: one number of each pixel on a scale from black over blue, green,
-/// yellow and red to white.
+/// False-colour picture in place of a frame's: one number of each pixel on a scale from black over blue, green, yellow
+/// and red to white.
 ///
-/// The call of the frame that has the number's stage draws it; other calls of the frame draw nothing. The colours are a
-/// display's: linear in float and sRGB formats and where the host's colour is display-linear, else encoded by the sRGB
-/// curve. Of several samples a pixel the first stands for all. Masked pixels stay the host's. Where nothing of what it
-/// shows is in the frame all is black.
+/// The call that has the number's stage draws it; other calls of the frame draw nothing. The colours are display
+/// colours: linear in float and sRGB formats and where the host's colour is display-linear, otherwise encoded by the
+/// sRGB curve. In multisampled images the first sample of a pixel stands for all. Masked pixels keep the host's colour.
+/// If the frame has nothing of what the picture shows, all is black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Diagnostic {
-    /// The picture itself.
+    /// The normal picture.
     #[default]
     None = 0,
-    /// Metres along the ray to what the host drew, by decades: black 1 m or less, white 100 km and more, and the sky.
-    /// Stage MEDIUM.
+    /// Distance along the ray to what the host drew, m, by decades: black is 1 m or less; white is 100 km or more, and
+    /// the sky. Stage MEDIUM.
     Distance = 1,
-    /// Optical depth of air, fog and what falls between the eye and what is seen, of luminance: black 0, 1 a step,
-    /// white 5 and more. Rain areas' columns are left out. Stage MEDIUM.
+    /// Optical depth, for luminance, of air, fog and precipitation between the eye and the surface that the pixel
+    /// shows: black is 0, a step is 1, white is 5 or more. The columns of rain areas are left out. Stage MEDIUM.
     OpticalDepth = 2,
-    /// Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE.
+    /// Share of a surface under a water film, standing water or clear ice: black is 0, a step is 0.2, white is 1. Stage
+    /// SURFACE.
     Wetness = 3,
-    /// Error by what the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of
-    /// white, by decades: black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
+    /// Error of what the plan leaves out of air, fog and clear sky: change of luminance relative to a hundredth of
+    /// white, by decades: black is 1e-4 or less, white is 10 or more. Drops and stars are not counted. Stage MEDIUM.
     PlanError = 4,
-    /// How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage
-    /// PARTICLES.
+    /// Number of times that precipitation was drawn over a pixel: black is never, a step is 4 times, white is 20 times
+    /// or more. Stage PARTICLES.
     Overdraw = 5,
-    /// The wind that carries what falls, 2 m over what the host drew: black a calm, 4 m/s a step, white 20 m/s and
-    /// more. Each square of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The sky
-    /// is black. Stage MEDIUM.
+    /// Wind that carries precipitation, 2 m above what the host drew: black is calm, a step is 4 m/s, white is 20 m/s
+    /// or more. Each square of the ground has an arrow along the wind, or a dot where the wind is slower than 0.3 m/s.
+    /// The sky is black. Stage MEDIUM.
     Wind = 6,
 }
 
 impl Diagnostic {
-    /// The stage whose call draws it.
+    /// Stage whose call draws this picture.
     pub(crate) fn stage(self) -> Stages {
         match self {
             Self::None => Stages(0),

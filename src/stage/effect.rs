@@ -1,4 +1,4 @@
-//! The shape that every effect of a frame has.
+//! The trait that every effect of a frame implements.
 
 use super::{
     composition::{Contribution, MergedFrame},
@@ -15,61 +15,61 @@ use crate::{
     plan::{StepWork, parts::Part},
 };
 
-/// The finished picture, as a lens over it takes it.
+/// The finished picture, for an effect on the lens to draw over.
 #[derive(Clone, Copy)]
 pub(crate) struct LensPicture<'a> {
-    /// A copy, to read.
+    /// Copy of the picture, to read.
     pub copy: &'a wgpu::Texture,
     /// The picture itself, to draw into.
     pub target: &'a wgpu::TextureView,
 }
 
-/// Takes a part, whether a picture has it, and the work of each of its steps.
+/// Callback that takes a part, whether a picture has it, and the work of each of its steps.
 pub(crate) type PutPart<'a> = dyn FnMut(&Part, bool, &[StepWork]) + 'a;
 
-/// One effect of a view, run by these functions in this order. Each reads its context and returns what it adds; none
-/// sees another but by the outputs that it names.
+/// One effect of a view. The frame calls these functions in the order given here. Each function reads its context and
+/// returns what the effect adds. An effect sees other effects only through the outputs that it names.
 pub(crate) trait DrawnEffect {
-    /// Names the outputs that [`DrawnEffect::gather`] takes from other effects and gives to them.
+    /// Names the outputs that [`DrawnEffect::gather`] takes from other effects, and those that it gives to them.
     fn gathers(&self) -> Exchange {
         Exchange::NONE
     }
 
-    /// Names the outputs that [`DrawnEffect::compose`] and [`DrawnEffect::draw`] take from other effects and give to
-    /// them.
+    /// Names the outputs that [`DrawnEffect::compose`] and [`DrawnEffect::draw`] take from other effects, and those
+    /// that they give to them.
     fn composes(&self) -> Exchange {
         Exchange::NONE
     }
 
-    /// Finds what there is of it at a camera, and writes what it gives.
+    /// Finds what of the effect is visible from the camera, and writes its outputs.
     fn gather(&mut self, _context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
         Ok(())
     }
 
-    /// Stages in which there is something of it in the moment that was gathered. In others it is not run.
+    /// Stages in which the effect has something to draw in the gathered moment. It is not run in other stages.
     fn stages(&self) -> Stages;
 
-    /// Refuses a frame whose images it cannot draw into.
+    /// Refuses a frame with images that the effect cannot draw into.
     fn check(&self, _frame: &Frame<'_>, _stages: Stages) -> Result<()> {
         Ok(())
     }
 
-    /// Makes what it needs of the picture's size, before anything is recorded: a large target is what memory may be too
-    /// small for.
+    /// Allocates what depends on the picture's size, before anything is recorded: memory may be too small for a large
+    /// target.
     fn hold(&mut self, _device: &Device, _color: &wgpu::Texture, _stages: Stages) {}
 
-    /// Brings what it keeps up to the moment.
+    /// Updates the effect's tables and textures for this moment.
     fn prepare(&mut self, _context: &FrameContext<'_>, _recording: &mut Recording<'_>) -> Result<()> {
         Ok(())
     }
 
-    /// Whether it has anything opaque to draw in the moment that was gathered.
+    /// Whether the effect has anything opaque to draw in the gathered moment.
     fn has_opaque(&self) -> bool {
         false
     }
 
-    /// Draws what is opaque, into the host's colour and depth, before the composition of stage SURFACE. What lies on
-    /// surfaces, air and what falls see its depth as they see the host's.
+    /// Draws the opaque parts into the host's colour and depth, before the composition of stage SURFACE. Water on
+    /// surfaces, air and precipitation read their depth like the host's own.
     fn draw_opaque(
         &mut self,
         _context: &DrawContext<'_>,
@@ -79,15 +79,15 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// Names its parts, whether a picture of these stages has them, and their work.
+    /// Reports the effect's parts: whether a picture of these stages has them, and their work.
     fn parts(&mut self, _context: &DrawContext<'_>, _stages: Stages, _put: &mut PutPart<'_>) {}
 
-    /// Returns what it adds to the composition: constants, blocks, textures.
+    /// Returns what the effect adds to the composition: constants, blocks, textures.
     fn compose(&mut self, _context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
         Ok(Contribution::none())
     }
 
-    /// Draws in passes of its own, before the composition.
+    /// Draws in the effect's own passes, before the composition.
     fn draw(
         &mut self,
         _context: &DrawContext<'_>,
@@ -97,8 +97,8 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// Returns the shader, layout and bind group with which the veil for the host's own shaders is drawn in place of
-    /// the composition's group 0, if there are any.
+    /// Returns the shader, the layout and the bind group with which the veil for the host's own shaders is drawn in
+    /// place of the composition's group 0, if the effect has any.
     fn veil(
         &mut self,
         _context: &DrawContext<'_>,
@@ -107,12 +107,12 @@ pub(crate) trait DrawnEffect {
         None
     }
 
-    /// Whether it has anything to draw over the finished picture.
+    /// Whether the effect has anything to draw over the finished picture.
     fn has_lens(&self) -> bool {
         false
     }
 
-    /// Draws over the finished picture; `toned` says that this call has tone-mapped it.
+    /// Draws over the finished picture; `toned` is whether this call has tone-mapped it.
     fn draw_lens(
         &mut self,
         _frame: &Frame<'_>,
@@ -123,14 +123,14 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// Bytes of GPU memory held for the view.
+    /// GPU memory held for the view, bytes.
     fn bytes(&self) -> u64 {
         0
     }
 
-    /// Its lines of the report.
+    /// Fills in the effect's fields of the report.
     fn report(&self, _report: &mut Report) {}
 
-    /// Lets go what it holds of the picture's size.
+    /// Frees what depends on the picture's size.
     fn forget_picture(&mut self) {}
 }

@@ -1,4 +1,4 @@
-//! One frame of a host: its camera, its images and what their numbers mean.
+//! One frame of a host: its camera, its images and the meaning of the numbers in them.
 
 use glam::DVec3;
 
@@ -17,24 +17,24 @@ pub enum ColorSpace {
     /// Welkin may tone-map the whole picture.
     #[default]
     SceneLinear,
-    /// Tone-mapped already, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly.
+    /// Tone-mapped by the host, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly.
     DisplayLinear,
-    /// Tone-mapped already and encoded by the sRGB curve (in an sRGB texture format the hardware does it).
+    /// Tone-mapped by the host and encoded by the sRGB curve. (In an sRGB texture format the hardware encodes.)
     DisplaySrgb,
 }
 
 /// Access that Welkin has to a host's depth.
 ///
-/// Nothing that this version draws is opaque, so both give the same picture; sea and terrain will be.
+/// Nothing that this version draws is opaque, so both give the same picture. Sea and terrain will be opaque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum DepthAccess {
-    /// Read it. Not a bit of it changes, and nothing opaque of Welkin's is drawn
-    /// ([`Report::opaque_left_out`](super::Report::opaque_left_out) counts that).
+    /// Read only. Welkin changes no bit of the depth and draws nothing opaque
+    /// ([`Report::opaque_left_out`](super::Report::opaque_left_out) counts what it leaves out).
     #[default]
     Read,
-    /// Test and write it where Welkin draws opaque things: in [`Stages::SURFACE`](super::Stages::SURFACE), before the
-    /// water on surfaces. They hide, and are hidden by, what the host drew before. Stencil stays as it is. Needs a
-    /// depth format with RENDER_ATTACHMENT and as many samples as the colour.
+    /// Test and write the depth where Welkin draws opaque things: in [`Stages::SURFACE`](super::Stages::SURFACE),
+    /// before the water on surfaces. They hide what the host drew farther away and are hidden by what it drew nearer.
+    /// The stencil is kept. Needs a depth format with RENDER_ATTACHMENT and as many samples as the colour.
     ReadWrite,
 }
 
@@ -43,18 +43,19 @@ pub enum DepthAccess {
 pub struct FrameFlags(pub u32);
 
 impl FrameFlags {
-    /// The camera jumped: nothing of earlier frames may show. Tables of the sky are whole, as without history.
+    /// The camera jumped: nothing of earlier frames may show. The sky's tables are built whole in this frame, as with
+    /// `NO_HISTORY`.
     pub const CUT: Self = Self(1);
-    /// Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame
-    /// if they are not yet.
+    /// Draw the frame as a pure function of (seed, time, view), without any history. The sky's tables are built whole
+    /// in this frame if they are not yet.
     pub const NO_HISTORY: Self = Self(2);
-    /// Measure what each effect costs ([`Report::costs`](super::Report::costs)). The stages are drawn one by one and
-    /// each is waited for, so such a frame is slower, and its picture may differ by rounding. For
-    /// [`View::record`](crate::frame::View::record) only.
+    /// Measure the cost of each effect ([`Report::costs`](super::Report::costs)). The stages are drawn one by one, and
+    /// Welkin waits for each; such a frame is slower, and its picture may differ by rounding. Only for
+    /// [`View::record`](crate::frame::View::record).
     pub const MEASURE: Self = Self(16);
 
-    /// [`Frame::normals`] are in the axes of the camera: x right, y up, z towards the viewer; without it in the host's
-    /// world.
+    /// Interprets [`Frame::normals`] in the axes of the camera: x right, y up, z towards the viewer. Without this flag
+    /// they are in the axes of the host's world.
     pub const NORMALS_IN_EYE_SPACE: Self = Self(32);
 
     /// Whether any flag of `other` is set.
@@ -63,7 +64,7 @@ impl FrameFlags {
     }
 }
 
-/// The layer that each image of a frame is in its texture, from 0. The other layers stay untouched.
+/// Array layers that hold the images of a frame, counted from 0. The other layers stay untouched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ImageLayers {
     /// Layer of [`Frame::color`].
@@ -78,10 +79,10 @@ pub struct ImageLayers {
     pub normals: u32,
 }
 
-/// One frame of a host: where it looks from, what it drew, and what its numbers mean.
+/// One frame of a host: its camera, what it drew, and the meaning of the numbers in its images.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
-    /// The host's frame number; the same on all channels of a simulator, for jitter and dither.
+    /// The host's frame number, for jitter and dither. All channels of a simulator must give the same number.
     pub frame_id: u64,
     /// The camera.
     pub camera: Camera,
@@ -89,42 +90,43 @@ pub struct Frame<'a> {
     pub depth_mapping: DepthMapping,
     /// Whether Welkin may write `depth`. Default: it only reads it.
     pub depth_access: DepthAccess,
-    /// Colour to draw into; may be absent for [`Stages::PREPARE`](super::Stages::PREPARE) alone. Needs
+    /// Colour texture to draw into; may be absent for [`Stages::PREPARE`](super::Stages::PREPARE) alone. Needs
     /// RENDER_ATTACHMENT and COPY_SRC.
     pub color: Option<&'a wgpu::Texture>,
-    /// The host's depth; without it every pixel shows the sky. Needs TEXTURE_BINDING. It has as many samples as
-    /// `color`, or any number where `color` has one (resolved): then the first sample counts. With
-    /// [`DepthAccess::ReadWrite`] it needs RENDER_ATTACHMENT too.
+    /// The host's depth texture. Without it every pixel shows the sky. Needs TEXTURE_BINDING, and RENDER_ATTACHMENT too
+    /// with [`DepthAccess::ReadWrite`]. It has as many samples as `color`; if `color` is resolved to one sample, the
+    /// depth may have any number, and Welkin reads the first.
     pub depth: Option<&'a wgpu::Texture>,
-    /// Red channel 1 keeps the host's pixel (cab, HUD), 0 draws weather.
+    /// Mask in the red channel: 1 keeps the host's pixel (cab, HUD), 0 draws weather.
     pub mask: Option<&'a wgpu::Texture>,
-    /// Material of what each pixel shows: red is the number of a [`SurfaceClass`](crate::ground::SurfaceClass) over
-    /// 255, 0 where the host's terrain or the context's default gives it. Of one sample; needs TEXTURE_BINDING.
+    /// Material of the surface that each pixel shows. Red is the number of a
+    /// [`SurfaceClass`](crate::ground::SurfaceClass) over 255; where it is 0, the host's terrain or the context's
+    /// default gives the material. One sample; needs TEXTURE_BINDING.
     pub surface_classes: Option<&'a wgpu::Texture>,
     /// Unit normals of the surfaces, in the host's world or in eye space ([`FrameFlags::NORMALS_IN_EYE_SPACE`]):
-    /// (n + 1) / 2 in normalised formats, n in float formats. What is no unit vector, as zeros and ones are, leaves it
-    /// to the host's terrain and depth. Of one sample; needs TEXTURE_BINDING.
+    /// (n + 1) / 2 in normalised formats, n in float formats. Where the value is no unit vector (such as all zeros or
+    /// all ones), the normal follows from the host's terrain and depth. One sample; needs TEXTURE_BINDING.
     pub normals: Option<&'a wgpu::Texture>,
-    /// Layers of array textures that the images are, as for the eyes of a stereo pair. Default: the first of each.
+    /// Layers of array textures that hold the images, as for the eyes of a stereo pair. Default: layer 0 of each.
     pub layers: ImageLayers,
     /// Meaning of the numbers in `color`.
     pub color_space: ColorSpace,
     /// Luminance of the value 1 in a scene-linear `color`, cd/m^2, [1e-9, 1e9], default 1.
     pub cd_m2_per_unit: f64,
-    /// Exposure of this frame; `None` takes the context's.
+    /// Exposure of this frame; `None` uses the context's.
     pub exposure: Option<Exposure>,
-    /// Row 0 of the targets is the bottom of the picture, as OpenGL draws.
+    /// Whether row 0 of the images is the bottom of the picture, as OpenGL draws.
     pub origin_bottom_left: bool,
-    /// Cut, no history.
+    /// Flags: cut, no history, measure, axes of the normals.
     pub flags: FrameFlags,
-    /// A false-colour picture for developers in place of the frame's. Default none.
+    /// False-colour picture for developers in place of the frame's. Default: none.
     pub diagnostic: Diagnostic,
-    /// Velocity of the camera in the host's axes, m/s: rain streaks lean against it. Default 0.
+    /// Velocity of the camera in the host's axes, m/s, at most 2000; it tilts the rain streaks. Default 0.
     pub camera_velocity_m_s: DVec3,
 }
 
 impl<'a> Frame<'a> {
-    /// A frame of a scene-linear host with reversed infinite depth that draws into `color`.
+    /// Creates the frame of a scene-linear host with reversed infinite depth that draws into `color`.
     pub fn new(frame_id: u64, camera: Camera, color: &'a wgpu::Texture, depth: Option<&'a wgpu::Texture>) -> Self {
         Self {
             frame_id,
@@ -167,7 +169,7 @@ impl<'a> Frame<'a> {
         self.normals.map(|texture| Layer { texture, index: self.layers.normals })
     }
 
-    /// All images by name.
+    /// All images with their names.
     pub(crate) fn image_layers(&self) -> [(&'static str, Option<Layer<'a>>); 5] {
         [
             ("color", self.color_layer()),
@@ -190,7 +192,7 @@ impl<'a> Frame<'a> {
                 return Err(Error::range(&format!("{name}.layer"), &accepted, l.index));
             }
         }
-        // Below that the sun's own number is infinite.
+        // With a smaller unit the sun's own value would be infinite.
         if !(1e-9..=1e9).contains(&self.cd_m2_per_unit) {
             return Err(Error::range("cd_m2_per_unit", "in [1e-9, 1e9] cd/m^2", self.cd_m2_per_unit));
         }

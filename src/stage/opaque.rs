@@ -1,4 +1,4 @@
-//! Opaque drawing by effects: into the host's own colour and depth, before what lies on surfaces.
+//! Opaque drawing by effects: into the host's own colour and depth, before the composition of what lies on surfaces.
 
 use glam::DMat4;
 
@@ -8,15 +8,15 @@ use crate::{
     scene::{ClipSpace, DepthKind},
 };
 
-/// Properties of the target that pipelines of opaque things are made for.
+/// Properties of the target that the pipelines of opaque things depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OpaqueTarget {
     pub color: wgpu::TextureFormat,
     pub depth: wgpu::TextureFormat,
     pub samples: u32,
-    /// 1 is near.
+    /// Whether depth 1 is near.
     pub reversed: bool,
-    /// The fragment shader writes depth: `written_depth` of `shaders/common/depth.wgsl`.
+    /// Whether the fragment shader writes depth, with `written_depth` of `shaders/common/depth.wgsl`.
     pub logarithmic: bool,
 }
 
@@ -33,37 +33,39 @@ impl OpaqueTarget {
         }
     }
 
-    /// Returns the depth test: what is nearer passes and is written; of two at one depth the host's stays. Stencil is
+    /// Returns the depth test: nearer fragments pass and are written; at equal depth the host's stays. The stencil is
     /// kept.
     pub fn depth_test(&self) -> wgpu::DepthStencilState {
         let nearer = if self.reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less };
         pass::depth_test(self.depth, nearer, true)
     }
 
-    /// Colour is replaced; the host's alpha stays, as in the composition.
+    /// Returns the colour target: colour is replaced, and the host's alpha is kept, as in the composition.
     pub fn color_target(&self) -> wgpu::ColorTargetState {
         wgpu::ColorTargetState { format: self.color, blend: None, write_mask: wgpu::ColorWrites::COLOR }
     }
 }
 
-/// Target, layout and clip space with which opaque things are drawn, beside the pass itself: its attachments are the
-/// host's, and its group 0 is that of `shaders/common/opaque.wgsl`.
+/// Target, layout and clip space for opaque draws. The pass itself has the host's images as its attachments and the
+/// group of `shaders/common/opaque.wgsl` as group 0.
 #[cfg_attr(not(test), expect(dead_code, reason = "as above"))]
 pub(crate) struct OpaqueDraw<'a> {
     pub target: OpaqueTarget,
     /// Layout of group 0.
     pub layout: &'a wgpu::BindGroupLayout,
-    /// From camera-relative east-north-up to wgpu's clip space of these images.
+    /// Matrix from camera-relative (east, north, up) to wgpu's clip space for these images.
     pub clip: DMat4,
 }
 
 impl OpaqueDraw<'_> {
-    /// The clip space of `shot` as wgpu has it: z from 0 to 1, y by the first row's end.
+    /// Returns the clip-space matrix of `context` in wgpu's convention: z from 0 to 1, and y towards the first row of
+    /// the image.
     pub fn clip_of(context: &DrawContext<'_>) -> DMat4 {
         let rows = context.clip().transpose();
         let (frame, w) = (context.frame, rows.w_axis);
         let z = match (frame.depth_mapping.kind, frame.depth_mapping.clip) {
-            // The fragment shader says the depth; nothing before the eye may be clipped.
+            // The fragment shader writes the depth; the constant z keeps everything in front of the eye from being
+            // clipped.
             (DepthKind::Logarithmic { .. }, _) => 0.5 * w,
             (_, ClipSpace::MinusOneToOne) => 0.5 * (rows.z_axis + w),
             (_, ClipSpace::ZeroToOne) => rows.z_axis,

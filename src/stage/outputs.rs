@@ -1,38 +1,38 @@
-//! Outputs that effects give each other in a frame, by name: the order in which they are run follows from it.
+//! Named outputs that effects give each other within a frame. The order in which effects run follows from them.
 
 use super::composition::{Contribution, Texture};
 use crate::error::{Error, Result, Status};
 
-/// Output that one effect gives and others take. Each has one giver.
+/// Output that one effect gives and others take. One effect gives each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Output {
-    /// Light of flashes of lightning, in the moment.
+    /// Light of lightning flashes, in the moment.
     Flashes,
-    /// Optical depth of fog straight up from the camera.
+    /// Optical depth of fog from the camera straight up.
     FogDepth,
-    /// The layer of stars behind the sky's own light.
+    /// Layer of stars behind the sky's own light.
     Stars,
-    /// All layers of the sky, clouds among them.
+    /// All layers of the sky, including clouds.
     Sky,
-    /// The layer before the picture, with rain in it.
+    /// Layer in front of the picture, with rain in it.
     Rain,
-    /// The layer before the picture, with rain and flakes in it.
+    /// Layer in front of the picture, with rain and flakes in it.
     Snow,
 }
 
 /// Outputs that have been given so far.
 #[derive(Clone, Default)]
 pub(crate) struct Outputs {
-    /// [`Output::FogDepth`]; 0 where it was not given.
+    /// [`Output::FogDepth`]; 0 if no effect has given it.
     pub fog_depth: f64,
-    /// [`Output::Stars`], where any of it shows.
+    /// [`Output::Stars`], if any star shows.
     pub stars: Option<wgpu::TextureView>,
-    /// [`Output::Rain`] or [`Output::Snow`]: the layer, where anything is drawn into it.
+    /// [`Output::Rain`] or [`Output::Snow`], if anything is drawn into the layer.
     pub before: Option<wgpu::TextureView>,
 }
 
 impl Outputs {
-    /// Returns those outputs that an effect `needs`: it sees nothing else.
+    /// Returns only the outputs that an effect `needs`, so that it sees no others.
     pub fn only(&self, needs: &[Output]) -> Self {
         if needs.is_empty() {
             return Self::default();
@@ -45,14 +45,14 @@ impl Outputs {
         }
     }
 
-    /// Takes what an effect has gathered, as far as it says that it `gives` it.
+    /// Takes what an effect has gathered, if the effect lists it in `gives`.
     pub fn take(&mut self, gathered: &Self, gives: &[Output]) {
         if gives.contains(&Output::FogDepth) {
             self.fog_depth = gathered.fog_depth;
         }
     }
 
-    /// Takes the layers among what an effect composes, as far as it says that it `gives` them.
+    /// Takes the layers of an effect's contribution, if the effect lists them in `gives`.
     pub fn take_layers(&mut self, contribution: &Contribution<'_>, gives: &[Output]) {
         let has = |output| gives.contains(&output);
         if has(Output::Stars) && contribution.shows_stars() {
@@ -64,7 +64,7 @@ impl Outputs {
     }
 }
 
-/// Outputs that an effect takes from others and gives to them in one step of a frame.
+/// Outputs that an effect takes from others, and those that it gives, in one step of a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Exchange {
     pub needs: &'static [Output],
@@ -72,14 +72,15 @@ pub(crate) struct Exchange {
 }
 
 impl Exchange {
-    /// Takes and gives nothing.
+    /// No outputs.
     pub const NONE: Self = Self { needs: &[], gives: &[] };
 }
 
-/// An order in which each comes after all that give what it needs, otherwise as they stand in the list.
+/// Returns an order in which each effect comes after all that give what it needs. Otherwise the order of the list is
+/// kept.
 ///
 /// # Errors
-/// [`crate::Status::Internal`] where they form a circle, or need what none gives.
+/// [`crate::Status::Internal`] if the needs form a cycle, or if no effect gives one of them.
 pub(crate) fn ordered<const N: usize>(list: [Exchange; N]) -> Result<[usize; N]> {
     let (mut order, mut done) = ([0; N], [false; N]);
     for place in &mut order {

@@ -1,9 +1,10 @@
-//! A frame's report, and what each effect of it costs where the host asks for that
+//! Report of a frame, and the cost of each effect where the host asks for it
 //! ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
 //!
-//! Wall time round a submission that is waited for, one an effect: true on every driver (timestamps of software drivers
-//! are not), at the price of a wait. It holds the CPU's part and the driver's own hand-over, some tens of microseconds
-//! an effect on a GPU. Frames that are not measured submit once and wait for nothing.
+//! A cost is the wall time around a submission of one effect that the CPU waits for. It holds on every driver
+//! (timestamps of software drivers do not), at the price of a wait. It includes the CPU's part and the driver's own
+//! hand-over, some tens of microseconds an effect on a GPU. Frames that are not measured submit once and wait for
+//! nothing.
 
 use std::{
     sync::Arc,
@@ -21,9 +22,9 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum CostItem {
-    /// Tables over the planet: built when the air changes.
+    /// Sky tables that depend on the planet: built when the air changes.
     SkyTables = 0,
-    /// The sky and the air as seen from the camera's height: built when height, sun or air change.
+    /// Sky and air as seen from the camera's altitude: built when altitude, sun or air change.
     SkyView = 1,
     /// Sky behind everything.
     Background = 2,
@@ -31,22 +32,22 @@ pub enum CostItem {
     Medium = 3,
     /// Exposure, tone curve, encoding.
     Tone = 4,
-    /// Stages in one draw that this target's format does not let be drawn one by one.
+    /// Several stages in one draw, where the format of this target does not let them be drawn one by one.
     Composition = 5,
     /// Textures for the host's own transparent shaders.
     Veil = 6,
-    /// Taking over the host's context and images, and giving them back.
+    /// Import of the host's context and images, and their return to the host.
     HandOver = 7,
     /// Rain.
     Particles = 8,
     /// Water on surfaces.
     Surface = 9,
-    /// Water on the windscreen: its steps and the lens.
+    /// Water on the windscreen: its simulation steps and the lens.
     Windscreen = 10,
 }
 
 impl CostItem {
-    /// Whose a draw of these stages is.
+    /// Item to which a draw of these stages is charged.
     pub(crate) fn of(stages: Stages) -> Self {
         match stages {
             Stages::SURFACE => Self::Surface,
@@ -58,7 +59,7 @@ impl CostItem {
         }
     }
 
-    /// All of them, in order.
+    /// All items, in order.
     pub const ALL: [Self; 11] = [
         Self::SkyTables,
         Self::SkyView,
@@ -73,7 +74,7 @@ impl CostItem {
         Self::Windscreen,
     ];
 
-    /// Its name, for people.
+    /// Name of the item, for people to read.
     pub const fn name(self) -> &'static std::ffi::CStr {
         match self {
             Self::SkyTables => c"sky tables",
@@ -91,10 +92,10 @@ impl CostItem {
     }
 }
 
-/// Milliseconds of one measured frame so far.
+/// Costs of one measured frame so far.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Costs {
-    /// From the first call's beginning to the last one's end, less what lay between the calls.
+    /// Wall time of all calls of the frame, without the time between the calls, ms.
     pub whole_ms: f64,
     ms: [f64; CostItem::ALL.len()],
 }
@@ -110,58 +111,58 @@ impl Costs {
     }
 }
 
-/// Report on what the last frame of a view took and showed.
+/// Report on the cost and the content of a view's last frame.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Report {
-    /// The host's frame_id.
+    /// The host's frame number ([`Frame::frame_id`](crate::frame::Frame::frame_id)).
     pub frame_id: u64,
     /// Full-screen draws recorded for this frame_id so far.
     pub passes: u32,
-    /// Tables built, refined or faded for this frame_id so far; 0 when only the camera turned and the sky has its final
-    /// quality.
+    /// Tables built, refined or faded for this frame_id so far. It is 0 when only the camera turned and the sky has its
+    /// final quality.
     pub tables_rebuilt: u32,
-    /// Display units per cd/m^2 that were applied.
+    /// Exposure that was applied, display units per cd/m^2.
     pub exposure: f64,
-    /// Bytes of GPU memory the view holds for itself.
+    /// GPU memory that the view holds for itself, bytes.
     pub bytes: u64,
-    /// Rain around the camera that was drawn.
+    /// Rain drawn around the camera.
     pub rain: RainReport,
-    /// Snow around the camera that was drawn.
+    /// Snow drawn around the camera.
     pub snow: SnowReport,
     /// Cost of each effect, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
     pub costs: Option<Costs>,
-    /// Effects with something opaque that was not drawn, because the host's depth may only be read
-    /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)). 0 in this version, which has none.
+    /// Number of effects whose opaque parts were not drawn because the host's depth may only be read
+    /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)). 0 in this version, which has no opaque effects.
     pub opaque_left_out: u32,
-    /// Prediction of the frame by the plan.
+    /// The plan's prediction for the frame.
     pub prediction: Prediction,
-    /// Time that the weather took in it as the host reported it, ms
+    /// Time that the frame's weather took, as the host reported it, ms
     /// ([`View::report_time`](crate::frame::View::report_time)).
     pub reported_ms: Option<f64>,
 }
 
-/// Drops and stones around the camera that were drawn, and those for which there was no room.
+/// Drops and stones drawn around the camera, and those left out for lack of room.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainReport {
-    /// Drops and stones round the camera, of which those in the picture were drawn.
+    /// Number of drops and stones around the camera; those in the picture were drawn.
     pub drops: u32,
-    /// Drops that each drop stood for: 1 unless more fell than [`crate::rain::RainSettings::most_drops`]; 0 without
-    /// any.
+    /// Number of real drops for which each drop stood: 1 unless more fell than
+    /// [`crate::rain::RainSettings::most_drops`]; 0 without drops.
     pub drop_weight: f64,
-    /// The contrast gain ([`crate::rain::RainSettings::contrast_gain`]) of what was drawn; 0 where nothing fell.
+    /// Contrast gain ([`crate::rain::RainSettings::contrast_gain`]) of the rain that was drawn; 0 where nothing fell.
     pub contrast_gain: f64,
-    /// Splashes of the smallest drops that a second and m^2 of level ground had no room for.
+    /// Splashes of the smallest drops left out for lack of room, per second and m^2 of level ground.
     pub splashes_left_out_per_m2_s: f64,
-    /// Smallest stones that did not hop, a second and m^2 of level ground, for want of room.
+    /// Smallest stones that did not bounce for lack of room, per second and m^2 of level ground.
     pub stones_left_out_per_m2_s: f64,
 }
 
-/// Flakes around the camera that were drawn.
+/// Flakes drawn around the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnowReport {
-    /// Flakes round the camera, of which those in the picture were drawn; 0 where none were.
+    /// Number of flakes around the camera; those in the picture were drawn. 0 if none were.
     pub flakes: u32,
-    /// Distance up to which flakes were drawn, m; what is farther is extinction alone.
+    /// Distance up to which flakes were drawn, m. Beyond it snow only adds to the extinction.
     pub flakes_to_m: f64,
 }
 
@@ -169,7 +170,8 @@ fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
-/// When a measured call came, when its own work began, when its last effect ended, and what the frame cost before.
+/// Times of a measured call: its arrival, the start of its own work, and the end of its last effect; and the costs of
+/// the frame's earlier calls.
 struct Watch {
     came: Instant,
     start: Instant,
@@ -177,11 +179,11 @@ struct Watch {
     costs: Costs,
 }
 
-/// The encoder of one call, with a stopwatch if it is measured.
+/// Command encoder of one call, with a stopwatch if the call is measured.
 pub(crate) struct Recording<'a> {
     pub device: &'a Arc<Device>,
     pub encoder: &'a mut wgpu::CommandEncoder,
-    /// The view's blocks, which are brought up before every submission.
+    /// The view's blocks, which are uploaded before every submission.
     pub blocks: &'a Blocks,
     /// Full-screen draws recorded by this call so far.
     pub passes: u32,
@@ -195,7 +197,7 @@ impl<'a> Recording<'a> {
         Self { device, encoder, blocks, passes: 0, tables_rebuilt: 0, watch: None }
     }
 
-    /// Starts the stopwatch, once all earlier work of the queue is done.
+    /// Starts the stopwatch once the queue has finished all earlier work.
     pub fn measure(&mut self, so_far: Costs) -> Result<()> {
         let came = Instant::now();
         self.device.queue.submit([]);
@@ -210,20 +212,20 @@ impl<'a> Recording<'a> {
         self.watch.is_some()
     }
 
-    /// Brings up what blocks hold now, for what was recorded so far.
+    /// Uploads the present content of the blocks, for what has been recorded so far.
     pub fn upload(&mut self) {
         self.blocks.upload(&self.device.queue);
     }
 
-    /// Submits what was recorded so far.
+    /// Submits what has been recorded so far.
     pub fn flush(&mut self) {
         self.upload();
         let next = self.device.device.create_command_encoder(&Default::default());
         self.device.submit(std::mem::replace(self.encoder, next));
     }
 
-    /// Charges what was recorded since the last item to `item`: where it is measured, it is submitted and waited for.
-    /// If it did not run, the time is charged to no item.
+    /// Charges what was recorded since the last item to `item`. In a measured call it is submitted and waited for. If
+    /// the item did not run (`ran` is false), its time is charged to no item.
     pub fn ends(&mut self, item: CostItem, ran: bool) -> Result<()> {
         let Some(watch) = &mut self.watch else { return Ok(()) };
         if ran {
@@ -237,7 +239,7 @@ impl<'a> Recording<'a> {
         Ok(())
     }
 
-    /// Returns the costs of the frame up to here, and how long this call has lasted, if it is measured.
+    /// Returns the costs of the frame so far and the time that this call has taken, if it is measured.
     pub fn costs(&self) -> Option<(Costs, Duration)> {
         let watch = self.watch.as_ref()?;
         let costs = Costs { whole_ms: watch.costs.whole_ms + ms_since(watch.start), ..watch.costs };

@@ -1,28 +1,28 @@
-//! Stages of a frame, as a set.
+//! Set of the stages of a frame.
 
 use crate::error::{Error, Result};
 
-/// The stages of a frame, in the order in which a host interleaves them with its own drawing.
+/// Set of stages of a frame. The bits are in the order in which a host interleaves the stages with its own drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Stages(pub u32);
 
 impl Stages {
     /// Tables and simulation textures; needs no target.
     pub const PREPARE: Self = Self(1);
-    /// Sky behind everything: fills pixels at the far depth, or all pixels where there is no depth.
+    /// Sky behind everything: fills the pixels at the far depth, or all pixels without a depth texture.
     pub const BACKGROUND: Self = Self(2);
-    /// Wet surfaces, later white ones, sea and terrain; after the host's opaque objects.
+    /// Wet surfaces (later also snow-covered ones, sea and terrain), after the host's opaque objects.
     pub const SURFACE: Self = Self(4);
-    /// Fog and aerial perspective on all that the host drew.
+    /// Fog and aerial perspective over everything that the host drew.
     pub const MEDIUM: Self = Self(8);
     /// Rain, snow and dust.
     pub const PARTICLES: Self = Self(16);
     /// Water on the windscreen.
     pub const LENS: Self = Self(32);
-    /// Exposure, tone curve, display encoding and dither of a scene-linear picture. Nothing in the other colour spaces,
-    /// where the host has done that.
+    /// Exposure, tone curve, display encoding and dither of a scene-linear picture. Does nothing in the other colour
+    /// spaces, where the host has tone-mapped the picture.
     pub const TONE: Self = Self(64);
-    /// Everything at once.
+    /// All stages.
     pub const ALL: Self = Self(127);
 
     /// Whether any stage of `other` is in the set.
@@ -30,27 +30,28 @@ impl Stages {
         self.0 & other.0 != 0
     }
 
-    /// Whether any of them may draw into the target.
+    /// Whether any stage of the set may draw into the target.
     pub(crate) fn draw(self) -> bool {
         self.without(Self::PREPARE) != Self(0)
     }
 
-    /// This set without `other`.
+    /// This set without the stages of `other`.
     pub fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Both sets.
+    /// Stages of both sets.
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// The stages of this set that draw over the whole picture, one by one in their order; empty ones among them.
+    /// Splits this set into its five stages that draw over the whole picture, in order. A stage that is not in the set
+    /// gives an empty one.
     pub(crate) fn each(self) -> [Self; 5] {
         [Self::BACKGROUND, Self::SURFACE, Self::MEDIUM, Self::PARTICLES, Self::TONE].map(|stage| Self(self.0 & stage.0))
     }
 
-    /// Checks a mask from outside.
+    /// Checks a bit mask that comes from outside.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if it is empty or has unknown bits.

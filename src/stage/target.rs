@@ -1,4 +1,4 @@
-//! Checks of the images that a host hands over to be drawn into: colour, depth, mask; and how to read them.
+//! Checks of the images that a host hands over (colour, depth, mask, classes, normals), and how shaders read them.
 
 use super::{
     frame::{ColorSpace, Frame},
@@ -10,7 +10,7 @@ use crate::{
     gpu::check_depth_format,
 };
 
-/// Checks that a colour texture can be drawn into and copied, or says what it lacks.
+/// Checks that a colour texture has a supported format and can be drawn into.
 ///
 /// # Errors
 /// [`crate::Status::Unsupported`] naming the format, [`crate::Status::InvalidArgument`] naming the usage.
@@ -37,7 +37,7 @@ pub(crate) fn check_color(texture: &wgpu::Texture) -> Result<()> {
     check_usage("color", texture, wgpu::TextureUsages::RENDER_ATTACHMENT)
 }
 
-/// Whether wgpu can copy `color`; else its host copies it between submissions.
+/// Whether wgpu can copy `color`. If not, its host copies it between submissions.
 pub(crate) fn can_copy(color: &wgpu::Texture) -> bool {
     color.usage().contains(wgpu::TextureUsages::COPY_SRC)
 }
@@ -65,7 +65,7 @@ pub(crate) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Res
     check_usage("depth", texture, wgpu::TextureUsages::TEXTURE_BINDING)
 }
 
-/// Checks that the depth that is attached can be written beside the colour target.
+/// Checks that a depth texture can be attached beside the colour target and written.
 ///
 /// # Errors
 /// As [`check_color`].
@@ -96,7 +96,7 @@ pub(crate) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Resu
     check_of_one_sample("mask", texture, color)
 }
 
-/// Checks the optional classes of what the pixels show.
+/// Checks the optional surface classes of the pixels.
 ///
 /// # Errors
 /// As [`check_color`].
@@ -109,7 +109,7 @@ pub(crate) fn check_classes(texture: &wgpu::Texture, color: &wgpu::Texture) -> R
     check_of_one_sample("surface_classes", texture, color)
 }
 
-/// Checks the optional normals.
+/// Checks the optional normals of the pixels.
 ///
 /// # Errors
 /// As [`check_color`].
@@ -125,7 +125,7 @@ pub(crate) fn check_normals(texture: &wgpu::Texture, color: &wgpu::Texture) -> R
     check_of_one_sample("normals", texture, color)
 }
 
-/// Checks that a texture that is read beside colour has its size and one sample.
+/// Checks that a texture read together with `color` has the same size, one sample, and the usage.
 fn check_of_one_sample(name: &str, texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     if (texture.width(), texture.height(), texture.sample_count()) != (color.width(), color.height(), 1) {
         return Err(Error::range(
@@ -137,7 +137,7 @@ fn check_of_one_sample(name: &str, texture: &wgpu::Texture, color: &wgpu::Textur
     check_usage(name, texture, wgpu::TextureUsages::TEXTURE_BINDING)
 }
 
-/// A texture like the host's colour, to read while the host's is written.
+/// Creates a texture with the size, format and samples of the host's colour, to read while the host's is written.
 pub(crate) fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::Texture {
     let mut usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     if color.sample_count() > 1 {
@@ -155,7 +155,7 @@ pub(crate) fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::
     })
 }
 
-/// Whether `copy` serves as [`color_copy`] of `color`.
+/// Whether `copy` can serve as the [`color_copy`] of `color`.
 pub(crate) fn is_copy_of(copy: &wgpu::Texture, color: &wgpu::Texture) -> bool {
     copy.usage().contains(wgpu::TextureUsages::COPY_DST)
         && (copy.width(), copy.height()) == (color.width(), color.height())
@@ -170,19 +170,19 @@ fn check_usage(name: &str, texture: &wgpu::Texture, needed: wgpu::TextureUsages)
     Err(Error::range(&format!("{name}.usage"), &format!("one with {needed:?}"), format!("{:?}", texture.usage())))
 }
 
-/// How many samples a pixel colour and depth have.
+/// Number of samples a pixel in colour and depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Sampling {
-    /// One each.
+    /// One sample in both.
     Single,
-    /// Several: each is drawn with its own depth.
+    /// Several samples; each is drawn with its own depth.
     Multi,
-    /// Colour one, as after a resolve, and depth several, of which the first counts.
+    /// One sample in colour, as after a resolve, and several in depth, of which the first counts.
     Resolved,
 }
 
 impl Sampling {
-    /// All of them; their values as numbers are their places here.
+    /// All variants; the index of each is its value as a number.
     pub const ALL: [Self; 3] = [Self::Single, Self::Multi, Self::Resolved];
 
     /// Returns the sampling of a frame's images.
@@ -194,12 +194,12 @@ impl Sampling {
         }
     }
 
-    /// Whether colour, and whether depth has several.
+    /// Whether colour is multisampled, and whether depth is.
     pub fn multisampled(self) -> [bool; 2] {
         [self == Self::Multi, self != Self::Single]
     }
 
-    /// Shader and entry point of the composition, and the gauge's.
+    /// Shader and entry point of the composition, then those of the gauge.
     pub fn shaders(self) -> [(&'static str, &'static str); 2] {
         match self {
             Self::Single => [("frame/composite_view.wgsl", "composite"), ("plan/gauge_view.wgsl", "gauge")],
@@ -221,7 +221,7 @@ impl Sampling {
         }
     }
 
-    /// Shader of the picture of the wind; its entry point is `wind`.
+    /// Shader of the wind picture; its entry point is `wind`.
     pub fn wind_picture(self) -> &'static str {
         match self {
             Self::Single => "frame/wind_picture.wgsl",
@@ -230,20 +230,21 @@ impl Sampling {
         }
     }
 
-    /// Shader that tells kinds of pixels apart, of pictures with one sample.
+    /// Shader that sorts pixels by kind, for pictures with one colour sample.
     pub fn kinds(self) -> &'static str {
         if self == Self::Single { "frame/kinds.wgsl" } else { "frame/kinds.wgsl:resolved" }
     }
 }
 
-/// Whether stages drawn one by one give the picture of all in one: not where what lies between them is rounded to a
-/// display's steps.
+/// Whether stages drawn one by one give the same picture as all in one draw. They do not where the picture between two
+/// stages is rounded to a display's steps.
 pub(crate) fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
     let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
     !tone || frame.color.is_some_and(|c| is_float(c.format()))
 }
 
-/// Rounding of a depth format: absolute, and over the value. The rasteriser's own counts as two steps of a float.
+/// Rounding of a depth format: absolute, and relative to the value. The rasteriser's own rounding counts as two steps
+/// of an `f32`.
 pub(crate) fn rounding(depth: &wgpu::Texture) -> [f64; 2] {
     use wgpu::TextureFormat as F;
     let float = 2f64.powi(-22);

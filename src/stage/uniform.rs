@@ -1,4 +1,4 @@
-//! The frame's uniform block, as `shaders/common/frame.wgsl` reads it.
+//! Uniform block of the frame, as `shaders/common/frame.wgsl` reads it.
 
 use super::frame::{ColorSpace, Frame};
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     scene::{DepthUniform, MAX_FLASH_LAMPS, ViewRays},
 };
 
-/// A place that the light of a flash of lightning comes from, as shaders read it.
+/// One source of a lightning flash's light, as shaders read it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct FlashUniform {
@@ -19,7 +19,8 @@ pub(crate) struct FlashUniform {
     pub pad: f32,
 }
 
-/// Everything a pixel of the composition needs beside the sky's and the fog's own blocks.
+/// Constants of the composition, apart from those in the sky's and the fog's own blocks. `shaders/common/frame.wgsl`
+/// has the units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct FrameUniform {
@@ -40,44 +41,45 @@ pub(crate) struct FrameUniform {
     pub medium_share: f32,
     pub direct_share: f32,
     pub drops: [f32; 2],
-    /// How much of air, fog, clear sky and what drops hide is drawn.
+    /// Drawn shares of air, fog, clear sky, and falling drops and flakes.
     pub drawn: [f32; 4],
     pub compositions: u32,
-    /// The share of the layer behind the sky times that of the clear sky.
+    /// Drawn share of the layer behind the sky times that of the clear sky.
     pub behind_drawn: f32,
-    /// cd/m^2 per unit of the layer behind the sky, and the share of it that stands in the night floor's place.
+    /// Luminance of the layer behind the sky, cd/m^2 a unit, and the share of the night floor that the layer replaces.
     pub behind: [f32; 2],
-    /// Colour of the light of flashes, of luminance 1, and how many places it comes from.
+    /// Colour of the light of flashes, normalised to luminance 1, and the number of its sources.
     pub flash_color: [f32; 3],
     pub flash_count: u32,
-    /// Height of the face of the clouds that they light over the camera, m, their cover, what the haze before them
-    /// takes, 1/m, and what scatters in the air, 1/m.
+    /// Clouds that the flashes light: height of their face above the camera, m; their cover; extinction of the haze in
+    /// front of them, 1/m; scattering coefficient of the air, 1/m.
     pub flash_plane: f32,
     pub flash_cover: f32,
     pub flash_haze: f32,
     pub flash_scattering: f32,
     pub flashes: [FlashUniform; MAX_FLASH_LAMPS],
-    /// Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that
-    /// share.
+    /// Share of direct light in all light on level ground, a channel, divided by the mean share that clouds let
+    /// through; then that mean share.
     pub cloud_shadow: [f32; 4],
-    /// Pixels of the picture.
+    /// Size of the picture, pixels.
     pub picture: [f32; 2],
-    /// How much of the clouds is drawn as a volume, not as a deck, and how far their base lies over the camera, m.
+    /// Share of the clouds that is drawn as a volume instead of a deck, and the height of their base above the camera,
+    /// m.
     pub clouds_drawn: f32,
     pub clouds_over: f32,
-    /// The mean light of clouds that may be drawn as a volume, cd/m^2, and their cover; 0 without any.
+    /// Mean light of the clouds that may be drawn as a volume, cd/m^2, and their cover; 0 without such clouds.
     pub mean_cloud: [f32; 4],
-    /// As `drops`, of flakes.
+    /// Values for flakes, as `drops` for drops.
     pub flakes: [f32; 2],
-    /// A power of two: what light is multiplied by to be about 1 where it is white.
+    /// Factor, a power of two, that scales light so that white is about 1.
     pub even_scale: f32,
     pub pad: f32,
-    /// Tables of what bows add to the phase function of drops in the low air, and in columns under rain areas, 1/sr a
-    /// channel, over the angle.
+    /// Tables, over the angle, of what bows add to the phase function of drops, 1/sr a channel: in the low air, and in
+    /// the columns under rain areas.
     pub bows: [BowTable; 2],
 }
 
-/// Light of flashes in a frame's block.
+/// Light of lightning flashes in a frame's block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FlashBlock {
     pub color: [f32; 3],
@@ -92,30 +94,31 @@ pub(crate) struct FlashBlock {
 /// Fields of [`FrameUniform`] that one effect writes into a frame's block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum FrameBlock<'a> {
-    /// Shares that are drawn of the air before things and of the clear sky.
+    /// Drawn shares of the air in front of things and of the clear sky.
     Sky { air: f32, sky: f32 },
-    /// Share of fog that is drawn.
+    /// Drawn share of the fog.
     Fog { share: f32 },
     /// [`FrameUniform::behind`].
     Stars { behind: [f32; 2] },
-    /// Share that is drawn as a volume; mean light with cover, and height, where the plan gauges; shadows where they
-    /// are cast.
+    /// Share drawn as a volume; mean light with cover, and height above the camera, where the plan gauges; cloud
+    /// shadows where they are cast.
     Clouds { drawn: f32, mean: Option<([f32; 4], f32)>, shadow: Option<[f32; 4]> },
-    /// Extinction by which drops hide, 1/m, and the distance up to which they do, m; and the share of it that is drawn.
+    /// Extinction that the drawn drops account for, 1/m, and the distance up to which they do, m; and the drawn share
+    /// of it.
     Rain { hidden: [f32; 2], share: f32 },
-    /// As of drops, of flakes.
+    /// Values for flakes, as `Rain` has them for drops.
     Snow { hidden: [f32; 2], share: f32 },
-    /// Flashes that shine.
+    /// Lightning flashes that shine now.
     Flashes(&'a FlashBlock),
     /// [`FrameUniform::bows`].
     Bows(&'a [BowTable; 2]),
 }
 
-/// Table of what a bow adds to the phase function over the angle.
+/// Table, over the angle, of what a bow adds to the phase function.
 pub(crate) type BowTable = [[f32; 4]; BOW_ENTRIES];
 
 impl FrameUniform {
-    /// Takes the fields of one effect.
+    /// Sets the fields of one effect.
     pub fn merge(&mut self, fields: &FrameBlock<'_>) {
         match *fields {
             FrameBlock::Sky { air, sky } => (self.drawn[0], self.drawn[2]) = (air, sky),
@@ -128,7 +131,7 @@ impl FrameUniform {
             }
             FrameBlock::Rain { hidden, share } => (self.drops, self.drawn[3]) = (hidden, share),
             FrameBlock::Snow { hidden, share } => {
-                // One share for all that falls: of each by the optical depth that it hides.
+                // Drops and flakes share one value: the mean of their shares, weighted by optical depth.
                 let (others, own) = (self.drops[0] * self.drops[1], hidden[0] * hidden[1]);
                 if own > 0.0 {
                     self.drawn[3] = (self.drawn[3] * others + share * own) / (others + own);
@@ -148,30 +151,31 @@ impl FrameUniform {
         }
     }
 
-    /// Fields that follow from those of several effects.
+    /// Sets the fields that depend on those of several effects.
     pub fn finish(&mut self) {
         self.behind_drawn = self.behind[1] * self.drawn[2];
     }
 }
 
-/// Entries of a table of bows.
+/// Number of entries of a table of bows.
 pub(crate) const BOW_ENTRIES: usize = 160;
 
-/// Whether a format holds light and not the steps of a display.
+/// Whether a format stores light as floats, not as a display's integer steps.
 pub(crate) fn is_float(format: wgpu::TextureFormat) -> bool {
     use wgpu::TextureFormat as F;
     matches!(format, F::Rgba16Float | F::Rgba32Float | F::Rg11b10Ufloat)
 }
 
-/// By what eyes adapt to, so that it holds for a scene-linear picture whatever its host exposes it by; by a display's
-/// exposure where that shows darker things. Of both only the power of two, so that another one rounds nothing anew.
+/// Scale of light in the coarse grid. It follows from the luminance that eyes adapt to, so that it does not depend on
+/// how the host of a scene-linear picture exposes it; or from a display's exposure where that shows darker things. It
+/// is rounded down to a power of two, so that a change of scale causes no rounding.
 fn even_scale(adaptation_cd_m2: f64, display_exposure: f64) -> f32 {
     let eyes = Exposure::Auto { compensation_ev: 0.0 }.factor(adaptation_cd_m2);
     eyes.max(display_exposure).log2().floor().clamp(-100.0, 100.0).exp2() as f32
 }
 
-/// The block of a frame before any effect has added to it: nothing is drawn of them. `tone` says that the whole picture
-/// is tone-mapped.
+/// Creates the block of a frame before any effect has added to it: with nothing drawn. `tone` is whether the whole
+/// picture is tone-mapped.
 pub(crate) fn uniform(
     frame: &Frame<'_>,
     now: &SceneMoment<'_>,
@@ -184,7 +188,8 @@ pub(crate) fn uniform(
     let display = tone || frame.color_space != ColorSpace::SceneLinear;
     let plain_display = display && !is_float(format) && !format.is_srgb();
     let step = if format == wgpu::TextureFormat::Rgb10a2Unorm { 1.0 / 1023.0 } else { 1.0 / 255.0 };
-    // In an sRGB format the hardware encodes after us: a step there is not a step here, so only plain formats dither.
+    // Only plain formats dither: in an sRGB format the hardware encodes after us, and its steps are not steps of our
+    // value.
     let encode = plain_display && (tone || frame.color_space == ColorSpace::DisplaySrgb);
     FrameUniform {
         depth: rays.uniform(),

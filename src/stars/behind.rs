@@ -1,5 +1,5 @@
-//! Light behind the sky's own light towards one direction, in f64: the twin of `night_light` in
-//! `shaders/between/sky.wgsl` and of the layer that it reads, without the points.
+//! Light behind the sky's own light in one direction, in f64: twin of `night_light` in `shaders/between/sky.wgsl` and
+//! of the layer that it reads, without the points.
 
 use glam::DVec3;
 
@@ -15,19 +15,19 @@ use crate::{
     world::{night_share, zenith_depth},
 };
 
-/// The night's light behind the sky over a place.
+/// Light of the night sky behind the air's own light, over a place.
 pub(crate) struct NightBehind {
-    /// Where no glow is drawn, and while night has not come.
+    /// Luminance where no glow is drawn and before night has come, cd/m^2 a channel.
     even_cd_m2: [f64; 3],
-    /// The glow, and how far night has come.
+    /// The glow, and the share of night that has come, 0 to 1.
     glow: Option<(NightSky, f64)>,
 }
 
 impl NightBehind {
-    /// Creates the night's light of a scene at a universal time, through fog of an optical depth straight up.
+    /// Creates the night light of a scene at a universal time, seen through fog of an optical depth straight up.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a time out of the almanac's range.
+    /// [`crate::Status::InvalidArgument`] for a time outside the almanac's range.
     pub fn new(scene: &Scene, utc: Utc, settings: &StarSettings, fog_depth: f64) -> Result<Self> {
         let even_cd_m2 = scene.night_floor_cd_m2;
         let open = (1.0 - scene.deck_cover) * (-fog_depth).exp();
@@ -43,7 +43,7 @@ impl NightBehind {
         Ok(Self { even_cd_m2, glow: Some((sky, share)) })
     }
 
-    /// Luminance towards a direction (east, north, up; unit), cd/m^2 a channel of linear Rec. 709.
+    /// Luminance in a direction (east, north, up; unit), cd/m^2 a channel of linear Rec. 709.
     pub fn toward(&self, direction: DVec3) -> [f64; 3] {
         let Some((sky, share)) = &self.glow else { return self.even_cd_m2 };
         let night = sky.luminance(direction);

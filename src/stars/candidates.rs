@@ -1,28 +1,28 @@
-//! The ways to draw the night sky that are charted against each other, with what they cost.
+//! Candidate methods of drawing the night sky, which the lab compares by cost and error.
 
 use super::catalogue::catalogue;
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Stars, planets and the glow between them, at two rungs: as they are, or an even sky of the glow's mean luminance.
-/// What they are worth is taken to be what the clear sky's own light and they are worth together.
+/// Stars, planets and the glow between them. The rungs are all of it, or an even sky of the glow's mean luminance. The
+/// part is worth as much as the clear sky's own light together with it.
 pub const STARS: Part = Part { name: "stars", rungs: &["all", "none"], importance: 0.3, worth: Worth::Composed(2) };
 
-/// Work of the layer a pixel, in units of a pixel with none of the parts.
+/// Work of the layer for one pixel, in units of the work for a pixel without any part.
 const LAYER_OF_PIXEL: f64 = 0.1;
 
-/// Work of the layer in a picture of so many pixels.
+/// Work of the layer in a picture of `pixels` pixels.
 pub(crate) fn stars_work(pixels: u64) -> StepWork {
     StepWork { fixed: LAYER_OF_PIXEL * pixels as f64, ..StepWork::default() }
 }
 
-/// A way to draw the night sky.
+/// Method of drawing the night sky.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StarMethod {
-    /// The glow, and before it the points that an eye could see against the sky.
+    /// Glow, and in front of it the points that an eye could see against the sky.
     #[default]
     Visible,
-    /// The glow, and all stars and planets, however faint: compared with only.
+    /// Glow and all stars and planets, however faint. Only for comparison.
     All,
     /// The glow alone.
     Glow,
@@ -30,19 +30,19 @@ pub enum StarMethod {
     Even,
 }
 
-/// Work of a star that is drawn: a way from J2000.0 to the picture for each of its corners, and 16 pixels.
+/// Work for one drawn star: the transform from J2000.0 to the picture for each of its corners, and 16 pixels.
 const POINT: Units = Units { samples: 40.0, texels: 0.0, bytes: 16.0 * 8.0 };
-/// A pixel of the glow, written and read.
+/// Work for one pixel of the glow, written and read.
 const GLOW: Units = Units { samples: 1.0, texels: 1.0, bytes: 8.0 };
-/// A pixel of the even sky.
+/// Work for one pixel of the even sky.
 const EVEN: Units = Units { samples: 0.1, texels: 0.0, bytes: 0.0 };
-/// Share of the catalogue that an eye sees under a dark sky, half of them above the horizon.
+/// Share of the catalogue that an eye sees under a dark sky; half of the stars are below the horizon.
 const VISIBLE_SHARE: f64 = 0.3;
 
 impl StarMethod {
     fn work(self) -> Work {
         let points = |share: f64| Work {
-            // They turn: every frame.
+            // Points move with the sky's rotation, so they are drawn every frame.
             view: Units::default().plus(POINT, share * catalogue().len() as f64),
             pixel: GLOW,
             ..Work::default()

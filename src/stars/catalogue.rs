@@ -1,4 +1,4 @@
-//! The stars: the Bright Star Catalogue, and the motions of the few that move.
+//! Stars of the Bright Star Catalogue, and the proper motions of the few that move noticeably.
 
 use std::sync::OnceLock;
 
@@ -9,29 +9,30 @@ use crate::{
     error::{Error, Result, check_range},
 };
 
-/// A star as a catalogue has it.
+/// A star of a catalogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Star {
     /// Unit vector in the equator and equinox of J2000.0 at the epoch J2000.0 (x to the equinox, z to the north pole).
     pub direction: DVec3,
-    /// Proper motion, rad a Julian year, across `direction`. Default 0.
+    /// Proper motion, rad a Julian year, perpendicular to `direction`, at most 0.001. Default 0.
     pub motion: DVec3,
     /// Visual magnitude (Johnson V) above the air, [-30, 30].
     pub magnitude: f64,
-    /// Temperature of the black body of the star's colour, K, [1000, 100000].
+    /// Temperature of the black body with the star's colour, K, [1000, 100000].
     /// [`super::light::temperature_of_color_index`] gives it for a B-V.
     pub temperature_k: f64,
 }
 
 impl Star {
-    /// A star by its place in the equator, equinox and epoch of J2000.0, degrees; it stands still.
+    /// Creates a star from its right ascension and declination, degrees, in the equator, equinox and epoch of J2000.0.
+    /// It has no proper motion.
     pub fn new(right_ascension_deg: f64, declination_deg: f64, magnitude: f64, temperature_k: f64) -> Self {
         let direction = equatorial_direction(right_ascension_deg, declination_deg);
         Self { direction, motion: DVec3::ZERO, magnitude, temperature_k }
     }
 
-    /// Returns the star with a proper motion in right ascension (times the cosine of the declination) and declination,
-    /// arc seconds a Julian year.
+    /// Returns the star with this proper motion, arc seconds a Julian year: in right ascension (times the cosine of the
+    /// declination) and in declination.
     #[must_use]
     pub fn moving(self, right_ascension_as: f64, declination_as: f64) -> Self {
         let east = DVec3::Z.cross(self.direction).normalize_or(DVec3::Y);
@@ -40,13 +41,13 @@ impl Star {
         Self { motion: east * rad(right_ascension_as) + north * rad(declination_as), ..self }
     }
 
-    /// Unit vector at `years` Julian years after J2000.0. Motion in a straight line across the sky: the change of
-    /// distance, 0.001 degrees a century for the nearest stars, is left out.
+    /// Unit vector at `years` Julian years after J2000.0. The star moves in a straight line. The change of distance is
+    /// left out, which for the nearest stars is 0.001 degrees a century.
     pub fn direction_at(&self, years: f64) -> DVec3 {
         (self.direction + self.motion * years).normalize()
     }
 
-    /// Refuses what is no star. `name` is what the host calls it.
+    /// Checks that every field is within its range. `name` is the host's name of the star.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range.
@@ -62,16 +63,16 @@ impl Star {
     }
 }
 
-/// One record a number of the catalogue (HR), from 1 on, little-endian: right ascension and declination in 1e-5 degrees
-/// (u32, i32), magnitude in 0.01 (i16), temperature in K (u16), 0 for the 14 numbers that are no stars. `catalogue.py`
-/// writes it.
+/// Records of the catalogue, one for each number (HR) from 1 on, little-endian: right ascension and declination in 1e-5
+/// degrees (u32, i32), magnitude in 0.01 (i16), temperature in K (u16). The temperature is 0 for the 14 numbers that
+/// are no stars. `catalogue.py` writes the file.
 static PACKED: &[u8] = include_bytes!("catalogue.bin");
-/// Bytes of a record.
+/// Size of a record, bytes.
 const RECORD: usize = 12;
 
-/// Number (HR) and proper motion in right ascension (times the cosine of the declination) and declination, arc seconds
-/// a year, of the brighter stars that move by more than half an arc second a year, and of those with names that move by
-/// more than 0.2: Hipparcos (ESA 1997, van Leeuwen 2007), to 0.01", which is 0.0003 degrees in a century.
+/// Proper motions: number (HR), motion in right ascension (times the cosine of the declination) and in declination, arc
+/// seconds a year. The list has the brighter stars that move by more than 0.5", and those with names that move by more
+/// than 0.2". Source: Hipparcos (ESA 1997, van Leeuwen 2007), rounded to 0.01", which is 0.0003 degrees in a century.
 const MOTIONS: [(u16, f64, f64); 49] = [
     (15, 0.14, -0.16),
     (21, 0.52, -0.18),
@@ -124,10 +125,10 @@ const MOTIONS: [(u16, f64, f64); 49] = [
     (8775, 0.19, 0.14),
 ];
 
-/// The catalogue as it is used.
+/// The unpacked catalogue, the brightest star first.
 struct Catalogue {
     stars: Vec<Star>,
-    /// Number (HR) of each.
+    /// Number (HR) of each star.
     numbers: Vec<u16>,
 }
 
@@ -156,12 +157,12 @@ fn unpacked(number: u16, r: &[u8]) -> Option<Star> {
 }
 
 /// The 9096 stars of the Yale Bright Star Catalogue, 5th revised edition (Hoffleit and Warren 1991), the brightest
-/// first: all down to magnitude 6.5, some to 7.96. Unpacked at the first call. Any thread.
+/// first. It has all stars down to magnitude 6.5, and some to 7.96. Unpacked at the first call. Any thread.
 pub fn catalogue() -> &'static [Star] {
     &loaded().stars
 }
 
-/// A star of the catalogue by its number (HR): 2491 is Sirius. `None` for numbers that are no stars.
+/// Star of the catalogue with a number (HR); 2491 is Sirius. `None` for numbers that are no stars.
 pub fn star(number: u16) -> Option<&'static Star> {
     let catalogue = loaded();
     let at = catalogue.numbers.iter().position(|n| *n == number)?;

@@ -1,36 +1,37 @@
-//! Disc of the Milky Way as a model: light of its stars with dust in it, and the galactic axes.
+//! Model of the Milky Way's disc (light of its stars, dimmed by dust), and the galactic axes.
 
 use glam::{DMat3, DVec3};
 
 use crate::almanac::celestial::equatorial_direction;
 
-/// Light of all stars of the disc over the sun's place, both sides together, solar luminosities (V) a square parsec
-/// (Flynn et al. 2006, MNRAS 372, 1149).
+/// Light of all stars of the disc in a column through the sun's position, on both sides of the plane, solar
+/// luminosities (V) a square parsec (Flynn et al. 2006, MNRAS 372, 1149).
 const COLUMN_LV_PC2: f64 = 24.3;
-/// Tenth-magnitude stars a square degree of one solar luminosity a square parsec: a square degree at 10 pc is 0.030
-/// square parsecs, and the sun has magnitude 4.83 there.
+/// Number of tenth-magnitude stars a square degree that equal one solar luminosity a square parsec. A square degree at
+/// 10 pc is 0.030 square parsecs, and the sun has magnitude 4.83 there.
 const S10_PER_LV_PC2: f64 = 3.563;
-/// From the sun to the centre, kpc (GRAVITY Collaboration 2019).
+/// Distance from the sun to the galactic centre, kpc (GRAVITY Collaboration 2019).
 const CENTRE_KPC: f64 = 8.2;
-/// Lengths over which the disc's stars and dust thin out by e outwards, kpc (Juric et al. 2008; Drimmel and Spergel
-/// 2001).
+/// Scale lengths of the disc's stars and dust, kpc (Juric et al. 2008; Drimmel and Spergel 2001).
 const STARS_LENGTH_KPC: f64 = 2.6;
 const DUST_LENGTH_KPC: f64 = 2.3;
-/// Heights over which light and dust fall by e far off the plane, kpc, as sech^2(z / 2h): that of the light lies
-/// between those of young (0.1) and old stars (0.3).
+/// Scale heights h of light and dust, kpc. Both follow sech^2(z / 2h), which falls by e over h far from the plane. The
+/// height of the light lies between those of young (0.1) and old stars (0.3).
 const STARS_HEIGHT_KPC: f64 = 0.13;
 const DUST_HEIGHT_KPC: f64 = 0.08;
-/// Absorption in the plane near the sun, optical depth a kiloparsec: 0.8 magnitudes.
+/// Absorption in the plane near the sun, optical depth a kiloparsec; it is 0.8 magnitudes.
 const DUST_PER_KPC: f64 = 0.8 / 1.0857;
-/// How far a line of sight is followed, kpc, and in how many steps.
+/// Length over which a line of sight is integrated, kpc, and the number of steps.
 const REACH_KPC: f64 = 15.0;
 const STEPS: u32 = 64;
 
-/// From the equator and equinox of J2000.0 to galactic axes: x to the galactic centre, z to the north galactic pole
-/// (pole 192.85948, +27.12825; longitude of the celestial pole 122.93192 degrees; ESA 1997, volume 1, section 1.5.3).
+/// Rotation from the equator and equinox of J2000.0 to galactic axes: x to the galactic centre, z to the north galactic
+/// pole (pole 192.85948, +27.12825; longitude of the celestial pole 122.93192 degrees; ESA 1997, volume 1, section
+/// 1.5.3).
 pub fn equator_to_galactic() -> DMat3 {
     let pole = equatorial_direction(192.859_48, 27.128_25);
-    // On the great circle of the celestial pole, whose galactic longitude is known, the way to the centre follows.
+    // The direction to the centre is the direction to the celestial pole, turned back by that pole's galactic
+    // longitude.
     let toward_celestial_pole = (DVec3::Z - pole * pole.z).normalize();
     let back = DMat3::from_axis_angle(pole, -122.931_92f64.to_radians());
     let centre = back * toward_celestial_pole;
@@ -39,15 +40,15 @@ pub fn equator_to_galactic() -> DMat3 {
 
 /// Light of all stars along a galactic direction (unit), S10: tenth-magnitude stars a square degree.
 ///
-/// Integrates `j(R, z) exp(-depth)` along the line of sight, `j` and the dust each as exp(-R/length) sech^2(z / 2
-/// height). Symmetric in longitude and latitude: clouds of stars and dark clouds, which vary it by half, are not in it,
-/// nor is the bulge. What was measured brings them ([`super::starlight`]).
+/// Integrates `j(R, z) exp(-depth)` along the line of sight. The light `j` and the dust are each exp(-R/length)
+/// sech^2(z / 2 height). The model is symmetric in longitude and latitude. It has no bulge, and no star clouds or dark
+/// clouds, which change the light by half. Those come from the measured light ([`super::starlight`]).
 pub fn disc_s10(galactic: DVec3) -> f64 {
     let at_sun = COLUMN_LV_PC2 / (4.0 * STARS_HEIGHT_KPC * 1e3);
     let squared_sech = |x: f64| x.cosh().powi(-2);
     let (mut depth, mut sum) = (0.0f64, 0.0);
     for i in 0..STEPS {
-        // Steps grow with distance: near the plane the dust's first kiloparsec counts most.
+        // Steps grow with distance, because near the plane the first kiloparsec of dust matters most.
         let [begin, end] = [i, i + 1].map(|k| REACH_KPC * (f64::from(k) / f64::from(STEPS)).powi(2));
         let (s, ds) = (0.5 * (begin + end), end - begin);
         let p = galactic * s;
@@ -55,7 +56,7 @@ pub fn disc_s10(galactic: DVec3) -> f64 {
         let light = at_sun * (-outwards / STARS_LENGTH_KPC).exp() * squared_sech(p.z / (2.0 * STARS_HEIGHT_KPC));
         let dust =
             DUST_PER_KPC * (-outwards / DUST_LENGTH_KPC).exp() * squared_sech(p.z / (2.0 * DUST_HEIGHT_KPC)) * ds;
-        // Mean over the step of what its own dust leaves.
+        // Mean transmittance within the step, whose own dust dims its light.
         let left = if dust > 1e-6 { (1.0 - (-dust).exp()) / dust } else { 1.0 };
         sum += light * ds * 1e3 * left * (-depth).exp();
         depth += dust;

@@ -1,4 +1,4 @@
-//! The Milky Way: light of the stars that are not drawn as points, by galactic longitude and latitude.
+//! The Milky Way: light of the stars that are not drawn as points, as a function of galactic direction.
 
 use std::{f64::consts::TAU, sync::OnceLock};
 
@@ -7,8 +7,8 @@ use glam::DVec3;
 pub use super::disc::{disc_s10, equator_to_galactic};
 use super::starlight::Starlight;
 use crate::almanac::celestial::equatorial_direction;
-/// Light of the stars that are not drawn as points, S10, along a galactic direction (unit): from a table of
-/// [`Starlight`], within 4 % of it.
+/// Light of the stars that are not drawn as points, S10, in a galactic direction (unit). It is read from a table of
+/// [`Starlight`] and is within 4 % of it.
 pub fn unresolved_s10(galactic: DVec3) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     let table = TABLE.get_or_init(|| {
@@ -30,13 +30,13 @@ pub fn unresolved_s10(galactic: DVec3) -> f64 {
     along(row) + (along(row + 1) - along(row)) * v
 }
 
-/// Galactic latitudes of the table's rows north of the plane, degrees: close where the band is steep.
+/// Galactic latitudes of the table's rows north of the plane, degrees; rows are dense where the band is steep.
 const LATITUDES_DEG: [f64; 29] = [
     0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 12.5, 15.0, 18.0, 21.0, 24.0, 27.0, 30.0, 33.0, 36.0, 40.0, 45.0,
     50.0, 56.0, 61.0, 66.0, 70.0, 75.0, 80.0, 85.0, 90.0,
 ];
 const ROWS: usize = 2 * LATITUDES_DEG.len() - 1;
-/// Steps of a turn of longitude.
+/// Number of columns around the full circle of longitude.
 const COLUMNS: usize = 144;
 
 /// Returns the galactic latitude of a row of the table, degrees; rows run from south to north.
@@ -45,7 +45,7 @@ fn latitude_deg(row: usize) -> f64 {
     if row < plane { -LATITUDES_DEG[plane - row] } else { LATITUDES_DEG[row - plane] }
 }
 
-/// A direction (galactic) of the table.
+/// Galactic direction of an entry of the table.
 fn node(row: usize, column: usize) -> DVec3 {
     equatorial_direction(column as f64 * 360.0 / COLUMNS as f64, latitude_deg(row))
 }
@@ -93,8 +93,8 @@ mod tests {
 
     #[test]
     fn starlight_is_as_measured() {
-        // Leinert et al. 1998, section 10, and Roach and Megill 1961: some 30 at the poles without the stars of the
-        // eye, 160 to 640 in the plane, more towards the centre.
+        // Leinert et al. 1998, section 10, and Roach and Megill 1961: about 30 at the poles without the stars that an
+        // eye sees, 160 to 640 in the plane, more towards the centre.
         for pole in [DVec3::Z, -DVec3::Z] {
             let s10 = unresolved_s10(pole);
             assert!((28.0..38.0).contains(&s10), "{s10}");
@@ -105,10 +105,11 @@ mod tests {
             let contrast = band / unresolved_s10(DVec3::Z);
             assert!((4.0..18.0).contains(&contrast), "{l}: {contrast}");
         }
-        // Brightest towards the centre, beside the dust of the plane itself; faintest in the plane away from it.
+        // The light is brightest towards the centre, next to the dust of the plane, and faintest in the plane on the
+        // other side.
         assert!(unresolved_s10(at(0.0, -4.0)) > 1.2 * unresolved_s10(at(0.0, 1.0)));
         assert!(unresolved_s10(at(0.0, -4.0)) > 2.5 * unresolved_s10(at(180.0, -4.0)));
-        // The Large Magellanic Cloud stands out from what lies about it.
+        // The Large Magellanic Cloud is brighter than its surroundings.
         assert!(unresolved_s10(at(280.5, -32.9)) > 1.5 * unresolved_s10(at(310.0, -32.9)));
     }
 

@@ -11,28 +11,30 @@ use super::{
     places::Heavens,
 };
 
-/// Square degrees of a sphere's unit of solid angle.
+/// Square degrees in a steradian.
 const SQUARE_DEGREES_PER_SR: f64 = 3_282.806_35;
-/// Luminance of 1 S10, one star of magnitude 10 a square degree, cd/m^2: its illuminance over a square degree, 8.3e-7.
+/// Luminance of 1 S10 (one star of magnitude 10 a square degree), cd/m^2: the star's illuminance over a square degree,
+/// 8.3e-7.
 pub const S10_CD_M2: f64 = MAGNITUDE_0_LUX * 1e-4 * SQUARE_DEGREES_PER_SR;
-/// Airglow at the zenith at night near the sun's least activity, S10 (Benn and Ellison 1998, La Palma Technical Note
-/// 115: 2.5 times the zodiacal light at the ecliptic's pole).
+/// Airglow at the zenith at night near the minimum of solar activity, S10. Benn and Ellison (1998, La Palma Technical
+/// Note 115) give 2.5 times the zodiacal light at the ecliptic's pole.
 const AIRGLOW_S10: f64 = 145.0;
-/// Height of the glowing layer, m, and the depth below its top over which it fades for one who rises through it
-/// (Leinert et al. 1998, section 6).
+/// Height of the glowing layer, m, and the depth below its top over which the airglow fades for an eye that rises
+/// through it, m (Leinert et al. 1998, section 6).
 const AIRGLOW_HEIGHT_M: f64 = 9e4;
 const AIRGLOW_DEPTH_M: f64 = 1e4;
 /// Mean radius of the Earth, m.
 const EARTH_RADIUS_M: f64 = 6.371e6;
-/// Directions whose mean stands for the dome of the sky.
+/// Number of directions that sample the dome of the sky.
 const DOME: u32 = 32;
-/// Colours as black bodies, K: of airglow that of the dark sky, B-V = 0.8 (Benn and Ellison 1998), of the zodiacal
-/// light the sun's (Leinert et al. 1998, section 8), of faint stars that of their tables ([`super::starlight`]).
+/// Colours as temperatures of black bodies, K. Airglow has the colour of the dark sky, B-V = 0.8 (Benn and Ellison
+/// 1998), zodiacal light that of the sun (Leinert et al. 1998, section 8), and faint stars that of their tables
+/// ([`super::starlight`]).
 const AIRGLOW_K: f64 = 5280.0;
 const ZODIACAL_K: f64 = 5772.0;
 pub(super) const STARLIGHT_K: f64 = 4900.0;
 
-/// Longitudes from the sun and latitudes of the table, degrees.
+/// Longitudes relative to the sun, and latitudes, of the table, degrees.
 const LONGITUDES: [f64; 19] = [
     0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 60.0, 75.0, 90.0, 105.0, 120.0, 135.0, 150.0, 165.0,
     180.0,
@@ -40,8 +42,8 @@ const LONGITUDES: [f64; 19] = [
 const LATITUDES: [f64; 11] = [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 45.0, 60.0, 75.0, 90.0];
 
 /// Zodiacal light, S10 of the sun's colour, at 1 au: Leinert et al. 1998, table 16 (after Levasseur-Regourd and Dumont
-/// 1980), good to 10 %. What the table leaves out, within 15 degrees of the sun, is continued as the elongation to the
-/// power -2.3 and no further than 3e5.
+/// 1980), within 10 %. Within 15 degrees of the sun the table has no values; there the light continues as the
+/// elongation to the power -2.3, at most 3e5.
 #[rustfmt::skip]
 const ZODIACAL_S10: [[f64; 11]; 19] = [
     [300_000.0, 50_000.0, 8_000.0, 2_450.0, 1_260.0, 770.0, 500.0, 215.0, 117.0, 78.0, 60.0],
@@ -65,8 +67,8 @@ const ZODIACAL_S10: [[f64; 11]; 19] = [
     [180.0, 166.0, 152.0, 139.0, 127.0, 116.0, 105.0, 82.0, 65.0, 56.0, 60.0],
 ];
 
-/// Cubic through values at ascending places, smooth in its slope, flat at both ends, where the table is mirrored.
-/// Slopes are those of parabolas through three neighbours (Catmull and Rom 1974, for uneven steps).
+/// Cubic interpolation of values at ascending positions. The slope is continuous, and 0 at both ends, where the table
+/// is mirrored. Slopes are those of parabolas through three neighbours (Catmull and Rom 1974, for uneven steps).
 fn smooth(places: &[f64], value: impl Fn(usize) -> f64, x: f64) -> f64 {
     let last = places.len() - 1;
     let i = places.partition_point(|a| *a <= x).clamp(1, last) - 1;
@@ -87,8 +89,8 @@ fn smooth(places: &[f64], value: impl Fn(usize) -> f64, x: f64) -> f64 {
         + (t3 - t2) * h * slope(i + 1)
 }
 
-/// Zodiacal light above the air, S10, in a direction of which the ecliptic longitude less the sun's and the ecliptic
-/// latitude are given, degrees. The logarithm is interpolated, smooth in its slope.
+/// Zodiacal light above the air, S10. The direction is given by the ecliptic longitude relative to the sun and the
+/// ecliptic latitude, degrees. The logarithm of the table is interpolated with a continuous slope.
 pub fn zodiacal_s10(longitude_from_sun_deg: f64, latitude_deg: f64) -> f64 {
     let longitude = (longitude_from_sun_deg + 180.0).rem_euclid(360.0) - 180.0;
     let latitude = latitude_deg.abs().min(90.0);
@@ -98,54 +100,54 @@ pub fn zodiacal_s10(longitude_from_sun_deg: f64, latitude_deg: f64) -> f64 {
     smooth(&LONGITUDES, row, longitude.abs()).exp()
 }
 
-/// How much more of the thin glowing layer a line of sight crosses than one straight up (van Rhijn 1921):
-/// `1 / (1 - (r/R)^2 sin^2 z)^(1/2)`, r and R the distances of eye and layer from the Earth's centre. The eye is below
-/// the layer, on or above the ground.
+/// Length of a line of sight within the thin glowing layer relative to one straight up (van Rhijn 1921):
+/// `1 / (1 - (r/R)^2 sin^2 z)^(1/2)`, where r and R are the distances of eye and layer from the Earth's centre. The eye
+/// is below the layer, on or above the ground.
 fn van_rhijn(sine_of_elevation: f64, altitude_m: f64) -> f64 {
     let ratio = (EARTH_RADIUS_M + altitude_m) / (EARTH_RADIUS_M + AIRGLOW_HEIGHT_M);
     let sine2 = 1.0 - sine_of_elevation * sine_of_elevation;
     (1.0 - ratio * ratio * sine2).max(1e-3).sqrt().recip()
 }
 
-/// The glow of a clear, moonless night over a place.
+/// Glow of a clear, moonless night sky over a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NightSky {
-    /// From (east, north, up) to the ecliptic of J2000.0 with the sun at longitude 0.
+    /// Rotation from (east, north, up) to the ecliptic of J2000.0, with the sun at longitude 0.
     to_sun_ecliptic: DMat3,
     to_galactic: DMat3,
     altitude_m: f64,
-    /// Optical depth of the air straight up at the three wavelengths.
+    /// Optical depths of the air straight up at the three wavelengths.
     pub(super) zenith_depth: [f64; 3],
-    /// Airglow over that of the sun's least activity.
+    /// Airglow relative to that at the minimum of solar activity.
     airglow: f64,
-    /// Colours of luminance 1 of airglow, zodiacal light and starlight.
+    /// Colours of airglow, zodiacal light and starlight, with luminance 1.
     pub(super) colors: [[f64; 3]; 3],
-    /// Luminance of lit air without end, cd/m^2 a channel.
+    /// Luminance of an infinitely deep layer of lit air, cd/m^2 a channel.
     pub(super) lit_air: [f64; 3],
 }
 
-/// From J2000.0 to the ecliptic with the sun, at `sun` in J2000.0, at longitude 0.
+/// Rotation from J2000.0 to the ecliptic with the sun at longitude 0; `sun` is its direction in J2000.0.
 pub(super) fn equator_to_sun_ecliptic(sun: DVec3) -> DMat3 {
     let to_ecliptic = ecliptic_to_equator().transpose();
     let sun = to_ecliptic * sun;
     DMat3::from_rotation_z(-sun.y.atan2(sun.x)) * to_ecliptic
 }
 
-/// Zodiacal light above the air, S10, in a direction of [`equator_to_sun_ecliptic`].
+/// Zodiacal light above the air, S10, in a direction in the axes of [`equator_to_sun_ecliptic`].
 pub(super) fn zodiacal_toward(e: DVec3) -> f64 {
     zodiacal_s10(e.y.atan2(e.x).to_degrees(), e.z.clamp(-1.0, 1.0).asin().to_degrees())
 }
 
 impl NightSky {
-    /// The glow over a place `altitude_m` above the sea where the air's optical depths straight up are `zenith_depth`.
-    /// `airglow`: its strength, 1 at the sun's least activity, 1.7 at the greatest (the sky is then brighter by 0.4
-    /// magnitudes, Benn and Ellison 1998).
+    /// Creates the glow over a place `altitude_m` above the sea, where the air has the optical depths `zenith_depth`
+    /// straight up. `airglow` is the strength of the airglow: 1 at the minimum of solar activity, 1.7 at the maximum,
+    /// when the sky is brighter by 0.4 magnitudes (Benn and Ellison 1998).
     pub fn new(heavens: &Heavens, altitude_m: f64, zenith_depth: [f64; 3], airglow: f64) -> Self {
         Self::under(&heavens.to_world, heavens.sun, altitude_m, zenith_depth, airglow)
     }
 
-    /// Creates the glow as [`Self::new`] does, where the heavens are turned by `to_world`, from J2000.0 to (east,
-    /// north, up), and the sun stands at `sun` in J2000.0.
+    /// Creates the glow as [`Self::new`] does, from the rotation `to_world` from J2000.0 to (east, north, up) and the
+    /// sun's direction `sun` in J2000.0.
     pub(super) fn under(to_world: &DMat3, sun: DVec3, altitude_m: f64, zenith_depth: [f64; 3], airglow: f64) -> Self {
         let from_world = to_world.transpose();
         let mut sky = Self {
@@ -164,9 +166,10 @@ impl NightSky {
         sky
     }
 
-    /// Airglow, zodiacal light and the Milky Way's unresolved stars in a direction (east, north, up; unit) above the
-    /// air, S10. Airglow is as one below its layer sees it with no air between; from within the layer up it fades, as
-    /// no layer lies before the stars there. The layer seen from above is not in it.
+    /// Airglow, zodiacal light and the Milky Way's unresolved stars above the air, S10, in a direction (east, north,
+    /// up; unit). The airglow is what an eye below its layer would see without air between. For an eye that rises
+    /// through the layer it fades, because no layer is left in front of the stars. The layer seen from above is left
+    /// out.
     pub fn s10(&self, direction: DVec3) -> [f64; 3] {
         let zodiacal = zodiacal_toward(self.to_sun_ecliptic * direction);
         let layer = van_rhijn(direction.z.max(0.0), self.altitude_m.min(AIRGLOW_HEIGHT_M));
@@ -178,7 +181,7 @@ impl NightSky {
         AIRGLOW_S10 * self.airglow * ((AIRGLOW_HEIGHT_M - self.altitude_m) / AIRGLOW_DEPTH_M).clamp(0.0, 1.0)
     }
 
-    /// Square of the distance of the eye from the Earth's centre over that of the layer of airglow, at most 1.
+    /// Square of the ratio of the eye's distance from the Earth's centre to that of the airglow layer, at most 1.
     pub(super) fn layer_ratio2(&self) -> f64 {
         ((EARTH_RADIUS_M + self.altitude_m.min(AIRGLOW_HEIGHT_M)) / (EARTH_RADIUS_M + AIRGLOW_HEIGHT_M)).powi(2)
     }
@@ -190,12 +193,12 @@ impl NightSky {
     }
 
     /// Luminance in a direction (east, north, up; unit), cd/m^2 a channel of linear Rec. 709, after the air:
-    /// `L T + S (1 - T)`. Below the horizon the air is that at it.
+    /// `L T + S (1 - T)`. Directions below the horizon use the air at the horizon.
     ///
-    /// T is the air's transmittance. S is what lit air without end sends: half the mean of the dome, as air scatters
-    /// alike to all sides, loses little, and sees the dome above and dark ground below (Schuster 1905 in its simplest
-    /// form). So a sky without moon is about as bright at the horizon as at the zenith, and light from all around loses
-    /// half as much as a star does.
+    /// T is the air's transmittance. S is the light that an infinitely deep layer of lit air sends: half the mean of
+    /// the dome, because air scatters equally to all sides, absorbs little, and has the dome above and dark ground
+    /// below (Schuster 1905 in its simplest form). A sky without moon is therefore about as bright at the horizon as at
+    /// the zenith, and light from all around loses half as much as a star does.
     pub fn luminance(&self, direction: DVec3) -> [f64; 3] {
         let level = DVec3::new(direction.x, direction.y, direction.z.max(0.0)).normalize_or(DVec3::X);
         let left = transmittance(self.zenith_depth, level.z.asin().to_degrees());
@@ -205,8 +208,8 @@ impl NightSky {
 }
 
 impl NightSky {
-    /// Illuminance of the glow on level ground, lux a channel: the mean over the dome. The catalogue's stars, 6e-5 lux,
-    /// are not in it.
+    /// Illuminance of level ground by the glow, lux a channel: the sum over the dome. The catalogue's stars, 6e-5 lux,
+    /// are left out.
     pub fn level_lux(&self) -> [f64; 3] {
         (0..DOME).map(dome_direction).fold([0.0; 3], |sum, direction| {
             let luminance = self.luminance(direction);
@@ -215,8 +218,8 @@ impl NightSky {
     }
 }
 
-/// One of [`DOME`] directions of equal shares of the upper half (a spiral by the golden angle; Swinbank and Purser
-/// 2006).
+/// Direction `i` of [`DOME`], each with an equal share of the upper hemisphere (a spiral by the golden angle; Swinbank
+/// and Purser 2006).
 fn dome_direction(i: u32) -> DVec3 {
     let z = (f64::from(i) + 0.5) / f64::from(DOME);
     let (s, c) = (2.399_963_23 * f64::from(i)).sin_cos();
@@ -262,7 +265,8 @@ mod tests {
 
     #[test]
     fn zodiacal_light_is_smooth_and_between_its_neighbours() {
-        // Second differences over the first of a step of half a degree stay small: no kinks, no seams.
+        // The ratio of second to first differences over steps of half a degree stays small: there are no kinks and no
+        // seams.
         for b in -89..89 {
             for l in 40..320 {
                 let (l, b) = (f64::from(l), f64::from(b));
@@ -273,15 +277,15 @@ mod tests {
                 assert!((53.0..6000.0).contains(&here.exp()), "{l} {b}: {}", here.exp());
             }
         }
-        // The gegenschein is a maximum, the poles have one value.
+        // The gegenschein is a maximum, and all longitudes agree at the pole.
         assert!(zodiacal_s10(180.0, 0.0) > 1.1 * zodiacal_s10(150.0, 0.0));
         assert!((zodiacal_s10(17.0, 90.0) - 60.0).abs() < 1e-9);
     }
 
     #[test]
     fn airglow_brightens_towards_the_horizon() {
-        // Leinert et al. 1998, section 6, and Roach and Meinel 1955: 1.9 at 60 degrees from the zenith, about 6 at the
-        // horizon.
+        // Leinert et al. 1998, section 6, and Roach and Meinel 1955: the factor is 1.9 at 60 degrees from the zenith,
+        // and about 6 at the horizon.
         assert_eq!(van_rhijn(1.0, 0.0), 1.0);
         assert!((van_rhijn(0.5, 0.0) - 1.92).abs() < 0.05, "{}", van_rhijn(0.5, 0.0));
         assert!((5.5..6.5).contains(&van_rhijn(0.0, 0.0)), "{}", van_rhijn(0.0, 0.0));
@@ -292,13 +296,13 @@ mod tests {
 
     #[test]
     fn dark_sites_are_as_dark_as_measured_at_the_zenith() {
-        // 21.2 to 22.05 through nights and seasons with the Milky Way and the zodiacal light (Falchi et al. 2016: 22;
-        // Patat 2003: 21.6; Benn and Ellison 1998: 21.9 at high latitudes of both), and brighter where the Milky Way's
-        // clouds of stars stand overhead.
+        // The range is 21.2 to 22.05 over nights and seasons, with the Milky Way and the zodiacal light (Falchi et al.
+        // 2016: 22; Patat 2003: 21.6; Benn and Ellison 1998: 21.9 at high latitudes of both). It is brighter where the
+        // Milky Way's star clouds stand overhead.
         let (mut darkest, mut brightest) = (0.0f64, 30.0f64);
         for i in 0..400 {
             let (heavens, sky) = night(1.6e9 + 86_400.0 * 1.37 * f64::from(i), -30.0 + 0.15 * f64::from(i));
-            // Night: the sun is far below the horizon.
+            // Only nights count: the sun is far below the horizon.
             if (heavens.to_world * heavens.sun).z > -0.31 {
                 continue;
             }
@@ -327,11 +331,11 @@ mod tests {
                 }
             }
         }
-        // Moonless ground has 0.5 to 1.5 mlux from the sky alone; the dome's few directions stand for all of them.
+        // Moonless ground receives 0.5 to 1.5 mlux from the sky alone. The dome's few directions stand for all.
         let lux = luminance(&sky.level_lux());
         println!("level ground {:.2} mlux", 1e3 * lux);
         assert!((5e-4..1.5e-3).contains(&lux), "{lux}");
-        // Horizon and zenith are alike within a factor of two; at 1.5 air masses the sky is brighter by 0.25 magnitudes
+        // Horizon and zenith agree within a factor of two. At 1.5 air masses the sky is brighter by 0.25 magnitudes
         // (Benn and Ellison 1998).
         let dome = |e: f64| {
             (0..36)
@@ -344,7 +348,8 @@ mod tests {
         assert!((0.1..0.4).contains(&slanting), "{slanting}");
         let at = |e: f64| sky.luminance(crate::almanac::celestial::direction(10.0, e));
         assert!((at(-0.01)[1] / at(0.01)[1] - 1.0).abs() < 1e-3, "no seam at the horizon");
-        // Below it the light that comes from there, through the air at the horizon: as pictures show it.
+        // Below the horizon the luminance is that of the light from there, seen through the air at the horizon, as
+        // pictures show it.
         let (down, left) = (crate::almanac::celestial::direction(10.0, -30.0), transmittance(sky.zenith_depth, 0.0));
         let above = sky.above_air(down);
         let through = [0, 1, 2].map(|k| above[k] * left[k] + sky.lit_air[k] * (1.0 - left[k]));

@@ -1,4 +1,4 @@
-//! The glow on the GPU: a ball of directions with zodiacal light and starlight at its corners, to which the shader adds
+//! The glow on the GPU: a sphere of directions with zodiacal light and starlight at its corners. The shader adds
 //! airglow and air.
 
 use bytemuck::Zeroable as _;
@@ -19,8 +19,9 @@ use crate::{
     },
 };
 
-/// Galactic latitudes of the ball's rows, degrees, and how many columns of corners one side of a patch of the row
-/// spans. Few, as a software driver pays for every edge: 95 % of the patches glow within 3 % of the tables.
+/// Galactic latitudes of the sphere's rows, degrees, and the number of columns that one side of a patch in the row
+/// spans. There are few rows, because a software driver pays for every edge. 95 % of the patches are within 3 % of the
+/// tables.
 const RINGS: [(f64, usize); 15] = [
     (0.0, 1),
     (1.0, 1),
@@ -38,16 +39,17 @@ const RINGS: [(f64, usize); 15] = [
     (78.0, 4),
     (90.0, 4),
 ];
-/// Rows of the ball from the south galactic pole to the north one, and corners a row: the last stands where the first
-/// does.
+/// Rows of the sphere from the south galactic pole to the north one, and corners in a row. The last corner of a row has
+/// the same direction as the first.
 const ROWS: usize = 2 * RINGS.len() - 1;
 const COLUMNS: usize = 49;
-/// Angle that the sun moves on, rad, until the zodiacal light is found anew: six hours.
+/// Angle that the sun moves before the zodiacal light is computed again, rad: six hours.
 const STALE_RAD: f64 = 0.0044;
-/// Above this the layer's light, of which the eye sees no more, would be divided by nothing.
+/// Upper limit of the layer ratio, which keeps the shader from dividing by 0 for an eye in the layer, where the airglow
+/// has faded out.
 const MOST_LAYER_RATIO2: f64 = 0.999;
 
-/// A corner of the ball.
+/// A corner of the sphere.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Corner {
@@ -57,7 +59,7 @@ struct Corner {
     s10: [f32; 2],
 }
 
-/// `GlowUniform` of `shaders/stars/glow.wgsl`.
+/// Mirrors `GlowUniform` of `shaders/stars/glow.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 struct GlowUniform {
@@ -77,35 +79,36 @@ struct GlowUniform {
     pad3: f32,
 }
 
-/// How much of the night is there: luminance of the sky where it has not come yet, cd/m^2 a channel, and its share.
+/// State of dusk: luminance of the sky before night has come, cd/m^2 a channel, and the share of night that has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Dusk {
     pub cd_m2: [f64; 3],
     pub share: f64,
 }
 
-/// Resources that a view holds for the glow.
+/// GPU resources that a view holds for the glow.
 pub(super) struct GlowPass {
     block: wgpu::Buffer,
     corners: wgpu::Buffer,
     indices: wgpu::Buffer,
     group: wgpu::BindGroup,
     pipeline: wgpu::RenderPipeline,
-    /// The sun's place in J2000.0 that the corners' zodiacal light is of.
+    /// Direction of the sun in J2000.0 for which the corners' zodiacal light was computed.
     sun: Option<DVec3>,
     triangles: VisibleTriangles,
     written: Option<GlowUniform>,
 }
 
-/// The triangles of the ball that a picture may show. A software driver pays for all that it is given, most of which
-/// stand elsewhere.
+/// The sphere's triangles that a picture may show. A software driver pays for every triangle that it gets, and most are
+/// outside the picture.
 struct VisibleTriangles {
-    /// Directions of the ball's corners, in J2000.0.
+    /// Directions of the sphere's corners, in J2000.0.
     directions: Vec<Vec3>,
     all: Vec<[u16; 3]>,
-    /// Beyond which sides of the picture each corner lies, a bit a side.
+    /// Bit mask for each corner: the sides of the picture beyond which it lies.
     beyond: Vec<u8>,
-    /// Corners of those that may show; one more where their number is odd, as uploads are of four bytes.
+    /// Corner indices of the triangles that may show. If their number is odd one more is added, because uploads are
+    /// multiples of four bytes.
     shown: Vec<u16>,
     count: u32,
 }
@@ -116,7 +119,7 @@ impl VisibleTriangles {
         Self { directions, all, beyond, shown, count: 0 }
     }
 
-    /// Finds those of a picture: a triangle whose corners all lie beyond one side is not in it.
+    /// Finds the triangles that a picture may show. A triangle whose corners all lie beyond one side is left out.
     fn find(&mut self, view: &StarView<'_>) {
         let rows = [0, 1, 3].map(|i| (view.heavens.to_world.transpose() * view.clip.row(i).truncate()).as_vec3());
         for (beyond, direction) in self.beyond.iter_mut().zip(&self.directions) {
@@ -137,10 +140,10 @@ impl VisibleTriangles {
 }
 
 impl GlowPass {
-    /// For targets of `format`, of one sample a pixel.
+    /// Creates the resources for targets of `format` with one sample a pixel.
     ///
     /// # Errors
-    /// A missing shader file; GPU faults come through [`Device::check`].
+    /// Fails if a shader file is missing; GPU faults come through [`Device::check`].
     pub fn new(device: &Device, format: wgpu::TextureFormat) -> Result<Self> {
         use wgpu::BufferUsages as U;
         let buffer = |label, size: usize, usage| {
@@ -168,7 +171,7 @@ impl GlowPass {
         Ok(Self { block, corners, indices, group, pipeline, sun: None, triangles, written: None })
     }
 
-    /// Brings everything up for a draw of `sky` as `view` sees it; whether it is another draw than the last one.
+    /// Uploads what a draw of `sky` seen by `view` needs. Returns whether the draw differs from the last one.
     pub fn prepare(&mut self, device: &Device, sky: &NightSky, view: &StarView<'_>, dusk: &Dusk) -> bool {
         let sun = view.heavens.sun;
         let is_stale = self.sun.is_none_or(|s| s.angle_between(sun) > STALE_RAD);
@@ -205,7 +208,7 @@ impl GlowPass {
         true
     }
 
-    /// Draws what was prepared in place of what is there. Sets group 0, vertex buffer 0 and the index buffer.
+    /// Draws what was prepared and overwrites the target. Sets group 0, vertex buffer 0 and the index buffer.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
@@ -214,20 +217,20 @@ impl GlowPass {
         pass.draw_indexed(0..self.triangles.count, 0, 0..1);
     }
 
-    /// Bytes on the GPU.
+    /// Size on the GPU, bytes.
     pub fn bytes(&self) -> u64 {
         self.block.size() + self.corners.size() + self.indices.size()
     }
 }
 
-/// Latitude of a row, degrees, and the columns that a side of its patches spans.
+/// Latitude of a row, degrees, and the number of columns that a side of its patches spans.
 fn ring(row: usize) -> (f64, usize) {
     let equator = RINGS.len() - 1;
     let (latitude, span) = RINGS[row.abs_diff(equator)];
     (if row < equator { -latitude } else { latitude }, span)
 }
 
-/// The ball's corners under a sun, row by row.
+/// Corners of the sphere for a direction of the sun, row by row.
 fn corners(sun: DVec3) -> Vec<Corner> {
     let to_equator: DMat3 = equator_to_galactic().transpose();
     let to_sun = equator_to_sun_ecliptic(sun);
@@ -241,8 +244,8 @@ fn corners(sun: DVec3) -> Vec<Corner> {
     (0..ROWS * COLUMNS).map(corner).collect()
 }
 
-/// Triangles between each two rows. Where one row has fewer corners than the other, each of its sides is the base of
-/// several triangles of the other's, so that there is no gap.
+/// Triangles between neighbouring rows. Where one row has fewer corners, each of its sides meets several triangles of
+/// the other row, so that there is no gap.
 fn indices() -> Vec<u16> {
     let at = |row: usize, column: usize| (row * COLUMNS + column) as u16;
     let mut list = Vec::new();
@@ -291,7 +294,7 @@ mod tests {
         stars::{Heavens, StarSettings},
     };
 
-    /// At 30 degrees from the sun the zodiacal light halves within 10 degrees.
+    /// Compares the sphere with the tables. At 30 degrees from the sun the zodiacal light halves within 10 degrees.
     #[test]
     fn between_its_corners_the_ball_glows_as_the_tables_say() {
         let sun = DVec3::X;
@@ -314,7 +317,7 @@ mod tests {
         assert!(usual < 0.03 && most < 0.15, "{usual} {most}");
     }
 
-    /// Each ray of a picture meets a triangle of those that were found for it, wherever the camera looks.
+    /// Each ray of a picture meets one of the triangles found for that picture, wherever the camera looks.
     #[test]
     fn triangles_that_a_picture_shows_are_kept_and_most_others_are_not() {
         let place = Place { latitude_deg: 50.0, longitude_deg: 10.0, altitude_m: 0.0 };
@@ -349,8 +352,8 @@ mod tests {
                 let is_met = kept.chunks_exact(3).any(|t| {
                     let [a, b, c] = [0, 1, 2].map(|k| triangles.directions[usize::from(t[k])]);
                     let sides = [a.cross(b), b.cross(c), c.cross(a)].map(|n| n.dot(ray));
-                    // Seen from within or from without, and a rounding beyond an edge; not on the other side of the
-                    // ball.
+                    // The triangle may be seen from inside or outside, and may be missed by a rounding error at an
+                    // edge. It must not be on the other side of the sphere.
                     let is_inside = sides.iter().all(|s| *s > -1e-6) || sides.iter().all(|s| *s < 1e-6);
                     is_inside && (a + b + c).dot(ray) > 0.0
                 });

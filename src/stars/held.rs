@@ -1,5 +1,5 @@
-//! State of the night sky that a context holds: its settings. The host's own stars are no part of a saved state; a
-//! context that loads one keeps those that it has.
+//! State of the night sky in a context: its settings. The host's own stars are not saved; a context that loads a state
+//! keeps the stars that it has.
 
 use std::sync::Arc;
 
@@ -14,31 +14,31 @@ use crate::{
     world::{HeldEffect, NightSettings, parse_error},
 };
 
-/// The night sky of a context.
+/// State of the night sky of a context.
 #[derive(Clone, Default)]
 pub(crate) struct HeldStars {
     pub settings: StarSettings,
 }
 
-/// The settings as a saved state has them.
+/// Settings in the form of a saved state.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedStars {
     planets: bool,
     airglow: f64,
-    /// Columns.
+    /// Columns of the matrix.
     celestial_to_world: Option<[[f64; 3]; 3]>,
 }
 
-/// Where they are in a saved state.
+/// Table and key of the settings in a saved state.
 const TABLE: &str = "settings";
 const KEY: &str = "stars";
 
 impl HeldStars {
-    /// Takes its part out of a saved state; the stars are those given.
+    /// Removes the settings from a saved state and reads them; `stars` are the host's own stars.
     ///
     /// # Errors
-    /// [`Status::Parse`] for what are no such settings.
+    /// [`Status::Parse`] for a value that is not such settings.
     pub fn read(state: &mut toml::Table, stars: Option<Arc<[Star]>>) -> Result<Self> {
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
         let Some(value) = settings.and_then(|s| s.remove(KEY)) else {
@@ -51,7 +51,7 @@ impl HeldStars {
         Ok(Self { settings })
     }
 
-    /// Returns the settings of the night's light on the ground.
+    /// Returns the settings that affect the night's light on the ground.
     pub fn night(&self) -> NightSettings {
         NightSettings { airglow: self.settings.airglow, celestial_to_world: self.settings.celestial_to_world }
     }
@@ -75,8 +75,8 @@ impl HeldEffect for HeldStars {
     }
 }
 
-/// Light of the moonless sky on level ground, lux a channel, where the air's optical depths straight up are
-/// `zenith_depth`.
+/// Illuminance of level ground by the moonless sky, lux a channel; `zenith_depth` are the air's optical depths straight
+/// up.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] for a time or place out of range.

@@ -1,4 +1,4 @@
-//! How much light a star sends and of which colour, and what the air leaves of it.
+//! Illuminance and colour of a star, and the share of its light that the air lets through.
 
 use std::sync::OnceLock;
 
@@ -7,25 +7,25 @@ use crate::light::{
     spectrum::{black_body, rec709_of_wavelength},
 };
 
-/// Illuminance of a star of magnitude 0 above the air on a surface that faces it, lux (Allen 1973, Astrophysical
+/// Illuminance above the air of a star of magnitude 0 on a surface facing it, lux (Allen 1973, Astrophysical
 /// Quantities; Crumey 2014, MNRAS 442, 2600).
 pub const MAGNITUDE_0_LUX: f64 = 2.54e-6;
 
-/// Illuminance of a star above the air on a surface that faces it, lux (Pogson 1856).
+/// Illuminance above the air of a star on a surface facing it, lux (Pogson 1856).
 pub fn illuminance_lux(magnitude: f64) -> f64 {
     MAGNITUDE_0_LUX * 10f64.powf(-0.4 * magnitude)
 }
 
-/// Temperature of the black body that has a star's B-V, K (Ballesteros 2012, EPL 97, 34008, eq. 14). For B-V in
-/// [-0.4, 2.0]; values outside count as the ends.
+/// Temperature of the black body that has a star's B-V, K (Ballesteros 2012, EPL 97, 34008, eq. 14). B-V is clamped to
+/// [-0.4, 2.0].
 pub fn temperature_of_color_index(b_v: f64) -> f64 {
     let x = 0.92 * b_v.clamp(-0.4, 2.0);
     4600.0 * (1.0 / (x + 1.7) + 1.0 / (x + 0.62))
 }
 
-/// Colour of a black body in linear Rec. 709 (white is D65, as everywhere) of luminance 1: Planck's law and the
-/// standard observer of 1931, summed in steps of 5 nm. Light redder than Rec. 709 can show, below 1900 K, loses its
-/// negative blue.
+/// Colour of a black body in linear Rec. 709 (white is D65) with luminance 1: Planck's law and the standard observer of
+/// 1931, summed in steps of 5 nm. Below 1900 K the light is redder than Rec. 709 can show; its negative blue is cut
+/// off.
 fn integrated_color(temperature_k: f64) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for nm in (360..=830).step_by(5).map(f64::from) {
@@ -37,11 +37,11 @@ fn integrated_color(temperature_k: f64) -> [f64; 3] {
     sum.map(|v| v / total)
 }
 
-/// Steps of the table of colours, in millionths of a kelvin's inverse (mired).
+/// Step of the table of colours, mired (1e6 over the temperature in kelvins).
 const MIRED_STEP: f64 = 10.0;
 
-/// Linear Rec. 709 colour of luminance 1 of a black body of a temperature in [1000, 100000] K, from a table in steps of
-/// 10 mired, within 0.5 % of the sum over wavelengths. Any thread.
+/// Linear Rec. 709 colour, with luminance 1, of a black body of a temperature in [1000, 100000] K. It is read from a
+/// table in steps of 10 mired and is within 0.5 % of the sum over wavelengths. Any thread.
 pub fn color_of_temperature(temperature_k: f64) -> [f64; 3] {
     static TABLE: OnceLock<[[f64; 3]; 101]> = OnceLock::new();
     let table = TABLE.get_or_init(|| std::array::from_fn(|i| integrated_color(1e6 / (MIRED_STEP * i as f64).max(1.0))));
@@ -51,10 +51,10 @@ pub fn color_of_temperature(temperature_k: f64) -> [f64; 3] {
     std::array::from_fn(|k| table[i][k] * (1.0 - f) + table[i + 1][k] * f)
 }
 
-/// The sun's temperature as a black body's, K (IAU 2015 resolution B3).
+/// Temperature of the sun as a black body, K (IAU 2015 resolution B3).
 const SUN_K: f64 = 5772.0;
 
-/// Returns the colour, of luminance 1, of a black body to an eye for which unscattered sunlight is white, as for all
+/// Returns the colour of a black body, with luminance 1, for an eye that sees unscattered sunlight as white, as in all
 /// that is drawn (von Kries; `world::lights`).
 pub fn color_by_sunlight(temperature_k: f64) -> [f64; 3] {
     let (color, white) = (color_of_temperature(temperature_k), color_of_temperature(SUN_K));
@@ -63,21 +63,21 @@ pub fn color_by_sunlight(temperature_k: f64) -> [f64; 3] {
     adapted.map(|v| v / total)
 }
 
-/// Illuminance above the air of a star, lux a channel of linear Rec. 709.
+/// Illuminance of a star above the air, lux a channel of linear Rec. 709.
 pub fn star_lux(magnitude: f64, temperature_k: f64) -> [f64; 3] {
     color_by_sunlight(temperature_k).map(|c| c * illuminance_lux(magnitude))
 }
 
-/// Relative air mass towards an apparent elevation, degrees (Kasten and Young 1989, eq. 3). Below the horizon as at it:
-/// 38.
+/// Relative air mass in the direction of an apparent elevation, degrees (Kasten and Young 1989, eq. 3). Below the
+/// horizon it is that at the horizon, 38.
 pub fn air_mass(elevation_deg: f64) -> f64 {
     let h = elevation_deg.max(0.0);
     1.0 / (h.to_radians().sin() + 0.505_72 * (h + 6.079_95).powf(-1.6364))
 }
 
-/// Share of a star's light that the air lets through at each of the three wavelengths, towards an apparent elevation,
-/// where straight up the optical depths are `zenith_depth` (Bouguer 1729). Channel by channel, as the sky's own
-/// conversion (`sky::spectral::Conversion::per_channel`) has it.
+/// Share of a star's light that the air lets through at each of the three wavelengths (Bouguer 1729), at an apparent
+/// elevation; `zenith_depth` are the optical depths straight up. The share applies channel by channel, as in the sky's
+/// own conversion (`sky::spectral::Conversion::per_channel`).
 pub fn transmittance(zenith_depth: [f64; 3], elevation_deg: f64) -> [f64; 3] {
     let mass = air_mass(elevation_deg);
     zenith_depth.map(|depth| (-depth * mass).exp())
@@ -104,7 +104,7 @@ mod tests {
     fn five_magnitudes_are_a_hundredfold() {
         assert!((illuminance_lux(-1.46) - 9.75e-6).abs() < 1e-7, "Sirius, 9.7 microlux");
         assert!((illuminance_lux(1.0) / illuminance_lux(6.0) - 100.0).abs() < 1e-9);
-        // The sun: -26.74 gives about 126 to 134 klx.
+        // The sun's magnitude -26.74 corresponds to about 126 to 134 klx.
         assert!((1.2e5..1.35e5).contains(&illuminance_lux(-26.74)));
     }
 

@@ -1,37 +1,38 @@
-//! Stars that need no drawing: those that no eye could see against the sky, and those that change no step of the
-//! display.
+//! Limits below which stars are not drawn: those that no eye could see against the sky, and those too faint for a step
+//! of the display.
 
 use std::f64::consts::PI;
 
 use super::{light::MAGNITUDE_0_LUX, reference::PEAK_WEIGHT};
 
-/// Lux in a foot-candle.
+/// Lux a foot-candle.
 const LUX_PER_FOOT_CANDLE: f64 = 10.763_91;
-/// cd/m^2 in a nanolambert.
+/// cd/m^2 a nanolambert.
 const CD_M2_PER_NANOLAMBERT: f64 = 1e-5 / PI;
 
-/// Least illuminance at the eye of a star that can be seen against a background of `background_cd_m2`, lux: Hecht's law
-/// as Schaefer (1990, PASP 102, 212, after Knoll, Tousey and Hulburt 1946) has it,
+/// Smallest illuminance at the eye, lux, of a star that can be seen against a background of `background_cd_m2`. Hecht's
+/// law in the form of Schaefer (1990, PASP 102, 212, after Knoll, Tousey and Hulburt 1946):
 ///
 /// `I = C (1 + (K B)^(1/2))^2`, with log C = -9.80 and log K = -1.90 for rods, -8.35 and -5.90 for cones,
 ///
-/// in foot-candles and nanolamberts; whichever sees more counts. Backgrounds below 0 count as 0. A good observer sees
-/// half a magnitude more.
+/// in foot-candles and nanolamberts. The lower of the two thresholds counts. Backgrounds below 0 count as 0. A good
+/// observer sees stars half a magnitude fainter.
 pub fn threshold_lux(background_cd_m2: f64) -> f64 {
     let b = background_cd_m2.max(0.0) / CD_M2_PER_NANOLAMBERT;
     let eye = |log_c: f64, log_k: f64| 10f64.powf(log_c) * (1.0 + (10f64.powf(log_k) * b).sqrt()).powi(2);
     eye(-9.80, -1.90).min(eye(-8.35, -5.90)) * LUX_PER_FOOT_CANDLE
 }
 
-/// Magnitude, at the eye, of the faintest star that can be seen against a background: [`threshold_lux`] in magnitudes.
+/// Magnitude, at the eye, of the faintest star that can be seen against a background; it corresponds to
+/// [`threshold_lux`].
 pub fn limiting_magnitude(background_cd_m2: f64) -> f64 {
     -2.5 * (threshold_lux(background_cd_m2) / MAGNITUDE_0_LUX).log10()
 }
 
-/// Least illuminance of a star whose brightest pixel is `share` of a display step, lux: `step` is the smallest
-/// difference that the display shows in the dark (of 8 bits by the sRGB curve 1/255/12.92 of white), `exposure` the
-/// display's units per cd/m^2, `pixel_sr` the solid angle of a pixel. 0 where any of them is not positive: nothing is
-/// dropped.
+/// Smallest illuminance, lux, of a star whose brightest pixel is at least `share` of a display step. `step` is the
+/// smallest difference that the display shows in the dark, as a share of white (1/255/12.92 for 8 bits with the sRGB
+/// curve). `exposure` is in display units per cd/m^2, and `pixel_sr` is the solid angle of a pixel. 0, which drops no
+/// star, if any of them is not positive.
 pub fn display_threshold_lux(share: f64, step: f64, exposure: f64, pixel_sr: f64) -> f64 {
     if !(share > 0.0 && step > 0.0 && exposure > 0.0 && pixel_sr > 0.0) {
         return 0.0;
@@ -43,20 +44,19 @@ pub fn display_threshold_lux(share: f64, step: f64, exposure: f64, pixel_sr: f64
 mod tests {
     use super::*;
 
-    /// cd/m^2 of a surface brightness.
+    /// Luminance of a surface brightness, cd/m^2.
     fn of_magnitude(per_square_arc_second: f64) -> f64 {
         super::super::glow::S10_CD_M2 * 10f64.powf(-0.4 * (per_square_arc_second - 27.782))
     }
 
     #[test]
     fn eyes_see_what_they_are_known_to_see() {
-        // Dark site, 21.6 to 22 mag/arcsec^2: 6 to 7. Suburb, 18: 4 to 5. Middle of a city, 16: under 4.5 (Bortle
-        // 2001).
+        // Dark site, 21.6 to 22 mag/arcsec^2: 6 to 7. Suburb, 18: 4 to 5. City centre, 16: below 4.5 (Bortle 2001).
         for (sky, low, high) in [(22.0, 6.3, 7.0), (21.6, 6.2, 6.8), (18.0, 4.0, 5.2), (16.0, 3.0, 4.5)] {
             let m = limiting_magnitude(of_magnitude(sky));
             assert!((low..high).contains(&m), "{sky}: {m}");
         }
-        // By day Venus at -4.4 is just seen, Sirius is not.
+        // By day Venus at -4.4 is just visible, and Sirius is not.
         let day = limiting_magnitude(4000.0);
         assert!((-4.4..-2.5).contains(&day), "{day}");
     }
@@ -75,7 +75,7 @@ mod tests {
     fn the_display_drops_what_is_below_a_share_of_its_step() {
         let sr = 7e-7;
         let lux = display_threshold_lux(0.1, 1.0 / 255.0 / 12.92, 50.0, sr);
-        // Its brightest pixel, centred: a tenth of a step.
+        // The brightest pixel of a centred star has a tenth of a step.
         let peak = lux * PEAK_WEIGHT / sr * 50.0;
         assert!((peak * 255.0 * 12.92 - 0.1).abs() < 1e-9);
         for none in [(0.0, 1e-3, 1.0, sr), (0.1, 1e-3, 0.0, sr), (0.1, 1e-3, f64::NAN, sr), (0.1, 1e-3, 1.0, 0.0)] {

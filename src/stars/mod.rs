@@ -1,9 +1,9 @@
 //! The night sky: stars and planets as points of light, and the glow between them.
 //!
 //! On a clear night an eye sees some thousand stars, the planets, the band of the Milky Way, and a sky that is not
-//! black even without moon and towns. This room says where each of them stands over a place at a time, how much light
-//! it sends and of which colour, what the air leaves of it, and which of them need no drawing. [`Heavens::at`] gives
-//! the places, `passes.rs` draws the points, [`NightSky`] is the glow. The moon and the sun are the sky's.
+//! black even without moon and towns. This room computes where each of them stands over a place at a time, its light
+//! and colour, how much of that the air lets through, and which stars need no drawing. [`Heavens::at`] gives the
+//! positions, `passes.rs` draws the points, and [`NightSky`] is the glow. Sun and moon belong to the room of the sky.
 //!
 //! ```text
 //! let heavens = Heavens::at(utc, &place, &settings)?;             // one matrix, aberration, planets
@@ -13,39 +13,41 @@
 //! stars.draw(&mut pass);                                          // adds radiance to the target
 //! ```
 //!
-//! # Places
-//! [`catalogue()`]: 9096 stars (Yale Bright Star Catalogue), and the proper motions of 49 bright ones that move most.
-//! One matrix ([`crate::almanac::celestial::celestial_to_world`]) leads from J2000.0 to (east, north, up): precession
-//! (Lieske 1977), nutation (two terms), sidereal time (Aoki et al. 1982), with UT1 as UTC. Annual aberration, 0.0057
-//! degrees, is a vector added to each direction; the Earth's speed that it needs is the orbit's slope. Refraction lifts
-//! what is low (Saemundsson 1986). Planets: the series of Simon et al. 1994, magnitudes by Mallama and Hilton 2018.
+//! # Positions
+//! [`catalogue()`] has 9096 stars (Yale Bright Star Catalogue), and the proper motions of the 49 bright ones that move
+//! most. One matrix ([`crate::almanac::celestial::celestial_to_world`]) turns J2000.0 to (east, north, up): precession
+//! (Lieske 1977), nutation (two terms) and sidereal time (Aoki et al. 1982), with UTC for UT1. Annual aberration,
+//! 0.0057 degrees, is a vector added to each direction; it follows from the Earth's velocity, the derivative of its
+//! orbit. Refraction lifts what is near the horizon (Saemundsson 1986). The planets follow the series of Simon et al.
+//! 1994, with the magnitudes of Mallama and Hilton 2018.
 //!
 //! # Light
-//! Magnitude 0 is 2.54e-6 lux (Allen 1973); the colour is that of a black body to an eye for which sunlight is white
-//! ([`light`]). The air takes exp(-depth X) at each of the three wavelengths, X by Kasten and Young 1989. What falls on
-//! a pixel is the illuminance over the pixel's solid angle, spread by a cubic B-spline over 4 by 4 pixels, whose
-//! weights add up to 1 wherever the star stands ([`reference::spline`]): the same light at any resolution, and no
-//! flicker.
+//! Magnitude 0 is 2.54e-6 lux (Allen 1973). The colour is that of a black body, for an eye that sees sunlight as white
+//! ([`light`]). The air's transmittance is exp(-depth X) at each of the three wavelengths, with the air mass X by
+//! Kasten and Young 1989. A star's radiance is its illuminance over the solid angle of a pixel. A cubic B-spline
+//! spreads it over 4 by 4 pixels. The spline's weights add up to 1 wherever the star stands ([`reference::spline`]), so
+//! that the light is the same at any resolution and does not flicker.
 //!
 //! # Glow
-//! Airglow of 145 S10 at the zenith (Benn and Ellison 1998), brighter below by van Rhijn 1921; zodiacal light by table
-//! 16 of Leinert et al. 1998; starlight as Pioneer 10 mapped it beyond the planets' dust (Leinert et al. 1998, tables
-//! 37 and 38; [`starlight`]), between its places as a disc of stars and dust with the luminosity of Flynn et al. 2006
-//! ([`galaxy`]). 1 S10, a star of magnitude 10 a square degree, is 8.34e-7 cd/m^2. The air dims all three and scatters
-//! the dome's mean back.
+//! Airglow has 145 S10 at the zenith (Benn and Ellison 1998) and brightens towards the horizon by van Rhijn 1921.
+//! Zodiacal light follows table 16 of Leinert et al. 1998. Starlight is what Pioneer 10 measured beyond the dust of the
+//! planets (Leinert et al. 1998, tables 37 and 38; [`starlight`]), interpolated by a disc of stars and dust with the
+//! luminosity of Flynn et al. 2006 ([`galaxy`]). 1 S10, one star of magnitude 10 a square degree, is 8.34e-7 cd/m^2.
+//! The air dims all three and adds scattered light from the dome's mean.
 //!
 //! # Settings
-//! [`StarSettings`]: a host's own stars, its own matrix, whether planets are drawn, the airglow.
+//! [`StarSettings`]: the host's own stars, its own matrix, whether planets are drawn, and the strength of the airglow.
 //!
 //! # Cost
-//! 24 bytes a point on the CPU and the GPU: 218 448 for the catalogue and planets. A frame uploads those in the picture
-//! that are brighter than `StarView::faintest_lux`, some hundreds, and draws each as 4 corners that light at most 16
-//! pixels. The glow is a ball of 1421 corners, found anew after each six hours of simulated time, of which a frame
-//! draws the triangles in the picture, with an even sky's work a pixel. On the CPU a frame pays for [`Heavens::at`],
-//! some 900 sines and cosines, and for [`NightSky::new`], which looks in 32 directions. By day there is none of it.
+//! A point takes 24 bytes on the CPU and the GPU: 218 448 for the catalogue and planets. A frame uploads the points in
+//! the picture that are brighter than `StarView::faintest_lux`, some hundreds, and draws each as 4 corners that light
+//! at most 16 pixels. The glow is a sphere of 1421 corners, computed again after six hours of simulated time. A frame
+//! draws the triangles that lie in the picture; a pixel costs as much as one of an even sky. On the CPU a frame runs
+//! [`Heavens::at`], some 900 sines and cosines, and [`NightSky::new`], which samples 32 directions. By day all of this
+//! is left out.
 //!
 //! # Error
-//! `cargo test --lib stars -- --nocapture` prints these and fails where they are exceeded.
+//! `cargo test --lib stars -- --nocapture` prints these errors and fails where they are exceeded.
 //!
 //! | what | against | worst |
 //! |---|---|---|
@@ -56,8 +58,9 @@
 //! | starlight, 869 places | Pioneer 10's map | 7.9 % (root mean square), 2 % of the whole |
 //! | zenith of a moonless night | 20.9 to 22.1 mag/arcsec^2 measured | inside |
 //!
-//! Not in it: twinkling, glare in the eye, variable stars, the discs of planets (points up to the field of strong
-//! binoculars), clouds and dark clouds of the Milky Way, airglow's waves and its layer as seen from orbit.
+//! Left out are twinkling, glare in the eye, variable stars, the discs of planets (they are points up to the
+//! magnification of strong binoculars), star clouds and dark clouds of the Milky Way, waves of the airglow, and its
+//! layer as seen from orbit.
 
 mod behind;
 #[cfg(not(feature = "lab"))]

@@ -1,4 +1,4 @@
-//! Stars on the GPU: their buffer, their block and the one draw, in a pass of the host's.
+//! Drawing of stars on the GPU: their buffer, their uniform block and the one draw in a render pass of the caller's.
 
 use std::sync::Arc;
 
@@ -19,51 +19,51 @@ use crate::{
     },
 };
 
-/// The host's depth as the stars read it.
+/// The host's depth in the form that the stars' shader reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StarDepth<'a> {
-    /// A view of the depth alone.
+    /// View of the depth aspect alone.
     pub view: &'a wgpu::TextureView,
-    /// Whether it has several samples a pixel.
+    /// Whether the depth has several samples a pixel.
     pub multisampled: bool,
 }
 
-/// Key of a pipeline: the target's format, whether the depth has several samples, and whether there is any depth.
+/// Key of a pipeline: the target's format, whether the depth is multisampled, and whether there is a depth.
 type PointsKind = (wgpu::TextureFormat, bool, bool);
 
-/// The stars that the buffer holds.
+/// Stars loaded for drawing.
 struct LoadedStars {
-    /// The host's own; none for the catalogue's.
+    /// The host's own stars; `None` for the catalogue's.
     stars: Option<Arc<[Star]>>,
-    /// Whole years since J2000.0 for which proper motion is applied.
+    /// Whole years since J2000.0 up to which proper motion is applied.
     year: f64,
-    /// All of them, the brightest first, and the illuminance of each above the air, lux.
+    /// All stars, the brightest first, and the illuminance of each above the air, lux.
     all: Vec<StarInstance>,
     lux: Vec<f32>,
-    /// Stars that the next draw shows, after the planets.
+    /// Planets, then the stars that the next draw shows.
     shown: Vec<StarInstance>,
-    /// Stars that the buffer has.
+    /// Content of the buffer.
     written: Vec<StarInstance>,
     buffer: wgpu::Buffer,
 }
 
-/// Resources that a view holds for stars: the buffer of all, a block, and pipelines by what they draw into.
+/// GPU resources that a view holds for stars: the buffer of stars, a uniform block, and pipelines by target.
 pub struct StarPass {
     block: wgpu::Buffer,
-    /// For depths of one and of several samples.
+    /// Layouts for depths of one sample and of several.
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
     loaded: Option<LoadedStars>,
     bound: Option<(Option<wgpu::TextureView>, wgpu::BindGroup)>,
     pipelines: Vec<(PointsKind, wgpu::RenderPipeline)>,
-    /// The pipeline's kind and the instances of the next draw.
+    /// Pipeline key and number of instances of the next draw.
     prepared: Option<(PointsKind, u32)>,
     written: Option<StarUniform>,
     has_changed: bool,
 }
 
 impl StarPass {
-    /// Makes what does not depend on the stars; the buffer comes with the first [`StarPass::prepare`].
+    /// Creates what does not depend on the stars; the first [`StarPass::prepare`] creates the buffer.
     pub fn new(device: &Device) -> Self {
         let device = &device.device;
         let block = crate::gpu::bind::block(device, "stars", size_of::<StarUniform>());
@@ -85,13 +85,12 @@ impl StarPass {
         }
     }
 
-    /// Brings everything up for a draw into a target of `format` (one sample a pixel, blendable), hidden by `depth` if
-    /// there is one, and says how many points it will draw. Stars that stand still are uploaded once; moving ones once
-    /// a year of the simulated time.
+    /// Prepares a draw into a target of `format` (one sample a pixel, blendable), where `depth`, if given, hides stars.
+    /// Returns the number of points that it will draw. Proper motion is applied again once a simulated year.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a setting or view out of range; a missing shader file. GPU faults come
-    /// through [`Device::check`].
+    /// [`crate::Status::InvalidArgument`] for a setting or view out of range. Also fails if a shader file is missing.
+    /// GPU faults come through [`Device::check`].
     pub fn prepare(
         &mut self,
         device: &Device,
@@ -129,12 +128,12 @@ impl StarPass {
         Ok(count)
     }
 
-    /// Whether the last [`StarPass::prepare`] prepared another draw than the one before it.
+    /// Whether the last [`StarPass::prepare`] prepared a different draw than the one before it.
     pub(super) fn has_changed(&self) -> bool {
         self.has_changed
     }
 
-    /// Draws what was prepared, adding it to the target. Sets group 0 and vertex buffer 0.
+    /// Draws what was prepared and adds it to the target. Sets group 0 and vertex buffer 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         let (Some((kind, count)), Some(loaded), Some((_, group))) = (self.prepared, &self.loaded, &self.bound) else {
             return;
@@ -146,12 +145,12 @@ impl StarPass {
         pass.draw(0..4, 0..count);
     }
 
-    /// Bytes on the GPU.
+    /// Size on the GPU, bytes.
     pub fn bytes(&self) -> u64 {
         self.block.size() + self.loaded.as_ref().map_or(0, |l| l.buffer.size())
     }
 
-    /// Makes a list and a buffer for these stars, unless it holds them already: the brightest first.
+    /// Creates the sorted list and the buffer for these stars, unless they are loaded already.
     fn load(&mut self, device: &Device, settings: &StarSettings, year: f64) -> Result<()> {
         let same = |a: &Option<Arc<[Star]>>, b: &Option<Arc<[Star]>>| match (a, b) {
             (None, None) => true,
@@ -199,18 +198,18 @@ impl StarPass {
     }
 }
 
-/// The picture's sides in J2000.0, wide enough for what aberration and refraction move and for a footprint.
+/// Sides of the picture in J2000.0, widened for aberration, refraction and the footprint of a star.
 struct Frustum {
-    /// Rows x, y and w of what leads to clip space.
+    /// Rows x, y and w of the matrix from J2000.0 to clip space.
     rows: [Vec3; 3],
-    /// By how much x and y may lie beyond w.
+    /// Amounts by which x and y may exceed w.
     margins: [f32; 2],
-    /// Further margin of x and y beyond w, as a share of w.
+    /// Further amounts by which x and y may exceed w, as a share of w.
     footprint: [f32; 2],
 }
 
-/// Farthest that a star is seen from its place in the catalogue, rad: refraction lifts by 0.6 degrees, denser air by
-/// more.
+/// Largest angle between a star's catalogued and apparent direction, rad. Refraction lifts by 0.6 degrees, and by more
+/// in denser air.
 const MOST_MOVED: f64 = 0.012;
 
 impl Frustum {

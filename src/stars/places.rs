@@ -1,4 +1,4 @@
-//! Where stars and planets stand over a place at a time.
+//! Directions of stars and planets over a place at a time.
 
 use glam::{DMat3, DVec3};
 
@@ -16,30 +16,30 @@ use crate::{
     scene::Place,
 };
 
-/// The heavens over a place at a time: one matrix for all stars, and what is not in it.
+/// The heavens over a place at a time: one rotation for all stars, and what it does not contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heavens {
-    /// From the equator and equinox of J2000.0 to (east, north, up): precession, nutation and the Earth's turning, or
-    /// the host's own.
+    /// Rotation from the equator and equinox of J2000.0 to (east, north, up): precession, nutation and the Earth's
+    /// rotation, or the host's own matrix.
     pub to_world: DMat3,
-    /// The Earth's velocity over the speed of light in the axes of J2000.0: annual aberration. 0 with a host's own
+    /// The Earth's velocity over the speed of light, in the axes of J2000.0, for annual aberration. 0 with a host's own
     /// matrix.
     pub velocity: DVec3,
     /// Julian years since J2000.0, for proper motions; 0 with a host's own matrix.
     pub years: f64,
-    /// The sun's direction in the axes of J2000.0.
+    /// Direction of the sun in the axes of J2000.0.
     pub sun: DVec3,
-    /// Mercury to Uranus, whether they are drawn or not.
+    /// Mercury to Uranus, whether drawn or not.
     pub planets: [PlanetPlace; 6],
 }
 
 impl Heavens {
-    /// The heavens over `place` at `utc`: within 0.005 degrees from 1950 to 2100 for the stars of the catalogue that
-    /// stand still and those of which it has the motion (tested against another almanac): most of it is the catalogue's
-    /// own place.
+    /// Computes the heavens over `place` at `utc`. From 1950 to 2100 directions are within 0.005 degrees for stars of
+    /// the catalogue that have no proper motion, and for those whose motion it has (tested against another almanac).
+    /// Most of the error is the catalogue's own.
     ///
-    /// UT1 is taken as UTC. A host's own matrix gives stars as the catalogue has them: no motion, no aberration; the
-    /// planets and the sun then stand among them as at `utc`.
+    /// UT1 is taken as UTC. With a host's own matrix the stars stand as in the catalogue, without motion and
+    /// aberration. The planets and the sun then stand among them as at `utc`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a place, time or setting out of range.
@@ -53,19 +53,20 @@ impl Heavens {
         Ok(Self { to_world, velocity, years, sun, planets: planets(utc) })
     }
 
-    /// Unit vector (east, north, up) towards a direction of J2000.0 as one who moves with the Earth sees it, without
-    /// refraction: aberration to the first order in v/c, which leaves out 0.0001 degrees.
+    /// Apparent direction (east, north, up; unit) of a direction in J2000.0, for an observer who moves with the Earth,
+    /// without refraction. Aberration is first order in v/c, which leaves out 0.0001 degrees.
     pub fn seen(&self, direction: DVec3) -> DVec3 {
         self.to_world * (direction + self.velocity).normalize()
     }
 
-    /// Returns the unit vector towards a star, moved to the time, as [`Self::seen`] does for a direction.
+    /// Returns the direction to a star as [`Self::seen`] does, with the star's proper motion applied.
     pub fn star(&self, star: &Star) -> DVec3 {
         self.seen(star.direction_at(self.years))
     }
 }
 
-/// From J2000.0 to (east, north, up), the host's own where it gives one, and the sun's direction in J2000.0.
+/// Returns the rotation from J2000.0 to (east, north, up), which is the host's own if it gives one, and the sun's
+/// direction in J2000.0.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
@@ -74,8 +75,8 @@ pub(super) fn to_world_and_sun(utc: Utc, place: &Place, hosts: Option<DMat3>) ->
     Ok((hosts.unwrap_or(own), sun_direction(utc)))
 }
 
-/// A direction (east, north, up; unit) as the air lifts it: Saemundsson 1986 times the air's density over that of 1010
-/// hPa and 10 C (`density`, 0 without air).
+/// Direction (east, north, up; unit) after refraction lifts it: Saemundsson 1986 times `density`, the air's density
+/// relative to that at 1010 hPa and 10 C (0 without air).
 pub fn lifted(direction: DVec3, density: f64) -> DVec3 {
     let level = direction.x.hypot(direction.y);
     if level < 1e-6 {

@@ -1,16 +1,16 @@
-//! The planets as they are seen from the Earth: direction, distance and magnitude.
+//! Directions, distances and magnitudes of the planets as seen from the Earth.
 
 use glam::DVec3;
 
 use super::orbits::{EARTH, Orbit, PLANETS};
 use crate::almanac::Utc;
 
-/// Days that light takes for an astronomical unit (IAU 2012).
+/// Light time of an astronomical unit, days (IAU 2012).
 const LIGHT_DAYS_PER_AU: f64 = 0.005_775_518_3;
-/// Days of a millennium.
+/// Days a millennium.
 const MILLENNIUM_DAYS: f64 = 365_250.0;
 
-/// Bodies that are drawn beside the stars.
+/// Planets that are drawn with the stars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
     /// Mercury.
@@ -27,16 +27,16 @@ pub enum Body {
     Uranus,
 }
 
-/// All of them, from the sun outwards.
+/// All planets that are drawn, from the sun outwards.
 pub const BODIES: [Body; 6] = [Body::Mercury, Body::Venus, Body::Mars, Body::Jupiter, Body::Saturn, Body::Uranus];
 
-/// A planet as the Earth sees it.
+/// A planet as seen from the Earth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanetPlace {
     /// Identity of the planet.
     pub body: Body,
-    /// Unit vector from the Earth's centre in the equator and equinox of J2000.0, light time taken off; aberration is
-    /// not in it.
+    /// Unit vector from the Earth's centre in the equator and equinox of J2000.0, corrected for light time but without
+    /// aberration.
     pub direction: DVec3,
     /// Distance from the Earth, au.
     pub distance_au: f64,
@@ -49,21 +49,22 @@ fn millennia(utc: Utc) -> f64 {
     utc.julian_centuries_tt() / 10.0
 }
 
-/// The sun's direction from the Earth in the equator and equinox of J2000.0, within 10" (the mean of Earth and moon
-/// stands for the Earth).
+/// Direction of the sun from the Earth in the equator and equinox of J2000.0, within 10". (The barycentre of Earth and
+/// moon stands for the Earth.)
 pub fn sun_direction(utc: Utc) -> DVec3 {
     -EARTH.heliocentric(millennia(utc)).normalize()
 }
 
-/// The Earth's velocity round the sun over the speed of light, in the equator and equinox of J2000.0: what annual
-/// aberration comes from. 1e-4; within 1e-7, as the sun's own motion and the moon's pull on the Earth are left out.
+/// The Earth's orbital velocity over the speed of light, in the equator and equinox of J2000.0; it causes annual
+/// aberration. Its length is about 1e-4. The error is below 1e-7, because the sun's own motion and the moon's pull on
+/// the Earth are left out.
 pub fn earth_velocity(utc: Utc) -> DVec3 {
     let (t, half_day) = (millennia(utc), 0.5 / MILLENNIUM_DAYS);
     (EARTH.heliocentric(t + half_day) - EARTH.heliocentric(t - half_day)) * LIGHT_DAYS_PER_AU
 }
 
-/// The planets at a time. Directions within 0.03 degrees from 1950 to 2100, magnitudes within 0.03 of the formulas
-/// (tested against another almanac).
+/// Planets at a time, from the sun outwards. Directions are within 0.03 degrees from 1950 to 2100, and magnitudes
+/// within 0.03 of the formulas (tested against another almanac).
 pub fn planets(utc: Utc) -> [PlanetPlace; 6] {
     let t = millennia(utc);
     let earth = EARTH.heliocentric(t);
@@ -72,8 +73,8 @@ pub fn planets(utc: Utc) -> [PlanetPlace; 6] {
 
 fn planet(body: Body, orbit: &Orbit, t: f64, earth: DVec3) -> PlanetPlace {
     let now = orbit.heliocentric(t);
-    // Where it stood when the light left: one step is enough, as no planet moves by more than 0.001 of its distance
-    // meanwhile.
+    // Position at the time when the light left. One iteration is enough, because no planet moves by more than 0.001 of
+    // its distance meanwhile.
     let away = LIGHT_DAYS_PER_AU * (now - earth).length() / MILLENNIUM_DAYS;
     let from_sun = orbit.heliocentric(t - away);
     let from_earth = from_sun - earth;
@@ -82,7 +83,7 @@ fn planet(body: Body, orbit: &Orbit, t: f64, earth: DVec3) -> PlanetPlace {
 }
 
 /// Visual magnitude (Mallama and Hilton 2018, Astronomy and Computing 25, 10) of a body at `from_sun` and `from_earth`,
-/// au. What depends on the side that Mars turns to us (0.06 magnitudes) is left out.
+/// au. The rotation of Mars, which changes its magnitude by 0.06, is left out.
 fn magnitude(body: Body, from_sun: DVec3, from_earth: DVec3) -> f64 {
     let (r, d) = (from_sun.length(), from_earth.length());
     let a = from_sun.angle_between(from_earth).to_degrees();
@@ -103,21 +104,20 @@ fn magnitude(body: Body, from_sun: DVec3, from_earth: DVec3) -> f64 {
     of_phase + 5.0 * (r * d).log10()
 }
 
-/// Latitude of a direction towards a planet as the planet's own equator has it: of the point that faces where one looks
-/// from.
+/// Latitude, on a planet with this pole, of the point that faces an observer who looks in `direction`, rad.
 fn latitude_facing(pole: DVec3, direction: DVec3) -> f64 {
     -direction.normalize().dot(pole).clamp(-1.0, 1.0).asin()
 }
 
-/// Effective tilt of Saturn's rings, rad: the geometric mean of those to sun and Earth, 0 where these look on different
-/// faces.
+/// Effective tilt of Saturn's rings, rad: the geometric mean of their tilts to sun and Earth; 0 if sun and Earth see
+/// different faces.
 fn ring_tilt(from_sun: DVec3, from_earth: DVec3) -> f64 {
     // North pole at J2000.0: right ascension 40.589, declination 83.537 degrees (Archinal et al. 2018).
     let pole = crate::almanac::celestial::equatorial_direction(40.589, 83.537);
     (latitude_facing(pole, from_sun) * latitude_facing(pole, from_earth)).max(0.0).sqrt()
 }
 
-/// Mean of the latitudes of Uranus that face sun and Earth, degrees.
+/// Mean latitude of the points of Uranus that face sun and Earth, degrees.
 fn uranus_latitude_deg(from_sun: DVec3, from_earth: DVec3) -> f64 {
     // North pole at J2000.0: right ascension 257.311, declination -15.175 degrees (Archinal et al. 2018).
     let pole = crate::almanac::celestial::equatorial_direction(257.311, -15.175);
@@ -158,7 +158,7 @@ mod tests {
             assert!((29.2..30.4).contains(&speed), "{speed} km/s");
             let (v, sun) = (earth_velocity(utc).normalize(), sun_direction(utc));
             assert!(v.dot(sun).abs() < 0.02, "across");
-            // It moves towards where the sun stood three months before: west of it.
+            // The Earth moves towards the sun's direction of three months before, west of the present one.
             assert!(v.dot((ecliptic_to_equator() * DVec3::Z).cross(sun)) < -0.9);
         }
     }

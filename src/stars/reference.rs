@@ -1,4 +1,4 @@
-//! A star on the picture, in f64: the twin of `shaders/stars/points.wgsl`, same names.
+//! Projection of a star onto the picture, in f64: twin of `shaders/stars/points.wgsl`, with the same names.
 
 use glam::{DVec2, DVec3};
 
@@ -7,39 +7,39 @@ use crate::light::luminance;
 
 /// Half the width of a star's footprint, pixels.
 pub const REACH: f64 = 2.0;
-/// Greatest weight of a pixel: that of one with the star in its middle.
+/// Largest weight of a pixel, reached when the star is at its centre.
 pub const PEAK_WEIGHT: f64 = 4.0 / 9.0;
-/// Stars fade in from the faintest drawn to this many times its light: half a magnitude.
+/// Ratio of illuminance over which stars fade in, from the faintest drawn upwards: half a magnitude.
 pub const FADE: f64 = 1.585;
 
-/// The cubic B-spline (Schoenberg 1946; Unser 1999): `2/3 - a^2 + a^3 / 2` for `a = |x| < 1`, `(2 - a)^3 / 6` up to 2.
+/// Cubic B-spline (Schoenberg 1946; Unser 1999): `2/3 - a^2 + a^3 / 2` for `a = |x| < 1`, `(2 - a)^3 / 6` up to 2.
 ///
-/// Its values at whole steps from any place on add up to exactly 1, and so do their products on a grid of pixels: a
-/// star's light is the same wherever it stands between pixels. Its standard deviation is 0.577 pixels.
+/// Its values at unit steps from any offset add up to exactly 1, and so do their products on a grid of pixels. A star's
+/// light is therefore the same wherever it stands between pixels. The spline's standard deviation is 0.577 pixels.
 pub fn spline(x: f64) -> f64 {
     let a = x.abs();
     if a < 1.0 { 2.0 / 3.0 - a * a * (1.0 - 0.5 * a) } else { (2.0 - a).max(0.0).powi(3) / 6.0 }
 }
 
-/// Share of a star's light that falls on a pixel whose middle is `offset` pixels from it.
+/// Share of a star's light that falls on a pixel whose centre is `offset` pixels from the star.
 pub fn weight(offset: DVec2) -> f64 {
     spline(offset.x) * spline(offset.y)
 }
 
-/// A star where the picture shows it.
+/// A star as projected onto the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Pixels from the target's first corner.
+    /// Position from the target's first corner, pixels.
     pub pixel: DVec2,
-    /// Radiance on a pixel that it fell on as a whole, the target's units a channel: illuminance over the pixel's solid
-    /// angle.
+    /// Radiance of a pixel that receives all of the star's light, in the target's units, a channel: illuminance over
+    /// the pixel's solid angle.
     pub light: [f64; 3],
-    /// Solid angle of a pixel there, sr.
+    /// Solid angle of a pixel at the star, sr.
     pub pixel_sr: f64,
 }
 
-/// Where and how bright a star is on the picture: its direction in J2000.0, its illuminance above the air, lux a
-/// channel. `None` outside the picture, below the horizon, or too faint.
+/// Projects a star, given by its direction in J2000.0 and its illuminance above the air, lux a channel. `None` if it is
+/// outside the picture, below the horizon, or too faint.
 pub fn point(view: &StarView<'_>, direction: DVec3, lux: [f64; 3]) -> Option<Point> {
     let seen = lifted(view.heavens.seen(direction), view.air_density);
     let clip = view.clip * seen.extend(0.0);
@@ -61,7 +61,7 @@ pub fn point(view: &StarView<'_>, direction: DVec3, lux: [f64; 3]) -> Option<Poi
     })
 }
 
-/// Adds a star to a picture of `size` pixels, rows from the target's first on.
+/// Adds a star to a picture of `size` pixels; rows start at the target's first.
 pub fn add(picture: &mut [[f64; 3]], size: [u32; 2], point: &Point) {
     let first = (point.pixel - 0.5 - REACH).ceil().max(DVec2::ZERO).as_uvec2();
     let last = (point.pixel - 0.5 + REACH).floor();
@@ -93,8 +93,8 @@ mod tests {
                 let sum = |k: usize| picture.iter().map(|p| p[k]).sum::<f64>();
                 assert!((sum(0) - 1.0).abs() < 1e-12 && (sum(2) - 4.0).abs() < 1e-12, "{pixel}");
                 let most = picture.iter().map(|p| p[0]).fold(0.0, f64::max);
-                // At worst it falls on four pixels alike: a little over half of what one in a pixel's middle gives to
-                // that.
+                // At worst it falls equally on four pixels. The brightest then has a little over half of what a pixel
+                // gets whose centre it hits.
                 assert!((0.229..=PEAK_WEIGHT + 1e-12).contains(&most), "{most}");
             }
         }
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn the_footprint_moves_with_the_star() {
-        // Its middle of mass is the star's place: it glides, without steps from pixel to pixel.
+        // The centroid of the footprint is the star's position, so the star moves smoothly between pixels.
         for i in 0..50 {
             let x = f64::from(i) / 50.0;
             let mean: f64 = (-3..=3).map(|p| f64::from(p) * spline(f64::from(p) - x)).sum();

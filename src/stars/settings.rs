@@ -7,20 +7,20 @@ use glam::DMat3;
 use super::catalogue::{Star, catalogue};
 use crate::error::{Error, Result, check_range};
 
-/// Most stars of a host's own list.
+/// Largest number of stars in a host's own list.
 pub const MAX_STARS: usize = 1_000_000;
 
-/// Settings of the stars. The default draws the Bright Star Catalogue and the planets where they stand over the Earth.
+/// Settings of the stars. The default draws the Bright Star Catalogue and the planets as seen from the Earth.
 #[derive(Clone, Debug)]
 pub struct StarSettings {
-    /// The host's own stars in place of the catalogue's, at most 1 000 000; `None`, the default, for these.
+    /// The host's own stars in place of the catalogue's, at most 1 000 000. `None`, the default, uses the catalogue.
     pub stars: Option<Arc<[Star]>>,
     /// Whether Mercury to Uranus are drawn. Default true.
     pub planets: bool,
-    /// From the equator and equinox of J2000.0 to (east, north, up), in place of the Earth's own turning: a rotation.
-    /// `None` by default.
+    /// Rotation from the equator and equinox of J2000.0 to (east, north, up), in place of the one computed for the
+    /// Earth. `None` by default.
     pub celestial_to_world: Option<DMat3>,
-    /// Strength of the airglow, [0, 10]: 1, the default, near the sun's least activity, 1.7 at the greatest.
+    /// Strength of the airglow, [0, 10]: 1 (default) near the minimum of solar activity, 1.7 at the maximum.
     pub airglow: f64,
 }
 
@@ -31,10 +31,10 @@ impl Default for StarSettings {
 }
 
 impl StarSettings {
-    /// Refuses what is out of range, by name.
+    /// Checks that every field is within its range.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         check_range("airglow", self.airglow, 0.0, 10.0, "")?;
         if let Some(m) = &self.celestial_to_world {
@@ -51,7 +51,7 @@ impl StarSettings {
         stars.iter().enumerate().try_for_each(|(i, star)| star.validate(&format!("stars[{i}]")))
     }
 
-    /// The stars that are drawn.
+    /// Stars to draw: the host's own or the catalogue.
     pub fn stars(&self) -> &[Star] {
         self.stars.as_deref().unwrap_or_else(|| catalogue())
     }

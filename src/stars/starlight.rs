@@ -1,34 +1,34 @@
-//! Starlight as measured from beyond the dust of the planets, and what lies between the places of its table.
+//! Starlight as measured from beyond the dust of the planets, and its interpolation.
 //!
 //! Pioneer 10 mapped the sky from more than 2.8 au, where there is no zodiacal light: Leinert et al. 1998, tables 37
-//! (440 nm) and 38 (640 nm), after Toller 1981 and Weinberg et al. 1974; good to 5 to 8 %. Stars brighter than
-//! magnitude 6.5 are taken out, which are those that are drawn as points; light of faint stars, of dust that they
-//! light, and of other galaxies is in. Its places are 4 to 10 degrees apart, too far for the band's dark lane: between
-//! them the disc of [`super::galaxy`] says how the light varies, times the mean of measured over modelled light about
-//! each direction.
+//! (440 nm) and 38 (640 nm), after Toller 1981 and Weinberg et al. 1974, within 5 to 8 %. The tables leave out stars
+//! brighter than magnitude 6.5, which are drawn as points. They include faint stars, dust lit by stars, and other
+//! galaxies. Their directions are 4 to 10 degrees apart, too coarse for the dark lane in the band. Between them the
+//! light follows the disc of [`super::galaxy`], times the mean ratio of measured to modelled light around each
+//! direction.
 
 use glam::DVec3;
 
 use super::disc::{disc_s10, equator_to_galactic};
 use crate::almanac::celestial::equatorial_direction;
 
-/// Declinations of the tables' columns, degrees; their rows are 10 degrees of right ascension.
+/// Declinations of the tables' columns, degrees. A row is 10 degrees of right ascension.
 const DECLINATIONS_DEG: [f64; 25] = [
     -80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -24.0, -20.0, -16.0, -12.0, -8.0, -4.0, 0.0, 4.0, 8.0, 12.0, 16.0, 20.0,
     24.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0,
 ];
-/// Share of the light at 640 nm in that at the middle of the eye's curve, 550 nm, on a straight line between the two.
+/// Weight of the light at 640 nm in a linear interpolation to 550 nm, the peak of the eye's sensitivity.
 const RED_SHARE: f64 = 0.55;
-/// Over how far measured light is compared with modelled light, rad: 5 degrees, half of the tables' step; and where the
-/// tables have no values, towards the sun as it was seen from the spacecraft.
+/// Widths of the kernels that average the ratio of measured to modelled light, rad: 5 degrees, half the tables' step;
+/// and a wide one for where the tables have no values (towards the sun as seen from the spacecraft).
 const NEAR_RAD: f64 = 0.0873;
 const FAR_RAD: f64 = 0.35;
-/// How little what lies far counts beside what is near.
+/// Weight of the wide kernel relative to the narrow one.
 const FAR_WEIGHT: f64 = 1e-3;
-/// Nothing was measured.
+/// Entry without a measurement.
 const X: u16 = 0;
 
-/// At 440 nm, S10 of the sun's colour.
+/// Table at 440 nm, S10 of the sun's colour.
 #[rustfmt::skip]
 const BLUE_S10: [[u16; 25]; 36] = [
     [53, 49, 44, 38, 36, 32, 28, 30, 25, 34, 34, 33, 36, 43, 39, 41, 41, 49, 51, 67, 93, 166, 234, 112, 96],
@@ -69,7 +69,7 @@ const BLUE_S10: [[u16; 25]; 36] = [
     [55, 46, 44, 32, 34, 32, 38, 35, 38, 39, 37, 42, 40, 43, 42, 38, 52, 54, 61, 67, 95, 169, 174, 114, 95],
 ];
 
-/// At 640 nm, likewise.
+/// Table at 640 nm, S10 of the sun's colour.
 #[rustfmt::skip]
 const RED_S10: [[u16; 25]; 36] = [
     [68, 55, 55, 56, 49, 35, 39, 40, 38, 42, 49, 46, 50, 56, 43, 51, 59, 56, 61, 71, 116, 192, 284, 162, 124],
@@ -110,27 +110,27 @@ const RED_S10: [[u16; 25]; 36] = [
     [64, 66, 59, 43, 46, 56, 48, 49, 43, 50, 44, 47, 62, 48, 55, 59, 61, 69, 72, 84, 104, 203, 256, 166, 119],
 ];
 
-/// A place of the tables.
+/// A measured direction of the tables.
 struct Measured {
-    /// In galactic axes.
+    /// Unit vector in galactic axes.
     direction: DVec3,
-    /// The solid angle that it stands for, up to a factor.
+    /// Relative solid angle that the direction stands for.
     area: f64,
-    /// Logarithm of measured over modelled light.
+    /// Logarithm of the ratio of measured to modelled light.
     ratio: f64,
 }
 
-/// The solid angle that a place in a column stands for, up to a factor.
+/// Relative solid angle that a direction in a column stands for.
 fn area(column: usize) -> f64 {
     let height = DECLINATIONS_DEG[(column + 1).min(24)] - DECLINATIONS_DEG[column.saturating_sub(1)];
     height * DECLINATIONS_DEG[column].to_radians().cos()
 }
 
-/// The light of the stars that are not drawn as points, S10.
+/// Light of the stars that are not drawn as points, S10.
 pub struct Starlight(Vec<Measured>);
 
 impl Starlight {
-    /// From the tables.
+    /// Creates it from the tables.
     pub fn measured() -> Self {
         let to_galactic = equator_to_galactic();
         let mut all = Vec::new();
@@ -148,11 +148,11 @@ impl Starlight {
         Self(all)
     }
 
-    /// Along a galactic direction (unit).
+    /// Starlight in a galactic direction (unit), S10.
     pub fn s10(&self, galactic: DVec3) -> f64 {
         let (mut sum, mut weights) = (0.0, 0.0);
         for place in &self.0 {
-            // Of two directions that lie a close together: 1 - cos a is a^2 / 2.
+            // For a small angle a between two directions, 1 - cos a is a^2 / 2.
             let off = 1.0 - galactic.dot(place.direction);
             let of = |width: f64| (-off / (width * width)).exp();
             if off > 0.5 {
@@ -190,7 +190,8 @@ mod tests {
         assert!(rms < 8.0 && (whole - 1.0).abs() < 0.03, "{rms} {whole}");
     }
 
-    /// Where it was not measured it is as on the other side of the galactic plane, within the disc's own error.
+    /// In directions without a measurement the light agrees with that on the other side of the galactic plane, within
+    /// the disc's own error.
     #[test]
     fn where_nothing_was_measured_starlight_goes_on_without_a_hole() {
         let starlight = Starlight::measured();
@@ -204,7 +205,7 @@ mod tests {
         }
     }
 
-    /// A black body over the sun as much redder than the sun as the tables are.
+    /// Compares the colour with that of a black body as much redder than the sun as the tables are.
     #[test]
     fn starlight_has_the_tables_colour() {
         let of = |table: &[[u16; 25]; 36]| {

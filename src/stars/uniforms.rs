@@ -1,4 +1,4 @@
-//! From the heavens and a camera to what the stars' shader reads.
+//! Inputs of a picture of the stars, and their conversion to what the shader reads.
 
 use glam::{DMat3, DMat4};
 
@@ -13,17 +13,17 @@ use crate::{
     scene::{DepthUniform, ViewRays},
 };
 
-/// Largest optical depth straight up that a view takes: e^-1000 is nothing.
+/// Largest optical depth straight up that a view accepts; exp(-1000) is practically 0.
 pub(super) const MOST_ZENITH_DEPTH: f64 = 1e3;
 
 /// Inputs of a picture of the stars.
 #[derive(Clone, Copy, Debug)]
 pub struct StarView<'a> {
-    /// Where the stars stand.
+    /// Directions of the stars.
     pub heavens: &'a Heavens,
-    /// From camera-relative (east, north, up) to clip. Parallel rays show no stars.
+    /// Matrix from camera-relative (east, north, up) to clip space. With parallel rays no stars are drawn.
     pub clip: DMat4,
-    /// The camera's rays in the same axes, to read its depth.
+    /// Rays of the camera in the same axes, to interpret its depth.
     pub rays: &'a ViewRays,
     /// Size of the target, pixels.
     pub size: [u32; 2],
@@ -33,22 +33,22 @@ pub struct StarView<'a> {
     pub zenith_depth: [f64; 3],
     /// Share of a star's light that clouds and fog let through, [0, 1].
     pub transmittance: f64,
-    /// Density of the air at the camera over that of 1010 hPa and 10 C, for refraction, [0, 10]; 0 in space.
+    /// Density of the air at the camera relative to that at 1010 hPa and 10 C, for refraction, [0, 10]; 0 in space.
     pub air_density: f64,
-    /// Lowest elevation that the planet does not hide, degrees, [-90, 90]: below 0 by the dip of the horizon.
+    /// Lowest elevation that the planet does not hide, degrees, [-90, 90]; the dip of the horizon makes it negative.
     pub horizon_deg: f64,
     /// Units of the target per cd/m^2, [0, 1e12].
     pub scale: f64,
-    /// Illuminance at the eye of the faintest star that is drawn, lux, [0, 1e6]: the greater of
-    /// [`super::limits::threshold_lux`] and [`super::limits::display_threshold_lux`], or 0 for all.
+    /// Illuminance at the eye of the faintest star to draw, lux, [0, 1e6]: the greater of
+    /// [`super::limits::threshold_lux`] and [`super::limits::display_threshold_lux`], or 0 for all stars.
     pub faintest_lux: f64,
 }
 
 impl StarView<'_> {
-    /// Refuses what is out of range, by name.
+    /// Checks that every field is within its range.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         for (name, value) in ["width", "height"].into_iter().zip(self.size) {
             check_range(name, f64::from(value), 1.0, 65_536.0, "pixels")?;
@@ -63,11 +63,11 @@ impl StarView<'_> {
         check_range("faintest_lux", self.faintest_lux, 0.0, 1e6, "lux")
     }
 
-    /// Solid angle of a pixel over the cube of clip w, sr.
+    /// Solid angle of a pixel divided by the cube of clip w, sr.
     ///
-    /// Rows x, y, w of the clip matrix M take a unit direction d to w (X, Y, 1), X and Y of the picture: d = w M^-1 (X,
-    /// Y, 1). The cone over dX dY has the solid angle |det M^-1| dX dY / |M^-1 (X, Y, 1)|^3, and |M^-1 (X, Y, 1)| =
-    /// 1/w. A pixel is 2/width by 2/height.
+    /// Rows x, y, w of the clip matrix M map a unit direction d to w (X, Y, 1), where X and Y are coordinates in the
+    /// picture; so d = w M^-1 (X, Y, 1). The cone over dX dY has the solid angle |det M^-1| dX dY / |M^-1 (X, Y, 1)|^3,
+    /// and |M^-1 (X, Y, 1)| = 1/w. A pixel is 2/width by 2/height.
     pub fn pixel_sr(&self) -> f64 {
         let rows = [0, 1, 3].map(|i| self.clip.row(i).truncate());
         let determinant = DMat3::from_cols(rows[0], rows[1], rows[2]).determinant().abs();
@@ -95,7 +95,7 @@ impl StarView<'_> {
     }
 }
 
-/// `StarUniform` of `shaders/stars/points.wgsl`.
+/// Mirrors `StarUniform` of `shaders/stars/points.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct StarUniform {
@@ -115,11 +115,11 @@ pub(super) struct StarUniform {
     pub pad: f32,
 }
 
-/// One star as the vertex stage reads it, 24 bytes.
+/// One star as the vertex shader reads it, 24 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct StarInstance {
-    /// Unit vector in J2000.0, moved to the time.
+    /// Unit vector in J2000.0, with proper motion applied.
     pub direction: [f32; 3],
     /// Illuminance above the air, lux a channel.
     pub lux: [f32; 3],
@@ -141,7 +141,8 @@ impl StarInstance {
     }
 }
 
-/// Temperature of a black body of a planet's colour, K: its B-V (Mallama, Krobusek and Pavlov 2017, Icarus 282, 19).
+/// Temperature of the black body with a planet's colour, K, from its B-V (Mallama, Krobusek and Pavlov 2017, Icarus
+/// 282, 19).
 pub fn planet_temperature_k(body: Body) -> f64 {
     let b_v = match body {
         Body::Mercury => 0.97,

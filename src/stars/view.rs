@@ -1,4 +1,4 @@
-//! Night sky as a view draws it: a layer behind the sky's own light, of the glow and the points before it.
+//! The night sky of a view: a layer behind the sky's own light, made of the glow and of the points in front of it.
 
 use std::f64::consts::PI;
 
@@ -25,27 +25,26 @@ use crate::{
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Elevations of the sun between which points fade in, degrees: by day there are none.
+/// Elevations of the sun between which points fade in, degrees. By day there are no points.
 pub(super) const POINTS_BEGIN_DEG: (f64, f64) = (0.0, -3.0);
-/// Least share of the night's light that clouds and fog let through to be drawn.
+/// Smallest share of the night's light that clouds and fog must let through for the layer to be drawn.
 pub(super) const LEAST_THROUGH: f64 = 1e-3;
-/// Reflectance of the land under the clouds, with which light goes back and forth; of what passes straight it changes
-/// nothing.
+/// Reflectance of the land under the clouds, for light that is reflected between them. It does not affect direct light.
 pub(crate) const LAND_ALBEDO: f64 = 0.2;
-/// Stars whose brightest pixel is less than this share of a step of the display are not drawn.
+/// Smallest brightness of a drawn star's brightest pixel, as a share of a display step.
 const SHARE_OF_STEP: f64 = 0.25;
 
-/// The night over a camera.
+/// The night sky over a camera.
 struct Tonight {
     heavens: Heavens,
     sky: NightSky,
     zenith_depth: [f64; 3],
-    /// Share of a point's light that clouds let through, times how far the points have faded in.
+    /// Share of a point's light that clouds let through, times the points' fade-in.
     through: f64,
     dusk: Dusk,
     air_density: f64,
     horizon_deg: f64,
-    /// Least illuminance of a star that an eye can see against the sky, lux.
+    /// Smallest illuminance of a star that an eye can see against the sky, lux.
     threshold_lux: f64,
 }
 
@@ -56,7 +55,7 @@ pub(crate) struct StarsView {
     tonight: Option<Tonight>,
     passes: Option<Box<(StarPass, GlowPass)>>,
     layer: Option<(wgpu::Texture, wgpu::TextureView, wgpu::TextureView)>,
-    /// Whether the layer shows what was prepared last.
+    /// Whether the layer contains what was prepared last.
     is_layer_drawn: bool,
 }
 
@@ -66,7 +65,7 @@ impl StarsView {
     }
 
     fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> &wgpu::TextureView {
-        // OpenGL takes a texture for an array by its layers: of one alone nothing would be read as an array.
+        // OpenGL treats a texture as an array only if it has more than one layer, and the shader reads an array.
         let layers = if device.caps().backend == wgpu::Backend::Gl { 2 } else { 1 };
         let size = wgpu::Extent3d { depth_or_array_layers: layers, ..color.size() };
         if self.layer.as_ref().is_some_and(|(texture, ..)| texture.size() != size) {
@@ -115,14 +114,14 @@ impl Tonight {
         })
     }
 
-    /// Illuminance at the eye of the brightest point that there may be.
+    /// Upper bound of the illuminance of the brightest point at the eye, lux.
     fn brightest_lux(&self, settings: &StarSettings) -> f64 {
         let star = settings.stars().iter().take(1).map(|s| s.magnitude);
         let planets = self.heavens.planets.iter().filter(|_| settings.planets).map(|p| p.magnitude);
         self.through * illuminance_lux(star.chain(planets).fold(f64::INFINITY, f64::min))
     }
 
-    /// As the picture shows it, on a display of so large steps (0: as many as there are).
+    /// Inputs for the picture, on a display with steps of `step`; 0 drops no star for being too faint for the display.
     fn seen<'a>(&'a self, context: &'a DrawContext<'_>, step: f64) -> StarView<'a> {
         let texture = context.picture();
         let mut view = StarView {
@@ -146,8 +145,8 @@ impl Tonight {
     }
 }
 
-/// Units of the layer per cd/m^2 where a pixel has a solid angle: half floats end at 65504, which Venus at its
-/// brightest stays below, and grow coarse below 6e-5.
+/// Scale of the layer, units per cd/m^2, for a pixel's solid angle. Half floats end at 65504, which Venus at its
+/// brightest does not reach, and lose precision below 6e-5.
 fn scale(pixel_sr: f64) -> f64 {
     256.0 * (pixel_sr / 5e-7).clamp(1e-3, 1.0)
 }
@@ -207,8 +206,8 @@ impl DrawnEffect for StarsView {
         Ok(contribution)
     }
 
-    /// Draws the layer behind the sky's own light: the glow, and the points before it. It rests while camera, heavens
-    /// and air stay as they are.
+    /// Draws the layer behind the sky's own light: the glow, then the points. Does nothing while camera, heavens and
+    /// air stay the same.
     fn draw(
         &mut self,
         context: &DrawContext<'_>,
@@ -225,7 +224,7 @@ impl DrawnEffect for StarsView {
             none => none.insert(Box::new((StarPass::new(recording.device), GlowPass::new(recording.device, FORMAT)?))),
         };
         let (points, glow) = &mut **passes;
-        // The dark end of the sRGB curve is straight, 12.92 times as steep as light.
+        // The dark end of the sRGB curve is linear with a slope of 12.92.
         let view = tonight.seen(context, f64::from(block.dither_step) / 12.92);
         points.prepare(recording.device, &self.settings, &view, FORMAT, None)?;
         let has_changed = glow.prepare(recording.device, &tonight.sky, &view, &tonight.dusk) || points.has_changed();
@@ -240,7 +239,7 @@ impl DrawnEffect for StarsView {
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    // The glow's ball leaves no pixel out: clearing would cost as much again on a software driver.
+                    // The glow's sphere covers every pixel. A clear would cost as much again on a software driver.
                     load: wgpu::LoadOp::Load,
                     store: wgpu::StoreOp::Store,
                 },

@@ -1,5 +1,5 @@
-//! Shelters, occluder maps and lamps around a camera, as shaders read them: one bind group (2) for all shaders, and one
-//! upload a frame, none where there is nothing of them.
+//! Shelters, occluder maps and lamps around a camera, as shaders read them: one bind group (2) for all shaders. They
+//! are uploaded once a frame; nothing is uploaded while there are none.
 
 use glam::{DMat3, DVec3};
 
@@ -16,81 +16,81 @@ use crate::{
     scene::{FlashLamp, HostLight, LightUniform, MAX_LIGHTS},
 };
 
-/// A box: its rows, its velocity, which planes cut it.
+/// Bytes of a box: its rows, its velocity, and the indices of the planes that cut it.
 const BOX_BYTES: usize = 80;
-/// Where the planes begin.
+/// Byte offset of the planes.
 const CUTS_AT: usize = 16 + MAX_SHELTERS * BOX_BYTES;
-/// Two counts, the boxes after them, and the planes.
+/// Bytes of the block of shelters: two counts, the boxes, and the planes.
 const SHELTER_BYTES: usize = CUTS_AT + MAX_SHELTERS * MAX_PLANES * 16;
-/// A count, where the cells begin, and the maps.
+/// Bytes of the block of maps: a count, the offsets of the cells, and the maps.
 const MAP_BYTES: usize = 16 + MAX_OCCLUDER_MAPS * size_of::<OccluderUniform>();
-/// A count, and the lamps.
+/// Bytes of the block of lamps: a count, and the lamps.
 const LIGHT_BYTES: usize = 16 + MAX_LIGHTS * size_of::<LightUniform>();
-/// Where each block begins; and the end.
+/// Byte offset of each block, and the end of the last.
 const STARTS: [usize; 4] = {
     let maps = SHELTER_BYTES.next_multiple_of(256);
     let lights = maps + MAP_BYTES.next_multiple_of(256);
     [0, maps, lights, lights + LIGHT_BYTES.next_multiple_of(256)]
 };
 
-/// Blocks and bind group of one view.
+/// Uniform blocks and bind group of one view.
 pub(crate) struct SurroundingsBlock {
     layout: wgpu::BindGroupLayout,
     buffer: wgpu::Buffer,
     staged: Vec<u8>,
-    /// Whether the buffer says that there is something.
+    /// Whether the last upload contained any surroundings.
     holds_any: bool,
-    /// Whether anything near the camera keeps rain off.
+    /// Whether any box or map keeps rain off near the camera.
     sheltered: bool,
     none: wgpu::TextureView,
     bound: (Option<wgpu::Texture>, wgpu::BindGroup),
 }
 
-/// Presence of surroundings: shaders' variants depend on it.
+/// Presence of surroundings, which selects the shader variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub(crate) struct HasSurroundings {
-    /// Anything that keeps rain off.
+    /// Whether there are boxes or maps, which keep rain off.
     pub shelter: bool,
-    /// Maps among it.
+    /// Whether there are occluder maps.
     pub maps: bool,
-    /// Lamps.
+    /// Whether there are lamps.
     pub lamps: bool,
 }
 
-/// Drops and flakes about a camera, for which shelters may matter.
+/// Speed and range of the drops and flakes around a camera that shelters may affect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ShelterReach {
-    /// Fall speed of the slowest, m/s.
+    /// Fall speed of the slowest particles, m/s.
     pub slowest_m_s: f64,
-    /// Largest distance at which any is drawn, m.
+    /// Largest distance at which particles are drawn, m.
     pub reach_m: f64,
 }
 
 impl ShelterReach {
-    /// Nothing that falls.
+    /// Reach without any particles.
     pub const NONE: Self = Self { slowest_m_s: 1.0, reach_m: 0.0 };
 
-    /// Reach within which shelters matter to this or to the other.
+    /// Returns the reach within which shelters matter to `self` or to `other`.
     pub fn with(self, other: Self) -> Self {
         Self { slowest_m_s: self.slowest_m_s.min(other.slowest_m_s), reach_m: self.reach_m.max(other.reach_m) }
     }
 }
 
-/// The host's shelters, occluder maps and lamps, and the camera near which they matter: at `eye`, its axes turned by
+/// The host's shelters, occluder maps and lamps, and the camera for which they are prepared: at `eye`, with axes
 /// `to_enu`.
 pub(crate) struct HostSurroundings<'a> {
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
     pub lights: &'a [HostLight],
-    /// Flashes of lightning, which shine as lamps where the host leaves room for more.
+    /// Lightning flashes, which use the slots for lamps that the host leaves free.
     pub flash: &'a [FlashLamp],
     pub eye: DVec3,
     pub to_enu: DMat3,
     pub time_s: f64,
-    /// Velocity of the air, in the camera's axes.
+    /// Velocity of the air in the camera's axes, m/s.
     pub wind_m_s: DVec3,
     pub near: ShelterReach,
-    /// Exposure that lies on the drops.
+    /// Exposure of the picture, applied to the lamps.
     pub exposure: f64,
 }
 
@@ -106,7 +106,7 @@ impl HostSurroundings<'_> {
     }
 }
 
-/// Layout of group 2 of drops and composition.
+/// Creates the bind group layout of group 2 of drops and composition.
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let all = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
     let slots = [
@@ -127,7 +127,7 @@ impl SurroundingsBlock {
         Self { layout, buffer, staged: vec![0; STARTS[3]], holds_any: false, sheltered: false, none, bound }
     }
 
-    /// Brings the blocks up to date for a frame.
+    /// Updates the blocks for a frame.
     pub fn update(&mut self, device: &Device, host: &HostSurroundings<'_>) {
         let present = host.present();
         self.sheltered = false;
@@ -144,7 +144,7 @@ impl SurroundingsBlock {
         }
     }
 
-    /// Writes the blocks; answers where what is read of them ends.
+    /// Writes the blocks into the staging buffer and returns the end of the part that shaders read, bytes.
     fn stage(&mut self, host: &HostSurroundings<'_>) -> usize {
         let staged = &mut self.staged;
         let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
@@ -187,16 +187,16 @@ impl SurroundingsBlock {
             count += 1;
         }
         put(STARTS[2], &(count as u32).to_ne_bytes());
-        // What lies behind the last lamp is not read.
+        // Shaders do not read beyond the last lamp.
         STARTS[2] + 16 + size_of::<LightUniform>() * count
     }
 
-    /// Whether anything near the camera keeps rain off: boxes or maps.
+    /// Whether any box or map keeps rain off near the camera.
     pub fn shelters(&self) -> bool {
         self.sheltered
     }
 
-    /// The bind group.
+    /// Returns the bind group.
     pub fn bind_group(&self) -> &wgpu::BindGroup {
         &self.bound.1
     }

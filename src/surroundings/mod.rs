@@ -1,5 +1,5 @@
-//! The host's boxes and occluder maps, which keep rain off, its lamps and terrain, and the wind that varies in space,
-//! for all effects alike.
+//! Surroundings that all effects share: the host's boxes and occluder maps, which keep rain off, its lamps and terrain,
+//! and the wind that varies in space.
 
 mod around;
 mod occluder;

@@ -1,8 +1,9 @@
-//! Occluder maps: the host's own pictures of what keeps rain off, up to four depth textures, from any direction.
+//! Occluder maps: up to four depth textures in which the host shows, from any direction, the surfaces that keep rain
+//! off.
 //!
-//! A drop is gone where its own slanted path back crosses a surface that a map shows:
-//! `shaders/surroundings/occluders.wgsl`. A map knows nothing of what its surfaces hide; taken along the drops' own
-//! direction ([`crate::context::RainAt`]) it hides nothing that matters, whatever the wind.
+//! A drop is removed if its slanted path, traced back, crosses a surface in a map:
+//! `shaders/surroundings/occluders.wgsl`. A map does not contain what its surfaces hide. If it is taken along the
+//! drops' own direction ([`crate::context::RainAt`]), nothing that matters is hidden, whatever the wind.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -11,48 +12,48 @@ use crate::{
     scene::{Camera, ClipSpace, DepthKind, DepthMapping, ViewRays},
 };
 
-/// Most maps at a time.
+/// Maximum number of maps at a time.
 pub const MAX_OCCLUDER_MAPS: usize = 4;
-/// Least and most texels of a map along either side.
+/// Least and largest number of texels of a map along either side.
 pub const OCCLUDER_MAP_TEXELS: (u32, u32) = (8, 4096);
 
-/// A depth texture of what keeps rain off, and where it was taken from.
+/// A depth texture of surfaces that keep rain off, and the view from which the host drew it.
 #[derive(Clone, Copy, Debug)]
 pub struct OccluderMap<'a> {
-    /// Its depth: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8) or R32Float, one sample, with
-    /// TEXTURE_BINDING; from 8 to 4096 texels along either side. What it shows is taken over when it is set; it may be
-    /// drawn anew after that.
+    /// Depth texture: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8) or R32Float, one sample, with
+    /// TEXTURE_BINDING, from 8 to 4096 texels along either side. Its content is copied when the map is set; the host
+    /// may draw into it again after that.
     pub depth: &'a wgpu::Texture,
-    /// From where in the world, and how that is seen.
+    /// View of the world that the texture shows.
     pub taken: Taken,
 }
 
-/// How a map was taken.
+/// View and time in which a map was taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taken {
     /// From the host's world to clip space: parallel rays or perspective, from any direction.
     pub clip_from_world: DMat4,
-    /// Whether 1 is near and 0 far.
+    /// Whether depth 1 is near and 0 far.
     pub reversed: bool,
     /// Range of clip z.
     pub clip: ClipSpace,
-    /// Row 0 of the texture lies at clip y = -1, as OpenGL draws.
+    /// Whether row 0 of the texture lies at clip y = -1, as OpenGL draws.
     pub first_row_at_minus_y: bool,
-    /// Simulation time of what it shows, s.
+    /// Simulation time at which its content was right, s.
     pub time_s: f64,
-    /// Velocity of what it shows, in the host's world, m/s, at most 2000 in all: a truck's own map need not be taken
-    /// anew every frame. 0 for what stands still.
+    /// Velocity of its content in the host's world, m/s, of a magnitude of at most 2000. With it, the map of a moving
+    /// truck need not be drawn anew every frame. 0 for content that stands still.
     pub velocity_m_s: DVec3,
 }
 
-/// [`Taken`], checked, in the form that shaders and f64 share.
+/// [`Taken`], checked, in the form from which both the shaders' uniform and the f64 code work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Occluder {
-    /// From the world relative to `origin_m` to clip x, y and w, and to the distance from the map's plane, m.
+    /// Rows from the world relative to `origin_m` to clip x, y and w, and to the distance from the map's plane, m.
     rows: [DVec4; 4],
-    /// On the middle of its near plane.
+    /// Middle of the map's near plane, in the host's world, m.
     origin_m: DVec3,
-    /// Rays and depth of the map relative to it.
+    /// Rays and depth of the map, relative to `origin_m`.
     pub rays: ViewRays,
     pub y_sign: f64,
     time_s: f64,
@@ -72,8 +73,8 @@ pub(crate) struct OccluderUniform {
 }
 
 impl Taken {
-    /// A map with parallel rays (`half_m`: half its width, half its height) or of what lies below `eye`, reversed
-    /// depth: a helper for hosts without matrices of their own. It looks along `forward` over `depth_m`.
+    /// Creates a view with parallel rays and reversed depth, for hosts without matrices of their own. It looks from
+    /// `eye` along `forward` over `depth_m`; `half_m` is half its width and half its height.
     pub fn parallel(eye: DVec3, forward: DVec3, half_m: [f64; 2], depth_m: f64) -> Self {
         let f = forward.normalize();
         let right = f.cross(f.any_orthonormal_vector()).normalize();
@@ -91,7 +92,7 @@ impl Taken {
         }
     }
 
-    /// Refuses what is no view of the world, by name.
+    /// Checks that the view is one of the world and can be inverted.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -142,8 +143,8 @@ impl Taken {
 }
 
 impl Occluder {
-    /// For a camera at `eye` whose axes `to_enu` turns, at a time; `part`: where the map lies in the table, texels, and
-    /// its size.
+    /// Returns the map as shaders read it, at a time, for a camera at `eye` with axes `to_enu`. `part`: origin and size
+    /// of the map in the table, texels.
     pub fn uniform(&self, eye: DVec3, to_enu: DMat3, time_s: f64, part: [[u32; 2]; 2]) -> OccluderUniform {
         let [low, size] = part.map(|p| p.map(f64::from));
         let moved = eye - self.origin_m - self.velocity_m_s * (time_s - self.time_s);
@@ -188,7 +189,7 @@ mod tests {
         let eye = DVec3::new(1e7, 3.0, 2.0);
         let shift = DMat4::from_translation(-(eye - DVec3::new(90.0, 48.0, 10.0)));
         let f = DVec3::new(0.3, 0.0, -1.0).normalize();
-        // (maker, its clip space, reversed): the same picture.
+        // Each case is (matrix, clip space, reversed), and all show the same picture.
         let flip = DMat4::from_cols_array(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., -1., 0., 0., 0., 1., 1.]);
         let wide = DMat4::from_cols_array(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 2., 0., 0., 0., -1., 1.]);
         for (m, reversed, clip) in [

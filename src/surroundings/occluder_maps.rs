@@ -1,5 +1,5 @@
-//! The maps on the GPU: one table of the ranges of distances that their texels span, and cells of 8 and 64 texels
-//! beside them.
+//! Occluder maps on the GPU: one table with the range of distances that each texel spans, and beside it the ranges of
+//! cells of 8 and 64 texels.
 
 use std::sync::Arc;
 
@@ -15,9 +15,9 @@ use crate::{
     scene::DepthUniform,
 };
 
-/// The bits of two floats: not all drivers draw into floats of 32 bits.
+/// Format of the ranges. A texel holds the bits of two floats, because not all drivers can render to 32-bit floats.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
-/// Value of a texel of nothing, which no path meets: the bits of 1e12 and of -1e12.
+/// Value of a texel without a surface, which no path crosses: the bits of 1e12 and of -1e12.
 const NOTHING: wgpu::Color = wgpu::Color { r: 0x5368_d4a5_u32 as f64, g: 0xd368_d4a5_u32 as f64, b: 0.0, a: 0.0 };
 
 /// `MapUniform` of `shaders/surroundings/occluder_map.wgsl`.
@@ -31,14 +31,14 @@ struct MapUniform {
     pad: [f32; 3],
 }
 
-/// Room of one map's block.
+/// Bytes reserved for one map's uniform block.
 const BLOCK: u64 = 256;
 
-/// The table, and finer to coarser what it is made of.
+/// The table, and the textures from which it is assembled, finest first.
 struct OccluderTable {
-    /// Texels and cells.
+    /// Ranges of texels and of cells.
     ranges: wgpu::Texture,
-    /// Texels without their cells: (width, height), multiples of 64.
+    /// Size of the part that holds texels: (width, height), multiples of 64.
     size: [u32; 2],
     fine: wgpu::Texture,
     cells: [wgpu::Texture; 2],
@@ -48,7 +48,7 @@ struct OccluderTable {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Placed {
     occluder: Occluder,
-    /// Where it lies there, texels, and its size.
+    /// Origin and size in the table, texels.
     part: [[u32; 2]; 2],
 }
 
@@ -79,7 +79,8 @@ fn pipeline(
     )
 }
 
-/// Where maps of these sizes lie in a table: two beside each other and two below, and how large it is.
+/// Returns the origins of maps of these sizes in a table, two beside each other and two below, and the table's size,
+/// texels.
 fn placed(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, [u32; 2]) {
     let up = |v: u32| v.next_multiple_of(64);
     type Line = fn(usize) -> usize;
@@ -107,7 +108,7 @@ impl OccluderTable {
         }
     }
 
-    /// Where the cells of 64 and of 8 texels begin in `ranges`.
+    /// Returns the column at which the cells of 64 texels begin in `ranges`, and the row at which all cells begin.
     fn cells_at(&self) -> [u32; 2] {
         [self.size[0] / 8, self.size[1]]
     }
@@ -124,7 +125,7 @@ impl OccluderTable {
     }
 }
 
-/// Refuses a texture that is no map, by name.
+/// Checks that a texture can be used as a map; the error names the field.
 fn check_depth(depth: &wgpu::Texture) -> Result<()> {
     check_depth_format(depth.format())?;
     let (least, most) = OCCLUDER_MAP_TEXELS;
@@ -160,11 +161,11 @@ impl OccluderMaps {
         Ok(Self { layouts, pipelines, blocks, table: None, list: Vec::new() })
     }
 
-    /// Takes over what `maps` show, in place of those before: records it.
+    /// Records the copy of the content of `maps`, which replaces the earlier maps.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field; nothing
-    /// changes then.
+    /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field; the maps then
+    /// stay as they were.
     pub fn set(
         &mut self,
         device: &Arc<Device>,
@@ -256,17 +257,17 @@ impl OccluderMaps {
         pass.draw(0..3, 0..1);
     }
 
-    /// The table, if there are maps.
+    /// Returns the table, if there are maps.
     pub fn ranges(&self) -> Option<&wgpu::Texture> {
         if self.list.is_empty() { None } else { self.table.as_ref().map(|t| &t.ranges) }
     }
 
-    /// Where the cells of 64 and of 8 texels begin in it.
+    /// Returns the column at which the cells of 64 texels begin in the table, and the row at which all cells begin.
     pub fn cells_at(&self) -> [u32; 2] {
         self.table.as_ref().map_or([0; 2], OccluderTable::cells_at)
     }
 
-    /// The maps as shaders read them, for a camera at `eye` whose axes `to_enu` turns.
+    /// Returns the maps as shaders read them, for a camera at `eye` with axes `to_enu`.
     pub fn uniforms(
         &self,
         eye: glam::DVec3,

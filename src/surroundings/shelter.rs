@@ -1,23 +1,23 @@
-//! Shelters, which keep rain off: boxes of the host (roofs, bridges, cabs, trucks) and convex shapes cut from them,
+//! Shelters, which keep rain off: the host's boxes (roofs, bridges, cabs, trucks) and convex shapes cut from them,
 //! standing or moving.
 //!
-//! A drop is gone where its own slanted path back through the box's air meets the box: whatever the wind, it is dry
-//! behind a box and wet before it, and inside of one it is dry. Tested per drop and box, exactly. What meets a box that
-//! planes cut is clipped by these too.
+//! A drop is removed if its slanted path, traced back relative to the box, meets the box. Whatever the wind, it is then
+//! dry in the lee of a box and inside it, and wet to windward. Each drop is tested exactly against each box, and
+//! against the planes that cut the box.
 
 use glam::{DMat3, DVec3};
 
 use crate::error::{Error, Result, check_range};
 
-/// Most boxes at a time.
+/// Maximum number of boxes at a time.
 pub const MAX_SHELTERS: usize = 32;
 
-/// Most planes that cut one box.
+/// Maximum number of planes that cut one box.
 pub const MAX_PLANES: usize = 16;
-/// Least distance that some place within what planes leave of a box has from all of its faces, m.
+/// Minimum thickness of what planes leave of a box, m: the least distance from a point inside to the faces.
 const THINNEST_M: f64 = 1e-5;
 
-/// Planes that cut a box to a convex shape: what lies beyond any of them is not part of it.
+/// Planes that cut a box to a convex shape: the parts beyond any of them are removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Planes {
     all: [[f64; 4]; MAX_PLANES],
@@ -25,11 +25,11 @@ pub struct Planes {
 }
 
 impl Planes {
-    /// None: the box stays whole.
+    /// No planes: the box stays whole.
     pub const NONE: Self = Self { all: [[0.0; 4]; MAX_PLANES], count: 0 };
 
-    /// Each of them a unit vector along the box's axes that points out of the shape, and how far along it from the
-    /// box's middle the plane lies, m, within 1e6.
+    /// Creates planes from normals and distances. Each is a unit vector in the box's axes that points out of the shape,
+    /// and the plane's distance from the box's middle along it, m, within 1e6.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_PLANES`].
@@ -42,12 +42,12 @@ impl Planes {
         Ok(Self { all, count: planes.len() })
     }
 
-    /// Returns the planes that there are, as they were given.
+    /// Returns the planes as they were given.
     pub fn as_slice(&self) -> &[[f64; 4]] {
         &self.all[..self.count]
     }
 
-    /// Normals and distances.
+    /// Iterates over normals and distances.
     fn each(&self) -> impl ExactSizeIterator<Item = (DVec3, f64)> + Clone {
         self.as_slice().iter().map(|&[x, y, z, d]| (DVec3::new(x, y, z), d))
     }
@@ -56,20 +56,20 @@ impl Planes {
 /// A box that rain does not pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shelter {
-    /// Its middle in the host's world, m.
+    /// Middle of the box in the host's world, m.
     pub center_m: DVec3,
-    /// Its axes in the host's world as columns: a rotation.
+    /// Axes of the box in the host's world as columns: a rotation.
     pub axes: DMat3,
-    /// Half its size along each axis, m, \[1e-3, 1e5\].
+    /// Half the size along each axis, m, \[1e-3, 1e5\].
     pub half_size_m: DVec3,
-    /// Its velocity in the host's world, m/s, at most 2000 in all.
+    /// Velocity in the host's world, m/s, of a magnitude of at most 2000.
     pub velocity_m_s: DVec3,
-    /// Planes that cut it to another convex shape.
+    /// Planes that cut the box to another convex shape.
     pub planes: Planes,
 }
 
 impl Shelter {
-    /// Refuses what is no box, by name.
+    /// Checks that every field is in range; the error names the one that is not.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -105,7 +105,8 @@ impl Shelter {
         Ok(())
     }
 
-    /// How far from all of its faces the mean of the shape's corners lies, m; below 0 if it has none.
+    /// Returns the distance of the mean of the shape's corners from the nearest face, m; negative if the shape has no
+    /// corners.
     fn thickness_m(&self) -> f64 {
         const FACES: usize = 6 + MAX_PLANES;
         let half = self.half_size_m;
@@ -133,17 +134,17 @@ impl Shelter {
         if corners == 0 { -1.0 } else { within(sum / f64::from(corners)) }
     }
 
-    /// Whether it stands: what drives by does not keep the ground dry.
+    /// Whether the box stands still: one that moves does not keep the ground dry.
     pub(crate) fn stands(&self) -> bool {
         self.velocity_m_s.length() <= 0.1
     }
 
-    /// Whether it can keep rain off a drop within `reach_m` of a camera: nothing is tested that the picture does not
-    /// need. `wind` is the air's velocity in the camera's axes; drops fall at `slowest_m_s` at least. Errs towards yes.
+    /// Whether the box can keep rain off a drop within `reach_m` of a camera. Other boxes need not be tested. `wind` is
+    /// the air's velocity in the camera's axes; drops fall at `slowest_m_s` at least. True if in doubt.
     pub(crate) fn matters(&self, eye: DVec3, to_enu: DMat3, wind: DVec3, slowest_m_s: f64, reach_m: f64) -> bool {
         let center = to_enu * (self.center_m - eye);
         let radius = self.half_size_m.length();
-        // A drop that comes from the box's height was upwind then, as seen from the box.
+        // Relative to the box, a drop was upwind when it was at the box's height.
         let rise = center.z + radius + reach_m;
         if rise < 0.0 {
             return false;
@@ -153,8 +154,8 @@ impl Shelter {
         (center.truncate() - drift * along).length() <= reach_m + radius
     }
 
-    /// The box as shaders test it, for a camera at `eye` whose axes `to_enu` turns: rows from camera-relative east,
-    /// north, up into the box's own space, where it reaches from -1 to 1, and its velocity and whether it has any.
+    /// Returns the box as shaders test it, for a camera at `eye` with axes `to_enu`: three rows from camera-relative
+    /// east, north, up into the box's own space, where it spans -1 to 1; then its velocity, and whether it moves.
     pub(crate) fn rows(&self, eye: DVec3, to_enu: DMat3) -> [[f32; 4]; 4] {
         let axes = to_enu * self.axes;
         let center = to_enu * (self.center_m - eye);
@@ -169,7 +170,7 @@ impl Shelter {
 }
 
 impl Shelter {
-    /// Its planes as shaders test them, in the space of [`Shelter::rows`].
+    /// Returns the planes as shaders test them, in the space of [`Shelter::rows`].
     pub(crate) fn cuts(&self) -> impl ExactSizeIterator<Item = [f32; 4]> {
         let half = self.half_size_m;
         self.planes.each().map(move |(n, d)| {
@@ -179,7 +180,8 @@ impl Shelter {
     }
 }
 
-/// At which share of the way from `a` to `b` (the host's world) the box is met, or what planes leave of it, if it is.
+/// Returns the share of the way from `a` to `b` (host's world) at which it meets the box, or what planes leave of it;
+/// `None` if it does not.
 pub(crate) fn met_at(shelter: &Shelter, a: DVec3, b: DVec3) -> Option<f64> {
     let own = |v: DVec3| shelter.axes.transpose() * v;
     let (o, d) = (own(a - shelter.center_m), own(b - a));
@@ -199,7 +201,7 @@ pub(crate) fn met_at(shelter: &Shelter, a: DVec3, b: DVec3) -> Option<f64> {
     (near <= far).then_some(near)
 }
 
-/// Whether what came to `p` with `velocity` (the host's world) met the box, or what planes leave of it.
+/// Whether a drop that came to `p` with `velocity` (host's world) met the box, or what planes leave of it.
 pub fn sheltered(shelter: &Shelter, p: DVec3, velocity: DVec3) -> bool {
     let own = |v: DVec3| shelter.axes.transpose() * v / shelter.half_size_m;
     let (o, d) = (own(p - shelter.center_m), own(shelter.velocity_m_s - velocity));
@@ -242,7 +244,7 @@ mod tests {
         let roof = roof();
         for (wind, fall) in [(0.0, 6.0), (8.0, 6.0), (25.0, 2.0)] {
             let velocity = DVec3::new(0.0, wind, -fall);
-            // On the ground, the shadow is the roof moved downwind by height x wind / fall.
+            // On the ground, the dry area is the roof's outline moved downwind by height x wind / fall speed.
             for (z, edge) in [(0.0, 5.0), (4.0, 1.0)] {
                 let shift = edge * wind / fall;
                 for y in [-6.0, -2.9, 0.0, 2.9, 6.0] {
@@ -269,7 +271,7 @@ mod tests {
         assert!(sheltered(&truck, DVec3::new(0.5, 1.0, 1.0), rain), "in it");
     }
 
-    /// A gable roof 2 m high over 6 m, turned and moving.
+    /// A gable roof 2 m high and 6 m wide, turned and moving.
     fn gable() -> Shelter {
         let slope = DVec3::new(0.0, 2.0, 3.0).normalize();
         let planes = [[slope.x, slope.y, slope.z, slope.z], [0.0, -slope.y, slope.z, slope.z]];
@@ -287,7 +289,7 @@ mod tests {
         let shape = gable();
         let inside = |p: DVec3| {
             let own = shape.axes.transpose() * (p - shape.center_m);
-            // By the roof's own geometry: 1 m below the ridge at the eaves' height.
+            // The roof's own geometry: at the eaves' height it is 1 m below the ridge.
             own.abs().cmple(shape.half_size_m).all() && own.z <= 1.0 - own.y.abs() * (2.0 / 3.0)
         };
         let (mut met, mut by_box_only) = (0, 0);
@@ -298,7 +300,7 @@ mod tests {
             let hit = sheltered(&shape, p, velocity);
             let back = shape.velocity_m_s - velocity;
             let marched = (0..6000).any(|k| inside(p + back.normalize() * (5e-3 * f64::from(k))));
-            // A march misses what is thinner than its step.
+            // A march misses parts that are thinner than its step.
             let thin = hit && !marched;
             assert!(!marched || hit, "{p} {velocity}");
             if thin {
@@ -348,7 +350,7 @@ mod tests {
             (Shelter { velocity_m_s: DVec3::splat(5000.0), ..roof() }, "shelter.velocity_m_s"),
             (cut(&[[0.0, 0.0, 2.0, 0.1]]), "shelter.planes must be unit vectors and distances within 1e6 m in plane 0"),
             (cut(&[[0.0, 0.0, 1.0, 0.1], [0.0, 1.0, 0.0, nan]]), "plane 1"),
-            // Two that leave nothing between them, a sheet without thickness, one below the whole box.
+            // Two planes that leave nothing between them, a sheet without thickness, and a plane below the whole box.
             (
                 cut(&[[0.0, 1.0, 0.0, -1.0], [0.0, -1.0, 0.0, 0.5]]),
                 "shelter.planes must be planes that leave some of the box",

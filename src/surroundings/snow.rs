@@ -1,19 +1,19 @@
-//! Lying snow as what is drawn on it, flows from under it or is lit by it reads it, whoever led it here.
+//! Lying snow as other effects read it: those that draw on it, take its meltwater, or are lit by it.
 
 use std::collections::{BTreeMap, VecDeque};
 
-/// Meltwater is handed on by slots of this length, s.
+/// Length of the time slots in which meltwater is recorded, s.
 pub(crate) const MELT_SLOT_S: f64 = 60.0;
-/// Slots that are kept: a day and a little more.
+/// Number of slots that are kept: a little more than a day.
 const SLOTS: usize = 1500;
 
 /// Snow at a place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SnowHere {
     pub depth_m: f64,
-    /// kg/m^3; 0 without snow.
+    /// Density, kg/m^3; 0 without snow.
     pub density_kg_m3: f64,
-    /// Held water over what the snow can hold.
+    /// Liquid water in the snow over the most that it can hold.
     pub wetness: f64,
     /// Albedo for visible light; 0 without snow.
     pub albedo: f64,
@@ -22,9 +22,9 @@ pub(crate) struct SnowHere {
 /// Effect of snow on the water below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meltwater {
-    /// Share of the ground whose rain the snow takes.
+    /// Share of the ground on which the snow takes up the rain.
     pub covered: f64,
-    /// Runoff, mm/h over all of the ground.
+    /// Runoff, mm/h as a mean over all of the ground.
     pub runoff_mm_h: f64,
 }
 
@@ -33,33 +33,33 @@ pub(crate) struct Meltwater {
 pub(crate) struct TileSnow {
     /// Snow of each cell in half floats: depth in m, density in kg/m^3, wetness, albedo.
     pub cells: Vec<[u16; 4]>,
-    /// Other whenever they may be.
+    /// Differs whenever `cells` may differ.
     pub revision: u64,
 }
 
 /// The lying snow of a world.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LyingSnow {
-    /// On level, open ground.
+    /// Snow on level, open ground.
     pub country: SnowHere,
-    /// Share of that ground that it covers.
+    /// Share of that ground that snow covers.
     pub cover: f64,
-    /// Wind at 10 m above which it moves, m/s.
+    /// Wind speed at 10 m above which the snow drifts, m/s.
     pub threshold_m_s: f64,
-    /// Snow of each node of the host's terrain, in its order: depth in m, density in kg/m^3, wetness, albedo. Empty
-    /// without one.
+    /// Snow of each node of the host's terrain, in the terrain's order: depth in m, density in kg/m^3, wetness, albedo.
+    /// Empty without a terrain.
     pub cells: Vec<[f32; 4]>,
-    /// Snow of the host's tiles that have any, by how many tiles they lie east and north.
+    /// Snow of the host's tiles that have any, by the tile's index east and north.
     pub tiles: BTreeMap<[i32; 2], TileSnow>,
     /// Incremented whenever `cells` or `tiles` change.
     pub revision: u64,
-    /// Whether any of their cells has snow.
+    /// Whether any of these cells has snow.
     pub has_cells: bool,
     melt: VecDeque<(i64, Meltwater)>,
 }
 
 impl LyingSnow {
-    /// Notes what comes from under the snow from `from_s` on for `seconds`.
+    /// Records the water that leaves the snow from `from_s` on for `seconds`.
     pub fn melts(&mut self, from_s: f64, seconds: f64, water: Meltwater) {
         let first = (from_s / MELT_SLOT_S).floor() as i64;
         let last = ((from_s + seconds) / MELT_SLOT_S).ceil() as i64;
@@ -75,20 +75,20 @@ impl LyingSnow {
         }
     }
 
-    /// Returns the water that came from under the snow in the slot before the one in which `time_s` lies: the last that
-    /// is known at that time, however far the snow has been led since.
+    /// Returns the water that left the snow in the slot before that of `time_s`: the last slot that is complete at that
+    /// time, however far the snow has been simulated since.
     pub fn meltwater(&self, time_s: f64) -> Option<Meltwater> {
         let wanted = (time_s / MELT_SLOT_S).floor() as i64 - 1;
         self.melt.iter().rev().find(|(slot, _)| *slot <= wanted).map(|(_, water)| *water)
     }
 
-    /// Forgets the water of the past, and what lay on tiles.
+    /// Removes the recorded water and the snow on tiles.
     pub fn forget(&mut self) {
         self.melt.clear();
         self.tiles.clear();
     }
 
-    /// Shows no cells.
+    /// Removes the snow of all cells.
     pub fn show_none(&mut self) {
         self.cells.clear();
         self.tiles.clear();

@@ -1,19 +1,19 @@
-//! The host's terrain as all that goes round it or lies on it reads it: heights on a regular grid.
+//! The host's terrain as effects read it: heights on a regular grid.
 
 use glam::{DMat3, DVec2, DVec3};
 
-/// Heights on a grid that is level and aligned to north at its origin, linear between nodes.
+/// Heights on a grid that is level and aligned to north at its origin; linear between nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TerrainHeights {
-    /// The node farthest to the south-west, in the host's world; its height is what `heights_m` count from.
+    /// Position of the south-western node in the host's world. `heights_m` count from its height.
     pub origin: DVec3,
-    /// Turns the host's axes at the origin to east, north, up.
+    /// Rotation from the host's axes at the origin to east, north, up.
     pub to_enu: DMat3,
-    /// From node to node, m.
+    /// Distance between nodes, m.
     pub cell_m: f64,
-    /// Nodes east and north, two at least.
+    /// Numbers of nodes east and north, at least two each.
     pub nodes: [u32; 2],
-    /// Above the origin, m; eastern neighbours beside each other, then northern.
+    /// Heights above the origin, m. East varies fastest, then north.
     pub heights_m: Vec<f32>,
     /// Hash, equal for equal terrain.
     pub hash: u64,
@@ -30,12 +30,13 @@ impl TerrainHeights {
         Self { origin, to_enu, cell_m, nodes, heights_m, hash }
     }
 
-    /// Whether its nodes lie where those of `other` do.
+    /// Whether its nodes lie at the same places as those of `other`.
     pub fn has_nodes_of(&self, other: &Self) -> bool {
         (self.origin, self.cell_m, self.nodes) == (other.origin, other.cell_m, other.nodes)
     }
 
-    /// The height at a place east and north of the origin, m; beyond the nodes as at the nearest place within.
+    /// Returns the height at a place east and north of the origin, m. Beyond the nodes it is the height of the nearest
+    /// place within.
     pub fn height_m(&self, place_m: DVec2) -> f64 {
         let at = place_m / self.cell_m;
         let along = |v: f64, nodes: u32| {

@@ -1,5 +1,5 @@
-//! The wind that varies in space as shaders read it: a texture for all views of a context, and where a camera is in it.
-//! The shaders' side is `shaders/surroundings/wind.wgsl`.
+//! The wind that varies in space, as shaders read it: a texture that all views of a context share, and each camera's
+//! mapping into it. The shaders' side is `shaders/surroundings/wind.wgsl`.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::{gpu::Device, wind::WindVolume};
 
-/// `WindMap` of `shaders/surroundings/wind.wgsl`: where a camera-relative place lies in the texture.
+/// Mapping from camera-relative places to the texture: `WindMap` of `shaders/surroundings/wind.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct WindMap {
@@ -20,11 +20,11 @@ pub(crate) struct WindMap {
 }
 
 impl WindMap {
-    /// For a camera at `eye` in the host's world.
+    /// Creates the mapping for a camera at `eye` in the host's world.
     pub fn new(volume: &WindVolume, eye: DVec3) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let nodes = DVec3::from(volume.nodes.map(f64::from));
-        // A node is in the middle of its texel.
+        // Nodes lie in the middle of their texels.
         Self {
             scale: v(1.0 / (volume.cell_m * nodes)),
             offset: v((volume.cells_at(eye) + 0.5) / nodes),
@@ -34,23 +34,23 @@ impl WindMap {
     }
 }
 
-/// A texture of the wind, and whether it is the same as another time.
+/// A texture of the wind, with a number that tells whether it is still the same.
 #[derive(Clone)]
 pub(crate) struct WindView {
     pub view: wgpu::TextureView,
-    /// Another number for another texture: bind groups with it are made anew then.
+    /// Changes with the texture; bind groups that hold it must then be recreated.
     pub generation: u64,
 }
 
 struct NodeTexture {
     texture: wgpu::Texture,
     nodes: [u32; 3],
-    /// Revision of the values that were uploaded last.
+    /// Revision of the values that were last uploaded.
     revision: u64,
     shown: WindView,
 }
 
-/// The texture of a context, made when a view first needs it and uploaded again when the wind has changed.
+/// Texture of a context, created when a view first needs it and uploaded again when the wind has changed.
 #[derive(Default)]
 pub(crate) struct WindTexture {
     held: Mutex<WindState>,
@@ -60,16 +60,16 @@ pub(crate) struct WindTexture {
 struct WindState {
     texture: Option<NodeTexture>,
     generation: u64,
-    /// Room for an upload.
+    /// Staging memory for an upload.
     texels: Vec<u16>,
 }
 
 impl WindTexture {
-    /// The texture with the values of `volume`; of none, one texel that nothing reads.
+    /// Returns the texture with the values of `volume`. Without a volume it has one texel, which no shader reads.
     pub fn view(&self, device: &Device, volume: Option<&WindVolume>) -> WindView {
         let state = &mut *self.held.lock().unwrap_or_else(PoisonError::into_inner);
         let nodes = volume.map_or([1; 3], |v| v.nodes);
-        // Revisions begin at 1.
+        // Revisions of volumes begin at 1.
         let revision = volume.map_or(0, WindVolume::revision);
         if let Some(held) = state.texture.as_ref().filter(|t| volume.is_none() || t.revision == revision) {
             return held.shown.clone();

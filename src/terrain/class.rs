@@ -2,39 +2,39 @@
 
 use crate::error::{Error, Result};
 
-/// Material of the ground; the numbers are those of the C header, of terrains and of images.
+/// Material of the ground. The C header, terrains and images use the same numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[repr(u8)]
 pub enum SurfaceClass {
-    /// Not said. In a terrain or an image: as the context's default. As that default: natural ground, soil where the
-    /// host's colour is not green and vegetation where it is.
+    /// No class given. In a terrain or an image it means the context's default. As the context's default it means
+    /// natural ground: vegetation where the host's colour is green, otherwise soil.
     #[default]
     Unspecified = 0,
-    /// Earth, sand, gravel: darkens, and mirrors hardly.
+    /// Earth, sand, gravel: darkens when wet, and hardly reflects.
     Soil = 1,
-    /// Bare rock: darkens, and shines in parts.
+    /// Bare rock: darkens when wet, and shines in parts.
     Rock = 2,
-    /// Asphalt, concrete, paving: darkens, gets a film that mirrors, and puddles.
+    /// Asphalt, concrete, paving: darkens when wet, gets a reflecting water film, and puddles.
     Paved = 3,
     /// Grass, crops, shrubs, trees: hardly changes.
     Vegetation = 4,
-    /// Water that the host draws: rain leaves it as it is.
+    /// Water that the host draws: rain does not change it.
     Water = 5,
-    /// Roofs and walls: darken and shine, without puddles.
+    /// Roofs and walls: darken and shine when wet, without puddles.
     Building = 6,
 }
 
-/// How many there are.
+/// Number of classes.
 pub(crate) const CLASSES: usize = 7;
-/// In the place of a class's number: a cell without ground.
+/// Value in the place of a class number: a cell without ground.
 pub(crate) const HOLE: u8 = 255;
 
 impl SurfaceClass {
-    /// All of them, by their numbers.
+    /// All classes, in the order of their numbers.
     pub const ALL: [Self; CLASSES] =
         [Self::Unspecified, Self::Soil, Self::Rock, Self::Paved, Self::Vegetation, Self::Water, Self::Building];
 
-    /// The class of this number.
+    /// Returns the class with this number.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming `param` for a number above 6.
@@ -43,7 +43,7 @@ impl SurfaceClass {
         known.ok_or_else(|| Error::range(param, "a WK_SURFACE_CLASS_ value, 0 to 6", number))
     }
 
-    /// This, or `other` where nothing is said.
+    /// Returns this class, or `other` if this one is unspecified.
     pub fn or(self, other: Self) -> Self {
         if self == Self::Unspecified { other } else { self }
     }

@@ -1,4 +1,4 @@
-//! Description of a host's terrain, and what of it is refused.
+//! Description of a host's terrain and its cells, with the checks that refuse what is not valid.
 
 use std::cmp::Ordering;
 
@@ -7,23 +7,23 @@ use glam::DVec3;
 use super::SurfaceClass;
 use crate::error::{Error, Result, check_range};
 
-/// Most cells that the tiles of a terrain may have together.
+/// Largest number of cells in all tiles of a terrain together.
 pub const MAX_TERRAIN_CELLS: usize = 4096 * 4096;
 /// Smallest and largest tile, cells along a side.
 const TILE_CELLS: [u32; 2] = [32, 1024];
-/// Farthest tile from the origin, tiles.
+/// Largest distance of a tile from the origin, tiles.
 const FARTHEST: i32 = 1_000_000;
 /// Largest height above or below the origin, m.
 const MOST_M: f32 = 1e5;
 
-/// The lattice of a terrain: level and aligned to true north at its origin.
+/// Lattice of a terrain, level and aligned to true north at its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainDesc {
-    /// The south-western cell of tile (0, 0), in the host's world; its height is what all heights count from.
+    /// Position of the south-western cell of tile (0, 0) in the host's world, m; all heights count from its height.
     pub origin: DVec3,
-    /// From cell to cell, m, \[0.01, 10 000\].
+    /// Distance between neighbouring cells, m, \[0.01, 10 000\]. Default 1.
     pub cell_m: f64,
-    /// Cells along each side of a tile: a power of two from 32 to 1024.
+    /// Number of cells along each side of a tile: a power of two from 32 to 1024. Default 256.
     pub tile_cells: u32,
 }
 
@@ -34,10 +34,10 @@ impl Default for TerrainDesc {
 }
 
 impl TerrainDesc {
-    /// Refuses what is no lattice, by name.
+    /// Checks that every field is within its range.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         if !(self.origin.is_finite() && self.origin.length() <= 1e12) {
             return Err(Error::range("terrain.origin_m", "finite and within 1e12 m", self.origin));
@@ -51,29 +51,29 @@ impl TerrainDesc {
         Ok(())
     }
 
-    /// Most tiles of this size that a terrain may have.
+    /// Largest number of tiles of this size that a terrain may have.
     pub fn most_tiles(&self) -> usize {
         MAX_TERRAIN_CELLS / (self.tile_cells as usize * self.tile_cells as usize)
     }
 }
 
-/// Key of a tile in the lattice: tiles east and north of the origin, each within 1 000 000. Keys go by rows from the
-/// south.
+/// Key of a tile in the lattice: its number of tiles east and north of the origin, each within 1 000 000. Keys are
+/// ordered by rows from the south.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct TileKey {
-    /// Tiles to the east; negative to the west.
+    /// Number of tiles to the east; negative to the west.
     pub east: i32,
-    /// Tiles to the north; negative to the south.
+    /// Number of tiles to the north; negative to the south.
     pub north: i32,
 }
 
 impl TileKey {
-    /// The tile that lies so many tiles east and north.
+    /// Creates the key of the tile `east` tiles east and `north` tiles north of the origin.
     pub fn new(east: i32, north: i32) -> Self {
         Self { east, north }
     }
 
-    /// Refuses one that lies too far away.
+    /// Checks that the tile is not too far from the origin.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming `param`.
@@ -98,12 +98,13 @@ impl PartialOrd for TileKey {
     }
 }
 
-/// Values of a rectangle of cells: rows from south to north, in each from west to east.
+/// Values for a rectangle of cells, in rows from south to north. Each row runs from west to east.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rows<'a, T> {
-    /// The values, row after row.
+    /// Values, row after row.
     pub values: &'a [T],
-    /// From the beginning of a row to that of the next, values; 0: rows follow each other without a gap.
+    /// Number of values from the start of a row to the start of the next. 0 means that rows follow each other without a
+    /// gap.
     pub stride: u32,
 }
 
@@ -114,7 +115,7 @@ impl<T> Default for Rows<'_, T> {
 }
 
 impl<'a, T: Copy> Rows<'a, T> {
-    /// Rows without a gap.
+    /// Creates rows without a gap.
     pub fn of(values: &'a [T]) -> Self {
         Self { values, stride: 0 }
     }
@@ -123,7 +124,7 @@ impl<'a, T: Copy> Rows<'a, T> {
         if self.stride == 0 { width as usize } else { self.stride as usize }
     }
 
-    /// One row of the rectangle, and the place of its first value in the list.
+    /// Returns one row of the rectangle, and the index of its first value in `values`.
     pub(crate) fn row(&self, row: u32, width: u32) -> (usize, &'a [T]) {
         let first = row as usize * self.stride(width);
         (first, &self.values[first..first + width as usize])
@@ -146,36 +147,37 @@ impl<'a, T: Copy> Rows<'a, T> {
 /// Heights and classes of a rectangle of cells of one tile.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct TerrainCells<'a> {
-    /// The tile.
+    /// Key of the tile.
     pub key: TileKey,
-    /// The rectangle's south-western cell in the tile, east and north.
+    /// South-western cell of the rectangle, counted east and north within the tile.
     pub first: [u32; 2],
-    /// Cells of the rectangle east and north; (0, 0) stands for the whole tile.
+    /// Number of cells of the rectangle east and north; (0, 0) means the whole tile.
     pub size: [u32; 2],
-    /// Heights above the terrain's origin, m, within 1e5. Empty in an update: they stay. That of a hole need be no
-    /// height.
+    /// Heights above the terrain's origin, m, within 1e5. If empty in an update, the heights stay. A hole may have any
+    /// value.
     pub heights_m: Rows<'a, f32>,
-    /// Materials of the cells, `None` for a hole. Empty: in an update they stay, in a new tile all are unspecified.
+    /// Materials of the cells, `None` for a hole. If empty, they stay in an update, and all are unspecified in a new
+    /// tile.
     pub classes: Rows<'a, Option<SurfaceClass>>,
-    /// Stands among the heights for cells of which there are no data, which become holes, as NaN then does too: -9999,
-    /// -32768, or what the host's source has. Finite; must be no height in use: neither of a cell for which `classes`
-    /// has a class other than unspecified, nor of a cell with ground of the same tile outside of the rectangle. Default
-    /// none: every number is a height.
+    /// Value that stands among the heights for cells without data, such as -9999, -32768, or that of the host's source.
+    /// These cells become holes, and so do cells whose height is NaN. The value must be finite and no height in use:
+    /// neither of a cell for which `classes` has a class other than unspecified, nor of a cell with ground in the same
+    /// tile outside the rectangle. Default `None`: every number is a height.
     pub no_data_m: Option<f32>,
 }
 
 impl TerrainCells<'_> {
-    /// Size in cells of a tile with so many along a side.
+    /// Size of the rectangle in cells; a tile has `tile_cells` along a side.
     pub(crate) fn size_in(&self, tile_cells: u32) -> [u32; 2] {
         if self.size == [0, 0] { [tile_cells; 2] } else { self.size }
     }
 
-    /// Whether a height is the number that stands for none.
+    /// Whether a height stands for no data.
     pub(crate) fn is_no_data(&self, height_m: f32) -> bool {
         self.no_data_m.is_some_and(|none| height_m == none || height_m.is_nan())
     }
 
-    /// Refuses what does not fit the tile. `is_hole` says of a cell of the tile whether it is one by now.
+    /// Checks that the values fit the tile. `is_hole` is whether a cell of the tile is a hole so far.
     pub(crate) fn check(&self, tile_cells: u32, is_hole: impl Fn(usize) -> bool) -> Result<()> {
         self.key.validate("terrain_cells.tile")?;
         let size = self.size_in(tile_cells);
@@ -213,7 +215,7 @@ impl TerrainCells<'_> {
             for (i, height) in heights.iter().enumerate() {
                 let name = |list: &str| format!("terrain_cells.{list}[{}]", first + i);
                 if self.is_no_data(*height) {
-                    // Where the host says what the ground is made of, there is some.
+                    // A cell with a class has ground, so it must have a height.
                     if said.is_some_and(|said| said[i].is_some_and(|class| class != SurfaceClass::Unspecified)) {
                         let accepted =
                             format!("no height in use, such as {} with a class of ground", name("heights_m"));
@@ -231,12 +233,12 @@ impl TerrainCells<'_> {
     }
 }
 
-/// Whether a number can be a height, m.
+/// Whether `v` can be a height, m.
 pub(super) fn is_height(v: f32) -> bool {
     v.abs() <= MOST_M
 }
 
-/// A rectangle of cells, counted from the terrain's origin: from `low` up to but without `high`.
+/// Rectangle of cells, counted from the terrain's origin: from `low` up to, but not including, `high`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CellRect {
     pub low: [i32; 2],
@@ -244,7 +246,7 @@ pub(crate) struct CellRect {
 }
 
 impl CellRect {
-    /// With so many cells more on each side.
+    /// Returns the rectangle with `cells` more cells on each side.
     pub fn grown(self, cells: i32) -> Self {
         Self { low: self.low.map(|v| v - cells), high: self.high.map(|v| v + cells) }
     }
@@ -257,14 +259,14 @@ impl CellRect {
         }
     }
 
-    /// Returns the cells that two rectangles have in common, if any.
+    /// Returns the cells that two rectangles have in common, if there are any.
     pub fn meets(self, other: Self) -> Option<Self> {
         let low = [0, 1].map(|i| self.low[i].max(other.low[i]));
         let high = [0, 1].map(|i| self.high[i].min(other.high[i]));
         (low[0] < high[0] && low[1] < high[1]).then_some(Self { low, high })
     }
 
-    /// All cells of it, by rows.
+    /// All cells of the rectangle, by rows.
     pub fn cells(self) -> impl Iterator<Item = [i32; 2]> {
         (self.low[1]..self.high[1]).flat_map(move |y| (self.low[0]..self.high[0]).map(move |x| [x, y]))
     }

@@ -1,18 +1,18 @@
-//! The host's terrain as data: heights and classes of surface on square cells, kept in tiles.
+//! The host's terrain as data: heights and surface classes on square cells, kept in tiles.
 //!
-//! A **lattice** of equal cells, level and aligned to true north at its origin, is cut into equal square **tiles**. A
-//! tile has a key: how many tiles it lies east and north of the origin. One lattice for all tiles means that neighbours
-//! share no row and need no stitching: the cell east of a tile's last column is the first column of the next tile, and
-//! whatever goes over the ground (water, heights between cells) goes on there. Cells are counted from the origin in
-//! whole numbers, so that a place far from it has the same rounding as one near it.
+//! A **lattice** of equal square cells is level and aligned to true north at its origin. It is cut into equal square
+//! **tiles**. The key of a tile is its number of tiles east and north of the origin. All tiles share one lattice, so
+//! neighbouring tiles share no row of cells and need no stitching. The cell east of a tile's last column is the first
+//! column of the next tile; water and interpolated heights continue across the border. Cells are counted from the
+//! origin in whole numbers, so rounding is the same near the origin and far from it.
 //!
-//! A cell has a height and a class, or is a **hole**, where there is no ground. Tiles come, go, and change by
-//! rectangles of cells. Each change costs what its own cells cost, whatever the size of tile and terrain: hashes are
-//! sums over cells, so that a change takes the old cells off and adds the new ones. Terrain and tiles have a
-//! **revision**, which grows with each change.
+//! A cell has a height and a class, or it is a **hole**, where there is no ground. The host adds and removes tiles and
+//! changes rectangles of cells. The cost of a change depends only on the number of cells that it changes, not on the
+//! size of tile and terrain: a hash is a sum over cells, from which a change subtracts the old cells and to which it
+//! adds the new ones. The terrain and each tile have a **revision**, which grows with each change.
 //!
-//! Copies share their tiles; a tile that changes while somebody still has a copy of it is copied once. This room names
-//! no effect: water, wind and queries read it alike. It has no settings and no error but rounding.
+//! Copies of a terrain share its tiles. A tile that changes while another copy still uses it is copied once. This room
+//! names no effect: water, wind and queries read it alike. It has no settings, and no error but rounding.
 
 mod class;
 mod desc;

@@ -1,25 +1,25 @@
-//! One tile: heights, classes, and a hash that a change of some cells keeps up to date.
+//! One tile of the terrain: heights, classes, and a hash that each change updates.
 
 use super::{HOLE, SurfaceClass, TerrainCells, TileKey, desc::is_height};
 
 use crate::chance::mixed;
 
-/// The heights and classes of a tile's cells.
+/// Heights and classes of a tile's cells.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tile {
     pub key: TileKey,
-    /// Above the terrain's origin, m, by rows from the south-west; of holes too.
+    /// Heights above the terrain's origin, m, by rows from the south-west; holes have a height too.
     pub heights_m: Vec<f32>,
-    /// Numbers of classes, or [`HOLE`]; empty where nothing is said of any cell.
+    /// Class numbers of the cells, or [`HOLE`]. Empty if the host has given no class for any cell.
     classes: Vec<u8>,
-    /// Revision of the terrain when this tile changed last.
+    /// Revision of the terrain at this tile's last change.
     pub revision: u64,
-    /// Hash, equal for tiles with the same cells: the sum of its cells' hashes.
+    /// Sum of the hashes of its cells; equal for tiles with the same cells.
     pub hash: u64,
 }
 
 impl Tile {
-    /// A level one at height 0, of `tile_cells` along a side, of which nothing is said.
+    /// Creates a level tile at height 0 with `tile_cells` cells along a side and no classes.
     pub fn level(key: TileKey, tile_cells: u32) -> Self {
         let count = tile_cells as usize * tile_cells as usize;
         let mut tile = Self { key, heights_m: vec![0.0; count], classes: Vec::new(), revision: 0, hash: 0 };
@@ -27,7 +27,7 @@ impl Tile {
         tile
     }
 
-    /// Without cells, in the place of one that was taken away.
+    /// Creates a tile without cells, which takes the place of a removed tile.
     pub fn none() -> Self {
         Self { key: TileKey::default(), heights_m: Vec::new(), classes: Vec::new(), revision: 0, hash: 0 }
     }
@@ -39,17 +39,17 @@ impl Tile {
         mixed(mixed(cell as u64) ^ (class << 32 | height))
     }
 
-    /// Whether anything is said of what its cells are made of: else none of them is a hole.
+    /// Whether the tile has classes; without them no cell is a hole.
     pub fn says_classes(&self) -> bool {
         !self.classes.is_empty()
     }
 
-    /// The number of a cell's class, or [`HOLE`].
+    /// Class number of a cell, or [`HOLE`].
     pub fn class_number(&self, cell: usize) -> u8 {
         self.classes.get(cell).copied().unwrap_or(0)
     }
 
-    /// Whether there is ground.
+    /// Whether a cell has ground.
     pub fn has_ground(&self, cell: usize) -> bool {
         self.class_number(cell) != HOLE
     }
@@ -60,8 +60,8 @@ impl Tile {
         SurfaceClass::ALL.get(number).copied().unwrap_or_default()
     }
 
-    /// Takes the values of a rectangle that was checked; what is no height leaves a hole's as it was. Says whether any
-    /// is new.
+    /// Copies the values of a rectangle that was checked. A value that is no height leaves the height of a hole as it
+    /// was. Returns whether any cell has changed.
     pub fn take(&mut self, cells: &TerrainCells<'_>, tile_cells: u32) -> bool {
         let before = self.hash;
         let size = cells.size_in(tile_cells);

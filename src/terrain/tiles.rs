@@ -1,4 +1,4 @@
-//! The tiles of a terrain: found by key, by place and by number.
+//! Tiles of a terrain, found by key, by position and by number.
 
 use std::{
     collections::BTreeMap,
@@ -17,45 +17,46 @@ use crate::{
     scene::WorldFrame,
 };
 
-/// A cell of the terrain by number: that of its tile's place in the list, then its place in the tile.
+/// Number of a cell in the terrain: the slot of its tile in the upper bits, the index in the tile in the lower ones.
 pub(crate) type CellId = u32;
 
-/// The eight cells about a cell, east and north of it.
+/// Offsets of the eight neighbours of a cell, east and north.
 pub(crate) const AROUND: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// The terrain at a place.
+/// The terrain at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainPoint {
     /// Height of the ground above the terrain's origin, m, linear between cells.
     pub height_m: f64,
     /// Material of the nearest cell.
     pub surface_class: SurfaceClass,
-    /// The tile of the nearest cell, and its revision.
+    /// Tile of the nearest cell.
     pub tile: TileKey,
-    /// [`Terrain`'s](crate::context::Context::terrain_revision) revision when that tile changed last.
+    /// Revision of the terrain at that tile's last change
+    /// ([`Context::terrain_revision`](crate::context::Context::terrain_revision)).
     pub revision: u64,
 }
 
-/// The host's terrain. A copy shares its tiles.
+/// The host's terrain. Copies share its tiles.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Terrain {
-    /// No other terrain has this number but copies of this one.
+    /// Number that only copies of this terrain share.
     pub id: u64,
     pub desc: TerrainDesc,
-    /// Turns the host's axes at the origin to east, north, up.
+    /// Rotation from the host's axes to east, north, up at the origin.
     pub to_enu: DMat3,
     /// Altitude of the origin, m.
     pub altitude_m: f64,
-    /// Binary digits of a tile's cells along a side.
+    /// Binary logarithm of the number of cells along a side of a tile.
     bits: u32,
-    /// By number; those that are in no `slots` are empty.
+    /// Tiles by slot; slots that `slots` does not name are empty.
     tiles: Vec<Arc<Tile>>,
     slots: BTreeMap<TileKey, u32>,
-    /// Rectangle that holds all tiles.
+    /// Rectangle that contains all tiles.
     bounds: Option<CellRect>,
-    /// Grows with every change.
+    /// Revision, which grows with every change.
     pub revision: u64,
-    /// Hash, equal for equal tiles.
+    /// Hash, equal for terrains with equal tiles.
     pub hash: u64,
 }
 
@@ -65,7 +66,7 @@ fn hash_of(tile: &Tile) -> u64 {
 }
 
 impl Terrain {
-    /// Without tiles.
+    /// Creates a terrain without tiles.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -87,64 +88,63 @@ impl Terrain {
         })
     }
 
-    /// Cells along a side of a tile.
+    /// Number of cells along a side of a tile.
     pub fn side(&self) -> usize {
         self.desc.tile_cells as usize
     }
 
-    /// All tiles by their keys, with their numbers.
+    /// All tiles in the order of their keys, with their slots.
     pub fn all(&self) -> impl ExactSizeIterator<Item = (u32, &Tile)> {
         self.slots.values().map(|slot| (*slot, self.tile(*slot)))
     }
 
-    /// A tile by its number.
+    /// Tile in a slot.
     pub fn tile(&self, slot: u32) -> &Tile {
         &self.tiles[slot as usize]
     }
 
-    /// The number of a tile.
+    /// Slot of a tile.
     pub fn slot(&self, key: TileKey) -> Option<u32> {
         self.slots.get(&key).copied()
     }
 
-    /// The cells of a tile, as they lie on the lattice.
+    /// Rectangle of a tile's cells on the lattice.
     pub fn rect(&self, key: TileKey) -> CellRect {
         let low = [key.east, key.north].map(|k| k << self.bits);
         CellRect { low, high: low.map(|v| v + (1 << self.bits)) }
     }
 
-    /// Keys of the tiles that a rectangle touches, whether there are any.
+    /// Keys of the tile positions that a rectangle touches, with or without a tile there.
     pub fn keys_within(&self, rect: CellRect) -> impl Iterator<Item = TileKey> + use<> {
         let bits = self.bits;
         let along = move |i: usize| (rect.low[i] >> bits)..=((rect.high[i] - 1) >> bits);
         along(1).flat_map(move |north| along(0).map(move |east| TileKey { east, north }))
     }
 
-    /// Where a place of the lattice lies in its tile.
+    /// Index within its tile of the cell at a lattice position.
     pub fn in_tile(&self, [x, y]: [i32; 2]) -> usize {
         let mask = (1 << self.bits) - 1;
         ((y & mask) as usize) << self.bits | (x & mask) as usize
     }
 
-    /// The place on the lattice of a cell of a tile.
+    /// Lattice position of a cell of a tile.
     pub fn place_in(&self, key: TileKey, cell: usize) -> [i32; 2] {
         let low = self.rect(key).low;
         let mask = (1usize << self.bits) - 1;
         [low[0] + (cell & mask) as i32, low[1] + (cell >> self.bits) as i32]
     }
 
-    /// The first cell of a tile, at height 0, in the host's world.
+    /// Position of the first cell of a tile, at height 0, in the host's world.
     pub fn origin_of(&self, key: TileKey) -> DVec3 {
         let low = self.rect(key).low;
         let plan = DVec3::new(f64::from(low[0]), f64::from(low[1]), 0.0) * self.desc.cell_m;
         self.desc.origin + self.to_enu.transpose() * plan
     }
 
-    /// Puts a tile where there was none, or other cells into the one that is there. Answers the cells that may have
-    /// changed.
+    /// Adds a tile, or replaces the cells of the tile that has this key. Returns the cells that may have changed.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    /// [`crate::Status::InvalidArgument`] naming the field; then nothing changes.
     pub fn set_tile(&mut self, cells: &TerrainCells<'_>) -> Result<Option<CellRect>> {
         let side = self.desc.tile_cells;
         self.check(cells)?;
@@ -181,10 +181,10 @@ impl Terrain {
         Ok(Some(rect))
     }
 
-    /// Puts other cells into a part of a tile. Answers the cells that may have changed.
+    /// Replaces a rectangle of a tile's cells. Returns the cells that may have changed.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    /// [`crate::Status::InvalidArgument`] naming the field; then nothing changes.
     pub fn update(&mut self, cells: &TerrainCells<'_>) -> Result<Option<CellRect>> {
         self.check(cells)?;
         let slot = self.known(cells.key)?;
@@ -197,7 +197,7 @@ impl Terrain {
         cells.check(self.desc.tile_cells, |cell| tile.is_some_and(|tile| !tile.has_ground(cell)))
     }
 
-    /// Refuses a number for no data that is the height of a cell beside the rectangle.
+    /// Refuses a no-data value that is the height of a cell outside the rectangle.
     fn check_no_data(&self, cells: &TerrainCells<'_>, tile: &Tile) -> Result<()> {
         if cells.no_data_m.is_none() {
             return Ok(());
@@ -218,7 +218,7 @@ impl Terrain {
         }
     }
 
-    /// The number of a tile that there must be.
+    /// Slot of a tile, or an error if the tile does not exist.
     fn known(&self, key: TileKey) -> Result<u32> {
         self.slot(key).ok_or_else(|| {
             let got = format!("({}, {})", key.east, key.north);
@@ -242,10 +242,10 @@ impl Terrain {
         Some(CellRect { low, high: [0, 1].map(|i| low[i] + size[i] as i32) })
     }
 
-    /// Takes a tile away. Answers the cells that it had.
+    /// Removes a tile. Returns the cells that it had.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if there is none.
+    /// [`crate::Status::InvalidArgument`] if there is no such tile.
     pub fn remove(&mut self, key: TileKey) -> Result<CellRect> {
         let slot = self.known(key).map_err(|e| e.renamed("terrain_cells.tile", "tile"))?;
         let tile = std::mem::replace(&mut self.tiles[slot as usize], Arc::new(Tile::none()));
@@ -256,24 +256,24 @@ impl Terrain {
         Ok(self.rect(key))
     }
 
-    /// The cell at a place of the lattice, if there is ground.
+    /// Cell at a lattice position, if it has ground.
     pub fn cell_at(&self, [x, y]: [i32; 2]) -> Option<CellId> {
         let slot = self.slot(TileKey::new(x >> self.bits, y >> self.bits))?;
         let cell = self.in_tile([x, y]);
         self.tile(slot).has_ground(cell).then(|| self.joined(slot, cell))
     }
 
-    /// Number of a cell's tile, and its place in it.
+    /// Slot of a cell's tile, and the cell's index in it.
     pub fn split(&self, id: CellId) -> (usize, usize) {
         ((id >> (2 * self.bits)) as usize, (id & ((1 << (2 * self.bits)) - 1)) as usize)
     }
 
-    /// The cell of a tile's number at a place in the tile.
+    /// Cell in the tile of a slot, at an index in the tile.
     pub fn joined(&self, slot: u32, cell: usize) -> CellId {
         slot << (2 * self.bits) | cell as u32
     }
 
-    /// Where a cell lies on the lattice.
+    /// Lattice position of a cell.
     pub fn place(&self, id: CellId) -> [i32; 2] {
         let (slot, cell) = self.split(id);
         self.place_in(self.tile(slot as u32).key, cell)
@@ -292,7 +292,8 @@ impl Terrain {
         [cell & mask, cell >> self.bits].iter().any(|v| *v == 0 || *v == mask)
     }
 
-    /// The eight cells about one in the order of [`AROUND`], in whatever tiles they lie; none where there is no ground.
+    /// Returns the eight neighbours of a cell in the order of [`AROUND`], across tile borders; `None` for those without
+    /// ground.
     pub fn around(&self, id: CellId) -> [Option<CellId>; 8] {
         let (slot, cell) = self.split(id);
         let mask = (1usize << self.bits) - 1;
@@ -308,14 +309,14 @@ impl Terrain {
         AROUND.map(|[dx, dy]| self.cell_at([at[0] + dx, at[1] + dy]))
     }
 
-    /// `position` of the host's world in cells east and north of the origin, and its height over it.
+    /// Converts a position in the host's world to cells east and north of the origin, and height above the origin, m.
     pub fn cells_at(&self, position: DVec3) -> (DVec2, f64) {
         let p = self.to_enu * (position - self.desc.origin);
         (p.truncate() / self.desc.cell_m, p.z)
     }
 
-    /// The cells about a place and their shares: four where there is ground all round. None where the nearest is no
-    /// ground.
+    /// Cells for bilinear interpolation at a position, with their weights. Cells without ground are left out. `None` if
+    /// the nearest cell has no ground.
     pub fn about(&self, cells: DVec2) -> Option<impl Iterator<Item = (CellId, f64)> + Clone + use<>> {
         if !cells.is_finite() || cells.abs().max_element() >= f64::from(1 << 30) {
             return None;
@@ -333,20 +334,20 @@ impl Terrain {
         Some(found.into_iter().filter_map(move |(cell, share)| Some((cell?, share / all))))
     }
 
-    /// Height of the ground at a place in cells east and north of the origin, m; none where there is no ground.
+    /// Height of the ground, m, at a position in cells east and north of the origin; `None` where there is no ground.
     pub fn height_at(&self, cells: DVec2) -> Option<f64> {
         Some(self.about(cells)?.map(|(cell, share)| share * f64::from(self.height(cell))).sum())
     }
 
-    /// Returns the height at a place in metres, for what flows over the ground: beyond the tiles that lie farthest out
-    /// as at their border.
+    /// Returns the height at a position in metres, for what flows over the ground. Outside the rectangle of all tiles
+    /// it is the height at the rectangle's border.
     pub fn height_near(&self, place_m: DVec2) -> Option<f64> {
         let all = self.bounds?;
         let end = |v: [i32; 2], off: i32| DVec2::new(f64::from(v[0] - off), f64::from(v[1] - off));
         self.height_at((place_m / self.desc.cell_m).clamp(end(all.low, 0), end(all.high, 1)))
     }
 
-    /// The terrain at a place of the host's world.
+    /// The terrain at a position in the host's world.
     pub fn point_at(&self, position: DVec3) -> Option<TerrainPoint> {
         let (cells, _) = self.cells_at(position);
         let about = self.about(cells)?;
@@ -357,10 +358,10 @@ impl Terrain {
         Some(TerrainPoint { height_m, surface_class: tile.class(cell), tile: tile.key, revision: tile.revision })
     }
 
-    /// A number that is the same for the same tiles about a rectangle in metres east and north of the origin.
+    /// Hash of the tiles in and next to a rectangle, which is given in metres east and north of the origin.
     pub fn hash_within(&self, low_m: DVec2, high_m: DVec2) -> u64 {
         let tile_m = self.desc.cell_m * f64::from(self.desc.tile_cells);
-        // The tiles beside it too: heights go linearly between cells.
+        // Includes the tiles next to the rectangle, because heights are interpolated between cells.
         let (low, high) = ((low_m / tile_m).floor() - 1.0, (high_m / tile_m).floor() + 1.0);
         let inside = |k: &TileKey| {
             let at = DVec2::new(f64::from(k.east), f64::from(k.north));

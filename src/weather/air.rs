@@ -1,4 +1,4 @@
-//! Clear air: what pressure and temperature make of Rayleigh scattering.
+//! Clear air: Rayleigh scattering from pressure and temperature.
 
 use super::conditions::Air;
 use super::model::Weather;
@@ -12,24 +12,24 @@ const STANDARD_PRESSURE_HPA: f64 = 1013.25;
 /// Gas constant of dry air over gravity, m/K: scale height of an isothermal atmosphere per kelvin.
 const SCALE_HEIGHT_M_PER_K: f64 = 287.053 / 9.80665;
 
-/// Pressure at the station from QNH, hPa: p = QNH (1 - 0.0065 h / 288.15)^5.25588, which is how QNH is defined (ICAO
-/// standard atmosphere, Doc 7488).
+/// Returns the pressure at the station from QNH, hPa: p = QNH (1 - 0.0065 h / 288.15)^5.25588, the definition of QNH
+/// (ICAO standard atmosphere, Doc 7488).
 pub fn station_pressure_hpa(qnh_hpa: f64, altitude_m: f64) -> f64 {
     qnh_hpa * libm::pow(1.0 - STANDARD_LAPSE_K_PER_M * altitude_m / STANDARD_TEMPERATURE_K, 5.255_88)
 }
 
-/// Density of air over the standard's, from pressure (hPa) and temperature (C): the ideal gas law.
+/// Returns the ratio of the air density to the standard's, from pressure (hPa) and temperature (C): the ideal gas law.
 pub fn density_ratio(pressure_hpa: f64, temperature_c: f64) -> f64 {
     pressure_hpa / STANDARD_PRESSURE_HPA * STANDARD_TEMPERATURE_K / (temperature_c + 273.15)
 }
 
-/// Scale height of air of this temperature (C), m: R T / g. With [`density_ratio`] at the same level, the column above
-/// it follows the pressure alone, as hydrostatics wants.
+/// Returns the scale height of air of this temperature (C), m: R T / g. With [`density_ratio`] at the same level, the
+/// column above it depends on the pressure alone, as in hydrostatic equilibrium.
 pub fn scale_height_m(temperature_c: f64) -> f64 {
     SCALE_HEIGHT_M_PER_K * (temperature_c + 273.15)
 }
 
-/// Air of the weather: sea-level quantities reduced along the standard lapse rate.
+/// Returns the air of the weather: quantities at sea level, reduced along the standard lapse rate.
 pub(super) fn air(w: &Weather) -> Air {
     let station_pressure = station_pressure_hpa(w.pressure_hpa, w.station_altitude_m);
     let sea_level_c = w.temperature_c + STANDARD_LAPSE_K_PER_M * w.station_altitude_m;

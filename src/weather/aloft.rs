@@ -1,17 +1,17 @@
 //! The wind above the surface layer.
 //!
 //! # Model
-//! * Up to 100 m the logarithmic law ([`WindProfile::speed_at_height_m_s`]).
-//! * High above the ground the geostrophic wind. The geostrophic drag law (Rossby and Montgomery 1935) ties it to the
-//!   friction velocity u* and the roughness length z0: along the wind at the ground u*/k (ln(u* / (f z0)) - A), across
-//!   it u*/k B, to its right on the northern hemisphere; k = 0.4, A = 1.8 and B = 4.5 (Troen and Petersen 1989,
+//! * Up to 100 m: the logarithmic law ([`WindProfile::speed_at_height_m_s`]).
+//! * High above the ground: the geostrophic wind. The geostrophic drag law (Rossby and Montgomery 1935) gives it from
+//!   the friction velocity u* and the roughness length z0: along the wind at the ground u*/k (ln(u* / (f z0)) - A),
+//!   across it u*/k B, to its right on the northern hemisphere; k = 0.4, A = 1.8 and B = 4.5 (Troen and Petersen 1989,
 //!   European Wind Atlas, section 8.1).
-//! * Between them what is wanting for the geostrophic wind turns and dies away as Ekman's (1905) spiral does where the
-//!   eddy viscosity is even: by exp(-(1 + i) (z - 100 m) sqrt(f / (2 K))), where K = k u* 100 m is the surface layer's
-//!   at its top.
+//! * In between: the difference to the geostrophic wind turns and decays as in Ekman's (1905) spiral for a constant
+//!   eddy viscosity, by exp(-(1 + i) (z - 100 m) sqrt(f / (2 K))), where K = k u* 100 m is the eddy viscosity at the
+//!   top of the surface layer.
 //!
-//! f is that of 43 degrees north: conditions have no place. Above the friction layer the wind is the same at all
-//! heights.
+//! f is that of 43 degrees north, because conditions have no place. Above the friction layer the wind is the same at
+//! all heights.
 
 use super::conditions::WindProfile;
 
@@ -22,18 +22,19 @@ const CORIOLIS_PER_S: f64 = 1e-4;
 const KARMAN: f64 = 0.4;
 /// Constants A and B of the geostrophic drag law.
 const DRAG: [f64; 2] = [1.8, 4.5];
-/// Least ln(u* / (f z0)) - A: in the faintest wind over the roughest land the law ends.
+/// Lower limit of ln(u* / (f z0)) - A: the law does not hold for very weak wind over very rough land.
 const LEAST_ALONG: f64 = 1.0;
 
 impl WindProfile {
-    /// Geostrophic wind along the wind at the ground, and to its left, m/s.
+    /// Returns the geostrophic wind along the wind at the ground and to the left of it, m/s.
     fn geostrophic_m_s(&self) -> [f64; 2] {
         let friction = self.friction_velocity_m_s();
         let along = libm::log(friction / (CORIOLIS_PER_S * self.roughness_length_m)) - DRAG[0];
         [friction / KARMAN * along.max(LEAST_ALONG), -friction / KARMAN * DRAG[1]]
     }
 
-    /// Mean wind at a height above ground over the speed at 10 m, along the wind at 10 m and to its left; 0 in a calm.
+    /// Returns the mean wind at a height above ground, relative to the speed at 10 m: along the wind at 10 m and to the
+    /// left of it; 0 in a calm.
     pub(crate) fn relative_at_height(&self, height_m: f64) -> [f64; 2] {
         let speed = self.speed_m_s();
         if speed <= 0.0 {
@@ -51,7 +52,7 @@ impl WindProfile {
         [(along + left_over * (x * cosine + y * sine)) / speed, (left + left_over * (y * cosine - x * sine)) / speed]
     }
 
-    /// Mean wind at a height above ground, m/s towards east and north.
+    /// Returns the mean wind at a height above ground, m/s towards east and north.
     pub fn mean_at_height_m_s(&self, height_m: f64) -> [f64; 2] {
         let [along, left] = self.relative_at_height(height_m);
         [self.east_m_s * along - self.north_m_s * left, self.north_m_s * along + self.east_m_s * left]

@@ -1,8 +1,8 @@
-//! Blending of two `Conditions`: what a change of weather looks like half-way.
+//! Blending of two `Conditions`: the weather during a change.
 //!
-//! Each quantity is blended in the variable in which the eye sees even steps, and each layer's geometry is weighted by
-//! how much of the layer there is, so that a layer which fades in from nothing stands where it will stay as soon as it
-//! can be seen. Every field is continuous in time, those of layers that come and go too.
+//! Each quantity is blended in the variable whose equal steps the eye sees as equal. Each layer's geometry is weighted
+//! by the amount of the layer, so that a layer that fades in has its final geometry as soon as it is visible. Every
+//! field is continuous in time, even in layers that come and go.
 
 use super::conditions::{
     AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, GroundLayer, SeaState, SurfaceCover, WindProfile,
@@ -11,32 +11,32 @@ use super::conditions::{
 use super::mix::mix;
 use super::precipitation::Falling;
 
-/// Weight of no layer at all beside a whole one: a layer's geometry moves while there is about so much of it, which
-/// nobody sees. Were it 0, the geometry would jump from that of no layer in the moment in which the layer begins.
+/// Weight of an absent layer's geometry relative to that of a full layer. The geometry changes only while the layer has
+/// about this amount, which cannot be seen. With 0 it would jump when the layer begins.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Weight of `b` where amounts of `a` and `b` fade into each other: (t qb) / ((1 - t) qa + t qb), each amount counted
-/// as [`LEAST_SHARE`] of the larger more than it is.
+/// Returns the weight of `b` where amounts of `a` and `b` fade into each other: (t qb) / ((1 - t) qa + t qb). Each
+/// amount counts with [`LEAST_SHARE`] of the larger one added.
 fn share(qa: f64, qb: f64, t: f64) -> f64 {
     let least = LEAST_SHARE * qa.max(qb);
     let (a, b) = ((1.0 - t) * (qa + least), t * (qb + least));
     if a + b > 0.0 { b / (a + b) } else { t }
 }
 
-/// Least extinction that counts in [`geometric_weight`], 1/m: clearer than air at any height that has weather. From
-/// exactly nothing no factor leads to anything.
+/// Lower limit of an extinction in [`geometric_weight`], 1/m: clearer than air at any height that has weather. No
+/// factor leads from exactly 0 to another value.
 const CLEAREST_PER_M: f64 = 1e-9;
 
-/// Weight for which mix(a, b, w) = a^(1-t) b^t, both positive: visibility then changes by equal factors in equal parts
-/// of t, which is how differences of visibility are seen (Weber and Fechner).
+/// Returns the weight for which mix(a, b, w) = a^(1-t) b^t, both positive. Visibility then changes by equal factors in
+/// equal steps of t, which is how differences of visibility are perceived (Weber and Fechner).
 pub(super) fn geometric_weight(a: f64, b: f64, t: f64) -> f64 {
     let log_ratio = libm::log(b.max(CLEAREST_PER_M) / a.max(CLEAREST_PER_M));
     let whole = libm::expm1(log_ratio);
-    // Below 1e-9 the quotient's limit is t itself; a quotient of two rounding errors is not.
+    // Below 1e-9 the limit of the quotient is t itself; computed, it would be a quotient of two rounding errors.
     if log_ratio.abs() < 1e-9 || !whole.is_finite() { t } else { libm::expm1(t * log_ratio) / whole }
 }
 
-/// All the light-stopping matter near the ground, fog included wherever it lies.
+/// Returns the extinction of all matter near the ground, with the fog wherever it lies.
 fn burden_per_m(c: &Conditions) -> f64 {
     c.air.rayleigh_extinction_per_m
         + c.aerosol.extinction_per_m
@@ -45,12 +45,12 @@ fn burden_per_m(c: &Conditions) -> f64 {
 }
 
 impl Conditions {
-    /// The weather between `self` (at `t` = 0) and `other` (at 1); `t` outside is clamped, NaN counts as 0.
+    /// Returns the weather between `self` (at `t` = 0) and `other` (at 1); `t` outside is clamped, NaN counts as 0.
     ///
-    /// Extinctions share one weight that makes the total geometric (see the module); cloud layers blend slot by slot,
-    /// covers linearly, optical depth in tau / (tau + 10), which is nearly the light that a cloud stops; no more of the
-    /// sky is clear than at the clearer end, however much of one overcast has gone and of another has come; wind blends
-    /// as a vector, so a turn by more than 90 degrees passes through a lull; everything else is linear.
+    /// All extinctions share one weight that makes the total geometric (see the module). Cloud layers blend slot by
+    /// slot: covers linearly, optical depth as tau / (tau + 10), which is nearly the light that a cloud stops. The
+    /// share of clear sky never exceeds that at the clearer end, while one overcast replaces another. Wind blends as a
+    /// vector, so a turn by more than 90 degrees passes through a lull. Everything else is linear.
     pub fn lerp(&self, other: &Self, t: f64) -> Self {
         if t >= 1.0 {
             return *other;
@@ -77,8 +77,8 @@ impl Conditions {
     }
 }
 
-/// Clear sky between two weathers, where layers placed independently would leave `independent` clear: as much less of
-/// it as at the ends, and no less and no more than at either.
+/// Returns the share of clear sky between two weathers, where independently placed layers would leave `independent`
+/// clear. It is less than that by the interpolated difference at the ends, and lies between the values at the ends.
 fn clear_between_ends([a, b]: [&Conditions; 2], independent: f64, t: f64) -> f64 {
     let less = |c: &Conditions| clear_between(&c.clouds) - c.clear_sky();
     let ends = [a.clear_sky(), b.clear_sky()];
@@ -136,7 +136,7 @@ impl GroundLayer {
 impl Falling {
     fn blend(&self, other: &Self, t: f64, w: f64) -> Self {
         let snow_mm_h = mix(self.snow_mm_h, other.snow_mm_h, t);
-        // Of snow that comes or goes the kinds are those of what there is.
+        // Kinds of snow that comes or goes are weighted by their amounts.
         let kind = |share: fn(&Self) -> f64| {
             let amount = mix(self.snow_mm_h * share(self), other.snow_mm_h * share(other), t);
             if snow_mm_h > 0.0 { (amount / snow_mm_h).clamp(0.0, 1.0) } else { share(other) }
@@ -159,7 +159,7 @@ impl Falling {
 }
 
 impl CloudSlab {
-    /// As in [`Conditions::lerp`].
+    /// Blends two slabs; see [`Conditions::lerp`].
     pub(crate) fn blend(&self, other: &Self, t: f64) -> Self {
         let q = share(self.cover, other.cover, t);
         let stopped = |tau: f64| tau / (tau + 10.0);
@@ -194,7 +194,7 @@ impl CloudLightOverride {
 }
 
 impl WindProfile {
-    /// As in [`Conditions::lerp`].
+    /// Blends two profiles; see [`Conditions::lerp`].
     pub(crate) fn blend(&self, other: &Self, t: f64) -> Self {
         Self {
             east_m_s: mix(self.east_m_s, other.east_m_s, t),

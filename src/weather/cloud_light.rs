@@ -1,37 +1,38 @@
-//! The light that clouds let through, at any height: below their layers, in them and above.
+//! Light that clouds let through at any height: below their layers, inside them and above.
 //!
 //! # Model
-//! What of a layer lies above a place decides, and what lies below it sends light up again. Of a layer above a place
-//! one needs the part of the sky that its clouds cover there and their optical depth there ([`super::cloud_part`]).
-//! Layers, and the two parts of a layer in which a place lies, are combined by adding (van de Hulst 1980), each a
-//! mixture of cover and holes. Fluxes are those of two streams, whose beam keeps what droplets scatter nearly straight
-//! on (Joseph, Wiscombe and Weinman 1976): divided anywhere, a layer lets through what it does as a whole.
+//! The part of a layer above a place dims the light there; the part below reflects light up again. For each part above,
+//! the model needs the share of the sky that its clouds cover, and their optical depth ([`super::cloud_part`]). Layers,
+//! and the two parts of a layer around a place inside it, are combined by adding (van de Hulst 1980), each as a mixture
+//! of cover and holes. Fluxes are two-stream fluxes; light that droplets scatter nearly straight on stays in the beam
+//! (Joseph, Wiscombe and Weinman 1976). A layer divided at any height therefore transmits as much as the whole.
 //!
 //! # Error
-//! Of the direct light, against the mean over places of the clouds that are drawn:
+//! Error of the direct light, against the mean over places of the drawn clouds:
 //! `cargo test --lib clouds::light::mean_light -- --nocapture`.
 
 use super::cloud_part::{LOWEST, SlabPart};
 use super::conditions::{CloudSlab, Conditions};
 
-/// Part of the optical depth by which a layer hides what is behind it from the eye, which light that is scattered
-/// straight on does not.
+/// Share of the optical depth by which a layer hides what is behind it from the eye. Light that is scattered straight
+/// on does not hide it.
 const HIDING: f64 = 0.25;
-/// Least part of the sky that counts for a mean over layers, beside what there is of them: [`over_layers`].
+/// Share of the sky with which the default counts in a mean over layers: [`over_layers`].
 const LEAST_COVER: f64 = 1e-6;
-/// Most height above its cloud's base at which what falls begins, m.
+/// Greatest height above a cloud's base at which its precipitation begins, m.
 const MOST_GROWTH_M: f64 = 500.0;
-/// Depth over which what falls sets in, m: half of it above the height where it begins, half below; as a medium, about
-/// the cloud's base.
+/// Depth over which precipitation sets in, m: half of it above the height where it begins, half below. As a medium it
+/// sets in around the cloud's base.
 pub(crate) const ONSET_M: f64 = 100.0;
 
-/// Share at an altitude of what begins at another: all below the depth over which it sets in, nothing above.
+/// Returns the share of precipitation at an altitude if it begins at another: all below the depth over which it sets
+/// in, none above.
 fn onset(begins_m: f64, altitude_m: f64) -> f64 {
     ((begins_m + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0)
 }
 
-/// Mean of `f` over layers by the part of the sky in which each is the first to be met, in the order of `layers`
-/// (cover, layer); `clear` where there are none. Continuous where a layer comes or goes.
+/// Returns the mean of `f` over layers, weighted by the share of the sky in which each is met first, in the order of
+/// `layers` (cover, layer); `clear` without layers. Continuous when a layer comes or goes.
 fn over_layers<'a>(
     layers: impl Iterator<Item = (f64, &'a CloudSlab)>,
     clear: f64,
@@ -48,17 +49,18 @@ fn over_layers<'a>(
 /// Light that clouds leave, each field as a share of the light above them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudLight {
-    /// Share of the sun's beam that arrives as a beam (mean over the place: a hole counts by its chance).
+    /// Share of the sun's beam that arrives as a beam: a mean over places, in which holes count by their probability.
     pub direct: f64,
-    /// Share of the sun's beam on a horizontal surface that arrives diffuse from the clouds, light thrown back and
-    /// forth between ground and cloud included.
+    /// Share of the sun's beam on a horizontal surface that arrives diffuse from the clouds, with the light reflected
+    /// between ground and cloud.
     pub diffuse: f64,
     /// Share of the clear sky's diffuse light that arrives.
     pub sky: f64,
 }
 
 impl Conditions {
-    /// The weather with one layer more, which lies anywhere beside the others; as it is if there is no room.
+    /// Returns the weather with one more layer, which is placed independently of the others; unchanged if there is no
+    /// free slot.
     pub(crate) fn with_layer(mut self, slab: CloudSlab) -> Self {
         if let Some(free) = self.clouds.iter_mut().find(|s| s.cover <= 0.0) {
             self.clear_sky *= 1.0 - slab.cover;
@@ -71,9 +73,9 @@ impl Conditions {
     /// Returns the light that the clouds leave of sun and sky: horizontal irradiance = sun (direct + diffuse) + sky
     /// light x sky.
     ///
-    /// `cos_sun_zenith`: cosine of the sun's zenith distance, held above 0.03. `ground_albedo`: 0 to 1, default of most
-    /// land 0.2. Layers are combined from the top by adding (van de Hulst 1980), each a mixture of cover and holes; the
-    /// host's [`super::CloudLightOverride`] is blended in last.
+    /// `cos_sun_zenith`: cosine of the sun's zenith angle, at least 0.03. `ground_albedo`: 0 to 1, 0.2 for most land.
+    /// Layers are combined from the top by adding (van de Hulst 1980), each as a mixture of cover and holes. The host's
+    /// [`super::CloudLightOverride`] is blended in last.
     pub fn cloud_light(&self, cos_sun_zenith: f64, ground_albedo: f64) -> CloudLight {
         self.cloud_light_at(cos_sun_zenith, ground_albedo, f64::NEG_INFINITY)
     }
@@ -84,55 +86,57 @@ impl Conditions {
         self.clouds.iter().rev().filter(|s| s.cover > 0.0).map(move |s| s.above(height_m))
     }
 
-    /// Height above the sea on whose light clouds over a place feed: the tops of the layers that light meets first, on
-    /// the mean.
+    /// Returns the altitude at which the light arrives that clouds over a place scatter: the mean top of the layers
+    /// that light meets first.
     pub(crate) fn lit_top_m(&self, altitude_m: f64) -> f64 {
         let station_m = self.air.station_altitude_m;
         let layers = self.layers_above(altitude_m).map(|part| (part.cover, part.slab));
         over_layers(layers, altitude_m, |s| s.top_m() + station_m).max(altitude_m)
     }
 
-    /// Height above the sea at which what falls begins: within the layers that one meets first from below, on the mean,
-    /// at least 100 m above the station; 2 km if no cloud is known. What falls grows on its way down through the lower
-    /// half of its cloud, so that it falls on a hill inside of a low deck too, and through the lowest 500 m of a
-    /// thicker cloud.
+    /// Returns the altitude at which precipitation begins. It lies within the layers that are met first from below (a
+    /// mean), at least 100 m above the station; 2 km above the station if there is no cloud. Precipitation grows on its
+    /// way down through the lower half of its cloud, so that it also falls on a hill inside a low deck; in a thicker
+    /// cloud, through the lowest 500 m.
     pub(crate) fn falling_top_m(&self) -> f64 {
         let begins_m = |s: &CloudSlab| s.base_m.max(100.0) + (0.5 * (s.top_m() - s.base_m)).min(MOST_GROWTH_M);
         self.over_first_clouds(begins_m)
     }
 
-    /// Height above the sea at which what falls leaves its cloud: as [`Conditions::falling_top_m`], at the clouds'
-    /// bases.
+    /// Returns the altitude at which precipitation leaves its cloud: as [`Conditions::falling_top_m`], but at the
+    /// clouds' bases.
     pub(crate) fn falling_base_m(&self) -> f64 {
         self.over_first_clouds(|s| s.base_m.max(100.0))
     }
 
-    /// Part of what falls that has begun to fall at an altitude: all below the height where it begins in its cloud,
-    /// none above.
+    /// Returns the share of the precipitation that has begun to fall at an altitude: all below the height where it
+    /// begins in its cloud, none above.
     pub(crate) fn begun(&self, altitude_m: f64) -> f64 {
         onset(self.falling_top_m(), altitude_m)
     }
 
-    /// Part of what falls that is seen at an altitude: all below its cloud; inside, the cloud's own water hides it.
+    /// Returns the share of the precipitation that is visible at an altitude: all below its cloud; inside, the cloud's
+    /// own water hides it.
     pub(crate) fn below_cloud(&self, altitude_m: f64) -> f64 {
         onset(self.falling_base_m(), altitude_m)
     }
 
-    /// Mean height above the sea of the layers that one meets first from below; `height_m` is above the station.
+    /// Returns the mean altitude of the layers that are met first from below; `height_m` returns a layer's height above
+    /// the station.
     fn over_first_clouds(&self, height_m: impl Fn(&CloudSlab) -> f64) -> f64 {
         let layers = self.cloud_slabs().map(|s| (s.cover, s));
         self.air.station_altitude_m + over_layers(layers, 2000.0, height_m)
     }
 
-    /// Part of the sky over a place hidden by cloud that one cannot see through: a thin layer, or what is left of one
-    /// above the place, counts for what it takes of the light.
+    /// Returns the share of the sky over a place that opaque cloud hides. A thin layer, or the part of one above the
+    /// place, counts by the light that it takes.
     pub(crate) fn opaque_cover(&self, altitude_m: f64) -> f64 {
         let hidden = |part: SlabPart<'_>| -part.cover * libm::expm1(-HIDING * part.depth);
         let clear = self.layers_above(altitude_m).map(hidden).fold(1.0, |clear, hidden| clear * (1.0 - hidden));
         (self.gathered() * (1.0 - clear)).min(1.0)
     }
 
-    /// As [`Conditions::cloud_light`] at a height above the sea: of what of the clouds is above it.
+    /// Returns [`Conditions::cloud_light`] at an altitude, with only the clouds above it.
     pub(crate) fn cloud_light_at(&self, cos_sun_zenith: f64, ground_albedo: f64, altitude_m: f64) -> CloudLight {
         let (fluxes, _) = self.fluxes_at(cos_sun_zenith, ground_albedo, altitude_m);
         let (o, weight) = (&self.cloud_light, self.said_share(altitude_m));
@@ -144,8 +148,8 @@ impl Conditions {
         }
     }
 
-    /// Returns the light that goes up at a height above the sea from all that lies below it: as shares of the sun's
-    /// horizontal irradiance and of the sky's light above all clouds.
+    /// Returns the light that goes up at an altitude from everything below, as shares of the sun's horizontal
+    /// irradiance and of the sky's light above all clouds.
     pub(crate) fn light_up_at(&self, cos_sun_zenith: f64, ground_albedo: f64, altitude_m: f64) -> [f64; 2] {
         let (fluxes, below) = self.fluxes_at(cos_sun_zenith, ground_albedo, altitude_m);
         let (o, weight) = (&self.cloud_light, self.said_share(altitude_m));
@@ -154,24 +158,24 @@ impl Conditions {
         [host(sun, o.direct + o.diffuse), host(below.even * fluxes.sky, o.diffuse)]
     }
 
-    /// How far the host's figures hold at a height above the sea: below the clouds, wherever he has any.
+    /// Returns the weight of the host's values at an altitude: full below the clouds, none above them.
     fn said_share(&self, altitude_m: f64) -> f64 {
         let height_m = altitude_m - self.air.station_altitude_m;
         let below = |s: &CloudSlab| s.shares_above_m(height_m)[1];
         self.cloud_light.weight * over_layers(self.cloud_slabs().map(|s| (s.cover, s)), 1.0, below)
     }
 
-    /// Finds the light that comes down at a height above the sea, and the share of it that goes up again.
+    /// Returns the light that comes down at an altitude, and the share of it that is reflected up.
     fn fluxes_at(&self, cos_sun_zenith: f64, ground_albedo: f64, altitude_m: f64) -> (Fluxes, FromBelow) {
         let mu = cos_sun_zenith.clamp(LOWEST, 1.0);
         let height_m = altitude_m - self.air.station_altitude_m;
         let above = FromAbove::new(self.layers_above(altitude_m), mu);
         let below = FromBelow::new(self.cloud_slabs().map(|s| s.below(height_m)), ground_albedo, mu);
-        // What comes down goes up and down again between what is above and what is below.
+        // Light is reflected back and forth between what is above and what is below.
         let bounce = 1.0 / (1.0 - above.back * below.even).max(1e-6);
         let diffuse = (above.diffuse + above.back * below.beam * (above.slanted + above.beam_through)) * bounce;
         let sky = above.sky * bounce;
-        // Where layers lie beside one another, there is more of what is under cloud, and less of what lies between.
+        // Where layers lie side by side, more of the sky is under cloud, and less of it lies between clouds.
         let gathered = self.gathered();
         let left_clear = self.clear_sky() + above.open * gathered;
         let slanted = if above.clear > 1e-9 { left_clear * (above.slanted / above.clear) } else { left_clear };
@@ -185,38 +189,37 @@ impl Conditions {
     }
 }
 
-/// Light that comes down at a height, as shares of that above all clouds.
+/// Light that comes down at an altitude, as shares of the light above all clouds.
 struct Fluxes {
-    /// Share of the sun's beam that no cloud scattered; `beam` adds what was scattered nearly straight on.
+    /// Share of the sun's beam that no cloud scattered; `beam` also contains light scattered nearly straight on.
     direct: f64,
     beam: f64,
-    /// Rest of the beam that comes down, and the share of the sky's light that does.
+    /// Remainder of the beam that comes down, and the share of the sky's light that does.
     diffuse: f64,
     sky: f64,
 }
 
-/// Light that comes down through the parts of layers above a place, of 1 above them all.
+/// Light that comes down through the parts of layers above a place, for 1 above them all.
 struct FromAbove {
-    /// Share of the beam that came through a cloud unscattered; `beam_through` adds what was scattered nearly straight
+    /// Share of the beam that passed a cloud unscattered; `beam_through` also contains light scattered nearly straight
     /// on.
     through: f64,
     beam_through: f64,
     /// Shares of the sky's light and of the beam that met no cloud.
     clear: f64,
     slanted: f64,
-    /// Light that met no cloud, but would have met one if the place were below all layers. As a sum of what each layer
-    /// adds: the difference of two products that are nearly equal would be their rounding errors, light where there is
-    /// none.
+    /// Light that met no cloud, but would have met one if the place were below all layers. It is a sum of each layer's
+    /// contribution: the difference of two nearly equal products would be rounding error, light where there is none.
     open: f64,
     /// Scattered light of the beam, and all light of the sky.
     diffuse: f64,
     sky: f64,
-    /// Share of light from below that comes down again.
+    /// Share of light from below that is reflected down again.
     back: f64,
 }
 
 impl FromAbove {
-    /// Through `parts` from the top, of a beam from a sine of elevation.
+    /// Passes a beam through `parts` from the top; `mu` is the sine of its elevation.
     fn new<'a>(parts: impl Iterator<Item = SlabPart<'a>>, mu: f64) -> Self {
         let mut to = Self {
             through: 0.0,
@@ -249,16 +252,16 @@ impl FromAbove {
     }
 }
 
-/// Share of light that all which lies below a place sends up again.
+/// Share of light that everything below a place reflects up.
 struct FromBelow {
     /// Share of the beam.
     beam: f64,
-    /// Share of light from all sides.
+    /// Share of diffuse light.
     even: f64,
 }
 
 impl FromBelow {
-    /// Creates the shares of ground under `parts`, lowest first.
+    /// Computes the shares for ground under `parts`, lowest first.
     fn new<'a>(parts: impl Iterator<Item = SlabPart<'a>>, ground_albedo: f64, mu: f64) -> Self {
         let albedo = ground_albedo.clamp(0.0, 1.0);
         let ground = Self { beam: albedo, even: albedo };
@@ -303,8 +306,8 @@ mod tests {
         }
     }
 
-    /// Under one overcast that comes for another, the product of the holes in all layers is no light, in whatever order
-    /// it is taken.
+    /// While one overcast replaces another, the product of the holes in all layers is no light, in whatever order it is
+    /// computed.
     #[test]
     fn no_light_comes_from_the_rounding_of_holes() {
         let part = |cover, optical_depth, base_m| CloudSlab { cover, ..sheet(optical_depth, base_m) };
@@ -356,8 +359,8 @@ mod tests {
         skies
     }
 
-    /// Most that one share of the light differs between two heights within which it changes steadily: over a hundredth
-    /// of a millimetre nothing may change by more than a hundredth.
+    /// Largest difference of a share of the light between two heights if it is continuous: over a hundredth of a
+    /// millimetre no share may change by more than a hundredth.
     fn check_steady(shares: &impl Fn(f64) -> [f64; 4], low: (f64, [f64; 4]), high: (f64, [f64; 4])) {
         let most = (0..4).map(|k| (high.1[k] - low.1[k]).abs()).fold(0.0, f64::max);
         if most < 0.01 {
@@ -398,7 +401,7 @@ mod tests {
         }
     }
 
-    /// A layer whose water lies evenly lets through what it does, wherever a place in it divides it.
+    /// A layer with constant water density transmits the same light wherever a place divides it.
     #[test]
     fn a_layer_divided_anywhere_is_the_layer() {
         let all = [12.0, 0.0].map(|depth| sheet(depth, 0.0));

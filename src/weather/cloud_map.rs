@@ -1,36 +1,35 @@
-//! Where over the ground a layer of cloud stands: a map of its cover that the host lays on the world.
+//! Local cloud cover: a map that the host lays over the ground.
 
 use glam::DVec2;
 
 use super::{Conditions, MAX_CLOUD_LAYERS};
 use crate::error::{Error, Result, check_range};
 
-/// Most cells of a map east and north.
+/// Maximum number of cells of a map east and north.
 pub const MAX_CLOUD_MAP_CELLS: u32 = 128;
 
-/// How much of the cover that layers have in the weather they have over each part of the ground: 0 for none, 1 for all
-/// of it. Give a layer the cover 1, and the map says its cover.
+/// Share of the layers' cover in the weather that they have over each part of the ground, from 0 (none) to 1 (all of
+/// it). For a layer with the cover 1, the map gives the cover itself.
 ///
-/// The map stands still over the ground: what a lesson needs is a storm or a clearing in a place that is known
-/// beforehand. Clouds go through it with their wind, and grow and dissolve as it says. It is level and aligned to
-/// north. Between the middles of cells what is covered goes over from one to the other, beyond the outermost middles
-/// theirs hold on.
+/// The map stands still over the ground, because a lesson needs a storm or a clearing in a place that is known
+/// beforehand. Clouds move through it with their wind, and form and dissolve by its values. It is level and aligned to
+/// north. Values are interpolated between the centres of cells, and constant beyond the outermost centres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CloudMap {
-    /// Middle of the cell farthest to the south-west, m east and north of the world's origin, each within 1e7.
+    /// Centre of the south-western cell, m east and north of the world's origin, each within 1e7.
     pub first_m: [f64; 2],
     /// Side of a cell, m, \[100, 50 000\].
     pub cell_m: f64,
-    /// Cells east and north, 1 to [`MAX_CLOUD_MAP_CELLS`].
+    /// Numbers of cells east and north, 1 to [`MAX_CLOUD_MAP_CELLS`].
     pub cells: [u32; 2],
-    /// Bases between which layers follow the map, m above the station, each in \[-1000, 20 000\], the lower one first.
+    /// Lowest and highest base of the layers that follow the map, m above the station, each in \[-1000, 20 000\].
     pub base_m: [f64; 2],
-    /// A number of each cell, \[0, 1\]; from west to east, rows from south to north.
+    /// Value of each cell, \[0, 1\], from west to east; rows from south to north.
     pub cover: Vec<f32>,
 }
 
 impl CloudMap {
-    /// Refuses what is no map, by name.
+    /// Checks that every field is in range; the error names the one that is not.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -54,12 +53,12 @@ impl CloudMap {
         }
     }
 
-    /// Whether a layer with this base above the station follows it.
+    /// Whether a layer with this base above the station follows the map.
     pub fn is_of(&self, base_m: f64) -> bool {
         (self.base_m[0]..=self.base_m[1]).contains(&base_m)
     }
 
-    /// The map at a place, m east and north of the world's origin, between the middles of its cells.
+    /// Returns the map's value at a place, m east and north of the world's origin, interpolated between cells.
     pub fn at(&self, place_m: DVec2) -> f64 {
         let last = DVec2::new(f64::from(self.cells[0] - 1), f64::from(self.cells[1] - 1));
         let cell = ((place_m - DVec2::from_array(self.first_m)) / self.cell_m).clamp(DVec2::ZERO, last);
@@ -76,7 +75,7 @@ impl CloudMap {
 }
 
 impl Conditions {
-    /// Returns the weather with the cover that its layers have over a place under a map.
+    /// Returns the weather with the cover that its layers have at a place under a map.
     pub(crate) fn under_map(mut self, map: &CloudMap, place_m: DVec2) -> Self {
         let left = map.at(place_m);
         let hidden = 1.0 - super::conditions::clear_between(&self.clouds);
@@ -84,8 +83,8 @@ impl Conditions {
             slab.cover *= left;
         }
         let still_hidden = 1.0 - super::conditions::clear_between(&self.clouds);
-        // While one layer comes for another less is clear than independent layers leave: as much less of what is still
-        // hidden.
+        // While one layer replaces another, the sky is less clear than independent layers would leave it. That excess
+        // stays in proportion to the cover that is left.
         if hidden > 0.0 {
             self.clear_sky = 1.0 - (1.0 - self.clear_sky) * (still_hidden / hidden);
         }

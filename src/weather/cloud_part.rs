@@ -1,35 +1,35 @@
-//! Parts of a layer of cloud above or below a place, and what they do with light.
+//! Parts of a cloud layer above or below a place, and their effect on light.
 //!
 //! # Model
-//! How much of its cover and of its optical depth a layer has above a height follows from how it is shaped: laws fitted
-//! to means over the clouds that are drawn (`clouds::field`), for all kinds between sheets, cells, heaps, towers and
-//! fibres. A beam that comes slantwise meets more of broken clouds than one that comes straight down, since it meets
-//! their sides too ([`SlabPart::meet`]); some of what it meets is thin.
+//! The share of its cover and of its optical depth that a layer has above a height depends on its shape. The laws are
+//! fitted to means over the drawn clouds (`clouds::field`), for all kinds between sheets, cells, cumulus, towers and
+//! fibres. A slant beam meets more of broken clouds than a vertical one, because it also meets their sides
+//! ([`SlabPart::meet`]); part of what it meets is thin.
 //!
 //! # Error
-//! `cargo test --lib clouds::light::mean_light -- --nocapture` prints it, kind by kind, against the clouds that are
-//! drawn.
+//! `cargo test --lib clouds::light::mean_light -- --nocapture` prints the error against the drawn clouds, for each
+//! kind.
 
 use super::conditions::CloudSlab;
 use super::mix::mix;
 
 use crate::numerics::smoothstep;
 
-/// Sine of the lowest sun whose beam is followed through clouds: light that comes lower goes as light from there.
+/// Sine of the lowest sun whose beam is traced through clouds; light from lower is treated as coming from there.
 pub(super) const LOWEST: f64 = 0.03;
-/// Most that depths of broken clouds are spread: that of the deepest that the law was fitted to.
+/// Upper limit of the spread of depths in broken clouds: that of the deepest clouds to which the law was fitted.
 const MOST_SPREAD: f64 = 2.6;
-/// Covers between which clouds go over from broken to closed (`CLOSES` of `clouds::field`).
+/// Covers between which clouds change from broken to closed (`CLOSES` of `clouds::field`).
 const CLOSES: [f64; 2] = [0.99, 1.0];
 
 /// Part of a layer that lies on one side of a height.
 pub(super) struct SlabPart<'a> {
     pub slab: &'a CloudSlab,
-    /// Part of the sky that its clouds cover, 0 to 1.
+    /// Share of the sky that its clouds cover, 0 to 1.
     pub cover: f64,
-    /// Their optical depth straight up, averaged over what they cover.
+    /// Their vertical optical depth, averaged over the covered area.
     pub depth: f64,
-    /// Share of the layer's thickness that they reach through.
+    /// Share of the layer's thickness that they span.
     share: f64,
 }
 
@@ -38,21 +38,22 @@ fn mix2(a: [f64; 2], b: [f64; 2], t: f64) -> [f64; 2] {
 }
 
 impl CloudSlab {
-    /// How far it is heaps, 0 to 1: those of cumulus, not the cells of stratocumulus.
+    /// Returns the degree to which the layer is cumulus, 0 to 1, as opposed to the cells of stratocumulus.
     fn heaps(&self) -> f64 {
         (2.0 * self.convection).min(1.0) * (1.0 - self.cellular)
     }
 
-    /// How far it is closed, 0 to 1: a whole wherever it is, too, which has no next cloud.
+    /// Returns the degree to which the layer is closed, 0 to 1. A layer without spacing between clouds is closed at any
+    /// cover.
     fn closed(&self) -> f64 {
         if self.scale_m.is_finite() { smoothstep(CLOSES[0], CLOSES[1], self.cover) } else { 1.0 }
     }
 
-    /// Share of its cover and of its optical depth above a height, of 1 from base to top.
+    /// Shares of its cover and of its optical depth above a height, which counts from 0 at the base to 1 at the top.
     ///
-    /// Laws fitted to means over the clouds that are drawn (`clouds::field`). Of broken clouds ever fewer reach ever
-    /// higher; a cumulonimbus has its anvil over it; a closed layer ends below its top, sheets more unevenly than what
-    /// is heaped.
+    /// Laws fitted to means over the drawn clouds (`clouds::field`). The higher above the base, the fewer broken clouds
+    /// reach there; a cumulonimbus has its anvil on top; a closed layer ends below its top, sheets more unevenly than
+    /// cumulus.
     fn shares_above(&self, height: f64) -> [f64; 2] {
         if height <= 0.0 || height >= 1.0 {
             return [1.0 - height; 2];
@@ -68,12 +69,12 @@ impl CloudSlab {
         mix2(broken, even, self.closed())
     }
 
-    /// Returns these shares for broken clouds: how far their excess over the field's threshold, spread normally, lifts
-    /// their domes.
+    /// Returns these shares for broken clouds. Their domes rise by their excess over the field's threshold, which has a
+    /// normal distribution.
     fn broken_above(&self, height: f64, heaped: f64) -> [f64; 2] {
         let tall = (2.0 * self.convection - 1.0).max(0.0);
         let left = (1.0 - height / (1.0 - 0.15 * heaped * (1.0 - tall))).max(0.0);
-        // A normal distribution as a logistic one (1.7: Johnson and Kotz 1970).
+        // The normal distribution is approximated by a logistic one (1.7: Johnson and Kotz 1970).
         let cover = self.cover.clamp(1e-6, 1.0 - 1e-6);
         let odds = libm::log(cover / (1.0 - cover));
         let rises = (1.3 * (1.7 * (2.2 - tall) + odds)).max(1.0);
@@ -81,12 +82,12 @@ impl CloudSlab {
         [reach * smoothstep(0.0, 0.15, left), left * left]
     }
 
-    /// A height over the station of 1 from its base to its top.
+    /// Converts a height above the station to one from 0 at the base to 1 at the top.
     fn height(&self, height_m: f64) -> f64 {
         ((height_m - self.base_m) / self.thickness_m.max(1e-3)).clamp(0.0, 1.0)
     }
 
-    /// Share of its cover and of its optical depth above a height over the station.
+    /// Shares of its cover and of its optical depth above a height over the station.
     pub(super) fn shares_above_m(&self, height_m: f64) -> [f64; 2] {
         self.shares_above(self.height(height_m))
     }
@@ -111,11 +112,11 @@ impl CloudSlab {
 }
 
 impl SlabPart<'_> {
-    /// Share of a beam from a sine of elevation that meets its clouds.
+    /// Returns the share of a beam that meets its clouds; `mu` is the sine of the beam's elevation.
     ///
-    /// Of gaps between clouds that lie at random, (1 - cover) is raised to a power that grows with the tangent of the
-    /// zenith angle by the height of clouds over their distances (Kauth and Penquite 1967). Straight up less is covered
-    /// than the sky is seen to be, of which sides are a part.
+    /// For gaps between randomly placed clouds, (1 - cover) is raised to a power that grows with the tangent of the
+    /// zenith angle times the ratio of the clouds' height to their spacing (Kauth and Penquite 1967). Vertically, less
+    /// is covered than the sky appears to be, because sides are part of what is seen.
     fn hit(&self, mu: f64) -> f64 {
         let s = self.slab;
         if self.cover >= 1.0 {
@@ -132,12 +133,12 @@ impl SlabPart<'_> {
         -libm::expm1(power * libm::log1p(-self.cover))
     }
 
-    /// Share of a beam that goes through the clouds that it meets unscattered.
+    /// Returns the share of the beam that passes unscattered through the clouds that it meets.
     ///
-    /// Depths of broken clouds are spread by a gamma distribution (Barker 1996).
+    /// Depths of broken clouds have a gamma distribution (Barker 1996).
     fn through(&self, hit: f64, mu: f64) -> f64 {
         let depth = self.depth_met(hit) / mu;
-        // What a low beam meets beside what lies straight above is edges.
+        // A low beam meets the same clouds as a vertical one, and edges in addition.
         let edges = (hit - self.cover).max(0.0);
         let spread =
             (1.0 - self.slab.closed()) * ((0.4 * libm::log1p(self.slab.optical_depth)).min(MOST_SPREAD) + edges);
@@ -145,12 +146,13 @@ impl SlabPart<'_> {
         libm::exp(if x > 1e-9 { -depth * (libm::log1p(x) / x) } else { -depth })
     }
 
-    /// Optical depth of what a beam meets of which so much meets cloud: all that is there, spread over that.
+    /// Returns the vertical optical depth of the clouds that a beam meets: all of the part's cloud, spread over the
+    /// share `hit`.
     fn depth_met(&self, hit: f64) -> f64 {
         if hit > 0.0 { self.depth * (self.cover / hit) } else { 0.0 }
     }
 
-    /// Returns what the part does with a beam from a sine of elevation.
+    /// Returns the effect of the part on a beam; `mu` is the sine of its elevation.
     pub(super) fn meet(&self, mu: f64) -> Met {
         let g = self.slab.asymmetry;
         let hit = self.hit(mu);
@@ -162,7 +164,7 @@ impl SlabPart<'_> {
         }
     }
 
-    /// Share of light from all sides that it sends back.
+    /// Returns the share of diffuse light that it reflects.
     pub(super) fn back(&self) -> f64 {
         self.cover * slab_diffuse_reflectance(self.depth, self.slab.asymmetry)
     }
@@ -172,25 +174,26 @@ impl SlabPart<'_> {
 pub(super) struct Met {
     /// Share that meets its clouds.
     pub hit: f64,
-    /// Share that meets them and comes through unscattered; and with what is scattered nearly straight on.
+    /// Share that meets its clouds and passes unscattered; `beam_through` also contains light scattered nearly straight
+    /// on.
     pub through: f64,
     pub beam_through: f64,
-    /// Share that goes back up.
+    /// Share that is reflected up.
     pub back: f64,
 }
 
 impl Met {
-    /// Share that comes through scattered.
+    /// Returns the share that is transmitted by scattering.
     pub(super) fn scattered(&self) -> f64 {
         (self.hit - self.beam_through - self.back).max(0.0)
     }
 }
 
-/// Reflectance of a slab without absorption under a parallel beam: the two-stream solution of Meador and Weaver
-/// (1980, eq. 24) with Eddington's coefficients after the delta scaling of Joseph, Wiscombe and Weinman (1976).
-/// Transmittance, direct and diffuse together, is 1 minus this. Against discrete ordinates (Henyey-Greenstein, g =
-/// 0.85, depths 1 to 64) it errs by at most 0.0044 with the sun overhead and 0.029 at 60 degrees (tested); of five
-/// two-stream closures tried it is the nearest.
+/// Returns the reflectance of a slab without absorption under a parallel beam: the two-stream solution of Meador and
+/// Weaver (1980, eq. 24) with Eddington's coefficients after the delta scaling of Joseph, Wiscombe and Weinman (1976).
+/// Transmittance, direct and diffuse together, is 1 minus this. Its error against discrete ordinates
+/// (Henyey-Greenstein, g = 0.85, depths 1 to 64) is at most 0.0044 with the sun overhead and 0.029 at 60 degrees
+/// (tested). It was the best of five two-stream closures tried.
 pub fn slab_reflectance(optical_depth: f64, asymmetry: f64, cos_zenith: f64) -> f64 {
     let mu = cos_zenith.clamp(0.01, 1.0);
     let tau = optical_depth * (1.0 - asymmetry * asymmetry);
@@ -201,7 +204,7 @@ pub fn slab_reflectance(optical_depth: f64, asymmetry: f64, cos_zenith: f64) -> 
     ((gamma1 * tau + (gamma3 - gamma1 * mu) * beam) / (1.0 + gamma1 * tau)).clamp(0.0, 1.0)
 }
 
-/// Reflectance of the same slab for light from all sides: gamma1 tau / (1 + gamma1 tau) (Meador and Weaver 1980).
+/// Returns the reflectance of the same slab for diffuse light: gamma1 tau / (1 + gamma1 tau) (Meador and Weaver 1980).
 pub fn slab_diffuse_reflectance(optical_depth: f64, asymmetry: f64) -> f64 {
     let tau = optical_depth * (1.0 - asymmetry * asymmetry);
     let x = 0.75 * (1.0 - asymmetry / (1.0 + asymmetry)) * tau;

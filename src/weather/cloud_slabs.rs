@@ -1,28 +1,27 @@
-//! Clouds as slabs of water: what a layer that the host or a report states is made of. [`super::cloud_light`] has their
-//! light.
+//! Cloud layers of a host or a report converted to slabs of water. [`super::cloud_light`] computes their light.
 
 use super::conditions::{CloudSlab, WindProfile};
 use super::kinds::{CloudKind, PrecipitationKind};
 use super::model::{CloudLayer, MAX_CLOUD_LAYERS, Weather};
 
-/// Composition of a kind of cloud, as means over its depth, and its look.
+/// Composition of a kind of cloud, as means over its depth, and its shape.
 struct Substance {
     thickness_m: f64,
     water_g_m3: f64,
     droplet_radius_um: f64,
     convection: f64,
     ice_fraction: f64,
-    /// Distance from cloud to cloud over the thickness, for a layer of that thickness and near it.
+    /// Ratio of the distance from cloud to cloud to the thickness, for layers near the kind's own thickness.
     spacing: f64,
     cellular: f64,
     fibre: f64,
 }
 
-/// Water and droplets of stratus and cumulus from Diem (1948) and aufm Kampe and Weickmann (1957) as commonly tabulated
-/// (stratus 0.2 g/m^3, 7 um; fair cumulus 0.5, 4). Towering cumulus fills half of its layer with the 2.5 g/m^3 of its
-/// core; a cumulonimbus is diluted by entrainment; ice from Heymsfield (2003). Thicknesses are typical of temperate
-/// latitudes (WMO cloud atlas). Cells of stratocumulus are some three to five times as wide as deep, elements of
-/// altocumulus 1 to 5 degrees wide (WMO cloud atlas).
+/// Returns the composition of a kind of cloud. Water and droplets of stratus and cumulus from Diem (1948) and aufm
+/// Kampe and Weickmann (1957) as commonly tabulated (stratus 0.2 g/m^3, 7 um; fair-weather cumulus 0.5, 4). Towering
+/// cumulus fills half of its layer with the 2.5 g/m^3 of its core; a cumulonimbus is diluted by entrainment; ice from
+/// Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud atlas). Cells of stratocumulus are some
+/// three to five times as wide as deep, elements of altocumulus 1 to 5 degrees wide (WMO cloud atlas).
 fn substance(kind: CloudKind) -> Substance {
     let s = |[thickness_m, water_g_m3, droplet_radius_um]: [f64; 3],
              convection,
@@ -52,15 +51,15 @@ fn substance(kind: CloudKind) -> Substance {
     }
 }
 
-/// How far from its kind's thickness a layer's clouds still grow wider or narrower with it.
+/// Factor from its kind's thickness up to which a layer's thickness still changes the width of its clouds.
 const WIDER: f64 = 3.0;
 
-/// Bases at which low, middle and high clouds divide, m (WMO levels of temperate latitudes).
+/// Lowest bases of middle and of high clouds, m (WMO levels of temperate latitudes).
 const MIDDLE_FROM_M: f64 = 2000.0;
 const HIGH_FROM_M: f64 = 6000.0;
 
-/// The kind of a layer whose kind nobody named: by level, by cover (more than half is a sheet), and by what falls from
-/// it (`raining` is more than drizzle, which falls from stratus).
+/// Chooses the kind of a layer of unknown kind: by level, by cover (more than half is a sheet), and by its
+/// precipitation (`raining`: more than drizzle, which falls from stratus).
 fn likely_kind(layer: &CloudLayer, raining: bool, showers: bool) -> CloudKind {
     let sheet = layer.cover > 0.5;
     match (layer.base_m, sheet) {
@@ -77,16 +76,17 @@ fn likely_kind(layer: &CloudLayer, raining: bool, showers: bool) -> CloudKind {
     }
 }
 
-/// Optical depth of water of `water_path_kg_m2` in droplets of `radius_um`: tau = 3 W / (2 rho r) (Stephens 1978), rho
-/// that of water or ice.
+/// Returns the optical depth of water of `water_path_kg_m2` in droplets of `radius_um`: tau = 3 W / (2 rho r) (Stephens
+/// 1978), where rho is the density of water or ice.
 pub fn cloud_optical_depth(water_path_kg_m2: f64, radius_um: f64, ice_fraction: f64) -> f64 {
     let density = 1000.0 + (917.0 - 1000.0) * ice_fraction;
     1.5 * water_path_kg_m2 / (density * radius_um * 1e-6)
 }
 
-/// Water that a cloud must hold for the rate it lets fall, kg/m^2: the rate over the pace at which cloud water turns
-/// into rain (Kessler 1969), 1e-3 1/s by drops growing together and 2.2 q^0.875 1/s by falling rain sweeping droplets
-/// up. q, rain water in air (kg/kg, density 1.2 kg/m^3), follows the rate by Marshall and Palmer's 0.072 R^0.88 g/m^3.
+/// Returns the water that a cloud must hold to give a rate of rain, kg/m^2: the rate divided by the rate at which cloud
+/// water turns into rain (Kessler 1969). This is 1e-3 1/s by coalescence of droplets, plus 2.2 q^0.875 1/s by falling
+/// rain that collects droplets. The rain water in the air q (kg/kg, density 1.2 kg/m^3) follows from the rate by
+/// Marshall and Palmer's 0.072 R^0.88 g/m^3.
 pub fn water_path_for_rate_kg_m2(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;
@@ -95,7 +95,7 @@ pub fn water_path_for_rate_kg_m2(rate_mm_h: f64) -> f64 {
     rate_mm_h / 3600.0 / (1e-3 + 2.2 * libm::pow(rain_water, 0.875))
 }
 
-/// One layer as a slab, with `least_water_kg_m2` of water at least where there is cloud.
+/// Converts one layer to a slab, with at least `least_water_kg_m2` of water where there is cloud.
 fn slab(layer: &CloudLayer, kind: CloudKind, least_water_kg_m2: f64, wind: &WindProfile) -> CloudSlab {
     let s = substance(kind);
     let thickness = layer.thickness_m.unwrap_or(s.thickness_m);
@@ -120,14 +120,15 @@ fn slab(layer: &CloudLayer, kind: CloudKind, least_water_kg_m2: f64, wind: &Wind
     }
 }
 
-/// The wind that carries a layer: its own, or the weather's at its middle.
+/// Returns the wind that carries a layer: its own, or the weather's at its middle.
 fn carrying_wind(layer: &CloudLayer, thickness_m: f64, wind: &WindProfile) -> [f64; 2] {
     let Some(own) = layer.wind else { return wind.mean_at_height_m_s(layer.base_m + 0.5 * thickness_m) };
     let (sine, cosine) = libm::sincos(own.from_deg.to_radians());
     [-own.speed_m_s * sine, -own.speed_m_s * cosine]
 }
 
-/// Index of the layer from which rain falls: the lowest that covers half the sky, else the one that covers most.
+/// Returns the index of the layer from which rain falls: the lowest that covers half the sky, else the one that covers
+/// most.
 fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
     let low = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.base_m.total_cmp(&b.1.base_m);
     let most = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.cover.total_cmp(&b.1.cover);
@@ -140,10 +141,11 @@ fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
         .map(|(i, _)| *i)
 }
 
-/// The slabs of the weather, each in the slot of its level so that a blend pairs low with low and high with high.
+/// Converts a weather's layers to slabs, each in a slot of its level, so that a blend pairs low with low and high with
+/// high.
 ///
-/// Rain needs cloud: the layer it falls from holds [`water_path_for_rate_kg_m2`] at least, and where the host named no
-/// cloud at all an overcast of nimbostratus at 600 m is there (`rain_needs_cloud` false switches both off). Ice
+/// Rain needs cloud. The layer from which it falls holds at least [`water_path_for_rate_kg_m2`], and if the host named
+/// no cloud at all, an overcast of nimbostratus at 600 m is added (`rain_needs_cloud` false switches both off). Ice
 /// crystals fall from a clear sky.
 pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: bool) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     let p = &w.precipitation;
@@ -170,8 +172,8 @@ pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: boo
 /// First slots of low, middle and high clouds.
 const LEVEL_SLOTS: [usize; 3] = [0, 7, 11];
 
-/// Puts slabs, lowest first, into the slots of their level; where one has more than slots, the others make room. Slots
-/// are then in the order of heights, which is how light goes through them ([`Conditions::cloud_light`]).
+/// Puts slabs, lowest first, into the slots of their level; if a level has more slabs than slots, the other levels give
+/// up slots. The slots are then in the order of heights, in which light passes them ([`Conditions::cloud_light`]).
 fn into_slots(mut slabs: Vec<CloudSlab>) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     slabs.sort_by(|a, b| a.base_m.total_cmp(&b.base_m));
     let below = |limit_m: f64| slabs.partition_point(|s| s.base_m < limit_m);
@@ -210,7 +212,7 @@ mod tests {
 
     #[test]
     fn rain_clouds_hold_about_a_kilogram_a_square_metre() {
-        // The order that microwave radiometers retrieve in rain: 0.2 kg/m^2 in light to about 1.5 in heavy rain.
+        // Microwave radiometers retrieve values of this order in rain: 0.2 kg/m^2 in light to about 1.5 in heavy rain.
         let paths = [0.1, 1.0, 5.0, 20.0, 100.0].map(water_path_for_rate_kg_m2);
         assert!(paths.windows(2).all(|p| p[1] > p[0]), "{paths:?}");
         assert!((0.1..0.3).contains(&paths[1]) && (0.7..1.5).contains(&paths[3]) && paths[4] < 3.0, "{paths:?}");

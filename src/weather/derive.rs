@@ -1,5 +1,5 @@
-//! From what is said to what is: every coupling between the parts of the weather, each a named law that the host can
-//! override.
+//! Derivation of conditions from a weather: every coupling between parts of the weather is a published law that the
+//! host can override.
 
 use super::conditions::{CloudLightOverride, Conditions, clear_between};
 use super::model::Weather;
@@ -7,7 +7,7 @@ use super::overrides::Overrides;
 use super::{air, cloud_slabs, particles, precipitation, surface};
 use crate::error::Result;
 
-/// The conditions that follow from a weather by the laws alone. Pure and deterministic; any thread.
+/// Derives the conditions that follow from a weather by the laws alone. Pure and deterministic; any thread.
 ///
 /// # Errors
 /// As [`Weather::validate`].
@@ -15,11 +15,11 @@ pub fn derive(weather: &Weather) -> Result<Conditions> {
     derive_with(weather, &Overrides::default())
 }
 
-/// As [`derive()`], with the host's figures in place of some laws.
+/// Derives conditions as [`derive()`], with the host's values in place of some laws.
 ///
-/// The reported visibility V is total, so everything in it is counted once: extinction ln 20 / V is shared by air
-/// (Bodhaine et al. 1999), what falls (drop and flake spectra, held to what V leaves) and particles, which take the
-/// rest.
+/// The reported visibility V is total, so each component counts once. The extinction ln 20 / V is shared by air
+/// (Bodhaine et al. 1999), precipitation (drop and flake spectra, limited to what V leaves) and particles, which take
+/// the remainder.
 ///
 /// # Errors
 /// As [`Weather::validate`] and [`Overrides::validate`].

@@ -1,10 +1,11 @@
-//! Extinction of what falls by its rate, a law for each species, and the rates of rain and snow by their extinction.
+//! Extinction of precipitation from its rate, by a law for each species; and the rates of rain and snow from their
+//! extinction.
 
-/// Extinction of rain at `rate_mm_h`, 1/m, any visible wavelength.
+/// Returns the extinction of rain at `rate_mm_h`, 1/m, any visible wavelength.
 ///
-/// Geometric optics (Q = 2) over the Marshall-Palmer (1948) distribution of drops from 0.1 to 6 mm, its number
-/// renormalised so that falling at Gunn and Kinzer's (1949) speeds the drops make the rate; a cubic in ln R fitted to
-/// that integral from 0.01 to 400 mm/h, within 0.7 % of it (tested). Below 0.01 mm/h the cubic's slope there goes on.
+/// Geometric optics (Q = 2) over the Marshall-Palmer (1948) distribution of drops from 0.1 to 6 mm. The number of drops
+/// is renormalised so that, at the fall speeds of Gunn and Kinzer (1949), they give the rate. A cubic in ln R is fitted
+/// to that integral from 0.01 to 400 mm/h, within 0.7 % (tested). Below 0.01 mm/h it continues with its slope there.
 pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
     fitted(
         [-8.093_669_161_877_56, 0.621_661_386_993_859_1, 5.708_736_555_017_379e-3, 6.728_417_057_882_727e-4],
@@ -13,9 +14,9 @@ pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
     )
 }
 
-/// Extinction of showers, 1/m: as for rain, with the thunderstorm distribution of Joss et al. (1968), 3.0 R^-0.21 per
-/// mm, whose fewer and larger drops hide about 0.6 of what those of steady rain do; a quartic in ln R, within 0.7 % of
-/// the integral.
+/// Returns the extinction of showers, 1/m: as for rain, with the thunderstorm distribution of Joss et al. (1968), 3.0
+/// R^-0.21 per mm. Its fewer and larger drops have about 0.6 of the extinction of steady rain. A quartic in ln R,
+/// within 0.7 % of the integral.
 pub fn shower_extinction_per_m(rate_mm_h: f64) -> f64 {
     fitted(
         [
@@ -30,20 +31,21 @@ pub fn shower_extinction_per_m(rate_mm_h: f64) -> f64 {
     )
 }
 
-/// exp of a polynomial in the logarithm of the rate from `least_mm_h` on; below, its slope there goes on.
+/// Returns the exponential of a polynomial in the logarithm of the rate, from `least_mm_h` on; below, it continues with
+/// its slope there.
 fn fitted<const N: usize>(c: [f64; N], least_mm_h: f64, rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;
     }
     let log_rate = libm::log(rate_mm_h);
     let x = log_rate.max(libm::log(least_mm_h));
-    // Horner's scheme for the value and its slope together.
+    // Horner's scheme computes the value and its slope together.
     let (value, slope) = c.iter().rev().fold((0.0, 0.0), |(value, slope), c| (value * x + c, slope * x + value));
     libm::exp(value + slope * (log_rate - x))
 }
 
-/// Rate of rain, mm/h, whose extinction is `extinction_per_m`: the inverse of [`rain_extinction_per_m`] by bisection,
-/// held to \[0, 500\].
+/// Returns the rate of rain, mm/h, whose extinction is `extinction_per_m`: the inverse of [`rain_extinction_per_m`] by
+/// bisection, limited to \[0, 500\].
 pub fn rain_rate_mm_h(extinction_per_m: f64) -> f64 {
     let (mut low, mut high) = (0.0, 500.0);
     for _ in 0..60 {
@@ -53,9 +55,9 @@ pub fn rain_rate_mm_h(extinction_per_m: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968), N0 = 30 000 per m^3 mm
-/// and 5.7 R^-0.21 per mm; a power law fitted from 0.1 to 1 mm/h, and above a quartic in ln R that goes on from it,
-/// within 0.5 % of the integral to 500 mm/h (tested).
+/// Returns the extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968), N0 = 30
+/// 000 per m^3 mm and 5.7 R^-0.21 per mm. A power law fitted from 0.1 to 1 mm/h, continued above by a quartic in ln R,
+/// within 0.5 % of the integral up to 500 mm/h (tested).
 pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;
@@ -64,12 +66,12 @@ pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
     5.575e-4 * libm::pow(rate_mm_h, 0.605) * libm::exp(x * x * (8.645e-3 + x * (-1.047e-3 + x * 1.3258e-4)))
 }
 
-/// Extinction of snow, 1/m, at a melted rate.
+/// Returns the extinction of snow, 1/m, at a melted rate.
 ///
-/// Gunn and Marshall's (1958) sizes, N0 = 3800 R^-0.87 and 2.55 R^-0.48 per mm of melted diameter; flakes of density
-/// 0.17 g/cm^3 over their diameter in mm (Holroyd 1971), so D^2 = Dm^3 / 0.17; Q = 2 on 0.6 of the disc (aggregates'
-/// area ratio). The integral is (pi / 2) 0.6 (N0 / 0.17) 6 / Lambda^4. It puts 1 mm/h at a visibility of 1.0 km, where
-/// the classes by visibility (light above 1 km) divide.
+/// Sizes by Gunn and Marshall (1958), N0 = 3800 R^-0.87 and 2.55 R^-0.48 per mm of melted diameter. Flakes have a
+/// density of 0.17 g/cm^3 over their diameter in mm (Holroyd 1971), so D^2 = Dm^3 / 0.17, and Q = 2 on 0.6 of the disc
+/// (area ratio of aggregates). The integral is (pi / 2) 0.6 (N0 / 0.17) 6 / Lambda^4. At 1 mm/h it gives a visibility
+/// of 1.0 km, the bound of the classes by visibility (light above 1 km).
 pub fn snow_extinction_per_m(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 { 0.0 } else { SNOW_AT_1_MM_H * libm::pow(rate_mm_h, SNOW_EXPONENT) }
 }
@@ -79,21 +81,22 @@ const SNOW_AT_1_MM_H: f64 = 2.989_494e-3;
 /// 4 x 0.48 - 0.87.
 const SNOW_EXPONENT: f64 = 1.05;
 
-/// Melted rate of snow, mm/h, whose extinction is `extinction_per_m`: the inverse of [`snow_extinction_per_m`].
+/// Returns the melted rate of snow, mm/h, whose extinction is `extinction_per_m`: the inverse of
+/// [`snow_extinction_per_m`].
 pub fn snow_rate_mm_h(extinction_per_m: f64) -> f64 {
     if extinction_per_m <= 0.0 { 0.0 } else { libm::pow(extinction_per_m / SNOW_AT_1_MM_H, 1.0 / SNOW_EXPONENT) }
 }
 
-/// Extinction of ice pellets and small hail, 1/m: as for rain, of frozen raindrops ([`crate::rain::ice`]); a cubic in
-/// ln R from 0.1 mm/h on, within 1 % of the integral.
+/// Returns the extinction of ice pellets and small hail, 1/m: as for rain, for frozen raindrops ([`crate::rain::ice`]).
+/// A cubic in ln R from 0.1 mm/h on, within 1 % of the integral.
 pub fn ice_pellet_extinction_per_m(rate_mm_h: f64) -> f64 {
     let c = [-8.240_465_571_633_957, 0.742_613_523_695_101_4, -0.013_905_257_292_335_787, 0.001_826_927_515_728_196_2];
     fitted(c, 0.1, rate_mm_h)
 }
 
-/// Extinction of hail, 1/m: Cheng and English's (1983) stones ([`crate::rain::ice`]); a quintic in ln R from 0.1 mm/h
-/// on, within 2 % of the integral, and beyond the rate of which their law makes no larger stones in proportion to the
-/// rate.
+/// Returns the extinction of hail, 1/m, for stones by Cheng and English (1983; [`crate::rain::ice`]). A quintic in ln R
+/// from 0.1 mm/h on, within 2 % of the integral. Beyond the rate at which their law gives the largest stones it is
+/// proportional to the rate.
 pub fn hail_extinction_per_m(rate_mm_h: f64) -> f64 {
     const MOST_MM_H: f64 = 37.0;
     let c = [
@@ -127,7 +130,7 @@ mod tests {
         0.01 * (va + (vb - va) * ((d - a) / (b - a)).min(1.0))
     }
 
-    /// Rate (mm/h) and extinction (1/m) of N0 exp(-lambda D), D in mm from 0.1 to 6, by the midpoint rule.
+    /// Returns rate (mm/h) and extinction (1/m) of N0 exp(-lambda D), D from 0.1 to 6 mm, by the midpoint rule.
     fn integrals(n0: f64, lambda: f64) -> (f64, f64) {
         let n = 4000;
         let h = 5.9 / f64::from(n);
@@ -142,7 +145,7 @@ mod tests {
     fn rate_integral_of_the_raw_distribution_misses_by_the_published_factor() {
         for (r, factor) in [(1.0_f64, 1.183), (10.0, 1.164), (25.0, 1.131), (100.0, 1.051)] {
             let (rate, ext) = integrals(8000.0, 4.1 * r.powf(-0.21));
-            // The published factors integrate to infinity; the cut at 6 mm takes up to 2 % away at 100 mm/h.
+            // The published factors integrate to infinity; cutting at 6 mm takes up to 2 % away at 100 mm/h.
             assert!((rate / r / factor - 1.0).abs() < 0.022, "{r}: {}", rate / r);
             assert!((ext / (0.365e-3 * r.powf(0.63)) - 1.0).abs() < 0.03, "{r}: {ext}");
         }

@@ -1,8 +1,9 @@
-//! The kinds of things a weather report names, each with a number that is stable for ever (C hosts pass the number).
+//! Kinds of things that a weather report names, each with a number that never changes (C hosts pass the number).
 
 use crate::error::{Error, Result};
 
-/// Declares a `u32` enum whose numbers, names and list are public, so that C, files and people can name each variant.
+/// Declares a `u32` enum with public numbers, names and list of variants, so that C, files and people can name each
+/// variant.
 macro_rules! kinds {
     ($(#[$meta:meta])* $name:ident, $what:literal { $($(#[$vmeta:meta])* $variant:ident = $value:literal, $text:literal;)+ }) => {
         $(#[$meta])*
@@ -16,14 +17,14 @@ macro_rules! kinds {
             /// Every variant, in the order of its number.
             pub const ALL: &'static [Self] = &[$(Self::$variant,)+];
 
-            /// The variant's name in lower case with underscores, as presets and files write it.
+            /// Returns the variant's name in lower case with underscores, as presets and files write it.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $text,)+
                 }
             }
 
-            /// The variant of a stable number.
+            /// Returns the variant with a number.
             ///
             /// # Errors
             /// [`crate::Status::InvalidArgument`] naming the parameter and the accepted numbers.
@@ -40,7 +41,7 @@ macro_rules! kinds {
 kinds! {
     /// Kind of dry particles in the air. Sets the defaults of [`super::Aerosol`]'s optional fields.
     AerosolKind, "aerosol.kind" {
-        /// Average continental air: soil, soot-poor industry, sulphates.
+        /// Average continental air: soil dust, industrial particles with little soot, sulphates.
         Continental = 0, "continental";
         /// Clean continental or rural air.
         Clean = 1, "clean";
@@ -66,7 +67,7 @@ kinds! {
 kinds! {
     /// Fog and mist: suspended droplets at the ground.
     FogKind, "fog.kind" {
-        /// No fog; what visibility lacks is the aerosol's.
+        /// No fog; the aerosol accounts for the visibility.
         None = 0, "none";
         /// Mist (METAR BR): droplets, 1 to 5 km.
         Mist = 1, "mist";
@@ -84,15 +85,15 @@ kinds! {
 }
 
 kinds! {
-    /// Cloud genera, and the two that METAR names.
+    /// Cloud genera, and the two kinds that METAR names.
     CloudKind, "clouds[].kind" {
-        /// Not known: chosen from height, cover and precipitation by `derive`.
+        /// Unknown kind: `derive` chooses one by height, cover and precipitation.
         Unknown = 0, "unknown";
         /// Low grey sheet.
         Stratus = 1, "stratus";
-        /// Low lumpy sheet.
+        /// Low sheet of rounded masses.
         Stratocumulus = 2, "stratocumulus";
-        /// Fair-weather heaps.
+        /// Fair-weather cumulus.
         Cumulus = 3, "cumulus";
         /// Towering cumulus (METAR TCU).
         ToweringCumulus = 4, "towering_cumulus";
@@ -100,7 +101,7 @@ kinds! {
         Cumulonimbus = 5, "cumulonimbus";
         /// Thick sheet that rains or snows.
         Nimbostratus = 6, "nimbostratus";
-        /// Middle lumpy sheet.
+        /// Middle sheet of rounded masses.
         Altocumulus = 7, "altocumulus";
         /// Middle grey sheet.
         Altostratus = 8, "altostratus";
@@ -114,11 +115,11 @@ kinds! {
 }
 
 kinds! {
-    /// Kind of precipitation. Frontal (stratiform) rain is [`PrecipitationKind::Rain`], convective rain the same with
-    /// [`super::Precipitation::showers`], relief (orographic) rain, many small drops, [`PrecipitationKind::Drizzle`] of
-    /// 0.5 to 3 mm/h.
+    /// Kind of precipitation. Frontal (stratiform) rain is [`PrecipitationKind::Rain`]. Convective rain is
+    /// [`PrecipitationKind::Rain`] with [`super::Precipitation::showers`]. Relief (orographic) rain, which has many
+    /// small drops, is [`PrecipitationKind::Drizzle`] of 0.5 to 3 mm/h.
     PrecipitationKind, "precipitation.kind" {
-        /// Nothing falls; the rate must be 0.
+        /// No precipitation; the rate must be 0.
         None = 0, "none";
         /// Drizzle (DZ), and relief rain: small drops.
         Drizzle = 1, "drizzle";
@@ -148,7 +149,7 @@ kinds! {
 kinds! {
     /// Kind of matter that the wind lifts from the ground.
     LoftedKind, "lofted.kind" {
-        /// Nothing.
+        /// No lifted matter.
         None = 0, "none";
         /// Drifting snow below eye height (DRSN).
         DriftingSnow = 1, "drifting_snow";
@@ -166,13 +167,13 @@ kinds! {
 }
 
 kinds! {
-    /// The ground's state as an observer names it.
+    /// State of the ground as an observer names it.
     SurfaceState, "surface.state" {
         /// Dry.
         Dry = 0, "dry";
-        /// Damp: darker, no film.
+        /// Damp: darker, without a film of water.
         Damp = 1, "damp";
-        /// Wet: a film that shines.
+        /// Wet: a shining film of water.
         Wet = 2, "wet";
         /// Standing water, puddles.
         StandingWater = 3, "standing_water";
@@ -180,19 +181,19 @@ kinds! {
         Frost = 4, "frost";
         /// Ice.
         Ice = 5, "ice";
-        /// Snow lies; see `snow_depth_m`.
+        /// Lying snow; see `snow_depth_m`.
         Snow = 6, "snow";
     }
 }
 
 kinds! {
-    /// How the cloud groups of a report count. National practices differ, and the report does not say which one it
-    /// follows.
+    /// Rule by which the cloud groups of a report count. National practices differ, and the report does not say which
+    /// one it follows.
     CloudAmountRule, "cloud_amounts" {
-        /// By the station's location indicator: [`CloudAmountRule::Sums`] where the United States or Canada report,
-        /// else [`CloudAmountRule::Layers`].
+        /// By the station's location indicator: [`CloudAmountRule::Sums`] in the United States and Canada, else
+        /// [`CloudAmountRule::Layers`].
         ByStation = 0, "by_station";
-        /// Each group counts the sky that its layer and all lower ones hide together (Federal Meteorological Handbook
+        /// Each group counts the sky that its layer and all lower layers hide together (Federal Meteorological Handbook
         /// No. 1, 9.4.2 b and 9.5.2).
         Sums = 1, "sums";
         /// Each group counts its own layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2).
@@ -201,7 +202,8 @@ kinds! {
 }
 
 impl PrecipitationKind {
-    /// Mass fraction of what falls that is liquid, where the report does not say: 1 for rain, 0 for ice, 0.5 for sleet.
+    /// Mass fraction of the precipitation that is liquid, if the report does not give it: 1 for rain, 0 for ice, 0.5
+    /// for sleet.
     pub fn default_liquid_fraction(self) -> f64 {
         match self {
             Self::Drizzle | Self::Rain | Self::FreezingDrizzle | Self::FreezingRain => 1.0,

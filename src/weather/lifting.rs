@@ -1,29 +1,29 @@
-//! Unevenness of what the wind lifts, which comes in gusts: by the law of grains that hop along the ground.
+//! Matter that the wind lifts: how uneven gusts make it, by the law of saltating grains; and the layer of blown snow.
 
 use super::conditions::{Conditions, GroundLayer, WindProfile};
 
 use crate::numerics::smoothstep;
 
-/// Wind at 10 m that first moves dry sand or snow, m/s: a friction velocity of 0.25 to 0.3 m/s over smooth ground
-/// (Bagnold 1941; for dry snow 7.7 m/s, Li and Pomeroy 1997).
+/// Wind speed at 10 m above which dry sand or snow begins to move, m/s: a friction velocity of 0.25 to 0.3 m/s over
+/// smooth ground (Bagnold 1941; for dry snow 7.7 m/s, Li and Pomeroy 1997).
 pub const LIFTING_M_S: f64 = 7.0;
 
-/// Absorption of lifted dust goes with (wavelength / 550 nm)^-exponent (Russell et al. 2010). Lifted snow absorbs
-/// nothing.
+/// Exponent of the power law of lifted dust's absorption, (wavelength / 550 nm)^-exponent (Russell et al. 2010). Lifted
+/// snow absorbs nothing.
 pub(crate) const DUST_ABSORPTION_EXPONENT: f64 = 2.7;
 
-/// Returns the amount of loose grains that a wind carries, up to a factor: u^3 (1 - (ut / u)^2), nothing below the
+/// Returns the amount of loose grains that a wind carries, up to a factor: u^3 (1 - (ut / u)^2), and 0 below the
 /// threshold (Owen 1964).
 pub fn carried(speed_m_s: f64) -> f64 {
     speed_m_s * (speed_m_s * speed_m_s - LIFTING_M_S * LIFTING_M_S).max(0.0)
 }
 
-/// Amounts that gusts carry on the mean, m^3/s^3: below the first the wind lifts nothing, and from the second on its
-/// unevenness counts in full. What a calmer wind still carries was lifted before and has mixed.
+/// Mean amounts carried by gusts, m^3/s^3: below the first the wind lifts nothing, and from the second on its
+/// unevenness counts fully. Matter that a calmer wind still carries was lifted earlier and has mixed.
 const CALM: [f64; 2] = [1e-3, 0.3];
 
-/// Standard deviation of what gusts carry over its mean, held to \[0, 1\]: 0 where no gust lifts anything, 1 where only
-/// gusts do. Gusts are normal about the mean wind.
+/// Returns the ratio of the standard deviation of the amount that gusts carry to its mean, limited to \[0, 1\]: 0 where
+/// no gust lifts anything, 1 where only gusts do. Gusts have a normal distribution around the mean wind.
 pub fn unevenness(wind: &WindProfile) -> f64 {
     const STEPS: i32 = 60;
     let (mean, deviation) = (wind.speed_m_s(), wind.speed_m_s() * wind.turbulence_intensity);
@@ -40,27 +40,28 @@ pub fn unevenness(wind: &WindProfile) -> f64 {
     ((second - first * first).max(0.0).sqrt() / first).min(1.0) * smoothstep(CALM[0], CALM[1], first)
 }
 
-/// Radius of blown snow, m: 60 to 100 um (Pomeroy and Male 1992).
+/// Radius of blown snow particles, m: 60 to 100 um (Pomeroy and Male 1992).
 const BLOWN_RADIUS_M: f64 = 7e-5;
-/// Depth of low drifting snow and of high blowing snow, m, and how far the wind is above the threshold from one to the
-/// other, m/s.
+/// Depths of low drifting snow and of high blowing snow, m, and by how much the wind rises above the threshold between
+/// the two, m/s.
 const BLOWN_TOP_M: [f64; 2] = [1.5, 50.0];
 const BLOWN_RISE_M_S: f64 = 5.0;
 
-/// Friction velocity over drifting snow, m/s, under a wind at 10 m (Pomeroy and Gray 1990).
+/// Returns the friction velocity over drifting snow, m/s, for a wind at 10 m (Pomeroy and Gray 1990).
 pub fn drift_friction_velocity_m_s(wind_m_s: f64) -> f64 {
     0.02264 * libm::pow(wind_m_s, 1.295)
 }
 
-/// Snow in the air at a height above loose snow, kg/m^3: 0.8 exp(-1.55 (4.784 u*^-0.544 - z^-0.544)) (Pomeroy and Male
-/// 1992).
+/// Returns the density of snow in the air at a height above loose snow, kg/m^3: 0.8 exp(-1.55 (4.784 u*^-0.544 -
+/// z^-0.544)) (Pomeroy and Male 1992).
 pub fn blown_kg_m3(wind_m_s: f64, height_m: f64) -> f64 {
     let u = drift_friction_velocity_m_s(wind_m_s);
     0.8 * libm::exp(-1.55 * (4.784 * libm::pow(u, -0.544) - libm::pow(height_m, -0.544)))
 }
 
-/// Adds the layer of snow that the wind lifts where loose snow covers the share `covered` of the ground and moves above
-/// this threshold, unless the weather has a layer at the ground. Spheres that hide twice their area: 3 eta / (2 rho r).
+/// Adds the layer of snow that the wind lifts, unless the weather already has a layer at the ground. Loose snow covers
+/// the share `covered` of the ground and moves above this threshold. The extinction is that of spheres with an
+/// efficiency of 2: 3 eta / (2 rho r).
 pub(crate) fn lift_snow(c: &mut Conditions, threshold_m_s: f64, covered: f64) {
     let wind = c.wind.speed_m_s();
     if c.fog.extinction_per_m > 0.0 || wind <= threshold_m_s || covered <= 0.0 {
@@ -83,7 +84,7 @@ pub(crate) fn lift_snow(c: &mut Conditions, threshold_m_s: f64, covered: f64) {
         patch_size_m: 12.0 + 108.0 * high,
         lifted: unevenness(&c.wind),
     };
-    // Drifting snow stays below the eye, and a station's visibility looks over it.
+    // Drifting snow stays below the eye, and a station's reported visibility looks over it.
     c.extinction_per_m += extinction_per_m * high;
 }
 
@@ -116,7 +117,7 @@ mod tests {
         assert_eq!((of(0.0, 0.2), of(3.0, 0.2)), (0.0, 0.0));
         assert!(of(20.0, 0.0) < 1e-6, "an even wind");
         assert_eq!(of(6.0, 0.2), 1.0, "gusts alone lift");
-        // Far above the threshold the cube triples what the wind varies by.
+        // Far above the threshold the cube triples the relative variation of the wind.
         let strong = of(40.0, 0.1);
         assert!((strong / 0.3 - 1.0).abs() < 0.08, "{strong}");
         assert!(of(12.0, 0.15) > of(20.0, 0.15) && of(20.0, 0.25) > of(20.0, 0.15));
@@ -137,7 +138,7 @@ mod tests {
             high.visibility_m(),
             storm.visibility_m()
         );
-        // Below 1 km it is a blizzard's; in a storm one sees some tens of metres.
+        // Below 1 km it is a blizzard; in a storm the visibility is some tens of metres.
         assert!((150.0..1000.0).contains(&high.visibility_m()), "{}", high.visibility_m());
         assert!((5.0..150.0).contains(&storm.visibility_m()) && storm.fog.top_m == 50.0, "{}", storm.visibility_m());
         let mut last = 0.0;

@@ -1,8 +1,8 @@
-//! The weather as the host says it, in SI units, and what follows from it.
+//! The weather as the host states it, in SI units, and the physical conditions derived from it.
 //!
-//! [`Weather`] is what a host or a report states; [`derive()`] makes of it [`Conditions`], which every effect reads.
-//! Transcendental functions here come from `libm` (pure Rust), never from the platform: the same weather and time then
-//! give the same bits on every machine.
+//! [`Weather`] is what a host or a report states; [`derive()`] turns it into [`Conditions`], which every effect reads.
+//! Transcendental functions here come from `libm` (pure Rust), never from the platform, so that the same weather and
+//! time give the same bits on every machine.
 
 pub mod air;
 mod aloft;

@@ -1,25 +1,25 @@
-//! `Weather`: what the host says the weather is, in SI units, before any physics.
+//! `Weather`: the weather as the host states it, in SI units, before any physics.
 
 use super::kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
 
-/// Most cloud layers a [`Weather`] may have.
+/// Maximum number of cloud layers of a [`Weather`].
 pub const MAX_CLOUD_LAYERS: usize = 16;
 
 /// The weather at a place and moment, as a host or a METAR report states it.
 ///
-/// Zero is a value everywhere (0 C, north, calm); what may be unknown is an `Option`, and `None` lets
-/// [`super::derive`] choose by a named law. [`Weather::default`] is a clear standard day. Plain data: any thread.
+/// Zero is a valid value everywhere (0 C, north, calm). Values that may be unknown are an `Option`; for `None`,
+/// [`super::derive`] chooses by a published law. [`Weather::default`] is a clear standard day. Plain data: any thread.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weather {
     /// Meteorological optical range, m: the distance at which 550 nm light falls to 5 % (WMO-No. 8, aviation use), at
-    /// station height. It is **total**: air, haze, fog, rain and snow together. Range [1, 1e6], default 40 000; above
-    /// about 260 km pure air is clearer than air can be and the aerosol is 0.
+    /// station height. It is **total**: air, haze, fog, rain and snow together. Range [1, 1e6], default 40 000. Above
+    /// about 260 km the extinction would be below that of pure air, and the aerosol is 0.
     pub visibility_m: f64,
     /// Vertical visibility into an obscured sky, m. Range [0, 10 000], default none (the sky is not obscured).
     /// With fog it sets the fog's depth.
     pub vertical_visibility_m: Option<f64>,
     /// Runway visual range, m: how far lights and markings are seen. Range [1, 10 000], default none.
-    /// For information: extinction follows `visibility_m`.
+    /// For information only: extinction follows `visibility_m`.
     pub runway_visual_range_m: Option<f64>,
     /// Air temperature at 2 m, degrees Celsius. Range [-90, 60], default 15.
     pub temperature_c: f64,
@@ -30,7 +30,7 @@ pub struct Weather {
     /// Height of the station above mean sea level, m. Range [-500, 9000], default 0. Visibility, temperature and cloud
     /// bases refer to this height.
     pub station_altitude_m: f64,
-    /// Particles of the air. Default continental, every optional field none.
+    /// Particles in the air. Default continental, every optional field none.
     pub aerosol: Aerosol,
     /// Fog or mist. Default none.
     pub fog: Fog,
@@ -40,9 +40,9 @@ pub struct Weather {
     pub precipitation: Precipitation,
     /// Wind. Default calm.
     pub wind: Wind,
-    /// The sea. Default everything none.
+    /// The sea. Default: every field none.
     pub sea: Sea,
-    /// The ground. Default everything none, no snow.
+    /// The ground. Default: every field none, no snow.
     pub surface: Surface,
     /// Matter that the wind lifts. Default none.
     pub lofted: Lofted,
@@ -50,20 +50,20 @@ pub struct Weather {
     pub ozone_du: f64,
 }
 
-/// Particles that hang in the air and fill the height of the mixed layer.
+/// Particles suspended in the mixed layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aerosol {
     /// Kind of the particles. Sets the values of the fields below where those are `None`.
     pub kind: AerosolKind,
-    /// Angstrom exponent: extinction goes with wavelength^-exponent. Range [-1, 4]; default by kind.
+    /// Angstrom exponent: extinction is proportional to wavelength^-exponent. Range [-1, 4]; default by kind.
     pub angstrom_exponent: Option<f64>,
     /// Single scattering albedo at 550 nm and ambient humidity. Range [0, 1]; default by kind and humidity.
     pub single_scattering_albedo: Option<f64>,
     /// Asymmetry of the phase function (mean cosine). Range [-0.99, 0.99]; default by kind and humidity.
     pub asymmetry: Option<f64>,
-    /// Height over which the particles thin out by 1/e, m. Range [10, 20 000]; default by kind. Held to the station's
-    /// altitude over 4.6 at least (435 m at 2000 m): the sky counts densities from the sea, and holds a hundred times
-    /// those at the station there.
+    /// Height over which the density of the particles falls by a factor e, m. Range [10, 20 000]; default by kind.
+    /// Raised to at least the station's altitude over 4.6 (435 m at 2000 m): the sky's tables count densities from sea
+    /// level, and hold there at most a hundred times the density at the station.
     pub scale_height_m: Option<f64>,
 }
 
@@ -74,10 +74,9 @@ pub struct Fog {
     pub kind: FogKind,
     /// Top of the fog above the station, m. Range [0.1, 2000]; default by kind or from the vertical visibility.
     pub top_m: Option<f64>,
-    /// Part of the ground under fog, fraction. Range [0, 1]; default by kind: 1, or 0.4 for patches, 0.6 for partial
-    /// fog.
+    /// Share of the ground under fog. Range [0, 1]; default by kind: 1, or 0.4 for patches, 0.6 for partial fog.
     pub coverage: Option<f64>,
-    /// Visibility inside the fog, m. Range [1, 10 000]; default `visibility_m`, or 200 m where the fog is shallow or in
+    /// Visibility inside the fog, m. Range [1, 10 000]. Default `visibility_m`; or 200 m if the fog is shallow or in
     /// patches and the reported visibility is the better one above or beside it.
     pub visibility_inside_m: Option<f64>,
 }
@@ -85,7 +84,7 @@ pub struct Fog {
 /// One layer of cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudLayer {
-    /// Part of the sky it covers, fraction. Range [0, 1]. [`cover_from_oktas`] turns eighths into this.
+    /// Share of the sky that it covers. Range [0, 1]. [`cover_from_oktas`] converts eighths.
     pub cover: f64,
     /// Base above the station, m. Range [0, 20 000].
     pub base_m: f64,
@@ -93,17 +92,17 @@ pub struct CloudLayer {
     pub thickness_m: Option<f64>,
     /// Kind of cloud.
     pub kind: CloudKind,
-    /// Water, liquid or ice, g/m^3. Range [0, 10]; default by kind.
+    /// Liquid water or ice content, g/m^3. Range [0, 10]; default by kind.
     pub water_g_m3: Option<f64>,
     /// Effective radius of droplets or crystals, um. Range [1, 500]; default by kind.
     pub droplet_radius_um: Option<f64>,
-    /// Wind that carries it; default the weather's at the middle of the layer
+    /// Wind that carries the layer; default the weather's wind at the middle of the layer
     /// ([`super::WindProfile::mean_at_height_m_s`]).
     pub wind: Option<LayerWind>,
     /// Distance from cloud to cloud, m. Range [50, 200 000]; default by kind and thickness.
     pub spacing_m: Option<f64>,
-    /// Time in which its clouds come and go, s. Range [60, 1e6]; default 1200: a fair-weather cumulus lives some 20
-    /// minutes (Stull 1988, chapter 13).
+    /// Time in which its clouds form and dissolve, s. Range [60, 1e6]; default 1200: a fair-weather cumulus lives some
+    /// 20 minutes (Stull 1988, chapter 13).
     pub life_s: Option<f64>,
 }
 
@@ -112,24 +111,24 @@ pub struct CloudLayer {
 pub struct LayerWind {
     /// Speed, m/s. Range [0, 150].
     pub speed_m_s: f64,
-    /// Where it comes from, degrees clockwise from true north. Range [0, 360].
+    /// Direction from which it blows, degrees clockwise from true north. Range [0, 360].
     pub from_deg: f64,
 }
 
 /// Precipitation from the clouds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precipitation {
-    /// Kind of precipitation, the heaviest part if several fall.
+    /// Kind of precipitation; the heaviest one if several fall.
     pub kind: PrecipitationKind,
-    /// How much, mm/h of liquid water. Range [0, 500]; must be 0 if `kind` is none.
+    /// Rate, mm/h of liquid water. Range [0, 500]; must be 0 if `kind` is none.
     pub rate_mm_h: f64,
-    /// Part of it that is liquid, fraction. Range [0, 1]; default by kind.
+    /// Share of it that is liquid. Range [0, 1]; default by kind.
     pub liquid_fraction: Option<f64>,
-    /// It falls from convective cloud (SH): fewer and larger drops, onset and end are sharp.
+    /// Whether it falls from convective cloud (SH): fewer and larger drops, with a sharp onset and end.
     pub showers: bool,
-    /// There is thunder (TS).
+    /// Whether there is thunder (TS).
     pub thunderstorm: bool,
-    /// Hail falls with it (GR, GS beside rain).
+    /// Whether hail falls with it (GR, GS beside rain).
     pub hail: bool,
 }
 
@@ -138,14 +137,15 @@ pub struct Precipitation {
 pub struct Wind {
     /// Mean speed, m/s. Range [0, 120], default 0.
     pub speed_m_s: f64,
-    /// Where it comes from, degrees clockwise from true north. Range [0, 360], default 0.
+    /// Direction from which it blows, degrees clockwise from true north. Range [0, 360], default 0.
     pub from_deg: f64,
     /// Highest 3-second gust, m/s. Range [speed, 150]; default from the turbulence.
     pub gust_m_s: Option<f64>,
-    /// The direction varies clockwise from the first to the second angle, degrees. Range [0, 360] each; default none.
-    /// (0, 360) says that it varies all round (VRB).
+    /// Range over which the direction varies, clockwise from the first to the second angle, degrees. Range [0, 360]
+    /// each; default none. (0, 360) means all directions (VRB).
     pub variable_deg: Option<(f64, f64)>,
-    /// Standard deviation of speed over its mean. Range [0, 1]; default from the roughness (neutral log law).
+    /// Ratio of the standard deviation of the speed to its mean. Range [0, 1]; default from the roughness (neutral log
+    /// law).
     pub turbulence_intensity: Option<f64>,
 }
 
@@ -156,20 +156,20 @@ pub struct Sea {
     pub significant_wave_height_m: Option<f64>,
     /// WMO sea state code 3700. Range 0..=9; default none.
     pub state: Option<u8>,
-    /// Water temperature, degrees Celsius. Range [-3, 45]; default the air's, not below -1.8.
+    /// Water temperature, degrees Celsius. Range [-3, 45]; default the air temperature, at least -1.8.
     pub temperature_c: Option<f64>,
-    /// Swell beside the wind sea. Default none.
+    /// Swell in addition to the wind sea. Default none.
     pub swell: Option<Swell>,
 }
 
-/// Waves that a distant wind raised.
+/// Waves raised by a distant wind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swell {
     /// Significant height, m. Range [0, 20].
     pub height_m: f64,
     /// Peak period, s. Range [1, 30].
     pub period_s: f64,
-    /// Where it comes from, degrees clockwise from true north. Range [0, 360].
+    /// Direction from which it comes, degrees clockwise from true north. Range [0, 360].
     pub from_deg: f64,
 }
 
@@ -194,7 +194,7 @@ pub struct Lofted {
 }
 
 impl Default for Weather {
-    /// A clear standard day: 15 C, 1013.25 hPa, 50 %, 40 km, calm.
+    /// Creates a clear standard day: 15 C, 1013.25 hPa, 50 %, 40 km, calm.
     fn default() -> Self {
         Self {
             visibility_m: 40_000.0,
@@ -218,7 +218,7 @@ impl Default for Weather {
 }
 
 impl Aerosol {
-    /// Particles of `kind` with that kind's properties.
+    /// Creates particles of `kind` with that kind's properties.
     pub const fn of(kind: AerosolKind) -> Self {
         Self { kind, angstrom_exponent: None, single_scattering_albedo: None, asymmetry: None, scale_height_m: None }
     }
@@ -231,7 +231,7 @@ impl Default for Aerosol {
 }
 
 impl Fog {
-    /// Fog of `kind` with that kind's depth and coverage.
+    /// Creates fog of `kind` with that kind's depth and coverage.
     pub const fn of(kind: FogKind) -> Self {
         Self { kind, top_m: None, coverage: None, visibility_inside_m: None }
     }
@@ -244,12 +244,14 @@ impl Default for Fog {
 }
 
 impl CloudLayer {
-    /// A layer of unknown kind, thickness and water; `cover` a fraction, `base_m` above the station.
+    /// Creates a layer of unknown kind, thickness and water; `cover` is a share of the sky, `base_m` is above the
+    /// station.
     pub const fn new(cover: f64, base_m: f64) -> Self {
         Self::of(CloudKind::Unknown, cover, base_m)
     }
 
-    /// A layer of `kind` with that kind's thickness and water; `cover` a fraction, `base_m` above the station.
+    /// Creates a layer of `kind` with that kind's thickness and water; `cover` is a share of the sky, `base_m` above
+    /// the station.
     pub const fn of(kind: CloudKind, cover: f64, base_m: f64) -> Self {
         Self {
             cover,
@@ -266,7 +268,7 @@ impl CloudLayer {
 }
 
 impl Precipitation {
-    /// `rate_mm_h` of `kind`, steady, without thunder.
+    /// Creates steady precipitation of `kind` at `rate_mm_h`, without thunder.
     pub const fn of(kind: PrecipitationKind, rate_mm_h: f64) -> Self {
         Self { kind, rate_mm_h, liquid_fraction: None, showers: false, thunderstorm: false, hail: false }
     }
@@ -279,7 +281,7 @@ impl Default for Precipitation {
 }
 
 impl Wind {
-    /// Steady wind of `speed_m_s` from `from_deg`.
+    /// Creates a steady wind of `speed_m_s` from `from_deg`.
     pub const fn of(speed_m_s: f64, from_deg: f64) -> Self {
         Self { speed_m_s, from_deg, gust_m_s: None, variable_deg: None, turbulence_intensity: None }
     }
@@ -298,7 +300,7 @@ impl Default for Surface {
 }
 
 impl Lofted {
-    /// `kind` with its usual depth.
+    /// Creates matter of `kind` with its usual depth.
     pub const fn of(kind: LoftedKind) -> Self {
         Self { kind, top_m: None }
     }
@@ -310,26 +312,26 @@ impl Default for Lofted {
     }
 }
 
-/// Cloud cover as a fraction from eighths of the sky, clamped to 0..=8.
+/// Converts cloud cover from eighths of the sky, clamped to 0..=8, to a share.
 pub fn cover_from_oktas(oktas: u32) -> f64 {
     f64::from(oktas.min(8)) / 8.0
 }
 
-/// Saturation pressure of water vapour over water, hPa: 6.112 exp(17.62 t / (243.12 + t)) (WMO-No. 8, Annex 4.B), t in
-/// degrees Celsius.
+/// Returns the saturation pressure of water vapour over water, hPa: 6.112 exp(17.62 t / (243.12 + t)) (WMO-No. 8, Annex
+/// 4.B), t in degrees Celsius.
 pub fn saturation_pressure_hpa(temperature_c: f64) -> f64 {
     6.112 * libm::exp(17.62 * temperature_c / (243.12 + temperature_c))
 }
 
 impl Weather {
-    /// Sets the humidity from a dew point (degrees Celsius); a dew point above the temperature counts as saturation.
-    /// Formula: [`saturation_pressure_hpa`] of both.
+    /// Sets the humidity from a dew point (degrees Celsius). A dew point above the temperature counts as saturation.
+    /// Formula: ratio of [`saturation_pressure_hpa`] at both.
     pub fn set_dew_point_c(&mut self, dew_point_c: f64) {
         let ratio = saturation_pressure_hpa(dew_point_c) / saturation_pressure_hpa(self.temperature_c);
         self.relative_humidity = ratio.clamp(0.0, 1.0);
     }
 
-    /// Dew point, degrees Celsius (the inverse of [`saturation_pressure_hpa`]); -90 at humidity 0.
+    /// Returns the dew point, degrees Celsius (the inverse of [`saturation_pressure_hpa`]); -90 at humidity 0.
     pub fn dew_point_c(&self) -> f64 {
         let e = saturation_pressure_hpa(self.temperature_c) * self.relative_humidity;
         if e < 1e-6 {

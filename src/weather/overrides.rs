@@ -1,41 +1,42 @@
-//! Overrides: the host's own figures in place of the laws that derive conditions.
+//! Overrides: the host's own values in place of the laws that derive conditions.
 
 use crate::error::{Result, check_range};
 
-/// The host's own figures in place of a coupling's. `None` leaves the law in force; default all `None`.
+/// The host's own values in place of laws. `None` leaves the law in force; default all `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Overrides {
-    /// Aerosol extinction at 550 nm and station height, 1/m, in place of the share of the visibility. Range [0, 10].
+    /// Aerosol extinction at 550 nm and station height, 1/m, in place of its share in the visibility. Range [0, 10].
     pub aerosol_extinction_per_m: Option<f64>,
-    /// Extinction inside the ground layer, 1/m, in place of the rest of the visibility. Range [0, 10].
+    /// Extinction inside the ground layer, 1/m, in place of the remainder of the visibility. Range [0, 10].
     pub fog_extinction_per_m: Option<f64>,
-    /// Extinction of what falls, 1/m, in place of the drop and flake spectra's. Range [0, 10].
+    /// Extinction of the precipitation, 1/m, in place of that by drop and flake spectra. Range [0, 10].
     pub precipitation_extinction_per_m: Option<f64>,
-    /// Visibility that the air above a mist or fog keeps, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
+    /// Visibility of the air above mist or fog, m. Range [100, 1e6]; by law 5 km above mist, 10 km above fog.
     pub visibility_above_fog_m: Option<f64>,
-    /// Growth of particles by humidity over their size at 80 %, in place of Haenel's law. Range [0.1, 20]; 1 switches
-    /// it off.
+    /// Growth of the particles' extinction with humidity, relative to that at 80 %, in place of Haenel's law. Range
+    /// [0.1, 20]; 1 switches the growth off.
     pub humidity_growth: Option<f64>,
-    /// Air density at sea level over the standard's. Range [0, 10].
+    /// Ratio of the air density at sea level to the standard atmosphere's. Range [0, 10].
     pub rayleigh_density_ratio: Option<f64>,
     /// Scale height of the air, m. Range [100, 50 000].
     pub rayleigh_scale_height_m: Option<f64>,
-    /// Whether rain brings its cloud. Law: it does.
+    /// Whether rain requires a cloud; by law it does.
     pub rain_needs_cloud: Option<bool>,
-    /// Part of the sun's beam, and diffuse part of it, below the clouds, in place of the slabs' light. Range [0, 1]
+    /// Share of the sun's beam below the clouds, and share of diffuse light, in place of the slabs' light. Range [0, 1]
     /// each.
     pub cloud_light: Option<(f64, f64)>,
-    /// Significant wave height, m, in place of what wind or state say. Range [0, 30].
+    /// Significant wave height, m, in place of that by wind or sea state. Range [0, 30].
     pub wave_height_m: Option<f64>,
-    /// Wetness of the ground, in place of what falls on it. Range [0, 1].
+    /// Wetness of the ground, in place of that by precipitation. Range [0, 1].
     pub wetness: Option<f64>,
 }
 
 impl Overrides {
-    /// Checks every figure that is set.
+    /// Checks every value that is set.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] with the name and range of the first that is not finite or outside.
+    /// [`crate::Status::InvalidArgument`] with the name and range of the first value that is not finite or out of
+    /// range.
     pub fn validate(&self) -> Result<()> {
         let fields = [
             ("overrides.aerosol_extinction_per_m", self.aerosol_extinction_per_m, 0.0, 10.0, "1/m"),

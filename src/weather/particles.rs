@@ -1,5 +1,5 @@
-//! Matter that hangs in the air: particles through the mixed layer, droplets in a layer at the ground, and how a
-//! reported visibility is shared out among them.
+//! Suspended matter: particles in the mixed layer, droplets in a layer at the ground, and how a reported visibility is
+//! shared among them.
 
 use super::conditions::{AerosolLayer, Air, GroundLayer, LN_20};
 use super::kinds::{AerosolKind, FogKind, LoftedKind};
@@ -13,13 +13,13 @@ struct Properties {
     angstrom_exponent: f64,
     absorption_angstrom_exponent: f64,
     scale_height_m: f64,
-    /// Exponent of the swelling law; 0 does not take up water.
+    /// Exponent of the swelling law; 0 for particles that take up no water.
     growth_exponent: f64,
 }
 
-/// OPAC's aerosol types (Hess, Koepke and Schult 1998, table 4: humidity 80 %, 550 nm; exponents 500 to 800 nm), smoke
-/// after Dubovik et al. (2002), ash after Ball et al. (2015); absorption exponents after Russell et al. (2010): soot 1,
-/// smoke 1.8, dust 2.7; growth exponents after Haenel (1976) and Titos et al. (2016); scale heights as typical of a
+/// OPAC's aerosol types (Hess, Koepke and Schult 1998, table 4: humidity 80 %, 550 nm; exponents 500 to 800 nm). Smoke
+/// after Dubovik et al. (2002), ash after Ball et al. (2015). Absorption exponents after Russell et al. (2010): soot 1,
+/// smoke 1.8, dust 2.7. Growth exponents after Haenel (1976) and Titos et al. (2016). Scale heights are typical of a
 /// mixed layer.
 fn properties(kind: AerosolKind) -> Properties {
     let p = |ssa, g, angstrom, absorption, height, growth| Properties {
@@ -44,19 +44,21 @@ fn properties(kind: AerosolKind) -> Properties {
     }
 }
 
-/// Humidity at which the properties' table holds, and beyond which particles are treated as grown enough (they become
-/// mist).
+/// Humidity for which the table of properties holds, and humidity above which particles do not grow further (they
+/// become mist).
 const TABLE_HUMIDITY: f64 = 0.8;
 const MAX_HUMIDITY: f64 = 0.97;
 
-/// Extinction at a humidity over that at 0.8: ((1 - RH) / 0.2)^-gamma (Kasten 1969, Haenel 1976), RH held below 0.97.
+/// Returns the extinction at a humidity relative to that at 0.8: ((1 - RH) / 0.2)^-gamma (Kasten 1969, Haenel 1976),
+/// with RH at most 0.97.
 pub fn humidity_growth(kind: AerosolKind, relative_humidity: f64) -> f64 {
     let dryness = (1.0 - relative_humidity.min(MAX_HUMIDITY)) / (1.0 - TABLE_HUMIDITY);
     libm::pow(dryness, -properties(kind).growth_exponent)
 }
 
-/// Visibility under clean skies of which a report says only "at least": a background aerosol that lets one see 40 km at
-/// humidity 0.5 grows with humidity ([`humidity_growth`]), and `falling_extinction_per_m` adds to it. Metres.
+/// Returns the visibility under clean skies for which a report says only "at least", m. A background aerosol with a
+/// visibility of 40 km at humidity 0.5 grows with humidity ([`humidity_growth`]), and `falling_extinction_per_m` adds
+/// to it.
 pub fn unlimited_visibility_m(relative_humidity: f64, falling_extinction_per_m: f64) -> f64 {
     let kind = AerosolKind::Continental;
     let growth = humidity_growth(kind, relative_humidity) / humidity_growth(kind, 0.5);
@@ -64,7 +66,7 @@ pub fn unlimited_visibility_m(relative_humidity: f64, falling_extinction_per_m: 
     LN_20 / (super::air::RAYLEIGH_550_PER_M + background + falling_extinction_per_m)
 }
 
-/// The kind of aerosol that is there: what the wind lifts replaces a clean background.
+/// Returns the kind of aerosol: lifted matter replaces a clean background.
 fn effective_kind(w: &Weather) -> AerosolKind {
     let background = !is_dry_obscuration(w.aerosol.kind);
     match w.lofted.kind {
@@ -74,32 +76,33 @@ fn effective_kind(w: &Weather) -> AerosolKind {
     }
 }
 
-/// Scale heights that particles at a station may be above the sea, at most. The sky counts their density from the sea:
-/// e^4.6, a hundred times that at the station, is what its tables still hold. The haze of a plateau lies on the
+/// Maximum altitude of a station, in scale heights of its particles. The sky's tables count their density from sea
+/// level, and hold at most e^4.6, a hundred times the density at the station. The haze of a plateau lies on the
 /// plateau.
 const DEEPEST_SCALES: f64 = 4.6;
 
-/// Height over which the particles thin out by 1/e, m: as given or by kind, at least the station's altitude over
+/// Returns the scale height of the particles, m: as given or by kind, but at least the station's altitude over
 /// [`DEEPEST_SCALES`].
 fn scale_height_m(w: &Weather) -> f64 {
     let own = w.aerosol.scale_height_m.unwrap_or(properties(effective_kind(w)).scale_height_m);
     own.max(w.station_altitude_m / DEEPEST_SCALES)
 }
 
-/// Kinds thick enough to bring visibility down to anything without fog.
+/// Whether a kind can reduce the visibility to any value without fog.
 fn is_dry_obscuration(kind: AerosolKind) -> bool {
     use AerosolKind as A;
     matches!(kind, A::Haze | A::Dust | A::Sand | A::Smoke | A::VolcanicAsh)
 }
 
-/// Whether dry particles, and no droplets or snow, are what takes the sight.
+/// Whether dry particles, rather than droplets or snow, limit the visibility.
 fn is_dry(w: &Weather) -> bool {
     let foggy = !matches!(w.fog.kind, FogKind::None | FogKind::Shallow) || w.lofted.kind == LoftedKind::BlowingSnow;
     is_dry_obscuration(effective_kind(w)) && !foggy
 }
 
-/// Aerosol of the weather, `extinction_per_m` at station height being known: swelling takes absorption's share down
-/// (water does not absorb), and brings asymmetry and spectrum towards a droplet's, by the volume of water taken up.
+/// Returns the aerosol of the weather with a known `extinction_per_m` at station height. Swelling lowers the share of
+/// absorption (water does not absorb) and moves asymmetry and spectrum towards a droplet's, by the volume of water
+/// taken up.
 pub(super) fn aerosol_layer(w: &Weather, extinction_per_m: f64, swelling: Option<f64>) -> AerosolLayer {
     let kind = effective_kind(w);
     let p = properties(kind);
@@ -118,24 +121,24 @@ pub(super) fn aerosol_layer(w: &Weather, extinction_per_m: f64, swelling: Option
     }
 }
 
-/// Extinction that the reported visibility leaves for particles, shared out.
+/// Extinction that the reported visibility leaves for particles, divided between two layers.
 pub(super) struct ExtinctionShares {
-    /// To the mixed layer, 1/m.
+    /// Extinction of the mixed layer, 1/m.
     pub aerosol_per_m: f64,
-    /// To the layer at the ground, 1/m, inside it.
+    /// Extinction inside the layer at the ground, 1/m.
     pub ground_per_m: f64,
     /// Whether the ground layer is part of the reported visibility.
     pub ground_counts: bool,
 }
 
-/// Visibility that the air above a fog has, m: what the fog adds below it is the ground layer's.
+/// Returns the visibility of the air above a fog, m. Extinction beyond that belongs to the ground layer.
 fn visibility_above_m(w: &Weather, o: &Overrides) -> f64 {
     let fog = matches!(w.fog.kind, FogKind::Fog | FogKind::Freezing) || w.lofted.kind == LoftedKind::BlowingSnow;
     o.visibility_above_fog_m.unwrap_or(if fog { 10_000.0 } else { 5_000.0 })
 }
 
-/// How deep the layer lies and how far one sees in it where the report looks over or past it, m; `None` where it is
-/// part of the reported visibility.
+/// Returns the visibility inside a layer that the report looks over or past, m; `None` if the layer is part of the
+/// reported visibility.
 fn visibility_inside_m(w: &Weather) -> Option<f64> {
     let beside = match (w.fog.kind, w.lofted.kind) {
         (FogKind::Shallow, _) => true,
@@ -147,13 +150,13 @@ fn visibility_inside_m(w: &Weather) -> Option<f64> {
     beside.then(|| w.fog.visibility_inside_m.unwrap_or(usual))
 }
 
-/// Optical depth straight up of the particles that the sky's tables carry at most. Their orders of scattering are a
-/// series, off by 11 % at p95 here; what is thicker goes to the ground layer, whose two-stream solution holds at any
+/// Largest vertical optical depth of particles for the sky's tables. The tables sum orders of scattering as a series,
+/// which is off by 11 % at p95 here. Thicker particles go to the ground layer, whose two-stream solution holds at any
 /// depth.
 const SKY_DEPTH: f64 = 1.0;
 
-/// Depth left to the sky of particles `depth` deep: all up to [`SKY_DEPTH`], then ever less, as 1 / depth. Under so
-/// much dust the air that the sky draws would be lit as if there were none above it.
+/// Returns the depth that the sky gets of particles `depth` deep: all up to [`SKY_DEPTH`], then less and less, as 1 /
+/// depth. The air that the sky draws below thick dust would otherwise be lit as if there were none above it.
 fn sky_depth(depth: f64) -> f64 {
     if depth <= SKY_DEPTH { depth } else { SKY_DEPTH * SKY_DEPTH / depth }
 }
@@ -161,9 +164,9 @@ fn sky_depth(depth: f64) -> f64 {
 /// Shares the extinction of aerosol and fog, max(0, ln 20 / V - air - precipitation), between the mixed layer and the
 /// ground.
 ///
-/// Haze, dust, sand, smoke and ash take all of it, as far as [`sky_depth`] lets them; other air takes no more than
-/// leaves [`visibility_above_m`] and the rest is mist or fog, named or not, since dry background air never gets thicker
-/// than that.
+/// Haze, dust, sand, smoke and ash take all of it, as far as [`sky_depth`] allows. Other aerosols take at most what
+/// leaves [`visibility_above_m`], because dry background air never gets thicker than that; the remainder is mist or
+/// fog, whether the report names it or not.
 pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &Overrides) -> ExtinctionShares {
     let rayleigh = air.rayleigh_extinction_per_m;
     let rest = (LN_20 / w.visibility_m - rayleigh - falling_per_m).max(0.0);
@@ -172,7 +175,7 @@ pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &O
         rest
     } else if is_dry(w) {
         let height = scale_height_m(w);
-        // Sand keeps low: at most half of it fills the mixed layer.
+        // Sand stays low: at most half of it fills the mixed layer.
         let low = if matches!(w.lofted.kind, LoftedKind::BlowingSand | LoftedKind::BlowingDust) { 0.5 } else { 1.0 };
         (sky_depth(rest * height) / height).min(low * rest)
     } else {
@@ -190,17 +193,18 @@ pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &O
     }
 }
 
-/// The lowest cloud base above the station that could cap a mist, m.
+/// Returns the lowest cloud base above the station that can limit a mist, m.
 fn lowest_base_m(w: &Weather) -> Option<f64> {
     w.clouds.iter().filter(|c| c.cover > 0.0).map(|c| c.base_m).fold(None, |a, b| Some(a.map_or(b, |a: f64| a.min(b))))
 }
 
-/// Top of the ground layer above the station, m, where the host does not say.
+/// Returns the top of the ground layer above the station, m, if the host does not give it.
 ///
-/// Shallow fog ends at 2 m by definition (WMO-No. 306, MI). An obscured sky says that fog is deeper than one sees
-/// upwards: twice the vertical visibility, 150 m at least. Without it the sky shows through, so the fog is about one
-/// visibility deep, 20 to 150 m. Mist reaches the lowest cloud up to 600 m, 60 m at least, else 300 m. Snow blows up to
-/// some tens of metres (Budd, Dingle and Radok 1966) and drifts below eye height; spray keeps to 10 m.
+/// Shallow fog ends at 2 m by definition (WMO-No. 306, MI). In an obscured sky, fog is deeper than the vertical
+/// visibility: it is taken as twice that, at least 150 m. Otherwise the sky shows through, and the fog is about one
+/// visibility deep, 20 to 150 m. Mist reaches the lowest cloud up to 600 m, at least 60 m, and 300 m without such a
+/// cloud. Snow blows up to some tens of metres (Budd, Dingle and Radok 1966) and drifts below eye height; spray reaches
+/// 10 m.
 fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
     let through = (LN_20 / ground_per_m.max(1e-9)).clamp(20.0, 150.0);
     match (w.fog.kind, w.lofted.kind) {
@@ -217,10 +221,10 @@ fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
     }
 }
 
-/// The layer at the ground. Droplets of 10 um scatter without colour or loss (albedo 1, asymmetry 0.85: Hess et al.
-/// 1998, fog); lifted snow has asymmetry 0.89 and dust its own properties. Where dry particles are too thick for the
-/// sky, the layer is what the sky leaves of them: as much as above one another in `aerosol`, thinning out to twice its
-/// scale height.
+/// Returns the layer at the ground. Droplets of 10 um scatter without colour or absorption (albedo 1, asymmetry 0.85:
+/// Hess et al. 1998, fog). Lifted snow has an asymmetry of 0.89, and dust its own properties. If dry particles are too
+/// thick for the sky's tables, the layer holds the remainder: as much in a vertical column as in `aerosol`, thinning
+/// out up to twice its scale height.
 pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &AerosolLayer) -> GroundLayer {
     if extinction_per_m <= 0.0 {
         return GroundLayer::NONE;
@@ -252,7 +256,7 @@ pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &Aerosol
     let (coverage, patch) = match w.fog.kind {
         FogKind::Patches => (0.4, 150.0),
         FogKind::Partial => (0.6, 800.0),
-        // What drifts along the ground does so in snakes of some metres.
+        // Matter that drifts along the ground moves in streaks of some metres.
         FogKind::None if matches!(w.lofted.kind, LoftedKind::DriftingSnow | LoftedKind::DriftingDust) => (1.0, 12.0),
         FogKind::None if w.lofted.kind != LoftedKind::None => (1.0, 120.0),
         _ => (1.0, 200.0),
@@ -272,7 +276,7 @@ pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &Aerosol
     }
 }
 
-/// Share of the ground layer that the wind lifts.
+/// Returns the share of the ground layer that the wind lifts.
 fn lifted(w: &Weather) -> f64 {
     if w.lofted.kind == LoftedKind::None { 0.0 } else { 1.0 }
 }

@@ -1,5 +1,5 @@
-//! Precipitation as conditions hold it, `Falling`: rates by species, of a report's kind or of a saved state, and the
-//! extinction of each.
+//! Precipitation in conditions, `Falling`: rates by species, from a report's kind or a saved state, and their
+//! extinction.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,19 +21,19 @@ pub struct Falling {
     pub drizzle_mm_h: f64,
     /// Snow, snow grains and ice crystals, mm/h of melted water.
     pub snow_mm_h: f64,
-    /// Part of it that falls as snow grains, 0 to 1.
+    /// Share of the snow that falls as snow grains, 0 to 1.
     pub grain_share: f64,
-    /// Part of it that falls as ice crystals, 0 to 1; the rest are flakes.
+    /// Share of the snow that falls as ice crystals, 0 to 1; the rest are flakes.
     pub crystal_share: f64,
     /// Ice pellets and small hail, mm/h of melted water.
     pub ice_pellets_mm_h: f64,
     /// Hail, mm/h of melted water.
     pub hail_mm_h: f64,
-    /// Part of the rain and drizzle that freezes where it lands, 0 to 1.
+    /// Share of the rain and drizzle that freezes where it lands, 0 to 1.
     pub freezing: f64,
     /// How convective it is, 0 (steady) to 1 (showers).
     pub showers: f64,
-    /// Whether there is thunder, 0 to 1.
+    /// Presence of thunder, 0 to 1.
     pub thunder: f64,
     /// Extinction by rain and drizzle, at 550 nm, 1/m.
     pub liquid_extinction_per_m: f64,
@@ -41,7 +41,7 @@ pub struct Falling {
     pub solid_extinction_per_m: f64,
 }
 
-/// [`Falling`] as states hold it. Older states hold the sum of both extinctions.
+/// [`Falling`] as saved in states. Older states hold the sum of both extinctions.
 #[derive(Deserialize)]
 struct SavedFalling {
     rain_mm_h: f64,
@@ -85,7 +85,7 @@ impl From<SavedFalling> for Falling {
 }
 
 impl Falling {
-    /// Nothing.
+    /// No precipitation.
     pub(crate) const NONE: Self = Self {
         rain_mm_h: 0.0,
         drizzle_mm_h: 0.0,
@@ -101,24 +101,25 @@ impl Falling {
         solid_extinction_per_m: 0.0,
     };
 
-    /// Snow as flakes, as snow grains and as ice crystals, mm/h of melted water: together [`Falling::snow_mm_h`].
+    /// Returns the rates of snow as flakes, as snow grains and as ice crystals, mm/h of melted water. Their sum is
+    /// [`Falling::snow_mm_h`].
     pub fn snow_kinds_mm_h(&self) -> [f64; 3] {
         let [grains, crystals] = [self.grain_share, self.crystal_share].map(|share| share * self.snow_mm_h);
         [(self.snow_mm_h - grains - crystals).max(0.0), grains, crystals]
     }
 
-    /// Everything that falls, mm/h of liquid water.
+    /// Returns the rate of all precipitation, mm/h of liquid water.
     pub fn total_mm_h(&self) -> f64 {
         self.rain_mm_h + self.drizzle_mm_h + self.snow_mm_h + self.ice_pellets_mm_h + self.hail_mm_h
     }
 
-    /// Extinction by all that falls, at 550 nm, 1/m.
+    /// Returns the extinction by all precipitation, at 550 nm, 1/m.
     pub fn extinction_per_m(&self) -> f64 {
         self.liquid_extinction_per_m + self.solid_extinction_per_m
     }
 
-    /// Returns the precipitation with `whole` as the extinction of all, 1/m, in which liquid and solid keep their
-    /// shares. What has no species counts as solid: no drop is drawn of it.
+    /// Returns the precipitation with the total extinction `whole`, 1/m, of which liquid and solid keep their shares.
+    /// Extinction without any species counts as solid, so that no drops are drawn for it.
     pub(crate) fn with_extinction(self, whole: f64) -> Self {
         let before = self.extinction_per_m();
         if before <= 0.0 {
@@ -129,10 +130,10 @@ impl Falling {
     }
 }
 
-/// Part of the water of a shower that falls as hail where the report names hail beside rain.
+/// Share of a shower's water that falls as hail if the report names hail beside rain.
 const HAIL_SHARE: f64 = 0.2;
 
-/// The rates of what falls, from the report's kind: liquid and frozen parts apart, hail beside rain taking
+/// Returns rates of precipitation from the report's kind, liquid and frozen parts separately. Hail beside rain takes
 /// [`HAIL_SHARE`].
 pub(super) fn falling(p: &Precipitation) -> Falling {
     use PrecipitationKind as K;
@@ -161,7 +162,7 @@ pub(super) fn falling(p: &Precipitation) -> Falling {
     by_species(f)
 }
 
-/// Returns these rates with the extinction of their drops, and of their flakes, pellets and stones.
+/// Returns these rates with the extinction of their drops, and of their flakes, pellets and hailstones.
 pub(super) fn by_species(f: Falling) -> Falling {
     let [steady, showers] = [rain_extinction_per_m, shower_extinction_per_m].map(|law| law(f.rain_mm_h));
     Falling {

@@ -1,10 +1,10 @@
-//! Weathers with names, to begin with or to test with.
+//! Named weathers, to start from or to test with.
 
 use super::kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
 use super::model::{Aerosol, CloudLayer, Fog, Lofted, Precipitation, Sea, Surface, Swell, Weather, Wind};
 use crate::error::{Error, Result, listed};
 
-/// A preset: its name, one line for a menu, and how it is made.
+/// A preset: its name, one line for a menu, and the function that creates it.
 struct Preset {
     name: &'static str,
     what: &'static str,
@@ -43,12 +43,12 @@ const PRESETS: &[Preset] = &[
 ];
 
 impl Weather {
-    /// Names of all presets, in the order of a menu: from clear to foul.
+    /// Returns the names of all presets, in the order of a menu, from clear to severe.
     pub fn preset_names() -> impl ExactSizeIterator<Item = &'static str> {
         PRESETS.iter().map(|p| p.name)
     }
 
-    /// One line that says what a preset is, for a menu.
+    /// Returns the description of a preset, one line for a menu.
     ///
     /// # Errors
     /// As [`Weather::preset`].
@@ -56,10 +56,10 @@ impl Weather {
         find(name).map(|p| p.what)
     }
 
-    /// The weather of a preset. Its name is lower case, as [`Weather::preset_names`] lists it.
+    /// Returns the weather of a preset. Names are lower case, as [`Weather::preset_names`] lists them.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a name that [`Weather::preset_names`] does not have.
+    /// [`crate::Status::InvalidArgument`] for a name that [`Weather::preset_names`] does not list.
     pub fn preset(name: &str) -> Result<Self> {
         find(name).map(|p| (p.make)())
     }
@@ -73,7 +73,7 @@ fn find(name: &str) -> Result<&'static Preset> {
     })
 }
 
-/// The default with visibility, temperature and humidity.
+/// Returns the default weather with this visibility, temperature and humidity.
 fn day(visibility_m: f64, temperature_c: f64, relative_humidity: f64) -> Weather {
     Weather { visibility_m, temperature_c, relative_humidity, ..Weather::default() }
 }
@@ -133,7 +133,7 @@ fn freezing_fog() -> Weather {
     Weather { fog, surface, vertical_visibility_m: Some(60.0), ..day(300.0, -4.0, 1.0) }
 }
 
-/// Weather under a sheet that rains: kind and rate, base of the sheet.
+/// Returns the weather under a sheet of nimbostratus that rains or snows, with kind and rate, and base of the sheet.
 fn under_nimbostratus(w: Weather, kind: PrecipitationKind, rate_mm_h: f64, base_m: f64) -> Weather {
     let clouds = vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, base_m)];
     Weather { clouds, precipitation: Precipitation::of(kind, rate_mm_h), ..w }
@@ -169,7 +169,7 @@ fn showers() -> Weather {
     Weather { clouds, precipitation, wind, ..day(4500.0, 11.0, 0.8) }
 }
 
-/// A cumulonimbus overhead with its anvil.
+/// Returns a cumulonimbus overhead with its anvil.
 fn thundercloud() -> Vec<CloudLayer> {
     vec![CloudLayer::of(CloudKind::Cumulonimbus, 0.9, 700.0), CloudLayer::of(CloudKind::Cirrostratus, 1.0, 9000.0)]
 }
@@ -202,7 +202,7 @@ fn sleet() -> Weather {
     under_nimbostratus(w, PrecipitationKind::Sleet, 2.0, 400.0)
 }
 
-/// A snowfall on snow.
+/// Returns a weather with snowfall on lying snow.
 fn snowing(w: Weather, rate_mm_h: f64, depth_m: f64) -> Weather {
     let surface = Surface { snow_depth_m: depth_m, ..Surface::default() };
     under_nimbostratus(Weather { surface, ..w }, PrecipitationKind::Snow, rate_mm_h, 500.0)
@@ -223,7 +223,7 @@ fn blizzard() -> Weather {
     snowing(w, 4.0, 0.30)
 }
 
-/// A storm that lifts dry ground.
+/// Returns a storm that lifts dry soil.
 fn storm_of(aerosol: AerosolKind, lofted: LoftedKind, visibility_m: f64, speed_m_s: f64) -> Weather {
     let wind = Wind { gust_m_s: Some(speed_m_s * 1.45), ..Wind::of(speed_m_s, 320.0) };
     let (aerosol, lofted) = (Aerosol::of(aerosol), Lofted::of(lofted));
@@ -244,9 +244,9 @@ fn gale() -> Weather {
     Weather { clouds, wind, pressure_hpa: 985.0, ..day(20_000.0, 9.0, 0.7) }
 }
 
-/// Beaufort 10: 24.5 to 28.4 m/s, waves of about 9 m (WMO-No. 306, section E), which is sea state 8 (code table 3700),
-/// and spray that lowers the visibility. The gust is 1.23 times the ten-minute mean, the factor at sea (Harper, Kepert
-/// and Ginger 2010, table 1.1).
+/// Returns a storm of Beaufort 10: 24.5 to 28.4 m/s, waves of about 9 m (WMO-No. 306, section E), which is sea state 8
+/// (code table 3700), and spray that lowers the visibility. The gust is 1.23 times the ten-minute mean, the factor at
+/// sea (Harper, Kepert and Ginger 2010, table 1.1).
 fn storm_at_sea() -> Weather {
     let clouds = vec![CloudLayer::of(CloudKind::Stratocumulus, 1.0, 500.0)];
     let wind = Wind { gust_m_s: Some(32.0), ..Wind::of(26.0, 250.0) };

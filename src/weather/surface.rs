@@ -1,21 +1,22 @@
-//! Wind near the ground, the sea it raises, and what weather does to the ground.
+//! Wind near the ground, the sea that it raises, and the ground under precipitation.
 
 use super::conditions::{SeaState, SurfaceCover, WindProfile};
 use super::kinds::SurfaceState;
 use super::model::{Surface, Weather};
 use super::precipitation::Falling;
 
-/// Roughness of open grassland, m: how wind masts are sited (WMO-No. 8, part I, chapter 5).
+/// Roughness of open grassland, m, on which wind masts stand (WMO-No. 8, part I, chapter 5).
 const GRASS_ROUGHNESS_M: f64 = 0.03;
-/// A 3-second gust in 10 minutes lies this many standard deviations above the mean (Harper, Kepert and Ginger 2010).
+/// Number of standard deviations by which the highest 3-second gust in 10 minutes exceeds the mean (Harper, Kepert and
+/// Ginger 2010).
 const GUST_PEAK_FACTOR: f64 = 2.3;
 const GRAVITY_M_S2: f64 = 9.80665;
 
-/// Roughness length of the sea, m: Charnock (1955) with 0.0144 (Garratt 1977) and the smooth-flow limit 0.11 nu / u*,
-/// solved with the log law for a wind at 10 m by repeated substitution.
+/// Roughness length of the sea, m, under a wind at 10 m: Charnock (1955) with 0.0144 (Garratt 1977) and the smooth-flow
+/// limit 0.11 nu / u*, solved together with the log law by repeated substitution.
 pub fn sea_roughness_length_m(speed_10_m_s: f64) -> f64 {
     let mut z0 = 1e-4;
-    // The map contracts by about 0.2 a round; 20 rounds settle it to the last bit that matters.
+    // Each round leaves about 0.2 of the error; after 20 rounds it is below the last bit that matters.
     for _ in 0..20 {
         let friction = 0.4 * speed_10_m_s / libm::log(10.0 / z0);
         z0 = (0.0144 * friction * friction / GRAVITY_M_S2 + 0.11 * 1.5e-5 / friction.max(1e-3)).clamp(1e-6, 0.1);
@@ -23,12 +24,13 @@ pub fn sea_roughness_length_m(speed_10_m_s: f64) -> f64 {
     z0
 }
 
-/// Significant height of a fully grown sea, m: Pierson and Moskowitz (1964), 0.2092 U^2 / g with U at 19.5 m.
+/// Returns the significant height of a fully developed sea, m: Pierson and Moskowitz (1964), 0.2092 U^2 / g with U at
+/// 19.5 m.
 pub fn fully_developed_wave_height_m(speed_19_5_m_s: f64) -> f64 {
     0.2092 * speed_19_5_m_s * speed_19_5_m_s / GRAVITY_M_S2
 }
 
-/// Significant height in the middle of a WMO sea state (code 3700), m; state 9 as 16 m.
+/// Returns the significant height in the middle of a WMO sea state (code 3700), m; 16 m for state 9.
 pub fn wave_height_of_state_m(state: u8) -> f64 {
     const BOUNDS: [f64; 9] = [0.0, 0.1, 0.5, 1.25, 2.5, 4.0, 6.0, 9.0, 14.0];
     match usize::from(state) {
@@ -38,14 +40,14 @@ pub fn wave_height_of_state_m(state: u8) -> f64 {
     }
 }
 
-/// Share of level ground that snow of this depth covers, m: sparse first, then whole (a hyperbolic tangent as of Niu
-/// and Yang 2007, over 2.5 times a roughness of 1 cm).
+/// Returns the share of level ground that snow of this depth, m, covers: sparse at first, then all (a hyperbolic
+/// tangent as in Niu and Yang 2007, over 2.5 times a roughness of 1 cm).
 pub fn snow_cover(depth_m: f64) -> f64 {
     if depth_m > 0.25 { 1.0 } else { libm::tanh(depth_m / 0.025) }
 }
 
-/// Wind profile: turbulence from the log law's sigma / U = 1 / ln(10 / z0) (Panofsky and Dutton 1984), or from a
-/// reported gust.
+/// Returns the wind profile. Turbulence is that of the log law, sigma / U = 1 / ln(10 / z0) (Panofsky and Dutton 1984),
+/// or follows from a reported gust.
 pub(super) fn wind_profile(w: &Weather) -> WindProfile {
     let roughness = w.surface.roughness_length_m.unwrap_or(GRASS_ROUGHNESS_M);
     let neutral = (1.0 / libm::log(10.0 / roughness).max(1.0)).min(1.0);
@@ -71,7 +73,7 @@ pub(super) fn wind_profile(w: &Weather) -> WindProfile {
     }
 }
 
-/// The sea: height as given, else of the reported state, else fully grown under this wind.
+/// Returns the state of the sea: height as given, else of the reported sea state, else fully developed under this wind.
 pub(super) fn sea_state(w: &Weather, wind: &WindProfile, height_override: Option<f64>) -> SeaState {
     let z0 = wind.sea_roughness_length_m;
     let to_19_5 = libm::log(19.5 / z0) / libm::log(10.0 / z0);
@@ -92,25 +94,25 @@ pub(super) fn sea_state(w: &Weather, wind: &WindProfile, height_override: Option
     }
 }
 
-/// Wetness that rain keeps up against evaporation: L / (L + E), L the liquid rate and E = 0.5 (1 - RH) + 0.02 mm/h, the
-/// daytime evaporation from a wet surface (order of Penman 1948).
+/// Wetness that rain maintains against evaporation: L / (L + E), with L the liquid rate and E = 0.5 (1 - RH) + 0.02
+/// mm/h, the daytime evaporation from a wet surface (order of Penman 1948).
 pub fn wetness_from_rain(liquid_mm_h: f64, relative_humidity: f64) -> f64 {
     liquid_mm_h / (liquid_mm_h + 0.5 * (1.0 - relative_humidity) + 0.02)
 }
 
-/// Part of the ground under standing water: what rain brings beyond the 2 mm/h that drains off level ground.
+/// Returns the share of the ground under standing water, from rain beyond the 2 mm/h that drains off level ground.
 fn puddles_from_rain(liquid_mm_h: f64) -> f64 {
     let excess = (liquid_mm_h - 2.0).max(0.0);
     excess / (excess + 20.0)
 }
 
-/// Wetness and share of puddles that rain and drizzle keep up.
+/// Wetness and share of puddles that rain and drizzle maintain.
 pub(crate) fn cover_under_rain(falling: &Falling, humidity: f64) -> (f64, f64) {
     let liquid = falling.rain_mm_h + falling.drizzle_mm_h;
     (wetness_from_rain(liquid, humidity), puddles_from_rain(liquid))
 }
 
-/// The ground as observed, else as what falls on it keeps it. Rain that freezes makes ice instead of a film.
+/// Returns the ground as observed, else as precipitation maintains it. Freezing rain makes ice instead of a film.
 pub(super) fn surface_cover(s: &Surface, air_c: f64, humidity: f64, falling: &Falling) -> SurfaceCover {
     let cover = |wetness, puddles, ice| SurfaceCover { wetness, puddles, ice, snow_depth_m: s.snow_depth_m };
     if let Some(state) = s.state {

@@ -1,4 +1,4 @@
-//! The weather over time: changes with absolute starts, laid over each other without a jump in value or in rate.
+//! The weather over time: changes with absolute start times, which blend without a jump in value or in rate.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,14 +12,14 @@ use crate::{
 const MAX_TRANSITION_S: f64 = 3.2e7;
 /// Largest distance of simulation time from 0, s.
 pub(crate) const MAX_TIME_S: f64 = 1e10;
-/// Stands for a time before all others, s.
+/// Time that stands for one before all others, s.
 const EVER_S: f64 = -1e12;
-/// Number that begins a saved timeline; grows when its form changes.
+/// Version number at the beginning of a saved timeline; increases when the format changes.
 const VERSION: u32 = 1;
-/// Most changes that are under way or to come.
+/// Maximum number of changes that are under way or still to come.
 const MAX_CHANGES: usize = 1024;
 
-/// One change: towards `to`, from `start_s` on, for `transition_s`.
+/// One change: to `to`, from `start_s` on, over `transition_s`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Change {
@@ -29,7 +29,7 @@ pub(crate) struct Change {
 }
 
 impl Change {
-    /// Share of the change that has happened at `t`: 3x^2 - 2x^3, at rest at both ends.
+    /// Returns the share of the change that has taken place at `t`: 3x^2 - 2x^3, with zero rate at both ends.
     pub(crate) fn share(&self, t: f64) -> f64 {
         if t >= self.end_s() {
             return 1.0;
@@ -37,24 +37,24 @@ impl Change {
         smooth(((t - self.start_s) / self.transition_s).clamp(0.0, 1.0))
     }
 
-    /// When it is over, s.
+    /// Returns the time at which the change ends, s.
     pub(crate) fn end_s(&self) -> f64 {
         self.start_s + self.transition_s
     }
 }
 
-/// Conditions as a function of simulation time. Two timelines with the same input give the same bits on every
-/// machine (nothing but + - * / and `libm`).
+/// Conditions as a function of simulation time. Two timelines with the same input give the same bits on every machine
+/// (only + - * / and `libm` are used).
 ///
-/// A change that begins while another is under way is laid over it: the older one goes on below while the newer one
-/// takes over, so neither the weather nor its rate of change jumps.
+/// A change that begins while another is under way is blended over it: the older one continues below while the newer
+/// one takes over, so neither the weather nor its rate of change jumps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Timeline {
     version: u32,
     /// Time of the last advance; nothing may be changed before it.
     now_s: f64,
-    /// From when on history is known: the end of the last change that was forgotten.
+    /// Time from which the history is known: the end of the last change that was forgotten.
     #[serde(default = "always", skip_serializing_if = "is_always")]
     known_from_s: f64,
     base: Conditions,
@@ -71,17 +71,17 @@ fn is_always(time_s: &f64) -> bool {
 }
 
 impl Timeline {
-    /// `base` for ever.
+    /// Creates a timeline on which `base` holds for ever.
     pub fn new(base: Conditions) -> Self {
         Self { version: VERSION, now_s: EVER_S, known_from_s: always(), base, changes: Vec::new() }
     }
 
-    /// Changes to `weather`, beginning at simulation time `start_s` (\[-1e10, 1e10\] s) and lasting `transition_s`
-    /// (\[0, 3.2e7\] s; 0 is a cut).
+    /// Adds a change to `weather`, beginning at simulation time `start_s` (\[-1e10, 1e10\] s) and lasting
+    /// `transition_s` (\[0, 3.2e7\] s; 0 is a cut).
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] by name; [`Status::WrongOrder`] if it begins before the last update or before a
-    /// change that was given earlier. The timeline stays as it was.
+    /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] if it begins before the last update or
+    /// before a change that was given earlier. The timeline then stays as it was.
     pub fn change(&mut self, weather: Conditions, start_s: f64, transition_s: f64) -> Result<()> {
         check_range("start_time_s", start_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
         check_range("transition_s", transition_s, 0.0, MAX_TRANSITION_S, "s")?;
@@ -90,7 +90,7 @@ impl Timeline {
             let rest = format!("must not lie before the last update or change at {earliest} s, got {start_s}");
             return Err(Error::about(Status::WrongOrder, "start_time_s", rest));
         }
-        // Of two changes that begin together with a cut, the later call counts; the earlier one never shows.
+        // If two cuts begin at the same time, the later call wins; the earlier one never shows.
         if self.changes.len() >= MAX_CHANGES {
             return Err(Error::range(
                 "weather",
@@ -102,13 +102,13 @@ impl Timeline {
         Ok(())
     }
 
-    /// Earliest simulation time of which the conditions are known, s: the end of the last change that
-    /// [`advance`](Self::advance) forgot, -1e12 as long as there is none.
+    /// Returns the earliest simulation time for which the conditions are known, s: the end of the last change that
+    /// [`advance`](Self::advance) has forgotten, or -1e12 if there is none.
     pub fn known_from_s(&self) -> f64 {
         self.known_from_s
     }
 
-    /// The conditions at simulation time `t`; before [`known_from_s`](Self::known_from_s) those of that moment.
+    /// Returns the conditions at simulation time `t`; before [`known_from_s`](Self::known_from_s) those of that time.
     pub fn at(&self, t: f64) -> Conditions {
         let started = self.changes.iter().take_while(|c| c.start_s <= t);
         started.fold(self.base, |below, change| match change.share(t) {
@@ -123,19 +123,20 @@ impl Timeline {
         self.changes.iter().any(|c| c.start_s <= b && c.end_s() >= a)
     }
 
-    /// Whether the conditions at some time from `a` to `b` may be such; what blends into such or out of them is.
+    /// Whether `is_such` may hold for the conditions at some time from `a` to `b`. Blends into or out of such
+    /// conditions count.
     pub fn is_ever_between(&self, a: f64, b: f64, is_such: impl Fn(&Conditions) -> bool) -> bool {
         let (a, b) = (a.min(b), a.max(b));
         let mut within = self.changes.iter().filter(|c| c.start_s <= b && c.end_s() >= a);
         within.any(|c| is_such(&c.to)) || is_such(&self.at(a))
     }
 
-    /// Moves the present to `now_s` and forgets what has ended before it. Earlier times do nothing.
+    /// Advances the present to `now_s` and forgets changes that ended before it. Earlier times have no effect.
     pub fn advance(&mut self, now_s: f64) {
         self.advance_keeping(now_s, now_s);
     }
 
-    /// As [`Timeline::advance`], but what happened from `keep_s` on is kept for those who lag behind.
+    /// Advances as [`Timeline::advance`], but keeps changes from `keep_s` on, for readers that lag behind.
     pub fn advance_keeping(&mut self, now_s: f64, keep_s: f64) {
         self.now_s = self.now_s.max(now_s);
         if let Some(ended) = self.last_ended(now_s.min(keep_s)) {
@@ -146,12 +147,12 @@ impl Timeline {
         }
     }
 
-    /// Index of the last change that is over at `now_s`: it covers all before it.
+    /// Returns the index of the last change that has ended at `now_s`: it hides all earlier ones.
     fn last_ended(&self, now_s: f64) -> Option<usize> {
         self.changes.iter().rposition(|c| c.end_s() <= now_s && c.start_s <= now_s)
     }
 
-    /// Returns the new [`known_from_s`](Self::known_from_s) after an advance to `now_s`, if that forgets anything.
+    /// Returns the [`known_from_s`](Self::known_from_s) after an advance to `now_s`; `None` if that forgets nothing.
     pub(crate) fn ends_before(&self, now_s: f64) -> Option<f64> {
         self.last_ended(now_s).map(|i| self.changes[i].end_s())
     }
@@ -161,12 +162,12 @@ impl Timeline {
         is_always(&self.known_from_s)
     }
 
-    /// The weather below all changes, and the changes that lie over it, in order of their starts.
+    /// Returns the weather before all changes, and the changes in the order of their starts.
     pub(crate) fn parts(&self) -> (&Conditions, &[Change]) {
         (&self.base, &self.changes)
     }
 
-    /// The timeline as text (a seal, then TOML), for [`Timeline::load`]; numbers come back bit for bit.
+    /// Returns the timeline as text (a seal, then TOML) for [`Timeline::load`]; numbers come back bit for bit.
     ///
     /// # Errors
     /// [`Status::Internal`] if a number cannot be written.
@@ -176,7 +177,7 @@ impl Timeline {
         Ok(sealed(&body))
     }
 
-    /// A timeline from the text of [`Timeline::save`].
+    /// Loads a timeline from the text of [`Timeline::save`].
     ///
     /// # Errors
     /// [`Status::Parse`] for text of another version, cut short or changed.
@@ -191,7 +192,7 @@ impl Timeline {
         if head.version != VERSION {
             return Err(parse(&format!("version must be {VERSION}, got {}", head.version)));
         }
-        // A text cut between two changes, or inside its last number, is still TOML.
+        // A text that is cut between two changes, or inside its last number, is still valid TOML.
         if sealed(body) != text {
             return Err(parse(&"the text is cut short or changed: its seal does not fit"));
         }
@@ -211,7 +212,7 @@ impl Timeline {
     }
 }
 
-/// `body` under a line with its FNV-1a hash, which tells a whole text from a cut one.
+/// Returns `body` below a line with its FNV-1a hash, which reveals a cut text.
 fn sealed(body: &str) -> String {
     let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
     format!("# timeline {:016x}\n{body}", body.bytes().fold(0xcbf2_9ce4_8422_2325, fold))

@@ -1,10 +1,10 @@
-//! Refuses a `Weather` that cannot be, by the parameter's name and range.
+//! Validation of a `Weather`: an error names the field and its range.
 
 use super::kinds::PrecipitationKind;
 use super::model::{Aerosol, CloudLayer, Fog, MAX_CLOUD_LAYERS, Precipitation, Sea, Weather, Wind};
 use crate::error::{Error, Result, check_range};
 
-/// As [`check_range`], for a value that may be absent.
+/// Applies [`check_range`] to a value that may be absent.
 fn check_some(name: &str, value: Option<f64>, lo: f64, hi: f64, unit: &str) -> Result<()> {
     value.map_or(Ok(()), |v| check_range(name, v, lo, hi, unit))
 }
@@ -117,10 +117,10 @@ mod tests {
     use super::*;
     use crate::error::Status;
 
-    /// One way to spoil a weather, and the name the refusal must give.
+    /// One way to make a weather invalid, and the name that the error must give.
     type Spoil = (&'static str, fn(&mut Weather, f64));
 
-    /// Every float field; `spoil` writes the bad value into it.
+    /// Every float field, with a function that writes the invalid value into it.
     const FIELDS: &[Spoil] = &[
         ("visibility_m", |w, v| w.visibility_m = v),
         ("vertical_visibility_m", |w, v| w.vertical_visibility_m = Some(v)),

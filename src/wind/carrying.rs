@@ -1,4 +1,4 @@
-//! The wind over a timeline, and what it has carried up to a moment.
+//! The wind over a timeline, and the displacement of the air by it.
 
 use std::cell::{Cell, RefCell};
 
@@ -15,37 +15,37 @@ use crate::weather::Timeline;
 pub(crate) struct WindOver<'a> {
     pub wind: &'a Wind,
     pub timeline: &'a Timeline,
-    /// How far it had carried the air when the last change ended that the timeline has forgotten.
+    /// Drift of the air at the end of the last change that the timeline has forgotten.
     pub kept: Drift,
-    /// Drifts of the layers of cloud at that time.
+    /// Drifts of the cloud layers at that time.
     pub kept_layers: &'a LayerDrifts,
     /// Revision of the timeline: no two contexts share one, and every change of the timeline makes a new one.
     pub revision: u64,
 }
 
 impl<'a> WindOver<'a> {
-    /// The wind at 10 m at a time that the timeline knows, and how far it has carried the air since time 0.
+    /// Returns the wind at 10 m at a time that the timeline knows, with the displacement of the air since time 0.
     pub fn at(&self, time_s: f64) -> Blowing {
         self.wind.blowing(self.timeline, self.kept, time_s)
     }
 
-    /// How far the layers of cloud have come at a time that the timeline knows.
+    /// Returns the drifts of the cloud layers at a time that the timeline knows.
     pub fn layers_at(&self, time_s: f64) -> LayerDrifts {
         self.kept_layers.until(self.timeline, time_s)
     }
 
-    /// The wind that carries the air, up to a moment.
+    /// Returns the wind that carries the air, from time 0 to a time.
     pub fn carrying_until(self, time_s: f64) -> Carrying<'a> {
         self.carrying_as(time_s, self.at(time_s))
     }
 
-    /// Returns [`Self::carrying_until`] where the wind at the moment is known.
+    /// Returns [`Self::carrying_until`] for a known wind at that time.
     pub fn carrying_as(self, time_s: f64, now: Blowing) -> Carrying<'a> {
         Carrying { over: self, time_s, now }
     }
 }
 
-/// The wind that carries the air, up to a moment: worked out once for all that asks since when.
+/// The wind that carries the air up to a time, computed once for all queries with different starts.
 #[derive(Clone, Copy)]
 pub(crate) struct Carrying<'a> {
     over: WindOver<'a>,
@@ -54,18 +54,18 @@ pub(crate) struct Carrying<'a> {
 }
 
 impl Carrying<'_> {
-    /// How far it has carried the air since time 0, m (east, north, up).
+    /// Returns how far the wind has carried the air since time 0, m (east, north, up).
     pub fn displacement_m(&self) -> DVec3 {
         self.now.drift.displacement_m.extend(0.0)
     }
 
-    /// Velocity at 10 m with gusts, of which the displacement is the integral, m/s.
+    /// Returns the velocity at 10 m with gusts, of which the displacement is the integral, m/s.
     pub fn velocity_m_s(&self) -> DVec3 {
         self.now.velocity_m_s().extend(0.0)
     }
 
-    /// How far the wind has carried the air since a moment, m, and before what the timeline knows with the wind of its
-    /// first one.
+    /// Returns how far the wind has carried the air since a time, m. Before the first time that the timeline knows, it
+    /// uses the wind of that time.
     pub fn since(&self, from_s: f64, remembered: &Remembered) -> DVec3 {
         let known_s = from_s.max(self.over.timeline.known_from_s()).min(self.time_s);
         let first = remembered.at(&self.over, known_s);
@@ -74,14 +74,15 @@ impl Carrying<'_> {
     }
 }
 
-/// Moments that are remembered: more than a frame asks for.
+/// Number of times that are remembered: more than a frame asks for.
 const REMEMBERED: usize = 16;
 
-/// Keeps the wind at moments that many frames ask for, until the timeline changes: each takes a walk over the timeline.
+/// Cache of the wind at times that many frames ask for, valid until the timeline changes. It saves a walk over the
+/// timeline for each.
 #[derive(Default)]
 pub(crate) struct Remembered {
     revision: Cell<u64>,
-    /// By the bits of the time; the oldest gives its place to the next.
+    /// Winds with the bits of their times; the oldest is overwritten first.
     winds: RefCell<Vec<(u64, Blowing)>>,
     next: Cell<usize>,
 }
@@ -124,7 +125,7 @@ mod tests {
             let timeline = Timeline::new(derive(&weather).unwrap());
             let kept_layers = &LayerDrifts::ZERO;
             let over = WindOver { wind: &wind, timeline: &timeline, kept: Drift::ZERO, kept_layers, revision };
-            // More moments than there is room for, some of them again.
+            // More times than there is room for, some of them repeated.
             for i in 0..40 {
                 let time_s = f64::from(i % 23) * 1.5;
                 assert_eq!(remembered.at(&over, time_s), over.at(time_s), "{revision} {i}");

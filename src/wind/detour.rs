@@ -1,14 +1,15 @@
-//! How obstacles hold up and turn aside what drifts with the wind near the ground: patches of fog and of dust.
+//! Detours: obstacles delay and deflect patches of fog and dust that drift with the wind near the ground.
 //!
-//! Patches go with the displacement of the weather's wind, the same everywhere. Where the wind varies in space the air
-//! at a place has come another way. It is followed back along the level wind w near the ground; with e the wind that
-//! enters the grid, both over the speed of e, and s the way of free air, the air at a place is behind by
+//! Patches move with the displacement of the weather's wind, which is the same everywhere. Where the wind varies in
+//! space, the air at a place has come by another path. The path is traced back along the level wind w near the ground.
+//! With e the wind that enters the grid, w and e both divided by the speed of e, and s the distance that free air
+//! travels, the air at a place lags by
 //!
 //! L = integral of (e - w) e^(-s / life) ds,
 //!
-//! so that a patch is what it would be L farther on. Eddies stir patches: what happened to air more than the life of a
-//! patch ago shows no more, and no lag grows longer than that life. With an endless life L would be the drift of Darwin
-//! (1953).
+//! so that the patches there are those that would lie L farther on. Eddies stir patches: what happened to the air more
+//! than a patch's life ago no longer shows, and no lag grows longer than that life. With an infinite life L would be
+//! the drift of Darwin (1953).
 
 use std::sync::Arc;
 
@@ -20,47 +21,47 @@ use crate::numerics::smooth;
 
 /// Nodes of a map on each side: `DETOUR_SIDE` of `shaders/fog/uniform.wgsl`.
 pub(crate) const DETOUR_SIDE: usize = 24;
-/// Height over the ground of the wind that patches are followed in, m.
+/// Height above ground of the wind along which patches are traced, m.
 const HEIGHT_M: f64 = 2.0;
-/// Speed of the wind that enters below which nothing drifts, m/s.
+/// Speed of the entering wind below which nothing drifts, m/s.
 const LEAST_WIND_M_S: f64 = 0.2;
-/// Steps back over three lives of a patch.
+/// Number of steps back over three lives of a patch.
 const STEPS: usize = 48;
-/// Part of the map on each side over which detours fade, so that the pattern is whole beyond. A solved field goes over
-/// into the weather's wind there: what enters is asked within.
+/// Share of the map's width at each side over which detours fade to 0, so that the pattern continues unchanged outside.
+/// A solved field blends into the weather's wind there; the entering wind is therefore sampled inside of it.
 const EDGE: f64 = 0.15;
-/// Heights over the ground at which a grid is asked how high its obstacles reach.
+/// Number of heights above ground at which a grid is sampled to find how high its obstacles reach.
 const LEVELS: usize = 12;
 
-/// How far the air about a grid of wind is behind the free air, near the ground.
+/// Lag of the air near the ground behind the free air, around a grid of wind.
 #[derive(Debug, PartialEq)]
 pub(crate) struct DetourMap {
-    /// The node farthest to the south-west, in the host's world, on the grid's floor.
+    /// Position of the south-western node in the host's world, on the grid's floor.
     origin: DVec3,
-    /// Turns the host's axes at the origin to east, north, up.
+    /// Rotation from the host's axes at the origin to east, north, up.
     to_enu: DMat3,
-    /// From node to node, m.
+    /// Distance between nodes, m.
     cell_m: DVec2,
-    /// East and north, m; eastern neighbours beside each other, then northern.
+    /// Lags east and north, m. East varies fastest, then north.
     pub lags_m: Vec<[f32; 2]>,
-    /// Height over the floor at which half of the detour is left, m.
+    /// Height above the floor at which half of the detour is left, m.
     half_height_m: f64,
 }
 
-/// A map as it lies about a camera.
+/// A map as it lies around a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Detour {
     pub map: Arc<DetourMap>,
-    /// Cells a metre, and the cell of the camera: east, north.
+    /// Cells per metre, and the camera's position in cells: east, north.
     pub scale: DVec2,
     pub camera: DVec2,
-    /// Height of the floor over the camera, m.
+    /// Height of the floor above the camera, m.
     pub floor_m: f64,
-    /// 1/height over the floor at which nothing is left of a detour, 1/m.
+    /// Inverse of the height above the floor at which no detour is left, 1/m.
     pub fade_per_m: f64,
 }
 
-/// The level wind of a grid so high over the ground.
+/// Level wind of a grid at a height above ground.
 struct LevelWind<'a> {
     volume: &'a WindVolume,
     ground_m: &'a dyn Fn(DVec2) -> f64,
@@ -69,14 +70,14 @@ struct LevelWind<'a> {
 }
 
 impl LevelWind<'_> {
-    /// At a place so many metres east and north of the grid's origin, m/s.
+    /// Returns the wind at a place in metres east and north of the grid's origin, m/s.
     fn at(&self, place: DVec2) -> Option<DVec2> {
         let up = (self.ground_m)(place) + self.height_m;
         let found = self.volume.at((place.extend(up)) / self.volume.cell_m)?;
         Some(found.truncate().truncate() + self.weathers_m_s * (1.0 - found.w))
     }
 
-    /// The mean wind on those sides of an area's inner part through which it enters; `size` is the area's, m.
+    /// Returns the mean wind on those sides of an area's inner part through which it enters; `size` is the area's, m.
     fn entering(&self, size: DVec2) -> DVec2 {
         let along = |i: usize| (i as f64 + 0.5) / DETOUR_SIDE as f64;
         let sides = [
@@ -101,10 +102,10 @@ impl LevelWind<'_> {
 }
 
 impl DetourMap {
-    /// Creates the map of a grid of wind in the weather's. `ground_m` answers the ground's height over the grid's
-    /// origin so many metres east and north of it, `weathers_m_s` the weather's wind so high over the ground; `life_m`
-    /// is how far free air comes while a patch lives, a sixth of the grid at most, so that lags are gone at its edges.
-    /// None where no wind blows.
+    /// Creates the map of a grid of wind in the weather's wind. `ground_m` returns the ground's height above the grid's
+    /// origin at a place in metres east and north of it, `weathers_m_s` the weather's wind at a height above ground.
+    /// `life_m` is the distance that free air travels in a patch's life, limited to a sixth of the grid, so that lags
+    /// are gone at its edges. `None` if no wind blows.
     pub fn new(
         volume: &WindVolume,
         ground_m: &dyn Fn(DVec2) -> f64,
@@ -128,7 +129,7 @@ impl DetourMap {
             followed(&low, (entering, size), place(at), life_m) * smooth(share)
         };
         let lags_m = places().map(|at| lag(at).as_vec2().to_array()).collect();
-        // How much the wind of a height varies over the area.
+        // Variation over the area of the wind at a height.
         let varies = |height_m: f64| {
             let level = level(height_m);
             let free = level.entering(size);
@@ -142,7 +143,7 @@ impl DetourMap {
         Some(Self { origin: volume.origin, to_enu: volume.to_enu, cell_m, lags_m, half_height_m })
     }
 
-    /// As it lies about a camera at `eye` in the host's world.
+    /// Returns the map relative to a camera at `eye` in the host's world.
     pub fn about(self: &Arc<Self>, eye: DVec3) -> Detour {
         let camera = self.to_enu * (eye - self.origin);
         Detour {
@@ -155,13 +156,13 @@ impl DetourMap {
     }
 }
 
-/// How far the air at a place of an area of this size is behind; `entering` is the wind of free air.
+/// Returns the lag of the air at a place of an area of this size; `entering` is the wind of free air.
 fn followed(level: &LevelWind<'_>, (entering, size): (DVec2, DVec2), mut place: DVec2, life_m: f64) -> DVec2 {
     let (free, speed) = (entering.normalize_or_zero(), entering.length());
     let step = 3.0 * life_m / STEPS as f64;
     let (mut behind, mut was_within) = (DVec2::ZERO, false);
     for n in 0..STEPS {
-        // Before it came in and since it went out air is free.
+        // The air is free before it enters and after it leaves.
         let is_within = place.cmpge(size * EDGE).all() && place.cmple(size * (1.0 - EDGE)).all();
         if was_within && !is_within {
             break;
@@ -182,7 +183,7 @@ fn followed(level: &LevelWind<'_>, (entering, size): (DVec2, DVec2), mut place: 
 }
 
 impl Detour {
-    /// How far the air at a place relative to the camera is behind, m (east, north).
+    /// Returns the lag of the air at a place relative to the camera, m (east, north).
     pub fn lag_m(&self, place: DVec3) -> DVec2 {
         let last = (DETOUR_SIDE - 1) as f64;
         let at = (self.camera + place.truncate() * self.scale).clamp(DVec2::ZERO, DVec2::splat(last));
@@ -197,7 +198,8 @@ impl Detour {
         row(0).lerp(row(1), part.y) * (1.0 - smooth(x))
     }
 
-    /// Where a ray is over the map: distances from its origin, m; the second is less than the first where it is not.
+    /// Returns the interval of a ray that lies over the map: distances from its origin, m. The second is less than the
+    /// first for a ray that misses the map.
     pub fn over(&self, origin: DVec3, direction: DVec3) -> [f64; 2] {
         let at = self.camera + origin.truncate() * self.scale;
         let way = direction.truncate() * self.scale;
@@ -216,7 +218,7 @@ mod tests {
     const PILLAR_M: f64 = 12.0;
     const HALF_M: f64 = 120.0;
 
-    /// Level flow without friction round the pillar at the origin, east at 5 m/s far off.
+    /// Frictionless level flow around the pillar at the origin, eastward at 5 m/s far away.
     fn round_pillar(p: DVec2) -> DVec2 {
         let r2 = p.length_squared();
         if r2 <= PILLAR_M * PILLAR_M {
@@ -243,7 +245,7 @@ mod tests {
         map.about(DVec3::ZERO).lag_m(place.extend(0.0))
     }
 
-    /// The definition by small steps of Runge and Kutta's second order through the exact flow.
+    /// The lag by its definition, with small steps of Runge and Kutta's second order through the exact flow.
     fn truth(mut p: DVec2, life_m: f64) -> DVec2 {
         let step = 0.01;
         let (mut behind, mut s) = (DVec2::ZERO, 0.0);
@@ -271,7 +273,7 @@ mod tests {
             assert!((got - want).length() < 0.015 * life_m, "{p}: {got}, by the exact flow {want}");
         }
         assert!(most > 0.09 * life_m, "{most}");
-        // Before the pillar air is held up, beside it it runs ahead, and it goes round on both sides alike.
+        // Air is held up in front of the pillar, runs ahead beside it, and passes alike on both sides.
         let [before, beside] = [DVec2::new(-25.0, 0.0), DVec2::new(0.0, 28.0)].map(|p| lag(&map, p).x);
         assert!(before > 2.0 && beside < -0.5, "{before} {beside}");
         let [left, right] = [14.0, -14.0].map(|y| lag(&map, DVec2::new(-20.0, y)));
@@ -299,7 +301,8 @@ mod tests {
         );
     }
 
-    /// A wall of 6 m in a field of 16 m holds up what is low, and air over a hill what is over its slopes.
+    /// A wall of 6 m in a field of 16 m delays only the air near the ground, and over a hill only the air near its
+    /// slopes.
     #[test]
     fn detours_end_over_what_makes_them_and_follow_the_ground() {
         let wall = volume(WindGridKind::Whole, |p| {
@@ -312,7 +315,7 @@ mod tests {
         assert!(at(0.0) > 15.0, "{}", at(0.0));
         let half = at(map.half_height_m) / at(0.0);
         assert!((half - 0.5).abs() < 1e-9 && (4.0..10.0).contains(&map.half_height_m), "{half} {}", map.half_height_m);
-        // The same layer of slow air over a hill that is as high as the wall: there the ground is asked above it.
+        // The same layer of slow air over a hill as high as the wall: there the wind is sampled above it.
         let hill = DetourMap::new(&wall, &|_| 7.0, &|_| DVec2::ZERO, 40.0).expect("wind");
         assert!(hill.lags_m.as_flattened().iter().all(|v| v.abs() < 1e-3));
     }

@@ -1,9 +1,9 @@
-//! The wind of a seed along the timeline: how far the air has come, and how fast it goes.
+//! The wind of a seed along the timeline: the displacement of the air, and its velocity.
 //!
 //! Between the starts and ends of changes the mean wind is one polynomial of time, which eight points of Gauss and
-//! Legendre integrate exactly while at most five changes overlap; gusts and wander are integrated in closed form.
-//! Nothing is stepped: any time costs the same, and what is carried over ended changes is the same for any sequence of
-//! updates.
+//! Legendre integrate exactly while at most five changes overlap. Gusts and wander are integrated in closed form.
+//! Nothing is stepped, so any time costs the same. The state that is kept when changes are forgotten is the same for
+//! any sequence of updates.
 
 use glam::DVec2;
 
@@ -20,54 +20,54 @@ pub struct Wind {
 }
 
 impl Wind {
-    /// The gusts that a seed decides.
+    /// Creates the gusts that the seed defines.
     pub fn new(seed: u64) -> Self {
         Self { gusts: Gusts::new(seed) }
     }
 
-    /// The wind at 10 m at time `t`, s, not before what `timeline` knows; `kept` is what was kept of that which it has
-    /// forgotten ([`Drift::ZERO`] as long as that is nothing).
+    /// Returns the wind at 10 m at time `t`, s, which must not be before the time from which `timeline` is known.
+    /// `kept` is the drift at the end of what the timeline has forgotten ([`Drift::ZERO`] as long as that is nothing).
     pub fn blowing(&self, timeline: &Timeline, kept: Drift, t: f64) -> Blowing {
         Walk::new(&self.gusts, timeline, kept, t).blowing(t)
     }
 }
 
-/// How far the air at 10 m has come at a moment.
+/// Displacement of the air at 10 m at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
-    /// The moment, s.
+    /// Simulation time, s.
     pub time_s: f64,
-    /// Integral of the mean speed since time 0, m: the way along which gusts pass.
+    /// Integral of the mean speed since time 0, m: the path along which gusts pass.
     pub path_m: f64,
     /// Integral of the velocity since time 0, m (east, north).
     pub displacement_m: DVec2,
 }
 
-/// The wind at 10 m at a moment. Velocities in m/s (east, north).
+/// Wind at 10 m at a time. Velocities in m/s (east, north).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blowing {
-    /// How far the air has come.
+    /// Displacement of the air.
     pub drift: Drift,
-    /// The mean wind, as the conditions have it.
+    /// Mean wind, as in the conditions.
     pub mean_m_s: DVec2,
-    /// Change of the mean by the wandering direction.
+    /// Change of the mean wind by its wandering direction.
     pub turned_m_s: DVec2,
     /// Velocity that gusts add.
     pub gust_m_s: DVec2,
 }
 
 impl Drift {
-    /// Time 0.
+    /// Drift at time 0.
     pub const ZERO: Self = Self { time_s: 0.0, path_m: 0.0, displacement_m: DVec2::ZERO };
 
-    /// At the end of the last change that the timeline will have forgotten once it has advanced to `now_s`: what must
-    /// be kept beside it. To be asked before it advances.
+    /// Returns the drift at the end of the last change that the timeline will have forgotten once it has advanced to
+    /// `now_s`, which must be kept with the timeline. Call it before the timeline advances.
     pub fn kept(self, wind: &Wind, timeline: &Timeline, now_s: f64) -> Self {
         timeline.ends_before(now_s).map_or(self, |end_s| wind.blowing(timeline, self, end_s).drift)
     }
 }
 
-/// Goes along a timeline from one start or end of a change to the next.
+/// Steps along a timeline from one start or end of a change to the next.
 struct Walk<'a> {
     gusts: &'a Gusts,
     base: WindProfile,
@@ -85,11 +85,11 @@ fn stir_of(wind: &WindProfile) -> Stir {
 }
 
 impl<'a> Walk<'a> {
-    /// From `kept`, which belongs to what the timeline has forgotten, towards `t`.
+    /// Starts at `kept`, the drift at the end of what the timeline has forgotten, to go towards `t`.
     pub fn new(gusts: &'a Gusts, timeline: &'a Timeline, kept: Drift, t: f64) -> Self {
         let (Conditions { wind, .. }, changes) = timeline.parts();
         let mut walk = Self { gusts, base: *wind, changes, at: kept, stir: stir_of(wind) };
-        // Counting begins at time 0, wherever the changes do.
+        // Counting begins at time 0, whenever the changes do.
         match changes.first() {
             Some(first) if timeline.known_since_ever() && t < first.start_s => walk.changes = &[],
             Some(first) if timeline.known_since_ever() && first.start_s < kept.time_s => {
@@ -102,7 +102,7 @@ impl<'a> Walk<'a> {
         walk
     }
 
-    /// Leaves behind what has ended, as the timeline does; whether anything has.
+    /// Drops changes that have ended, as the timeline does. Returns whether there were any.
     fn drop_ended(&mut self) -> bool {
         let now = self.at.time_s;
         let ended = self.changes.iter().rposition(|c| c.start_s <= now && c.end_s() <= now);
@@ -117,19 +117,19 @@ impl<'a> Walk<'a> {
         stir_of(&self.wind_at(self.active(), self.at.time_s).0)
     }
 
-    /// Changes that are under way.
+    /// Returns the changes that are under way.
     fn active(&self) -> &'a [Change] {
         let count = self.changes.iter().take_while(|c| c.start_s <= self.at.time_s).count();
         &self.changes[..count]
     }
 
-    /// When the next of the `active` changes is over, s.
+    /// Returns the time at which the next of the `active` changes ends, s.
     fn next_end(active: &[Change]) -> f64 {
         active.iter().map(Change::end_s).fold(f64::INFINITY, f64::min)
     }
 
-    /// The mean wind at `t` under the `active` changes, and the mean of their speeds: what carries gusts does not rest
-    /// while the wind turns.
+    /// Returns the mean wind at `t` under the `active` changes, and the mean of their speeds. Gusts travel with the
+    /// latter, which does not drop while the wind turns.
     fn wind_at(&self, active: &[Change], t: f64) -> (WindProfile, f64) {
         active.iter().fold((self.base, self.base.speed_m_s()), |(wind, speed), change| {
             let share = change.share(t);
@@ -138,7 +138,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// Integrals of the mean velocity and of the mean speed over time.
+    /// Returns the integrals of the mean velocity and of the mean speed over time.
     fn integrals(&self, active: &[Change], from_s: f64, to_s: f64) -> (DVec2, f64) {
         let (middle, half) = (0.5 * (from_s + to_s), 0.5 * (to_s - from_s));
         GAUSS_8_HALF.iter().fold((DVec2::ZERO, 0.0), |(way, path), &(x, weight)| {
@@ -147,17 +147,17 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// The wind at `t` if nothing changes between now and then.
+    /// Returns the wind at `t` if nothing changes until then.
     fn steady(&self, t: f64) -> (Blowing, Stir) {
         let (time, speed) = (t - self.at.time_s, self.base.speed_m_s());
         let stretch = GustStretch { start_m: self.at.path_m, length_m: 0.0, from: self.stir, to: self.stir };
         self.blown((mean(&self.base) * time, speed * time), (mean(&self.base), speed), &stretch, t)
     }
 
-    /// The wind at `t` while the `active` changes are under way, none of which is over before `end_s`.
+    /// Returns the wind at `t` while the `active` changes are under way, none of which ends before `end_s`.
     ///
-    /// The stirring goes evenly along the path to what it will be at that end. It must not look at changes that begin
-    /// before it: they may not have been told yet.
+    /// The turbulence changes linearly along the path to its state at `end_s`. It must not depend on changes that begin
+    /// before `end_s`, because the host may not have given them yet.
     fn changing(&self, active: &[Change], end_s: f64, t: f64) -> (Blowing, Stir) {
         let from = self.at.time_s;
         let stretch = GustStretch {
@@ -184,7 +184,7 @@ impl<'a> Walk<'a> {
         (Blowing { drift, mean_m_s: wind, turned_m_s, gust_m_s }, stretch.stir_after(path))
     }
 
-    /// The wind at `t`, not before what the timeline knows.
+    /// Returns the wind at `t`, which must not be before the time from which the timeline is known.
     pub fn blowing(mut self, t: f64) -> Blowing {
         loop {
             let active = self.active();

@@ -1,10 +1,10 @@
-//! Wind that varies in space: velocities on a grid that the host, or a flow solver, gives.
+//! Wind that varies in space: velocities on a grid from the host or a flow solver.
 
 use glam::DVec3;
 
 use crate::error::{Error, Result, check_range};
 
-/// Most nodes of a grid east, north and up.
+/// Maximum numbers of nodes of a grid east, north and up.
 pub const MAX_NODES: [u32; 3] = [64, 64, 32];
 /// Largest speed of a node, m/s.
 const MAX_SPEED_M_S: f64 = 300.0;
@@ -12,31 +12,31 @@ const MAX_SPEED_M_S: f64 = 300.0;
 /// Meaning of a grid's velocities.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindGridKind {
-    /// The whole wind, which replaces the weather's within the grid.
+    /// The whole wind, which replaces the weather's inside the grid.
     #[default]
     Whole,
-    /// Wind to be added to the weather's.
+    /// Wind that is added to the weather's.
     Added,
 }
 
-/// Velocities of the air at the nodes of a grid that is level and aligned to north; between them they go linearly along
-/// each axis. Outside blows the weather's wind.
+/// Velocities of the air at the nodes of a grid that is level and aligned to north, linear along each axis between
+/// them. Outside, the weather's wind blows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindGrid {
-    /// The node lowest and farthest to the south-west, in the host's world.
+    /// Position of the lowest, south-western node in the host's world.
     pub origin: DVec3,
-    /// From node to node east, north and up, m, \[0.01, 10 000\].
+    /// Distance between nodes east, north and up, m, \[0.01, 10 000\].
     pub cell_m: DVec3,
-    /// Nodes east, north and up, 2 to [`MAX_NODES`].
+    /// Numbers of nodes east, north and up, 2 to [`MAX_NODES`].
     pub nodes: [u32; 3],
     /// Meaning of `velocities_m_s`.
     pub kind: WindGridKind,
-    /// (east, north, up), m/s, at most 300 in all; eastern neighbours beside each other, then northern, then upper.
+    /// Velocities (east, north, up), m/s, each of a magnitude of at most 300. East varies fastest, then north, then up.
     pub velocities_m_s: Vec<[f32; 3]>,
 }
 
 impl WindGrid {
-    /// Refuses what is no grid, by name.
+    /// Checks that every field is in range; the error names the one that is not.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
@@ -64,15 +64,15 @@ impl WindGrid {
         }
     }
 
-    /// The velocity so many cells from the origin, m/s; none outside.
+    /// Returns the velocity at a position in cells from the origin, m/s; `None` outside.
     pub fn at(&self, cells: DVec3) -> Option<DVec3> {
         let velocity = |i: usize| DVec3::from(self.velocities_m_s[i].map(f64::from));
         Some(about(self.nodes, cells)?.into_iter().map(|(i, weight)| velocity(i) * weight).sum())
     }
 }
 
-/// The eight nodes about a place so many cells from the first of a grid, with their weights by linear interpolation;
-/// none outside.
+/// Returns the eight nodes around a position in cells from the first node, with their weights for linear interpolation;
+/// `None` outside.
 pub(super) fn about(nodes: [u32; 3], cells: DVec3) -> Option<[(usize, f64); 8]> {
     let c = cells.to_array();
     let inside = c.iter().zip(nodes).all(|(x, n)| n > 1 && (0.0..=f64::from(n - 1)).contains(x));
@@ -93,7 +93,7 @@ pub(super) fn about(nodes: [u32; 3], cells: DVec3) -> Option<[(usize, f64); 8]> 
 mod tests {
     use super::*;
 
-    /// Returns a wind that is linear in every coordinate, which comes back exactly.
+    /// Returns a wind that is linear in every coordinate, which interpolation reproduces exactly.
     fn linear(p: DVec3) -> DVec3 {
         DVec3::new(3.0 + 0.5 * p.x - 0.25 * p.z, -1.0 + 0.125 * p.y, 0.5 * p.z - 0.0625 * p.x)
     }

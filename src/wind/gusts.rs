@@ -1,7 +1,7 @@
-//! Gusts as sums of waves along the way that the mean wind has blown, and the integrals of such waves.
+//! Gusts as sums of waves along the path of the mean wind, and the integrals of such waves.
 //!
-//! Eddies are carried past by the mean wind (Taylor 1938): a gust is a function of the path s, the integral of the mean
-//! speed, and not of time. When the wind picks up the same gusts pass faster, and none of them starts anew.
+//! The mean wind carries eddies past a place (Taylor 1938). A gust is therefore a function of the path s, the integral
+//! of the mean speed, and not of time. When the wind picks up, the same gusts pass faster and none starts anew.
 
 use std::f64::consts::TAU;
 
@@ -9,19 +9,19 @@ use glam::DVec2;
 
 use crate::chance::Chance;
 
-/// Waves in each direction.
+/// Number of waves in each direction.
 const TONES: usize = 24;
-/// Longest and shortest wave, m. What is longer is a change of weather, what is shorter is no wind of a whole scene.
+/// Longest and shortest wave, m. Longer ones are changes of weather; shorter ones do not move all of a scene alike.
 const WAVES_M: (f64, f64) = (3000.0, 8.0);
 /// Turbulence scale at 10 m above ground, m: 0.7 of the height (IEC 61400-1, 6.3).
 const SCALE_M: f64 = 7.0;
 /// Integral scales of Kaimal's spectrum along and across the wind, m (IEC 61400-1, annex C).
 const LENGTHS_M: [f64; 2] = [8.1 * SCALE_M, 2.7 * SCALE_M];
-/// Standard deviation across the wind over that along it (IEC 61400-1, annex C).
+/// Ratio of the standard deviation across the wind to that along it (IEC 61400-1, annex C).
 pub(super) const ACROSS: f64 = 0.8;
-/// Length of the wave by which the direction wanders, m: three minutes in the light winds that do.
+/// Length of the wave by which the direction wanders, m: three minutes in the light winds that wander.
 const WANDER_M: f64 = 600.0;
-/// Orders of the wander's series: J_13(pi) is 1e-8.
+/// Number of orders of the wander's series: J_13(pi) is 1e-8.
 const ORDERS: usize = 12;
 
 /// One wave: amplitude x cos(wavenumber s + phase).
@@ -32,8 +32,8 @@ struct GustWave {
     phase: f64,
 }
 
-/// The gusts of a seed: two sums of waves with a variance of 1 each, spread over wavelengths as Kaimal et al. (1972)
-/// found it, and the wave that turns the wind.
+/// Gusts of a seed: two sums of waves with a variance of 1 each, whose wavelengths follow the spectrum of Kaimal et al.
+/// (1972), and the wave that turns the wind.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Gusts {
     along: [GustWave; TONES],
@@ -41,19 +41,19 @@ pub(super) struct Gusts {
     wander: GustWave,
 }
 
-/// How the air stirs about the mean wind, per m/s of mean speed, in quantities that can be mixed. Vectors (east,
+/// Turbulence around the mean wind, per m/s of mean speed, in quantities that can be interpolated. Vectors (east,
 /// north).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stir {
     /// Standard deviation of gusts along the wind.
     along: DVec2,
-    /// Velocity that the wander adds to the mean, as a series in its wave: orders -12 to 12. A wind d that turns by w
-    /// sin p is the sum of J_n(w) d e^(i n p) (Jacobi and Anger).
+    /// Velocity that the wander adds to the mean, as a series in its wave with the orders -12 to 12. A wind d that
+    /// turns by w sin p is the sum of J_n(w) d e^(i n p) (Jacobi and Anger).
     turning: [DVec2; 2 * ORDERS + 1],
 }
 
 impl Stir {
-    /// Creates the stir of a wind whose mean blows towards `direction` (of length 1, 0 in a calm).
+    /// Creates the turbulence of a wind whose mean blows towards `direction` (of length 1, 0 in a calm).
     pub fn new(direction: DVec2, turbulence_intensity: f64, wander: f64) -> Self {
         let mut turning = [DVec2::ZERO; 2 * ORDERS + 1];
         if wander > 0.0 {
@@ -76,8 +76,7 @@ impl Stir {
     }
 }
 
-/// A stretch of path on which the stirring goes evenly from one state to another: `from` at `start_m`, `to` after
-/// `length_m`.
+/// A stretch of path along which the turbulence changes linearly from `from` at `start_m` to `to` after `length_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GustStretch {
     pub start_m: f64,
@@ -86,33 +85,34 @@ pub(super) struct GustStretch {
     pub to: Stir,
 }
 
-/// Share of the variance in waves longer than L / x: the integral of Kaimal's 4 / (1 + 6 x)^(5/3) from 0 to x.
+/// Returns the share of the variance in waves longer than L / x: the integral of Kaimal's 4 / (1 + 6 x)^(5/3) from 0 to
+/// x.
 fn share_below(x: f64) -> f64 {
     1.0 - libm::pow(1.0 + 6.0 * x, -2.0 / 3.0)
 }
 
-/// Complex exponential of an angle.
+/// Returns the complex exponential of an angle.
 fn turn(angle: f64) -> DVec2 {
     let (sin, cos) = libm::sincos(angle);
     DVec2::new(cos, sin)
 }
 
-/// e^(i k y) at y = `length`, and the integrals of it and of y e^(i k y) from 0 to there.
+/// Returns e^(i k y) at y = `length`, and the integrals of it and of y e^(i k y) from 0 to `length`.
 fn wave(k: f64, length: f64) -> [DVec2; 3] {
     if k == 0.0 {
         return [DVec2::X, DVec2::X * length, DVec2::X * (0.5 * length * length)];
     }
     let half = turn(0.5 * k * length);
-    // 1 - cos by the half angle keeps its digits in a short stretch.
+    // Computing 1 - cos by the half angle keeps its digits in a short stretch.
     let (sin, versine) = (2.0 * half.x * half.y, 2.0 * half.y * half.y);
     let (end, plain) = (DVec2::new(1.0 - versine, sin), DVec2::new(sin, versine) / k);
-    // By parts: (Y e^(ikY) - plain) / (i k).
+    // Integration by parts: (Y e^(ikY) - plain) / (i k).
     let ramp = end * length - plain;
     [end, plain, DVec2::new(ramp.y, -ramp.x) / k]
 }
 
-/// Velocities that stirring adds to the mean wind at a place of a stretch, per m/s of mean speed: the turning, and the
-/// gusts; and how far both have carried the air since its start, m.
+/// Velocities that turbulence adds to the mean wind at a point of a stretch, per m/s of mean speed, by wander and by
+/// gusts; and how far both have carried the air since the start of the stretch, m.
 pub(super) struct Stirred {
     pub turned: DVec2,
     pub gust: DVec2,
@@ -121,7 +121,7 @@ pub(super) struct Stirred {
 
 impl Gusts {
     pub fn new(seed: u64) -> Self {
-        // A word of its own, so that nothing else that the seed decides goes with the gusts.
+        // A constant of its own keeps the gusts independent of everything else that uses the seed.
         let mut stream = Chance::seeded(seed ^ 0x7769_6e64_2067_7573);
         let mut random = || stream.unit();
         let mut tones = |scale_m: f64| -> [GustWave; TONES] {
@@ -142,10 +142,10 @@ impl Gusts {
         Self { along, across, wander }
     }
 
-    /// Returns what the stirring adds over the first `y_m` of a stretch.
+    /// Returns what the turbulence adds over the first `y_m` of a stretch.
     pub fn over(&self, stretch: &GustStretch, y_m: f64) -> Stirred {
         let (from, rise, there) = (&stretch.from, &stretch.rise_per_m(), &stretch.stir_after(y_m));
-        // In standard deviations: now, and the integrals of it and of it times the way.
+        // In standard deviations: the value now, its integral, and the integral of it times the path.
         let [along, across] = [&self.along, &self.across].map(|tones| {
             tones.iter().fold([0.0; 3], |sums, t| {
                 let start = turn(t.wavenumber * stretch.start_m + t.phase) * t.amplitude;
@@ -168,7 +168,7 @@ impl Gusts {
     }
 }
 
-/// The coefficients of a series with their orders; none if all are 0, as they are where the wind does not wander.
+/// Iterates over the coefficients of a series with their orders. Empty if all are 0, as where the wind does not wander.
 fn orders(series: &[DVec2; 2 * ORDERS + 1]) -> impl Iterator<Item = (f64, DVec2)> {
     let present = series.iter().any(|c| *c != DVec2::ZERO);
     let count = if present { series.len() } else { 0 };
@@ -176,7 +176,7 @@ fn orders(series: &[DVec2; 2 * ORDERS + 1]) -> impl Iterator<Item = (f64, DVec2)
 }
 
 impl GustStretch {
-    /// The stirring after `y_m` of it.
+    /// Returns the turbulence after `y_m` of the stretch.
     pub fn stir_after(&self, y_m: f64) -> Stir {
         let part = if self.length_m > 0.0 { y_m / self.length_m } else { 0.0 };
         self.from.zip(&self.to, |a, b| a + (b - a) * part)

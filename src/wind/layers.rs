@@ -1,10 +1,10 @@
-//! How far the wind has carried each layer of cloud, and how much of their lives its clouds have lived.
+//! Drift of each cloud layer with the wind, and how much of their lives its clouds have lived.
 //!
-//! A layer goes with the mean wind at its height, or with its own ([`CloudSlab::wind_m_s`](crate::weather::CloudSlab)).
-//! Its way is counted in distances from cloud to cloud, and time in lives, so that a weather with wider or longer-lived
-//! clouds does not shift those that are there. Both are integrals over the timeline: between the starts and ends of
-//! changes by eight points of Gauss and Legendre, as in [`Drift`](super::Drift), so that any sequence of updates finds
-//! the same bits.
+//! A layer moves with the mean wind at its height, or with its own wind
+//! ([`CloudSlab::wind_m_s`](crate::weather::CloudSlab)). Its drift is counted in distances from cloud to cloud, and
+//! time in lives, so that a weather with wider or longer-lived clouds does not shift the existing ones. Both are
+//! integrals over the timeline, computed between the starts and ends of changes by eight points of Gauss and Legendre,
+//! as in [`Drift`](super::Drift). Any sequence of updates therefore gives the same bits.
 
 use glam::{DMat2, DVec2};
 
@@ -13,42 +13,44 @@ use crate::{
     weather::{CloudSlab, Conditions, MAX_CLOUD_LAYERS, Timeline, timeline::Change},
 };
 
-/// How far one layer has come.
+/// Drift of one layer since time 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LayerDrift {
-    /// Integral of the wind (east, north) over the distance from cloud to cloud, since time 0, in a pattern that is not
-    /// drawn out ([`stretch`]).
+    /// Integral of the wind (east, north) over the distance from cloud to cloud, since time 0, in the pattern before it
+    /// is stretched ([`stretch`]).
     pub way: DVec2,
-    /// Lives of its clouds since time 0.
+    /// Number of lives of its clouds since time 0.
     pub lives: f64,
 }
 
-/// How far the layers have come at a moment, by the slots of [`Conditions::clouds`].
+/// Drifts of all layers at a time, by the slots of [`Conditions::clouds`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LayerDrifts {
     pub time_s: f64,
     pub slots: [LayerDrift; MAX_CLOUD_LAYERS],
 }
 
-/// Slots of the weather below all changes, and the changes that are under way over it.
+/// Slots of the weather before all changes, and the changes under way.
 #[derive(Clone, Copy)]
 struct LayerChanges<'a> {
     base: &'a Conditions,
     active: &'a [Change],
 }
 
-/// Shortening of a pattern along the wind that draws fibres out by one over the rest.
+/// Stretch of full fibres along the wind: the coordinate along it shrinks by this share in the pattern.
 const DRAWN_OUT: f64 = 0.85;
-/// Wind that is added to a layer's for the direction of its fibres, m/s (east, north): shear is there in a calm too.
+/// Wind added to a layer's own to get the direction of its fibres, m/s (east, north): there is shear even in a calm.
 const SHEAR_M_S: DVec2 = DVec2::new(2.0, 0.0);
 
-/// Direction along which a layer's fibres are drawn out; shorter than 1 where it is hardly one.
+/// Returns the direction along which a layer's fibres are stretched; shorter than 1 where the direction is hardly
+/// defined.
 pub(crate) fn stretch_toward(slab: &CloudSlab) -> DVec2 {
     let along = DVec2::from_array(slab.wind_m_s) + SHEAR_M_S;
     along / (along.length_squared() + 0.1).sqrt()
 }
 
-/// From places in a layer (east, north) to those of a pattern that is not drawn out along the wind.
+/// Returns the matrix from positions in a layer (east, north) to positions in the pattern before it is stretched along
+/// the wind.
 pub(crate) fn stretch(slab: &CloudSlab) -> DMat2 {
     let along = stretch_toward(slab);
     let shorter = DMat2::from_cols(along * along.x, along * along.y);
@@ -66,7 +68,7 @@ impl LayerChanges<'_> {
         self.active.iter().fold(self.base.clouds[slot], over)
     }
 
-    /// How far a slot comes over a time.
+    /// Returns how far the clouds of a slot drift between two times, and how many lives pass.
     fn integral(&self, slot: usize, from_s: f64, to_s: f64) -> LayerDrift {
         let (middle, half) = (0.5 * (from_s + to_s), 0.5 * (to_s - from_s));
         if self.active.is_empty() {
@@ -80,14 +82,14 @@ impl LayerChanges<'_> {
 }
 
 impl LayerDrift {
-    /// After a time at a rate.
+    /// Returns the drift after a time at a constant rate.
     fn after(self, rate: &Self, time_s: f64) -> Self {
         Self { way: self.way + rate.way * time_s, lives: self.lives + rate.lives * time_s }
     }
 }
 
 impl LayerDrifts {
-    /// Time 0.
+    /// Drifts at time 0.
     pub const ZERO: Self = Self { time_s: 0.0, slots: [LayerDrift { way: DVec2::ZERO, lives: 0.0 }; MAX_CLOUD_LAYERS] };
 
     fn onward(&self, changes: LayerChanges<'_>, to_s: f64) -> Self {
@@ -95,12 +97,13 @@ impl LayerDrifts {
         Self { time_s: to_s, slots: std::array::from_fn(one) }
     }
 
-    /// At `t`, which the timeline knows; `self` belongs to the end of what it has forgotten.
+    /// Returns the drifts at `t`, at which the timeline must be known. `self` holds the drifts at the end of what the
+    /// timeline has forgotten.
     pub fn until(self, timeline: &Timeline, t: f64) -> Self {
         let (mut base, mut changes) = timeline.parts();
         let mut at = self;
         match changes.first() {
-            // Counting begins at time 0, wherever the changes do.
+            // Counting begins at time 0, whenever the changes do.
             Some(first) if timeline.known_since_ever() && t < first.start_s => changes = &[],
             Some(first) if timeline.known_since_ever() && first.start_s < at.time_s => {
                 at = at.onward(LayerChanges { base, active: &[] }, first.start_s);
@@ -123,8 +126,8 @@ impl LayerDrifts {
         }
     }
 
-    /// At the end of the last change that the timeline will have forgotten once it has advanced to `now_s`. To be asked
-    /// before it advances.
+    /// Returns the drifts at the end of the last change that the timeline will have forgotten once it has advanced to
+    /// `now_s`. Call it before the timeline advances.
     pub fn kept(self, timeline: &Timeline, now_s: f64) -> Self {
         timeline.ends_before(now_s).map_or(self, |end_s| self.until(timeline, end_s))
     }
@@ -144,7 +147,7 @@ mod tests {
         CloudLayer { wind, spacing_m, ..CloudLayer::of(CloudKind::Cumulus, 0.5, 1000.0) }
     }
 
-    /// Changes one after another, laid over each other, a cut, a calm, and layers that come and go.
+    /// Changes one after another and overlapping, a cut, a calm, and layers that come and go.
     fn told() -> Timeline {
         let own = LayerWind { speed_m_s: 20.0, from_deg: 180.0 };
         let high = CloudLayer::of(CloudKind::Cirrus, 0.3, 9000.0);
@@ -171,8 +174,8 @@ mod tests {
             let t = f64::from(i) * step_s;
             let (a, b, weather) = (at(t), at(t + step_s), timeline.at(t + 0.5 * step_s));
             let ends = [timeline.at(t + 1e-6), timeline.at(t + step_s - 1e-6)];
-            // Of a layer that has hardly begun, or is nearly gone, the wind is another one within a second; beside it
-            // the points of a rule for even changes lie thinly.
+            // In a layer that has hardly begun, or is nearly gone, the wind can change within a second; the points of
+            // the quadrature are too sparse for that.
             for (slot, slab) in weather.clouds.iter().enumerate().filter(|(_, s)| s.cover > 0.05) {
                 let want = rate(slab);
                 let way = (b.slots[slot].way - a.slots[slot].way) / step_s;

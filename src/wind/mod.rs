@@ -1,15 +1,15 @@
-//! Wind: a mean that the weather gives, gusts of a published spectrum about it, and how far it has carried the air.
+//! Wind: a mean from the weather, gusts around it with a published spectrum, and the displacement of the air by both.
 //!
-//! The mean follows the logarithmic profile over the ground's roughness up to 100 m, and above it turns and grows to
-//! the geostrophic wind ([`WindProfile::mean_at_height_m_s`](crate::weather::WindProfile::mean_at_height_m_s)); layers
-//! of cloud go with it (`layers`). Gusts are 24 waves along and 24 across the wind whose lengths are spread as Kaimal
-//! et al. (1972) found them, with the weather's turbulence intensity along the wind and 0.8 of it across (IEC 61400-1,
-//! annex C); they pass along the path of the mean wind (Taylor 1938), the same over all the world. Where a report says
-//! that the direction varies, a slow wave turns the wind within that range.
+//! The mean wind follows the logarithmic profile over the ground's roughness up to 100 m. Above, it turns and grows to
+//! the geostrophic wind ([`WindProfile::mean_at_height_m_s`](crate::weather::WindProfile::mean_at_height_m_s)); cloud
+//! layers move with it (`layers`). Gusts are 24 waves along and 24 across the wind. Their wavelengths follow the
+//! spectrum of Kaimal et al. (1972), with the weather's turbulence intensity along the wind and 0.8 of it across (IEC
+//! 61400-1, annex C). The waves travel with the mean wind (Taylor 1938) and are the same all over the world. Where a
+//! report says that the direction varies, a slow wave turns the wind within that range.
 //!
-//! [`Wind`] and a [`Drift`] answer for any time of a timeline in closed form: velocity, and its integral, the
-//! displacement. What the wind carries is moved by the displacement, never by velocity times time: then no change
-//! throws it.
+//! [`Wind`] and a [`Drift`] give the velocity and its integral, the displacement, in closed form for any time of a
+//! timeline. Whatever the wind carries is moved by the displacement, never by velocity times time, so that a change of
+//! the wind does not make it jump.
 
 mod carrying;
 mod detour;

@@ -1,9 +1,9 @@
-//! Wind that varies in space, in the one form that queries and shaders read, whoever made it: a host's [`WindGrid`] or
+//! Wind that varies in space, in the one form that queries and shaders read, whether from a host's [`WindGrid`] or from
 //! a solved field.
 //!
-//! Each node has a share of the weather's wind that it replaces and its own velocity times that share, so that the wind
-//! at a place is own + (1 - share) x weather's: share 1 is the whole wind, 0 a difference, and what lies between leads
-//! from one to the other.
+//! Each node has the share of the weather's wind that it replaces, and its own velocity times that share. The wind at a
+//! place is own + (1 - share) x weather's: share 1 is the whole wind, 0 a difference, and values between blend one into
+//! the other.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,30 +14,29 @@ use super::{WindGrid, WindGridKind, grid::about};
 /// Velocities at the nodes of a grid that is level and aligned to north at its origin, linear between them.
 #[derive(Debug)]
 pub(crate) struct WindVolume {
-    /// The node lowest and farthest to the south-west, in the host's world.
+    /// Position of the lowest, south-western node in the host's world.
     pub origin: DVec3,
-    /// Turns the host's axes at the origin to east, north, up.
+    /// Rotation from the host's axes at the origin to east, north, up.
     pub to_enu: DMat3,
-    /// From node to node, m.
+    /// Distance between nodes, m.
     pub cell_m: DVec3,
-    /// Nodes east, north and up.
+    /// Numbers of nodes east, north and up.
     pub nodes: [u32; 3],
-    /// East, north, up, m/s, times the share; and the share. Eastern neighbours beside each other, then northern, then
-    /// upper.
+    /// Velocity (east, north, up), m/s, times the share, and the share. East varies fastest, then north, then up.
     pub values: Vec<[f32; 4]>,
-    /// Times that it holds for, s, if not for all.
+    /// First and last time for which it holds, s; `None` for all times.
     pub holds_s: Option<[f64; 2]>,
     revision: u64,
 }
 
-/// A number that no values have had.
+/// Returns a number that no values have had.
 fn next_revision() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(1);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 impl WindVolume {
-    /// Creates a volume whose places and sizes are still to be filled with values.
+    /// Creates an empty volume, to be filled with its geometry and values.
     pub fn empty() -> Self {
         Self {
             origin: DVec3::ZERO,
@@ -50,7 +49,7 @@ impl WindVolume {
         }
     }
 
-    /// A host's grid; `to_enu` turns the host's axes at its origin.
+    /// Creates a volume from a host's grid; `to_enu` rotates the host's axes at its origin to east, north, up.
     pub fn of_grid(grid: &WindGrid, to_enu: DMat3) -> Self {
         let share = match grid.kind {
             WindGridKind::Whole => 1.0,
@@ -67,41 +66,41 @@ impl WindVolume {
         }
     }
 
-    /// Says that the values have changed.
+    /// Marks the values as changed.
     pub fn changed(&mut self) {
         self.revision = next_revision();
     }
 
-    /// Another number whenever the values have changed; no two volumes share one.
+    /// Returns a number that differs whenever the values have changed; no two volumes share one.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Whether it says anything of a time.
+    /// Whether it holds at a time.
     pub fn holds_at(&self, time_s: f64) -> bool {
         self.holds_s.is_none_or(|[first, last]| (first..=last).contains(&time_s))
     }
 
-    /// `position` of the host's world in cells from the origin.
+    /// Returns a position of the host's world in cells from the origin.
     pub fn cells_at(&self, position: DVec3) -> DVec3 {
         (self.to_enu * (position - self.origin)) / self.cell_m
     }
 
-    /// How far a place of the host's world is from the box that the nodes fill, m; 0 inside.
+    /// Returns the distance of a position of the host's world from the box of nodes, m; 0 inside.
     pub fn distance_m(&self, position: DVec3) -> f64 {
         let last = DVec3::from(self.nodes.map(|n| f64::from(n.max(1) - 1)));
         let cells = self.cells_at(position);
         ((cells - cells.clamp(DVec3::ZERO, last)) * self.cell_m).length()
     }
 
-    /// Velocity times share and share so many cells from the origin; none outside.
+    /// Returns velocity times share, and share, at a position in cells from the origin; `None` outside.
     pub fn at(&self, cells: DVec3) -> Option<DVec4> {
         let value = |i: usize| DVec4::from(self.values[i].map(f64::from));
         Some(about(self.nodes, cells)?.into_iter().map(|(i, weight)| value(i) * weight).sum())
     }
 
-    /// The wind at a place of the host's world, m/s (east, north, up), where the weather's is `weathers`; none where
-    /// the volume does not reach.
+    /// Returns the wind at a position of the host's world, m/s (east, north, up), where `weathers` is the weather's;
+    /// `None` outside the volume.
     pub fn wind(&self, position: DVec3, weathers: DVec3) -> Option<DVec3> {
         let found = self.at(self.cells_at(position))?;
         Some(found.truncate() + weathers * (1.0 - found.w))

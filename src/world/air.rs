@@ -1,5 +1,5 @@
-//! The planet's air as the weather makes it: gas by pressure and temperature, haze by visibility beside the planet's
-//! own, ozone by its column.
+//! The planet's air under the weather: gas by pressure and temperature, haze by visibility in addition to the planet's
+//! own, and ozone by its column.
 
 use crate::{
     moment::MAX_EXTINCTION_PER_M,
@@ -7,16 +7,16 @@ use crate::{
     weather::Conditions,
 };
 
-/// Dobson units that a planet file's ozone layer stands for.
+/// Ozone column that a planet file's ozone layer stands for, Dobson units.
 const PLANET_OZONE_DU: f64 = 300.0;
 /// Scale height of the standard atmosphere's air near the ground, m (15 C, R T / (M g)).
 const STANDARD_SCALE_HEIGHT_M: f64 = 8434.5;
 
-/// `planet` under the weather `c`: its gas scaled by the air's density and scale height, its haze the weather's aerosol
-/// (Angstrom's law over the wavelengths, brought down to altitude 0) and what it has of its own ([`Planet::own_haze`]),
-/// its ozone by the column.
+/// Returns `planet` under the weather `c`. Its gas is scaled by the air's density and scale height. Its haze is the
+/// weather's aerosol (Angstrom's law over the wavelengths, converted to altitude 0) and the planet's own haze
+/// ([`Planet::own_haze`]). Its ozone follows the column.
 ///
-/// The fog layer is not in it: it is drawn in front of the sky, by the fog.
+/// The fog layer is not included: the fog is drawn in front of the sky.
 pub fn planet_under(planet: &Planet, c: &Conditions) -> Planet {
     let mut p = *planet;
     for v in &mut p.rayleigh.scattering_per_m {
@@ -40,7 +40,7 @@ pub fn planet_under(planet: &Planet, c: &Conditions) -> Planet {
     p
 }
 
-/// Limits haze to [`MAX_EXTINCTION_PER_M`], which hides everything within half a metre: more of it shows nothing else.
+/// Limits haze to [`MAX_EXTINCTION_PER_M`], which hides everything within half a metre; more would look the same.
 fn held(haze: Mie) -> Mie {
     let extinction = haze.extinction_per_m;
     let extinction_per_m = extinction.map(|v| v.min(MAX_EXTINCTION_PER_M));
@@ -50,9 +50,9 @@ fn held(haze: Mie) -> Mie {
     Mie { extinction_per_m, scattering_per_m, ..haze }
 }
 
-/// Two hazes in the same air as one: coefficients at altitude 0 add up, and at the second wavelength so do the optical
-/// depths straight up, which makes the scale height the mean by extinction. The asymmetry is the mean by scattering
-/// there: light scattered by either keeps its mean cosine.
+/// Combines two hazes in the same air. Coefficients at altitude 0 add up. Vertical optical depths at the second
+/// wavelength add up too, so the scale height is the mean weighted by extinction. The asymmetry is the mean weighted by
+/// scattering there, so the scattered light keeps its mean cosine.
 fn both(a: &Mie, b: &Mie) -> Mie {
     let mean = |[x, y]: [f64; 2], [p, q]: [f64; 2]| if p + q > 0.0 { (x * p + y * q) / (p + q) } else { x };
     let sum = |x: &[f64; 3], y: &[f64; 3]| [0, 1, 2].map(|i| x[i] + y[i]);

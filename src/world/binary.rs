@@ -2,7 +2,7 @@
 
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Bytes as digits of base 64.
+/// Returns bytes as base-64 digits.
 pub(crate) fn binary_text(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {
@@ -12,7 +12,7 @@ pub(crate) fn binary_text(bytes: &[u8]) -> String {
     text
 }
 
-/// The bytes that [`binary_text`] wrote, if these are digits of some.
+/// Returns the bytes that [`binary_text`] wrote; `None` if the text is not such digits.
 pub(crate) fn text_binary(text: &str) -> Option<Vec<u8>> {
     let mut values = [u8::MAX; 256];
     DIGITS.iter().zip(0..).for_each(|(digit, value)| values[usize::from(*digit)] = value);

@@ -8,12 +8,12 @@ use crate::{
     },
 };
 
-/// Linear Rec. 709 colours, lux, of unscattered sunlight's parts at each of the planet's wavelengths: what a transfer
-/// of light at these wavelengths looks like is their sum weighted by it ([`Conversion::fitted`]; each wavelength as one
-/// channel where two of them are too close to tell colours apart).
+/// Returns the linear Rec. 709 colours, lux, of the part of unscattered sunlight at each of the planet's wavelengths.
+/// The colour of a light transfer at these wavelengths is their sum weighted by the transfer ([`Conversion::fitted`]).
+/// Where two wavelengths are too close to tell colours apart, each wavelength is one channel.
 ///
-/// Adapted (von Kries) to unscattered sunlight as white, as daylight film and eyes are: on a D65 display it would look
-/// yellow.
+/// Adapted (von Kries) so that unscattered sunlight is white, as for daylight film and eyes; on a D65 display it would
+/// look yellow.
 pub(super) fn color_columns(planet: &Planet) -> [[f64; 3]; 3] {
     let conversion = Conversion::of(planet);
     let white = sun_rec709();
@@ -21,7 +21,7 @@ pub(super) fn color_columns(planet: &Planet) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|k| [0, 1, 2].map(|c| conversion.matrix[c][k] / white[c] * lux))
 }
 
-/// Colour of a transfer at the planet's wavelengths.
+/// Returns the colour of a transfer at the planet's wavelengths.
 pub(crate) fn color_of(columns: &[[f64; 3]; 3], spectrum: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (0..3).map(|k| columns[k][i] * spectrum[k]).sum())
 }

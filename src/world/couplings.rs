@@ -14,21 +14,22 @@ use crate::{
 /// Function by which an effect changes the light of a scene.
 pub(crate) type Dim = fn(&mut Scene) -> Result<()>;
 
-/// The cloud over rain areas as it stands over a place, `eye` in the host's world.
+/// Function that returns the cloud over rain areas above a place; `eye` is the place in the host's world.
 pub(crate) type CloudOverAreas =
     fn(&WeatherOver<'_>, &Conditions, (&LocalFrame, DVec3), f64) -> Result<Option<CloudSlab>>;
 
-/// Light of the moonless sky on level ground at a time and place, lux, under air of given optical depths straight up.
+/// Function that returns the light of the moonless sky on level ground at a time and place, lux, under air of given
+/// vertical optical depths.
 pub(crate) type NightLux = fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[f64; 3]>;
 
 /// Functions by which the effects act on every world.
 #[derive(Clone, Copy)]
 pub(crate) struct Couplings {
-    /// Takes the light that the weather's low layer takes.
+    /// Dims a scene by the weather's low layer.
     pub dim: Dim,
-    /// The cloud over rain areas that takes light from a place, with the part of the sky that it covers there.
+    /// Returns the cloud over rain areas that dims a place, with its cover there.
     pub cloud_over_areas: CloudOverAreas,
-    /// Light of the moonless sky on level ground, lux a channel, at a time and place where the air's optical depths
-    /// straight up are given.
+    /// Returns the light of the moonless sky on level ground, lux per channel, at a time and place, under air of given
+    /// vertical optical depths.
     pub night_lux: NightLux,
 }

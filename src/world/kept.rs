@@ -1,4 +1,4 @@
-//! A scene that a view keeps between the calls of a frame, so that it is worked out once for all of them.
+//! A scene that a view keeps between the calls of a frame, so that it is computed once for all of them.
 
 use glam::DVec3;
 
@@ -8,21 +8,21 @@ use super::{
 };
 use crate::{almanac::sun::Utc, error::Result, moment::Scene, planet::Planet, weather::Conditions, wind::Blowing};
 
-/// A scene with the weather at its place, and all that they follow from.
+/// A scene with the weather at its place, and the inputs from which they follow.
 #[derive(Clone, Copy)]
 pub(crate) struct KeptScene {
     from: SceneInputs,
     pub scene: Scene,
-    /// The weather at the camera, with what falls in its region.
+    /// The weather at the camera, with the precipitation of its region.
     pub here: Conditions,
-    /// The wind, if the scene asked for it.
+    /// The wind, if the scene needed it.
     pub wind: Option<Blowing>,
-    /// How many scenes have been worked out in this place.
+    /// Number of scenes that have been computed in this slot.
     #[cfg(test)]
     pub count: u64,
 }
 
-/// All that may change about a world and a camera and that a scene follows from. Two scenes of equal inputs are equal.
+/// Inputs from a world and a camera that may change and that determine a scene. Equal inputs give equal scenes.
 #[derive(Clone, Copy, PartialEq)]
 struct SceneInputs {
     eye: DVec3,
@@ -36,7 +36,7 @@ struct SceneInputs {
     undimmed: bool,
     planet: Planet,
     night: NightSettings,
-    /// Share, albedo and threshold of the snow that is led through time.
+    /// Share, albedo and threshold of the simulated snow.
     snow: Option<[f64; 3]>,
 }
 
@@ -57,8 +57,8 @@ impl World {
         }
     }
 
-    /// The scene now at a camera at `eye`, which the host calls `name`: that in `kept` where it is of the same time,
-    /// place, weather and settings, else a new one in its place.
+    /// Returns the scene now at a camera at `eye`, which an error calls `name`. It is the one in `kept` if that has the
+    /// same time, place, weather and settings; else a new one, which replaces it.
     ///
     /// # Errors
     /// As [`World::scene_named`]; `kept` stays as it was.

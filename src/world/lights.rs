@@ -1,4 +1,4 @@
-//! The sun and the moon as they stand over a place: direction, light, disc.
+//! Sun and moon over a place: direction, light, and disc.
 
 use glam::DVec3;
 
@@ -17,28 +17,29 @@ use crate::{
 
 /// Illuminance of the sun at 1 au above the air, lux (Darula, Kittler & Gueymard 2005).
 const SUN_LUX: f64 = 133_334.0;
-/// Colour of moonlight over sunlight: the moon's albedo rises towards red (Velikodsky et al. 2011), luminance kept.
+/// Colour of moonlight relative to sunlight: the moon's albedo rises towards red (Velikodsky et al. 2011). The
+/// luminance is kept.
 const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
 
-/// The moon adds less than a hundredth to a twilight whose sun stands above this elevation, degrees.
+/// Elevation of the sun above which moonlight is ignored, degrees: it adds less than a hundredth to such a twilight.
 const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
 
-/// Reflectance of the land under the clouds, with which light goes back and forth.
+/// Reflectance of the land below clouds, for light that goes back and forth between them.
 const LAND_ALBEDO: f64 = 0.2;
 /// Reflectance of snow of which only the depth is known.
 const SNOW_ALBEDO: f64 = 0.82;
 
-/// Steps from bare to covered land in which the sky follows. Half of one changes the light of a clear sky by less than
-/// a hundredth.
+/// Number of steps from bare to covered land in the ground that the sky's tables use. Half a step changes the light of
+/// a clear sky by less than a hundredth.
 const SNOW_STEPS: f64 = 16.0;
 
-/// Land as light from above meets it, partly under snow.
+/// Land as light from above meets it, with its share of snow.
 pub(super) struct LandSeen {
     /// Share that snow covers.
     pub snow: f64,
-    /// Share of the light that goes up again.
+    /// Albedo of land and snow together.
     pub albedo: f64,
-    /// Share of the light that the snow sends up again.
+    /// Albedo of the snow.
     snow_albedo: f64,
 }
 
@@ -47,31 +48,31 @@ impl LandSeen {
         Self { snow, albedo: LAND_ALBEDO + (snow_albedo - LAND_ALBEDO) * snow, snow_albedo }
     }
 
-    /// Share of the light that the land of a planet sends up again, a channel.
+    /// Returns the albedo of a planet's land per channel, with its snow.
     pub fn albedo_on(&self, planet: &Planet) -> [f64; 3] {
         planet.ground_albedo.map(|bare| bare + (self.snow_albedo - bare) * self.snow)
     }
 
-    /// A planet whose ground is this land. The share that snow covers goes by steps: tables of its sky are not built
-    /// anew for every flake.
+    /// Returns a planet whose ground is this land. The share of snow is rounded to steps, so that the sky's tables are
+    /// not rebuilt for every flake.
     pub fn under_sky(&self, planet: Planet) -> Planet {
         let stepped = Self { snow: (self.snow * SNOW_STEPS).round() / SNOW_STEPS, ..*self };
         Planet { ground_albedo: stepped.albedo_on(&planet), ..planet }
     }
 
-    /// As the weather reports the snow.
+    /// Creates the land with the snow that the weather reports.
     pub fn reported(c: &Conditions) -> Self {
         Self::new(snow_cover(c.surface.snow_depth_m), SNOW_ALBEDO)
     }
 }
 
 impl World {
-    /// The planet under a weather: its air, and its ground as it is covered.
+    /// Returns the planet under a weather: its air, and its ground with the snow on it.
     pub fn planet_under(&self, c: &Conditions) -> Planet {
         self.land(c).under_sky(planet_under(&self.set.planet, c))
     }
 
-    /// The land under a weather: as its snow is led through time, else as it is reported.
+    /// Returns the land under a weather, with the simulated snow if there is any, else the reported one.
     pub(super) fn land(&self, c: &Conditions) -> LandSeen {
         match &self.snow {
             Some(snow) => LandSeen::new(snow.cover, snow.country.albedo),
@@ -80,16 +81,16 @@ impl World {
     }
 }
 
-/// A time at which universal time is out of the almanac's years.
+/// Creates the error for a time at which universal time lies outside the almanac's years.
 fn out_of_almanac(time_s: f64) -> Error {
     Error::range("time_s", "a time at which the context's clock shows one of the years -2000 to 6000", time_s)
 }
 
-/// A light and what the clouds leave of it.
+/// A light with what the clouds leave of it.
 pub(super) type UnderClouds = (Light, CloudLight);
 
 impl World {
-    /// Sun and moon over `place` at simulation time `time_s`.
+    /// Returns sun and moon over `place` at simulation time `time_s`.
     pub(super) fn lights_over(
         &self,
         place: &Place,
@@ -144,7 +145,7 @@ impl World {
             almanac.direction = given.unit();
         }
         if self.set.given_moon.is_some() || self.set.given_sun.is_some() {
-            // The host moved one of them: the phase follows from where they stand now.
+            // The host has set one of the two directions, so the phase follows from both.
             let elongation = angle_between(almanac.direction, sun.direction);
             almanac.phase_angle = std::f64::consts::PI - elongation;
             almanac.illuminated = 0.5 * (1.0 + libm::cos(almanac.phase_angle));
@@ -173,7 +174,7 @@ impl World {
     }
 }
 
-/// The direction as seen and the flattening of a disc there.
+/// Returns the apparent direction, and the flattening of a disc there.
 fn refracted(d: DVec3, pressure_hpa: f64, temperature_c: f64) -> (DVec3, f64) {
     let elevation = libm::asin(d.z.clamp(-1.0, 1.0));
     let lift = sun::refraction_deg(elevation.to_degrees(), pressure_hpa, temperature_c).to_radians();

@@ -1,9 +1,9 @@
 //! The world that all views of a simulator share: its place on the planet, the timeline of weathers, the clock and its
-//! lights, the wind, and the host's shelters, occluder maps and lamps. It names no effect; effects that have a state of
-//! their own are led along with it ([`HeldEffect`]).
+//! lights, the wind, and the host's shelters, occluder maps and lamps. It names no effect; effects with a state of
+//! their own are advanced along with it ([`HeldEffect`]).
 //!
-//! Everything here is a function of (description, timeline, time, position): two worlds with the same input answer
-//! alike on every machine, without a device and a frame.
+//! Everything here is a function of (description, timeline, time, position): two worlds with the same input give the
+//! same answers on every machine. No device and no frame is needed.
 
 mod air;
 mod binary;

@@ -1,4 +1,4 @@
-//! Moment at a camera of a world: its scene, and the host's surroundings.
+//! State at a camera of a world: its scene, and the host's surroundings.
 
 use std::cell::OnceCell;
 
@@ -8,8 +8,8 @@ use super::{kept::KeptScene, state::World};
 use crate::{error::Result, moment::SceneMoment};
 
 impl World {
-    /// Returns the moment at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an
-    /// earlier call, taken again where nothing has changed since.
+    /// Returns the state at a camera at `eye`, which an error calls `name`. `kept` is the scene of an earlier call; it
+    /// is reused if nothing has changed since.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.

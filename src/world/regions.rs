@@ -1,4 +1,4 @@
-//! The regions that have rain of their own, as a world keeps them.
+//! The regions of a world with rain of their own.
 
 use glam::DVec3;
 
@@ -14,10 +14,11 @@ use crate::{
 };
 
 impl World {
-    /// Puts regions in place of those before.
+    /// Replaces the regions.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`], or naming the field; nothing changes then.
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`], or naming the field; the regions then stay as
+    /// they were.
     pub fn set_regions(&mut self, areas: &[RainArea]) -> Result<()> {
         if areas.len() > MAX_AREAS {
             return Err(Error::range("rain_areas", &format!("at most {MAX_AREAS}"), areas.len()));
@@ -46,7 +47,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether saved ones can be some of ours over `timeline`.
+    /// Whether saved regions are possible in this world over `timeline`.
     pub(super) fn are_valid(&self, regions: &[Region], timeline: &Timeline) -> bool {
         let is_place = |center_m: [f64; 3]| self.frame.place_at("center_m", DVec3::from(center_m)).is_ok();
         let is_timed = |kept: &Region| match (kept.area.motion, kept.carried_m) {
@@ -61,10 +62,10 @@ impl World {
             })
     }
 
-    /// Keeps what the timeline, which goes on to `now_s`, is about to forget.
+    /// Stores the displacements that the timeline is about to forget by advancing to `now_s`.
     ///
     /// # Errors
-    /// For a time that the weather does not know.
+    /// [`crate::Status::InvalidArgument`] for a time at which the weather is not known.
     pub fn keep_carried(&mut self, now_s: f64) -> Result<()> {
         for i in 0..self.set.regions.len() {
             let Region { area, carried_m } = self.set.regions[i];

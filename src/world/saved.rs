@@ -1,4 +1,4 @@
-//! A world as it is saved, and back.
+//! Saved state of a world, and loading it.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -18,7 +18,7 @@ use crate::{
     wind::{Drift, LayerDrift, LayerDrifts},
 };
 
-/// Most characters of what is wrong with a state.
+/// Maximum length of a message about a faulty state, characters.
 const MOST_FAULT: usize = 200;
 
 /// Saved state of a world.
@@ -30,10 +30,10 @@ pub(crate) struct SavedWorld {
     sun: Option<[f64; 2]>,
     moon: Option<[f64; 2]>,
     timeline: String,
-    /// How far the wind had carried the air when the last forgotten change ended: time, path, east, north.
+    /// Drift of the air at the end of the last forgotten change: time, path, east, north.
     drifted: [f64; 4],
-    /// Drifts of the layers of cloud at that time, by their slots: ways (east, north) in distances from cloud to cloud,
-    /// and lives. None: time 0.
+    /// Drifts of the cloud layers at that time, by their slots: way (east, north) in distances from cloud to cloud, and
+    /// lives. Empty at time 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     layers_drifted: Vec<[f64; 3]>,
     created: toml::Table,
@@ -42,14 +42,14 @@ pub(crate) struct SavedWorld {
     areas: Vec<Region>,
 }
 
-/// A fault of a saved state, which a state that was made up can make long.
+/// Creates the error for a faulty saved state. The message is cut, because a forged state could make it long.
 pub(crate) fn parse_error(what: impl std::fmt::Display) -> Error {
     let what = what.to_string();
     let line = what.lines().collect::<Vec<_>>().join(" ");
     Error::new(Status::Parse, format!("saved state: {}", beginning(&line, MOST_FAULT)))
 }
 
-/// Refuses a state of a context that was created otherwise, naming all that differs.
+/// Checks that a state is of a context that was created alike; the error names all that differs.
 fn check_created(saved: &toml::Table, here: &toml::Table) -> Result<()> {
     let names = here.keys().chain(saved.keys().filter(|name| !here.contains_key(*name)));
     let value = |v: Option<&toml::Value>| beginning(&v.map_or("nothing".into(), ToString::to_string), 40).into_owned();
@@ -65,7 +65,7 @@ fn check_created(saved: &toml::Table, here: &toml::Table) -> Result<()> {
     Err(Error::invalid("state", format!("must be of a context that was created alike; other is {other}")))
 }
 
-/// Where counting goes on: at the end of what `timeline` has forgotten.
+/// Returns the drift from which counting continues: that at the end of what `timeline` has forgotten.
 fn drifted_from([time_s, path_m, east, north]: [f64; 4], timeline: &Timeline) -> Result<Drift> {
     let drift = Drift { time_s, path_m, displacement_m: DVec2::new(east, north) };
     let since_ever = timeline.known_since_ever() && drift == Drift::ZERO;
@@ -75,7 +75,7 @@ fn drifted_from([time_s, path_m, east, north]: [f64; 4], timeline: &Timeline) ->
     sound.then_some(drift).ok_or_else(|| parse_error(wanted))
 }
 
-/// Reads the drifts of the layers of cloud. Older states have none: their clouds stand as at time 0.
+/// Reads the drifts of the cloud layers. Older states have none: their clouds stand as at time 0.
 fn layers_drifted_from(saved: &[[f64; 3]], time_s: f64) -> Result<LayerDrifts> {
     let mut drifts = LayerDrifts { time_s, ..LayerDrifts::ZERO };
     let fits = saved.is_empty() || saved.len() == drifts.slots.len();
@@ -95,7 +95,7 @@ fn saved_layers(drifts: &LayerDrifts) -> Vec<[f64; 3]> {
     drifts.slots.iter().map(|d| [d.way.x, d.way.y, d.lives]).collect()
 }
 
-/// A saved world that can be shown.
+/// A saved world that has been read and checked.
 pub(crate) struct LoadedWorld {
     time_s: f64,
     timeline: Timeline,
@@ -106,9 +106,10 @@ pub(crate) struct LoadedWorld {
 }
 
 impl World {
-    /// Returns what the description of this world fixes of what it shows, under the names of the C header.
+    /// Returns the values that this world's description fixes and that affect its results, under the names of the C
+    /// header.
     pub fn created(&self) -> toml::Table {
-        // Named one by one: a new field has to be put here, or among what is saved, unless it follows from the rest.
+        // Every field is named: a new one must be added here or to the saved state, unless it follows from the rest.
         let Self {
             frame,
             seed,
@@ -122,14 +123,14 @@ impl World {
             set: _,
             maps: _,
             lights: _,
-            // These follow from what solves for it, or what reads it.
+            // The solved wind follows from what solves for it; the others are caches of its readers.
             solved_wind: _,
             wind_texture: _,
             detours: _,
             time_s: _,
             ephemeris: _,
             couplings: _,
-            // The effect that the host tells it to saves it.
+            // The effects to which the host gives these save them.
             night: _,
             snow: _,
             surroundings_revision: _,
@@ -145,26 +146,26 @@ impl World {
             put("axes", format!("{:?}", frame.axes).into());
             put("grid_bearing_deg", (frame.grid_bearing_deg + 0.0).into());
         } else if frame.geoid_height_m != 0.0 {
-            // States of before have none: their sea level was the ellipsoid.
+            // Earlier states have none: their sea level was the ellipsoid.
             put("geoid_height_m", frame.geoid_height_m.into());
         }
         put("seed", seed.to_string().into());
         table
     }
 
-    /// Returns what the description fixed before it could be set: a state from then is compared by it, later ones
-    /// restore it.
+    /// Returns the values that descriptions fixed before they became settings. Older states are compared by them; newer
+    /// states restore them.
     fn fixed_before(&self) -> [(&'static str, toml::Value); 2] {
         let planet = format!("hash {:016x}", self.set.planet.hash());
         [("planet_toml", planet.into()), ("tone_curve", format!("{:?}", self.tone).into())]
     }
 
-    /// Weather, time, clock, lights, surroundings; and what was `created`.
+    /// Returns the saved state: weather, time, clock, lights, surroundings, and what was `created`.
     ///
     /// # Errors
-    /// If a number cannot be written.
+    /// [`Status::Internal`] if a number cannot be written.
     pub fn saved(&self, created: toml::Table) -> Result<SavedWorld> {
-        // Named one by one: what a new field decides has to be saved, unless it follows from the rest.
+        // Every field is named: one that affects results must be saved, unless it follows from the rest.
         let Settings {
             shelters,
             terrain: _,
@@ -199,7 +200,7 @@ impl World {
         })
     }
 
-    /// A saved world that fits this one, which was `created` so.
+    /// Reads a saved world that fits this one, which was `created` so.
     ///
     /// # Errors
     /// [`Status::Parse`] or [`Status::InvalidArgument`], naming what does not fit.
@@ -250,7 +251,7 @@ impl World {
         })
     }
 
-    /// Shows a loaded world, and leaves the one before in its place.
+    /// Swaps the loaded world in; `other` then holds the previous one.
     pub fn swap_in(&mut self, other: &mut LoadedWorld) {
         use std::mem::swap;
         swap(&mut self.time_s, &mut other.time_s);
@@ -259,7 +260,7 @@ impl World {
         swap(&mut self.drifted, &mut other.drifted);
         swap(&mut self.layers_drifted, &mut other.layers_drifted);
         swap(&mut self.set, &mut other.set);
-        // Tiles are the host's, whatever is loaded.
+        // Tiles belong to the host, whatever is loaded.
         swap(&mut self.set.tiles, &mut other.set.tiles);
         swap(&mut self.exposure, &mut other.beside.exposure);
         if let Some(tone) = &mut other.beside.tone {

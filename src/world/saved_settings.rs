@@ -1,4 +1,4 @@
-//! Settings of a context beside weather and time, as they are saved.
+//! Saved settings of a context other than weather and time.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::{
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedSettings {
     exposure: Exposure,
-    /// Not in states from before it could be set: those are of a context with the same.
+    /// Absent in states saved before it could be set; they belong to a context with the same tone curve.
     #[serde(default)]
     pub tone_curve: Option<ToneCurve>,
     /// Absent in states saved before planets could be set.
@@ -35,7 +35,7 @@ pub(super) struct SavedSettings {
     cloud_map: Option<SavedCloudMap>,
 }
 
-/// Settings beside weather and time, as a context holds them.
+/// Settings of a context other than weather and time.
 pub(super) struct SetBeside {
     pub exposure: Exposure,
     pub tone: Option<ToneCurve>,
@@ -73,7 +73,7 @@ struct SavedWindGrid {
     cell_m: [f64; 3],
     nodes: [u32; 3],
     added: bool,
-    /// Bits of east, north and up of each node ([`words`]).
+    /// Bits of each node's velocity, east, north and up ([`words`]).
     velocities_m_s: String,
 }
 
@@ -84,12 +84,12 @@ struct SavedCloudMap {
     cell_m: f64,
     cells: [u32; 2],
     base_m: [f64; 2],
-    /// Bits of each cell's number ([`words`]).
+    /// Bits of each cell's value ([`words`]).
     cover: String,
 }
 
 impl SavedSettings {
-    /// Keeps the map of layers of cloud.
+    /// Stores the map of cloud cover.
     pub fn set_cloud_map(&mut self, map: Option<&CloudMap>) {
         self.cloud_map = map.map(SavedCloudMap::of);
     }
@@ -106,7 +106,7 @@ impl SavedSettings {
         }
     }
 
-    /// Refuses what cannot be set.
+    /// Checks that the settings are valid, and returns them.
     ///
     /// # Errors
     /// As the setters of a context.
@@ -229,7 +229,7 @@ impl SavedCloudMap {
     }
 }
 
-/// Values as hexadecimal words of text, equal ones in a row as "value*times".
+/// Returns values as words of hexadecimal text; equal ones in a row become "value*times".
 pub(crate) fn words(values: impl Iterator<Item = u64>) -> String {
     use std::fmt::Write;
     let mut text = String::new();
@@ -240,13 +240,13 @@ pub(crate) fn words(values: impl Iterator<Item = u64>) -> String {
             times += 1;
         }
         let gap = if text.is_empty() { "" } else { " " };
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = if times > 1 { write!(text, "{gap}{value:x}*{times}") } else { write!(text, "{gap}{value:x}") };
     }
     text
 }
 
-/// The values that [`words`] wrote, if there are `count`.
+/// Returns the values that [`words`] wrote, if there are `count`.
 pub(crate) fn values(text: &str, count: usize) -> Option<Vec<u64>> {
     let mut values = Vec::new();
     for word in text.split_whitespace() {

@@ -1,4 +1,4 @@
-//! Scene at a camera's place at the present moment: lights, air, clouds overhead, and the light on the ground.
+//! Scene at a camera's place at a time: lights, air, clouds overhead, and the light on the ground.
 
 use std::f64::consts::PI;
 
@@ -22,30 +22,30 @@ use crate::{
     wind::Blowing,
 };
 
-/// Luminance of a moonless sky, cd/m^2, and its light on level ground, lux, while the sun stands too high for either to
-/// matter: of the sky's own light they are less than 1e-4 then. Below,
-/// [`Couplings::night_lux`](super::Couplings::night_lux) says how bright it is.
+/// Luminance of a moonless sky, cd/m^2, and its light on level ground, lux, while the sun is too high for either to
+/// matter: they are then less than 1e-4 of the sky's own light. With a lower sun,
+/// [`Couplings::night_lux`](super::Couplings::night_lux) gives the brightness.
 const UNSEEN_NIGHT_CD_M2: [f64; 3] = [1.9e-4, 1.7e-4, 1.9e-4];
 const UNSEEN_NIGHT_LUX: f64 = 8e-4;
-/// Elevations of the sun between which the night's own light takes the place of those figures, degrees.
+/// Elevations of the sun, degrees, between which the computed light of the night replaces those figures.
 const NIGHT_BEGINS_DEG: (f64, f64) = (-4.0, -8.0);
-/// Night in the table below, lux.
+/// Night light that the table below contains, lux.
 const TABLE_NIGHT_LUX: f64 = 6.4e-4;
 /// Clear-sky illuminance on level ground in twilight: sun's elevation in degrees, ln(lux) (Explanatory Supplement to
-/// the Astronomical Almanac 1992, table 8.1, night included at -18).
+/// the Astronomical Almanac 1992, table 8.1; the value at -18 contains the night's light).
 const TWILIGHT_LN_LUX: [(f64, f64); 6] =
     [(-18.0, -7.34), (-15.0, -6.3), (-12.0, -4.82), (-9.0, -1.9), (-6.0, 1.227), (-0.8, 6.116)];
-/// Colour of twilight's light in linear Rec. 709 of luminance 1: about 11 000 K (Lee & Hernandez-Andres 2003).
+/// Colour of twilight in linear Rec. 709 of luminance 1: about 11 000 K (Lee & Hernandez-Andres 2003).
 const TWILIGHT_COLOR: [f64; 3] = [0.83, 1.0, 1.5];
 
 fn map(a: [f64; 3], b: [f64; 3], f: impl Fn(f64, f64) -> f64) -> [f64; 3] {
     [0, 1, 2].map(|i| f(a[i], b[i]))
 }
 
-/// Optical depths straight up, per wavelength.
+/// Vertical optical depths per wavelength.
 struct ZenithDepths {
     gas: [f64; 3],
-    /// Depths of haze: by scattering, and in `soot` by absorption.
+    /// Depths of haze by scattering; `soot` has those by absorption.
     haze: [f64; 3],
     soot: [f64; 3],
     ozone: [f64; 3],
@@ -74,40 +74,41 @@ impl ZenithDepths {
     }
 }
 
-/// Albedo of the grey ground that is adapted to, and what counts as that of ground under snow: its snow, of albedo 0.8,
-/// then shows two stops over grey, as photographers place it (Adams 1981, The Negative: zone VII).
+/// Albedo of the grey ground to which the eye adapts, and the one that snow-covered ground counts with. Snow of albedo
+/// 0.8 then appears two stops above grey, as photographers place it (Adams 1981, The Negative: zone VII).
 const GROUND_KEY: f64 = 0.18;
 const SNOW_KEY: f64 = 0.2;
-/// Longest way of scattered light through haze, in thicknesses: that of a low sun is scattered out of its slant way.
-/// Fitted to sums over skies.
+/// Largest path of scattered light through absorbing haze, in vertical thicknesses: scattering takes the light of a low
+/// sun off its slant path. Fitted to sums over skies.
 const LONGEST_WAY: f64 = 4.0;
 /// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
 const LUX_PER_W_M2: f64 = 110.0;
 
-/// Optical depth of all air above `altitude_m` straight up, per wavelength.
+/// Returns the vertical optical depth of all air above `altitude_m`, per wavelength.
 pub(crate) fn zenith_depth(planet: &Planet, altitude_m: f64) -> [f64; 3] {
     let depths = ZenithDepths::new(planet, altitude_m);
     map(depths.grey(), depths.ozone, |s, o| s + o)
 }
 
-/// How far night has come under a sun, 0 by day to 1.
+/// Returns how far night has come under a sun, from 0 by day to 1.
 pub(crate) fn night_share(sun: &Light) -> f64 {
     let elevation = libm::asin(sun.direction.z.clamp(-1.0, 1.0)).to_degrees();
     1.0 - smoothstep(NIGHT_BEGINS_DEG.1, NIGHT_BEGINS_DEG.0, elevation)
 }
 
-/// Relative air mass at a true elevation (Kasten & Young 1989), continued below the horizon by its tangent's square.
+/// Returns the relative air mass at a true elevation (Kasten & Young 1989), continued below the horizon by the square
+/// of the tangent.
 fn air_mass(elevation_deg: f64) -> f64 {
     let h = elevation_deg.max(-0.8);
     1.0 / (libm::sin(h.to_radians()) + 0.505_72 * libm::pow(h + 6.079_95, -1.6364)).max(0.02)
 }
 
-/// Light of a source of `spectrum` above clear air over ground of an `albedo`: (direct on a surface facing it, sky on
-/// level ground).
+/// Returns the light of a source of `spectrum` above clear air over ground of an `albedo`: (direct on a surface facing
+/// it, sky on level ground).
 ///
-/// The sky's share by day is what the two-stream slab (Meador & Weaver 1980) lets through diffusely, and sends back to
-/// the ground of what goes up there; below 5 degrees it is led over to measured twilight. From 6 degrees on, in
-/// visibilities from 3 km on, it is within 6 % of what is seen of the sky (`tests/frame/radiance.rs`).
+/// By day the sky's share is the light that the two-stream slab (Meador & Weaver 1980) transmits diffusely, with the
+/// ground's light that the slab sends back. Below 5 degrees it blends into measured twilight. From 6 degrees on and for
+/// visibilities from 3 km on, it is within 6 % of the light of the drawn sky (`tests/frame/radiance.rs`).
 fn clear_light(
     (planet, color): (&Planet, &[[f64; 3]; 3]),
     (altitude_m, albedo): (f64, [f64; 3]),
@@ -116,7 +117,7 @@ fn clear_light(
 ) -> ([f64; 3], [f64; 3]) {
     let depths = ZenithDepths::new(planet, altitude_m);
     let mass = air_mass(elevation_deg);
-    // From a height the horizon lies deeper and the sun sets later.
+    // From a height the horizon lies lower and the sun sets later.
     let h = altitude_m.max(0.0);
     let dip = libm::atan((h * (h + 2.0 * planet.bottom_radius_m)).sqrt() / planet.bottom_radius_m).to_degrees();
     let up = smoothstep(-0.9, -0.25, elevation_deg + dip);
@@ -141,12 +142,12 @@ fn clear_light(
     (color_of(color, direct).map(|v| v.max(0.0)), map(dusk, color_of(color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
 
-/// Light above all clouds at a height over a scene's place, lux a channel: direct light on what faces sun or moon
-/// (whichever is brighter there), and the sky's light on level ground, with the night's floor.
+/// Returns the light above all clouds at a height over a scene's place, lux per channel: direct light on a surface
+/// facing the sun or moon (whichever is brighter there), and the sky's light on level ground, with the night's light.
 pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     let one = |light: &Light| {
         let elevation = libm::asin(light.direction.z.clamp(-1.0, 1.0)).to_degrees();
-        // What is below them is their own.
+        // The ground's light is left out: the clouds add it themselves.
         clear_light((&scene.planet, &scene.color), (altitude_m, [0.0; 3]), elevation, light.spectrum)
     };
     let ((sun, sun_sky), (moon, moon_sky)) = (one(&scene.sun), one(&scene.moon));
@@ -154,9 +155,9 @@ pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [
     (direct, [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + PI * scene.night_floor_cd_m2[i]))
 }
 
-/// Returns the luminance of what is looked at: grey ground under `total` lux and a share of the sky. With the sun near
-/// the horizon the part of the sky round it is many times brighter than the mean, and it is what pictures then show;
-/// above the air it is the sunlit planet, whatever the sun's height over the place.
+/// Returns the luminance to which a viewer adapts: grey ground under `total` lux, and a share of the sky. With the sun
+/// near the horizon, pictures mostly show the part of the sky around it, which is many times brighter than the mean.
+/// Above the air they show the sunlit planet, whatever the sun's elevation over the place.
 fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -> f64 {
     let elevation = libm::asin(sun.direction.z.clamp(-1.0, 1.0)).to_degrees();
     let low = (1.0 - smoothstep(0.0, 30.0, elevation)) * smoothstep(-12.0, -4.0, elevation);
@@ -165,35 +166,35 @@ fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -
     ground + (0.15 * direct / PI - ground).max(0.0) * smoothstep(10e3, 80e3, altitude_m)
 }
 
-/// Returns the share that the clouds leave of the light that the air below them scatters: their total transmission, on
-/// the mean.
+/// Returns the share that the clouds leave of the light that the air below them scatters: their mean total
+/// transmittance.
 fn medium_share(left: &CloudLight) -> f64 {
     (left.direct + left.diffuse).clamp(0.0, 1.0)
 }
 
 impl World {
-    /// Returns the scene that a camera at `position` draws from at simulation time `time_s`, past or to come. Closed
-    /// form: no device is asked.
+    /// Returns the scene from which a camera at `position` draws at simulation time `time_s`, past or future. Closed
+    /// form; no device is used.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position, which the host calls `name`, is not a place on or above the
-    /// planet, or the time is not known.
+    /// [`crate::Status::InvalidArgument`] if the position, which an error calls `name`, is not a place on or above the
+    /// planet, or the weather is not known at the time.
     pub fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
         Ok(self.scene_and_wind(name, position, time_s)?.0)
     }
 
-    /// Returns that scene, with the wind if it had to be worked out.
+    /// Returns that scene, with the wind if it had to be computed.
     pub(super) fn scene_and_wind(&self, name: &str, position: DVec3, time_s: f64) -> Result<(Scene, Option<Blowing>)> {
         let conditions = self.weather_at(time_s)?;
         let land = self.land(&conditions);
         self.scene_over((name, position), time_s, conditions, &land)
     }
 
-    /// This weather with the clouds that the host's map has over a place, if there is a map, and with those over rain
-    /// areas besides, if any stand over it. `map_m`: the place on the ground's map.
+    /// Returns the weather with the clouds that the host's map has over a place, if there is a map; and with the clouds
+    /// of rain areas as well, if any stand over it. `map_m`: the place on the ground's map.
     ///
     /// # Errors
-    /// For a time that the weather does not know.
+    /// [`crate::Status::InvalidArgument`] for a time at which the weather is not known.
     pub(crate) fn clouds_over(
         &self,
         conditions: &Conditions,
@@ -208,7 +209,7 @@ impl World {
         Ok([mapped, under_areas])
     }
 
-    /// Returns the scene in this weather over this land, with the wind if it had to be worked out.
+    /// Returns the scene in this weather over this land, with the wind if it had to be computed.
     fn scene_over(
         &self,
         (name, position): (&str, DVec3),
@@ -220,7 +221,8 @@ impl World {
         let bare = planet_under(&self.set.planet, &conditions);
         let (planet, ground_albedo) = (land.under_sky(bare), land.albedo_on(&bare));
         let map_m = self.map_place(position, &local);
-        // Light is that of the clouds over the place, those over rain areas among them; all else is the weather's.
+        // The light is that under the clouds over the place, those of rain areas included; all else follows the
+        // weather.
         let [mapped, under_areas] =
             self.clouds_over(&conditions, &local, position, DVec2::from_array(map_m), time_s)?;
         let shown = mapped.as_ref().unwrap_or(&conditions);
@@ -230,11 +232,11 @@ impl World {
         let (above_fog, moon_is_brighter) =
             self.ground_light((&planet, &local.place), (overhead, ground_albedo), &lights, night_lux);
         let [(sun, under_sun), (moon, _)] = lights;
-        // Only patches and curtains show where the air has gone.
+        // Only patches and curtains show the displacement of the air.
         let patchy = conditions.fog.is_patchy();
         let curtained = curtain::variation(&conditions.precipitation) > 0.0;
         let wind = (patchy || curtained).then(|| self.over().wind_at(time_s)).transpose()?;
-        // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
+        // The clouds' own effect draws broken cloud; a closed deck is the sky's own look.
         let deck_cover = smoothstep(0.55, 0.95, shown.opaque_cover(local.place.altitude_m));
         let mut scene = Scene {
             place: local.place,
@@ -265,12 +267,12 @@ impl World {
         Ok((scene, wind))
     }
 
-    /// Sunlight on level ground at the world's origin, in whole W/m^2: what another machine's rounding changes in a
-    /// light that is only drawn must not change a state.
+    /// Returns the sunlight on level ground at the world's origin, in whole W/m^2: rounding differences between
+    /// machines in the drawn light must not change a state.
     pub fn sunlight_w_m2(&self, time_s: f64) -> Result<f64> {
         let frame = &self.frame;
         let origin = if frame.kind == WorldKind::Ecef { frame.position_of(&frame.origin) } else { DVec3::ZERO };
-        // A state must not depend on how far another state has been shown.
+        // A state must not depend on how far another state has been published.
         let conditions = self.timeline.at(time_s);
         let land = LandSeen::reported(&conditions);
         let (scene, _) = self.scene_over(("position", origin), time_s, conditions, &land)?;
@@ -293,12 +295,12 @@ impl World {
         }
     }
 
-    /// Place on the map of a position of the host's world, m east and north of the world's origin.
+    /// Returns the place on the map of a position of the host's world, m east and north of the world's origin.
     pub fn map_at(&self, position: DVec3) -> DVec2 {
         DVec2::from_array(self.map_place(position, &self.frame.frame_at(position)))
     }
 
-    /// Where a place on the map lies in the host's world: the inverse of [`World::map_at`].
+    /// Returns the position of a place on the map in the host's world: the inverse of [`World::map_at`].
     pub fn position_on_map(&self, map_m: DVec2, altitude_m: f64) -> DVec3 {
         let o = &self.frame.origin;
         if self.frame.kind == WorldKind::Flat {
@@ -315,7 +317,7 @@ impl World {
         self.frame.position_of(&place)
     }
 
-    /// Mean luminance of the moonless sky, cd/m^2, and its light on level ground, lux, a channel.
+    /// Returns the mean luminance of the moonless sky, cd/m^2, and its light on level ground, lux, per channel.
     fn night(&self, planet: &Planet, place: &Place, sun: &Light, time_s: f64) -> Result<([f64; 3], [f64; 3])> {
         let day = UNSEEN_NIGHT_CD_M2.map(|v| v / luminance(&UNSEEN_NIGHT_CD_M2) * UNSEEN_NIGHT_LUX);
         let share = night_share(sun);
@@ -328,7 +330,7 @@ impl World {
         Ok((map(UNSEEN_NIGHT_CD_M2, lux.map(|e| e / PI), between), map(day, lux, between)))
     }
 
-    /// The light on the ground, and whether of direct light the moon gives more than the sun, clouds left out.
+    /// Returns the light on the ground, and whether the moon gives more direct light than the sun without clouds.
     fn ground_light(
         &self,
         (planet, place): (&Planet, &Place),
@@ -342,7 +344,7 @@ impl World {
             let planet = (planet, &self.set.color);
             let at = |altitude_m| clear_light(planet, (altitude_m, albedo), elevation.to_degrees(), light.spectrum);
             let (direct, sky) = at(place.altitude_m);
-            // What clouds pass on diffusely fell on their tops, through less air.
+            // Light that clouds transmit diffusely fell on their tops, through less air.
             let (on_top, _) = at(cloud_top_m);
             let level = light.direction.z.max(0.0);
             let diffuse = map(on_top, sky, |d, s| s * clouds.sky + d * level * clouds.diffuse);
@@ -356,7 +358,7 @@ impl World {
 }
 
 impl GroundLight {
-    /// Sums up the light of sun, moon and all else that arrives at a place, lux.
+    /// Sums the light of sun, moon and sky that arrives at a place, lux.
     pub(crate) fn new([sun_lux, moon_lux, sky_lux]: [[f64; 3]; 3], [sun, moon]: [&Light; 2], altitude_m: f64) -> Self {
         let total_lux = luminance(&sky_lux)
             + luminance(&sun_lux) * sun.direction.z.max(0.0)
@@ -384,7 +386,7 @@ mod tests {
         // Explanatory Supplement 1992, table 8.1 (clear, sea level): elevation, lux.
         for (h, want) in [(60.0, 102_000.0), (30.0, 52_600.0), (10.0, 10_900.0), (-6.0, 3.41), (-12.0, 8.06e-3)] {
             let got = lux(h);
-            // The table's air is hazier than the default planet's, which shows most at a low sun.
+            // The table's air is hazier than the default planet's, which shows most with a low sun.
             assert!((got / want).ln().abs() < 0.4, "{h}: {got} lux, want {want}");
         }
     }

@@ -1,4 +1,4 @@
-//! Settings of a world that its host makes: lights, clock, planet, shelters, terrain, rain areas, clouds and wind.
+//! A host's settings of a world: lights, clock, planet, shelters, terrain, rain areas, clouds and wind.
 
 use std::sync::Arc;
 
@@ -15,12 +15,12 @@ use crate::{
     wind::{WindGrid, WindVolume},
 };
 
-/// A direction to a light, given by the host in place of the almanac.
+/// Direction to a light, given by the host in place of the almanac.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivenDirection {
-    /// Degrees clockwise from true north, [-360, 360].
+    /// Azimuth, degrees clockwise from true north, [-360, 360].
     pub azimuth_deg: f64,
-    /// Degrees above the horizon, without refraction, [-90, 90].
+    /// Elevation above the horizon, degrees, without refraction, [-90, 90].
     pub elevation_deg: f64,
 }
 
@@ -35,12 +35,12 @@ impl GivenDirection {
     }
 }
 
-/// The host's settings of the night sky that decide how much it lights the ground.
+/// The host's settings of the night sky that affect its light on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NightSettings {
-    /// Strength of the airglow, 1 near the sun's least activity.
+    /// Strength of the airglow; 1 near the minimum of the sun's activity.
     pub airglow: f64,
-    /// From the equator and equinox of J2000.0 to (east, north, up), in place of the planet's own turning.
+    /// Rotation from the equator and equinox of J2000.0 to (east, north, up), in place of the planet's own rotation.
     pub celestial_to_world: Option<DMat3>,
 }
 
@@ -50,17 +50,17 @@ impl Default for NightSettings {
     }
 }
 
-/// Settings of the host that decide a step of what is simulated. Steps that an update leaves for another call are done
-/// under the settings at the time of the update.
+/// The host's settings that affect simulated steps. Steps that an update leaves for a later call use the settings at
+/// the time of the update.
 #[derive(Clone)]
 pub(crate) struct Settings {
     pub shelters: Vec<Shelter>,
-    /// The host's terrain; whatever holds it saves it.
+    /// The host's terrain. The effect that holds it saves it.
     pub terrain: Option<Arc<TerrainHeights>>,
-    /// The host's terrain in tiles, of which the host keeps the heights; never together with `terrain`.
+    /// The host's terrain in tiles, whose heights the host keeps; never together with `terrain`.
     pub tiles: Option<Arc<Terrain>>,
     pub regions: Vec<Region>,
-    /// Where over the ground layers of cloud stand.
+    /// The host's map of local cloud cover.
     pub cloud_map: Option<Arc<CloudMap>>,
     /// The host's wind that varies in space.
     pub host_wind: Option<Arc<HostWind>>,
@@ -68,14 +68,14 @@ pub(crate) struct Settings {
     pub given_moon: Option<GivenDirection>,
     /// Universal time at simulation time 0.
     pub utc_at_zero: Utc,
-    /// A law of the host's stands in for the weather's low layer, which then takes no light.
+    /// Whether a law of the host's replaces the weather's low layer, which then dims no light.
     pub undimmed: bool,
     pub planet: Planet,
-    /// Colours of light at the planet's wavelengths; fitted once, which takes some milliseconds.
+    /// Colours of light at the planet's wavelengths. They are fitted once, which takes some milliseconds.
     pub(super) color: [[f64; 3]; 3],
 }
 
-/// A wind that varies in space as the host gave it, and in the form that is read.
+/// Wind that varies in space: the host's grid, and the form in which it is read.
 pub(crate) struct HostWind {
     pub grid: Arc<WindGrid>,
     pub volume: WindVolume,

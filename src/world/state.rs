@@ -1,4 +1,4 @@
-//! State of a world, `World`: place, weather, time and surroundings, and what each is set to.
+//! State of a world, `World`: place, weather, time and surroundings, and the host's settings of each.
 
 use std::sync::{
     Arc,
@@ -39,19 +39,19 @@ pub(crate) struct World {
     /// Revision of the timeline: no two worlds share one, and every change of the timeline makes a new one.
     pub(super) timeline_revision: u64,
     pub(super) wind: Wind,
-    /// How far the wind had carried the air when the last change ended that the timeline has forgotten.
+    /// Drift of the air at the end of the last change that the timeline has forgotten.
     pub drifted: Drift,
-    /// Drifts of the layers of cloud at that time.
+    /// Drifts of the cloud layers at that time.
     pub(super) layers_drifted: LayerDrifts,
     pub set: Settings,
     pub night: NightSettings,
     pub maps: Option<Box<OccluderMaps>>,
     pub lights: Vec<HostLight>,
-    /// The wind round terrain and boxes, where something has solved for it.
+    /// Wind around terrain and boxes, if an effect has solved for it.
     pub solved_wind: Option<Box<WindVolume>>,
     pub(super) wind_texture: WindTexture,
     pub(super) detours: KeptDetours,
-    /// The lying snow, where it is led through time.
+    /// The lying snow, if it is simulated.
     pub snow: Option<Box<LyingSnow>>,
     pub time_s: f64,
     pub(super) ephemeris: Ephemeris,
@@ -60,13 +60,13 @@ pub(crate) struct World {
     pub surroundings_revision: u64,
 }
 
-/// A number that no timeline has had.
+/// Returns a number that no timeline has had.
 pub(super) fn next_revision() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(1);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// Description that a world is made from.
+/// Description from which a world is created.
 pub(crate) struct WorldDesc {
     pub frame: WorldFrame,
     pub planet: Planet,
@@ -77,7 +77,7 @@ pub(crate) struct WorldDesc {
 }
 
 impl World {
-    /// With a first weather, at time 0.
+    /// Creates a world with its first weather, at time 0.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -135,7 +135,7 @@ impl World {
         Ok(())
     }
 
-    /// The weather over all places and times.
+    /// Returns the weather over all places and times.
     pub fn over(&self) -> WeatherOver<'_> {
         let revision = self.timeline_revision;
         let (kept, kept_layers) = (self.drifted, &self.layers_drifted);
@@ -143,7 +143,7 @@ impl World {
         WeatherOver { world: &self.frame, wind, regions: &self.set.regions, cloud_map: self.set.cloud_map.as_ref() }
     }
 
-    /// The weather at a time, with what its wind lifts of the snow that lies now.
+    /// Returns the weather at a time, with the snow that its wind lifts from the snow lying now.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the time is not finite, out of range or forgotten.
@@ -156,19 +156,19 @@ impl World {
         Ok(c)
     }
 
-    /// The weather at a time with what falls at a place.
+    /// Returns the weather at a time with the precipitation at a place.
     ///
     /// # Errors
-    /// As [`World::weather_at`]; for what is no place.
+    /// As [`World::weather_at`], and [`crate::Status::InvalidArgument`] for a position that is not a place.
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
         self.frame.place_at("position", position)?;
         Ok(self.over().falling_at(position, time_s, self.weather_at(time_s)?))
     }
 
-    /// Lays a map on layers of cloud, in place of the one before.
+    /// Sets the map of cloud cover, which replaces the earlier one.
     ///
     /// # Errors
-    /// As [`CloudMap::validate`]; nothing changes then.
+    /// As [`CloudMap::validate`]; the earlier map then stays.
     pub fn set_cloud_map(&mut self, map: Option<CloudMap>) -> Result<()> {
         map.as_ref().map_or(Ok(()), CloudMap::validate)?;
         self.set.cloud_map = map.map(Arc::new);
@@ -176,7 +176,7 @@ impl World {
         Ok(())
     }
 
-    /// Universal time at simulation time `time_s`.
+    /// Returns universal time at simulation time `time_s`.
     pub fn utc_at(&self, time_s: f64) -> Utc {
         Utc(self.set.utc_at_zero.0 + time_s)
     }
@@ -193,10 +193,10 @@ impl World {
         Ok(())
     }
 
-    /// Puts another planet in place of the one before.
+    /// Replaces the planet.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    /// [`crate::Status::InvalidArgument`] naming the field; the planet then stays as it was.
     pub fn set_planet(&mut self, planet: Planet) -> Result<()> {
         planet.check()?;
         self.set.color = color_columns(&planet);
@@ -204,15 +204,15 @@ impl World {
         Ok(())
     }
 
-    /// Forgets what has ended, but for what is asked from `keep_s` on.
+    /// Forgets what has ended before `keep_s`, the earliest time that will still be asked for.
     pub fn forget_before(&mut self, keep_s: f64) {
         self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
         self.layers_drifted = self.layers_drifted.kept(&self.timeline, keep_s);
         self.timeline.advance_keeping(self.time_s, keep_s);
     }
 
-    /// Extinction of what falls in the weather `c` outside of all regions; none where a law of the host's stands in for
-    /// it.
+    /// Returns the extinction of the precipitation of the weather `c` outside all regions; none where a law of the
+    /// host's replaces it.
     pub fn falling(&self, c: &Conditions) -> FallingLayer {
         if self.set.undimmed { FallingLayer::NONE } else { FallingLayer::new(c) }
     }

@@ -1,4 +1,4 @@
-//! The wind at a place: the weather's, and what varies in space about it.
+//! The wind at a place: the weather's, or the wind that varies in space.
 
 use std::sync::{Arc, PoisonError};
 
@@ -11,35 +11,35 @@ use crate::{
     wind::{Detour, DetourMap, WindAt, WindGrid, WindVolume},
 };
 
-/// Optical depths of the low layer beyond which nobody sees its patches.
+/// Optical depth of the low layer beyond which its patches are not seen.
 const SEEN_DEPTHS: f64 = 8.0;
-/// Steps of the weather's wind, m/s, and of the doublings of a patch's size by which detours are worked out anew: while
-/// a weather changes not in every frame.
+/// Steps to which the inputs of detours are rounded: the weather's wind, m/s, and the binary logarithm of a patch's
+/// size. While the weather changes, detours are then not recomputed in every frame.
 const WIND_STEP_M_S: f64 = 0.125;
 const SIZE_STEP: f64 = 1.0 / 32.0;
 
 impl World {
-    /// The wind that varies in space at a time: the host's grid if there is one, else the solved field.
+    /// Returns the wind that varies in space at a time: the host's grid if there is one, else the solved field.
     pub fn wind_volume(&self, time_s: f64) -> Option<&WindVolume> {
         let host = self.set.host_wind.as_ref().map(|host| &host.volume);
         host.or(self.solved_wind.as_deref()).filter(|v| v.holds_at(time_s))
     }
 
-    /// Puts a host's grid, which is valid, in place of the one before.
+    /// Replaces the host's grid by a valid one.
     pub fn set_wind_grid(&mut self, grid: Option<Arc<WindGrid>>) {
         self.set.host_wind = grid.map(|grid| self.host_wind(grid));
     }
 
-    /// Returns a host's grid with the form of it that queries and shaders read.
+    /// Returns a host's grid together with the form that queries and shaders read.
     pub(super) fn host_wind(&self, grid: Arc<WindGrid>) -> Arc<HostWind> {
         let volume = WindVolume::of_grid(&grid, self.frame.frame_at(grid.origin).world_to_enu);
         Arc::new(HostWind { grid, volume })
     }
 
-    /// How far the air about a camera at `eye` is behind that which the wind's displacement brings, where patches of
-    /// the weather's low layer show it.
+    /// Returns the detours around a camera at `eye`: how far the air lags behind the wind's displacement. `None` where
+    /// no patches of the weather's low layer show them.
     pub fn detour(&self, eye: DVec3, c: &Conditions, time_s: f64) -> Option<Detour> {
-        // Patches of a host's law are the host's.
+        // Where a law of the host's replaces the low layer, its patches are the host's.
         if self.set.undimmed || !c.fog.is_patchy() {
             return None;
         }
@@ -75,7 +75,7 @@ impl World {
         map.map(|map| map.about(eye))
     }
 
-    /// The wind with gusts at a place and time; height counts from the station's altitude.
+    /// Returns the wind with gusts at a place and time; heights count from the station's altitude.
     ///
     /// # Errors
     /// As [`World::conditions_at`].
@@ -94,8 +94,8 @@ impl World {
         })
     }
 
-    /// The wind that carries what falls past a place: that at 10 m with its gusts, m/s (east, north, up), and where the
-    /// wind varies in space that.
+    /// Returns the wind that carries particles falling past a place, m/s (east, north, up): the wind at 10 m with its
+    /// gusts, or the wind that varies in space where there is one.
     ///
     /// # Errors
     /// As [`World::weather_at`].

@@ -1,5 +1,5 @@
-//! Guards around every call: no panic crosses, every failure leaves a status, a sentence and a field of its thread, and
-//! a device in which something panicked answers no further calls.
+//! Guard around every call: no panic leaves it, and every failure stores a status, a message and a field for the
+//! calling thread. A device in which something panicked answers no further calls.
 
 use std::{
     any::Any,
@@ -14,23 +14,24 @@ use crate::error::{Error, Result, Status};
 
 thread_local! {
     static LAST: RefCell<Last> = RefCell::default();
-    /// How many boundary calls this thread is in; a panic there is ours to report, not the standard hook's to print.
+    /// Number of boundary calls that this thread is in. A panic inside one becomes a message of Welkin's; the standard
+    /// hook does not print it.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
-    /// See [`inject`].
+    /// Fault to inject, see [`inject`].
     static INJECTED: Cell<Injected> = const { Cell::new(Injected::Nothing) };
     static PANIC_PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// One call from C: the way to objects, and the device to blame when it panics.
+/// One call from C: access to objects, and the device that a panic would poison.
 pub(in crate::capi) struct Call {
     device: Option<Arc<DeviceCell>>,
 }
 
 impl Call {
-    /// The live object behind a handle whose device still answers.
+    /// Returns the live object behind a handle whose device still answers.
     ///
     /// # Errors
-    /// [`Status::BadHandle`] by the parameter's name, [`Status::Poisoned`].
+    /// [`Status::BadHandle`] with the parameter's name, [`Status::Poisoned`].
     pub(in crate::capi) fn get<T: handles::HandleObject>(
         &mut self,
         param: &str,
@@ -44,7 +45,7 @@ impl Call {
         Ok(object)
     }
 
-    /// Names the device that a panic in this call makes unusable.
+    /// Sets the device that a panic in this call poisons.
     pub(in crate::capi) fn blame(&mut self, device: &Arc<DeviceCell>) {
         self.device = Some(device.clone());
         match INJECTED.replace(Injected::Nothing) {
@@ -56,7 +57,7 @@ impl Call {
     }
 }
 
-/// Runs the body of a C function: its error or panic becomes a status and the thread's message.
+/// Runs the body of a C function; turns its error or panic into a status and the thread's message.
 pub(in crate::capi) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Result<Status>) -> wk_status {
     hush_panics();
     if DEPTH.get() > 0 {
@@ -65,7 +66,7 @@ pub(in crate::capi) fn guard(function: &'static str, body: impl FnOnce(&mut Call
     }
     let mut call = Call { device: None };
     DEPTH.set(DEPTH.get() + 1);
-    // Whatever a panic leaves half-done belongs to the device, and that is poisoned below.
+    // A panic may leave state half-done. That state belongs to the device, which is poisoned below.
     let outcome = catch_unwind(AssertUnwindSafe(|| body(&mut call)));
     DEPTH.set(DEPTH.get() - 1);
     let error = match outcome {
@@ -81,7 +82,7 @@ pub(in crate::capi) fn guard(function: &'static str, body: impl FnOnce(&mut Call
     remember(function, &error)
 }
 
-/// State that a thread keeps of its last failed call.
+/// Last failure of a thread.
 #[derive(Default)]
 struct Last {
     status: wk_status,
@@ -89,22 +90,22 @@ struct Last {
     field: CString,
 }
 
-/// Status of the calling thread's last failed call; 0 before the first.
+/// Returns the status of the calling thread's last failed call; 0 before the first.
 pub(in crate::capi) fn last_status() -> wk_status {
     LAST.with_borrow(|last| last.status)
 }
 
-/// The calling thread's last message; valid until its next failing call.
+/// Returns the calling thread's last message; valid until its next failing call.
 pub(in crate::capi) fn last_error() -> *const c_char {
     LAST.with_borrow(|last| last.message.as_ptr())
 }
 
-/// The field that it is about, by the header's names; empty where it is about none.
+/// Returns the field that the last message is about, as the header names it; empty if it is about none.
 pub(in crate::capi) fn last_error_field() -> *const c_char {
     LAST.with_borrow(|last| last.field.as_ptr())
 }
 
-/// Faults that the tests inject into a call.
+/// Fault that a test injects into a call.
 #[derive(Clone, Copy)]
 pub(in crate::capi) enum Injected {
     Nothing,
@@ -113,12 +114,12 @@ pub(in crate::capi) enum Injected {
     Loss,
 }
 
-/// It happens in the next call of this thread that reaches a device.
+/// Injects a fault into the next call of this thread that reaches a device.
 pub(in crate::capi) fn inject(what: Injected) {
     INJECTED.set(what);
 }
 
-/// Keeps an error for the thread's next question, and answers its status.
+/// Stores an error for the thread's later query, and returns its status.
 fn remember(function: &str, error: &Error) -> wk_status {
     let c_text = |text: String| CString::new(text.replace('\0', "\\0")).unwrap_or_default();
     let status = error.status as wk_status;
@@ -131,13 +132,13 @@ fn panic_error(payload: Box<dyn Any + Send>) -> Error {
     let text = payload.downcast_ref::<&str>().map(|s| (*s).to_owned());
     let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".into());
     let place = PANIC_PLACE.take().map_or_else(String::new, |p| format!(" at {p}"));
-    // A payload's own drop may panic as well: leave it.
+    // The payload's own drop might panic as well, so it is leaked.
     std::mem::forget(payload);
     Error::new(Status::Internal, format!("a fault inside Welkin{place}: {text}; its device answers no further calls"))
 }
 
-/// The standard hook prints to stderr. Inside our calls the panic becomes a message instead; elsewhere in the process
-/// (a Rust host's own code) the hook that was there keeps its say.
+/// Keeps the standard hook from printing panics inside Welkin's calls to stderr; they become messages. Panics elsewhere
+/// in the process (a Rust host's own code) still go to the previous hook.
 fn hush_panics() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {

@@ -1,5 +1,5 @@
-//! State that the boundary keeps beside a device: whether a panic happened in it, and objects whose release must wait
-//! until the host's context is current again.
+//! State that the boundary keeps with a device: whether a panic happened in it, and the objects that can be released
+//! only once the host's context is current again.
 
 use std::{
     any::Any,
@@ -15,18 +15,18 @@ use crate::{
     gpu::{Device, Entered, Shared},
 };
 
-/// A device as the boundary sees it; every child of the device holds one.
+/// Device as the boundary sees it; every child of the device holds a reference.
 pub(in crate::capi) struct DeviceCell {
     gpu: Arc<Device>,
     host: RwLock<Host>,
     poisoned: AtomicBool,
     retired: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
-    /// Pipelines and tables that all contexts of the device share; made with the first of them.
+    /// Pipelines and tables that all contexts of the device share; built with the first context.
     shared: Mutex<Option<Arc<Shared>>>,
 }
 
 impl DeviceCell {
-    /// A device with its owner.
+    /// Creates the cell of a device and its owner.
     pub(in crate::capi) fn new(gpu: Arc<Device>, host: Host) -> Arc<Self> {
         let host = RwLock::new(host);
         Arc::new(Self {
@@ -38,20 +38,20 @@ impl DeviceCell {
         })
     }
 
-    /// The device itself.
+    /// Returns the device itself.
     pub(in crate::capi) fn gpu(&self) -> &Arc<Device> {
         &self.gpu
     }
 
-    /// Whose device it is.
+    /// Returns the owner of the device.
     pub(in crate::capi) fn host(&self) -> RwLockReadGuard<'_, Host> {
         self.host.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Pipelines and tables that the device's contexts share.
+    /// Returns the pipelines and tables that the device's contexts share.
     ///
     /// # Errors
-    /// Whatever keeps them from being made.
+    /// Any failure to build them.
     pub(in crate::capi) fn shared(&self) -> Result<Arc<Shared>> {
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(shared) = &*shared {
@@ -63,11 +63,13 @@ impl DeviceCell {
         Ok(made)
     }
 
-    /// Every later call but destroy is refused.
+    /// Poisons the device: every later call except destroy is refused.
     pub(in crate::capi) fn poison(&self) {
         self.poisoned.store(true, Ordering::Release);
     }
 
+    /// Checks that nothing has panicked in the device.
+    ///
     /// # Errors
     /// [`Status::Poisoned`] after a panic.
     pub(in crate::capi) fn check_alive(&self) -> Result<()> {
@@ -78,6 +80,8 @@ impl DeviceCell {
         Ok(())
     }
 
+    /// Checks that the GPU device is not lost.
+    ///
     /// # Errors
     /// [`Status::DeviceLost`].
     pub(in crate::capi) fn check_not_lost(&self) -> Result<()> {
@@ -87,7 +91,7 @@ impl DeviceCell {
         Ok(())
     }
 
-    /// Releases everything that it holds, at the end of the device, and gives the owner back.
+    /// Releases all objects of the cell at the end of the device, and returns the device's owner.
     pub(in crate::capi) fn close(&self) -> Host {
         let waiting = self.take_retired();
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -95,8 +99,8 @@ impl DeviceCell {
         std::mem::replace(&mut *self.host.write().unwrap_or_else(PoisonError::into_inner), Host::Own)
     }
 
-    /// Drops GPU objects. Where the host's context can no longer be entered they are given up: its objects went with
-    /// it, and a driver need not survive a call without a context.
+    /// Drops GPU objects. If the host's context can no longer be entered, it abandons them: they ended with the
+    /// context, and a driver need not survive a call without one.
     fn release<T>(&self, objects: T) {
         match self.gpu.enter_to_release() {
             Ok(entered) => {
@@ -115,7 +119,7 @@ impl DeviceCell {
         std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Releases what waited for the host's context, before a call that enters it by itself.
+    /// Releases the objects that wait for the host's context, before a call that enters the context by itself.
     pub(in crate::capi) fn drain(&self) {
         let waits = !self.retired.lock().unwrap_or_else(PoisonError::into_inner).is_empty();
         if waits && let Ok(_entered) = self.gpu.enter_to_release() {
@@ -123,7 +127,7 @@ impl DeviceCell {
         }
     }
 
-    /// Makes the host's context current for a batch of GPU calls, and releases what waited for that.
+    /// Makes the host's context current for a batch of GPU calls, and releases the objects that waited for that.
     ///
     /// # Errors
     /// As [`Device::enter`].

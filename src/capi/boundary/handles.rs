@@ -1,5 +1,5 @@
 //! The process's table of live objects. A handle is pointer-typed for C's type checks, but it is a number: kind,
-//! generation, slot. It is never dereferenced, so a stale, foreign or wrong one is found out instead of crashing.
+//! generation, slot. It is never dereferenced, so a stale, foreign or wrong handle gives an error instead of a crash.
 
 use std::{
     any::Any,
@@ -11,13 +11,13 @@ use crate::error::{Error, Result, Status};
 
 /// Object that a C handle type stands for.
 pub(in crate::capi) trait HandleObject: Any + Send + Sync {
-    /// The opaque type in the header.
+    /// Opaque type in the header.
     type C;
-    /// 1 to 15, different for every kind.
+    /// Number of the kind, 1 to 15, different for every kind.
     const KIND: u8;
-    /// The opaque type's name in the header.
+    /// Name of the opaque type in the header.
     const NAME: &'static str;
-    /// The device that the object's GPU resources live on; `None` for objects without any.
+    /// Returns the device on which the object's GPU resources live; `None` for objects without any.
     fn device(&self) -> Option<&Arc<DeviceCell>>;
 }
 
@@ -58,7 +58,7 @@ fn slot_of(handle: usize) -> usize {
 }
 
 fn read() -> RwLockReadGuard<'static, HandleTable> {
-    // Nothing panics while it holds the table, so a poisoned lock still guards a whole table.
+    // No code panics while it holds the table, so the table behind a poisoned lock is still consistent.
     TABLE.read().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -66,7 +66,7 @@ fn write() -> RwLockWriteGuard<'static, HandleTable> {
     TABLE.write().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Why a handle is none of ours, or `Ok` with its slot.
+/// Returns the slot of a live handle, or an error that says what is wrong with the handle.
 fn locate<T: HandleObject>(table: &HandleTable, param: &str, handle: usize) -> Result<usize> {
     let bad = |got: &str| Err(Error::about(Status::BadHandle, param, format!("must be a live {}, got {got}", T::NAME)));
     if handle == 0 {
@@ -81,10 +81,10 @@ fn locate<T: HandleObject>(table: &HandleTable, param: &str, handle: usize) -> R
     }
 }
 
-/// Enters a new object; `parent` counts it as a child until it is destroyed.
+/// Enters a new object. `parent` counts it as a child until it is destroyed.
 ///
 /// # Errors
-/// [`Status::OutOfMemory`] when the table is full, [`Status::BadHandle`] if the parent died meanwhile.
+/// [`Status::OutOfMemory`] when the table is full, [`Status::BadHandle`] if the parent was destroyed meanwhile.
 pub(in crate::capi) fn insert<T: HandleObject, P: HandleObject>(
     object: Arc<T>,
     parent: Option<*const P::C>,
@@ -114,7 +114,7 @@ pub(in crate::capi) fn insert<T: HandleObject, P: HandleObject>(
     Ok(encode(T::KIND, slot.generation, index) as *mut T::C)
 }
 
-/// The live object of a handle.
+/// Returns the live object of a handle.
 ///
 /// # Errors
 /// [`Status::BadHandle`] naming the parameter and what was found instead.
@@ -129,7 +129,7 @@ pub(in crate::capi) fn get<T: HandleObject>(param: &str, handle: *const T::C) ->
     }
 }
 
-/// Takes an object out of the table; its handle is dead from here on.
+/// Removes an object from the table; its handle is dead from here on.
 ///
 /// # Errors
 /// [`Status::BadHandle`]; [`Status::InUse`] while it has children.

@@ -8,16 +8,18 @@ use super::{
 };
 use crate::error::{Error, Result};
 
-/// Most places or rays in one batch query: bounds the time of one call.
+/// Most positions or rays in one batch query, which bounds the time of one call.
 pub(in crate::capi) const MAX_BATCH: usize = 65_536;
 
+/// Checks a value of an enumeration.
+///
 /// # Errors
-/// Names the parameter and every accepted constant.
+/// [`crate::Status::InvalidArgument`] naming the parameter and every accepted constant.
 pub(in crate::capi) fn check_enum(param: &str, info: &EnumInfo, value: u32) -> Result<()> {
     info.check(&param, value.into())
 }
 
-/// A place for an answer, not written yet.
+/// Checks the pointer to an answer; nothing is written yet.
 ///
 /// # Errors
 /// If it is NULL or misaligned.
@@ -26,7 +28,7 @@ pub(in crate::capi) fn out<T>(param: &str, p: *mut T) -> Result<*mut T> {
     Ok(p)
 }
 
-/// Three numbers for a place of the host's world; whether it is one, the query finds.
+/// Reads three coordinates in the host's world. The query itself checks whether they are a valid position.
 ///
 /// # Safety
 /// `p` is NULL or points to three numbers.
@@ -36,13 +38,13 @@ pub(in crate::capi) unsafe fn position(param: &str, p: *const [f64; 3]) -> Resul
     Ok(unsafe { p.read() })
 }
 
-/// A NUL-terminated UTF-8 text.
+/// Reads a NUL-terminated UTF-8 text.
 ///
 /// # Safety
 /// `p` is NULL or points to a NUL-terminated string that lives as long as `'a`.
 ///
 /// # Errors
-/// If it is NULL or not UTF-8; the message gives the byte.
+/// If `p` is NULL or the text is not UTF-8; the message names the first wrong byte.
 pub(in crate::capi) unsafe fn text<'a>(param: &str, p: *const c_char) -> Result<&'a str> {
     layout::check_pointer(&param, p)?;
     // SAFETY: not NULL, and the caller's promise.
@@ -51,19 +53,19 @@ pub(in crate::capi) unsafe fn text<'a>(param: &str, p: *const c_char) -> Result<
         .map_err(|e| Error::invalid(param, format_args!("must be UTF-8; byte {} is not", e.valid_up_to())))
 }
 
-/// A text that may be left out.
+/// Reads a text that may be NULL.
 ///
 /// # Safety
 /// As [`text`].
 ///
 /// # Errors
-/// If it is not UTF-8.
+/// If the text is not UTF-8.
 pub(in crate::capi) unsafe fn optional_text<'a>(param: &str, p: *const c_char) -> Result<Option<&'a str>> {
     // SAFETY: the caller's promise.
     if p.is_null() { Ok(None) } else { unsafe { text(param, p) }.map(Some) }
 }
 
-/// Plain values in a row.
+/// Returns a contiguous list of plain values.
 ///
 /// # Safety
 /// `p` is NULL or points to `count` values that live as long as `'a`.
@@ -85,7 +87,7 @@ pub(in crate::capi) unsafe fn slice<'a, T: Copy>(
     Ok(unsafe { std::slice::from_raw_parts(p, count) })
 }
 
-/// As [`slice`], for answers.
+/// Returns a contiguous list for answers, as [`slice`] does for values.
 ///
 /// # Safety
 /// `p` is NULL or points to `count` values that only this call touches while `'a` lasts.
@@ -107,14 +109,14 @@ pub(in crate::capi) unsafe fn slice_mut<'a, T: Copy>(
     Ok(unsafe { std::slice::from_raw_parts_mut(p, count) })
 }
 
-/// Writes a state's bytes into the caller's room: `*out_size` gets their number, and where `capacity` is 0 nothing
-/// more.
+/// Writes a state's bytes into the caller's buffer. `*out_size` gets their number; with `capacity` 0 nothing else is
+/// written.
 ///
 /// # Safety
-/// `buffer` is NULL or has `capacity` bytes, `out_size` is NULL or a place, both the caller's alone.
+/// `buffer` is NULL or has `capacity` bytes, `out_size` is NULL or writable; no one else uses either during the call.
 ///
 /// # Errors
-/// Missing places, or too little room.
+/// If a pointer is NULL, or the buffer is too small.
 pub(in crate::capi) unsafe fn answer_bytes(
     bytes: &[u8],
     buffer: *mut c_void,
@@ -136,7 +138,7 @@ pub(in crate::capi) unsafe fn answer_bytes(
     Ok(())
 }
 
-/// A number with the name that it has in the header.
+/// A number with its name in the header.
 #[derive(Clone, Copy)]
 pub(in crate::capi) struct Named<'a>(pub(in crate::capi) &'a str, pub(in crate::capi) usize);
 
@@ -153,20 +155,21 @@ impl Named<'_> {
 pub(in crate::capi) struct List<'a> {
     pub(in crate::capi) name: &'a str,
     pub(in crate::capi) count: Named<'a>,
-    /// Bytes from one element to the next.
+    /// Distance from one element to the next, bytes.
     pub(in crate::capi) stride: Named<'a>,
-    /// Most elements.
+    /// Largest number of elements.
     pub(in crate::capi) limit: usize,
 }
 
 impl<'a> List<'a> {
-    /// The list that a function has by its parameters `name`, `count` and `stride`.
+    /// Builds the list of a function that has the parameters `name`, `count` and `stride`.
     pub(in crate::capi) fn parameters(name: &'a str, count: u32, stride: u32, limit: usize) -> Self {
         Self { name, count: Named("count", count as usize), stride: Named("stride", stride as usize), limit }
     }
 }
 
-/// Parameters of a caller's list of plain values: its first element, their count, and the bytes from one to the next.
+/// Parameters of a caller's list of plain values: its first element, their number, and the distance from one to the
+/// next, bytes.
 pub(in crate::capi) struct ListParameters<T> {
     pub(in crate::capi) first: *const T,
     pub(in crate::capi) count: u32,
@@ -180,8 +183,10 @@ pub(in crate::capi) struct Places<T> {
 }
 
 impl<T: Copy> Places<T> {
+    /// Checks the parameters of a list.
+    ///
     /// # Errors
-    /// Too many, NULL, misaligned, or a size that does not fit.
+    /// If there are more elements than `limit`, the pointer is NULL or misaligned, or the size does not fit.
     pub(in crate::capi) fn new(
         param: &str,
         size_name: &str,
@@ -198,13 +203,13 @@ impl<T: Copy> Places<T> {
         Ok(Self { first, size: size as usize })
     }
 
-    /// The element `i`; the caller knows that there is one.
+    /// Returns a pointer to element `i`, which must exist.
     pub(in crate::capi) fn at(&self, i: usize) -> *const T {
         self.first.wrapping_byte_add(i * self.size)
     }
 }
 
-/// A caller's room for plain values, `size` bytes apart.
+/// A caller's buffer for plain values, `size` bytes apart.
 pub(in crate::capi) struct Room<T> {
     first: *mut T,
     capacity: usize,
@@ -212,8 +217,10 @@ pub(in crate::capi) struct Room<T> {
 }
 
 impl<T: Copy> Room<T> {
+    /// Checks the parameters of a buffer.
+    ///
     /// # Errors
-    /// NULL, misaligned, or a size that does not fit.
+    /// If the pointer is NULL or misaligned, or the size does not fit.
     pub(in crate::capi) fn new(param: &str, size_name: &str, first: *mut T, capacity: u32, size: u32) -> Result<Self> {
         if capacity > 0 {
             layout::check_pointer(&param, first.cast_const())?;
@@ -222,8 +229,10 @@ impl<T: Copy> Room<T> {
         Ok(Self { first, capacity: capacity as usize, size: size as usize })
     }
 
+    /// Checks that the buffer holds `count` elements.
+    ///
     /// # Errors
-    /// If it cannot hold `count`.
+    /// If it does not.
     pub(in crate::capi) fn check_capacity(&self, param: &str, count: usize) -> Result<()> {
         if count <= self.capacity {
             return Ok(());
@@ -231,17 +240,18 @@ impl<T: Copy> Room<T> {
         Err(Error::range(param, &format!("at least {count}"), self.capacity))
     }
 
-    /// Writes element `i`; what a later version's element has beyond is left alone.
+    /// Writes element `i`. If the caller's elements are of a later version, their additional bytes stay as they are.
     ///
     /// # Safety
-    /// `i` is below the capacity, and the caller has that room.
+    /// `i` is below the capacity, and the caller's buffer has that capacity.
     pub(in crate::capi) unsafe fn write(&self, i: usize, value: &T) {
         // SAFETY: the caller's promise.
         unsafe { self.first.wrapping_byte_add(i * self.size).write(*value) };
     }
 }
 
-/// Plain values of lists never change within a major version; a later one has its additions behind.
+/// Checks the size of a list's plain values. Within a major version they never change, and a later version appends to
+/// them.
 fn check_element_size<T>(name: &str, size: u32) -> Result<()> {
     let (least, align) = (size_of::<T>(), align_of::<T>());
     if (size as usize) >= least && (size as usize).is_multiple_of(align) {
@@ -250,13 +260,13 @@ fn check_element_size<T>(name: &str, size: u32) -> Result<()> {
     Err(Error::range(name, &format!("at least {least} and a multiple of {align}"), size))
 }
 
-/// Reads a list of tagged structs, `stride` bytes apart; each is checked as `name[i]`, and `take` gets it.
+/// Reads a list of tagged structs, `stride` bytes apart. Each is checked under the name `name[i]` and passed to `take`.
 ///
 /// # Safety
 /// `p` is NULL or points to `count` structs, `stride` bytes apart, each with `struct_size` readable bytes.
 ///
 /// # Errors
-/// Too many, a stride that does not fit, the first wrong field, or what `take` answers.
+/// If there are too many, or the stride does not fit; the first wrong field; or the error of `take`.
 pub(in crate::capi) unsafe fn each<T: Layout>(
     list: &List<'_>,
     p: *const T,
@@ -266,7 +276,7 @@ pub(in crate::capi) unsafe fn each<T: Layout>(
     unsafe { each_with(list, p, &[], take) }
 }
 
-/// As [`each`], where each may have extensions of the types `known`.
+/// Reads a list as [`each`] does, where each struct may have extensions of the types in `known`.
 ///
 /// # Safety
 /// As [`each`]; every link of their chains is NULL or points to a struct that begins with a head.
@@ -310,7 +320,7 @@ pub(in crate::capi) unsafe fn each_with<T: Layout>(
     Ok(())
 }
 
-/// `name[3]`, written only when an error needs it.
+/// Name of an element, as `name[3]`, formatted only when an error needs it.
 struct Indexed<'a>(&'a str, usize);
 
 impl std::fmt::Display for Indexed<'_> {

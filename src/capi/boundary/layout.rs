@@ -1,8 +1,8 @@
-//! Reading and writing the structs of the header: sizes of other versions, extension chains, and every number checked
-//! by the name it has in the header.
+//! Reading and writing of the header's structs. It handles the sizes of other versions and extension chains, and checks
+//! every number under its name in the header.
 //!
-//! `build.rs` writes the tables from the struct definitions themselves, so a new field is checked from the day it is
-//! declared: floats must be finite, enumerations known, reserved fields zero.
+//! `build.rs` writes the tables from the struct definitions themselves, so every new field is checked from the start:
+//! floats must be finite, enumerations known, reserved fields zero.
 
 use std::{ffi::c_void, fmt::Display};
 
@@ -33,7 +33,7 @@ pub(crate) struct LayoutField {
     pub offset: usize,
     pub kind: FieldKind,
     pub count: usize,
-    /// Range that its documentation states, such as `[0, 1]`; empty if it states none.
+    /// Range that the field's documentation states, such as `[0, 1]`; empty if it states none.
     pub range: &'static str,
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct StructInfo {
     pub name: &'static str,
     pub size: usize,
     pub align: usize,
-    /// Whether there is a `WK_X_INIT`: the plain values of lists have none.
+    /// Whether there is a `WK_X_INIT`; plain values of lists have none.
     pub has_init: bool,
     pub fields: &'static [LayoutField],
 }
@@ -58,17 +58,18 @@ pub(crate) struct EnumInfo {
     pub values: &'static [(&'static str, u64)],
 }
 
-/// A `repr(C)` struct of the header that begins with `struct_size`, `struct_type`, `next`, or is embedded in one.
+/// A `repr(C)` struct of the header that begins with `struct_size`, `struct_type` and `next`, or is embedded in such a
+/// struct.
 ///
 /// # Safety
-/// `INFO` describes `Self` truly, `Self` has no implicit padding, and every bit pattern is a valid `Self`.
+/// `INFO` describes `Self` correctly, `Self` has no implicit padding, and every bit pattern is a valid `Self`.
 pub(crate) unsafe trait Layout: Copy + 'static {
     const INFO: &'static StructInfo;
-    /// Every field at its default.
+    /// Struct with every field at its default.
     const DEFAULT: Self;
 }
 
-/// The first fields of every tagged struct.
+/// First fields of every tagged struct.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub(crate) struct Head {
@@ -77,9 +78,9 @@ pub(crate) struct Head {
     pub next: *const c_void,
 }
 
-/// Larger sizes are a mistake, not a future version.
+/// Largest size of a struct, bytes: a larger one is a mistake, not a future version.
 const MAX_STRUCT_BYTES: usize = 64 * 1024;
-/// Longer chains are a cycle.
+/// Longest extension chain: a longer one is a cycle.
 const MAX_CHAIN: usize = 16;
 
 #[allow(dead_code, clippy::all, clippy::undocumented_unsafe_blocks, reason = "written by build.rs")]
@@ -89,13 +90,13 @@ mod table {
 }
 pub(crate) use table::*;
 
-/// `sizeof` as the structs' first field holds it.
+/// Returns `sizeof` in the type of the structs' first field.
 pub(crate) const fn struct_size<T>() -> u32 {
     size_of::<T>() as u32
 }
 
 impl FieldKind {
-    /// Bytes of one element.
+    /// Returns the size of one element, bytes.
     pub(crate) fn size(self) -> usize {
         match self {
             Self::U8 => 1,
@@ -109,7 +110,7 @@ impl FieldKind {
 }
 
 impl EnumInfo {
-    /// Fails unless `value` is a named one, or for flags a union of named ones.
+    /// Fails unless `value` is a named constant or, for flags, a union of named ones.
     pub(crate) fn check(&self, param: &dyn Display, value: u64) -> Result<()> {
         let known = if self.flags {
             value & !self.values.iter().fold(0, |all, v| all | v.1) == 0
@@ -126,7 +127,7 @@ impl EnumInfo {
     }
 }
 
-/// Checks every field of the struct at `base`; `upto` is how many bytes the caller gave.
+/// Checks every field of the struct at `base` that lies within `upto`, the number of bytes that the caller gave.
 ///
 /// # Safety
 /// `base` points to `info.size` readable bytes.
@@ -143,6 +144,8 @@ unsafe fn check_fields(param: &dyn Display, base: *const u8, info: &'static Stru
     Ok(())
 }
 
+/// Checks one element of a field.
+///
 /// # Safety
 /// `element` points to an element of `field`'s kind.
 unsafe fn check_element(name: &FieldPath<'_>, element: *const u8, field: &LayoutField) -> Result<()> {
@@ -173,7 +176,7 @@ unsafe fn check_element(name: &FieldPath<'_>, element: *const u8, field: &Layout
     Err(Error::range(&name.to_string(), &accepted, float))
 }
 
-/// `frame.camera.position_m[2]`, written only when an error needs it.
+/// Path of an element, as `frame.camera.position_m[2]`, formatted only when an error needs it.
 struct FieldPath<'a> {
     param: &'a dyn Display,
     field: &'static str,
@@ -187,7 +190,7 @@ impl Display for FieldPath<'_> {
     }
 }
 
-/// Fails unless `p` may be read or written as a `T`: neither NULL nor misaligned.
+/// Fails if `p` cannot be read or written as a `T`: if it is NULL or misaligned.
 pub(crate) fn check_pointer<T>(param: &dyn Display, p: *const T) -> Result<()> {
     if p.is_null() {
         return Err(Error::invalid(param.to_string(), "must not be NULL"));
@@ -199,10 +202,10 @@ pub(crate) fn check_pointer<T>(param: &dyn Display, p: *const T) -> Result<()> {
     Ok(())
 }
 
-/// A place for an answer that may be left out.
+/// Checks the pointer to an answer that may be NULL.
 ///
 /// # Errors
-/// If it is misaligned. To be asked of every place before any is written.
+/// If it is misaligned. Check every pointer before anything is written.
 pub(in crate::capi) fn optional_out<T>(param: &dyn Display, p: *mut T) -> Result<Option<*mut T>> {
     if p.is_null() {
         return Ok(None);
@@ -211,13 +214,13 @@ pub(in crate::capi) fn optional_out<T>(param: &dyn Display, p: *mut T) -> Result
     Ok(Some(p))
 }
 
-/// Checks the head of a struct at `p` and returns the bytes that the caller gave.
+/// Checks the head of a struct at `p` and returns the number of bytes that the caller gave.
 ///
 /// # Safety
 /// `p` is NULL or points to `struct_size` readable bytes.
 unsafe fn head<T: Layout>(param: &dyn Display, p: *const T) -> Result<usize> {
     check_pointer(param, p)?;
-    // SAFETY: every tagged struct begins so; alignment was checked.
+    // SAFETY: every tagged struct begins with its size; the alignment was checked.
     let size = unsafe { p.cast::<u32>().read() } as usize;
     // SAFETY: `size` bytes are the caller's promise.
     unsafe { check_size(param, p.cast(), size, T::INFO)? };
@@ -232,18 +235,19 @@ unsafe fn head<T: Layout>(param: &dyn Display, p: *const T) -> Result<usize> {
     Ok(size)
 }
 
-/// The first fields of a tagged struct.
+/// Returns the first fields of a tagged struct.
 pub(crate) fn head_of<T: Layout>(value: &T) -> Head {
     // SAFETY: every tagged struct begins with a head.
     unsafe { *std::ptr::from_ref(value).cast::<Head>() }
 }
 
-/// The `struct_type` of a tagged struct.
+/// Returns the `struct_type` of a tagged struct.
 fn expected_type<T: Layout>() -> u32 {
     head_of(&T::DEFAULT).struct_type
 }
 
-/// A size must end where a field ends, and what lies beyond the fields this version knows must be zero.
+/// Checks a struct's size: it must end where a field ends, and all bytes beyond the fields of this version must be
+/// zero.
 ///
 /// # Safety
 /// `p` points to `size` readable bytes.
@@ -277,7 +281,7 @@ unsafe fn check_size(param: &dyn Display, p: *const u8, size: usize, info: &Stru
     }
 }
 
-/// Reads a struct of this or another version: defaults for a missing tail, every number checked by name.
+/// Reads a struct of this or another version. A missing tail gets its defaults, and every number is checked by name.
 ///
 /// # Safety
 /// `p` is NULL or points to `struct_size` readable bytes.
@@ -293,7 +297,7 @@ pub(crate) unsafe fn read<T: Layout>(param: &dyn Display, p: *const T) -> Result
     Ok(value)
 }
 
-/// As [`read`], but NULL means every default.
+/// Reads a struct as [`read`] does; NULL gives every default.
 ///
 /// # Safety
 /// As [`read`].
@@ -329,7 +333,7 @@ pub(crate) unsafe fn check_chain(param: &dyn Display, first: *const c_void, know
     Err(Error::range(&format!("{param}.next"), &format!("a chain of at most {MAX_CHAIN} structs"), "a longer one"))
 }
 
-/// Reads the extension of type `T` from a checked chain, if it is there.
+/// Reads the extension of type `T` from a checked chain, if the chain has it.
 ///
 /// # Safety
 /// As [`check_chain`], which has accepted the chain.
@@ -347,13 +351,13 @@ pub(crate) unsafe fn extension<T: Layout>(first: *const c_void) -> Result<Option
     Ok(None)
 }
 
-/// A checked place for an answer; nothing is written before [`OutStruct::set`].
+/// A checked struct for an answer; nothing is written before [`OutStruct::set`].
 pub(crate) struct OutStruct<T: Layout> {
     at: *mut T,
     size: usize,
 }
 
-/// Checks the caller's struct for an answer: its size and type, and that it asks for no unknown extension.
+/// Checks the caller's struct for an answer: its size and type, and that its chain has no unknown extension.
 ///
 /// # Safety
 /// `p` is NULL or points to `struct_size` writable bytes.
@@ -368,7 +372,7 @@ pub(crate) unsafe fn out_struct<T: Layout>(param: &dyn Display, p: *mut T) -> Re
 }
 
 impl<T: Layout> OutStruct<T> {
-    /// Writes the answer as far as the caller's version goes; keeps the caller's head.
+    /// Writes the answer up to the size of the caller's version, and keeps the caller's head.
     pub(crate) fn set(self, value: &T) {
         let skip = size_of::<Head>();
         let known = self.size.min(size_of::<T>());
@@ -388,7 +392,7 @@ pub(crate) fn check_version_size<T: Layout>(param: &str, bytes: usize) -> Result
     Err(Error::range(param, &format!("sizeof({}), which is {}", T::INFO.name, size_of::<T>()), bytes))
 }
 
-/// Writes a whole struct as a version of `bytes` bytes knows it: cut, or with a zero tail.
+/// Writes a whole struct in a version of `bytes` bytes: truncated, or with a zero tail.
 ///
 /// # Safety
 /// `place` points to `bytes` writable bytes, and `check_version_size` has accepted them.

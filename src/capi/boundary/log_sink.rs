@@ -1,6 +1,6 @@
-//! The host's log callback. The crate and wgpu speak through `log`; in the shared and the static library that crate's
-//! logger slot is Welkin's own and no one else's, and it is filled only when a host asks for messages. In a Rust
-//! program the slot belongs to the program: if it is taken, the host is told to use its own logger.
+//! The host's log callback. The crate and wgpu log through the crate `log`. In the shared and the static library, the
+//! logger slot of `log` is Welkin's alone, and it is filled only when a host asks for messages. In a Rust program the
+//! slot belongs to the program. If it is taken, Welkin tells the host to use its own logger.
 
 use std::{
     ffi::{CString, c_void},
@@ -17,7 +17,7 @@ struct Receiver {
     user: *mut c_void,
 }
 
-// SAFETY: the header says that the callback comes from any thread, so the host has made `user` fit for that.
+// SAFETY: the header says that the callback comes from any thread, so the host must make `user` safe for that.
 unsafe impl Send for Receiver {}
 // SAFETY: as above.
 unsafe impl Sync for Receiver {}
@@ -28,7 +28,7 @@ struct LogSink;
 
 impl log::Log for LogSink {
     fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
-        // The graphics layer reports its daily life as information: only its warnings concern a host.
+        // The graphics layer logs its routine work as information; only its warnings matter to a host.
         metadata.target().starts_with("welkin") || metadata.level() <= log::Level::Warn
     }
 
@@ -46,7 +46,7 @@ impl log::Log for LogSink {
             return;
         };
         if let Some(receiver) = &*RECEIVER.read().unwrap_or_else(PoisonError::into_inner) {
-            // SAFETY: the host gave the pair, and takes it back only under the write lock.
+            // SAFETY: the host gave the pair, and can only replace it under the write lock.
             unsafe { (receiver.callback)(receiver.user, level, text.as_ptr()) };
         }
     }

@@ -1,9 +1,9 @@
-//! Lower floor of the C boundary: what all `wk_*` calls share. No call stands here.
+//! Lower floor of the C boundary: what all `wk_*` calls share. It contains no `wk_*` call itself.
 //!
 //! A call runs inside [`guard`], which stops panics and keeps the thread's last error (`call`). It finds its objects by
-//! their handles (`handles`, `objects`); each object holds the cell of its device (`device_cell`), which knows the
-//! device's owner (`owner`). It checks plain parameters (`input`) and reads and writes structs of any version
-//! (`layout`). `numbers` has the statuses and struct types, and `log_sink` the host's log callback.
+//! their handles (`handles`, `objects`). Each object holds the cell of its device (`device_cell`), which knows the
+//! device's owner (`owner`). The call checks plain parameters (`input`) and reads and writes structs of any version
+//! (`layout`). `numbers` has the statuses and struct types, and `log_sink` has the host's log callback.
 
 pub(in crate::capi) mod call;
 mod device_cell;

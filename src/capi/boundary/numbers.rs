@@ -1,5 +1,5 @@
-//! Numbers that every call and struct uses: statuses, types of structs, levels of messages. They are the first part of
-//! the header's section `status`.
+//! Numbers that all calls and structs use: statuses, struct types, log levels. They are the first part of the header's
+//! section `status`.
 
 use std::ffi::{c_char, c_void};
 
@@ -40,7 +40,7 @@ pub const WK_ERROR_ABORTED: wk_status = -14;
 /// A fault inside Welkin; the message says where.
 pub const WK_ERROR_INTERNAL: wk_status = -15;
 
-/// The type of a tagged struct: its second field. WK_X_INIT sets it.
+/// The type of a tagged struct, in its second field. WK_X_INIT sets it.
 pub type wk_struct_type = u32;
 /// wk_device_desc
 pub const WK_STRUCT_TYPE_DEVICE_DESC: wk_struct_type = 1;

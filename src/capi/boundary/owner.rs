@@ -1,4 +1,4 @@
-//! Owner of a device: Welkin itself or the host, and what giving the device back takes.
+//! Owner of a device: Welkin itself or the host, with the steps to give the device back.
 
 use crate::error::{Error, Result};
 
@@ -6,10 +6,10 @@ use crate::error::{Error, Result};
 pub(in crate::capi) enum Host {
     /// Welkin's own device.
     Own,
-    /// The host's OpenGL context, or one that shares its objects.
+    /// OpenGL context of the host, or one that shares objects with it.
     #[cfg(not(any(target_os = "macos", target_os = "ios")))]
     OpenGl(std::sync::Arc<crate::gpu::gl::GlHost>),
-    /// The host's Vulkan device.
+    /// Vulkan device of the host.
     #[cfg(not(any(target_os = "macos", target_os = "ios")))]
     Vulkan(Box<crate::gpu::vulkan::VulkanHost>),
 }
@@ -26,9 +26,11 @@ impl Host {
         }
     }
 
+    /// Checks that the host can have shaders of its own on this device.
+    ///
     /// # Errors
-    /// [`Status::Unsupported`] about `param`, for `what` is made for a host's own shaders, of which this device has
-    /// none.
+    /// [`crate::Status::Unsupported`] about `param` on an own device: `what` is meant for the host's own shaders, and
+    /// there are none.
     pub(in crate::capi) fn check_own_shaders(&self, param: &str, what: &str) -> Result<()> {
         match self {
             Self::Own => {
@@ -43,7 +45,7 @@ impl Host {
     /// Gives the host its device back.
     ///
     /// # Errors
-    /// Whatever the host should know before it destroys its device.
+    /// Anything that the host should know before it destroys its device.
     pub(in crate::capi) fn close(self) -> Result<()> {
         match self {
             Self::Own => Ok(()),

@@ -1,4 +1,4 @@
-//! Choice of the functions by the kind of host that owns the device.
+//! Dispatch by the kind of host that owns the device.
 
 use super::own;
 #[cfg(not(any(target_os = "macos", target_os = "ios")))]
@@ -19,10 +19,10 @@ use crate::{
 /// Records a checked frame into the images of the device's kind of host.
 ///
 /// # Safety
-/// `frame.target` is NULL or leads to a live target struct.
+/// `frame.target` is NULL or points to a live target struct.
 ///
 /// # Errors
-/// The first wrong field by name, and everything that recording may answer.
+/// The first wrong field by name, and every error of recording.
 pub(in crate::capi) unsafe fn record(
     call: &mut Call,
     object: &ViewObject,
@@ -41,13 +41,13 @@ pub(in crate::capi) unsafe fn record(
     }
 }
 
-/// Takes over the occluder maps of a context from the images of the device's kind of host.
+/// Sets the occluder maps of a context from images of the device's kind of host.
 ///
 /// # Safety
-/// The images of `maps` are live and truly described.
+/// The images of `maps` are live and correctly described.
 ///
 /// # Errors
-/// The first wrong field by name; the maps before stay.
+/// The first wrong field by name; the previous maps then stay.
 pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     call: &mut Call,
     object: &ContextObject,
@@ -63,10 +63,10 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     }
 }
 
-/// The host's own name for a texture of Welkin's: a VkImage or an OpenGL name.
+/// Returns the native name of a texture of Welkin's: a VkImage or an OpenGL name.
 ///
 /// # Errors
-/// [`Status::Unsupported`] on an own device.
+/// [`crate::Status::Unsupported`] on an own device.
 pub(in crate::capi) fn native_texture(cell: &DeviceCell, texture: &wgpu::Texture) -> Result<u64> {
     match &*cell.host() {
         Host::Own => Err(Error::unsupported("native textures of an own device")),

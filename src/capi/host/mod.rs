@@ -1,6 +1,6 @@
-//! Frames and occluder maps for each kind of host: whose device it is, and how a frame's images come in and go back.
+//! Frames and occluder maps for each kind of host: how the host's images are imported for a frame and handed back.
 //!
-//! One file holds one kind of host, and `dispatch.rs` chooses among them by the device's owner.
+//! One file holds one kind of host; `dispatch.rs` chooses among them by the device's owner.
 
 mod dispatch;
 #[cfg_attr(any(target_os = "macos", target_os = "ios"), path = "opengl_absent.rs")]

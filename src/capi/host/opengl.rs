@@ -1,4 +1,4 @@
-//! Frames of an OpenGL host: its context entered, its images as textures, everything given back.
+//! Frames of an OpenGL host: enters the host's context, uses its images as textures, and restores everything.
 
 use wgpu::hal::{api::Gles, gles::TextureInner};
 
@@ -20,8 +20,10 @@ use crate::{
     rain::OccluderMap,
 };
 
+/// Creates a device on an OpenGL host.
+///
 /// # Safety
-/// The header's promises about `wk_opengl_host_desc`.
+/// The header's requirements on `wk_opengl_host_desc`.
 pub(in crate::capi) unsafe fn open(c: &wk_opengl_host_desc) -> Result<*mut wk_device> {
     let desc = GlHostDesc {
         get_proc: c.get_proc,
@@ -36,13 +38,15 @@ pub(in crate::capi) unsafe fn open(c: &wk_opengl_host_desc) -> Result<*mut wk_de
     device::issue(opened.device, Host::OpenGl(opened.host))
 }
 
+/// Records a frame into the images of an OpenGL host.
+///
 /// # Safety
 /// `c.target` is NULL or a live target struct with live names.
 pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_frame, stages: Stages) -> Result<()> {
     // SAFETY: the caller's promise.
     let target = unsafe { target::<wk_opengl_target>(c.target)? };
     let desc = description(&target, c.depth_access == WK_DEPTH_ACCESS_READ_WRITE)?;
-    // Before the host's images are touched.
+    // All fields are checked before the host's images are touched.
     let mut frame = frame::from_c(c, Images::default(), true)?;
     object.lock().check_call(&frame, stages).map_err(in_frame)?;
     let gpu = object.cell.gpu();
@@ -85,7 +89,8 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
     object.write().set_occluder_maps(&list).map_err(in_map("opengl"))
 }
 
-/// The target as the Rust side takes it, its depth perhaps to be written; `None` without a colour image.
+/// Converts the target to the Rust side's description; `write_depth` says whether Welkin may write its depth. `None`
+/// without a colour image.
 fn description(c: &wk_opengl_target, write_depth: bool) -> Result<Option<GlTargetDesc>> {
     let (color, depth, mask) = (image(&c.color), image(&c.depth), image(&c.mask));
     let (surface_classes, normals) = (image(&c.surface_classes), image(&c.normals));
@@ -128,7 +133,7 @@ fn image(c: &wk_opengl_image) -> Option<GlImage> {
     }
 }
 
-/// The OpenGL name of a texture.
+/// Returns the OpenGL name of a texture.
 pub(super) fn native_texture(texture: &wgpu::Texture) -> Result<u64> {
     // SAFETY: the name is only read.
     let hal = unsafe { texture.as_hal::<Gles>() };

@@ -1,4 +1,4 @@
-//! Frames of an own device: its textures, or the image of a window.
+//! Frames of an own device, drawn into its textures or into the image of a window.
 
 use std::sync::Arc;
 
@@ -19,6 +19,8 @@ use crate::{
     rain::OccluderMap,
 };
 
+/// Records a frame into the textures or the surface of an own device.
+///
 /// # Safety
 /// `c.target` is NULL or a live target struct.
 pub(in crate::capi) unsafe fn record(call: &mut Call, object: &ViewObject, c: &wk_frame, stages: Stages) -> Result<()> {
@@ -57,7 +59,7 @@ pub(in crate::capi) unsafe fn record(call: &mut Call, object: &ViewObject, c: &w
     object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
 }
 
-/// Refuses a texture whose format cannot serve, in the header's names.
+/// Refuses a texture of an unsuitable format; the message has the header's names.
 fn check_format(param: &str, texture: &Option<Arc<TextureObject>>, accepted: &[wk_format]) -> Result<()> {
     let Some(texture) = texture else { return Ok(()) };
     if accepted.contains(&texture.format) {
@@ -85,7 +87,7 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
     object.write().set_occluder_maps(&list).map_err(in_map("texture"))
 }
 
-/// An object of this device, or nothing for NULL.
+/// Returns an object of this device, or `None` for NULL.
 fn of_device<T: HandleObject>(
     call: &mut Call,
     here: &Arc<DeviceCell>,

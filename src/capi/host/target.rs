@@ -1,4 +1,4 @@
-//! Reading of a frame's target struct, and errors about an occluder map, the same for every kind of host.
+//! Code that all kinds of host share: reading a frame's target struct, and naming errors about an occluder map.
 
 use std::ffi::c_void;
 
@@ -10,7 +10,7 @@ use crate::{
 /// Reads a target struct and checks its chain; NULL gives the default, which has no images.
 ///
 /// # Safety
-/// `p` is NULL or leads to a live tagged struct.
+/// `p` is NULL or points to a live tagged struct.
 pub(super) unsafe fn target<T: layout::Layout>(p: *const c_void) -> Result<T> {
     // SAFETY: the caller's promise.
     let target = unsafe { layout::read_or_default(&"frame.target", p.cast::<T>())? };
@@ -21,7 +21,8 @@ pub(super) unsafe fn target<T: layout::Layout>(p: *const c_void) -> Result<T> {
     Ok(target)
 }
 
-/// An occluder map's error with the field's name in the header: `image` is the one that holds the depth on this host.
+/// Renames an occluder map's error to the header's field; `image` is the field with the depth image on this kind of
+/// host.
 pub(super) fn in_map(image: &'static str) -> impl Fn(Error) -> Error {
     move |e| e.map_field(|field| field.replacen("].depth", &format!("].{image}"), 1))
 }

@@ -1,4 +1,4 @@
-//! Frames of a Vulkan host: images taken over and handed back, semaphores waited for and signalled.
+//! Frames of a Vulkan host: imports its images and hands them back, waits for its semaphores and signals them.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -24,15 +24,17 @@ use crate::{
     rain::OccluderMap,
 };
 
-/// Most extension names in a list; there are about 400 device extensions.
+/// Most names in a list of extensions; there are about 400 device extensions.
 const MAX_NAMES: usize = 4096;
 /// Most semaphores in a list.
 const MAX_SEMAPHORES: usize = 16;
 
 type VulkanGetProc = unsafe extern "system" fn(*mut c_void, *const c_char) -> *mut c_void;
 
+/// Creates a device on a Vulkan host.
+///
 /// # Safety
-/// The header's promises about `wk_vulkan_host_desc`.
+/// The header's requirements on `wk_vulkan_host_desc`.
 pub(in crate::capi) unsafe fn open(c: &wk_vulkan_host_desc) -> Result<*mut wk_device> {
     let raw = |p: *mut c_void| p as usize as u64;
     let instance_count = Named("desc.instance_extension_count", c.instance_extension_count as usize);
@@ -44,7 +46,7 @@ pub(in crate::capi) unsafe fn open(c: &wk_vulkan_host_desc) -> Result<*mut wk_de
             names("desc.enabled_device_extensions", c.enabled_device_extensions, device_count)?,
         )
     };
-    // SAFETY: both types take (instance or NULL, name) and answer a function pointer or NULL.
+    // SAFETY: both types take (instance or NULL, name) and return a function pointer or NULL.
     let get_proc = |f: VulkanGetProc| unsafe { std::mem::transmute::<VulkanGetProc, vk::PFN_vkGetInstanceProcAddr>(f) };
     let desc = VulkanHostDesc {
         get_instance_proc_addr: c.get_instance_proc_addr.map(get_proc),
@@ -68,6 +70,8 @@ pub(in crate::capi) unsafe fn open(c: &wk_vulkan_host_desc) -> Result<*mut wk_de
     device::issue(host.device.clone(), Host::Vulkan(Box::new(host)))
 }
 
+/// Reads a list of extension names.
+///
 /// # Safety
 /// `p` is NULL or points to `count` strings that live as long as `'a`.
 unsafe fn names<'a>(param: &str, p: *const *const c_char, count: Named) -> Result<Vec<&'a CStr>> {
@@ -88,7 +92,7 @@ pub(in crate::capi) fn forget_image(cell: &DeviceCell, image: u64) -> Result<()>
     }
 }
 
-/// The VkImage of a texture.
+/// Returns the VkImage of a texture.
 pub(super) fn native_texture(texture: &wgpu::Texture) -> Result<u64> {
     // SAFETY: the handle is only read.
     let hal = unsafe { texture.as_hal::<wgpu::hal::vulkan::Api>() };
@@ -97,15 +101,17 @@ pub(super) fn native_texture(texture: &wgpu::Texture) -> Result<u64> {
     Ok(unsafe { hal.ok_or_else(lost)?.raw_handle() }.as_raw())
 }
 
-/// An image with the texture that stands for it.
+/// Image of the host, with the texture through which wgpu uses it.
 struct Imported {
     image: HostImage,
     role: ImageRole,
     texture: wgpu::Texture,
 }
 
+/// Records a frame into the images of a Vulkan host, and submits it.
+///
 /// # Safety
-/// `c.target` is NULL or a live target struct whose images and semaphores are live and truly described.
+/// `c.target` is NULL or a live target struct whose images and semaphores are live and correctly described.
 pub(in crate::capi) unsafe fn record(
     host: &VulkanHost,
     object: &ViewObject,
@@ -177,7 +183,7 @@ pub(in crate::capi) unsafe fn record(
         .map_err(|e| e.map_field(|field| format!("frame.target.{field}")))
 }
 
-/// Textures of the view that these stages fill and the host's shaders read.
+/// Returns the textures of the view that these stages write and the host's shaders read.
 fn sampled(object: &ViewObject, view: &mut View, stages: Stages) -> Result<[Option<wgpu::Texture>; 4]> {
     let mut read = [const { None }; 4];
     if object.has_veil() && stages.has(Stages::MEDIUM) {
@@ -193,8 +199,10 @@ fn sampled(object: &ViewObject, view: &mut View, stages: Stages) -> Result<[Opti
     Ok(read)
 }
 
+/// Sets the occluder maps of a context from images of a Vulkan host, and submits the copies.
+///
 /// # Safety
-/// The images of `maps` are live and truly described.
+/// The images of `maps` are live and correctly described.
 pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     host: &VulkanHost,
     object: &ContextObject,
@@ -219,7 +227,7 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     let label = wgpu::CommandEncoderDescriptor { label: Some("occluder maps") };
     let mut encoder = gpu.device.create_command_encoder(&label);
     object.write().record_occluder_maps(&list, &mut encoder).map_err(in_map("vulkan"))?;
-    // One image may show in several maps.
+    // Several maps may use one image, which must be lent only once.
     let mut lent: Vec<(HostImage, ImageRole, &wgpu::Texture)> = Vec::new();
     for i in &images {
         if lent.iter().all(|l| l.0.image != i.image.image) {
@@ -230,7 +238,7 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     unsafe { host.submit(encoder, &HandOver { images: &lent, wait: &[], signal: &[] }) }
 }
 
-/// Refuses what is read and drawn into at the same time.
+/// Refuses an image that the frame would both read and draw into.
 fn check_distinct(read: [(&str, &Option<Imported>); 4], color: &Option<Imported>) -> Result<()> {
     let place = |i: &Imported| (i.image.image, i.image.layer);
     let is_color = |i: &Imported| color.as_ref().is_some_and(|c| place(c) == place(i));
@@ -243,7 +251,7 @@ fn check_distinct(read: [(&str, &Option<Imported>); 4], color: &Option<Imported>
     }
 }
 
-/// The images, or what is wrong with all of them in one sentence.
+/// Returns the images, or one error that names everything wrong with any of them.
 fn all_of<T>(images: [Result<T>; 5]) -> Result<[T; 5]> {
     match images {
         [Ok(color), Ok(depth), Ok(mask), Ok(classes), Ok(normals)] => Ok([color, depth, mask, classes, normals]),
@@ -254,8 +262,10 @@ fn all_of<T>(images: [Result<T>; 5]) -> Result<[T; 5]> {
     }
 }
 
+/// Imports an image of the host; `None` for NULL.
+///
 /// # Safety
-/// `p` is NULL or a truly described live image.
+/// `p` is NULL or a live, correctly described image.
 unsafe fn import(
     host: &VulkanHost,
     param: &str,
@@ -304,7 +314,7 @@ fn signals_of(target: &wk_vulkan_target) -> List<'static> {
     }
 }
 
-/// Semaphores on the stack: a frame allocates nothing for them.
+/// List of semaphores on the stack, so that a frame allocates nothing for them.
 struct Semaphores {
     list: [HostSemaphore; MAX_SEMAPHORES],
     count: usize,
@@ -316,6 +326,8 @@ impl Semaphores {
     }
 }
 
+/// Reads a list of semaphores.
+///
 /// # Safety
 /// `p` is NULL or points to the list's structs.
 unsafe fn semaphores(list: &List<'_>, p: *const wk_vulkan_semaphore) -> Result<Semaphores> {

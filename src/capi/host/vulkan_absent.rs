@@ -1,4 +1,4 @@
-//! Vulkan hosts on Apple's systems, where the graphics interface is Metal: refused by name.
+//! Vulkan hosts on Apple's systems, where the graphics interface is Metal: always unsupported.
 
 use crate::{
     capi::{
@@ -8,8 +8,10 @@ use crate::{
     error::{Error, Result, Status},
 };
 
+/// Fails: this system has no Vulkan hosts.
+///
 /// # Safety
-/// None is needed; as the other systems' function.
+/// No requirements; the signature is that of the other systems.
 pub(in crate::capi) unsafe fn open(_: &wk_vulkan_host_desc) -> Result<*mut wk_device> {
     Err(Error::unsupported("Vulkan hosts: on this system the graphics interface is Metal"))
 }

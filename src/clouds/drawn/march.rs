@@ -1,8 +1,8 @@
-//! Clouds as a ray sees them, in f64, for questions: the twin of `shaders/clouds/march.wgsl` and
-//! `shaders/clouds/about.wgsl`, in finer steps.
+//! Radiance and transmittance of clouds along a ray, in f64, for questions: twin of `shaders/clouds/march.wgsl` and
+//! `shaders/clouds/about.wgsl`, with finer steps.
 //!
 //! # Error
-//! Pictures against this: `cargo test --test clouds radiance -- --nocapture`.
+//! Pictures are compared with this by `cargo test --test clouds radiance -- --nocapture`.
 
 use std::sync::{Arc, OnceLock};
 
@@ -29,66 +29,67 @@ use crate::{
     moment::Scene,
 };
 
-/// Scaled depth of a step in cloud, and its length over the distance from the eye, at most: half of those of a picture.
+/// Largest scaled depth of a step in cloud, and its largest length over the distance from the eye.
 const STEP_DEPTH: f64 = 0.25;
 const STEP_ANGLE: f64 = 0.002;
-/// Share of a layer's thickness that a step goes up or down at most.
+/// Largest share of a layer's thickness by which a step goes up or down.
 const STEP_RISE: f64 = 0.04;
 /// Transmittance at which a ray ends.
 const LEAST: f64 = 0.001;
-/// Farthest that a ray is followed through a layer, m.
+/// Farthest distance that a ray is followed through a layer, m.
 const FARTHEST_M: f64 = 60e3;
-/// Length over which clouds fade before it, m: cut off, a cloud would show a flat face.
+/// Length over which clouds fade out before that distance, m. Without it a cloud would end in a flat face.
 const FADES_M: f64 = 15e3;
-/// Ends of the stretches of the way to the sun, in distances from cloud to cloud. On the first of them edges are
-/// frayed.
+/// Ends of the intervals of the path to the sun, in distances from cloud to cloud. Edges are frayed in the first ones
+/// (`SUN_FRAYED`).
 const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
 const SUN_FRAYED: usize = 3;
-/// Slope of the map, a distance from cloud to cloud, and of the solid noise, a side of it, by which rays skip.
+/// Slope of the map per distance from cloud to cloud, and of the solid noise per side of it, by which rays skip clear
+/// air.
 const MAP_SKIP: f64 = 6.0;
 const SOLID_SKIP: f64 = 12.0;
 
-/// Threshold from which on there is no cloud: just below [`CLEAR`].
+/// Threshold above which there is no cloud: just below [`CLEAR`].
 const CLEAR_FROM: f64 = CLEAR - 0.05;
 
-/// Clouds as a ray sees them.
+/// Clouds along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CloudsSeen {
-    /// cd/m^2 a channel.
+    /// Radiance, cd/m^2 for each channel.
     pub light: DVec3,
-    /// Transmittance of the light behind, with what clouds scatter straight on.
+    /// Transmittance for the light behind, which includes light that is scattered straight on.
     pub transmittance: f64,
-    /// Where what is seen stands in the mean, m.
+    /// Mean distance of the visible cloud, m.
     pub distance_m: f64,
 }
 
-/// A layer in its light.
+/// A layer with the light that falls on it.
 struct MarchedLayer<'a> {
     field: Field<'a>,
     share: f64,
     light: LayerLight,
     medium: usize,
-    /// Scaled extinction over extinction.
+    /// Ratio of scaled extinction to extinction.
     scale: f64,
 }
 
-/// Clouds about a place that is asked about.
+/// Clouds around a place, for questions.
 pub(crate) struct CloudRays<'a> {
     layers: Vec<MarchedLayer<'a>>,
     light: LightWithin<'a>,
     /// Position of the place, east and north of the world's origin, m, and above the sea.
     place_m: DVec3,
     radius_m: f64,
-    /// Some of what is above the place is a deck.
+    /// Whether a share of the layers above the place is a deck.
     pub has_deck: bool,
-    /// Lengths of steps over the usual ones: by depth, and by the distance from the eye.
+    /// Factors of the step lengths by depth, and by the distance from the eye.
     longer: [f64; 2],
 }
 
-/// The light within clouds, by medium.
+/// Tables of the light within clouds, for each medium.
 enum LightWithin<'a> {
     Given(Arc<Sources>),
-    /// Worked out when a ray first meets cloud of a medium: most rays meet none.
+    /// Computed when a ray first meets cloud of a medium; most rays meet none.
     Asked {
         grown: &'a CloudNoise,
         media: [Arc<Transport>; 2],
@@ -108,7 +109,7 @@ impl LightWithin<'_> {
     }
 }
 
-/// State of a march: what the ray has seen so far.
+/// State of a march: the light along the ray so far.
 #[derive(Clone, Copy)]
 struct MarchState {
     light: DVec3,
@@ -116,10 +117,10 @@ struct MarchState {
     distance: f64,
 }
 
-/// A place inside of a layer's cloud.
+/// A place inside a layer's cloud.
 struct AtPlace<'a> {
     layer: &'a MarchedLayer<'a>,
-    /// The layer's clouds as they are here.
+    /// The layer's field with the local cover of this place.
     field: Field<'a>,
     position_m: DVec3,
     height: f64,
@@ -127,7 +128,7 @@ struct AtPlace<'a> {
 }
 
 impl<'a> CloudRays<'a> {
-    /// Creates the clouds about a scene's place.
+    /// Creates the clouds around a scene's place.
     pub(crate) fn new(overhead: &CloudLayers, grown: &'a CloudNoise, scene: &Scene, radius_m: f64) -> Self {
         let to_sun = scene.brighter().direction;
         let media = media(overhead.liquid_um);
@@ -148,8 +149,8 @@ impl<'a> CloudRays<'a> {
         }
     }
 
-    /// Creates the clouds of one layer in given light over level ground, seen from a place; without a halo. `longer`:
-    /// lengths of steps over the usual ones, in depth and in angle.
+    /// Creates the clouds of one layer in given light over level ground, seen from a place, without a halo. `longer`
+    /// has the factors of the step lengths in depth and in angle.
     pub(crate) fn given(
         field: Field<'a>,
         sources: &Arc<Sources>,
@@ -168,7 +169,7 @@ impl<'a> CloudRays<'a> {
         }
     }
 
-    /// Distances at which a ray crosses a height above the sea, in order; both the same where it does not.
+    /// Returns the distances at which a ray crosses a height above the sea, in order. Both are the same if it does not.
     fn crossings(&self, d: DVec3, height_m: f64) -> [f64; 2] {
         let (r, rise) = (self.radius_m + self.place_m.z, height_m - self.place_m.z);
         let b = r * d.z;
@@ -181,7 +182,7 @@ impl<'a> CloudRays<'a> {
         [q.min(other), q.max(other)]
     }
 
-    /// The place at a distance along a ray.
+    /// Returns the place at a distance along a ray.
     fn at(&self, d: DVec3, t: f64) -> DVec3 {
         let r = self.radius_m + self.place_m.z;
         let rise = t * (2.0 * d.z + t / r);
@@ -189,7 +190,7 @@ impl<'a> CloudRays<'a> {
         (self.place_m.truncate() + d.truncate() * t * (self.radius_m / (self.radius_m + altitude_m))).extend(altitude_m)
     }
 
-    /// The stretches of a ray through its layers, in the order in which it meets them.
+    /// Returns the intervals of a ray in its layers, in the order in which it meets them.
     fn stretches(&self, d: DVec3, range_m: f64) -> Vec<(usize, [f64; 2])> {
         let lowest = -(self.radius_m + self.place_m.z) * d.z;
         let ground = self.crossings(d, 0.0);
@@ -216,7 +217,7 @@ impl<'a> CloudRays<'a> {
         all
     }
 
-    /// Returns the clouds that are seen in a direction up to a range, m.
+    /// Returns the clouds in a direction up to a range, m.
     pub fn seen(&self, d: DVec3, range_m: f64) -> CloudsSeen {
         let mut seen = MarchState { light: DVec3::ZERO, transmittance: 1.0, distance: 0.0 };
         for (k, stretch) in self.stretches(d, range_m) {
@@ -268,7 +269,7 @@ impl<'a> CloudRays<'a> {
         seen
     }
 
-    /// Returns the light that a place sends along a direction for each unit of its scaled depth, cd/m^2.
+    /// Returns the light that a place scatters along a direction per unit of its scaled depth, cd/m^2.
     fn scattered(&self, place: &AtPlace<'_>, direction: DVec3, transmittance: f64) -> DVec3 {
         let sources = self.light.of(place.layer.medium);
         let s = sources.scattered(&place.depths(sources.to_sun), direction, -transmittance.ln());
@@ -280,8 +281,8 @@ impl<'a> CloudRays<'a> {
             + DVec3::from_array(light.below) * s.ground
     }
 
-    /// Optical depth of the clouds over `offset` metres (east, north, up), of all that they scatter. What a picture
-    /// shows as a deck counts as the cloud that it stands for.
+    /// Returns the optical depth of the clouds over `offset` metres (east, north, up); all scattering counts as loss. A
+    /// layer that a picture shows as a deck counts as the cloud that the deck replaces.
     pub fn depth(&self, offset: DVec3) -> f64 {
         let range_m = offset.length();
         let d = offset / range_m;
@@ -298,7 +299,8 @@ impl<'a> CloudRays<'a> {
     }
 }
 
-/// Distance along a ray from a place outside of clouds within which there is none, m: `cloud_skip`.
+/// Returns the distance along a ray from a place outside clouds within which there is no cloud, m: `cloud_skip` of the
+/// shader.
 pub(crate) fn skip(
     (s, [steady_m, slope_per_m]): (&Shape, [f64; 2]),
     [over, frays]: [f64; 2],
@@ -316,14 +318,14 @@ pub(crate) fn skip(
         let by_noise = (gap - frays) / (steep + SOLID_SKIP * s.rough / s.solid_m);
         by_map.max(by_noise)
     };
-    // Within some distance the threshold stays; beyond, it may change.
+    // The threshold stays the same within `steady_m` and may change beyond.
     let steady = steady_m / level.max(1e-3);
     let near = if s.threshold > CLEAR_FROM { steady } else { within(0.0).min(steady) };
     near.max(within(slope_per_m))
 }
 
 impl AtPlace<'_> {
-    /// Metres of full extinction towards the sun: `cloud_sun_way`.
+    /// Returns the length of cloud at full extinction towards the sun, m: `cloud_sun_way` of the shader.
     fn sun_way(&self, to_sun: DVec3) -> f64 {
         let s = &self.field.shape;
         let z = if to_sun.z >= 0.0 { to_sun.z.max(1e-3) } else { to_sun.z.min(-1e-3) };
@@ -352,7 +354,7 @@ impl AtPlace<'_> {
         depth
     }
 
-    /// Scaled depths of cloud about it: `cloud_depths`.
+    /// Returns the scaled depths of cloud around the place: `cloud_depths` of the shader.
     fn depths(&self, to_sun: DVec3) -> Depths {
         let s = &self.field.shape;
         let scaled = s.extinction_per_m * self.layer.scale;
@@ -367,8 +369,8 @@ impl AtPlace<'_> {
     }
 }
 
-/// Metres of full extinction in a column of this excess over a stretch from a height that rises so much a metre:
-/// `cloud_stretch`.
+/// Returns the length of cloud at full extinction along an interval of a ray in columns of this excess, m:
+/// `cloud_stretch` of the shader. The interval begins at `height` and rises by `rise` per metre.
 fn stretch(s: &Shape, excess: f64, [height, rise]: [f64; 2], length: f64) -> f64 {
     let to = height + rise * length;
     let (low, high) = (height.min(to).clamp(0.0, 1.0), height.max(to).clamp(0.0, 1.0));

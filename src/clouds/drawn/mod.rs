@@ -1,4 +1,5 @@
-//! Drawing: rays through the clouds in f64 and on the GPU, and the blocks, tables, pipelines and textures of a picture.
+//! Drawing of clouds: rays through them in f64 and on the GPU, and a picture's uniforms, tables, pipelines and
+//! textures.
 
 pub(crate) mod march;
 pub(crate) mod noise;

@@ -1,5 +1,5 @@
-//! Noise that clouds are cut out of, for questions, with the light in them and the maps of layers that were asked for
-//! last.
+//! Noise that clouds are cut out of, for the host's questions, with caches of the light in clouds and of layers under
+//! maps.
 
 use std::sync::{Arc, Mutex};
 
@@ -13,11 +13,11 @@ use crate::{
     error::Result,
 };
 
-/// Noise that clouds are cut out of, and the light in them that was asked for last.
+/// Noise that clouds are cut out of, with the light that was last asked for.
 pub(crate) struct CloudNoise {
     pub map: Map,
     pub solid: Solid,
-    /// By medium.
+    /// Light for each medium.
     lit: [Mutex<Option<LitMedium>>; 2],
     pub maps: Mutex<LayerMaps>,
 }
@@ -29,7 +29,7 @@ struct LitMedium {
 }
 
 impl CloudNoise {
-    /// Grows the noise of a seed.
+    /// Creates the noise of a seed.
     ///
     /// # Errors
     /// As [`Solid::new`].
@@ -37,15 +37,15 @@ impl CloudNoise {
         Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Default::default(), maps: Mutex::default() })
     }
 
-    /// The clouds of one of all layers over a place.
+    /// Returns the clouds of the layer with an index in [`CloudLayers::all`].
     pub fn field(&self, overhead: &CloudLayers, layer: usize) -> Field<'_> {
         let placed = overhead.placed(layer);
         Field { shape: overhead.all()[layer].shape, map: &self.map, solid: &self.solid, placed }
     }
 
-    /// Light in one of the two media, under a sun.
+    /// Returns the tables of light in one of the two media under a sun.
     pub fn sources(&self, which: usize, medium: &Arc<Transport>, to_sun: DVec3) -> Arc<Sources> {
-        // After a panic elsewhere the light is made anew.
+        // The light stays valid after a panic in another thread.
         let mut lit = self.lit[which].lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         let holds = |of: &&LitMedium| Arc::ptr_eq(&of.medium, medium) && of.sources.to_sun.distance(to_sun) < SUN_MOVED;
         if let Some(of) = lit.as_ref().filter(holds) {

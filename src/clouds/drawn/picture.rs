@@ -1,26 +1,25 @@
-//! A picture's clouds from frame to frame: the pixels that a frame marches, and the whole picture that is made of them
-//! and of the last.
+//! Textures of a picture's clouds: the pixels that a frame marches, and the whole picture that is resolved from them
+//! and from the last one.
 
 use crate::gpu::{Device, Layer, bind, flat_texture};
 
-/// Format of what is seen of clouds.
+/// Format of radiance and transmittance.
 pub(crate) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Format of two numbers of a place in the picture.
+/// Format of a pair of numbers.
 pub(crate) const PAIR: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
-/// Format of the depth that tells apart the pixels on which the host drew.
+/// Format of the depth that marks the pixels on which the host drew.
 pub(crate) const KINDS: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
-/// Layers of the whole picture: what is seen of clouds and how far they reach, and what else stands behind the sky's
-/// own light. Below the picture there is room for the clouds of all directions.
+/// Layers of the whole picture: radiance and transmittance of the clouds, their reach, and what stands behind the sky's
+/// own light. The panorama has its place below the picture.
 pub(crate) const LAYERS: u32 = 3;
-/// The last of them.
+/// Index of the layer for what stands behind the sky's own light.
 pub(crate) const BEHIND: u32 = 2;
 
-/// Texels along a side of the map of clouds in all directions: 1.5 degrees each, as a mirror of still water shows
-/// broken clouds.
+/// Side of the panorama, texels. A texel is 1.5 degrees, as fine as a mirror of still water shows broken clouds.
 pub(crate) const PANORAMA_SIDE: u32 = 96;
 
-/// Whether shadows may have a draw of their own: a software driver would work them out for the sky too, since it takes
-/// both ways of a branch.
+/// Whether shadows get their own draw. A software driver evaluates both sides of a branch, so in a single draw it would
+/// compute shadows for the sky too.
 fn shades_apart(device: &Device) -> bool {
     let can = wgpu::DownlevelFlags::INDEPENDENT_BLEND;
     device.caps().software && device.adapter.get_downlevel_capabilities().flags.contains(can)
@@ -41,17 +40,17 @@ fn texture(device: &Device, (width, height): (u32, u32), format: wgpu::TextureFo
     })
 }
 
-/// Texels of the whole picture with the clouds of all directions below it.
+/// Returns the size of the whole picture with the panorama below it, texels.
 fn with_round((width, height): (u32, u32)) -> (u32, u32) {
     (width.max(PANORAMA_SIDE), height + PANORAMA_SIDE)
 }
 
-/// The whole picture as one frame left it.
+/// Whole picture as one frame left it.
 pub(crate) struct Whole {
     pub texture: wgpu::Texture,
     /// All layers, as the composition reads them.
     pub layers: wgpu::TextureView,
-    /// Layers to draw into: what is seen, and the reach.
+    /// Layers to draw into: radiance and transmittance, and reach.
     pub written: [wgpu::TextureView; 2],
 }
 
@@ -64,30 +63,30 @@ impl Whole {
     }
 }
 
-/// A picture's textures.
+/// Textures of a picture.
 pub(crate) struct Picture {
-    /// Pixels, and the side of the squares of which one is marched a frame.
+    /// Size in pixels, and side of the squares of which one pixel is marched in a frame.
     pub of: ((u32, u32), u32),
-    /// Clouds that this frame's pixels see, and how far these reach.
+    /// Radiance and transmittance of the marched pixels, and their reach.
     pub marched: [wgpu::TextureView; 2],
-    /// Least and most that is seen about each square, and where the square was in the last frame with how smooth it is.
+    /// Smallest and largest value around each square, and its way back to the last frame with its smoothness.
     pub followed: [wgpu::TextureView; 3],
     pub whole: [Whole; 2],
-    /// Depth that tells apart the pixels on which the host drew, where shadows have a draw of their own.
+    /// Depth that marks the pixels on which the host drew, if shadows have their own draw.
     pub kinds: Option<wgpu::TextureView>,
-    /// Index in `whole` of the last frame that was drawn.
+    /// Index in `whole` of the last frame.
     pub newest: usize,
     /// Bind groups of the passes after the march.
     pub groups: Option<[wgpu::BindGroup; 3]>,
-    /// As `marched`, of a first frame, which has none before it: of squares of [`BEGUN_SIDE`] on a side. With what the
-    /// pass after it is bound to.
+    /// `marched` and the bind group of the pass after it, for a first frame. Its squares have [`BEGUN_SIDE`] pixels on
+    /// a side.
     pub begun: Option<([wgpu::TextureView; 2], wgpu::BindGroup)>,
 }
 
-/// Side of the squares of which a frame marches one pixel that begins a picture, at most.
+/// Largest side of the squares in a first frame, pixels.
 pub(crate) const BEGUN_SIDE: u32 = 2;
 
-/// Where marched pixels of a picture are kept.
+/// Creates the textures of the marched pixels.
 pub(crate) fn marched(device: &Device, size: (u32, u32), side: u32) -> [wgpu::TextureView; 2] {
     let low = (size.0.div_ceil(side), size.1.div_ceil(side));
     [SEEN, PAIR].map(|format| texture(device, low, format, 1).create_view(&Default::default()))
@@ -113,12 +112,13 @@ impl Picture {
         }
     }
 
-    /// Returns the index in `whole` that the next draw makes: the newest once more where that is of the same frame.
+    /// Returns the index in `whole` that the next draw writes: the newest again if that is of the same frame, else the
+    /// other.
     pub fn to_make(&self, is_begun: bool) -> usize {
         if is_begun { self.newest } else { 1 - self.newest }
     }
 
-    /// Bytes of GPU memory.
+    /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
         let ((width, height), side) = self.of;
         let low = u64::from(width.div_ceil(side)) * u64::from(height.div_ceil(side));

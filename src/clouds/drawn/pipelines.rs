@@ -1,4 +1,4 @@
-//! The pipelines of a picture's clouds, and how their passes are run.
+//! Pipelines of a picture's clouds, and functions that run their passes.
 
 use super::{
     picture::{KINDS, PAIR, SEEN},
@@ -21,40 +21,40 @@ use crate::{
 pub(crate) struct March {
     /// See [`crate::clouds::CloudSettings`].
     pub fineness: f64,
-    /// Clouds are placed ([`crate::clouds::field::placed`]).
+    /// Whether clouds have local cover ([`crate::clouds::field::placed`]).
     pub is_placed: bool,
-    /// There are shafts of light.
+    /// Whether shafts of light are drawn.
     pub has_shafts: bool,
-    /// Some clouds are looked at coarsely ([`crate::clouds::field::layers::CloudLayers::is_coarse`]).
+    /// Whether some clouds are blurred ([`crate::clouds::field::layers::CloudLayers::is_coarse`]).
     pub is_coarse: bool,
 }
 
-/// Key of a pipeline that makes a whole picture.
+/// Key of the pipelines that resolve a whole picture.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Resolve {
     pub has_history: bool,
     pub has_shadows: bool,
     pub has_shafts: bool,
-    /// The host's depth has several samples a pixel.
+    /// Whether the host's depth has several samples a pixel.
     pub is_multisampled: bool,
     pub depth_kinds: f64,
-    /// Shadows have a draw of their own, for the pixels on which the host drew.
+    /// Whether a second draw applies the shadows, only to the pixels on which the host drew.
     pub shades_apart: bool,
 }
 
-/// The pipelines, and the layouts of their groups: of the march, of the passes after it, and of what shadows fall on by
-/// whether that has several samples a pixel.
+/// Pipelines, and the layouts of their bind groups: for the march, for the passes after it, and for the shadows without
+/// and with several depth samples a pixel.
 pub(crate) struct Pipelines {
     pub picture_layout: wgpu::BindGroupLayout,
     pub shadow_layouts: [wgpu::BindGroupLayout; 2],
-    /// The two last ones: a view that climbs and sinks again changes between them.
+    /// The last two, since a view that climbs and sinks again alternates between two keys.
     march: LruCache<March, wgpu::RenderPipeline, 2>,
-    /// Pipeline of the light of lamps and flashes, once there is any.
+    /// Pipeline of the light of lamps and flashes, created at first use.
     glow: LruCache<March, wgpu::RenderPipeline, 1>,
     pub follow: wgpu::RenderPipeline,
-    /// Layouts of the march and of the sky, which the clouds of all directions are marched with too.
+    /// Layouts of the march and of the sky. The panorama is marched with them too.
     pub march_layouts: [wgpu::BindGroupLayout; 2],
-    /// One, or two that are drawn one after the other.
+    /// One pipeline, or two that draw one after the other.
     resolve: Vec<(Resolve, Vec<wgpu::RenderPipeline>)>,
 }
 
@@ -119,7 +119,7 @@ impl Pipelines {
         })
     }
 
-    /// The pipeline that marches rays.
+    /// Returns the pipeline that marches rays.
     pub fn march(&mut self, device: &Device, key: March) -> Result<wgpu::RenderPipeline> {
         let make = || {
             let march = ("clouds/march_view.wgsl", "march");
@@ -134,7 +134,7 @@ impl Pipelines {
         self.march.get_or_make(|made| *made == key, make).cloned()
     }
 
-    /// The pipeline that draws clouds in the light of lamps and flashes.
+    /// Returns the pipeline that draws clouds in the light of lamps and flashes.
     pub fn glow(&mut self, device: &Device, key: March) -> Result<wgpu::RenderPipeline> {
         let key = March { has_shafts: false, is_coarse: false, ..key };
         let make = || {
@@ -145,7 +145,8 @@ impl Pipelines {
         self.glow.get_or_make(|made| *made == key, make).cloned()
     }
 
-    /// The draws that make the whole picture: one, or a second one for shadows ([`Resolve::shades_apart`]).
+    /// Returns the pipelines that resolve the whole picture: one, or two if shadows have their own draw
+    /// ([`Resolve::shades_apart`]).
     pub fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<&[wgpu::RenderPipeline]> {
         let made = match self.resolve.iter().position(|(made, _)| *made == wanted) {
             Some(made) => made,
@@ -199,7 +200,7 @@ fn attachment(
     })
 }
 
-/// A part of a pass's targets.
+/// Part of a pass's targets.
 #[derive(Clone, Copy)]
 pub(crate) struct TargetPart {
     pub first_row: u32,
@@ -210,14 +211,14 @@ pub(crate) struct TargetPart {
 #[derive(Clone, Copy)]
 pub(crate) struct PassTargets<'a> {
     pub colors: &'a [&'a wgpu::TextureView],
-    /// Depth that tells which pixels each draw of the pass is for.
+    /// Depth that selects the pixels of each draw of the pass.
     pub kinds: Option<&'a wgpu::TextureView>,
-    /// Part that is drawn; what lies elsewhere stays. `None`: all of them, which are empty before.
+    /// Part that is drawn; the rest keeps its content. `None` clears the targets and draws all of them.
     pub part: Option<TargetPart>,
 }
 
 impl<'a> PassTargets<'a> {
-    /// All of these textures.
+    /// Creates targets that clear these textures and draw all of them.
     pub fn whole(colors: &'a [&'a wgpu::TextureView]) -> Self {
         Self { colors, kinds: None, part: None }
     }

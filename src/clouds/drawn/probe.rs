@@ -1,5 +1,5 @@
-//! Asks the drawn clouds from outside: `probe slab`. The light and the march are those of the picture
-//! (`shaders/clouds/light.wgsl`, `march.wgsl`), only the cloud is a box of even droplets.
+//! Measures the drawn clouds alone: `probe slab`. Light and march are those of the picture
+//! (`shaders/clouds/light.wgsl`, `march.wgsl`); the cloud is a box of even droplets.
 
 use std::sync::Arc;
 
@@ -29,23 +29,23 @@ use crate::{
     scene::LightUniform,
 };
 
-/// Rays a face, along each side of its tile.
+/// Rays for each face, along each side of its tile.
 const SIDE: u32 = 64;
 /// Thickness of the box, m.
 const THICKNESS_M: f64 = 10.0;
-/// Width of a slab, so that nothing comes from its sides: in thicknesses.
+/// Width of a slab in thicknesses, so large that no light comes from the sides.
 const WIDE: f64 = 1e6;
 
 /// A box of even cloud under a sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvenCloud {
-    /// Optical depth from side to side and from top to base; of the sides infinite for a slab.
+    /// Optical depths from side to side (x, y) and from top to base. x and y are infinite for a slab.
     pub depths: [f64; 3],
-    /// Asymmetry of its droplets (Henyey and Greenstein 1941), [0, 0.95].
+    /// Asymmetry parameter of its droplets (Henyey and Greenstein 1941), [0, 0.95].
     pub asymmetry: f64,
-    /// Their single-scattering albedo, [0, 1].
+    /// Single-scattering albedo, [0, 1].
     pub albedo: f64,
-    /// Cosine of the sun's zenith angle, [0.01, 1]; the sun stands over the side of low x.
+    /// Cosine of the sun's zenith angle, [0.01, 1]. The sun stands on the side of low x.
     pub cosine: f64,
 }
 
@@ -79,8 +79,8 @@ impl EvenCloud {
     }
 }
 
-/// Share of the light that falls on a box which leaves it through each face: low and high x, low and high y, base and
-/// top. What goes through without being scattered, or scattered straight on, is in it. Of a slab base and top alone.
+/// Returns the share of the light on a box that leaves through each face: low and high x, low and high y, base and top.
+/// It includes light that goes through without scattering, or scattered straight on. A slab has base and top only.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter; GPU faults.
@@ -109,8 +109,8 @@ pub fn fluxes(device: &Device, cloud: &EvenCloud) -> Result<[f64; 6]> {
     Ok(out)
 }
 
-/// Returns the light of a beam on a box, a unit of its depth along y, that leaves straight through the far side and
-/// through the base.
+/// Returns the light of a beam on a box that leaves straight through the far side and through the base, per unit of its
+/// depth along y.
 fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
     let steps = 4096;
     let (mut far, mut base) = (0.0, 0.0);
@@ -126,8 +126,8 @@ fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
     (far, base)
 }
 
-/// Light of a lamp of 1 cd to all sides that leaves a unit of each face of a box, of which optical depth 1 is a unit of
-/// length: what droplets have scattered. `position`: from the box's low corner. Faces as in [`fluxes`].
+/// Returns the scattered light that leaves each face of a box, per unit of area, for a lamp of 1 cd to all sides. The
+/// unit of length is optical depth 1. `position` counts from the box's low corner. Faces are ordered as in [`fluxes`].
 ///
 /// # Errors
 /// As [`fluxes`].
@@ -142,7 +142,7 @@ pub fn lamp_fluxes(device: &Device, cloud: &EvenCloud, position: DVec3) -> Resul
             position: (position * unit_m).as_vec3().to_array(),
             direction: [0.0, 0.0, 1.0],
             end: -2.0,
-            // In units of length, not metres.
+            // Intensity in units of length instead of metres.
             intensity: [(unit_m * unit_m) as f32; 3],
             steepness: 1.0,
             pad: 0.0,
@@ -153,7 +153,7 @@ pub fn lamp_fluxes(device: &Device, cloud: &EvenCloud, position: DVec3) -> Resul
     draw(device, cloud, &of, Some(&lamps))
 }
 
-/// Light that leaves a unit of each face.
+/// Returns the light that leaves each face, per unit of area.
 fn draw(device: &Device, cloud: &EvenCloud, scattering: &Scattering, lamps: Option<&LampsUniform>) -> Result<[f64; 6]> {
     let gpu = &device.device;
     let target = flat_texture(
@@ -184,7 +184,7 @@ fn draw(device: &Device, cloud: &EvenCloud, scattering: &Scattering, lamps: Opti
             entry: "box_probe",
             layouts: &[&layout],
             targets: &[wgpu::TextureFormat::Rgba16Float.into()],
-            // Every ray to its end.
+            // Follow every ray to its end.
             constants: &[
                 ("CLOUD_STEPS", 1024.0),
                 ("CLOUD_STEP_DEPTH", 0.2),
@@ -212,7 +212,7 @@ fn draw(device: &Device, cloud: &EvenCloud, scattering: &Scattering, lamps: Opti
     for (i, texel) in readback::rgba(device, &target)?.iter().enumerate() {
         sums[i % (6 * SIDE as usize) / SIDE as usize] += f64::from(texel[0]);
     }
-    // Mean radiance times pi is the flux through a unit of the face.
+    // The mean radiance times pi is the flux through a unit of the face.
     Ok(sums.map(|s| s / f64::from(SIDE * SIDE) * PI))
 }
 
@@ -230,7 +230,7 @@ mod tests {
         [flux[5], flux[4]]
     }
 
-    /// Against discrete ordinates (PythonicDISORT), Henyey-Greenstein g = 0.85.
+    /// Compared with discrete ordinates (PythonicDISORT), Henyey-Greenstein g = 0.85.
     #[test]
     fn drawn_slabs_reflect_and_let_through_what_discrete_ordinates_say() {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
@@ -259,7 +259,7 @@ mod tests {
         }
     }
 
-    /// As the f64 model has it: a twin.
+    /// Compared with the twin in f64.
     #[test]
     fn drawn_cubes_glow_as_the_model_of_lamps_has_it() {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
@@ -274,7 +274,7 @@ mod tests {
         }
     }
 
-    /// Against photons followed through the same cubes.
+    /// Compared with photons traced through the same cubes.
     #[test]
     fn drawn_cubes_send_through_each_face_what_photons_say() {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");

@@ -1,35 +1,36 @@
-//! Maps about the camera of which a frame makes some rows anew, as many as have grown old, and all of them where
-//! nothing of the map holds any more.
+//! Rows of a map around the camera that a frame refreshes: as many as have become old, or all if nothing of the map
+//! holds any more.
 
-/// How far a map has come.
+/// Progress of a map.
 #[derive(Default)]
 pub(crate) struct MapRows {
     next: u32,
-    /// Rows made since what the map is made of last changed: with all of them there is nothing left to do.
+    /// Rows refreshed since the map's inputs last changed. Once it is all rows, there is nothing left to do.
     made: u32,
-    /// Rows that stand for what was, in as much as it changed: below as many as a frame makes, the map waits for more.
+    /// Number of old rows, by how much the inputs changed. Below a frame's number of rows, the map waits for more.
     owed: f64,
-    /// The last frame made some rows.
+    /// Whether the last frame refreshed some rows.
     made_some: bool,
 }
 
-/// State of a map in a frame, from which the rows to make follow.
+/// State of a map in a frame, from which the rows to refresh follow.
 #[derive(Clone, Copy)]
 pub(crate) struct Turn {
-    /// Inputs of the map are those of the last frame.
+    /// Whether the map's inputs are those of the last frame.
     pub rests: bool,
-    /// The map is of something near enough.
+    /// Whether the map's content is close enough to the current inputs to be kept.
     pub holds: bool,
-    /// The share of the map that what changed since the last frame has made old.
+    /// Share of the map that the change since the last frame has made old.
     pub aged: f64,
-    /// Another map has its turn in this frame, if nothing is lost by it.
+    /// Whether the map lets another one be refreshed in this frame, if it can wait.
     pub waits: bool,
-    /// The map is a coarse one yet: its rows do not wait.
+    /// Whether the map is still coarse; its rows do not wait then.
     pub is_coarse: bool,
 }
 
 impl MapRows {
-    /// The rows of `all` to make in a frame that makes `most`: the first of them and their number.
+    /// Returns the rows to refresh in a frame, of `all` rows and at most `most` of them: the first one and their
+    /// number.
     pub fn due(&mut self, (all, most): (u32, u32), turn: &Turn) -> Option<(u32, u32)> {
         let first_again = std::mem::take(&mut self.made_some);
         if turn.rests && self.made >= all {
@@ -37,7 +38,7 @@ impl MapRows {
         }
         self.made = if turn.rests { self.made } else { 0 };
         self.owed = (self.owed + f64::from(all) * turn.aged).min(f64::from(all));
-        // While nothing changes, every second frame makes some rows, until all are up to date.
+        // While nothing changes, every second frame refreshes some rows, until all are up to date.
         let early = if turn.rests { first_again } else { self.owed < f64::from(most) };
         if turn.holds && (turn.waits || early && !turn.is_coarse) {
             return None;
@@ -51,7 +52,7 @@ impl MapRows {
     }
 }
 
-/// Rows of a map that is so many texels wide.
+/// Rows of a map that is `width` texels wide.
 #[derive(Clone, Copy)]
 pub(crate) struct RowSpan {
     pub width: u32,
@@ -59,7 +60,7 @@ pub(crate) struct RowSpan {
     pub count: u32,
 }
 
-/// Draws these rows of a map by a full-screen pipeline, and leaves the others.
+/// Draws these rows of a map with a full-screen pipeline; the other rows stay.
 pub(crate) fn draw(
     encoder: &mut wgpu::CommandEncoder,
     map: &wgpu::TextureView,

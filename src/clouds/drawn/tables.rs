@@ -1,4 +1,4 @@
-//! Tables in which shaders look clouds up: the map, the solid noise, and light that is scattered more than once.
+//! Look-up tables of clouds for shaders: the map, the solid noise, and light that is scattered more than once.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use crate::{
     noise::NoiseTexture,
 };
 
-/// Format of the tables of light and of hosts' maps, and of the sheets of the map.
+/// Formats of the tables of light and of hosts' maps (`FORMAT`), and of the map's sheets (`SHEET`).
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
@@ -62,8 +62,8 @@ fn write_halves(
     );
 }
 
-/// The map as shaders look it up: a layer a sheet, each with its even and its cellular kind, since one look-up needs no
-/// more.
+/// Creates the texture of the map. Each layer has one sheet with its even and its cellular noise, because one look-up
+/// needs only these two.
 fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
     let levels = map.levels();
     let size = |level: usize| [(MAP_SIZE >> level) as u32, (MAP_SIZE >> level) as u32, 2];
@@ -75,7 +75,7 @@ fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
     bind::as_layers(&made)
 }
 
-/// Creates the texture of hosts' maps of layers, one below the other.
+/// Creates the texture that holds the hosts' maps of layers, one below the other.
 fn placed(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::TextureView {
     texture(device, label, wgpu::TextureDimension::D2, [width, height, 1], (FORMAT, 1)).create_view(&Default::default())
 }
@@ -92,12 +92,12 @@ pub(crate) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Samp
     })
 }
 
-/// Tables of light scattered more than once in two media, as shaders look them up: by depth above, depth below and
-/// leak, the tables side by side and the media one below the other.
+/// Tables of light scattered more than once in two media, by depth above, depth below and leak. The tables stand side
+/// by side, and the media one below the other.
 pub(crate) struct LightTables {
     texture: wgpu::Texture,
     pub media: [Arc<Transport>; 2],
-    /// Cosine of the sun under which they stand.
+    /// Cosine of the sun's zenith angle for which they hold.
     under: Option<f64>,
 }
 
@@ -112,13 +112,13 @@ impl LightTables {
         self.texture.create_view(&Default::default())
     }
 
-    /// Exchanges a medium: all tables are made anew.
+    /// Replaces a medium. All tables are computed again.
     fn replace(&mut self, which: usize, medium: Arc<Transport>) {
         self.media[which] = medium;
         self.under = None;
     }
 
-    /// Brings them up to a sun.
+    /// Updates the tables for a sun.
     pub fn update(&mut self, device: &Device, cosine: f64) {
         let cosine = cosine.clamp(-1.0, 1.0);
         if self.under.is_some_and(|c| (c - cosine).abs() < SUN_MOVED) {
@@ -140,7 +140,7 @@ impl LightTables {
     }
 }
 
-/// Tables that shaders look up: map, solid noise, and light.
+/// Look-up tables of clouds: map, solid noise, and light.
 pub(crate) struct CloudTables {
     pub map: wgpu::TextureView,
     pub solid: NoiseTexture,
@@ -148,7 +148,7 @@ pub(crate) struct CloudTables {
     pub repeating: wgpu::Sampler,
     pub clamping: wgpu::Sampler,
     liquid_um: f64,
-    /// The hosts' maps of layers as one texture, one below the other; and which maps it holds.
+    /// Texture with the hosts' maps of layers, one below the other, and the maps that it holds (`in_placed`).
     pub placed: wgpu::TextureView,
     in_placed: Vec<Arc<LayerMap>>,
 }
@@ -169,9 +169,9 @@ impl CloudTables {
         })
     }
 
-    /// Draws what is not drawn yet, and brings the tables up to the sun and to droplets of this diameter.
+    /// Draws the solid noise if it is missing, and updates the tables for the sun and for droplets of this diameter.
     pub fn update(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, cosine: f64, liquid_um: f64) {
-        // At once: clouds that fray later would jump.
+        // All of the noise at once: clouds whose edges fray later would jump.
         self.solid.step(encoder, u32::MAX);
         if liquid_um != self.liquid_um {
             self.liquid_um = liquid_um;
@@ -180,7 +180,8 @@ impl CloudTables {
         self.light.update(device, cosine);
     }
 
-    /// Writes maps of layers into the texture where it does not hold them yet; answers whether it had to be made anew.
+    /// Writes maps of layers into the texture if it does not hold them yet. Returns whether the texture was created
+    /// again.
     pub fn place<'a>(&mut self, device: &Device, maps: impl Iterator<Item = &'a Arc<LayerMap>> + Clone) -> bool {
         let is_same = |(a, b): (&Arc<LayerMap>, &Arc<LayerMap>)| Arc::ptr_eq(a, b);
         if maps.clone().count() == self.in_placed.len() && maps.clone().zip(&self.in_placed).all(is_same) {
@@ -204,7 +205,7 @@ impl CloudTables {
         is_other
     }
 
-    /// Bytes of GPU memory.
+    /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
         let (map, light) = (8 * MAP_SIZE * MAP_SIZE * 4 / 3, 8 * 6 * LEAKS * DEPTHS * DEPTHS);
         let placed = self.placed.texture().size();

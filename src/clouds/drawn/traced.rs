@@ -1,15 +1,16 @@
-//! Layer of cloud as a ray sees it, by photons that are followed back from the eye through the very field that is
-//! drawn: the truth that march and light are held against.
+//! Radiance of a layer of cloud along a ray, by photons that are traced back from the eye through the drawn field: the
+//! reference for the march and the light.
 //!
 //! # Model
-//! Free paths by null collisions, in f64, no step and no scaled depth. The sun is a beam, asked for at each scattering
-//! through the cloud that lies that way; what leaves through the top meets the radiance above, what leaves through the
-//! base that below: the inputs of the drawn light. Nothing is absorbed. The layer is level and has no end.
+//! Free paths are sampled by null collisions in f64, without steps or scaled depths. The sun is a beam. At each
+//! scattering its light is sampled through the cloud in its direction. Photons that leave through the top meet the
+//! radiance above, those that leave through the base the radiance below. These are the inputs of the drawn light.
+//! Nothing is absorbed. The layer is level and infinite.
 //!
 //! # Error
-//! Noise, whose standard error each answer tells. After a photon has been turned widely, the narrow lobe towards the
-//! sun is taken for wider than it is: rare photons would else outshine all others. What even slabs reflect stays the
-//! same within the test's noise.
+//! Noise, whose standard error is in each answer. After a photon has been turned widely, the narrow lobe towards the
+//! sun is widened: otherwise rare photons would outshine all others. The reflectance of even slabs stays the same
+//! within the test's noise.
 
 use std::sync::Arc;
 
@@ -35,50 +36,50 @@ use crate::{
     weather::{CloudKind, CloudSlab},
 };
 
-/// Share that is skipped here of the distance in which the march sees no cloud before it.
+/// Share of the distance in which the march finds no cloud that is skipped here.
 const SKIPPED: f64 = 0.5;
-/// Distance within which the threshold stays, m, and its slope beyond: nothing is laid on the field.
+/// Distance within which the threshold stays the same, m, and its slope beyond: the field has no local cover.
 const UNMAPPED: [f64; 2] = [f64::INFINITY, 0.0];
-/// By how much the narrow lobe's asymmetry is less than 1 towards the sun, at least, a wide turn of the photon; and of
-/// how many turns.
+/// Least amount by which the narrow lobe's asymmetry falls below 1 towards the sun, for each wide turn of the photon
+/// (`WIDER`), and the number of turns that count.
 const WIDER: f64 = 0.03;
 const WIDER_TURNS: u32 = 3;
-/// Value of the phase function, over that of even scattering, from which on the sun is asked for every time, and the
-/// least share.
+/// Value of the phase function, over that of isotropic scattering, above which the sun is always sampled
+/// (`ASKED_FROM`), and the least probability of sampling it.
 const ASKED_FROM: f64 = 2.0;
 const ASKED_LEAST: f64 = 0.1;
 
 /// Light that falls on a layer, in any unit of radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivenLight {
-    /// Unit, towards the sun; (east, north, up).
+    /// Unit vector towards the sun, (east, north, up).
     pub to_sun: DVec3,
-    /// Irradiance of the sun on what faces it.
+    /// Irradiance of the sun on a surface that faces it.
     pub sun: f64,
-    /// Radiance of all that is above.
+    /// Radiance from above.
     pub above: f64,
-    /// Radiance of all that is below.
+    /// Radiance from below.
     pub below: f64,
 }
 
 impl GivenLight {
-    /// A sun of irradiance 1 under a sky of this radiance, over ground of this albedo.
+    /// Creates the light of a sun of irradiance 1 under a sky of this radiance, over ground of this albedo.
     pub fn over_ground(to_sun: DVec3, sky: f64, albedo: f64) -> Self {
         let falls = to_sun.z.max(0.0) + std::f64::consts::PI * sky;
         Self { to_sun, sun: 1.0, above: sky, below: albedo / std::f64::consts::PI * falls }
     }
 }
 
-/// Light of sun, sky and ground that a ray sees.
+/// Light of sun, sky and ground along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// Radiance, with what is behind the cloud.
     pub all: f64,
-    /// Part of it by source: sun, above, below.
+    /// Part of each source: sun, above, below.
     pub by: [f64; 3],
-    /// Share of what is behind that is seen.
+    /// Transmittance of the cloud.
     pub through: f64,
-    /// Standard error of `all`; 0 of what is not left to chance.
+    /// Standard error of `all`; 0 for the model.
     pub error: f64,
 }
 
@@ -92,7 +93,7 @@ pub struct LitLayer {
 }
 
 impl LitLayer {
-    /// Creates the layer of a slab in still air, grown of a seed.
+    /// Creates the layer of a slab in still air with the noise of a seed.
     ///
     /// # Errors
     /// As [`Solid::new`].
@@ -108,10 +109,10 @@ impl LitLayer {
         Field { shape: self.shape, map: &self.map, solid: &self.solid, placed: Default::default() }
     }
 
-    /// Returns what the model sees from a place (east, north, up), m, in a direction: the march of questions, through
-    /// this field. `longer`: lengths of its steps over the usual ones, of those by depth and of those by angle.
+    /// Returns the model's light along a ray from `eye` (east, north, up), m: the march for questions through this
+    /// field. `longer` scales the lengths of its steps by depth and by angle.
     pub fn model(&self, eye: DVec3, direction: DVec3, longer: [f64; 2]) -> Seen {
-        // A unit of each source in a channel of its own.
+        // Each source has its own channel, with unit strength.
         let light = LayerLight { sun: [1.0, 0.0, 0.0], above: [0.0, 1.0, 0.0], below: [0.0, 0.0, 1.0] };
         let rays = CloudRays::given(self.field(), &self.sources, light, eye, longer);
         let CloudsSeen { light, transmittance, .. } = rays.seen(direction, f64::INFINITY);
@@ -121,11 +122,11 @@ impl LitLayer {
         Seen { all: by.iter().sum(), by, through: transmittance, error: 0.0 }
     }
 
-    /// Returns what `count` photons find from a place (east, north, up), m, in a direction.
+    /// Returns the light that `count` photons find along a ray from `eye` (east, north, up), m.
     pub fn photons(&self, eye: DVec3, direction: DVec3, count: u32, seed: u64) -> Seen {
         let (mut chance, field) = (Chance::new(seed, 1), self.field());
         let s = &self.shape;
-        // To the layer's nearer face.
+        // Start at the layer's nearer face.
         let face = if direction.z > 0.0 { s.base_m } else { s.base_m + s.thickness_m };
         let inside = (s.base_m..s.base_m + s.thickness_m).contains(&eye.z);
         let eye = if inside { eye } else { eye + direction * ((face - eye.z) / direction.z).max(0.0) };
@@ -144,7 +145,7 @@ impl LitLayer {
     }
 }
 
-/// A photon on its way back.
+/// A photon that is traced back from the eye.
 struct Photon<'a> {
     layer: &'a LitLayer,
     field: &'a Field<'a>,
@@ -152,7 +153,7 @@ struct Photon<'a> {
 }
 
 impl Photon<'_> {
-    /// Extinction at a place, and the distance along a direction in which there is none.
+    /// Returns the extinction at a place, and the distance along a direction in which there is no cloud.
     fn look(&self, position: DVec3, direction: DVec3) -> [f64; 2] {
         let s = &self.field.shape;
         let height = (position.z - s.base_m) / s.thickness_m;
@@ -165,7 +166,7 @@ impl Photon<'_> {
         [dense, clear]
     }
 
-    /// Where a photon meets a droplet next, unless it leaves.
+    /// Returns where a photon is scattered next; `None` if it leaves the layer.
     fn meets(&self, position: DVec3, direction: DVec3, chance: &mut Chance) -> Option<DVec3> {
         let s = &self.field.shape;
         let face = if direction.z > 0.0 { s.base_m + s.thickness_m } else { s.base_m };
@@ -185,7 +186,7 @@ impl Photon<'_> {
         }
     }
 
-    /// The radiance that one photon stands for, by source, and whether it met a droplet.
+    /// Returns the radiance of one photon by source, and whether it was scattered.
     fn follow(&self, mut position: DVec3, mut direction: DVec3, chance: &mut Chance) -> ([f64; 3], bool) {
         let light = &self.layer.light;
         let (mut by, mut met, mut turns) = ([0.0; 3], false, 0);
@@ -196,7 +197,8 @@ impl Photon<'_> {
                 return (by, met);
             };
             (position, met) = (place, true);
-            // Back from the eye, so the light goes the other way round: the angle is the same.
+            // The photon is traced back from the eye, so the light goes the opposite way; the scattering angle is the
+            // same.
             let versine = 1.0 - direction.dot(light.to_sun);
             let g_hg = self.lobes.g_hg.min(1.0 - WIDER * f64::from(turns));
             let phase = lobes_phase(&PhaseLobes { g_hg, ..*self.lobes }, 1.0, versine);
@@ -211,14 +213,14 @@ impl Photon<'_> {
     }
 }
 
-/// A layer and where it is looked at from.
+/// A layer, and the eye that looks at it.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Name of the case.
     pub name: &'static str,
     /// Kind of the cloud.
     pub kind: CloudKind,
-    /// Cover, of 1.
+    /// Cover, 0 to 1.
     pub cover: f64,
     /// Base, m.
     pub base_m: f64,
@@ -252,36 +254,36 @@ const SKY: f64 = 0.045;
 const GROUND: f64 = 0.2;
 /// Seed of the field.
 const SEED: u64 = 3;
-/// Rays nearer to the sun, rad, or with more of what is behind the cloud than that, do not count.
+/// Rays nearer to the sun than this (rad), or with a larger transmittance than this, are left out.
 const NEAR_SUN: f64 = 0.3;
 const MOST_THROUGH: f64 = 0.7;
 
-/// The model against photons, over rays.
+/// Errors of the model against photons, over rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compared {
-    /// Relative error, by rays: half of them are below.
+    /// Median of the relative error over rays.
     pub p50: f64,
-    /// 95 of a hundred are below.
+    /// Its 95th percentile.
     pub p95: f64,
     /// Relative error of the mean radiance.
     pub bias: f64,
-    /// Error of the mean radiance by source (sun, above, below), over the whole of it.
+    /// Error of the mean radiance from each source (sun, above, below), over the whole mean radiance.
     pub parts: [f64; 3],
-    /// Standard error of the photons, over their radiance: in the median of the rays, and of the mean.
+    /// Standard error of the photons over their radiance: for the median ray, and for the mean.
     pub chance: [f64; 2],
-    /// 95th percentile of the relative difference from 64 times as many steps: of the model's, of its steps by depth
-    /// alone, of those by angle alone.
+    /// 95th percentile of the relative difference from 64 times as many steps: with the model's steps, with its steps
+    /// by depth only, and with its steps by angle only.
     pub steps: [f64; 3],
 }
 
-/// The number below which a share of them lies.
+/// Returns the quantile of the values at a share from 0 to 1.
 fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     values[((values.len() - 1) as f64 * share).round() as usize]
 }
 
 impl Case {
-    /// The layer in its light.
+    /// Creates the layer in its light.
     ///
     /// # Errors
     /// As [`LitLayer::new`].
@@ -292,7 +294,7 @@ impl Case {
         LitLayer::new(&slab, SEED, GivenLight::over_ground(to_sun, SKY, GROUND))
     }
 
-    /// Rays that meet cloud: where they begin, and their directions.
+    /// Returns rays that meet cloud: their origins and directions.
     pub fn rays(&self, layer: &LitLayer, count: usize) -> Vec<(DVec3, DVec3)> {
         let ray = |i: usize| {
             let [low, high] = self.pitch_deg;
@@ -308,7 +310,7 @@ impl Case {
         (0..100 * count).map(ray).filter(counts).take(count).collect()
     }
 
-    /// Compares both along so many rays, of so many photons each.
+    /// Compares the model with photons along `rays` rays, with `photons` photons for each.
     ///
     /// # Errors
     /// As [`LitLayer::new`].
@@ -341,7 +343,7 @@ mod tests {
     use super::*;
     use crate::clouds::{field::NO_ANVIL, reference};
 
-    /// Reflectance of an even layer of droplets by photons from the eye, against photons from the sun.
+    /// Reflectance and transmittance of an even layer of droplets, by photons from the eye and by photons from the sun.
     #[test]
     fn photons_from_the_eye_find_what_photons_from_the_sun_do() {
         let (depth, cosine) = (8.0, 0.6);
@@ -356,7 +358,7 @@ mod tests {
         let sun = reference::Box { sides, extinction: &|_| 1.0, most: 1.0, lobes, albedo: 1.0 };
         let want = sun.fluxes(cosine, 100_000, 5);
         for (face, up) in [(5, -1.0), (4, 1.0)] {
-            // Directions spread as the cosine: the mean radiance times pi is the flux.
+            // Directions are distributed as the cosine, so the mean radiance times pi is the flux.
             let (mut chance, mut flux, rays) = (Chance::new(9, 2), 0.0, 4000);
             for i in 0..rays {
                 let (u, azimuth) = (chance.even().max(1e-4), std::f64::consts::TAU * chance.even());
@@ -365,14 +367,14 @@ mod tests {
                 let from = DVec3::Z * (layer.shape.base_m - up * 1e4);
                 flux += std::f64::consts::PI * layer.photons(from, d, 20, i).by[0] / (cosine * f64::from(rays as u32));
             }
-            // What comes straight through is no part of what is seen.
+            // Light that comes straight through is not part of the radiance.
             let want = want[face] - if up > 0.0 { (-depth / cosine).exp() } else { 0.0 };
             println!("face {face}: {flux:.4} from the eye, {want:.4} from the sun");
             assert!((flux / want - 1.0).abs() < 0.03, "{flux} not {want}");
         }
     }
 
-    /// Along a hundred rays of each sky with `WELKIN_ACCEPT`, along twenty of some else.
+    /// Traces a hundred rays for each case with `WELKIN_ACCEPT`, otherwise twenty.
     #[test]
     fn drawn_light_is_near_that_of_photons() {
         let long = std::env::var_os("WELKIN_ACCEPT").is_some();
@@ -380,14 +382,14 @@ mod tests {
         for (case, [p50, p95, bias]) in CASES.iter().zip(HELD) {
             let c = case.compare(rays, photons).unwrap();
             println!("{}: {c:.3?}", case.name);
-            // What chance adds.
+            // Tolerance for the photons' noise.
             let [one, of_mean] = c.chance;
             assert!(c.bias.abs() < bias + 3.0 * of_mean, "{}: {c:?}", case.name);
             assert!(c.p50 < p50 + one && (!long || c.p95 < p95 + one), "{}: {c:?}", case.name);
         }
     }
 
-    /// Errors of [`CASES`] up to which the light holds: median, 95th percentile, mean.
+    /// Largest errors allowed for [`CASES`]: median, 95th percentile, mean.
     const HELD: [[f64; 3]; 7] = [
         [0.14, 0.45, 0.08],
         [0.20, 0.68, 0.33],

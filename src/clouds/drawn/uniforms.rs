@@ -1,4 +1,4 @@
-//! The clouds of a frame as shaders read them (`shaders/clouds/block.wgsl`, `picture.wgsl`).
+//! Uniforms of a frame's clouds (`shaders/clouds/block.wgsl`, `picture.wgsl`).
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ use crate::{
     weather::MAX_CLOUD_LAYERS,
 };
 
-/// One layer.
+/// One layer of cloud.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct LayerUniform {
@@ -52,7 +52,7 @@ pub(crate) struct AreaUniform {
     pub extent: [f32; 4],
 }
 
-/// One medium.
+/// Scattering of one medium.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct MediumUniform {
@@ -60,7 +60,7 @@ pub(crate) struct MediumUniform {
     pub smooth: [f32; 4],
 }
 
-/// All of them.
+/// All clouds of a frame.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct CloudsUniform {
@@ -75,7 +75,7 @@ pub(crate) struct CloudsUniform {
     pub areas: [AreaUniform; MAX_AREAS],
 }
 
-/// How a picture's clouds are spread over frames.
+/// Reprojection of a picture's clouds, and the pixels that this frame marches.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct PictureUniform {
@@ -87,7 +87,7 @@ pub(crate) struct PictureUniform {
     pub exposed: f32,
 }
 
-/// The map of the clouds' shadows.
+/// Projection of the clouds' shadow map.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct ShadowUniform {
@@ -116,10 +116,10 @@ impl MediumUniform {
 }
 
 impl LayerUniform {
-    /// Creates the block of a layer over which the camera stands at `place_m` (east and north of the world's origin).
-    /// `share` of it is drawn as a volume, the rest as a deck.
+    /// Creates the uniform of a layer for a camera at `place_m` (east and north of the world's origin). `share` of the
+    /// layer is drawn as a volume, the rest as a deck.
     pub fn new(s: &Shape, share: f64, place_m: DVec2, light: &LayerLight, medium: (usize, &Scattering)) -> Self {
-        // Positions in periods, reduced in f64: metres of a far origin have no digits left in f32.
+        // Positions in periods are reduced in f64, because f32 has too few digits for metres from a far origin.
         let level = s.stretch * (place_m - s.drift_m);
         let cell = level / s.scale_m;
         let first = cell / MAP_CELLS;
@@ -150,7 +150,7 @@ fn padded(v: [f64; 3], last: f64) -> [f32; 4] {
 }
 
 impl CloudLayers {
-    /// Creates the block of a moment, with the light of these media.
+    /// Creates the uniforms of a moment, with the scattering of these media.
     pub fn uniform(&self, now: &SceneMoment<'_>, exposure: f64, media: &[Arc<Transport>; 2]) -> CloudsUniform {
         let scene = &now.scene;
         let light = scene.brighter();
@@ -174,7 +174,7 @@ impl CloudLayers {
         }
     }
 
-    /// Puts what shaders know of it into the blocks of layers.
+    /// Adds the local cover to the layers' uniforms.
     fn place_uniforms(&self, layers: &mut [LayerUniform; MAX_CLOUD_LAYERS]) {
         if !self.is_placed() {
             return;
@@ -197,7 +197,7 @@ impl CloudLayers {
         }
     }
 
-    /// The cells over rain areas as shaders know them.
+    /// Returns the uniforms of the cells over rain areas.
     fn area_uniforms(&self) -> [AreaUniform; MAX_AREAS] {
         let one = |cell: &AreaCell| {
             let center = cell.center_m - self.place_m;

@@ -1,14 +1,14 @@
-//! Cells of cloud over rain areas ([`crate::falling::area::RainArea`]), without which rain would fall out of a clear
-//! sky: where they stand, what they are made of, and how much of the sky they cover over a place.
+//! Cells of cloud over rain areas ([`crate::falling::area::RainArea`]), without which rain would fall from a clear sky:
+//! where they stand, what they are made of, and how much of the sky they cover over a place.
 //!
 //! # Model
-//! A cell is an ellipse; over a polygon it goes about the corners. Its base is that of the lowest layer of the weather
-//! from which rain may fall, if that lies no higher than the area's, and the area's otherwise. Under a closed layer
-//! there are no cells: it hides the sky.
+//! A cell is an ellipse; for a polygon it is the ellipse through the corners of the bounding rectangle. The base is
+//! that of the weather's lowest layer from which rain may fall, if that is no higher than the top of the area's rain;
+//! otherwise it is the top of the area's rain. Under a closed layer there are no cells, because it hides the sky.
 //!
-//! The light of a place is that under a layer of the cells' cloud that covers as much of the sky as they do. A cell
-//! covers what a level disc of its area covers for level ground (Hamilton and Morgan 1952), seen from as many half
-//! widths off its middle.
+//! A place has the light under a layer of the cells' cloud whose cover is the share of the sky that the cells take. A
+//! cell takes the view factor of a level disc of equal area from level ground (Hamilton and Morgan 1952). The disc lies
+//! off the zenith by as many radii as the cell lies off in half widths.
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};
 
@@ -26,51 +26,52 @@ use crate::{
     weather::{CloudKind, CloudSlab, Conditions},
 };
 
-/// Change of the threshold across the edge of a cell over a rain area, over the distance from cloud to cloud: less than
-/// the map's steepest slopes, so that the field shapes the cell's faces.
+/// Change of the threshold across a cell's edge, per distance from cloud to cloud. It is less than the map's steepest
+/// slopes, so that the field shapes the cell's faces.
 const EDGE_SLOPE: f64 = 3.0;
-/// Part of the edge's width, from outside, at which the area's own border lies: one place of a hundred is open there.
+/// Position of the area's border in the edge, as a share of the edge's width from outside. One place in a hundred is
+/// open there.
 const BORDER: f64 = 0.85;
-/// Distance from cloud to cloud in such a cell, over the area's half width; and at least, m.
+/// Distance from cloud to cloud in a cell over the area's half width (`SPACING`), and its least value, m.
 const SPACING: f64 = 0.4;
 const LEAST_SPACING_M: f64 = 600.0;
-/// Thickness of such a cell, at most, over the area's half width.
+/// Largest thickness of a cell over the area's half width.
 const DEEPEST: f64 = 2.0;
-/// Least thickness of such a cell, m, where its kind is as thick.
+/// Least thickness of a cell, m, unless its kind of cloud is thinner.
 const MOST_FLAT_M: f64 = 800.0;
-/// Height of a layer's base over that of a rain area up to which its rain may be the layer's, m.
+/// Height of a layer's base above the top of an area's rain up to which the rain may come from that layer, m.
 const SAME_BASE_M: f64 = 300.0;
-/// Rate from which on showers fall from cumulonimbus, mm/h.
+/// Rate above which showers fall from cumulonimbus, mm/h.
 const HEAVY_MM_H: f64 = 10.0;
-/// Least rate that asks for a cloud, mm/h.
+/// Least rate for which a cell is made, mm/h.
 const LEAST_MM_H: f64 = 0.05;
 
 /// A cell of cloud over a rain area: an ellipse.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AreaCell {
-    /// Its middle, m east and north of the world's origin.
+    /// Middle of the cell, m east and north of the world's origin.
     pub(crate) center_m: DVec2,
-    /// The way to the right.
+    /// Unit vector to the cell's right.
     pub(crate) right: DVec2,
-    /// Half its extent to the right and ahead, m: outside there is nothing of it.
+    /// Half extents to the right and ahead, m, with the whole edge.
     pub(crate) semi_m: DVec2,
-    /// Width inside of its border over which it sets in, m.
+    /// Width of the edge, m, measured inwards from the ellipse.
     pub(crate) rim_m: f64,
 }
 
 impl AreaCell {
-    /// How far a place is filled, 0 to 1, and how far away all of it is, m.
+    /// Returns how far a place is inside the cell's edge, 0 to 1, and its distance from the cell, m.
     pub(crate) fn at(&self, place_m: DVec2) -> (f64, f64) {
         let away = place_m - self.center_m;
         let p = DVec2::new(away.dot(self.right), away.dot(self.right.perp()));
         let k = p / self.semi_m;
         let [k1, k2] = [k.length(), (k / self.semi_m).length()];
-        // To first order, as the area's own border.
+        // The depth inside is right to first order, as for the area's own border.
         let depth = (1.0 - k1) * if k1 < 1e-4 { self.semi_m.min_element() } else { k1 / k2 };
         ((depth / self.rim_m).clamp(0.0, 1.0), (k1 - 1.0).max(0.0) * self.semi_m.min_element())
     }
 
-    /// Over an area whose column stands so at the base of a cloud; its edge is the area's own border.
+    /// Creates the cell over an area from its shaft of rain. The cell's edge is the area's own border.
     fn over(shaft: &Shaft, shape: &AreaShape, center_m: DVec2) -> Self {
         let (middle, semi) = match shape {
             AreaShape::Ellipse(semi) => (DVec2::ZERO, DVec2::from(*semi)),
@@ -78,7 +79,7 @@ impl AreaCell {
                 let all = || corners[..*count].iter().map(|c| DVec2::from(*c));
                 let low = all().fold(DVec2::INFINITY, DVec2::min);
                 let high = all().fold(DVec2::NEG_INFINITY, DVec2::max);
-                // The ellipse about a rectangle.
+                // The ellipse through the rectangle's corners.
                 (0.5 * (low + high), 0.5 * SQRT_2 * (high - low))
             }
         };
@@ -86,29 +87,29 @@ impl AreaCell {
         Self { center_m: center_m + middle, right: shaft.right, semi_m: semi, rim_m: 0.0 }
     }
 
-    /// Returns the cell with an edge `rim_m` wide; the share [`BORDER`] of that lies outside of the area.
+    /// Returns the cell with an edge of width `rim_m`, of which the share [`BORDER`] lies outside the area.
     pub(crate) fn with_edge(self, rim_m: f64) -> Self {
         Self { semi_m: self.semi_m + BORDER * rim_m, rim_m, ..self }
     }
 }
 
-/// The clouds of all rain areas at a moment.
+/// Clouds of all rain areas at a moment.
 pub(crate) struct AreaClouds {
     pub cells: [AreaCell; MAX_AREAS],
     pub count: usize,
-    /// Lowest base of an area over the station, m, and half of the narrowest one's width, m.
+    /// Height above the station of the lowest top of an area's rain, m; half the width of the narrowest area, m.
     lowest_m: f64,
     half_m: f64,
-    /// Cloud that the strongest rain falls from.
+    /// Kind of cloud that the strongest rain falls from.
     brings: &'static CloudSlab,
 }
 
 impl AreaClouds {
-    /// About a place with these axes, at `eye` in the host's world and at `place_m` over the ground; none where no rain
-    /// falls in any area.
+    /// Creates the clouds around a place with these axes, at `eye` in the host's world and `place_m` on the ground.
+    /// `None` if no rain falls in any area.
     ///
     /// # Errors
-    /// For a time that the weather does not know.
+    /// For a time outside the weather.
     pub fn new(
         weather: &WeatherOver<'_>,
         conditions: &Conditions,
@@ -139,8 +140,8 @@ impl AreaClouds {
         Ok(strongest.map(|(_, brings)| Self { cells, count, lowest_m, half_m, brings }))
     }
 
-    /// Returns the slab that the cells are made of, beside the `others` (slab, whether a map places it), of no cover
-    /// yet; none where one of these hides the sky.
+    /// Returns the slab that the cells are made of, with cover 0. `others` are the other layers: slab, and whether a
+    /// map places it. `None` if one of them hides the sky.
     pub fn slab<'a>(&self, others: impl Iterator<Item = (&'a CloudSlab, bool)> + Clone) -> Option<CloudSlab> {
         let closes =
             |(slab, is_placed): (&CloudSlab, bool)| slab.cover >= 1.0 && slab.optical_depth > 5.0 && !is_placed;
@@ -162,24 +163,24 @@ impl AreaClouds {
     }
 }
 
-/// Width of the edge of a cell of such clouds, m.
+/// Returns the width of the edge of a cell of such clouds, m.
 pub(crate) fn edge_m(slab: &CloudSlab) -> f64 {
     (CLEAR - FILLED) / EDGE_SLOPE * slab.scale_m
 }
 
-/// View factor of a level disc from level ground, `height_m` below it and `aside_m` from under its middle (Hamilton and
-/// Morgan 1952).
+/// Returns the view factor of a level disc from level ground that lies `height_m` below it and `aside_m` to the side of
+/// its middle (Hamilton and Morgan 1952).
 fn view_factor(radius_m: f64, height_m: f64, aside_m: f64) -> f64 {
     let [r2, h2, d2] = [radius_m, height_m, aside_m].map(|v| v * v);
     let sum = h2 + d2 + r2;
     0.5 * (1.0 - (h2 + d2 - r2) / (sum * sum - 4.0 * r2 * d2).max(f64::MIN_POSITIVE).sqrt())
 }
 
-/// The layer whose light a place has under the cells of rain areas, with the part of the sky that they cover there;
-/// none without any. The place is `eye` in the host's world.
+/// Returns the layer that lights a place under the cells of rain areas, with the share of the sky that they cover
+/// there. `None` without cells. The place is `eye` in the host's world.
 ///
 /// # Errors
-/// For a time that the weather does not know.
+/// For a time outside the weather.
 pub(crate) fn over_place(
     weather: &WeatherOver<'_>,
     conditions: &Conditions,
@@ -197,18 +198,19 @@ pub(crate) fn over_place(
     let Some(slab) = clouds.slab(others) else { return Ok(None) };
     let height_m = (slab.base_m + conditions.air.station_altitude_m - local.place.altitude_m).max(0.0);
     let open = clouds.cells[..clouds.count].iter().fold(1.0, |open, cell| {
-        // Where half of a cell's edge is cloud.
+        // The cell's outline is taken where half of its edge is cloud.
         let cell = cell.with_edge(edge_m(&slab));
         let semi_m = cell.semi_m - cell.rim_m * CLEAR / (CLEAR - FILLED);
         let away = DVec2::new(cell.center_m.dot(cell.right), cell.center_m.dot(cell.right.perp()));
         let radius_m = (semi_m.x * semi_m.y).sqrt();
         open * (1.0 - view_factor(radius_m, height_m, (away / semi_m).length() * radius_m))
     });
-    // Where it is, it is whole: none of its cover is gaps between clouds.
+    // Such a cell is whole: none of its cover is gaps between clouds, so their distance is infinite.
     Ok(Some(CloudSlab { cover: 1.0 - open, scale_m: f64::INFINITY, ..slab }))
 }
 
-/// The layer that a rain area brings where none is there that could make its rain, but for base and cover.
+/// Returns the kind of cloud for an area's rain where the weather has no layer that could make it. Base and cover are
+/// not set.
 fn brought(shaft: &Shaft, rain: AreaRain) -> &'static CloudSlab {
     static KINDS: LazyLock<[CloudSlab; 4]> = LazyLock::new(|| {
         let kinds = [CloudKind::Stratus, CloudKind::Nimbostratus, CloudKind::ToweringCumulus, CloudKind::Cumulonimbus];
@@ -222,7 +224,7 @@ fn brought(shaft: &Shaft, rain: AreaRain) -> &'static CloudSlab {
     }
 }
 
-/// Whether rain may fall from a layer: it is nimbostratus, towering cumulus or cumulonimbus.
+/// Whether rain may fall from a layer: nimbostratus, towering cumulus or cumulonimbus.
 fn makes_rain(slab: &CloudSlab) -> bool {
     let deep_sheet = slab.convection < 0.1 && slab.thickness_m >= 1000.0 && slab.ice_fraction < 0.5;
     slab.convection > 0.7 || deep_sheet

@@ -1,8 +1,9 @@
-//! Cover of a layer: how much of the sky it is seen to hide, by which thresholds are found.
+//! Cover of a layer: the share of the sky that it is seen to hide, from which thresholds are found.
 //!
-//! Cover is the share of the solid angle within 75 degrees of the zenith whose slant optical depth of the layer exceeds
-//! 0.1, of a layer of ice crystals 0.03, from far below. Sides of clouds hide more of the sky than their bases, so
-//! thresholds are found by looking: `cargo run --release -p welkin-lab -- thresholds` prints `thresholds.in`.
+//! Cover is the share of the solid angle within 75 degrees of the zenith in which the layer's slant optical depth
+//! exceeds 0.1, or 0.03 for ice crystals, seen from far below. The sides of clouds hide more of the sky than their
+//! bases do, so thresholds are found by searching: `cargo run --release -p welkin-lab -- thresholds` prints
+//! `thresholds.in`.
 
 use std::f64::consts::PI;
 
@@ -15,21 +16,21 @@ use crate::{
     weather::{CloudKind, CloudSlab},
 };
 
-/// Zenith angle up to which the sky counts, degrees.
+/// Largest zenith angle that counts, degrees.
 const RIM_DEG: f64 = 75.0;
-/// Directions in which it is looked at from a place.
+/// Number of directions traced from a place.
 const DIRECTIONS: usize = 48;
-/// Steps of a look through the layer.
+/// Number of steps along a ray through the layer.
 const STEPS: usize = 48;
-/// Slant optical depths that hide the sky: of droplets and of ice.
+/// Slant optical depths that hide the sky: for droplets, for ice.
 const HIDES: [f64; 2] = [0.1, 0.03];
 
-/// Cover seen from one place, m east and north.
+/// Returns the cover seen from one place, m east and north.
 fn seen_from(field: &Field<'_>, place_m: DVec2, hides: f64) -> f64 {
     let s = &field.shape;
     let rim = RIM_DEG.to_radians().cos();
     let hidden = |i: usize| {
-        // A spiral by the golden angle: equal solid angles.
+        // A spiral by the golden angle has directions of equal solid angle.
         let up = 1.0 - (1.0 - rim) * (i as f64 + 0.5) / DIRECTIONS as f64;
         let azimuth = PI * (3.0 - 5f64.sqrt()) * i as f64;
         let level = DVec2::from_angle(azimuth) * ((1.0 - up * up).sqrt() / up);
@@ -37,7 +38,7 @@ fn seen_from(field: &Field<'_>, place_m: DVec2, hides: f64) -> f64 {
         let mut depth = 0.0;
         (0..STEPS).any(|k| {
             let rise = (k as f64 + 0.5) * step_m;
-            // The layer seen from so far below that it is the base's place which counts.
+            // The layer is seen from so far below that only the point where the ray meets the base counts.
             let at = (place_m + level * (s.thickness_m + rise)).extend(s.base_m + rise);
             depth += field.extinction_per_m(at) * step_m / up;
             depth > hides
@@ -46,7 +47,7 @@ fn seen_from(field: &Field<'_>, place_m: DVec2, hides: f64) -> f64 {
     (0..DIRECTIONS).filter(|i| hidden(*i)).count() as f64 / DIRECTIONS as f64
 }
 
-/// Mean cover seen from `places` places many clouds apart.
+/// Returns the mean cover seen from `places` places that are many clouds apart.
 pub fn seen(field: &Field<'_>, is_ice: bool, places: usize) -> f64 {
     // Fibres are many clouds long.
     let drawn_out = field.shape.stretch.determinant().recip();
@@ -56,7 +57,7 @@ pub fn seen(field: &Field<'_>, is_ice: bool, places: usize) -> f64 {
     (0..places).map(|i| seen_from(field, place(i), hides)).sum::<f64>() / places as f64
 }
 
-/// Looks for the thresholds of a kind, over seeds: a line of `thresholds.in`.
+/// Finds the thresholds of a kind over several seeds: one line of `thresholds.in`.
 ///
 /// # Errors
 /// As [`Solid::new`].
@@ -76,17 +77,18 @@ pub fn find_thresholds(kind: CloudKind, seeds: &[(Map, Solid)], places: usize) -
     Ok(row)
 }
 
-/// Whether a layer hides the sky as ice does.
+/// Whether a layer hides the sky at the smaller optical depth of ice.
 pub fn is_ice(slab: &CloudSlab) -> bool {
     slab.fibre > 0.5
 }
 
-/// A layer's clouds with a threshold, in still air.
+/// Returns the clouds of a layer with a threshold, in still air.
 pub fn field<'a>(slab: &CloudSlab, (map, solid): &'a (Map, Solid), threshold: f64) -> Field<'a> {
     Field { shape: Shape::still(slab, threshold), map, solid, placed: Default::default() }
 }
 
-/// Cover that a kind is seen to have where it is asked for: the mean over seeds, and how far they spread.
+/// Returns the mean cover that a kind is seen to have where `cover` is asked for, and its standard deviation over
+/// seeds.
 ///
 /// # Errors
 /// As [`Solid::new`].
@@ -112,10 +114,10 @@ mod tests {
     use super::*;
     use crate::clouds::field::thresholds::THRESHOLDS;
 
-    /// Places a seed's sky is looked at from: the standard error of their mean stays below 1 point.
+    /// Number of places from which a seed's sky is seen. The standard error of their mean is below 1 percentage point.
     const PLACES: usize = 64;
 
-    /// Eight seeds; a hundred with `WELKIN_ACCEPT`.
+    /// Eight seeds, or a hundred with `WELKIN_ACCEPT`.
     #[test]
     fn the_cover_that_is_seen_is_the_one_asked_for() {
         let seeds = if std::env::var_os("WELKIN_ACCEPT").is_some() { 100 } else { 8 };

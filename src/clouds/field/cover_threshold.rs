@@ -1,4 +1,4 @@
-//! Threshold by which a part of a layer with a cover of its own is cut out of the field, with dome and extinction.
+//! Threshold, dome and extinction with which a part of a layer with its own cover is cut out of the field.
 
 use super::{
     shape::Shape,
@@ -6,11 +6,11 @@ use super::{
 };
 use crate::weather::CloudSlab;
 
-/// Least cover that has clouds: below it the threshold rises to [`CLEAR`].
+/// Least cover that has clouds. Below it the threshold rises to [`CLEAR`].
 const LEAST: f64 = 1e-3;
-/// Cover from which on dome and extinction follow it.
+/// Least cover from which dome and extinction are computed; below it they stay the same.
 const SHAPED_FROM: f64 = 0.02;
-/// Threshold by which one place of a layer is cut out, with its dome and extinction.
+/// Threshold, dome and extinction at one place of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoverThreshold {
     pub threshold: f64,
@@ -23,7 +23,7 @@ impl CoverThreshold {
         Self { threshold: shape.threshold, dome: shape.dome, extinction_per_m: shape.extinction_per_m }
     }
 
-    /// Creates the threshold of a layer of this cover.
+    /// Creates the threshold of a layer with this cover.
     pub(crate) fn with_cover(slab: &CloudSlab, cover: f64) -> Self {
         let at = |cover: f64| threshold(&CloudSlab { cover, ..*slab });
         let own = at(cover.max(LEAST));

@@ -1,11 +1,11 @@
-//! Droplets of layers: the diameters for which there are tables of light.
+//! Droplet diameters for which there are tables of light.
 
 use crate::weather::CloudSlab;
 
 /// Diameters of droplets for which tables are made, um.
 pub(crate) const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
 
-/// Returns the diameter nearest to the droplets of these layers, of those that there are tables for.
+/// Returns the diameter with a table that is nearest to the mean droplet of these layers.
 pub(crate) fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
     let add = |(water, sum): (f64, f64), s: &CloudSlab| {
         let liquid = s.cover * (1.0 - s.ice_fraction);

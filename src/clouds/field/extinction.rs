@@ -1,5 +1,4 @@
-//! Extinction of a layer at a place, where there is cloud. Twin of `shaders/clouds/field.wgsl`; the model is told in
-//! the folder's `mod.rs`.
+//! Extinction of a layer at a place. Twin of `shaders/clouds/field.wgsl`; the folder's `mod.rs` explains the model.
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -10,27 +9,27 @@ use super::{
     solid::Solid,
 };
 
-/// Mean of the solid noise, and one over the range of nearly all of it.
+/// Mean of the solid noise, and the reciprocal of the range that nearly all of it has.
 const SOLID_MEAN: f64 = 0.47;
 const SOLID_GAIN: f64 = 2.2;
 
-/// Most that the solid noise adds to the excess, over how far it frays: nearly all of it.
+/// Largest amount that the solid noise adds to the excess, in units of `rough`; nearly all of the noise is below it.
 pub(crate) const MOST_FRAYED: f64 = 0.8;
 
-/// A layer's clouds.
+/// Clouds of a layer.
 pub struct Field<'a> {
-    /// How they are made.
+    /// Shape of the clouds.
     pub shape: Shape,
-    /// Where they grow.
+    /// Map of where they grow.
     pub map: &'a Map,
     /// Solid noise that frays their edges.
     pub solid: &'a Solid,
-    /// Where they are other than the layer's cover says.
+    /// Local cover that overrides the layer's own.
     pub(crate) placed: LocalCover,
 }
 
 impl Field<'_> {
-    /// The map's number at a place, m east and north of the world's origin.
+    /// Returns the map's number at a place, m east and north of the world's origin.
     pub fn strength(&self, place_m: DVec2) -> f64 {
         let s = &self.shape;
         let cell = s.stretch * (place_m - s.drift_m) / s.scale_m;
@@ -42,22 +41,22 @@ impl Field<'_> {
         ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale
     }
 
-    /// The clouds about a place as they are there, within which distance that holds, m, and how much the threshold
-    /// changes a metre beyond.
+    /// Returns the field with the local cover of a place, the distance within which it holds, m, and how much the
+    /// threshold changes per metre beyond.
     pub(crate) fn here(&self, position_m: DVec3) -> (Self, [f64; 2]) {
         let mut shape = self.shape;
         let steady = self.placed.shape_at(self.upright(position_m), &mut shape);
         (Self { shape, placed: LocalCover::default(), ..*self }, steady)
     }
 
-    /// A place of the layer as its pattern has it: what is above the base leans.
+    /// Returns the place in the map's pattern that belongs to a position. The pattern leans downwind with height.
     pub(crate) fn upright(&self, position_m: DVec3) -> DVec2 {
         let s = &self.shape;
         let height = (position_m.z - s.base_m) / s.thickness_m;
         position_m.truncate() - s.lean_m * (height * height)
     }
 
-    /// Excess over the threshold at a place, neither frayed nor under a dome.
+    /// Returns the excess over the threshold at a place, before dome and fraying.
     pub(crate) fn over(&self, position_m: DVec3) -> f64 {
         let s = &self.shape;
         self.strength(self.upright(position_m)) - s.threshold
@@ -71,12 +70,12 @@ impl Field<'_> {
         s.rough * smooth(s, (position_m.z - s.base_m) / s.thickness_m) * SOLID_GAIN * (self.solid.at(at) - SOLID_MEAN)
     }
 
-    /// Extinction, 1/m, of a frayed excess over threshold and dome.
+    /// Returns the extinction, 1/m, for an excess over threshold and dome, with fraying.
     pub(crate) fn dense(&self, excess: f64) -> f64 {
         self.shape.extinction_per_m * (excess / self.shape.soft).clamp(0.0, 1.0)
     }
 
-    /// Extinction, 1/m, at a place `position_m` (east and north of the world's origin, above the sea).
+    /// Returns the extinction, 1/m, at a place `position_m` (east and north of the world's origin, above the sea).
     pub fn extinction_per_m(&self, position_m: DVec3) -> f64 {
         let height = (position_m.z - self.shape.base_m) / self.shape.thickness_m;
         if !(0.0..=1.0).contains(&height) {

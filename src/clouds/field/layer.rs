@@ -1,23 +1,23 @@
-//! Layer of cloud over a place, and how much of it is drawn as a volume.
+//! A layer of cloud over a place, and the share of it that is drawn as a volume.
 
 use super::shape::Shape;
 use crate::weather::CloudSlab;
 
-/// Number of the medium that is ice.
+/// Index of the medium of ice.
 pub(crate) const ICE: usize = 1;
 
-/// A layer of cloud, and how much of it is drawn as a volume: the rest is drawn as a deck.
+/// A layer of cloud over a place. `share` of it is drawn as a volume, the rest as a deck.
 #[derive(Clone, Copy)]
 pub(crate) struct OverheadLayer {
     pub shape: Shape,
     pub slab: CloudSlab,
-    /// Its slot among those of the conditions.
+    /// Slot of the layer in `Conditions::clouds`.
     pub slot: usize,
     pub share: f64,
 }
 
 impl OverheadLayer {
-    /// Returns the index of its medium: droplets, or ice.
+    /// Returns the index of its medium: 0 for droplets, [`ICE`] for ice.
     pub fn medium(&self) -> usize {
         if self.slab.ice_fraction > 0.5 { ICE } else { 0 }
     }

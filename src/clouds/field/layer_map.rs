@@ -1,4 +1,4 @@
-//! A layer of cloud under a host's map of cover ([`CloudMap`]), by the map's cells: how each is cut out of the field
+//! A layer of cloud under a host's map of cover ([`CloudMap`]): how each cell of the map is cut out of the field
 //! ([`super::placed`]).
 
 use std::{
@@ -12,24 +12,24 @@ use half::f16;
 use super::cover_threshold::CoverThreshold;
 use crate::weather::{CloudMap, CloudSlab, MAX_CLOUD_LAYERS};
 
-/// Steps of the map's numbers for which cuts are found.
+/// Steps of the map's values for which thresholds are computed.
 const STEPS: usize = 64;
 
-/// A layer under a map, by its cells.
+/// A layer under a map, cell by cell.
 #[derive(Debug)]
 pub struct LayerMap {
     slab: CloudSlab,
     pub(crate) map: Arc<CloudMap>,
-    /// Values of each cell: threshold, dome, extinction (1/m), and the distance within which the threshold stays, m; as
-    /// halves hold them.
+    /// Values of each cell, rounded to half floats: threshold, dome, extinction (1/m), and the distance within which
+    /// the threshold stays the same, m.
     pub(crate) texels: Vec<[f32; 4]>,
-    /// Most that the threshold changes a metre.
+    /// Largest change of the threshold per metre.
     pub(crate) slope_per_m: f64,
 }
 
 impl LayerMap {
     pub(crate) fn new(slab: &CloudSlab, map: &Arc<CloudMap>) -> Self {
-        // Nodes lie close where thresholds change fast: near none and all.
+        // Nodes are dense where thresholds change fast: near 0 and 1.
         let node = |i: usize| (0.5 * PI * i as f64 / STEPS as f64).sin().powi(2);
         let cuts: [CoverThreshold; STEPS + 1] =
             std::array::from_fn(|i| CoverThreshold::with_cover(slab, slab.cover * node(i)));
@@ -49,7 +49,7 @@ impl LayerMap {
         Self { slab: *slab, map: map.clone(), texels, slope_per_m }
     }
 
-    /// At a place, and how far the threshold stays there, m.
+    /// Returns the threshold at a place, and the distance within which it stays the same, m.
     pub(crate) fn at(&self, place_m: DVec2) -> (CoverThreshold, f64) {
         let map = &self.map;
         let [columns, rows] = map.cells.map(|n| n as usize);
@@ -73,7 +73,7 @@ impl LayerMap {
     }
 }
 
-/// Most that thresholds change from cell to cell, a metre.
+/// Returns the largest change of thresholds from cell to cell, per metre.
 fn steepest(texels: &[[f32; 4]], map: &CloudMap) -> f64 {
     let columns = map.cells[0] as usize;
     let change = |(i, t): (usize, &[f32; 4])| {
@@ -82,12 +82,12 @@ fn steepest(texels: &[[f32; 4]], map: &CloudMap) -> f64 {
         let [east, north] = [east, north].map(|n| n.map_or(0.0, |n| f64::from(n[0] - t[0])));
         DVec2::new(east, north).length()
     };
-    // Along the diagonal of a cell both sides of it may count twice.
+    // Along a cell's diagonal the changes of both axes add up.
     texels.iter().enumerate().map(change).fold(0.0, f64::max) * SQRT_2 / map.cell_m
 }
 
-/// Returns for each cell the distance within which a map stays as it is there, m: two cells less than to the next cell
-/// that differs, so that it holds between middles too.
+/// Returns for each cell the distance within which the map stays the same, m. It is two cells less than the distance to
+/// the next cell that differs, so that it also holds between the middles of cells.
 fn steady_m(map: &CloudMap) -> Vec<f64> {
     let [columns, rows] = map.cells.map(|n| n as usize);
     let most = (columns + rows) as u32;
@@ -101,15 +101,15 @@ fn steady_m(map: &CloudMap) -> Vec<f64> {
     };
     let mut away: Vec<u32> =
         (0..map.cover.len()).map(|i| if near(i).any(|j| is_other(i, j)) { 1 } else { most }).collect();
-    // Chebyshev's distance, forth and back.
+    // Chebyshev distance in a forward and a backward pass.
     for i in (0..away.len()).chain((0..away.len()).rev()) {
         away[i] = near(i).map(|j| away[j] + 1).min().unwrap_or(most).min(away[i]);
     }
-    // As far as rays are followed, nothing is beyond.
+    // Rays are followed no farther than 60 km.
     away.into_iter().map(|n| (f64::from(n.saturating_sub(2)) * map.cell_m).min(60e3)).collect()
 }
 
-/// Maps of layers, made once for as long as neither layer nor map changes.
+/// Cache of layers under maps. An entry is valid as long as its layer and its map stay the same.
 #[derive(Default)]
 pub(crate) struct LayerMaps(Vec<Arc<LayerMap>>);
 
@@ -139,7 +139,7 @@ mod tests {
         weather::CloudKind,
     };
 
-    /// A map that is one number over the places from which cover is looked at, and another west of them.
+    /// Creates a map with one value over the places from which cover is seen, and another west of them.
     fn map(here: f32, west: f32) -> Arc<CloudMap> {
         let cover = vec![west, here];
         Arc::new(CloudMap { first_m: [-2e5, 0.0], cell_m: 5e4, cells: [2, 1], base_m: [0.0, 2e4], cover })

@@ -1,4 +1,4 @@
-//! Shape of the clouds of a layer that the weather has.
+//! Shape of the clouds of a layer, from the weather's slab.
 
 use glam::DVec2;
 
@@ -16,28 +16,29 @@ fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }
 
-/// Number of the map at which a cloud reaches the layer's top, at least: one place of seventy. Where more did, tops
-/// would be cut flat.
+/// Least number of the map at which a cloud reaches the layer's top: one place in seventy has more. With a lower
+/// number, tops would be cut flat.
 const HIGHEST: f64 = 2.2;
-/// Number of the map at which a cumulonimbus reaches the layer's top, at least: its towers spread there.
+/// Least number of the map at which a cumulonimbus reaches the layer's top. It is lower because its towers spread
+/// there.
 const HIGHEST_OF_TOWERS: f64 = 1.2;
 
-/// Cells of cloud along the side of the solid noise, and of fibres.
+/// Cells of cloud along the side of the solid noise, for other clouds and for fibres.
 const SOLID_CELLS: f64 = 1.5;
 const SOLID_CELLS_OF_FIBRES: f64 = 0.8;
-/// Distance from cloud to cloud up to which heads grow with their clouds, m.
+/// Distance from cloud to cloud up to which the heads (bulges of a cloud) are proportional to it, m.
 const HEADS_AS_CLOUDS_M: f64 = 1000.0;
-/// Excess over the threshold from which on a cumulonimbus has an anvil over it.
+/// Excess over the threshold above which a cumulonimbus has an anvil over it.
 const ANVIL_BEYOND: f64 = -0.2;
-/// How far the top of fibres lies downwind of their base, in thicknesses: crystals fall into slower air for some
-/// kilometres (Heymsfield 1975).
+/// Distance that the top of fibres lies downwind of their base, in thicknesses: crystals fall for some kilometres into
+/// slower air (Heymsfield 1975).
 const LEAN: f64 = 3.0;
 
-/// Columns whose mean stands for all.
+/// Number of columns over which the mean is taken.
 const COLUMNS: usize = 32;
 
-/// How much of its thickness a cloudy column of a layer fills on the mean: the tops of most are below the layer's. The
-/// map's number is spread normally, edges are taken unfrayed.
+/// Returns the mean share of the layer's thickness that a cloudy column fills. Most tops are below the layer's. The
+/// map's number has a normal distribution; edges are taken without fraying.
 fn filled_share(shape: &Shape) -> f64 {
     let below = 0.5 * libm::erfc(-shape.threshold * std::f64::consts::FRAC_1_SQRT_2);
     let one = |i: usize| {
@@ -48,12 +49,12 @@ fn filled_share(shape: &Shape) -> f64 {
 }
 
 impl Shape {
-    /// Creates the shape of a layer in still air over the sea.
+    /// Creates the shape of a layer in still air, with its base measured from sea level.
     pub(crate) fn of(slab: &CloudSlab) -> Self {
         Self::still(slab, threshold(slab))
     }
 
-    /// Returns the shape over a station, once the wind has carried it by `drift`.
+    /// Returns the shape over the station's ground, carried by the wind's `drift`.
     pub(crate) fn carried(self, c: &Conditions, slab: &CloudSlab, drift: &LayerDrift) -> Self {
         Self {
             base_m: c.air.station_altitude_m + slab.base_m,
@@ -63,16 +64,16 @@ impl Shape {
         }
     }
 
-    /// Creates the shape of a layer in still air over the sea, cut out of the map by a threshold.
+    /// Creates the shape of a layer in still air for a threshold of the map, with its base measured from sea level.
     pub(crate) fn still(slab: &CloudSlab, threshold: f64) -> Self {
         let heaps = (2.0 * slab.convection).min(1.0) * (1.0 - slab.cellular);
-        // 0 for fair-weather heaps, 1 for cumulonimbus.
+        // 0 for fair-weather cumulus, 1 for cumulonimbus.
         let tall = (2.0 * slab.convection - 1.0).max(0.0);
         let sheet = mix(mix(0.35, 1.4, slab.cellular), mix(1.5, 0.2, tall), heaps);
         let dome = mix(sheet, 0.4, slab.fibre).max(mix(HIGHEST, HIGHEST_OF_TOWERS, tall) - threshold);
-        // Sheets whose cells are a little heaped keep their tops.
+        // Sheets whose cells are only slightly convective keep their tops.
         let piled = ((heaps - 0.3) / 0.7).max(0.0);
-        // Heads of towers are not as much larger than those of small heaps as the towers are.
+        // The heads of towers exceed those of small cumulus by less than the towers do.
         let finer = (slab.scale_m / HEADS_AS_CLOUDS_M).max(1.0).powf(-0.6 * piled);
         let shape = Self {
             base_m: slab.base_m,
@@ -92,7 +93,7 @@ impl Shape {
             drift_m: DVec2::ZERO,
             evolution: DVec2::ZERO,
         };
-        // The layer's optical depth is that of its clouds on the mean.
+        // Scale the extinction so that cloudy columns have the layer's optical depth on average.
         Self { extinction_per_m: shape.extinction_per_m / filled_share(&shape), ..shape }
     }
 }
@@ -129,7 +130,7 @@ mod tests {
         }
     }
 
-    /// Share of 4000 places of a layer that have cloud at a height, 0 to 1.
+    /// Returns the share of 4000 places of a layer that have cloud at a height, 0 to 1.
     fn share_at(field: &crate::clouds::field::Field<'_>, height: f64) -> f64 {
         let s = &field.shape;
         let place = |i: usize| DVec2::new((i % 63) as f64 * 0.7135, (i / 63) as f64 * 0.6131) * s.scale_m;

@@ -1,4 +1,4 @@
-//! Layers of cloud over a place: which of them are volumes, which are a deck, and where the wind has carried them.
+//! Layers of cloud over a place: which are drawn as volumes, which as a deck, and how far the wind has carried them.
 
 use std::sync::Arc;
 
@@ -19,35 +19,34 @@ use crate::{
     wind::LayerDrifts,
 };
 
-/// Heights of a closed layer's base over the camera between which the volume takes the deck's place, m.
+/// Heights of a closed layer's base above the camera between which the volume changes to the deck, m.
 const DECK_FROM_M: [f64; 2] = [200.0, 400.0];
-/// Slant depths of a closed layer between which the sun's disc in it pales to a tenth of what is around it: a deck
-/// shows none.
+/// Slant optical depths of a closed layer between which the volume changes to the deck. The sun's disc seen through the
+/// layer pales there to a tenth of its surroundings, and a deck shows no disc.
 const DISC_PALES: [f64; 2] = [12.0, 14.0];
 
 /// Layers of cloud over a place.
 pub(crate) struct CloudLayers {
     layers: [OverheadLayer; MAX_CLOUD_LAYERS],
     count: usize,
-    /// Number of layers of which something is drawn as a volume: the first ones, since only the uppermost are decks.
+    /// Number of layers of which a share is drawn as a volume. They come first, since only the uppermost are decks.
     drawn: usize,
-    /// Some of what is above the place is drawn as a deck.
+    /// Whether a share of the layers above the place is drawn as a deck.
     pub has_deck: bool,
-    /// East and north of the world's origin, m.
+    /// Position of the place east and north of the world's origin, m.
     pub place_m: DVec2,
-    /// Diameter of the droplets, um, one of those for which tables are made.
+    /// Diameter of the droplets, um: one of those that have tables.
     pub liquid_um: f64,
     /// How far the wind has carried the layers.
     pub drifts: LayerDrifts,
-    /// Map of each layer whose clouds are other than its cover says; and (`areas`) the cells over rain areas
-    /// ([`super::placed`]).
+    /// Maps of cover, for layers on which the host lays one ([`super::placed`]).
     pub maps: [Option<Arc<LayerMap>>; MAX_CLOUD_LAYERS],
-    /// See `maps`.
+    /// Cells over rain areas.
     pub areas: Option<AreaCells>,
 }
 
-/// How much of the lowest layer above the camera is drawn as a volume. A closed one that hides the sky, seen from
-/// further below, is a deck in the same light: nothing else is seen of it.
+/// Returns the share of the lowest layer above the camera that is drawn as a volume. A closed layer that hides the sky
+/// looks the same as a deck from further below.
 fn volume_share(scene: &Scene, lowest: &CloudSlab) -> f64 {
     if lowest.cover < 1.0 || scene.deck_cover < 1.0 {
         return 1.0;
@@ -58,14 +57,14 @@ fn volume_share(scene: &Scene, lowest: &CloudSlab) -> f64 {
     near.max(1.0 - smoothstep(DISC_PALES[0], DISC_PALES[1], depth))
 }
 
-/// Width over which a pixel looks, pixels, and that from which on clouds in it differ, in distances from cloud to
-/// cloud; both of `shaders/clouds`.
+/// Width of a pixel's filter, pixels (`PIXEL_BLUR`), and the width, in distances from cloud to cloud, above which
+/// clouds are blurred (`BLUR_FROM`). `shaders/clouds` has the same numbers.
 pub(crate) const PIXEL_BLUR: f64 = 1.4;
 pub(crate) const BLUR_FROM: f64 = 0.15;
 
 impl CloudLayers {
-    /// Says whether one pixel spans several clouds of a layer below the camera, as far as its horizon; `pixel` in
-    /// radians.
+    /// Whether one pixel spans several clouds of a layer below the camera, at any distance up to the horizon. `pixel`
+    /// is its angle in radians.
     pub fn is_coarse(&self, scene: &Scene, radius_m: f64, pixel: f64) -> bool {
         let coarse = |layer: &OverheadLayer| {
             let over_m = (scene.place.altitude_m - layer.shape.base_m).max(0.0);
@@ -75,8 +74,8 @@ impl CloudLayers {
         self.layers().iter().any(coarse)
     }
 
-    /// Creates the layers at a scene's place for a model, where the wind has carried them by `drifts`; `None` where the
-    /// model is no volume. `still`: [`Shape::of`], or a cache of it.
+    /// Creates the layers at a scene's place, carried by the wind's `drifts`. `None` if the model is not a volume.
+    /// `still` is [`Shape::of`] or a cache of it.
     pub fn new(
         model: CloudModel,
         scene: &Scene,
@@ -90,7 +89,7 @@ impl CloudLayers {
         }
         let (station_m, above_m) = (scene.conditions.air.station_altitude_m, scene.place.altitude_m);
         let is_above = |s: &CloudSlab| station_m + s.base_m > above_m;
-        // What is above a deck is hidden by it.
+        // A deck hides the layers above it.
         let share = slabs().find(|s| is_above(s)).map_or(1.0, |lowest| volume_share(scene, lowest));
         let mut layer = |(slot, slab): (usize, &CloudSlab)| OverheadLayer {
             shape: still(slab).carried(&scene.conditions, slab, &drifts.slots[slot]),
@@ -117,34 +116,34 @@ impl CloudLayers {
         Some(overhead)
     }
 
-    /// Its layers of which something is drawn as a volume, from below.
+    /// Returns the layers of which a share is drawn as a volume, from the lowest.
     pub fn layers(&self) -> &[OverheadLayer] {
         &self.layers[..self.drawn]
     }
 
-    /// All of them: what is drawn as a deck is cloud all the same.
+    /// Returns all layers, with those that are drawn as a deck.
     pub fn all(&self) -> &[OverheadLayer] {
         &self.layers[..self.count]
     }
 
-    /// How far the wind has carried the lowest layer since these were the drifts, m east and north.
+    /// Returns the distance that the wind has carried the lowest layer since `earlier`, m east and north.
     pub fn carried_since(&self, earlier: &LayerDrifts) -> DVec2 {
         let OverheadLayer { slot, shape, .. } = &self.layers[0];
         shape.stretch.inverse() * (self.drifts.slots[*slot].way - earlier.slots[*slot].way) * shape.scale_m
     }
 
-    /// Whether some of it leaves gaps.
+    /// Whether the drawn layers leave gaps.
     pub fn is_broken(&self) -> bool {
         self.is_placed() || self.layers().iter().any(|layer| layer.slab.cover < 1.0)
     }
 
-    /// Draws nothing as a deck.
+    /// Makes all layers volumes, none a deck.
     pub fn show_all(&mut self) {
         self.layers.iter_mut().for_each(|layer| layer.share = 1.0);
         (self.drawn, self.has_deck) = (self.count, false);
     }
 
-    /// Puts a layer among the others by its base; answers its place, or none where there is no room.
+    /// Inserts a layer in the order of bases. Returns its index, or `None` if the list is full.
     pub fn insert(&mut self, layer: OverheadLayer) -> Option<usize> {
         if self.count == MAX_CLOUD_LAYERS {
             return None;
@@ -163,24 +162,24 @@ impl CloudLayers {
 }
 
 impl CloudLayers {
-    /// Where the clouds of one of [`CloudLayers::all`] are other than its cover says.
+    /// Returns the local cover of the layer with an index in [`CloudLayers::all`].
     pub(crate) fn placed(&self, layer: usize) -> LocalCover {
         let areas = self.areas.as_ref().filter(|areas| areas.layer == layer);
         LocalCover { map: self.maps[layer].clone(), areas: areas.map(|areas| Arc::new(*areas)) }
     }
 
-    /// Whether any are.
+    /// Whether any layer has local cover.
     pub(crate) fn is_placed(&self) -> bool {
         self.areas.is_some() || self.maps.iter().any(Option::is_some)
     }
 
-    /// A number that changes as the cells over areas do, and one that is other for another map.
+    /// Returns a hash of the cells over areas and the address of a map, to detect changes.
     pub(crate) fn fingerprint(&self) -> (f64, usize) {
         let map = self.maps.iter().flatten().next().map_or(0, |made| Arc::as_ptr(&made.map) as usize);
         (self.areas.as_ref().map_or(0.0, AreaCells::fingerprint), map)
     }
 
-    /// Whether any of it may be seen along a direction.
+    /// Whether a layer may be seen along a direction.
     pub fn lies_toward(&self, scene: &Scene, direction: DVec3) -> bool {
         let at_m = scene.place.altitude_m;
         self.layers().iter().any(|layer| {

@@ -1,5 +1,4 @@
-//! The map of where clouds grow: noise made normal by ranks, so that a threshold says how much of the plane lies above
-//! it.
+//! Map of where clouds grow. The noise is made normal by ranks, so the share of the plane above a threshold is known.
 
 use glam::{DVec2, UVec2};
 
@@ -8,24 +7,24 @@ use crate::{
     noise::{cellular_2d, gradient_2d},
 };
 
-/// Texels of the map along a side.
+/// Texels along a side of the map.
 pub const MAP_SIZE: usize = 256;
-/// Largest number that the map holds.
+/// Largest number in the map.
 pub const MAP_REACH: f64 = 4.0;
 /// Cells of cloud along the map's side.
 pub const MAP_CELLS: f64 = 16.0;
-/// Period of the second sheet over that of the first, and its turn: no whole numbers of one are a whole number of the
-/// other.
+/// Period of the second sheet over that of the first, the angle by which it is turned, and its offset in periods. The
+/// periods have no common multiple.
 pub(crate) const SECOND_PERIOD: f64 = 1.618_033_988_749_895;
 pub(crate) const SECOND_TURN_RAD: f64 = 0.9;
 pub(crate) const SECOND_OFFSET: DVec2 = DVec2::new(0.37, 0.71);
-/// Octaves of the even sheets: the first has half as many cells as the map, so that clouds stand in groups.
+/// Octaves of the even sheets. The first has half as many cells as the map, so that clouds stand in groups.
 const EVEN_OCTAVES: u32 = 4;
-/// Amplitude of an octave over that of the one before, of the even and of the cellular sheets.
+/// Ratio of an octave's amplitude to that of the one before, in the even and in the cellular sheets.
 const PERSISTENCE: [f64; 2] = [0.55, 0.4];
 const CELLULAR_OCTAVES: u32 = 3;
 
-/// The map's texels: two sheets of even noise, and two of a cellular kind.
+/// Texels of the map: two sheets of gradient noise (the even sheets), and two of cellular noise.
 pub struct Map(pub Vec<[f32; 4]>);
 
 /// Returns the value of a sheet before its ranks are taken.
@@ -53,7 +52,7 @@ pub(super) fn wrapped(x: f64, size: usize) -> (usize, usize, f64) {
 }
 
 impl Map {
-    /// Between its texels; `place` in periods.
+    /// Interpolates the texels at `place`, in periods.
     pub fn at(&self, place: DVec2) -> [f64; 4] {
         let (i0, i1, x) = wrapped(place.x, MAP_SIZE);
         let (j0, j1, y) = wrapped(place.y, MAP_SIZE);
@@ -66,7 +65,7 @@ impl Map {
         })
     }
 
-    /// That of a seed.
+    /// Creates the map of a seed.
     pub fn new(seed: u64) -> Self {
         let seed = (seed ^ (seed >> 32)) as u32;
         let count = MAP_SIZE * MAP_SIZE;
@@ -83,7 +82,7 @@ impl Map {
         Self(texels)
     }
 
-    /// Its mip levels, itself first: each the mean of 2 x 2 of the one before.
+    /// Returns its mip levels, the map itself first. Each texel is the mean of 2 x 2 of the level before.
     pub(crate) fn levels(&self) -> Vec<Vec<[f32; 4]>> {
         let mut levels = vec![self.0.clone()];
         let mut side = MAP_SIZE / 2;
@@ -125,7 +124,8 @@ mod tests {
         }
     }
 
-    /// Variance of a layer's number that means over a width take away, by the law of shaders/clouds/field.wgsl.
+    /// Returns the share of the variance of a layer's number that a mean over a width removes, by the law in
+    /// shaders/clouds/field.wgsl.
     fn lost(width: f64, law: &str) -> f64 {
         let text = include_str!("../../../shaders/clouds/field.wgsl");
         let (_, after) = text.split_once(&format!("const {law}: vec2f = vec2f(")).unwrap();
@@ -145,7 +145,7 @@ mod tests {
         {
             assert!(text.contains(&said), "{said}");
         }
-        // The second sheet's cells are larger: a width is as much less of them.
+        // The second sheet's cells are larger, so a width is a smaller share of them.
         let mean = |width: f64, of: &dyn Fn(f64) -> f64| 0.5 * (of(width) + of(width / SECOND_PERIOD));
         let variance = |level: &[f64]| {
             let mean = level.iter().sum::<f64>() / level.len() as f64;

@@ -1,5 +1,5 @@
-//! Query of the layers over a place: those of the weather, where the wind has carried them, with a host's map laid on
-//! them and the cells over rain areas among them. Pictures and questions ask here.
+//! Query for the layers over a place: the weather's layers where the wind has carried them, with a host's map of cover
+//! and the cells over rain areas. Both pictures and questions use it.
 
 use std::sync::Arc;
 
@@ -22,16 +22,16 @@ use crate::{
     weather::{CloudMap, CloudSlab},
 };
 
-/// How much less excess the anvil of a cell over a rain area needs than that of a layer: across the cell's edge, by
-/// `EDGE_SLOPE` of the cells, it reaches this much over that many distances from cloud to cloud farther than its
+/// How much less excess the anvil of a cell over a rain area needs than that of a layer. Because of `EDGE_SLOPE` in the
+/// cells, the anvil then reaches this much over `EDGE_SLOPE`, in distances from cloud to cloud, farther out than the
 /// towers.
 const ANVIL_WIDER: f64 = 2.2;
-/// Thickness of such a cell over the distance from cloud to cloud from which on its heads grow with its height, and how
-/// rough they make it at most: by the map alone its sides would hang like curtains.
+/// Thickness of a cell over the distance from cloud to cloud above which its heads grow with its height (`HEADS`), and
+/// the largest `rough` (`MOST_ROUGH`). Shaped by the map alone, the sides would hang like curtains.
 const HEADS: f64 = 2.0;
 const MOST_ROUGH: f64 = 2.1;
 
-/// Place and time whose layers of cloud are asked for.
+/// Place and time at which the layers of cloud are asked for.
 pub(crate) struct LayersQuery<'a> {
     pub scene: &'a Scene,
     /// The scene's place in the host's world, m.
@@ -42,16 +42,16 @@ pub(crate) struct LayersQuery<'a> {
 }
 
 impl LayersQuery<'_> {
-    /// Whether there can be no cloud: the weather has none here, and no rain area brings any.
+    /// Whether there can be no cloud: the weather has none here, and there are no rain areas.
     pub fn is_clear(&self) -> bool {
         self.scene.conditions.cloud_slabs().next().is_none() && self.weather.regions.is_empty()
     }
 
-    /// Finds the layers for a model; none where it draws no volume. `maps` keeps hosts' maps of layers from one query
-    /// to the next, `still` is [`Shape::of`] or a cache of it.
+    /// Finds the layers for a model; `None` if it draws no volume. `maps` caches the host's maps of layers, and `still`
+    /// is [`Shape::of`] or a cache of it.
     ///
     /// # Errors
-    /// For a time that the weather does not know.
+    /// For a time outside the weather.
     pub fn layers(
         &self,
         model: CloudModel,
@@ -68,10 +68,10 @@ impl LayersQuery<'_> {
 }
 
 impl CloudLayers {
-    /// Puts clouds where a host's map says, and over rain areas.
+    /// Applies a host's map of cover, and adds the cells over rain areas.
     ///
     /// # Errors
-    /// For a time that the weather does not know.
+    /// For a time outside the weather.
     fn place(&mut self, query: &LayersQuery<'_>, maps: &mut LayerMaps) -> Result<()> {
         let LayersQuery { scene, eye, weather, time_s } = *query;
         if let Some(map) = weather.cloud_map {
@@ -91,7 +91,7 @@ impl CloudLayers {
         Ok(())
     }
 
-    /// Lets layers follow a map.
+    /// Applies a map to the layers that it is for.
     fn follow(&mut self, map: &Arc<CloudMap>, made: &mut LayerMaps) {
         let count = self.all().len();
         for i in 0..count {
@@ -101,12 +101,12 @@ impl CloudLayers {
             }
         }
         if self.maps.iter().any(Option::is_some) {
-            // A deck would close what the map leaves open elsewhere.
+            // A deck would close the gaps that the map leaves elsewhere.
             self.show_all();
         }
     }
 
-    /// Puts the layer of cells over areas among the others. None where they need none.
+    /// Inserts the layer of cells over areas. `None` if the areas need no cells, or if there is no room.
     fn bring(&mut self, scene: &Scene, clouds: &AreaClouds) -> Option<usize> {
         let others = self.all().iter().zip(&self.maps).map(|(layer, map)| (&layer.slab, map.is_some()));
         let slab = clouds.slab(others)?;

@@ -2,12 +2,13 @@
 //! areas, so that no rain falls out of a clear sky. Twin of `shaders/clouds/placed.wgsl`.
 //!
 //! # Model
-//! A part of a layer with a cover of its own is cut out of the field as all of a layer with this cover is: by
-//! threshold, dome and extinction of that cover. These are found for each cell of a map, and go over from middle to
-//! middle.
+//! A part of a layer with its own cover is cut out of the field as a whole layer with this cover would be: with the
+//! threshold, dome and extinction of that cover. They are found for the middle of each cell of a map and interpolated
+//! between.
 //!
-//! Cells over rain areas ([`super::cells`]) are a layer of their own, which is nowhere else: over an area it is closed,
-//! and opens across an edge beyond the area's border, a little wider than its clouds are, so that the field shapes it.
+//! Cells over rain areas ([`super::cells`]) are a separate layer with cloud nowhere else. Over an area the layer is
+//! closed. It opens across an edge beyond the area's border that is a little wider than its clouds, so that the field
+//! shapes it.
 
 use std::sync::Arc;
 
@@ -22,12 +23,12 @@ use super::{
 };
 use crate::falling::MAX_AREAS;
 
-/// Cells of cloud over rain areas, and what fills them.
+/// Cells of cloud over rain areas, and the threshold inside them.
 #[derive(Clone, Copy, Debug)]
 pub struct AreaCells {
     pub(crate) cells: [AreaCell; MAX_AREAS],
     pub(crate) count: usize,
-    /// The layer that they are cells of.
+    /// Index of the layer that has the cells.
     pub(crate) layer: usize,
     pub(crate) filled: CoverThreshold,
 }
@@ -37,19 +38,19 @@ impl AreaCells {
         &self.cells[..self.count]
     }
 
-    /// Most that thresholds change a metre.
+    /// Returns the largest change of the threshold per metre.
     pub(crate) fn slope_per_m(&self) -> f64 {
         let rim_m = self.all().iter().map(|cell| cell.rim_m).fold(f64::INFINITY, f64::min);
         (CLEAR - FILLED) / rim_m
     }
 
-    /// Hash of the cells, to notice changes.
+    /// Returns a hash of the cells, to detect changes.
     pub(super) fn fingerprint(&self) -> f64 {
         self.all().iter().map(|c| c.center_m.dot(DVec2::new(1.0, 0.7)) + c.semi_m.x + c.semi_m.y + c.rim_m).sum()
     }
 }
 
-/// Where a layer's clouds are other than its cover says.
+/// Local cover that overrides a layer's own.
 #[derive(Clone, Debug, Default)]
 pub struct LocalCover {
     pub(super) map: Option<Arc<LayerMap>>,
@@ -57,14 +58,14 @@ pub struct LocalCover {
 }
 
 impl LocalCover {
-    /// By a map alone.
+    /// Creates the local cover of a map alone.
     #[cfg(test)]
     pub(crate) fn under(map: Arc<LayerMap>) -> Self {
         Self { map: Some(map), areas: None }
     }
 
-    /// Makes a layer's shape that of a place, m east and north of the world's origin. Answers within which distance the
-    /// place's threshold stays, m, and how much it changes a metre beyond.
+    /// Gives `shape` the local cover at a place, m east and north of the world's origin. Returns the distance within
+    /// which the threshold stays the same, m, and its largest change per metre beyond.
     pub(crate) fn shape_at(&self, place_m: DVec2, shape: &mut Shape) -> [f64; 2] {
         let (mut steady_m, mut slope_per_m) = (f64::INFINITY, 0.0);
         let mut cut = CoverThreshold::of(shape);

@@ -16,16 +16,16 @@ pub(crate) fn solid_settings(seed: u64) -> NoiseSettings {
     NoiseSettings { kind: NoiseKind::Cellular, frequency: [4; 3], octaves: 3, amplitude: 0.5, persistence: 0.6, seed }
 }
 
-/// Solid noise, a byte a texel.
+/// Solid noise, one byte a texel.
 pub struct Solid {
     /// Texels along a side.
     pub size: usize,
-    /// Its texels, east fastest.
+    /// Texels, east fastest.
     pub texels: Vec<u8>,
 }
 
 impl Solid {
-    /// That of a seed.
+    /// Creates the noise of a seed.
     ///
     /// # Errors
     /// [`crate::Status::OutOfMemory`].
@@ -34,7 +34,7 @@ impl Solid {
         Ok(Self { size: SOLID_SIZE as usize, texels: image.levels()[0].clone() })
     }
 
-    /// Between its texels, 0 to 1; `place` in periods.
+    /// Interpolates the texels at `place`, in periods; 0 to 1.
     pub fn at(&self, place: DVec3) -> f64 {
         let [x, y, z] = [place.x, place.y, place.z].map(|v| wrapped(v, self.size));
         let texel = |i: usize, j: usize, k: usize| f64::from(self.texels[(k * self.size + j) * self.size + i]) / 255.0;

@@ -1,4 +1,4 @@
-//! Threshold of the map for a cover that is asked for, by kind of cloud; [`super::cover`] finds the numbers.
+//! Threshold of the map for a cover that is asked for, by kind of cloud. [`super::cover`] finds the table's numbers.
 
 use crate::{
     chance::normal_quantile,
@@ -7,27 +7,27 @@ use crate::{
     weather::{CloudKind, CloudLayer, CloudSlab, Weather, derive},
 };
 
-/// Threshold above all of the map: no cloud.
+/// Threshold above all numbers of the map: no cloud.
 pub(crate) const CLEAR: f64 = 7.0;
-/// Threshold over a rain area: one place of 30 000 is open.
+/// Threshold over a rain area: one place in 30 000 stays open.
 pub(crate) const FILLED: f64 = -4.0;
 
-/// Oktas for which there are thresholds.
+/// Number of oktas with thresholds.
 pub(super) const OKTAS: usize = 7;
 
-/// Threshold of the map by kind of cloud ([`CloudKind::ALL`] less the unknown) and oktas 1 to 7.
+/// Thresholds of the map by kind of cloud ([`CloudKind::ALL`] without the unknown kind) and oktas 1 to 7.
 pub(super) const THRESHOLDS: [(CloudKind, [f64; OKTAS]); 11] = include!("thresholds.in");
 
-/// A slab of a kind as the weather makes it where the host says no more than the kind.
+/// Returns the slab that the weather derives for a kind when the host gives nothing else.
 pub fn typical(kind: CloudKind, cover: f64) -> Result<CloudSlab> {
     let weather = Weather { clouds: vec![CloudLayer::of(kind, cover, 2000.0)], ..Weather::default() };
     let conditions = derive(&weather)?;
     Ok(*conditions.cloud_slabs().next().unwrap_or(&CloudSlab::NONE))
 }
 
-/// Threshold of one kind.
+/// Returns the threshold of one kind.
 fn of_kind(row: &[f64; OKTAS], cover: f64) -> f64 {
-    // Thresholds go nearly evenly with the quantile of cover.
+    // Thresholds are nearly linear in the normal quantile of the cover.
     let quantile = |cover: f64| normal_quantile(cover.clamp(1e-9, 1.0 - 1e-9));
     let node = |i: usize| quantile((i as f64 + 1.0) / 8.0);
     let q = quantile(cover);
@@ -36,8 +36,8 @@ fn of_kind(row: &[f64; OKTAS], cover: f64) -> f64 {
     row[i] + (row[i + 1] - row[i]) * t
 }
 
-/// Threshold of the map under which a layer covers what it is said to. Of a layer between kinds, between theirs by how
-/// near it is to each.
+/// Returns the threshold of the map at which a layer has its cover. For a layer between kinds, the kinds' thresholds
+/// are weighted by how near the layer is to each.
 pub fn threshold(slab: &CloudSlab) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
     for ((_, row), traits) in THRESHOLDS.iter().zip(traits()) {
@@ -50,12 +50,12 @@ pub fn threshold(slab: &CloudSlab) -> f64 {
     threshold + (CLOSED - threshold) * smoothstep(CLOSES, 1.0, slab.cover)
 }
 
-/// Threshold below all of the map: nothing is open.
+/// Threshold below all numbers of the map: no place is open.
 const CLOSED: f64 = -7.0;
-/// Cover from which thresholds go over to [`CLOSED`], so that nothing leaps where a layer closes.
+/// Cover above which thresholds blend to [`CLOSED`], so that nothing leaps when a layer closes.
 const CLOSES: f64 = 0.99;
 
-/// Returns the numbers that tell the kinds of cloud apart.
+/// Returns the four numbers by which kinds of cloud differ.
 fn traits_of(slab: &CloudSlab) -> [f64; 4] {
     [slab.convection, slab.cellular, slab.fibre, slab.ice_fraction]
 }

@@ -1,17 +1,18 @@
-//! The halo of 22 degrees that ice crystals make about the sun or moon. Twin of `shaders/clouds/halo.wgsl`.
+//! Halo of 22 degrees that ice crystals make around the sun or moon. Twin of `shaders/clouds/halo.wgsl`.
 //!
 //! # Model
-//! A hexagonal crystal turns light that enters one side and leaves the next but one as a prism of 60 degrees does: by
-//! no less than 2 asin(n / 2) - 60 degrees (Minnaert 1954, section 134), most of it by little more. Over crystals
-//! turned in all ways the light begins with a step there and falls off nearly as exp(-angle / 4.1 degrees): the test
-//! follows light through prisms. Ice bends blue more than red, so the step is red inside; the sun's disc rounds it.
+//! Light that enters one side of a hexagonal crystal and leaves through the next side but one is refracted as by a
+//! prism of 60 degrees. The deflection is at least 2 asin(n / 2) - 60 degrees (Minnaert 1954, section 134), and little
+//! more for most of the light. Over randomly oriented crystals the light begins with a step at that angle and falls off
+//! nearly as exp(-angle / 4.1 degrees); the test traces light through prisms. Ice refracts blue more than red, so the
+//! halo is red inside. The sun's disc blurs the step.
 //!
-//! Rough crystals make none. Of cirrus whose halo was seen 37 % of the crystals were smooth (Forster and Mayer 2022),
-//! and one cirrus in four had a halo (Forster et al. 2017): here a fifth of the crystals are smooth. Of what a crystal
-//! scatters half is bent round it and stays ahead (Babinet); of the light that enters the sides of a long prism 39 %
-//! goes this way.
+//! Rough crystals make no halo. In cirrus with a visible halo 37 % of the crystals were smooth (Forster and
+//! Mayer 2022), and one cirrus in four had a halo (Forster et al. 2017). Here a fifth of the crystals are smooth. Half
+//! of what a crystal scatters is diffracted around it and goes nearly straight on (Babinet). 39 % of the light that
+//! enters the sides of a long prism goes into the halo.
 //!
-//! Light that is scattered once shows it; light scattered more often does not.
+//! Only light that is scattered once shows the halo.
 
 use std::f64::consts::PI;
 
@@ -23,17 +24,18 @@ use crate::numerics::smooth;
 const INDEX: [f64; 3] = [1.309, 1.311, 1.315];
 /// Angle over which the light falls to 1/e, rad.
 const FALL_RAD: f64 = 0.0716;
-/// Radius of the disc that rounds the step, rad.
+/// Angular radius of the disc that blurs the step, rad.
 const DISC_RAD: f64 = 0.0047;
-/// Share of what ice scatters that is in the halo: a fifth of the crystals, half of their light, 39 % of that.
+/// Share of the light scattered by ice that goes into the halo: a fifth of the crystals, half of their light, 39 % of
+/// that.
 pub const SHARE: f64 = 0.2 * 0.5 * 0.39;
 
-/// Least angle by which a prism of 60 degrees turns light, rad.
+/// Returns the smallest deflection by a prism of 60 degrees, rad.
 pub fn least_turn(index: f64) -> f64 {
     2.0 * (0.5 * index).asin() - PI / 3.0
 }
 
-/// Phase function of the light in the halo alone, 1/sr, at a scattering angle, rad.
+/// Returns the phase function of the halo's light alone, 1/sr, at a scattering angle, rad.
 pub fn phase(index: f64, angle: f64) -> f64 {
     let first = least_turn(index);
     // Integral of exp(-(angle - first) / fall) over the sphere.
@@ -42,8 +44,8 @@ pub fn phase(index: f64, angle: f64) -> f64 {
     smooth(begun) * (-(angle - first).max(0.0) / FALL_RAD).exp() / all
 }
 
-/// Returns what the halo adds to the phase function of ice, or takes from it elsewhere, 1/sr a channel, at this cosine
-/// of the scattering angle. The phase function is the one without its peak.
+/// Returns what the halo adds to the phase function of ice without its peak, 1/sr for each channel, at this cosine of
+/// the scattering angle. It is negative away from the halo.
 pub fn excess(scattering: &Scattering, cosine: f64) -> [f64; 3] {
     let angle = cosine.clamp(-1.0, 1.0).acos();
     let smooth = scattering.smooth_phase(1.0 - cosine);
@@ -63,14 +65,14 @@ mod tests {
         DVec2::from_angle(k as f64 * PI / 3.0)
     }
 
-    /// Returns the share of light that goes through a surface of ice, unpolarised (Fresnel).
+    /// Returns the transmittance of an ice surface for unpolarised light (Fresnel).
     fn through(cos_in: f64, cos_out: f64, n: f64) -> f64 {
         let (s, p) = ((cos_in - n * cos_out) / (cos_in + n * cos_out), (cos_out - n * cos_in) / (cos_out + n * cos_in));
         1.0 - 0.5 * (s * s + p * p)
     }
 
-    /// Light of a direction that enters a side of a long hexagonal prism at a place of it, from -1/2 to 1/2: by how
-    /// much it is turned if it leaves by the next side but one, and its weight.
+    /// Traces light of direction `d` that enters side `k` of a long hexagonal prism at a place of it, from -1/2 to 1/2.
+    /// Returns the deflection and the weight if the light leaves through the next side but one.
     fn turned(d: DVec3, k: usize, place: f64, n: f64) -> Option<(f64, f64)> {
         let normal = side(k).extend(0.0);
         let cos_in = -d.dot(normal);

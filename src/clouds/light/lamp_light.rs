@@ -1,22 +1,22 @@
-//! Light of a lamp or a flash, in the cloud or outside, that a place in a cloud scatters. Twin of
+//! Light of a lamp or a flash, inside a cloud or outside, that a place in the cloud scatters. Twin of
 //! `shaders/clouds/lit_lamps.wgsl`.
 //!
 //! # Model
 //! A place stands in a box of cloud, as it does for the sun ([`super::Sources`]).
-//! * Of a source in the cloud: light that is scattered once, by the true phase function, and light that wanders.
-//!   Without faces its mean radiance at a scaled distance d from a source of intensity I would be 3 (1 - g') I / (4 pi
-//!   d) (diffusion; Ishimaru 1978, chapter 9). In front of a face, 0.71 / (1 - g') away, there is a plane in which it
-//!   is 0: an image of the source there, of the opposite sign, stands for that. With p and s the depths of place and
-//!   source behind that plane the nearest face leaves 1 - r of the light, r = d / sqrt(d^2 + 4 p s), the opposite face
-//!   1 - r^2, those across 1 - r^3. The slope of that is the flux, by which more light goes one way than the other.
-//! * Of a source outside: the face towards it is lit as by a sky of the same irradiance ([`super::transport`]).
+//! * A source inside the cloud gives light that is scattered once, with the true phase function, and diffuse light. In
+//!   cloud without faces its mean radiance at a scaled distance d from a source of intensity I would be 3 (1 - g') I /
+//!   (4 pi d) (diffusion; Ishimaru 1978, chapter 9). In front of each face, 0.71 / (1 - g') away, is a plane in which
+//!   it is 0; an image source of opposite sign gives that. With p and s the depths of place and source behind that
+//!   plane, and r = d / sqrt(d^2 + 4 p s), the nearest face leaves 1 - r of the light, the opposite face 1 - r^2, and
+//!   the faces across 1 - r^3. The gradient is the flux: by it more light goes one way than the other.
+//! * A source outside lights the face towards it as a sky of the same irradiance would ([`super::transport`]).
 //!
-//! How much cloud lies on the way tells the two apart. A flash in a cloud is in it, even where the drawn cloud has a
-//! gap there.
+//! The share of the path that lies in cloud decides between the two. A flash in a cloud always counts as inside, even
+//! where the drawn cloud has a gap.
 //!
 //! # Error
-//! Against photons from a source in a slab and a cube, and outside of a cube:
-//! `cargo test --lib clouds::light::lamp_light -- --nocapture`.
+//! The model is compared with photons, for a source in a slab and a cube and outside a cube: `cargo test --lib
+//! clouds::light::lamp_light -- --nocapture`.
 
 use std::f64::consts::PI;
 
@@ -31,32 +31,32 @@ use crate::numerics::smooth;
 
 /// Extrapolation length of the diffusion approximation, over 1 / (1 - g') (Milne's problem).
 const DARK_AT: f64 = 0.71;
-/// Powers of the ratio of distances by which the faces other than the nearest one take light: the one opposite to it,
-/// and those across. The slope of the sum of all images at the nearest face has them.
+/// Powers of the ratio of distances by which the other faces take light: the one opposite the nearest face, and those
+/// across. The sum of all images has the same gradient at the nearest face.
 const FARTHER: [i32; 2] = [2, 3];
-/// Depth from which light comes back through the face that it fell on, over 1 / (1 - g').
+/// Depth from which light returns through the face that it fell on, over 1 / (1 - g').
 const RETURNS_FROM: f64 = 0.5;
-/// Shares of the way to a source that lie in cloud, between which it goes over from outside to inside.
+/// Shares of the path to a source that lie in cloud, between which the source goes over from outside to inside.
 const INSIDE: [f64; 2] = [0.5, 1.0];
 
-/// A source as a place sees it. Distances are scaled depths of the cloud that the place is in.
+/// A source as seen from a place. Distances are scaled depths of the cloud around the place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shine {
-    /// Unit, to the source.
+    /// Unit vector to the source.
     pub toward: DVec3,
-    /// How far it is.
+    /// Distance of the source.
     pub distance: f64,
-    /// Scaled depth of cloud on the way.
+    /// Scaled depth of cloud on the path.
     pub between: f64,
-    /// Scaled depths of the cloud's layer above and below the source.
+    /// Scaled depths of the layer's cloud above and below the source.
     pub within: [f64; 2],
-    /// It shines in a cloud, whatever lies on the way.
+    /// Whether it shines inside a cloud, whatever lies on the path.
     pub is_buried: bool,
 }
 
-/// Distance from a source over that from its image behind a face, and how fast that ratio grows along `direction`.
-/// `place` and `source` are how far these two stand from where the face lies dark, `grows` is how fast `place` grows
-/// along the direction.
+/// Returns the distance from a source over that from its image behind a face, and the growth of that ratio along
+/// `direction`. `place` and `source` are the distances of the two from the plane where the light is 0. `grows` is the
+/// growth of `place` along the direction.
 fn mirrored(shine: &Shine, direction: DVec3, [place, grows]: [f64; 2], source: f64) -> (f64, f64) {
     let d = shine.distance;
     let square = d * d + 4.0 * place * source;
@@ -65,9 +65,9 @@ fn mirrored(shine: &Shine, direction: DVec3, [place, grows]: [f64; 2], source: f
     (d / image, (toward - 2.0 * d * source * grows / square) / image)
 }
 
-/// Returns the light that a place at these depths scatters into `direction` (the way light goes), through the scaled
-/// depth `to_eye` of more cloud, 1/sr, of a source of intensity 1 a unit of scaled depth squared. `sky`:
-/// [`super::transport::Transport::under_sky`].
+/// Returns the light that a place at these depths scatters into `direction` (in which the light goes), 1/sr, for a
+/// source of intensity 1 per unit of scaled depth squared. `to_eye` is the scaled depth of cloud between place and eye,
+/// and `sky` is [`super::transport::Transport::under_sky`].
 pub fn scattered(
     scattering: &Scattering,
     sky: &Table,
@@ -93,11 +93,10 @@ fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, directio
     let once = albedo * phase * (-shine.between).exp() / (d * d);
     let dark = DARK_AT / turning;
     let level = shine.toward.truncate().length() * d;
-    // Of the sides no more is known than that one looks at the nearer one, and that the source lies beyond it in the
-    // same cloud.
+    // Little is known of the sides: the eye looks at the nearer one, and the source lies beyond it in the same cloud.
     let out = direction.truncate().length();
     let half = 0.5 * (depths.left + depths.right).max(d);
-    // Depths of place and source, and how fast the first grows along the direction.
+    // Depths of place and source at each face, and the growth of the first along the direction.
     let faces = [
         (depths.above, shine.within[0], -direction.z),
         (depths.below, shine.within[1], direction.z),
@@ -111,7 +110,7 @@ fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, directio
     let nearest = (0..3).min_by(|i, j| faces[*i].0.total_cmp(&faces[*j].0)).unwrap_or(0);
     for (i, (place, source, grows_by)) in faces.into_iter().enumerate() {
         let power = if i == nearest { 1 } else { FARTHER[usize::from(i != nearest ^ 1)] };
-        // A cloud is round: where one face is near, the others are not.
+        // A cloud is round: where one face is near, the others are farther away.
         let place = if i == nearest { place } else { place.max(source) };
         let (ratio, falling) = mirrored(shine, direction, [place + dark, grows_by], source.max(0.0) + dark);
         let left = 1.0 - ratio.powi(power);
@@ -124,11 +123,11 @@ fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, directio
 fn from_outside(scattering: &Scattering, sky: &Table, depths: &Depths, shine: &Shine, direction: DVec3) -> f64 {
     let d = shine.distance;
     let turning = scattering.turning();
-    // Where the light would leave the box behind the place.
+    // Depth from the place to where the light leaves the box.
     let (sine, rise) = (shine.toward.truncate().length(), shine.toward.z);
     let upright = if rise > 0.0 { depths.below } else { depths.above };
     let behind = (upright / rise.abs().max(1e-6)).min(depths.right / sine.max(1e-6));
-    // What leaves across the way.
+    // Leak rate across the path.
     let rate = |width: f64, across: f64| across * (PI / (width + 2.0 * DARK_AT / turning)).powi(2);
     let squares = shine.toward * shine.toward;
     let level = depths.left + depths.right;
@@ -142,7 +141,7 @@ fn from_outside(scattering: &Scattering, sky: &Table, depths: &Depths, shine: &S
     let often = sum.max(0.0) / PI;
     let momentum = (-turning * shine.between).exp() - (-shine.between).exp();
     let kept = scattering.scaled_albedo() * 3.0 * scattering.moments[1] / (4.0 * PI) * momentum * x;
-    // What comes back to the face has been some way in.
+    // Light that returns through the face has first gone some way in.
     let d = d - shine.between + shine.between.max(RETURNS_FROM / turning);
     (often + kept.clamp(-often, often)) / (d * d)
 }
@@ -161,7 +160,7 @@ pub(crate) mod tests {
 
     const G: f64 = 0.85;
 
-    /// A box of optical depth 1 a unit, and a source of 1 cd.
+    /// A box with optical depth 1 per unit of length, and a source of 1 cd.
     struct Case {
         sides: DVec3,
         source: DVec3,
@@ -177,7 +176,7 @@ pub(crate) mod tests {
             (0..3).all(|i| (0.0..self.sides[i]).contains(&self.source[i]))
         }
 
-        /// To where a ray leaves the box.
+        /// Returns the distance to where a ray leaves the box.
         fn exit(&self, position: DVec3, d: DVec3) -> f64 {
             (0..3)
                 .map(
@@ -202,8 +201,8 @@ pub(crate) mod tests {
             Shine { toward, distance: distance * scale, between: between * scale, within, is_buried: false }
         }
 
-        /// Light out of a face about a place of it, lm a unit, as the model has it; without what comes straight from
-        /// the source.
+        /// Computes the model's light that leaves a face around a place of it, lm per unit of area, without the light
+        /// that comes straight from the source.
         fn modelled(
             &self,
             transport: &Transport,
@@ -237,7 +236,7 @@ pub(crate) mod tests {
             PI * sum
         }
 
-        /// Computes the light out of a whole face, as [`Self::modelled`] does about a place of it.
+        /// Computes the light that leaves a whole face, as [`Self::modelled`] does around a place of it.
         fn modelled_face(&self, transport: &Transport, face: usize) -> f64 {
             let (axis, high) = (face / 2, face % 2 == 1);
             let on = |[u, v]: [f64; 2]| {
@@ -250,7 +249,7 @@ pub(crate) mod tests {
             self.modelled(transport, (axis, high), on)
         }
 
-        /// By photons: `each` gets where one leaves and by which face.
+        /// Traces photons; `each` gets the place and the face where one leaves.
         fn photons(&self, count: u32, mut each: impl FnMut(DVec3, usize)) {
             let mut chance = Chance::new(5, 0);
             let lobes = PhaseLobes::new(&Phase::HenyeyGreenstein { g: G });
@@ -275,7 +274,7 @@ pub(crate) mod tests {
                     }
                     let free = -chance.even().ln();
                     if free >= exit.0 {
-                        // What is hardly turned counts as straight on.
+                        // Photons that were not scattered count as light straight from the source.
                         if turns > 0 {
                             each(at + d * exit.0, exit.1);
                         }
@@ -298,7 +297,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// Light out of a unit of each face of a cube.
+    /// Returns the light that leaves each face of a cube, per unit of area.
     pub fn modelled_faces(side: f64, source: DVec3) -> [f64; 6] {
         let (case, transport) = (Case { sides: DVec3::splat(side), source }, transport());
         std::array::from_fn(|face| case.modelled_face(&transport, face))

@@ -1,5 +1,4 @@
-//! Lamps of the host and flashes that light the clouds of a picture, as shaders read them
-//! (`shaders/clouds/lit_lamps.wgsl`).
+//! Host lamps and lightning flashes that light the clouds of a picture, as uniforms (`shaders/clouds/lit_lamps.wgsl`).
 
 use std::f64::consts::PI;
 
@@ -11,18 +10,18 @@ use crate::{
     scene::{FlashLamp, HostLight, LightUniform},
 };
 
-/// Most of them; of more, those that light clouds most.
+/// Largest number of lamps. If there are more, those that light clouds most are kept.
 const LAMPS: usize = 16;
-/// Rows of the picture of their glow, at most.
+/// Largest number of rows in the picture of the lamps' glow.
 const ROWS: u32 = 96;
-/// Display value below which no glow shows: a quarter of a step of 8 bits.
+/// Display value below which glow is invisible: a quarter of a step of 8 bits.
 const LEAST_SHOWN: f64 = 1e-3;
-/// Share of a lamp's light that a cloud sends back, at most, and the distance within which a lamp in a cloud is taken
-/// to light it, m.
+/// Largest share of a lamp's light that a cloud reflects (`REFLECTS`). Distance at which a lamp inside a cloud is taken
+/// to light it, m (`NEAREST_M`).
 const REFLECTS: f64 = 0.7;
 const NEAREST_M: f64 = 5.0;
 
-/// One of them.
+/// A lamp or a flash.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct CloudLampUniform {
@@ -33,7 +32,7 @@ pub(crate) struct CloudLampUniform {
     pub pad: f32,
 }
 
-/// All of them, and where in its target their glow is drawn.
+/// All lamps and flashes, and the place of their glow in its target.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct LampsUniform {
@@ -43,22 +42,22 @@ pub(crate) struct LampsUniform {
     pub lamps: [CloudLampUniform; LAMPS],
 }
 
-/// Width and height of the glow's picture, texels, for a picture of so many pixels: `glow_size` of
-/// `shaders/between/glow.wgsl`.
+/// Returns the width and height of the glow's picture, texels, for a picture of `width` by `height` pixels: `glow_size`
+/// of `shaders/between/glow.wgsl`.
 pub(crate) fn glow_size((width, height): (u32, u32)) -> (u32, u32) {
     let rows = height.min(ROWS);
     ((width * rows).div_ceil(height), rows)
 }
 
-/// The mean of a lamp's light over all directions, of that in its middle. Its beam falls by a smooth step between two
-/// cosines.
+/// Returns the ratio of a lamp's mean intensity over all directions to that in the middle of its beam. The beam falls
+/// off by a smooth step between two cosines.
 fn even_share(lamp: &HostLight) -> f64 {
     let [inner, outer] = [lamp.inner_deg, lamp.outer_deg].map(|a| a.to_radians().cos());
     0.5 * (1.0 - inner + 0.5 * (inner - outer))
 }
 
-/// Luminance of the cloud that a lamp lights most, cd/m^2 at most; `height_m` over the sea. What is above the beam's
-/// steepest ray stays dark.
+/// Returns an upper bound of the luminance of the clouds that a lamp lights, cd/m^2. `height_m` is the lamp's height
+/// above the sea. Cloud above the beam's steepest ray stays dark.
 fn most_on(overhead: &CloudLayers, lamp: &HostLight, rise: f64, height_m: f64) -> f64 {
     let brightest = lamp.intensity_cd.into_iter().fold(0.0, f64::max);
     let steepest = |rise: f64| {
@@ -84,10 +83,10 @@ impl CloudLampUniform {
         Self { light, radius: 0.1, even: even_share(lamp) as f32, buried: 0.0, pad: 0.0 }
     }
 
-    /// All of a flash's light goes to all sides.
+    /// Creates the lamp of a flash. All of its light goes to all sides.
     fn flash(flash: &FlashLamp, exposure: f64) -> Self {
         Self {
-            // As one without a cloud about it.
+            // The light as without a cloud around it.
             light: FlashLamp { down_share: None, ..*flash }.uniform(exposure),
             radius: flash.radius_m.max(10.0) as f32,
             even: 1.0,
@@ -98,8 +97,8 @@ impl CloudLampUniform {
 }
 
 impl LampsUniform {
-    /// Finds the lamps and flashes of a moment, for a picture of these pixels; none where nothing of their glow would
-    /// show.
+    /// Finds the lamps and flashes of a moment for a picture of this many pixels; `None` if their glow would be
+    /// invisible.
     pub fn of(overhead: &CloudLayers, now: &SceneMoment<'_>, exposure: f64, picture: (u32, u32)) -> Option<Self> {
         let (lights, flashes) = (now.lamps, now.flash_lamps());
         if lights.is_empty() && flashes.is_empty() {

@@ -8,20 +8,20 @@ use crate::{
     world::light_above_clouds,
 };
 
-/// Light on a layer from what is above and below it.
+/// Light that falls on a layer from above and below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LayerLight {
-    /// Illuminance by the sun or moon on what faces it, lux times exposure a channel.
+    /// Illuminance by the sun or moon on a surface that faces it, lux times exposure, for each channel.
     pub sun: [f64; 3],
-    /// Radiance of all above, and of all below, cd/m^2 times exposure a channel.
+    /// Mean radiance from above, cd/m^2 times exposure, for each channel.
     pub above: [f64; 3],
-    /// See `above`.
+    /// Mean radiance from below, cd/m^2 times exposure, for each channel.
     pub below: [f64; 3],
 }
 
-/// Light on a layer from sun, sky and the layers above it, and from the ground and the layers below it; times
-/// `exposure`. It depends on where the layer lies, not on where the eye is. Only of clouds that a map or rain areas
-/// place is the ground under them not known: it counts as the ground at the eye.
+/// Returns the light on a layer from sun, sky and the layers above it, and from the ground and the layers below it,
+/// times `exposure`. It depends on the layer's position, not on the eye's. Where a map or rain areas place the clouds,
+/// the light of the ground below them is not known; the ground at the eye is used instead.
 pub(crate) fn light_on(scene: &Scene, (shape, is_placed): (&Shape, bool), exposure: f64) -> LayerLight {
     let (c, light) = (&scene.conditions, scene.brighter());
     let albedo = scene.ground_albedo;
@@ -47,15 +47,15 @@ pub(crate) fn light_on(scene: &Scene, (shape, is_placed): (&Shape, bool), exposu
 }
 
 impl CloudLayers {
-    /// The mean light of its broken clouds as they look from the place, cd/m^2, their cover, and how far the base of
-    /// the lowest of them lies over it, m. From below half of what is seen is lit from above and half through the
-    /// cloud, from above all is lit.
+    /// Returns the mean radiance of the drawn clouds seen from the place, cd/m^2, with their cover, and the height of
+    /// the lowest of them above the place, m. From below, half of the visible cloud is lit from above and half through
+    /// the cloud. From above, all of it is lit.
     pub fn mean_radiance_and_cover(&self, scene: &Scene) -> ([f32; 4], f32) {
         let (mut light, mut clear, mut over) = ([0.0; 3], 1.0, f64::INFINITY);
         for layer in self.layers() {
             let (shape, cover) = (&layer.shape, layer.slab.cover);
             let of = light_on(scene, (shape, self.is_placed()), 1.0);
-            // Bohren 1987 (American Journal of Physics 55, 524): what even cloud lets through, of g 0.85.
+            // Transmittance of even cloud with g = 0.85 (Bohren 1987, American Journal of Physics 55, 524).
             let through = 2.0 / (2.0 + 0.15 * layer.slab.optical_depth);
             let is_over = shape.base_m > scene.place.altitude_m;
             let seen = if is_over { 0.5 } else { 1.0 - through };

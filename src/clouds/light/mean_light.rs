@@ -1,6 +1,6 @@
-//! The light that a host is told of, which laws of the weather give ([`Conditions::cloud_light_at`]), against the
-//! clouds that are drawn: the mean of what they let through to many places, at all heights of the sun and from below
-//! their base to above their top.
+//! Test of the light that a host is given, which closed formulas of the weather give ([`Conditions::cloud_light_at`]).
+//! It is compared with the drawn clouds: the mean of the light that they let through to many places, for all heights of
+//! the sun, from below their base to above their top.
 
 use glam::{DVec2, DVec3};
 
@@ -15,21 +15,21 @@ use crate::{
 
 /// Sines of the light's elevation.
 const LIGHTS: [f64; 6] = [1.0, 0.7, 0.4, 0.2, 0.1, 0.03];
-/// Places of a seed.
+/// Number of places for each seed.
 const PLACES: usize = 160;
 
 fn grown() -> Vec<(Map, Solid)> {
     (1..=3).map(|seed| (Map::new(seed), Solid::new(seed).unwrap())).collect()
 }
 
-/// Share of the direct light that comes to places at a height, on their mean.
+/// Returns the mean share of the direct light that comes to places at a height.
 fn mean(c: &Conditions, grown: &[(Map, Solid)], height_m: f64, mu: f64) -> f64 {
     let spacing_m = c.cloud_slabs().map(|slab| slab.scale_m).fold(0.0, f64::max);
     let to_light = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
     let of_seed = |seed: &(Map, Solid)| {
         let fields: Vec<Field<'_>> = c.cloud_slabs().map(|slab| field(slab, seed, threshold(slab))).collect();
         let one = |i: usize| {
-            // Some clouds apart, so that each place is another chance.
+            // The places are some clouds apart, so that they are independent.
             let place = DVec2::new(3.37 * i as f64, 2.618 * ((i * i) % 101) as f64) * spacing_m;
             (-fields.iter().map(|field| depth(field, place.extend(height_m), to_light)).sum::<f64>()).exp()
         };
@@ -42,8 +42,8 @@ fn under(layers: &[CloudLayer]) -> Conditions {
     derive(&Weather { clouds: layers.to_vec(), ..Weather::default() }).unwrap()
 }
 
-/// How far the light that is told lies from the mean: root of the mean square, and most, at these heights and all
-/// lights.
+/// Returns the error of the given light against the mean, at these heights and all lights: root mean square, and
+/// largest.
 fn off(c: &Conditions, grown: &[(Map, Solid)], heights_m: &[f64]) -> (f64, (f64, String)) {
     let (mut squares, mut most) = (0.0, (0.0, String::new()));
     for height_m in heights_m {
@@ -66,7 +66,7 @@ fn the_sun_that_is_told_of_is_the_mean_over_places() {
         let (mut below, mut within) = ((0.0f64, 0.0f64), (0.0f64, 0.0f64));
         let mut worst = (0.0, String::new());
         for cover in [0.125, 0.4375, 0.75, 1.0] {
-            // From a layer on the ground to a high one: it is the height within the layer that counts.
+            // The layer lies on the ground. A high layer gives the same: only the height within the layer counts.
             let c = under(&[CloudLayer::of(*kind, cover, 0.0)]);
             let thickness_m = c.cloud_slabs().next().unwrap().thickness_m;
             let (rms, most) = off(&c, &grown, &[-1.0]);

@@ -1,4 +1,4 @@
-//! Media of clouds: droplets and ice, with the light in them.
+//! Media of clouds, droplets and ice, with the transport of light in them.
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,16 +8,17 @@ use crate::{
     light::{Phase, PhaseLobes},
 };
 
-/// Change of the sun's cosine after which the tables under its beam are made anew.
+/// Change of the cosine of the sun's zenith angle after which the tables under its beam are computed again.
 pub(crate) const SUN_MOVED: f64 = 2e-3;
-/// Asymmetry of ice crystals (Fu 2007: 0.74 to 0.8 by shape).
+/// Asymmetry parameter of ice crystals (Fu 2007: 0.74 to 0.8 by shape).
 const ICE_ASYMMETRY: f64 = 0.77;
 
 fn medium(phase: Phase) -> Arc<Transport> {
     Arc::new(Transport::new(Scattering::new(PhaseLobes::new(&phase), 1.0)))
 }
 
-/// Droplets of a diameter, kept for all contexts if it is one of those that clouds have.
+/// Returns the transport in droplets of a diameter. It is shared by all contexts if the diameter is one of
+/// [`LIQUID_UM`].
 pub(crate) fn droplets(diameter_um: f64) -> Arc<Transport> {
     static MADE: [OnceLock<Arc<Transport>>; LIQUID_UM.len()] = [const { OnceLock::new() }; LIQUID_UM.len()];
     let new = || medium(Phase::Droplets { diameter_um });
@@ -25,13 +26,13 @@ pub(crate) fn droplets(diameter_um: f64) -> Arc<Transport> {
     kept.unwrap_or_else(new)
 }
 
-/// Ice.
+/// Returns the transport in ice, shared by all contexts.
 fn ice() -> Arc<Transport> {
     static MADE: OnceLock<Arc<Transport>> = OnceLock::new();
     MADE.get_or_init(|| medium(Phase::HenyeyGreenstein { g: ICE_ASYMMETRY })).clone()
 }
 
-/// Droplets of a diameter, and ice.
+/// Returns the media of clouds: droplets of a diameter, and ice.
 pub(crate) fn media(liquid_um: f64) -> [Arc<Transport>; 2] {
     [droplets(liquid_um), ice()]
 }

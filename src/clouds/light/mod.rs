@@ -1,21 +1,24 @@
-//! Light: what it does in clouds and on its way through them, from sun, sky and ground, lamps and flashes.
+//! Light in clouds and on its way through them, from sun, sky and ground, lamps and flashes.
 //!
 //! # Model
-//! A place knows how much cloud lies about it: above and below, towards the sun and, level, to either side. As far as
-//! light is concerned it stands in a box of these depths. Light that is scattered once keeps the true phase function.
-//! Light scattered more often comes from the tables of [`transport`]: one for the beam that falls on the box's
-//! top, one for what falls on the side that faces the sun, one each for sky and ground. Side to side, light goes as the
-//! cosine whose leak the tables were made with, once it has turned: at the face that it falls on it is even. Top and
-//! side share the beam. The rays of the sun come to a place through the nearer of the two, so with d the way to the top
-//! less the way to the side the top has the share 1 / (1 + exp((1 - g') d)), the side the rest. A real cloud is no box:
-//! where its way to the sun, s, is longer than the box's, m, the light falls as the square of (1 + (1 - g') m) / (1 +
-//! (1 - g') s). What beam and first scatterings keep of their level momentum, exp(-(1 - g') s) - exp(-s), is added to
-//! the first moment (van de Hulst 1980). Between sky and ground of the same light a cloud that absorbs nothing is as
-//! bright as they are: what sky and ground light less than that, the sides let in.
+//! A place has the depth of cloud above and below it, towards the sun and, level, to either side. Its light is that in
+//! a box with these depths. Light that is scattered once keeps the true phase function. Light scattered more often
+//! comes from the tables of [`transport`]: one for the beam on the box's top, one for the beam on the side that faces
+//! the sun, and one each for sky and ground. Across the box, from side to side, the light is even at the face that the
+//! beam falls on. Once it has turned, it varies as the cosine whose leak the tables were made with.
+//!
+//! Top and side share the beam, because the sun's rays reach a place through the nearer of the two. With d the path to
+//! the top less the path to the side, the top has the share 1 / (1 + exp((1 - g') d)), and the side has the rest. A
+//! real cloud is no box: where its path to the sun, s, is longer than the box's, m, the light falls as the square of
+//! (1 + (1 - g') m) / (1 + (1 - g') s). The level momentum that beam and first scatterings keep, exp(-(1 - g') s) -
+//! exp(-s), is added to the first moment (van de Hulst 1980).
+//!
+//! A cloud that absorbs nothing, between sky and ground of equal radiance, has that radiance too. The light from sky
+//! and ground alone is less, and the difference comes in through the sides.
 //!
 //! # Error
 //! Fluxes through the faces of a cube of optical depth 16 (Henyey-Greenstein 0.85) stay within 0.03 of the incident
-//! flux of a path tracer's: `cargo test --lib clouds::light::sources`.
+//! flux from a path tracer's: `cargo test --lib clouds::light::sources`.
 
 pub mod halo;
 pub mod lamp_light;

@@ -1,24 +1,25 @@
-//! Shadows of clouds: the share of the direct light that they let through to a place, in f64.
-//! `shaders/clouds/shadow.wgsl` makes a map of the same.
+//! Shadows of clouds: the share of the direct light that clouds let through to a place, in f64.
+//! `shaders/clouds/shadow.wgsl` draws it as a map.
 //!
 //! # Model
-//! The light goes straight through each layer above the place, and loses what the cloud on its way takes (Beer's law).
-//! The ground is level as far as a ray through the clouds over it reaches.
+//! The light goes straight through each layer above the place and is attenuated by the cloud on its path (Beer's law).
+//! The ground counts as level as far as a ray through the clouds reaches.
 //!
 //! # Error
-//! The map that pictures use against this: `cargo test --test clouds shadow -- --nocapture`.
+//! The map of pictures is compared with this function by `cargo test --test clouds shadow -- --nocapture`.
 
 use glam::DVec3;
 
 use crate::{clouds::field::extinction::Field, moment::Scene};
 
-/// Steps of the way through a layer.
+/// Steps along the path through a layer.
 const STEPS: usize = 32;
-/// Sine of the lowest light whose shadows are followed: lower, a ray leaves the clouds that can be told apart.
+/// Sine of the lowest elevation for which shadows are traced. Below it, rays leave the range within which single clouds
+/// can be told apart.
 pub const LOWEST: f64 = 0.03;
 
-/// Optical depth of a layer on the way of light to a place (east, north, above the sea), m; `to_light` is a unit
-/// vector.
+/// Returns the optical depth of a layer on the path of light to a place (east, north, above the sea), m. `to_light` is
+/// a unit vector.
 pub(super) fn depth(field: &Field<'_>, place_m: DVec3, to_light: DVec3) -> f64 {
     let s = &field.shape;
     let (from, to) = ((s.base_m - place_m.z).max(0.0), s.base_m + s.thickness_m - place_m.z);
@@ -26,14 +27,14 @@ pub(super) fn depth(field: &Field<'_>, place_m: DVec3, to_light: DVec3) -> f64 {
         return 0.0;
     }
     let step = (to - from) / STEPS as f64;
-    // Of a light below the horizon too, the way leads up.
+    // The path leads upwards even to a light below the horizon.
     let to_light = to_light.with_z(to_light.z.max(LOWEST));
     let slant = to_light / to_light.z;
     let at = |i: usize| field.extinction_per_m(place_m + slant * (from + (i as f64 + 0.5) * step));
     (0..STEPS).map(at).sum::<f64>() * step / to_light.z
 }
 
-/// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place.
+/// Returns the share of the direct light of the brighter of sun and moon that clouds let through to a scene's place.
 pub fn sun_share<'a>(fields: impl Iterator<Item = Field<'a>>, scene: &Scene) -> f64 {
     let place_m = DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m);
     let to_light = scene.brighter().direction;

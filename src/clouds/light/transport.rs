@@ -1,19 +1,19 @@
-//! Light that is scattered more than once inside a layer of cloud: adding and doubling (van de Hulst 1980) with four
-//! directions a hemisphere, for the depths above and below a place.
+//! Light that is scattered more than once in a layer of cloud, as a function of the depths above and below a place:
+//! adding and doubling (van de Hulst 1980) with four directions in each hemisphere.
 //!
 //! # Model
-//! The forward peak of the phase function counts as not scattered (delta scaling, Wiscombe 1977): what is beyond a cap
-//! is cut off, so much of it that the share g^6 is gone, for asymmetry g. What is left is smooth enough for eight
-//! directions and four Legendre moments. Depths are scaled by 1 - albedo x share.
+//! The forward peak of the phase function counts as not scattered (delta scaling, Wiscombe 1977). The phase function is
+//! cut off at a cap, chosen so that the share g^6 of the scattering is cut, for asymmetry g. The rest is smooth enough
+//! for eight directions and four Legendre moments. Depths are scaled by 1 - albedo x share.
 //!
-//! A place knows the scaled depth `above` and `below` it. The layer above and the layer below are slabs of a ladder of
-//! doubled depths; between the two the radiance follows from their reflection and transmission. Its first four moments
-//! are what the place scatters: J = sum of (2 l + 1) chi_l m_l P_l / (4 pi).
+//! A place has the scaled depth `above` and `below` it. The layers above and below it are slabs from a ladder of
+//! doubled depths. The radiance between the two follows from their reflection and transmission. Its first four moments
+//! give what the place scatters: J = sum of (2 l + 1) chi_l m_l P_l / (4 pi).
 //!
-//! A cloud of finite width loses light through its sides. In the diffusion approximation the light of a box goes as a
-//! cosine from side to side, and leaves as if it were absorbed at the rate D b^2 for each of the two level axes, with b
-//! = pi / (width + 2 x 0.71 / (1 - g')) and D = 1 / (3 (1 - g')) (Duderstadt and Hamilton 1976, chapter 5):
-//! [`leak_rate`]. Ladders stand for some rates ([`LEAKS`]).
+//! A cloud of finite width loses light through its sides. In the diffusion approximation the light in a box varies as a
+//! cosine from side to side. It leaks as if it were absorbed at the rate D b^2 for each of the two level axes, with b =
+//! pi / (width + 2 x 0.71 / (1 - g')) and D = 1 / (3 (1 - g')) (Duderstadt and Hamilton 1976, chapter 5):
+//! [`leak_rate`]. There is one ladder for each of [`LEAKS`] rates.
 //!
 //! # Error
 //! `cargo test --lib clouds::light::transport` prints reflectance and transmittance of slabs against discrete
@@ -28,23 +28,23 @@ use glam::{DMat4, DVec4};
 
 use crate::light::phase::{PhaseLobes, lobes_phase};
 
-/// Nodes and weights of Gauss over (0, 1): cosines of the directions of a hemisphere.
+/// Gauss nodes and weights over (0, 1). The nodes are the cosines of the directions of a hemisphere.
 const NODES: DVec4 =
     DVec4::new(0.069_431_844_202_973_71, 0.330_009_478_207_571_9, 0.669_990_521_792_428_1, 0.930_568_155_797_026_3);
 const WEIGHTS: DVec4 =
     DVec4::new(0.173_927_422_568_726_93, 0.326_072_577_431_273_07, 0.326_072_577_431_273_07, 0.173_927_422_568_726_93);
 
-/// Power of the asymmetry that is the share of scattering counted as straight on.
+/// The share of scattering that counts as straight on is the asymmetry to this power.
 const FORWARD_POWER: i32 = 6;
-/// Azimuths over which the phase function is averaged, in half a turn.
+/// Number of azimuths in half a turn over which the phase function is averaged.
 const AZIMUTHS: usize = 64;
 
-/// Scaled depth of the thinnest slab of a ladder; those after it are each the square root of 2 times as deep.
+/// Scaled depth of the thinnest slab of a ladder. Each slab after it is deeper by the square root of 2.
 pub const THINNEST: f64 = 0.05;
-/// Slabs of a ladder, the one of no depth among them.
+/// Number of slabs in a ladder, with the one of depth 0.
 pub const DEPTHS: usize = 28;
-/// Ladders, one a rate at which light leaves through the sides, per scaled depth. Light falls off with the root of the
-/// rate: the roots are 0.03 (e^(k/4) - 1).
+/// Number of ladders. Each has one rate at which light leaks through the sides, per scaled depth. The light falls off
+/// with the root of the rate; the roots are 0.03 (e^(k/4) - 1).
 pub const LEAKS: usize = 16;
 const LEAK_ROOT: f64 = 0.03;
 
@@ -52,7 +52,8 @@ fn leak_of(k: usize) -> f64 {
     (LEAK_ROOT * (0.25 * k as f64).exp_m1()).powi(2)
 }
 
-/// Cosines of scattering angles over which a phase function is integrated: dense where 1 - cos is small.
+/// Returns values of 1 - cos of the scattering angle and their weights, to integrate a phase function. They are dense
+/// where 1 - cos is small.
 fn angles() -> impl Iterator<Item = (f64, f64)> {
     let (n, least) = (4000, 1e-9f64.ln());
     let step = (2f64.ln() - least) / f64::from(n);
@@ -66,23 +67,23 @@ fn legendre(l: usize, x: f64) -> f64 {
     [1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x][l]
 }
 
-/// How the droplets of a cloud scatter, without the forward peak.
+/// Scattering by the droplets of a cloud, without the forward peak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scattering {
-    /// The whole phase function.
+    /// Whole phase function.
     pub lobes: PhaseLobes,
-    /// Part of what meets a droplet that is scattered, with the peak.
+    /// Single-scattering albedo, with the peak.
     pub albedo: f64,
     /// Share of scattering in the peak.
     pub forward: f64,
-    /// Value above which the phase function is cut off, 1/sr.
+    /// Value at which the phase function is cut off, 1/sr.
     pub cap: f64,
-    /// Legendre moments of what is left.
+    /// Legendre moments of the rest.
     pub moments: [f64; 4],
 }
 
 impl Scattering {
-    /// Creates the scattering of a phase function, and of droplets that scatter the share `albedo`.
+    /// Creates the scattering of a phase function for droplets with this single-scattering albedo.
     pub fn new(lobes: PhaseLobes, albedo: f64) -> Self {
         let asymmetry = lobes.moments()[0].clamp(0.0, 0.999);
         let forward = asymmetry.powi(FORWARD_POWER);
@@ -101,35 +102,36 @@ impl Scattering {
         Self { lobes, albedo, forward, cap: high, moments: [0, 1, 2, 3].map(moment) }
     }
 
-    /// Scaled depth over depth.
+    /// Returns the ratio of scaled depth to depth.
     pub fn scale(&self) -> f64 {
         1.0 - self.albedo * self.forward
     }
 
-    /// Albedo of what is left.
+    /// Returns the single-scattering albedo without the peak.
     pub fn scaled_albedo(&self) -> f64 {
         self.albedo * (1.0 - self.forward) / self.scale()
     }
 
-    /// The phase function without its peak, 1/sr, at the angle whose 1 - cos is `versine`.
+    /// Returns the phase function without its peak, 1/sr, at the angle whose 1 - cos is `versine`.
     pub fn smooth_phase(&self, versine: f64) -> f64 {
         lobes_phase(&self.lobes, 1.0, versine).min(self.cap) / (1.0 - self.forward)
     }
 
-    /// The peak that was cut off, 1/sr, of light that has gone the scaled depth `gone` in all: of what the beam counts
-    /// as straight on, the part 1 - exp(-f gone / (1 - f)) was scattered so, evenly along the way.
+    /// Returns the peak that was cut off, 1/sr, after light has gone the scaled depth `gone` in all. Of the beam that
+    /// counts as going straight on, the share 1 - exp(-f gone / (1 - f)) was scattered in the peak, evenly along the
+    /// path.
     pub fn peak(&self, versine: f64, gone: f64) -> f64 {
         let x = self.forward * gone / (1.0 - self.forward);
         let share = if x < 1e-3 { 1.0 - 0.5 * x } else { (1.0 - (-x).exp()) / x };
         (lobes_phase(&self.lobes, 1.0, versine) - self.cap).max(0.0) / (1.0 - self.forward) * share
     }
 
-    /// Share of the way in which light keeps its direction: 1 - g'.
+    /// Returns the share of momentum that light loses at each scattering: 1 - g'.
     pub fn turning(&self) -> f64 {
         1.0 - self.moments[1]
     }
 
-    /// Mean of the smooth phase function over azimuth between directions of these cosines.
+    /// Returns the mean of the smooth phase function over azimuth, between directions of these cosines.
     fn mean_phase(&self, cosine_in: f64, cosine_out: f64) -> f64 {
         let sines = ((1.0 - cosine_in * cosine_in) * (1.0 - cosine_out * cosine_out)).max(0.0).sqrt();
         let at = |k: usize| {
@@ -139,8 +141,8 @@ impl Scattering {
         (0..AZIMUTHS).map(at).sum::<f64>() / AZIMUTHS as f64
     }
 
-    /// Returns the light that a beam of unit irradiance and this cosine sends into the directions down and up, a unit
-    /// of scaled depth; all of it is the albedo.
+    /// Returns the light that a beam of unit irradiance and this cosine scatters into the directions down and up, per
+    /// unit of scaled depth. The sum over all directions is the albedo.
     fn sent_by_beam(&self, cosine: f64) -> (DVec4, DVec4) {
         let at = |sign: f64| DVec4::from_array(NODES.to_array().map(|mu| self.mean_phase(cosine, sign * mu)));
         let (down, up) = (at(1.0), at(-1.0));
@@ -149,14 +151,14 @@ impl Scattering {
     }
 }
 
-/// Rate at which light leaves a box of these scaled depths from side to side along its two level axes, per scaled
-/// depth, over the rate at which it is scattered; see the module. `turning`: [`Scattering::turning`].
+/// Returns the rate at which light leaks through the sides of a box of these scaled widths, per scaled depth, over the
+/// rate of scattering; see the module. `turning` is [`Scattering::turning`].
 pub fn leak_rate(widths: [f64; 2], turning: f64) -> f64 {
     let one = |width: f64| (PI / (width + 1.42 / turning)).powi(2);
     (one(widths[0]) + one(widths[1])) / (3.0 * turning)
 }
 
-/// A slab as all light sees it: what it reflects and what it lets through, from direction to direction.
+/// Reflection and transmission of a slab, from direction to direction.
 #[derive(Clone, Copy)]
 struct ScatterSlab {
     depth: f64,
@@ -164,7 +166,7 @@ struct ScatterSlab {
     passes: DMat4,
 }
 
-/// Light that leaves a slab under a beam: scattered down, scattered up, and what is left of the beam.
+/// Light that leaves a slab under a beam: scattered down, scattered up, and the share left of the beam.
 #[derive(Clone, Copy)]
 struct UnderBeam {
     down: DVec4,
@@ -172,7 +174,7 @@ struct UnderBeam {
     left: f64,
 }
 
-/// 1 / (1 - a b): light thrown back and forth.
+/// Returns 1 / (1 - a b), the sum over all reflections to and fro between two slabs.
 fn back_and_forth(a: DMat4, b: DMat4) -> DMat4 {
     (DMat4::IDENTITY - a * b).inverse()
 }
@@ -180,7 +182,7 @@ fn back_and_forth(a: DMat4, b: DMat4) -> DMat4 {
 impl ScatterSlab {
     const NONE: Self = Self { depth: 0.0, reflects: DMat4::ZERO, passes: DMat4::IDENTITY };
 
-    /// So thin that nothing is scattered twice.
+    /// Creates a slab so thin that nothing is scattered twice.
     fn thin(turned: &ScatterMatrices, albedo: f64, depth: f64) -> Self {
         let straight = DMat4::from_diagonal(DVec4::ONE - depth / NODES);
         let scattered = albedo * depth;
@@ -193,8 +195,8 @@ impl ScatterSlab {
         Self { depth: 2.0 * self.depth, reflects: r + t * between * r * t, passes: t * between * t }
     }
 
-    /// Returns the light that leaves two such slabs under a beam, from that which leaves one. `bounces`: light thrown
-    /// back and forth between the two.
+    /// Returns the light that leaves two such slabs under a beam, from the light that leaves one. `bounces` is
+    /// [`back_and_forth`] between the two.
     fn doubled_beam(&self, bounces: &DMat4, lit: &UnderBeam) -> UnderBeam {
         let (r, t) = (self.reflects, self.passes);
         let below = lit.up * lit.left;
@@ -204,8 +206,8 @@ impl ScatterSlab {
     }
 }
 
-/// Light that a layer of depth 1 would scatter from each direction into each, down and up, over all that it scatters:
-/// once, and as if it took nothing away.
+/// Light that a layer of depth 1 would scatter from each direction into each, down and up, over all that it scatters.
+/// Only single scattering counts, without attenuation.
 struct ScatterMatrices {
     down: DMat4,
     up: DMat4,
@@ -228,18 +230,18 @@ impl ScatterMatrices {
     }
 }
 
-/// Slabs of doubled depths of one medium that loses light at one rate.
+/// Slabs of doubled depths of one medium with one leak rate.
 struct SlabLadder {
-    /// From each of two thinnest slabs on, the doublings up to the deepest of the ladder, with light thrown back and
-    /// forth between two of each.
+    /// Doublings from each of two thinnest slabs up to the deepest slab of the ladder, each with [`back_and_forth`]
+    /// between two such slabs.
     doublings: [Vec<(ScatterSlab, DMat4)>; 2],
     slabs: Vec<ScatterSlab>,
-    /// By depth above and below: light thrown back and forth between the two.
+    /// [`back_and_forth`] between the slabs above and below, by their depths.
     between: Vec<DMat4>,
     leak: f64,
 }
 
-/// Doublings from a slab so thin that nothing is scattered twice to the thinnest of the ladder.
+/// Number of doublings from a slab so thin that nothing is scattered twice to the thinnest of the ladder.
 const DOUBLINGS: i32 = 10;
 
 impl SlabLadder {
@@ -262,7 +264,7 @@ impl SlabLadder {
     }
 
     fn under_beam(&self, (down, up): (DVec4, DVec4), cosine: f64) -> Vec<UnderBeam> {
-        // Of what the beam scatters as much is lost at the sides as of the rest.
+        // The light that the beam scatters leaks through the sides at the same rate.
         let kept = 1.0 / (1.0 + self.leak);
         let chains = self.doublings.each_ref().map(|chain| {
             let depth = chain[0].0.depth;
@@ -280,8 +282,8 @@ impl SlabLadder {
     }
 }
 
-/// Returns the value at no depth, and then at each depth of a ladder, out of the doublings of two thinnest slabs in
-/// turn.
+/// Returns the value at depth 0 and then at each depth of a ladder, taken in turn from the doublings of the two
+/// thinnest slabs.
 fn in_turn<T>(none: T, mut chains: [impl Iterator<Item = T>; 2]) -> Vec<T> {
     chains.iter_mut().for_each(|chain| (0..DOUBLINGS).for_each(|_| drop(chain.next())));
     let [even, odd] = chains;
@@ -289,23 +291,23 @@ fn in_turn<T>(none: T, mut chains: [impl Iterator<Item = T>; 2]) -> Vec<T> {
     std::iter::once(none).chain(pairs).take(DEPTHS).collect()
 }
 
-/// Source terms of light scattered more than once by depth above (columns), depth below (rows) and leak (blocks of
-/// rows): coefficients of Legendre's polynomials of the cosine between a direction and the way down, 1/sr.
+/// Source terms of light scattered more than once, by depth above (columns), depth below (rows) and leak (blocks of
+/// rows). Each entry has the Legendre coefficients of the cosine between a direction and straight down, 1/sr.
 pub type Table = Vec<[f32; 4]>;
 
-/// Everything of a medium that does not depend on its light.
+/// Transport of light in a medium: all that does not depend on the light itself.
 pub struct Transport {
-    /// The medium.
+    /// Scattering of the medium.
     pub scattering: Scattering,
     ladders: Vec<SlabLadder>,
-    /// See [`Transport::conserving`].
+    /// Factor that conserves energy ([`Transport::conserving`]).
     conserved: f64,
-    /// See [`Transport::under_sky`].
+    /// Table of [`Transport::under_sky`], created at first use.
     sky: OnceLock<Arc<Table>>,
 }
 
 impl Transport {
-    /// Creates the transport of a medium: some milliseconds of work.
+    /// Creates the transport of a medium. It takes some milliseconds.
     pub fn new(scattering: Scattering) -> Self {
         let turned = ScatterMatrices::new(&scattering);
         let ladders = (0..LEAKS).map(|k| SlabLadder::new(&scattering, &turned, leak_of(k))).collect();
@@ -314,8 +316,9 @@ impl Transport {
         made
     }
 
-    /// Factor with which rays through an even slab find as much light leave it as falls on it, where nothing is
-    /// absorbed: what leaves in eight directions and what leaves in all of them differ by a hundredth.
+    /// Returns the factor that makes the light leaving an even slab, as found by rays through it, equal to the light
+    /// that falls on it where nothing is absorbed. Without it a sum over eight directions differs by a hundredth from
+    /// one over all directions.
     fn conserving(&self) -> f64 {
         let of = Scattering { albedo: 1.0, ..self.scattering };
         let ladders = vec![SlabLadder::new(&of, &ScatterMatrices::new(&of), 0.0)];
@@ -343,7 +346,7 @@ impl Transport {
         ((falls - once) / often).clamp(0.9, 1.1)
     }
 
-    /// The moments of light between a slab above and one below, times what a place scatters of them.
+    /// Returns the moments of the light between a slab above and one below, times the scattering of a place.
     fn source(&self, downward: DVec4, upward: DVec4) -> [f32; 4] {
         let of = &self.scattering;
         [0usize, 1, 2, 3].map(|l| {
@@ -356,8 +359,8 @@ impl Transport {
         })
     }
 
-    /// Under a beam of unit irradiance (facing it) that comes from above at this cosine. Light that it scatters once is
-    /// not in it.
+    /// Returns the table under a beam from above at this cosine, with unit irradiance on a surface that faces it. It
+    /// does not contain light that is scattered once.
     pub fn under_beam(&self, cosine: f64) -> Table {
         let cosine = cosine.clamp(0.01, 1.0);
         let of = &self.scattering;
@@ -376,8 +379,8 @@ impl Transport {
         out
     }
 
-    /// Under a sky of radiance 1 all over the upper side. All that it sends is in it. Kept: it is the same under any
-    /// sun.
+    /// Returns the table under a sky of radiance 1 over the whole upper side, with all scattered light. It is kept,
+    /// since it does not depend on the sun.
     pub fn under_sky(&self) -> Arc<Table> {
         let one = |ladder: &SlabLadder, i: usize| {
             let (above, below) = (i % DEPTHS, i / DEPTHS);
@@ -389,13 +392,13 @@ impl Transport {
     }
 }
 
-/// Place of a scaled depth in a row of a table, from 0 to [`DEPTHS`] - 1.
+/// Returns the position of a scaled depth in a row of a table, from 0 to [`DEPTHS`] - 1.
 pub fn depth_place(depth: f64) -> f64 {
     let x = if depth < THINNEST { depth / THINNEST } else { 1.0 + 2.0 * (depth / THINNEST).log2() };
     x.clamp(0.0, (DEPTHS - 1) as f64)
 }
 
-/// Place of a leak among the [`LEAKS`], from 0 to their number less 1.
+/// Returns the position of a leak rate among the [`LEAKS`], from 0 to their number less 1.
 pub fn leak_place(leak: f64) -> f64 {
     (4.0 * (leak.sqrt() / LEAK_ROOT).ln_1p()).min((LEAKS - 1) as f64)
 }
@@ -405,7 +408,7 @@ fn cell(x: f64, count: usize) -> (usize, f64) {
     (i, x - i as f64)
 }
 
-/// A table's source terms between its entries, of the ladder without leak.
+/// Interpolates a table's source terms for the ladder without leak.
 fn first_leak_at(table: &[[f32; 4]], depth_above: f64, depth_below: f64) -> [f64; 4] {
     let (i, x) = cell(depth_place(depth_above), DEPTHS);
     let (j, y) = cell(depth_place(depth_below), DEPTHS);
@@ -421,7 +424,7 @@ fn first_leak_at(table: &[[f32; 4]], depth_above: f64, depth_below: f64) -> [f64
     out
 }
 
-/// A table's source terms between its entries.
+/// Interpolates a table's source terms.
 pub fn table_at(table: &Table, depth_above: f64, depth_below: f64, leak: f64) -> [f64; 4] {
     let (k, z) = cell(leak_place(leak), LEAKS);
     let [low, high] = [k, k + 1].map(|k| first_leak_at(&table[k * DEPTHS * DEPTHS..], depth_above, depth_below));

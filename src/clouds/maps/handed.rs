@@ -1,34 +1,35 @@
-//! The map of the clouds' shadows as a texture for a host's own materials. The mapping is that of
-//! `shaders/clouds/shadow_map.wgsl` and of the published snippets.
+//! Shadow map of the clouds as a texture for a host's own materials. `shaders/clouds/shadow_map.wgsl` and the published
+//! snippets have the same mapping.
 
 use glam::{DVec2, DVec3, DVec4};
 
 use super::shadow_projection::ShadowProjection;
 use crate::moment::SceneMoment;
 
-/// Map of the clouds' shadows for a host's own materials. The texture is valid until the view is destroyed; ask for all
-/// else after each frame.
+/// Shadow map of the clouds for a host's own materials. The texture is valid until the view is destroyed. The other
+/// fields change with each frame; get them again after it.
 ///
-/// The map is a plane at the station's height, fixed to the air that carries the clouds, and repeats: 20 km from side
-/// to side.
+/// The map lies in a level plane at the station's height and moves with the air that carries the clouds. It repeats
+/// every 20 km.
 #[derive(Clone, Debug)]
 pub struct CloudShadows {
-    /// Share of the direct light of sun or moon, whichever is brighter, that clouds let through: one channel of 8 bits.
+    /// Share of the direct light that clouds let through, of the sun or the moon, whichever is brighter. One channel of
+    /// 8 bits.
     pub texture: wgpu::Texture,
-    /// Multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. They follow the light to
-    /// the plane.
+    /// Vectors whose dot products with (x, y, z, 1) of a place in the host's world, m, are its u and v. The mapping
+    /// projects the place along the light onto the plane.
     pub uv_from_world: [DVec4; 2],
-    /// Vector that, multiplied by (x, y, z, 1) of a place in the host's world, m, gives its height over the plane, m.
+    /// Vector whose dot product with (x, y, z, 1) of a place in the host's world, m, is its height above the plane, m.
     pub height_from_world: DVec4,
-    /// u and v of the place in the plane that the camera of the last frame stood over.
+    /// u and v of the point of the plane below the last frame's camera.
     pub camera_uv: [f64; 2],
-    /// Share of the direct light on the mean over places: that in
-    /// [`Context::light_at`](crate::context::Context::light_at).
+    /// Mean share of the direct light over all places, as in [`Context::light_at`](crate::context::Context::light_at).
     pub mean_share: f64,
-    /// How far shadows are told apart, 0 to 1: 0 without broken clouds, with the deck, and under a light near the
-    /// horizon.
+    /// Weight of the map against `mean_share`, 0 to 1. It is 0 without broken clouds, with the deck, and under a light
+    /// near the horizon.
     pub told: f64,
-    /// Height over the plane, m, from which on shadows are not told apart: 100 m above the base of the lowest clouds.
+    /// Height above the plane, m, from which on `mean_share` holds instead of the map: 100 m above the base of the
+    /// lowest clouds.
     pub top_m: f64,
 }
 
@@ -37,7 +38,7 @@ pub const SHADOW_SNIPPET_WGSL: &str = include_str!("../../../shaders/snippets/we
 /// GLSL 3.30 text of the sampling function.
 pub const SHADOW_SNIPPET_GLSL: &str = include_str!("../../../shaders/snippets/welkin_cloud_shadow.glsl");
 
-/// The texture that a host has asked for, and how it lay in the last frame.
+/// Texture that a host has asked for, with the mapping of the last frame.
 pub(crate) struct HostShadowTexture {
     pub shadows: CloudShadows,
 }
@@ -57,7 +58,7 @@ impl HostShadowTexture {
         Self { shadows }
     }
 
-    /// Takes over how the map lies in a frame; `None` where no clouds cast shadows that are told apart.
+    /// Takes over the mapping of a frame; `None` if no clouds cast shadows that the map shows.
     pub fn lay(&mut self, now: &SceneMoment<'_>, lie: Option<&ShadowProjection>) {
         let shadows = &mut self.shadows;
         shadows.mean_share = now.scene.brighter().direct_share;

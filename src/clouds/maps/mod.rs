@@ -1,5 +1,5 @@
-//! Maps that frames make row by row: the clouds' shadows on a plane, handed to hosts too, and the clouds in all
-//! directions.
+//! Maps that frames draw a few rows at a time: the clouds' shadows on a plane, which hosts can read too, and the
+//! panorama of clouds in all directions.
 
 pub(crate) mod handed;
 pub(crate) mod panorama;

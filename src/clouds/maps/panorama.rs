@@ -1,6 +1,6 @@
-//! The clouds in all directions from the camera, for what shows more than the picture: mirrors on the ground, the cube
-//! map. A frame makes some rows of them anew; `shaders/between/hung.wgsl` looks them up below the picture of the first
-//! layer.
+//! Panorama: the clouds in all directions from the camera, for mirrors on the ground and for the cube map, which show
+//! more than the picture. A frame refreshes some of its rows. `shaders/between/hung.wgsl` reads it from the first layer
+//! of the picture's texture, below the picture.
 
 use super::shadow_projection::{HistoryUse, ShadowInputs};
 use crate::{
@@ -18,13 +18,14 @@ use crate::{
 
 /// Rows refreshed in a frame, once as many are old.
 const ROWS: u32 = 12;
-/// Changes that make all of them old: a way of the camera or of the clouds, m, which turns a cloud 500 m up by a texel;
-/// how many times faster they age than the map of shadows; a change of exposure.
+/// Changes that make the whole panorama old: distance that the camera or the clouds move, m, which turns a cloud 500 m
+/// up by one texel; factor by which it ages faster than the shadow map; change of the exposure (logarithm).
 const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
-/// The camera's way between two frames, m, and the change of exposure after which nothing holds.
+/// Changes after which nothing of it holds: distance that the camera moves between two frames, m; change of the
+/// exposure (logarithm).
 const LEAPS: (f64, f64) = (100.0, 0.05);
 
-/// Inputs of the clouds of all directions.
+/// Inputs of the panorama, to detect changes.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct PanoramaInputs {
     pub standing: ShadowInputs,
@@ -32,7 +33,7 @@ pub(crate) struct PanoramaInputs {
     pub exposure: f64,
 }
 
-/// The map and the pass that makes it.
+/// Panorama with the pass that draws it.
 pub(crate) struct CloudPanorama {
     pub texture: wgpu::Texture,
     view: wgpu::TextureView,
@@ -42,7 +43,7 @@ pub(crate) struct CloudPanorama {
 }
 
 impl CloudPanorama {
-    /// With the layouts of the march.
+    /// Creates the panorama; `layouts` are those of the march.
     pub fn new(device: &Device, layouts: &[&wgpu::BindGroupLayout], is_placed: bool) -> Result<Self> {
         let texture = flat_texture(
             &device.device,
@@ -71,7 +72,7 @@ impl CloudPanorama {
     /// Bytes of GPU memory.
     pub const BYTES: u64 = 8 * PANORAMA_SIDE as u64 * PANORAMA_SIDE as u64;
 
-    /// Makes some rows anew, or all of them, unless another map has its turn; answers the passes that it took.
+    /// Refreshes some rows, or all of them; none while another map has its turn. Returns the number of passes.
     pub fn draw(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -110,7 +111,7 @@ impl PanoramaInputs {
             || (self.exposure / earlier.exposure).ln().abs() > exposed
     }
 
-    /// The share of the map's rows that a change from `earlier` makes old.
+    /// Returns the share of the panorama's rows that the change since `earlier` makes old.
     fn aged_since(&self, earlier: &Self) -> f64 {
         let (way_m, times, exposed) = AGES;
         let (here, there) = (&self.standing, &earlier.standing);

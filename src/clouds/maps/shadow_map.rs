@@ -1,6 +1,6 @@
-//! The map of the clouds' shadows that pictures read: a window about the camera in a plane at the station's height,
-//! fixed to the air that carries the clouds, so that a frame makes only some rows of it anew. A new map is coarse at
-//! first: all of it at once would cost as much as ten frames.
+//! Shadow map of the clouds that pictures read: a window around the camera in a plane at the station's height. It moves
+//! with the air that carries the clouds, so a frame has to refresh only some of its rows. A new map begins coarse,
+//! because a whole fine map would cost as much as ten frames.
 
 use super::shadow_projection::{HistoryUse, ShadowInputs, ShadowProjection, TEXELS};
 use crate::{
@@ -20,26 +20,26 @@ use crate::{
     stage::flag,
 };
 
-/// Along a side of the coarse map that a new one begins as: as many texels as a frame's rows have.
+/// Side of the coarse map, texels. It has as many texels as the rows that a frame refreshes.
 const COARSE: u32 = 64;
-/// Rows refreshed in a frame, once as many are old, and in every frame while some of the map is coarse: sixteen frames
-/// refresh all of them.
+/// Rows refreshed in a frame. A frame refreshes them once as many are old, or while some of the map is coarse. Sixteen
+/// frames refresh all rows.
 const ROWS: u32 = 32;
-/// The map and the passes that make it.
+/// Shadow map with the passes that draw it.
 pub(crate) struct ShadowMap {
     pub view: wgpu::TextureView,
     pub block: UniformBlock,
     pipeline: wgpu::RenderPipeline,
-    /// The clouds, which both maps are made of.
+    /// Bind group of the clouds, for both the map and the coarse map.
     clouds: wgpu::BindGroup,
     coarse: Coarse,
     standing: Option<ShadowInputs>,
     rows: MapRows,
-    /// Rows that are still those of the coarse map.
+    /// Number of rows that still come from the coarse map.
     coarse_rows: u32,
 }
 
-/// The coarse map, the pass that makes it and the one that spreads it over the map.
+/// Coarse map, with the pass that draws it and the pass that copies it to the whole map.
 struct Coarse {
     view: wgpu::TextureView,
     pipeline: wgpu::RenderPipeline,
@@ -49,7 +49,7 @@ struct Coarse {
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
-/// A map of so many texels along a side.
+/// Creates the texture of a map with `side` texels along a side.
 fn texture(device: &Device, side: u32) -> wgpu::Texture {
     let usage =
         wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
@@ -67,7 +67,7 @@ fn pipeline(
     pass::fullscreen(device, &of)
 }
 
-/// One that makes a map of so many texels along a side.
+/// Creates the pipeline that draws a map with `side` texels along a side.
 fn shadow_pipeline(
     device: &Device,
     layout: &wgpu::BindGroupLayout,
@@ -106,12 +106,12 @@ impl Coarse {
 }
 
 impl ShadowMap {
-    /// The texture of a map.
+    /// Creates the texture of a map.
     pub fn texture(device: &Device) -> wgpu::Texture {
         texture(device, TEXELS)
     }
 
-    /// Creates the map of clouds in these tables and this block, in a texture.
+    /// Creates the map in a texture. The clouds come from `tables` and the uniform block `clouds`.
     pub fn new(
         (device, blocks): (&Device, &Blocks),
         tables: &CloudTables,
@@ -156,9 +156,9 @@ impl ShadowMap {
     /// Bytes of GPU memory.
     pub const BYTES: u64 = TEXELS as u64 * TEXELS as u64 + COARSE as u64 * COARSE as u64;
 
-    /// Makes some rows anew where enough have grown old, and before them the whole map coarsely where nothing of it
-    /// holds any more or the picture is cut; where a frame is a pure function of view and time, all rows. Answers the
-    /// passes that it took.
+    /// Refreshes some rows once enough of them are old. If nothing of the map holds any more, or the picture is cut,
+    /// the whole map is first drawn coarsely. A frame that is a pure function of view and time draws all rows. Returns
+    /// the number of passes.
     pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, lie: &ShadowProjection, past: HistoryUse) -> u32 {
         let here = lie.standing;
         self.block.write(bytemuck::bytes_of(&lie.uniform()));

@@ -1,4 +1,4 @@
-//! Projection of the map of the clouds' shadows about a camera, and how old a map of earlier clouds has grown.
+//! Projection of the clouds' shadow map around a camera, and the ageing of a map as the clouds change.
 
 use glam::{DVec2, DVec3};
 
@@ -9,35 +9,37 @@ use crate::{
     stage::{Frame, FrameFlags},
 };
 
-/// Along a side of the map.
+/// Side of the map, texels.
 pub(super) const TEXELS: u32 = 512;
-/// Metres a texel.
+/// Size of a texel, m.
 const TEXEL_M: f64 = 40.0;
-/// Height above the lowest base over which, in the clouds themselves, shadows go over to the mean, m: that of the
-/// shaders and snippets.
+/// Height above the lowest base over which shadows blend to the mean share, m; at that height one is in the clouds.
+/// Shaders and snippets have the same number.
 const ENDS_M: f64 = 100.0;
-/// Sines of the light's elevation between which shadows begin to be told apart.
+/// Sines of the light's elevation between which shadows fade in.
 const FADE_SINES: [f64; 2] = [LOWEST, 0.07];
-/// Time between two frames, s, the light's turn, and the change of a layer's threshold after which nothing of the map
-/// is kept.
+/// Changes between two frames after which nothing of the map is kept: time, s; turn of the light, rad; change of a
+/// layer's threshold.
 const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
 
-/// Way of the layer that the map is fixed to, between two frames, m, after which nothing of the map is kept: another
-/// layer is the lowest.
+/// Distance, m, that the layer with which the map moves may go between two frames. A longer one means that another
+/// layer is the lowest now; nothing of the map is kept then.
 const LEAP_OF_DRIFT_M: f64 = 1500.0;
-/// Changes that make the whole map old: a time, s, in which clouds change by some thousandths of their life; a turn of
-/// the light, by which the shadow of a cloud 4 km up goes by a quarter of a texel; a change of a layer's threshold of
-/// the least that shows; the camera's way, m, less than from where the map repeats to where shadows begin to show, and
-/// as much of places of a host's map.
+/// Changes that make the whole map old:
+/// - time, s, in which clouds change by some thousandths of their life;
+/// - turn of the light, rad, by which the shadow of a cloud 4 km up moves by a quarter of a texel;
+/// - smallest change of a layer's threshold that is visible;
+/// - distance that the camera moves, m. It is less than the margin between where the map repeats and where its shadows
+///   fade in. The hash of the cells over rain areas has the same limit.
 const AGES: (f64, f64, f64, f64) = (4.0, 0.0025, 0.004, 600.0);
 
-/// History that a frame may take over from those before it.
+/// History that a frame may take over from earlier frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HistoryUse {
     Kept,
-    /// Nothing; those after it may take over from it.
+    /// No history; later frames may take over from this one.
     Cut,
-    /// Nothing: it is a pure function of view and time.
+    /// No history: the frame is a pure function of view and time.
     None,
 }
 
@@ -51,40 +53,41 @@ impl HistoryUse {
     }
 }
 
-/// Inputs of the map.
+/// Inputs of the map, to detect changes.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct ShadowInputs {
     pub time_s: f64,
     pub to_light: DVec3,
     pub threshold_sum: f64,
-    /// How far the layer to which it is fixed has come, m.
+    /// Distance that the layer with which the map moves has drifted, m.
     pub drift_m: DVec2,
     pub camera_m: DVec2,
-    /// Fingerprint of where clouds are other than their cover says (`field::placed`): the first number changes with
-    /// the cells over areas, the second is other for another map.
+    /// Fingerprint of the local cover (`field::placed`): a hash of the cells over areas, and a number that differs for
+    /// another map.
     pub placed: (f64, usize),
 }
 
-/// How the map lies about a camera.
+/// Projection of the map around a camera.
 #[derive(Clone, Copy)]
 pub(crate) struct ShadowProjection {
     pub standing: ShadowInputs,
-    /// Unit, never level.
+    /// Unit vector towards the light, never level.
     pub to_light: DVec3,
     plane_m: f64,
-    /// Where the camera stands in the map, in its period, and its height over the plane, m.
+    /// Position of the camera in the map, in periods (`camera`), and its height above the plane, m (`eye_m`).
     pub camera: DVec2,
     pub eye_m: f64,
     pub period_m: f64,
     mean: f64,
-    /// How far shadows are told apart, and the height over the plane from which on they are not, m.
+    /// Weight of the map against the mean share (`told`), and height above the plane from which on the mean holds, m
+    /// (`top_m`).
     pub told: f64,
     pub top_m: f64,
-    /// Extinction of the air at the camera's height, 1/m, and the height over which it thins, m.
+    /// Extinction of the air at the camera's height, 1/m, and its scale height, m.
     haze: [f64; 2],
 }
 
-/// Returns the extinction of the air at a scene's height, 1/m, and the height over which it thins there, m.
+/// Returns the extinction of the air at a scene's height, 1/m, and its scale height there, m.
 fn haze(scene: &Scene) -> [f64; 2] {
     let (planet, h) = (&scene.planet, scene.place.altitude_m.max(0.0));
     let of = |extinction: f64, height_m: f64| (extinction * libm::exp(-h / height_m), height_m);
@@ -147,7 +150,7 @@ impl ShadowProjection {
 }
 
 impl ShadowInputs {
-    /// Whether nothing of a map of what stood before holds.
+    /// Whether nothing of a map drawn from `earlier` holds any more.
     pub fn leaps_from(&self, earlier: &Self) -> bool {
         let (time_s, turn, threshold) = LEAPS;
         (self.time_s - earlier.time_s).abs() > time_s
@@ -159,7 +162,7 @@ impl ShadowInputs {
             || self.camera_m.distance(earlier.camera_m) > 0.1 * TEXEL_M * f64::from(TEXELS)
     }
 
-    /// The share of a map's rows that a change from `earlier` makes old.
+    /// Returns the share of a map's rows that the change since `earlier` makes old.
     pub fn aged_since(&self, earlier: &Self) -> f64 {
         let (time_s, turn, threshold, way_m) = AGES;
         let shares = [

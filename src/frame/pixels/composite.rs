@@ -1,4 +1,4 @@
-//! The composition pass: one full-screen draw over the host's picture, in the variant that the frame needs.
+//! Composition pass: one full-screen draw over the host's picture, in the variant that the frame needs.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -24,31 +24,31 @@ use crate::{
     surroundings::layout as around_layout,
 };
 
-/// Pipelines held for all views of a device, who share them where their formats are the same: those of some stages and
-/// weathers. On a software driver one may take more than 10 MB.
+/// Most cached pipelines of a device: those of some stages and weathers. Views with the same formats share them. On a
+/// software driver one pipeline may take more than 10 MB.
 const MOST_PIPELINES: usize = 32;
 
-/// Most cached pipelines of the coarse grid and of the pixels that look it up: two or three for each weather.
+/// Most cached pipelines of the coarse grid and of the pixels interpolated from it: two or three for each weather.
 const MOST_EVEN: usize = 32;
 
-/// Most cached pipelines that tell kinds of pixels apart.
+/// Most cached pipelines that write the kinds of pixels.
 const MOST_KINDS: usize = 8;
 
-/// Properties that a pipeline that tells kinds of pixels apart is made for.
+/// Properties for which a pipeline that writes the kinds of pixels is compiled.
 #[derive(Clone, Copy, PartialEq)]
 struct KindsPipeline {
     format: wgpu::TextureFormat,
     sampling: Sampling,
     constants: [Constant; 4],
-    /// Whether pixels between which the weather is even are kinds of their own.
+    /// Whether the pixels interpolated from the coarse grid are kinds of their own.
     with_even: bool,
 }
 
-/// The composition of a device, for all its views. Any thread.
+/// Composition of a device, for all its views, on any thread.
 pub(in crate::frame) struct SharedComposite(Mutex<Composite>);
 
 impl SharedComposite {
-    /// Makes what every view needs.
+    /// Creates what every view needs.
     ///
     /// # Errors
     /// A GPU fault.
@@ -58,6 +58,8 @@ impl SharedComposite {
         Ok(made)
     }
 
+    /// Locks the composition.
+    ///
     /// # Errors
     /// [`Status::Poisoned`] after a panic.
     pub fn lock(&self) -> Result<MutexGuard<'_, Composite>> {
@@ -67,7 +69,7 @@ impl SharedComposite {
 
 /// Pipelines of the composition, shared by the views of a device.
 pub(in crate::frame) struct Composite {
-    /// Layouts of group 0, by [`Sampling`].
+    /// Layouts of group 0, indexed by [`Sampling`].
     layouts: [wgpu::BindGroupLayout; 3],
     layout_tables: wgpu::BindGroupLayout,
     layout_around: wgpu::BindGroupLayout,
@@ -75,7 +77,7 @@ pub(in crate::frame) struct Composite {
     evens: LruCache<Variant, wgpu::RenderPipeline, MOST_EVEN>,
     kinds: LruCache<KindsPipeline, wgpu::RenderPipeline, MOST_KINDS>,
     none: wgpu::TextureView,
-    /// Placeholder for a texture of layers.
+    /// Placeholder for an array texture.
     no_layers: wgpu::TextureView,
     reads_samples: bool,
     wind: WindPicture,
@@ -123,18 +125,18 @@ impl Composite {
         }
     }
 
-    /// Whether multisampled targets can be composed, sample by sample.
+    /// Whether multisampled targets can be composed sample by sample.
     pub fn reads_samples(&self) -> bool {
         self.reads_samples
     }
 
-    /// Layouts of the groups of every shader that composes: the frame's, that of tables, that of what is around.
+    /// Returns the layouts of the bind groups of every composing shader: frame, tables, surroundings.
     pub fn layouts(&self, sampling: Sampling) -> [&wgpu::BindGroupLayout; 3] {
         [&self.layouts[sampling as usize], &self.layout_tables, &self.layout_around]
     }
 
-    /// The bind group of the frame's block, those of the effects and their textures, the copy of the host's colour and
-    /// its other images; `None` if an effect gave no block.
+    /// Creates the bind group of the frame's block, the effects' blocks and textures, the copy of the host's colour,
+    /// and the host's other images; `None` if an effect gave no block.
     pub fn bind(
         &self,
         device: &Device,
@@ -153,7 +155,8 @@ impl Composite {
         let depth_view = host.depth_layer().map(Layer::view);
         let [mask_view, classes, normals] =
             [host.mask_layer(), host.classes_layer(), host.normals_layer()].map(|l| l.map(Layer::view));
-        // Not read where there is no depth. wgpu's OpenGL backend can adopt multisampled textures but not make them.
+        // The shader does not read this texture if there is no depth. It must be multisampled if colour is, and wgpu's
+        // OpenGL backend can adopt multisampled textures but not create them.
         let no_depth = if sampling == Sampling::Multi { &color_view } else { &self.none };
         let entry =
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
@@ -183,14 +186,14 @@ impl Composite {
         if variant.pixels.uses_grid() { self.evens.has(is) } else { self.pipelines.has(is) }
     }
 
-    /// For which pixels pipelines are held, by which shader and entry point, and the values of its constants.
+    /// Returns the pixels, the shader and entry point, and the constants of each cached pipeline.
     #[cfg(test)]
     pub fn held(&self) -> Vec<(Pixels, (String, &'static str), crate::stage::Constants)> {
         let all = self.pipelines.keys().chain(self.evens.keys());
         all.map(|variant| (variant.pixels, variant.program(), variant.constants())).collect()
     }
 
-    /// The pipeline of `variant`, compiled at its first use.
+    /// Returns the pipeline of `variant`, compiled at its first use.
     ///
     /// # Errors
     /// A missing shader file.
@@ -213,10 +216,10 @@ impl Composite {
         if variant.pixels.uses_grid() { self.evens.get_or_make(is, make) } else { self.pipelines.get_or_make(is, make) }
     }
 
-    /// The pipeline that draws a picture of the wind in the place of `variant`'s, and its group 1, after the frame's.
+    /// Returns the pipeline that draws a picture of the wind instead of `variant`'s picture, and its group 1.
     ///
     /// # Errors
-    /// A missing shader file; a time that the weather does not know.
+    /// A missing shader file; a time that the weather does not cover.
     pub fn wind(
         &mut self,
         device: &Arc<Device>,
@@ -248,7 +251,7 @@ impl Composite {
         Ok((pipeline.clone(), group))
     }
 
-    /// The pipelines of the grid of `all`'s weather and of its cells, compiled at their first use.
+    /// Returns the pipelines of the coarse grid of `all` and of its cells, compiled at their first use.
     ///
     /// # Errors
     /// A missing shader file.
@@ -269,8 +272,8 @@ impl Composite {
         Ok([grid, cells.clone()])
     }
 
-    /// The pipeline that writes the kinds of the pixels of `variant`, compiled at its first use; `with_even` those too
-    /// between which the weather is even.
+    /// Returns the pipeline that writes the kinds of the pixels of `variant`, compiled at its first use. If
+    /// `with_even`, it also marks the pixels interpolated from the coarse grid.
     ///
     /// # Errors
     /// A missing shader file.

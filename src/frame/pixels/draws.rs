@@ -1,5 +1,5 @@
-//! The draws that together make a picture of a weather: its grid and cells, and one for each kind of pixels. They are
-//! found once, since to look for a pipeline among all that are made takes longer than to record a draw.
+//! Draws that together make the picture of a weather: the coarse grid and its cells, and one draw for each kind of
+//! pixels. They are kept, because searching all pipelines for one takes longer than recording a draw.
 
 use std::sync::Arc;
 
@@ -16,25 +16,25 @@ use crate::{
     stage::Pipeline,
 };
 
-/// Calls of a frame whose draws a view keeps.
+/// Number of a frame's calls whose draws a view keeps.
 pub(in crate::frame) const MOST_DRAWS: usize = 4;
 
-/// Key that draws are made for.
+/// Key of the draws in their cache.
 pub(in crate::frame) struct DrawKey {
     pub of: Variant,
     pub has_grid: bool,
 }
 
 impl DrawKey {
-    /// Whether it is a variant with these constants.
+    /// Whether this is the key of a variant with these constants.
     pub fn is(&self, variant: &Variant, constants: &Pipeline, has_grid: bool) -> bool {
         self.has_grid == has_grid && self.of.is_with(variant, constants)
     }
 }
 
-/// The pipelines of a variant's draws.
+/// Pipelines of a variant's draws.
 pub(in crate::frame) struct Draws {
-    /// Pipelines of the grid and its cells, where any pixel looks the weather up.
+    /// Pipelines of the grid and its cells, if any pixel is interpolated.
     even: Option<[wgpu::RenderPipeline; 2]>,
     pixels: Kinds,
 }
@@ -42,15 +42,15 @@ pub(in crate::frame) struct Draws {
 enum Kinds {
     /// One draw of all pixels.
     One(wgpu::RenderPipeline),
-    /// A draw that writes the kinds of the pixels, and one for each of them.
+    /// A draw that writes the kinds of the pixels, and one for each kind.
     Several(Vec<wgpu::RenderPipeline>),
-    /// None changes.
+    /// No pixel changes.
     None,
 }
 
-/// Why there are no draws of a variant yet.
+/// Reason for which a variant has no draws yet.
 pub(in crate::frame) enum PipelineNotReady {
-    /// Not all of their pipelines are compiled: until they are, one draw stands for them.
+    /// Not all pipelines are compiled; until then a single draw takes their place.
     Coming(Draws),
     Failed(Error),
 }
@@ -62,11 +62,11 @@ impl From<Error> for PipelineNotReady {
 }
 
 impl Draws {
-    /// The draws of a variant. Unless `at_once`, each call compiles one large pipeline; until all are there, the answer
-    /// is one draw of all pixels ([`PipelineNotReady`]). `splits` is that of [`kinds::draws`].
+    /// Returns the draws of a variant. Unless `at_once`, each call compiles one large pipeline, and until all are
+    /// compiled the result is a single draw of all pixels ([`PipelineNotReady`]). `splits` is that of [`kinds::draws`].
     ///
     /// # Errors
-    /// That one draw; a missing shader file.
+    /// The single draw; a missing shader file.
     pub fn new(
         device: &Arc<Device>,
         composite: &mut Composite,
@@ -91,7 +91,7 @@ impl Draws {
         Self::whole(device, composite, of, (draws, looks_up)).map_err(PipelineNotReady::Failed)
     }
 
-    /// All of them now.
+    /// Returns all draws; compiles what is missing.
     fn whole(
         device: &Arc<Device>,
         composite: &mut Composite,
@@ -111,7 +111,7 @@ impl Draws {
         Ok(Self { even, pixels: Kinds::Several(pipelines) })
     }
 
-    /// Records them with what the view holds for a picture. Answers the passes that they take.
+    /// Records the draws with the images that the view holds for a picture. Returns the number of passes.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,

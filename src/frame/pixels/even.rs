@@ -1,10 +1,11 @@
 //! Sky, air and fog at every fourth pixel, interpolated where they vary smoothly.
 //!
-//! Sky, air and fog change slowly from pixel to pixel, but for edges. A small pass draws what they add to every fourth
-//! pixel of every fourth row, another one finds the cells in which straight lines between texels are within a
-//! thousandth of the curve through them and their neighbours. A pixel of such a cell takes what the four say if what it
-//! shows is as far away as what they show. All others are drawn as ever: edges, thin things, the edge of fog, the
-//! neighbourhood of the sun's disc. The grid has no clouds: each pixel lays its own over what it looks up.
+//! Sky, air and fog change slowly from pixel to pixel, except at edges. A small pass draws what they add to every
+//! fourth pixel of every fourth row. A second pass finds the cells of this grid in which linear interpolation is within
+//! a thousandth of the curve through the texels and their neighbours. A pixel in such a cell is interpolated from the
+//! cell's four texels if what it shows is as far away as what they show. All other pixels are drawn in full: edges,
+//! thin objects, the edge of fog, the surroundings of the sun's disc. The grid has no clouds; each pixel lays its own
+//! clouds over the interpolated value.
 
 use super::{pixel_kind::Pixels, variant::Variant};
 use crate::{
@@ -16,15 +17,15 @@ use crate::{
     stage::{Sampling, Stages},
 };
 
-/// Pixels from texel to texel: EVEN_PIXELS of `shaders/frame/even.wgsl`.
+/// Distance of the grid's texels in pixels: EVEN_PIXELS of `shaders/frame/even.wgsl`.
 const PIXELS: u32 = 4;
-/// Smallest side of a picture for which a grid is drawn.
+/// Smallest side of a picture that has a grid, pixels.
 const LEAST_SIDE: u32 = 64;
 const WEATHER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
-/// Whether a grid may stand for parts of the picture of `all`: not where something in it changes from pixel to pixel,
-/// nor where samples have depths of their own.
+/// Whether the picture of `all` may use a grid: not if its weather has detail from pixel to pixel, nor if samples have
+/// depths of their own.
 pub(in crate::frame) fn may_be(all: &Variant) -> bool {
     let weather = all.stages.has(Stages::BACKGROUND) || all.stages.has(Stages::MEDIUM);
     let traits = all.constants.traits;
@@ -32,7 +33,7 @@ pub(in crate::frame) fn may_be(all: &Variant) -> bool {
     weather && !is_fine && all.samples == 1 && all.sampling == Sampling::Single
 }
 
-/// The variant that draws the grid of `all`.
+/// Returns the variant that draws the grid of `all`.
 pub(in crate::frame) fn grid_of(all: &Variant) -> Variant {
     Variant {
         stages: all.stages.without(Stages::SURFACE.with(Stages::PARTICLES).with(Stages::TONE)),
@@ -43,9 +44,9 @@ pub(in crate::frame) fn grid_of(all: &Variant) -> Variant {
     }
 }
 
-/// Layouts and sampler with which grids are made, for all views of a device.
+/// Layouts and sampler of the grids of all views of a device.
 pub(in crate::frame) struct EvenLayouts {
-    /// Layout of what the cells are found from.
+    /// Layout of the pass that finds the cells.
     pub weather: wgpu::BindGroupLayout,
     /// Layout of the grid and its cells, group 3 of the draws.
     pub grid: wgpu::BindGroupLayout,
@@ -67,13 +68,13 @@ impl EvenLayouts {
         }
     }
 
-    /// Targets of the pass that draws a grid, and of the one that finds its cells.
+    /// Returns the targets of the pass that draws a grid, and of the pass that finds its cells.
     pub fn targets() -> ([wgpu::ColorTargetState; 2], wgpu::ColorTargetState) {
         ([WEATHER.into(), WEATHER.into()], CELLS.into())
     }
 }
 
-/// The grid of a view.
+/// Coarse grid of a view.
 pub(in crate::frame) struct CoarseWeather {
     picture: [u32; 2],
     size: [u32; 2],
@@ -84,13 +85,13 @@ pub(in crate::frame) struct CoarseWeather {
 }
 
 impl CoarseWeather {
-    /// For a picture, if that is large enough.
+    /// Creates the grid for a picture, if the picture is large enough.
     pub fn new(device: &Device, layouts: &EvenLayouts, picture: &wgpu::Texture) -> Option<Self> {
         let (device, picture) = (&device.device, [picture.width(), picture.height()]);
         if picture.iter().any(|side| *side < LEAST_SIDE) {
             return None;
         }
-        // One texel before the picture, and two after the last pixel's.
+        // The grid has one texel before the picture, and two after the last pixel's texel.
         let size = picture.map(|side| (side - 1) / PIXELS + 4);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let weather = device.create_texture(&wgpu::TextureDescriptor {
@@ -122,17 +123,17 @@ impl CoarseWeather {
         Some(Self { picture, size, weather, cells, of_weather, group })
     }
 
-    /// Whether it is for a picture of this size.
+    /// Whether the grid is for a picture of this size.
     pub fn fits(&self, picture: &wgpu::Texture) -> bool {
         self.picture == [picture.width(), picture.height()]
     }
 
-    /// Bytes of GPU memory.
+    /// Returns the size in GPU memory, bytes.
     pub fn bytes(&self) -> u64 {
         20 * u64::from(self.size[0]) * u64::from(self.size[1])
     }
 
-    /// Records the passes that draw it and find its cells.
+    /// Records the passes that draw the grid and find its cells.
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,10 +1,10 @@
-//! Kinds of pixels that are drawn one after the other, each with no more of the composition than it needs.
+//! Kinds of pixels, drawn one after the other, each with only the part of the composition that it needs.
 //!
-//! A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind
-//! only, before their shader runs. All of them are in one pass. Pixels whose weather is looked up in its grid
-//! ([`super::even`]) are kinds of their own. The others a software driver draws apart by what they show, since it takes
-//! both ways of every branch: a pixel of the sky would pay for the air before things, a thing for the sky behind it,
-//! and the sky for the planet's ground below it. A GPU branches, and draws them with one pipeline.
+//! The first draw writes each pixel's kind as a depth. Each draw of the composition then passes the depth test only at
+//! pixels of its own kind, before its shader runs. All draws are in one pass. Pixels interpolated from the coarse grid
+//! ([`super::even`]) are kinds of their own. The others are divided by what they show only on a software driver, which
+//! executes both sides of every branch: there a sky pixel would pay for the air in front of objects, an object for the
+//! sky behind it, and the sky for the planet's ground below it. A GPU branches, and draws them all with one pipeline.
 
 use super::{
     pixel_kind::{FORMAT, Pixels},
@@ -12,18 +12,18 @@ use super::{
 };
 use crate::{gpu::flat_texture, stage::Stages};
 
-/// Whether pixels that look the weather up and on which the host drew have a draw of their own, which reads depth:
-/// water and snow lie on them, and clouds may stand before them.
+/// Whether the interpolated pixels on which the host drew have a draw of their own, which reads depth. They have if
+/// water and snow lie on them, or clouds may be in front of them.
 pub(in crate::frame) fn draws_apart(all: &Variant) -> bool {
     all.stages.has(Stages::SURFACE) || all.constants.traits.is_overlaid
 }
 
-/// Most draws of a picture.
+/// Largest number of draws of a picture.
 pub(in crate::frame) const DRAWS: usize = 5;
 
-/// The draws that together draw `all`; those that would change nothing are left out. A single one where samples have
-/// depths of their own, or rays are marched. With a `grid`, pixels between which the weather is even have draws of
-/// their own. If `splits`, the others have a draw for each kind of what they show.
+/// Returns the draws that together draw `all`, without those that would change nothing. There is a single draw if
+/// samples have depths of their own or rays are marched. With a `grid`, interpolated pixels have draws of their own. If
+/// `splits`, the others have a draw for each kind.
 pub(in crate::frame) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];
@@ -43,7 +43,7 @@ pub(in crate::frame) fn draws(all: &Variant, grid: bool, splits: bool) -> [Optio
     let drawn = Variant { stages: stages.without(Stages::BACKGROUND), pixels: Pixels::Drawn, ..*all };
     let is_far = behind || veils_all || everywhere;
     let is_drawn = has_depth && (veils_drawn || everywhere || stages.has(Stages::SURFACE));
-    // A grid is of all of the picture.
+    // A grid covers the whole picture.
     let grid = grid && is_far && (is_drawn || !has_depth);
     let even = grid.then(|| far(Pixels::Even));
     let even_drawn = (grid && has_depth && draws_apart(all)).then_some(Variant { pixels: Pixels::EvenDrawn, ..*all });
@@ -60,14 +60,14 @@ pub(in crate::frame) fn draws(all: &Variant, grid: bool, splits: bool) -> [Optio
     ]
 }
 
-/// The depth attachment of a view: the kinds of its picture's pixels.
+/// Depth attachment of a view, with the kinds of its picture's pixels.
 pub(in crate::frame) struct KindAttachment {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
 }
 
 impl KindAttachment {
-    /// For a picture of this size.
+    /// Creates the attachment for a picture of this size.
     pub fn new(device: &wgpu::Device, size: wgpu::Extent3d) -> Self {
         let (size, usage) = ((size.width, size.height), wgpu::TextureUsages::RENDER_ATTACHMENT);
         let texture = flat_texture(device, "kinds of pixels", size, FORMAT, usage);
@@ -75,17 +75,17 @@ impl KindAttachment {
         Self { texture, view }
     }
 
-    /// Whether it is as large as a picture.
+    /// Whether the attachment has the picture's size.
     pub fn fits(&self, picture: &wgpu::Texture) -> bool {
         (self.texture.width(), self.texture.height()) == (picture.width(), picture.height())
     }
 
-    /// Bytes of GPU memory.
+    /// Returns the size in GPU memory, bytes.
     pub fn bytes(&self) -> u64 {
         4 * u64::from(self.texture.width()) * u64::from(self.texture.height())
     }
 
-    /// Records the draw that writes the kinds, and then those of the composition.
+    /// Records the draw that writes the kinds, then the draws of the composition.
     pub fn draw<'a>(
         &self,
         encoder: &mut wgpu::CommandEncoder,

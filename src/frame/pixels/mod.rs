@@ -1,25 +1,26 @@
-//! Draws of the composition: how a picture is divided into draws, each with no more of the shader than its pixels need,
-//! and the pipelines that are kept for them.
+//! Draws of the composition: the division of a picture into draws, each with only the part of the shader that its
+//! pixels need, and the pipelines kept for them.
 //!
-//! A GPU branches over what a pixel does not show. A software driver takes both ways of every branch, and pays for each
-//! step of the shader at each pixel. So the divisions below are for software drivers; the coarse grid serves both.
+//! A GPU skips, by a branch, the shader steps that a pixel does not need. A software driver executes both sides of
+//! every branch, and so pays for each step of the shader at every pixel. The division by kinds of pixels is therefore
+//! for software drivers; the coarse grid serves both.
 //!
 //! | division | when it is used | where |
 //! |---|---|---|
-//! | one draw of all pixels | samples with depths of their own; a march through the air that has a pass of its own; until the pipelines of the others are compiled | [`composite`] |
-//! | draws by what pixels show: sky, ground below the sky, the host's things | on software drivers ([`Caps::software`](crate::gpu::Caps)) | [`kinds`] |
-//! | the coarse grid: sky, air and fog at every fourth pixel, interpolated between | on every device, where nothing in the weather changes from pixel to pixel, from 64 pixels a side on | [`even`] |
+//! | one draw of all pixels | targets whose samples have depths of their own; a march through the air in its own pass; while the pipelines of the other divisions are not compiled | [`composite`] |
+//! | draws by what pixels show: sky, ground below the sky, the host's objects | on software drivers ([`Caps::software`](crate::gpu::Caps)) | [`kinds`] |
+//! | the coarse grid: sky, air and fog at every fourth pixel, interpolated in between | on every device, for weather that has no detail from pixel to pixel, in pictures of at least 64 pixels a side | [`even`] |
 //!
-//! Five caches keep what these are made of. To compile a pipeline takes tens of milliseconds, and to look for one among
-//! all that are there longer than to record a draw.
+//! Five caches keep what the draws need. Compiling a pipeline takes tens of milliseconds, and searching all of a
+//! device's pipelines for one takes longer than recording a draw.
 //!
 //! | cache | holds | belongs to |
 //! |---|---|---|
-//! | pipelines | one for each [`variant`], the 32 used last | a device ([`composite`]) |
-//! | pipelines of the grid | those that draw it and look it up, the 32 used last | a device ([`composite`]) |
-//! | pipelines of kinds | those that write which pixel is of which kind, the 8 used last | a device ([`composite`]) |
+//! | pipelines | one for each [`variant`], the 32 last used | a device ([`composite`]) |
+//! | grid pipelines | those that draw the grid or interpolate from it, the 32 last used | a device ([`composite`]) |
+//! | kind pipelines | those that write the kind of each pixel, the 8 last used | a device ([`composite`]) |
 //! | draws | the draws of the last 4 calls of a frame, with their pipelines | a view ([`draws`]) |
-//! | images | the grid, its cells and the kinds of a picture's size | a view ([`even`], [`kinds`]) |
+//! | images | the grid, its cells and the kinds, for one picture size | a view ([`even`], [`kinds`]) |
 
 pub(in crate::frame) mod composite;
 pub(in crate::frame) mod draws;

@@ -1,14 +1,14 @@
-//! Pixels that one draw of the composition is for, and the depth that stands for them.
+//! Kinds of pixels for the draws of the composition, and the depth that represents each kind.
 
 use crate::gpu::pass::depth_test;
 
-/// Format of the depth attachment: its values are exact.
+/// Format of the depth attachment; it holds the kinds' values exactly.
 pub(in crate::frame) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Pixels that a draw of the composition is for.
+/// Pixels that a draw of the composition changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::frame) enum Pixels {
-    /// All of them.
+    /// All pixels.
     All,
     /// Pixels that are not interpolated from the coarse grid.
     Uneven,
@@ -20,16 +20,16 @@ pub(in crate::frame) enum Pixels {
     Drawn,
     /// Pixels interpolated from the coarse grid ([`super::even`]).
     Even,
-    /// Pixels of [`Pixels::Even`] on which the host drew, where they have a draw of their own
+    /// Pixels of [`Pixels::Even`] on which the host drew, if they have a draw of their own
     /// ([`draws_apart`](super::kinds::draws_apart)).
     EvenDrawn,
-    /// No pixels of the picture, but the texels of the weather's grid.
+    /// No pixels of the picture, but the texels of the coarse grid.
     Grid,
 }
 
 impl Pixels {
-    /// The depth that stands for them (`shaders/frame/kinds.wgsl`) and the test that lets only them pass; no test for
-    /// all.
+    /// Returns the depth that represents the kind (`shaders/frame/kinds.wgsl`) and the test that passes only for this
+    /// kind; `None` for all pixels.
     pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
         let depth = match self {
             Self::All | Self::Grid => return None,
@@ -42,17 +42,17 @@ impl Pixels {
         Some((depth, depth_test(FORMAT, wgpu::CompareFunction::Equal, false)))
     }
 
-    /// Whether they are of those between which the weather is even.
+    /// Whether the pixels are interpolated from the coarse grid.
     pub fn are_even(self) -> bool {
         matches!(self, Self::Even | Self::EvenDrawn)
     }
 
-    /// Whether they are drawn into the grid or by it.
+    /// Whether the draw writes the grid or reads it.
     pub fn uses_grid(self) -> bool {
         self == Self::Grid || self.are_even()
     }
 
-    /// The test of the draw that writes the kinds.
+    /// Returns the depth and test of the draw that writes the kinds.
     pub fn writes() -> (f64, wgpu::DepthStencilState) {
         (0.0, depth_test(FORMAT, wgpu::CompareFunction::Always, true))
     }

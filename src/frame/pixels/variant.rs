@@ -10,21 +10,21 @@ pub(in crate::frame) struct Variant {
     pub format: wgpu::TextureFormat,
     pub samples: u32,
     pub sampling: Sampling,
-    /// Whether the host gives depth, mask, classes, normals.
+    /// Whether the host gives depth, mask, surface classes, normals.
     pub images: [bool; 4],
-    /// Constants that effects and frame have added.
+    /// Constants set by the effects and the frame.
     pub constants: Pipeline,
     /// Kind of pixels that this variant draws.
     pub pixels: Pixels,
 }
 
 impl Variant {
-    /// How it draws into the host's colour.
+    /// Returns the state of the target that draws into the host's colour.
     pub fn target(&self, write_mask: wgpu::ColorWrites) -> wgpu::ColorTargetState {
         wgpu::ColorTargetState { format: self.format, blend: None, write_mask }
     }
 
-    /// Shader and entry point, without what the variant does not draw.
+    /// Returns the shader, without what the variant does not draw, and its entry point.
     pub fn program(&self) -> (String, &'static str) {
         let [(composed, entry), _] = self.sampling.shaders();
         let diagnoses = self.constants.composed.value("DIAGNOSTIC") > 0.0;
@@ -35,12 +35,12 @@ impl Variant {
         };
         let clear = if self.constants.traits.veils_all { "" } else { ":clear" };
         let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
-        // Pixels that are looked up hold the fog already.
+        // Interpolated pixels already contain the fog.
         let (clear, even) = if self.pixels.are_even() { ("", ":even") } else { (clear, "") };
         (format!("{name}{clear}{dry}{even}"), entry)
     }
 
-    /// Whether it is `other` with these constants, which need not be copied for it.
+    /// Whether the variant equals `other` with these constants, without copying them.
     pub fn is_with(&self, other: &Self, constants: &Pipeline) -> bool {
         let Self { stages, format, samples, sampling, images, constants: own, pixels } = self;
         (*stages, *format, *samples, *sampling, *images, *pixels)
@@ -48,7 +48,7 @@ impl Variant {
             && own == constants
     }
 
-    /// Values of the shader's `override` constants.
+    /// Returns the values of the shader's `override` constants.
     pub fn constants(&self) -> Constants {
         let mut all = Constants::NONE;
         for (name, stage) in [

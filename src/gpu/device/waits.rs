@@ -1,4 +1,4 @@
-//! Waiting for the GPU, and giving up on one that does not finish.
+//! Waiting for the GPU, and giving up on a GPU that does not finish.
 
 use std::{
     sync::atomic::Ordering,
@@ -8,11 +8,12 @@ use std::{
 use super::Device;
 use crate::error::{Error, Result, Status};
 
-/// After so long without an answer a GPU counts as lost. A software driver on a busy machine takes seconds for a pass.
+/// Time without an answer after which a GPU counts as lost. A software driver on a busy machine takes seconds for a
+/// pass.
 const LONGEST_WAIT: Duration = Duration::from_secs(60);
 
 impl Device {
-    /// Submits, and waits until the GPU has finished. For queries, tests and measurements, not for frames.
+    /// Submits `encoder` and waits until the GPU has finished. For queries, tests and measurements, not for frames.
     ///
     /// # Errors
     /// [`Status::DeviceLost`], or the first GPU fault.
@@ -21,7 +22,7 @@ impl Device {
         self.wait()
     }
 
-    /// Waits until the GPU has finished what was submitted.
+    /// Waits until the GPU has finished everything submitted.
     ///
     /// # Errors
     /// [`Status::DeviceLost`], or the first GPU fault.
@@ -29,18 +30,18 @@ impl Device {
         self.wait_within(LONGEST_WAIT)
     }
 
-    /// As [`Device::wait`], no longer than so; a GPU that needs longer is given up.
+    /// Waits as [`Device::wait`] does, for at most `limit`, and gives up on a GPU that needs longer.
     ///
     /// # Errors
-    /// As [`Device::wait`].
+    /// The errors of [`Device::wait`].
     pub(crate) fn wait_within(&self, limit: Duration) -> Result<()> {
         let begun = Instant::now();
         loop {
             let rest = limit.saturating_sub(begun.elapsed());
             match self.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(rest) }) {
                 Ok(_) => return self.check(),
-                // wgpu's OpenGL backend waits for i32::MAX ns at most: after 2.1 s it answers with a timeout, though
-                // the GPU still works.
+                // wgpu's OpenGL backend waits for at most i32::MAX ns: after 2.1 s it returns a timeout although the
+                // GPU is still working.
                 Err(wgpu::PollError::Timeout) if begun.elapsed() < limit => self.check()?,
                 Err(e) => {
                     if matches!(e, wgpu::PollError::Timeout) {
@@ -52,8 +53,8 @@ impl Device {
         }
     }
 
-    /// Counts the device as lost, and keeps wgpu's objects for ever: to release them wgpu waits for the GPU without a
-    /// limit.
+    /// Marks the device as lost, and makes [`Drop`] leak wgpu's objects: wgpu would wait without a limit for the GPU
+    /// before it releases them.
     pub(crate) fn give_up(&self) {
         self.faults.lost.store(true, Ordering::Release);
         self.faults.hung.store(true, Ordering::Release);
@@ -69,7 +70,7 @@ impl Drop for Device {
     fn drop(&mut self) {
         if self.is_hung() {
             let kept = (self.instance.clone(), self.adapter.clone(), self.device.clone(), self.queue.clone());
-            std::mem::forget(kept); // counts that never fall to 0
+            std::mem::forget(kept); // keeps the reference counts above 0
         }
     }
 }

@@ -1,7 +1,7 @@
-//! The OpenGL functions this room calls itself, loaded through the host's `get_proc`.
+//! OpenGL functions that this room calls itself, loaded through the host's `get_proc`.
 //!
-//! wgpu's own backend holds a table of its own; this one exists because saving and restoring a host's state needs
-//! functions that table lacks (the compatibility profile's, per-viewport and per-buffer getters).
+//! wgpu's own backend has its own table. This one exists because saving and restoring a host's state needs functions
+//! that wgpu's table lacks: those of the compatibility profile, and getters per viewport and per buffer.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -16,7 +16,7 @@ macro_rules! gl_functions {
         plain { $($field:ident = $name:literal ($($arg:ident: $ty:ty),*) $(-> $ret:ty)?;)* }
         pointers { $($pfield:ident = $pname:literal ($($parg:ident: $pty:ty),*) $(-> $pret:ty)?;)* }
     ) => {
-        /// Function pointers of one context; a missing one is a call that does nothing and answers zero.
+        /// Function pointers of one context. A call of a missing function does nothing and returns zero.
         #[allow(non_snake_case)]
         pub(crate) struct Api {
             $(pub(super) $field: Option<unsafe extern "system" fn($($ty),*) $(-> $ret)?>,)*
@@ -27,10 +27,10 @@ macro_rules! gl_functions {
             /// Loads every function of the table.
             ///
             /// # Safety
-            /// `get` answers NULL or the address of the named OpenGL function.
+            /// `get` returns NULL or the address of the named OpenGL function.
             pub(crate) unsafe fn load(get: &dyn Fn(&CStr) -> *const c_void) -> Self {
-                // SAFETY: a data pointer and `Option<fn>` have one size on every platform with OpenGL, NULL is
-                // `None`, and the caller vouches that the address is the named function.
+                // SAFETY: a data pointer and `Option<fn>` have the same size on every platform with OpenGL, NULL is
+                // `None`, and the caller vouches that the address is the named function's.
                 unsafe {
                     Self {
                         $($field: std::mem::transmute::<*const c_void, Option<unsafe extern "system" fn($($ty),*) $(-> $ret)?>>(get($name)),)*
@@ -43,8 +43,8 @@ macro_rules! gl_functions {
                 #[allow(non_snake_case, clippy::too_many_arguments, clippy::unused_unit)]
                 pub(crate) fn $field(&self $(, $arg: $ty)*) $(-> $ret)? {
                     match self.$field {
-                        // SAFETY: loaded under this name with this signature; OpenGL answers a wrong value with an
-                        // error flag and touches no memory of ours here.
+                        // SAFETY: loaded under this name with this signature. OpenGL answers a wrong value with an
+                        // error flag and touches no memory of Welkin's here.
                         Some(f) => unsafe { f($($arg),*) },
                         None => gl_functions!(@zero $($ret)?),
                     }
@@ -52,7 +52,7 @@ macro_rules! gl_functions {
             )*
             $(
                 /// # Safety
-                /// The pointers hold as many values as OpenGL reads or writes for these arguments.
+                /// The pointers must have room for as many values as OpenGL reads or writes for these arguments.
                 #[allow(non_snake_case, clippy::too_many_arguments, clippy::unused_unit)]
                 pub(crate) unsafe fn $pfield(&self $(, $parg: $pty)*) $(-> $pret)? {
                     match self.$pfield {
@@ -212,10 +212,10 @@ gl_functions! {
 }
 
 impl Api {
-    /// Fills in what OpenGL ES spells with a suffix.
+    /// Loads functions that OpenGL ES names with a suffix.
     ///
     /// # Safety
-    /// As [`Api::load`].
+    /// The requirements of [`Api::load`].
     pub(crate) unsafe fn load_suffixed(&mut self, get: &dyn Fn(&CStr) -> *const c_void) {
         // SAFETY: as in `load`; the extensions kept the signatures.
         unsafe {
@@ -230,7 +230,7 @@ impl Api {
         }
     }
 
-    /// `N` integers of state `name`, which has at most `N`.
+    /// Returns `N` integers of state `name`, which has at most `N`.
     pub(crate) fn ints<const N: usize>(&self, name: u32) -> [i32; N] {
         let mut out = [0; N];
         // SAFETY: every caller passes a name with at most N values.
@@ -238,17 +238,17 @@ impl Api {
         out
     }
 
-    /// One integer of state `name`.
+    /// Returns one integer of state `name`.
     pub(crate) fn int(&self, name: u32) -> i32 {
         self.ints::<4>(name)[0] // four, because some drivers write more for the polygon mode
     }
 
-    /// One object name or enumerant of state `name`.
+    /// Returns one object name or enumerant of state `name`.
     pub(crate) fn uint(&self, name: u32) -> u32 {
         self.int(name) as u32
     }
 
-    /// `N` floats of state `name`.
+    /// Returns `N` floats of state `name`.
     pub(crate) fn floats<const N: usize>(&self, name: u32) -> [f32; N] {
         let mut out = [0.0; N];
         // SAFETY: every caller passes a name with at most N values.
@@ -256,7 +256,8 @@ impl Api {
         out
     }
 
-    /// `N` doubles of state `name`; OpenGL ES has only floats, though its library may export the function.
+    /// Returns `N` doubles of state `name`. They are read as floats on OpenGL ES, which has no doubles even if its
+    /// library exports the function.
     pub(crate) fn doubles<const N: usize>(&self, name: u32, desktop: bool) -> [f64; N] {
         let mut out = [0.0; N];
         if !desktop {
@@ -267,18 +268,18 @@ impl Api {
         out
     }
 
-    /// One integer of indexed state `name`.
+    /// Returns one integer of indexed state `name`.
     pub(crate) fn int_at(&self, name: u32, index: u32) -> i32 {
         let mut out = [0; 4];
-        // SAFETY: no indexed state this room asks for has more than four values.
+        // SAFETY: no indexed state that this room reads has more than four values.
         unsafe { self.GetIntegeri_v(name, index, out.as_mut_ptr()) };
         out[0]
     }
 
-    /// Makes one object with `glGen..`.
+    /// Creates one object with `glGen..`.
     pub(crate) fn one(&self, generate: unsafe fn(&Self, i32, *mut u32)) -> u32 {
         let mut name = 0;
-        // SAFETY: one name is asked for and there is room for one.
+        // SAFETY: one name is requested and there is room for one.
         unsafe { generate(self, 1, &mut name) };
         name
     }
@@ -291,17 +292,17 @@ impl Api {
         }
     }
 
-    /// The answer of `glGetString` as text, or nothing where there is no context.
+    /// Returns the string of `glGetString` as text; `None` if no context is current.
     pub(crate) fn text(&self, name: u32) -> Option<String> {
         let text = self.GetString(name);
         if text.is_null() {
             return None;
         }
-        // SAFETY: a non-null answer of glGetString is a NUL-terminated string that lives as long as the context.
+        // SAFETY: a non-null result of glGetString is a NUL-terminated string that lives as long as the context.
         Some(unsafe { CStr::from_ptr(text.cast()) }.to_string_lossy().into_owned())
     }
 
-    /// The names of the context's extensions.
+    /// Returns the names of the context's extensions.
     pub(crate) fn extensions(&self) -> Vec<String> {
         let count = self.int(NUM_EXTENSIONS).max(0) as u32;
         let name = |i| {
@@ -315,8 +316,8 @@ impl Api {
         (0..count).filter_map(name).collect()
     }
 
-    /// Reads and clears the error flags; the first one, or `NO_ERROR`. Bounded, because without a context some
-    /// drivers answer an error for ever.
+    /// Reads and clears the error flags; returns the first one, or `NO_ERROR`. The number of reads is bounded, because
+    /// without a context some drivers return an error every time.
     pub(crate) fn take_error(&self) -> u32 {
         let first = self.GetError();
         if first != NO_ERROR {
@@ -329,13 +330,13 @@ impl Api {
         first
     }
 
-    /// Sets one switch.
+    /// Turns one switch on or off.
     pub(super) fn set_enabled(&self, cap: u32, is_on: bool) {
         if is_on { self.Enable(cap) } else { self.Disable(cap) }
     }
 }
 
-/// An error flag that Welkin's own calls left.
+/// Converts an error flag that Welkin's own calls raised into an error.
 pub(crate) fn raised_in_welkin(error: u32) -> Option<Error> {
     let status = if error == OUT_OF_MEMORY { Status::OutOfMemory } else { Status::Internal };
     (error != NO_ERROR).then(|| Error::new(status, format!("OpenGL answered {} to Welkin's calls", spell(error))))

@@ -1,5 +1,5 @@
-//! Copies between framebuffers: how images that wgpu cannot touch (the window's framebuffer, depth in renderbuffers)
-//! come in and go out.
+//! Copies between framebuffers, for images that wgpu cannot use itself: the window's framebuffer, and depth in
+//! renderbuffers.
 
 use super::{api::Api, names::*};
 use crate::error::{Error, Result, Status};
@@ -8,15 +8,15 @@ use crate::error::{Error, Result, Status};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlitEnd {
     pub(super) framebuffer: u32,
-    /// The host's own, whose choice of buffers is put back after the copy.
+    /// Whether the framebuffer is the host's own; its read and draw buffers are then restored after the copy.
     pub(super) hosts: bool,
 }
 
-/// Copies `mask` of the whole image from `source` to `destination`, texel by texel; resolves or replicates samples
-/// where the two differ. Encodings are carried over as they are.
+/// Copies `mask` of the whole image from `source` to `destination`, texel by texel. Resolves or replicates samples
+/// where the sample counts differ. Copies encoded values unchanged.
 ///
 /// # Errors
-/// What OpenGL refuses, named.
+/// The OpenGL error, by name, if OpenGL refuses the copy.
 pub(super) fn copy(
     api: &Api,
     source: BlitEnd,
@@ -26,7 +26,7 @@ pub(super) fn copy(
 ) -> Result<()> {
     api.BindFramebuffer(READ_FRAMEBUFFER, source.framebuffer);
     api.BindFramebuffer(DRAW_FRAMEBUFFER, destination.framebuffer);
-    // Both ends have one encoding; desktop OpenGL decodes and encodes only where this is on.
+    // Both ends have the same encoding; desktop OpenGL decodes and encodes only with this switch on.
     let encoding = api.IsEnabled(FRAMEBUFFER_SRGB) != 0;
     api.Disable(FRAMEBUFFER_SRGB);
     api.Disable(SCISSOR_TEST);
@@ -41,7 +41,7 @@ pub(super) fn copy(
         api.ReadBuffer(was);
     }
     if let Some(was) = drawing {
-        // SAFETY: the list has as many values as passed.
+        // SAFETY: the list has as many values as its length says.
         unsafe { api.DrawBuffers(was.len() as i32, was.as_ptr()) };
     }
     if encoding {
@@ -64,7 +64,7 @@ pub(super) fn copy(
     ))
 }
 
-/// Makes the bound read framebuffer read what it draws to; answers what it read before.
+/// Makes the bound read framebuffer read the buffer that it draws to; returns the previous read buffer.
 fn read_what_is_drawn(api: &Api, source: BlitEnd) -> u32 {
     let was = api.uint(READ_BUFFER);
     let drawn_before = api.uint(DRAW_FRAMEBUFFER_BINDING);
@@ -78,7 +78,7 @@ fn read_what_is_drawn(api: &Api, source: BlitEnd) -> u32 {
     was
 }
 
-/// Makes the bound draw framebuffer draw to its first buffer only; answers the list to put back, if it changed.
+/// Makes the bound draw framebuffer draw to its first buffer only; returns the list to restore, if it changed.
 fn draw_to_one(api: &Api) -> Option<[u32; 8]> {
     let count = api.uint(MAX_DRAW_BUFFERS).min(8) as usize;
     let mut was = [NONE; 8];

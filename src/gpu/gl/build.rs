@@ -1,4 +1,5 @@
-//! Building a target: the framebuffers and copies it needs, and the wgpu textures that stand for the host's images.
+//! Building of targets: the framebuffers and copies that a target needs, and the wgpu textures that stand for the
+//! host's images.
 
 use std::num::NonZeroU32;
 use std::sync::Arc;
@@ -21,11 +22,11 @@ use crate::error::{Error, Result, Status};
 pub(super) struct Workshop<'a> {
     pub(super) ask: Ask<'a>,
     pub(super) device: &'a wgpu::Device,
-    /// Whether the device draws as OpenGL 3.3 or OpenGL ES 3.0 would.
+    /// Whether the device draws as on OpenGL 3.3 or OpenGL ES 3.0.
     pub(super) tier0: bool,
 }
 
-/// An image as it is attached to a framebuffer of ours.
+/// Image attached to one of Welkin's framebuffers.
 #[derive(Clone, Copy)]
 struct Attachment {
     side: TargetSide,
@@ -39,12 +40,12 @@ const READ: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING;
 const COPIES: wgpu::TextureUsages = wgpu::TextureUsages::COPY_SRC.union(wgpu::TextureUsages::COPY_DST);
 
 impl TargetImage {
-    /// wgpu's name of the format.
+    /// Returns wgpu's format for the image.
     fn format(&self) -> Result<wgpu::TextureFormat> {
         formats::format(self.facts.internal, self.side)
     }
 
-    /// Returns the object that is drawn to.
+    /// Returns the object that Welkin draws to.
     fn attached(&self, samples: u32) -> GlObject {
         match (self.image, &self.copy) {
             (_, Some(copy)) if copy.drawn_to => GlObject::Texture(copy.texture, target_of(samples)),
@@ -54,12 +55,12 @@ impl TargetImage {
         }
     }
 
-    /// Returns how an object that stands for it is attached.
+    /// Returns the attachment of an object that stands for this image.
     fn attachment(&self, object: GlObject) -> Attachment {
         Attachment { side: self.side, object, internal: self.facts.internal }
     }
 
-    /// Returns the object that is read, if any can be.
+    /// Returns the object that shaders read, if there is one.
     fn readable(&self, samples: u32) -> Option<GlObject> {
         match (self.image, &self.copy) {
             (_, Some(copy)) => Some(GlObject::Texture(copy.texture, target_of(samples))),
@@ -73,7 +74,7 @@ impl Workshop<'_> {
     /// Builds a target for `desc`.
     ///
     /// # Errors
-    /// Whatever of the host's images cannot be served, named with the parameter.
+    /// An image that cannot be used; the message names the parameter.
     pub(super) fn build(&self, desc: GlTargetDesc, id: u64) -> Result<Entry> {
         let mut made = TargetObjects::default();
         match self.assemble(desc, id, &mut made) {
@@ -94,7 +95,7 @@ impl Workshop<'_> {
             parts.push(self.part(desc, image, TargetSide::Depth)?);
         }
         let samples = parts[0].facts.samples;
-        // Depth of several samples beside a resolved picture is copied to depth of one; OpenGL ES cannot do that.
+        // If the picture has one sample, multisampled depth is copied to depth of one sample; OpenGL ES cannot do that.
         let resolved = samples == 1 && !self.ask.info.is_es();
         if let Some(other) = parts.iter().find(|p| p.facts.samples != samples && !resolved) {
             let accepted = format!("an image with as many samples as color, {samples}");
@@ -112,7 +113,7 @@ impl Workshop<'_> {
         for part in &mut parts {
             self.provide_copy(part, part.facts.samples > samples, samples, made)?;
         }
-        // wgpu cannot attach multisampled textures: they need a framebuffer of ours, colour and depth together.
+        // wgpu cannot attach multisampled textures: colour and depth together need a framebuffer of Welkin's.
         let attached = || parts.iter().map(|p| p.attachment(p.attached(samples)));
         let framebuffer = if attached().any(|a| a.object.is_multisampled_texture()) {
             Some(GlObject::Framebuffer(self.framebuffer(&attached().collect::<Vec<_>>(), made)?))
@@ -135,7 +136,7 @@ impl Workshop<'_> {
         Ok((target, parts))
     }
 
-    /// A target that is only read: its depth stands for its colour too.
+    /// Builds a target that is only read: its depth texture stands for its colour too.
     fn only_depth(
         &self,
         desc: GlTargetDesc,
@@ -165,7 +166,7 @@ impl Workshop<'_> {
         Ok((target, vec![part]))
     }
 
-    /// Asks about what is only read beside colour and depth.
+    /// Queries an image that is only read: mask, classes or normals.
     fn read_part(&self, desc: GlTargetDesc, image: GlImage, side: TargetSide) -> Result<TargetImage> {
         if !matches!(image, GlImage::Texture { target: TEXTURE_2D, .. }) {
             let rest = "must be a texture of target GL_TEXTURE_2D";
@@ -177,13 +178,13 @@ impl Workshop<'_> {
     /// Whether multisampled images are copied to images of one sample.
     ///
     /// # Errors
-    /// The context can do neither that nor what was asked.
+    /// The context can neither do that nor use the samples as requested.
     fn resolves(&self, multisample: Multisample, samples: u32) -> Result<bool> {
         let es = self.ask.info.is_es();
         match multisample {
             _ if samples == 1 => Ok(false),
-            // wgpu's shaders do not compile there: its translator takes gl_SampleID for unsigned, which only GLSL 4.00
-            // converts; and OpenGL ES cannot copy to multisampled images either.
+            // wgpu's shaders do not compile there: its translator takes gl_SampleID for unsigned, and only GLSL 4.00
+            // converts it implicitly. OpenGL ES cannot copy to multisampled images either.
             _ if es => {
                 let rest = format!("must have 1 sample on OpenGL ES, got {samples}: resolve it before this call");
                 Err(Error::about(Status::Unsupported, "target.color", rest))
@@ -200,7 +201,7 @@ impl Workshop<'_> {
         }
     }
 
-    /// Asks about one image and checks its size and format.
+    /// Queries one image, and checks its size and format.
     fn part(&self, desc: GlTargetDesc, image: GlImage, side: TargetSide) -> Result<TargetImage> {
         let size = (desc.width, desc.height);
         if let (TargetSide::Depth, GlImage::Framebuffer { .. }) = (side, image)
@@ -231,7 +232,7 @@ impl Workshop<'_> {
         Ok(TargetImage { side, image, facts, parameters, copy: None, reading: None })
     }
 
-    /// Makes the copy that an image needs, and the framebuffers at its two ends.
+    /// Creates the copy that an image needs, and the framebuffers at both ends of the copy.
     fn provide_copy(
         &self,
         part: &mut TargetImage,
@@ -240,7 +241,7 @@ impl Workshop<'_> {
         made: &mut TargetObjects,
     ) -> Result<()> {
         let drawn_to = resolve || matches!(part.image, GlImage::Framebuffer { .. });
-        // wgpu reads only textures, and depth is always read.
+        // wgpu can read only textures, and depth is always read.
         let read = part.side == TargetSide::Depth && matches!(part.image, GlImage::Renderbuffer { .. });
         if !drawn_to && !read {
             return Ok(());
@@ -250,7 +251,8 @@ impl Workshop<'_> {
             GlImage::Texture { name, target } => self.end(part.attachment(GlObject::Texture(name, target)), made)?,
             GlImage::Renderbuffer { name } => self.end(part.attachment(GlObject::Renderbuffer(name)), made)?,
         };
-        // A window's depth is known only by its bits, and drivers differ in what they copy it to; colours convert.
+        // Only the bits of a window's depth are known, and drivers differ in the formats that they copy it to. Colours
+        // convert.
         let others: &[u32] = match (part.image, part.side) {
             (GlImage::Framebuffer { .. }, TargetSide::Depth) => {
                 &[DEPTH24_STENCIL8, DEPTH_COMPONENT24, DEPTH_COMPONENT32F, DEPTH32F_STENCIL8, DEPTH_COMPONENT16]
@@ -272,7 +274,7 @@ impl Workshop<'_> {
         outcome
     }
 
-    /// A texture of ours like one of the host's images.
+    /// Creates a texture of Welkin's like one of the host's images.
     fn storage(
         &self,
         side: TargetSide,
@@ -293,7 +295,7 @@ impl Workshop<'_> {
         Ok(BlitEnd { framebuffer: self.framebuffer(&[attachment], made)?, hosts: false })
     }
 
-    /// A framebuffer of ours with the given images.
+    /// Creates a framebuffer with the given images.
     fn framebuffer(&self, attachments: &[Attachment], made: &mut TargetObjects) -> Result<u32> {
         let api = self.ask.api;
         let framebuffer = api.one(Api::GenFramebuffers);
@@ -324,7 +326,7 @@ impl Workshop<'_> {
         Err(refused(side, internal, "draw to", if error == NO_ERROR { status } else { error }))
     }
 
-    /// The picture as wgpu textures: to draw to, and to read where wgpu cannot copy that.
+    /// Creates wgpu textures for the picture: one to draw to and, if wgpu cannot copy that, one to read.
     fn color(
         &self,
         part: &mut TargetImage,
@@ -352,8 +354,8 @@ impl Workshop<'_> {
         Ok((color, Some(read)))
     }
 
-    /// Depth as wgpu textures: to attach, and to read. Two of one object: wgpu would refuse to read what it has
-    /// attached.
+    /// Creates wgpu textures for depth: one to attach and one to read. They are two textures of one object, because
+    /// wgpu refuses to read a texture that is attached.
     fn depth(
         &self,
         part: &TargetImage,
@@ -370,7 +372,7 @@ impl Workshop<'_> {
         Ok((Some(depth), read))
     }
 
-    /// Makes sure that the driver can draw to what wgpu is going to attach.
+    /// Checks that the driver can draw to the object that wgpu will attach.
     fn check_attachable(&self, part: &TargetImage, object: GlObject) -> Result<()> {
         let mut probe = TargetObjects::default();
         let outcome = self.framebuffer(&[part.attachment(object)], &mut probe);
@@ -378,7 +380,7 @@ impl Workshop<'_> {
         outcome.map(|_| ())
     }
 
-    /// Makes a wgpu texture of an OpenGL object without owning it.
+    /// Creates a wgpu texture that refers to an OpenGL object without owning it.
     fn wrap(
         &self,
         object: GlObject,
@@ -406,9 +408,9 @@ impl Workshop<'_> {
         let (Some(name), Some(hal_device)) = (name, hal_device) else {
             return Err(Error::new(Status::Internal, "an OpenGL image without name or device"));
         };
-        // Present, so that wgpu takes the object for somebody else's and never deletes it.
+        // A drop callback tells wgpu that it does not own the object, so it never deletes it.
         let keep: Option<wgpu::hal::DropCallback> = Some(Box::new(|| {}));
-        // SAFETY: the name is alive and has this format and size, as OpenGL itself just said; the target is corrected
+        // SAFETY: the name is alive and has this format and size, as OpenGL has just reported. The target is corrected
         // for multisampled textures, which the backend does not know.
         let texture = unsafe {
             match object {
@@ -439,12 +441,12 @@ impl Workshop<'_> {
             usage,
             view_formats: &[],
         };
-        // SAFETY: the texture was made by this device, respects the description and holds the host's pixels.
+        // SAFETY: this device made the texture, and the texture matches the description and holds the host's pixels.
         Ok(unsafe { self.device.create_texture_from_hal::<Gles>(texture, &desc, uses) })
     }
 }
 
-/// Refuses depth that is drawn to with fewer samples than it has: the samples' own depths would be lost.
+/// Checks that depth which is written keeps its samples: with fewer samples the samples' own depths would be lost.
 fn check_written_back(parts: &[TargetImage], resolve: bool) -> Result<()> {
     if resolve {
         let rest = "must be each where depth is written: of the depths of a pixel's samples only one would be left";
@@ -460,7 +462,7 @@ fn check_written_back(parts: &[TargetImage], resolve: bool) -> Result<()> {
     }
 }
 
-/// Returns the error for an image that this context refuses, with a format that always serves.
+/// Returns the error for an image that this context refuses, with a format that always works.
 fn refused(side: TargetSide, internal: u32, verb: &str, answer: u32) -> Error {
     let parameter = side.parameter();
     let (internal, answer_text) = (spell(internal), spell(answer));
@@ -475,7 +477,7 @@ fn refused(side: TargetSide, internal: u32, verb: &str, answer: u32) -> Error {
     Error::about(Status::Unsupported, parameter, rest)
 }
 
-/// The state wgpu finds a texture in: it must be one that the usage allows.
+/// Returns the state in which wgpu first finds a texture, which must be one that the usage allows.
 fn first_use(format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::TextureUses {
     if !usage.contains(ATTACH) {
         wgpu::TextureUses::RESOURCE

@@ -1,4 +1,4 @@
-//! The targets that a host keeps coming back with: built once, begun anew for each call.
+//! Cache of the targets that a host uses again and again: built once, and begun at each call.
 
 use std::sync::Arc;
 
@@ -13,11 +13,11 @@ use super::{
 };
 use crate::error::{Error, Result, Status};
 
-/// Targets kept before the longest unused one goes.
+/// Largest number of targets kept; beyond it the least recently used one is dropped.
 const CACHED_TARGETS: usize = 32;
 
 impl Inner {
-    /// Finds or builds a target and begins it.
+    /// Finds or builds the target of `desc`, and begins its use.
     pub(super) fn target(
         &mut self,
         info: &GlInfo,
@@ -65,31 +65,31 @@ impl Inner {
         self.begin_target(self.targets.len() - 1)
     }
 
-    /// The target in use that is drawn to by `color`.
+    /// Returns the target in use whose colour texture is `color`.
     pub(super) fn entry_of(&self, color: &wgpu::Texture) -> Option<&Entry> {
         self.targets.iter().find(|e| e.target.color == *color && self.active.contains(&e.target.id))
     }
 
-    /// The target in use whose depth is read as `depth`.
+    /// Returns the target in use whose depth is read as `depth`.
     pub(super) fn entry_with_depth(&self, depth: &wgpu::Texture) -> Option<&Entry> {
         let is_it = |e: &&Entry| e.target.depth_read.as_ref() == Some(depth) && self.active.contains(&e.target.id);
         self.targets.iter().find(is_it)
     }
 
-    /// Makes sure that the host's window, if it is the target, has the size that the host says: at once where it is
-    /// `new`, else as it was some frames ago.
+    /// Checks that the host's window, if it is the target, has the size that the host gives. For a `new` target it
+    /// waits for the result; otherwise it uses the result of an earlier frame.
     fn check_window(&mut self, info: &GlInfo, desc: &GlTargetDesc, new: bool) -> Result<()> {
         if desc.color != (GlImage::Framebuffer { name: 0 }) || desc.width == 0 || desc.height == 0 {
             return Ok(());
         }
-        // Without a window there is nothing to ask.
+        // Without a window there is nothing to check.
         self.api.BindFramebuffer(FRAMEBUFFER, 0);
         if self.api.CheckFramebufferStatus(DRAW_FRAMEBUFFER) != FRAMEBUFFER_COMPLETE {
             return Ok(());
         }
         let window = self.window.get_or_insert_with(|| WindowSize::new(&self.api, info));
         self.api.BindVertexArray(self.backend.vertex_array);
-        // What was asked about another size is of no use any more.
+        // The result of a query about another size is discarded.
         let before = window.check(&self.api, new);
         if !new {
             before?;
@@ -106,7 +106,7 @@ impl Inner {
         Ask { api: &self.api, info, scratch: self.scratch, encodes }
     }
 
-    /// Ends `entry` if it is in use.
+    /// Ends the use of `entry` if it is in use.
     pub(super) fn end_of(&mut self, entry: &Entry) {
         if let Some(at) = self.active.iter().position(|id| *id == entry.target.id) {
             self.active.swap_remove(at);
@@ -132,7 +132,8 @@ impl Inner {
         entry.made.delete(&self.api);
     }
 
-    /// Framebuffers belong to one context: in a shared one their names mean nothing.
+    /// Checks that no framebuffer is named in shared mode: framebuffers belong to one context, so the name would mean
+    /// nothing.
     fn refuse_foreign_framebuffers(&self, desc: &GlTargetDesc) -> Result<()> {
         let foreign = matches!(self.sharing, Sharing::Shared { .. })
             && [Some(desc.color), desc.depth].into_iter().flatten().any(|i| matches!(i, GlImage::Framebuffer { .. }));
@@ -145,7 +146,7 @@ impl Inner {
     }
 }
 
-/// Whether two descriptions name the same images, used in the same way.
+/// Whether two descriptions name the same images for the same uses.
 fn same_objects(a: &GlTargetDesc, b: &GlTargetDesc) -> bool {
     let images = |d: &GlTargetDesc| (d.color, d.depth, d.mask, d.surface_classes, d.normals, d.multisample);
     images(a) == images(b)

@@ -1,5 +1,5 @@
-//! Checks of the host's context, made before wgpu touches it: wgpu and its loader panic where these checks return an
-//! error by name.
+//! Checks of the host's context before wgpu uses it. wgpu and its loader would panic where these checks return an
+//! error.
 
 use std::{
     collections::HashSet,
@@ -37,7 +37,7 @@ pub struct GlInfo {
 }
 
 impl GlInfo {
-    /// Asks the current context.
+    /// Queries the current context.
     ///
     /// # Errors
     /// No context is current, its version cannot be read, or it is too old.
@@ -73,7 +73,7 @@ impl GlInfo {
         Ok(Self { profile, version, version_text, vendor, renderer, extensions })
     }
 
-    /// Whether the version is at least `desktop` or `es`, whichever the context speaks.
+    /// Whether the version is at least `desktop` or `es`, depending on the kind of context.
     pub(super) fn at_least(&self, desktop: (u32, u32), es: (u32, u32)) -> bool {
         self.version >= if self.profile == GlProfile::Es { es } else { desktop }
     }
@@ -83,13 +83,13 @@ impl GlInfo {
         self.profile == GlProfile::Es
     }
 
-    /// Whether the context itself has compute shaders, whatever was forced.
+    /// Whether the context itself has compute shaders, even if tier 0 is forced.
     pub fn has_compute(&self) -> bool {
         self.at_least((4, 3), (3, 1)) || self.has("GL_ARB_compute_shader")
     }
 
-    /// Whether the context has what came with version `desktop` or `es`, or with one of `extensions` before that. 0.0
-    /// stands for never.
+    /// Whether the context has a feature that came with version `desktop` or `es`, or earlier with one of `extensions`.
+    /// Version 0.0 means never.
     pub(super) fn knows(&self, desktop: (u32, u32), es: (u32, u32), extensions: &[&str]) -> bool {
         let since = if self.is_es() { es } else { desktop };
         since != (0, 0) && self.version >= since || extensions.iter().any(|e| self.has(e))
@@ -100,7 +100,7 @@ impl GlInfo {
     }
 }
 
-/// `GL_VERSION` is `4.5 (Core Profile) vendor` or `OpenGL ES 3.2 vendor`; answers (is ES, (major, minor)).
+/// Parses `GL_VERSION`, such as `4.5 (Core Profile) vendor` or `OpenGL ES 3.2 vendor`; returns (is ES, (major, minor)).
 fn parse_version(text: &str) -> Option<(bool, (u32, u32))> {
     let (es, rest) = match text.strip_prefix("OpenGL ES ") {
         Some(rest) => (true, rest),
@@ -112,7 +112,7 @@ fn parse_version(text: &str) -> Option<(bool, (u32, u32))> {
     Some((es, (major, minor)))
 }
 
-/// Functions that wgpu calls without asking whether they were found; it panics when one is missing.
+/// Functions that wgpu calls without checking that they were found; it panics when one is missing.
 const NEEDED: &[&CStr] = &[
     c"glGetString",
     c"glGetStringi",
@@ -213,7 +213,7 @@ const NEEDED: &[&CStr] = &[
     c"glGetSynciv",
 ];
 
-/// Refuses a loader that does not find a function every context of the needed version has.
+/// Checks that the loader finds the functions that every context of the needed version has.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] with the first missing name.
@@ -231,7 +231,8 @@ pub(super) fn loader_finds_all(get: &dyn Fn(&CStr) -> *const c_void) -> Result<(
     }
 }
 
-/// Refuses the compatibility profile's modes in which nothing is drawn, and state that could not be put back.
+/// Checks that the context is in no mode of the compatibility profile in which nothing is drawn, and has no state that
+/// could not be restored.
 ///
 /// # Errors
 /// [`Status::WrongOrder`] naming the mode.
@@ -251,7 +252,7 @@ pub(super) fn can_draw_now(api: &Api, info: &GlInfo) -> Result<()> {
         // SAFETY: DELETE_STATUS writes one integer.
         unsafe { api.GetProgramiv(program, DELETE_STATUS, &mut deleted) };
         if deleted != 0 {
-            // Using another program would destroy it, and it could not be made current again.
+            // Using another program would destroy this one, which could then not be made current again.
             return refuse(format!(
                 "the current program {program} is marked for deletion and could not be restored: make another \
                  program (or 0) current before this call"

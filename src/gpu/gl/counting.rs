@@ -1,9 +1,9 @@
-//! The host's conditional rendering and its queries that count, in the context in which Welkin draws.
+//! Host's conditional rendering and active queries, in the context in which Welkin draws.
 //!
-//! Both reach into what Welkin draws: under a conditional render whose query counted nothing no draw is made, so tables
-//! that are drawn once would stay empty; and a query counts Welkin's samples. Neither can be put aside and taken up
-//! again. OpenGL tells whether a query is active (`GL_CURRENT_QUERY`). It does not tell whether rendering is
-//! conditional, but refuses to begin that twice (OpenGL 4.6 core specification, section 10.9), so a trial tells.
+//! Both affect what Welkin draws. Under conditional rendering whose query counted nothing, no draw is made, so tables
+//! that are drawn once would stay empty. An active query counts Welkin's samples. Neither can be suspended and resumed.
+//! OpenGL reports whether a query is active (`GL_CURRENT_QUERY`). It does not report whether rendering is conditional,
+//! but beginning it twice is an error (OpenGL 4.6 core specification, section 10.9), so a trial finds out.
 
 use super::{
     api::Api,
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::error::{Error, Result, Status};
 
-/// Targets of queries that count what Welkin draws, and their names.
+/// Targets of queries that would count Welkin's draws, and their names.
 const COUNTING: [(u32, &str); 4] = [
     (SAMPLES_PASSED, "GL_SAMPLES_PASSED"),
     (ANY_SAMPLES_PASSED, "GL_ANY_SAMPLES_PASSED"),
@@ -20,16 +20,17 @@ const COUNTING: [(u32, &str); 4] = [
     (PRIMITIVES_GENERATED, "GL_PRIMITIVES_GENERATED"),
 ];
 
-/// Checks that are made before Welkin draws in a host's own context.
+/// Checks made before Welkin draws in the host's own context.
 pub(super) struct Counting {
-    /// Targets that this context knows.
+    /// Query targets that this context has.
     targets: Vec<(u32, &'static str)>,
-    /// A query that has ended, for the trial; 0 where there is no conditional rendering, or a trial tells nothing.
+    /// Ended query for the trial; 0 if there is no conditional rendering, or if trials are not reliable with this
+    /// driver.
     trial: u32,
 }
 
 impl Counting {
-    /// Makes what asking needs. Leaves no error flag.
+    /// Creates the objects that the checks need. Leaves no error flag.
     pub(super) fn new(api: &Api, info: &GlInfo) -> Self {
         api.take_error();
         let is_known = |(target, _): &(u32, &str)| {
@@ -47,7 +48,7 @@ impl Counting {
         own
     }
 
-    /// The name of an active query's target.
+    /// Returns the name of an active query's target.
     fn counts(&self, api: &Api) -> Option<&'static str> {
         self.targets.iter().find(|(target, _)| active(api, *target)).map(|(_, name)| *name)
     }
@@ -66,12 +67,12 @@ impl Counting {
         is_conditional
     }
 
-    /// Opens a device, unless the host counts. Where rendering is conditional nothing is drawn, and opening fails;
-    /// where it is said to be and opening succeeds all the same, this driver's trials tell nothing and no more are
-    /// made.
+    /// Opens a device, unless a query is active. If rendering is conditional, nothing is drawn and opening fails. If
+    /// the trial says that rendering is conditional but opening succeeds, trials are not reliable with this driver and
+    /// no more are made.
     ///
     /// # Errors
-    /// As [`Counting::allows`], and as `open`.
+    /// The errors of [`Counting::allows`] and of `open`.
     pub(super) fn opens<T>(&mut self, api: &Api, open: impl FnOnce() -> Result<T>) -> Result<T> {
         let allowed = self.allows(api);
         if self.trial == 0 {
@@ -88,10 +89,10 @@ impl Counting {
         }
     }
 
-    /// Refuses to draw now. Asked with the host's error flag saved and its debug output off.
+    /// Checks that Welkin may draw now. Must be called with the host's error flag saved and its debug output off.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] naming what must end first.
+    /// [`Status::WrongOrder`], which names what the host must end first.
     pub(super) fn allows(&self, api: &Api) -> Result<()> {
         let refuse = |text: String| Err(Error::new(Status::WrongOrder, text));
         if let Some(name) = self.counts(api) {

@@ -1,47 +1,47 @@
-//! Description of an OpenGL host: its callbacks, and how Welkin lives beside it.
+//! Description of an OpenGL host: its callbacks, and how Welkin shares OpenGL with it.
 
 use std::ffi::{c_char, c_void};
 
 use super::switch::MakeCurrent;
 
-/// Answers the address of OpenGL function `name` (NUL-terminated), or NULL: `eglGetProcAddress`, `glXGetProcAddress`,
-/// `glfwGetProcAddress` in the host's words. Called with Welkin's or the host's context current.
+/// Returns the address of OpenGL function `name` (NUL-terminated), or NULL: the host's `eglGetProcAddress`,
+/// `glXGetProcAddress` or `glfwGetProcAddress`. Called with Welkin's or the host's context current.
 pub type GetProc = unsafe extern "C" fn(user: *mut c_void, name: *const c_char) -> *const c_void;
 
-/// How Welkin lives beside the host's OpenGL.
+/// Context in which Welkin uses the host's OpenGL.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GlMode {
-    /// In a context of its own that shares objects with the host's.
+    /// A second context, which shares objects with the host's.
     #[default]
     Shared,
-    /// In the host's context, whose state is put back.
+    /// Host's context, whose state is restored after each batch.
     HostContext,
 }
 
-/// How one context's commands are ordered after the other's in shared mode.
+/// Order between the commands of the two contexts in shared mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Handover {
-    /// `glFenceSync` and `glWaitSync`, as the standard asks.
+    /// `glFenceSync` and `glWaitSync`, as the standard requires.
     #[default]
     Fence,
-    /// `glFlush` alone: enough where one queue serves both contexts, and cheaper there; measure before you rely on it.
+    /// `glFlush` alone: enough, and cheaper, where one queue serves both contexts. Measure before you rely on it.
     Flush,
 }
 
-/// Description of the OpenGL host that is drawn into.
+/// Description of the OpenGL host that Welkin draws into.
 #[derive(Clone, Copy, Debug)]
 pub struct GlHostDesc {
-    /// Finds OpenGL functions. Required.
+    /// Callback that finds OpenGL functions. Required.
     pub get_proc: Option<GetProc>,
-    /// Makes contexts current. Required in shared mode; in the host's context it is called with
-    /// [`WhichContext::Host`](super::WhichContext::Host) before each batch, if given.
+    /// Callback that makes contexts current. Required in shared mode. In the host's context it is optional: if given,
+    /// it is called with [`WhichContext::Host`](super::WhichContext::Host) before each batch.
     pub make_current: Option<MakeCurrent>,
-    /// Passed to both. They may be called on any thread that calls Welkin, one at a time.
+    /// Argument of both callbacks. They may be called on any thread that calls Welkin, one call at a time.
     pub user: *mut c_void,
-    /// Mode in which Welkin lives beside the host's OpenGL.
+    /// Context in which Welkin uses the host's OpenGL.
     pub mode: GlMode,
-    /// How contexts wait for each other in shared mode.
+    /// Order between the commands of the two contexts in shared mode.
     pub handover: Handover,
-    /// Draw as a context of OpenGL 3.3 or OpenGL ES 3.0 would, without compute, whatever the driver can do.
+    /// Whether to draw as on OpenGL 3.3 or OpenGL ES 3.0, without compute, even if the driver can do more.
     pub force_tier0: bool,
 }

@@ -1,9 +1,9 @@
-//! The context as wgpu sees it while it opens: `glGetString` and `glGetStringi` answer through this room.
+//! Filter for what wgpu asks of a context while it opens: `glGetString` and `glGetStringi` are answered by this room.
 //!
-//! Two reasons. A forced tier 0 must draw as a context of OpenGL 3.3 or OpenGL ES 3.0 would, whatever the driver can
-//! do, so version, shading language and later extensions are hidden. And wgpu believes that floats can be rendered
-//! to and filtered only if an extension of OpenGL 2 says so, which core profiles no longer list although OpenGL 3.0
-//! made both part of itself (OpenGL 3.0 specification, table 3.16): that name is put back.
+//! There are two reasons. A forced tier 0 must draw as on OpenGL 3.3 or OpenGL ES 3.0, even if the driver can do more,
+//! so the version, the shading language and later extensions are hidden. And wgpu takes float formats for renderable
+//! and filterable only if an OpenGL 2 extension says so. Core profiles no longer list that extension, because OpenGL
+//! 3.0 made both part of itself (OpenGL 3.0 specification, table 3.16); this room adds it to the list again.
 
 use std::{
     cell::RefCell,
@@ -14,7 +14,7 @@ use super::{api::Api, check::GlInfo, names::*};
 
 type GetString = unsafe extern "system" fn(u32) -> *const u8;
 
-/// Names newer than OpenGL 3.3 and OpenGL ES 3.0, of those that wgpu asks for.
+/// Extensions newer than OpenGL 3.3 and OpenGL ES 3.0 that wgpu asks for.
 const NEWER: &[&str] = &[
     "GL_ARB_compute_shader",
     "GL_ARB_shader_storage_buffer_object",
@@ -33,7 +33,7 @@ const NEWER: &[&str] = &[
     "GL_NV_image_formats",
 ];
 
-/// Extensions that OpenGL 3.3 contains and wgpu never asks for: one gives its place to [`FLOATS`].
+/// Extensions that OpenGL 3.3 contains and wgpu never asks for. One of them is replaced by [`FLOATS`] in the list.
 const UNASKED: &[&str] = &[
     "GL_ARB_sync",
     "GL_ARB_map_buffer_range",
@@ -48,13 +48,13 @@ const UNASKED: &[&str] = &[
     "GL_ARB_sampler_objects",
 ];
 
-/// With one of these wgpu writes buffers through memory that stays mapped and a copy on the GPU, else by
-/// `glBufferSubData`.
+/// Extensions with which wgpu writes buffers through persistently mapped memory and a copy on the GPU; without them it
+/// uses `glBufferSubData`.
 pub(super) const STORAGE: [&str; 2] = ["GL_ARB_buffer_storage", "GL_EXT_buffer_storage"];
 
 const FLOATS: &str = "GL_ARB_color_buffer_float";
 
-/// Answers of the two functions on this thread.
+/// What the two functions return on this thread.
 struct Face {
     real: GetString,
     version: Option<CString>,
@@ -76,7 +76,8 @@ extern "system" fn get_string(name: u32) -> *const u8 {
         };
         match instead {
             Some(text) => text.as_ptr().cast(),
-            // SAFETY: the host's own glGetString, its context current: the caller of `FaceGuard::show` saw to it.
+            // SAFETY: this is the host's own glGetString, with its context current, as the caller of `FaceGuard::show`
+            // ensures.
             None => unsafe { (face.real)(name) },
         }
     })
@@ -87,17 +88,17 @@ extern "system" fn get_string_i(name: u32, index: u32) -> *const u8 {
         Some(face) if name == EXTENSIONS => {
             face.extensions.get(index as usize).map_or(std::ptr::null(), |t| t.as_ptr().cast())
         }
-        // wgpu asks for nothing else, and never again once the adapter is made.
+        // wgpu asks for nothing else, and asks nothing after the adapter is created.
         _ => c"".as_ptr().cast(),
     })
 }
 
-/// The face is shown on this thread as long as this lives.
+/// Guard: the two functions use this thread's [`Face`] as long as it lives.
 pub(super) struct FaceGuard(());
 
 impl FaceGuard {
-    /// Shows the current context; `force_tier0` hides what OpenGL 3.3 or OpenGL ES 3.0 lacks, `no_storage` what
-    /// [`STORAGE`] names.
+    /// Shows wgpu the current context. `force_tier0` hides what OpenGL 3.3 or OpenGL ES 3.0 lacks; `no_storage` hides
+    /// the extensions of [`STORAGE`].
     pub(super) fn show(api: &Api, info: &GlInfo, force_tier0: bool, no_storage: bool) -> Option<Self> {
         let real = api.GetString?;
         let text = |t: String| CString::new(t).ok();
@@ -122,8 +123,8 @@ impl FaceGuard {
         Some(Self(()))
     }
 
-    /// Returns the function that wgpu's loader gets for `name`: one of the two of this room, or the host's for all
-    /// others.
+    /// Returns the function that wgpu's loader gets for `name`: for the two functions this room's own, for all others
+    /// the host's.
     pub(super) fn resolve(name: &CStr, hosts: *const c_void) -> *const c_void {
         match name.to_bytes() {
             b"glGetString" => get_string as extern "system" fn(u32) -> *const u8 as *const c_void,

@@ -5,10 +5,10 @@ use wgpu::TextureFormat as Format;
 use super::{names::*, side::TargetSide};
 use crate::error::{Error, Result, Status};
 
-/// The colour formats a host may hand over.
+/// Colour formats that a host may hand over.
 const COLOR: &[(u32, &str, Format)] = &[
     (RGBA8, "GL_RGBA8", Format::Rgba8Unorm),
-    // No alpha to write and one to read: wgpu need not know, OpenGL fills it in.
+    // wgpu need not know that there is no alpha: OpenGL ignores it in writes and returns 1 in reads.
     (RGB8, "GL_RGB8", Format::Rgba8Unorm),
     (SRGB8_ALPHA8, "GL_SRGB8_ALPHA8", Format::Rgba8UnormSrgb),
     (SRGB8, "GL_SRGB8", Format::Rgba8UnormSrgb),
@@ -19,22 +19,22 @@ const COLOR: &[(u32, &str, Format)] = &[
     (RGBA32F, "GL_RGBA32F", Format::Rgba32Float),
 ];
 
-/// The depth formats a host may hand over.
+/// Depth formats that a host may hand over.
 const DEPTH: &[(u32, &str, Format)] = &[
     (DEPTH_COMPONENT16, "GL_DEPTH_COMPONENT16", Format::Depth16Unorm),
     (DEPTH_COMPONENT24, "GL_DEPTH_COMPONENT24", Format::Depth24Plus),
-    // wgpu has no name for it; it is read as a float either way.
+    // wgpu has no name for this format; it is read as a float in any case.
     (DEPTH_COMPONENT32, "GL_DEPTH_COMPONENT32", Format::Depth32Float),
     (DEPTH_COMPONENT32F, "GL_DEPTH_COMPONENT32F", Format::Depth32Float),
     (DEPTH24_STENCIL8, "GL_DEPTH24_STENCIL8", Format::Depth24PlusStencil8),
     (DEPTH32F_STENCIL8, "GL_DEPTH32F_STENCIL8", Format::Depth32FloatStencil8),
 ];
 
-/// The formats of a mask or of classes, of which red is read.
+/// Formats of a mask or of surface classes; only red is read.
 const MASK: &[(u32, &str, Format)] =
     &[(R8, "GL_R8", Format::R8Unorm), (RGBA8, "GL_RGBA8", Format::Rgba8Unorm), (RGB8, "GL_RGB8", Format::Rgba8Unorm)];
 
-/// The formats of normals.
+/// Formats of normals.
 const NORMALS: &[(u32, &str, Format)] = &[
     (RGBA8, "GL_RGBA8", Format::Rgba8Unorm),
     (RGB8, "GL_RGB8", Format::Rgba8Unorm),
@@ -44,7 +44,7 @@ const NORMALS: &[(u32, &str, Format)] = &[
     (RGBA32F, "GL_RGBA32F", Format::Rgba32Float),
 ];
 
-/// Properties that an attachment is asked for when its internal format is not known by a sized name.
+/// Bits of an attachment, queried when its internal format is not a sized name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Bits {
     pub(super) red: i32,
@@ -58,12 +58,12 @@ pub(super) struct Bits {
 }
 
 impl Bits {
-    /// The sized colour format with these bits.
+    /// Returns the sized colour format with these bits.
     pub(super) fn color(self) -> Option<u32> {
         let float = self.component == FLOAT;
         Some(match (self.red, self.green, self.alpha, float) {
             (8, 8, _, false) if self.srgb => SRGB8_ALPHA8,
-            // A window of 5 or 6 bits is served through 8: the copy out rounds.
+            // A window with 5 or 6 bits gets a copy with 8; the copy back rounds.
             (1..=8, 1..=8, _, false) => RGBA8,
             (10, 10, _, false) => RGB10_A2,
             (16, 16, _, true) => RGBA16F,
@@ -73,7 +73,7 @@ impl Bits {
         })
     }
 
-    /// The sized depth format with these bits.
+    /// Returns the sized depth format with these bits.
     pub(super) fn depth(self) -> Option<u32> {
         Some(match (self.depth, self.stencil > 0) {
             (16, _) => DEPTH_COMPONENT16,
@@ -87,10 +87,10 @@ impl Bits {
     }
 }
 
-/// wgpu's name of format `internal` on one side of a target.
+/// Returns wgpu's format for format `internal` on one side of a target.
 ///
 /// # Errors
-/// [`crate::Status::Unsupported`] naming the parameter, the format and the accepted ones.
+/// [`crate::Status::Unsupported`], which names the parameter, the format and the accepted formats.
 pub(super) fn format(internal: u32, side: TargetSide) -> Result<Format> {
     let table = match side {
         TargetSide::Color => COLOR,
@@ -107,8 +107,8 @@ pub(super) fn format(internal: u32, side: TargetSide) -> Result<Format> {
     Err(Error::about(Status::Unsupported, side.parameter(), rest))
 }
 
-/// The client format and type with which `internal` can be allocated without data. OpenGL ES takes those of its table
-/// alone (OpenGL ES 3.0 specification, table 3.2): an image without alpha is allocated without it.
+/// Returns the client format and type with which `internal` can be allocated without data. OpenGL ES accepts only those
+/// of its table (OpenGL ES 3.0 specification, table 3.2), so a format without alpha is allocated without alpha.
 pub(super) fn allocation(internal: u32) -> (u32, u32) {
     match internal {
         R8 => (RED, UNSIGNED_BYTE),
@@ -127,7 +127,7 @@ pub(super) fn allocation(internal: u32) -> (u32, u32) {
     }
 }
 
-/// Whether a depth format carries stencil as well.
+/// Whether a depth format also has stencil.
 pub(super) fn has_stencil(internal: u32) -> bool {
     matches!(internal, DEPTH24_STENCIL8 | DEPTH32F_STENCIL8)
 }
@@ -144,7 +144,7 @@ mod tests {
             assert!(error.to_string().contains(part), "{}", error);
         }
         assert!(format(RGBA8, TargetSide::Depth).is_err() && format(DEPTH_COMPONENT16, TargetSide::Mask).is_err());
-        // Signs need two halves or a float's; a class is a byte.
+        // Signed values need two halves or floats; a class is a byte.
         for (bad, side, name) in
             [(R8, TargetSide::Normals, "target.normals"), (RGBA16F, TargetSide::Classes, "target.surface_classes")]
         {

@@ -1,13 +1,13 @@
-//! One thread at a time: an OpenGL context can be current on one thread only, and a batch of calls must not be
-//! interrupted by another thread's.
+//! Lock that lets one thread at a time use an OpenGL context. A context can be current on one thread only, and no other
+//! thread's calls may come between those of a batch.
 
 use std::{
     sync::{Condvar, Mutex, MutexGuard, PoisonError},
     thread::{self, ThreadId},
 };
 
-/// A lock that its owner may take again, and that is released by a call and not by a guard's lifetime, because entering
-/// and leaving a host are two calls.
+/// Reentrant lock. A call releases it, not the end of a guard's life, because entering and leaving a host are two
+/// calls.
 #[derive(Default)]
 pub(super) struct Gate {
     state: Mutex<(Option<ThreadId>, u32)>,
@@ -15,7 +15,7 @@ pub(super) struct Gate {
 }
 
 impl Gate {
-    /// Waits until no other thread is inside; answers how deep this thread is now, from 1.
+    /// Waits until no other thread holds the lock; returns this thread's depth, from 1.
     pub(super) fn enter(&self) -> u32 {
         let me = Some(thread::current().id());
         let mut state = self.lock();
@@ -26,7 +26,7 @@ impl Gate {
         state.1
     }
 
-    /// How deep this thread is: 0 when it is not inside.
+    /// Returns this thread's depth: 0 if it does not hold the lock.
     pub(super) fn depth(&self) -> u32 {
         let state = self.lock();
         if state.0 == Some(thread::current().id()) { state.1 } else { 0 }

@@ -1,4 +1,5 @@
-//! Entering and leaving a host's OpenGL: whose context is current, who waits for whom, and what is put back.
+//! Entering and leaving of a host's OpenGL: which context is current, which one waits for the other, and what is
+//! restored.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -22,7 +23,7 @@ use crate::{
     gpu::device::{AttachedDepth, HostBinding},
 };
 
-/// wgpu's own objects in the context, by the names OpenGL gave them.
+/// Names of wgpu's own objects in the context.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Backend {
     pub(super) vertex_array: u32,
@@ -30,11 +31,11 @@ pub(super) struct Backend {
     pub(super) copy_framebuffer: u32,
 }
 
-/// How this device shares OpenGL with its host.
+/// Context that this device uses of the host's OpenGL.
 pub(super) enum Sharing {
-    /// A second context, with the functions of the host's own.
+    /// A second context, and the functions of the host's own.
     Shared { switch: Switch, host: Box<Api>, handover: Handover, windows: Windows },
-    /// The host's context, with what must be put back.
+    /// Host's context, and the state to restore.
     HostContext { state: Box<HostState>, counting: Counting, switch: Option<Switch> },
 }
 
@@ -44,33 +45,33 @@ pub(super) struct Inner {
     pub(super) sharing: Sharing,
     pub(super) mark: Mark,
     pub(super) backend: Backend,
-    /// Framebuffer and two textures of ours, for asking and probing.
+    /// Framebuffer and its two textures, for reading state and probing.
     pub(super) probe: (u32, [u32; 2]),
     pub(super) scratch: u32,
     pub(super) tier0: bool,
     pub(super) targets: Vec<Entry>,
-    /// Made when the host's window is first a target.
+    /// Window's size check, created when the host's window is first a target.
     pub(super) window: Option<WindowSize>,
-    /// Targets in use since the last enter, by id.
+    /// Ids of the targets in use since the last enter.
     pub(super) active: Vec<u64>,
     pub(super) next_id: u64,
-    /// Error that occurred where none could be returned.
+    /// Error that occurred where none could be returned, for the next call that can.
     pub(super) fault: Option<Error>,
     pub(super) closed: bool,
 }
 
-/// An OpenGL host: the way into its context and its images as wgpu textures.
+/// OpenGL host: enters the host's context, and gives the host's images as wgpu textures.
 ///
-/// Every call of wgpu on the device that came with it must happen between [`GlHost::enter`] (or
-/// [`Device::enter`](crate::gpu::Device::enter), which is the same) and the drop of its answer, and so must the
-/// dropping of its objects; the device itself enters when it goes. Any thread may enter; others wait.
+/// Every wgpu call on the host's device, and every drop of an object of that device, must happen between
+/// [`GlHost::enter`] (or [`Device::enter`](crate::gpu::Device::enter), which does the same) and the drop of the
+/// returned guard. The device itself enters the host when it is dropped. Any thread may enter; others wait.
 pub struct GlHost {
     info: GlInfo,
     gate: Gate,
     inner: Mutex<Inner>,
 }
 
-/// The host is entered: Welkin's state is current. Dropping it leaves.
+/// Guard of an entered host: Welkin's state is current. Dropping it leaves the host.
 #[must_use = "the host is left when this is dropped"]
 pub struct Current<'a>(&'a GlHost);
 
@@ -94,22 +95,22 @@ impl GlHost {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Enters the host: in shared mode the host's context must be current on this thread (or none), and Welkin's is
-    /// when this returns; in the host's own context that one must be current, and its state is saved. Entering again on
-    /// the same thread costs nothing.
+    /// Enters the host. In shared mode the host's context must be current on this thread, or none; Welkin's is current
+    /// on return. In the host's own context that context must be current; its state is saved. Entering again on the
+    /// same thread costs nothing.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] if the right context cannot be made current or cannot be drawn in now, and what went
-    /// wrong when the host was last left.
+    /// [`Status::WrongOrder`] if the right context cannot be made current or cannot be drawn in now; also any error
+    /// from when the host was last left.
     pub fn enter(&self) -> Result<Current<'_>> {
         self.begin()?;
         Ok(Current(self))
     }
 
-    /// [`GlHost::enter`] without a guard; each success needs one [`GlHost::leave`] on the same thread.
+    /// Enters as [`GlHost::enter`] does, without a guard. Each success needs one [`GlHost::leave`] on the same thread.
     ///
     /// # Errors
-    /// As [`GlHost::enter`].
+    /// The errors of [`GlHost::enter`].
     pub fn begin(&self) -> Result<()> {
         if self.gate.enter() > 1 {
             return Ok(());
@@ -121,7 +122,7 @@ impl GlHost {
         outcome
     }
 
-    /// Returns the error that occurred when the host was last left, where none could be returned; told once.
+    /// Returns, once, the error that occurred when the host was last left, where none could be returned.
     ///
     /// # Errors
     /// That error.
@@ -129,8 +130,8 @@ impl GlHost {
         self.inner().fault.take().map_or(Ok(()), Err)
     }
 
-    /// Undoes one [`GlHost::begin`]; the last one copies pictures back, puts the host's state back, and makes the
-    /// host's context wait for Welkin's.
+    /// Undoes one [`GlHost::begin`]. The last one copies pictures back, restores the host's state, and makes the host's
+    /// context wait for Welkin's.
     pub fn leave(&self) {
         match self.gate.depth() {
             0 => return,
@@ -140,11 +141,11 @@ impl GlHost {
         self.gate.leave();
     }
 
-    /// The host's colour and depth as wgpu textures, valid until the host is left. The same answer comes back as long
-    /// as the host's objects stay what they are; nothing is allocated then.
+    /// Returns the host's colour and depth as wgpu textures, valid until the host is left. Returns the same target,
+    /// without allocation, as long as the host's objects do not change.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] outside of enter and leave; whatever of the host's images cannot be served, named.
+    /// [`Status::WrongOrder`] outside of enter and leave; an image that cannot be used, by name.
     pub fn target(&self, device: &wgpu::Device, desc: &GlTargetDesc) -> Result<Arc<GlTarget>> {
         if self.gate.depth() == 0 {
             return Err(Error::new(Status::WrongOrder, "the OpenGL host must be entered before its target is used"));
@@ -154,11 +155,11 @@ impl GlHost {
 }
 
 impl GlHost {
-    /// A depth texture or renderbuffer of the host's by itself, to read, as [`GlHost::target`] would give it; one
-    /// sample.
+    /// Returns a host's depth texture or renderbuffer alone, for reading, as [`GlHost::target`] would give it. It must
+    /// have one sample.
     ///
     /// # Errors
-    /// As [`GlHost::target`].
+    /// The errors of [`GlHost::target`].
     pub fn depth(
         &self,
         device: &wgpu::Device,
@@ -170,7 +171,7 @@ impl GlHost {
             let rest = "must be a texture or a renderbuffer here, not a framebuffer";
             return Err(Error::about(Status::Unsupported, "target.depth", rest));
         }
-        // Depth as its own colour: there is nothing to draw into.
+        // The depth stands for the colour, because nothing is drawn.
         let multisample = Multisample::Each;
         let desc = GlTargetDesc {
             color: image,
@@ -234,7 +235,7 @@ impl HostBinding for GlHost {
         }
         inner.active.clear();
         inner.rest(&self.info);
-        inner.backend = Backend::default(); // its names are free from here on
+        inner.backend = Backend::default(); // from here on its names may be reused
     }
 
     fn closed(&self) {
@@ -277,7 +278,7 @@ impl Inner {
                 host.Flush();
                 let arrived = switch.to(WhichContext::Welkin).and_then(|()| here(&self.mark, &self.api, true));
                 if let Err(e) = arrived {
-                    // The host's context comes back; what it has to say is less than what failed.
+                    // The switch back to the host's context may fail too, but the first error matters more.
                     let _ = switch.to(WhichContext::Host);
                     host.DeleteSync(fence);
                     return Err(e);
@@ -301,7 +302,7 @@ impl Inner {
         Ok(())
     }
 
-    /// Gives everything back to the host.
+    /// Ends the batch and gives the context back to the host.
     fn end(&mut self, info: &GlInfo) {
         let mut fault = self.finish_targets().err();
         self.rest(info);
@@ -326,7 +327,7 @@ impl Inner {
                         }
                     }
                     Err(e) => {
-                        // Nobody is there to wait, and Welkin's context is still current.
+                        // No context is left to wait, and Welkin's context is still current.
                         self.api.DeleteSync(fence);
                         fault = fault.or(Some(e));
                     }
@@ -342,7 +343,7 @@ impl Inner {
         self.fault = fault;
     }
 
-    /// Ends every target in use; the first error.
+    /// Ends every target in use; returns the first error.
     fn finish_targets(&mut self) -> Result<()> {
         let mut outcome = Ok(());
         for entry in self.targets.iter().filter(|e| self.active.contains(&e.target.id)) {
@@ -351,7 +352,7 @@ impl Inner {
         outcome
     }
 
-    /// Lets go of the host's images: what stays attached or bound here would live on when the host deletes it.
+    /// Detaches and unbinds the host's images, which would otherwise live on after the host deletes them.
     fn rest(&self, info: &GlInfo) {
         let api = &self.api;
         let colors = api.uint(MAX_COLOR_ATTACHMENTS).min(8);
@@ -366,7 +367,7 @@ impl Inner {
             api.FramebufferTexture2D(FRAMEBUFFER, DEPTH_STENCIL_ATTACHMENT, TEXTURE_2D, 0, 0);
         }
         api.BindFramebuffer(FRAMEBUFFER, 0);
-        api.UseProgram(0); // a program lives as long as it is current, even when wgpu has deleted it
+        api.UseProgram(0); // a current program lives on, even when wgpu has deleted it
         if matches!(self.sharing, Sharing::Shared { .. }) {
             for unit in 0..16 {
                 api.ActiveTexture(TEXTURE0 + unit);
@@ -381,7 +382,7 @@ impl Inner {
     }
 }
 
-/// Makes sure that the marked context is current.
+/// Checks that the marked context is current.
 fn here(mark: &Mark, api: &Api, shared: bool) -> Result<()> {
     if mark.is_here(api) {
         return Ok(());
@@ -394,7 +395,7 @@ fn here(mark: &Mark, api: &Api, shared: bool) -> Result<()> {
     })
 }
 
-/// Makes the current context wait on the GPU for a fence of the other one.
+/// Makes the GPU work of the current context wait for a fence of the other context.
 fn wait(api: &Api, fence: Fence) {
     if !fence.is_null() {
         api.WaitSync(fence, 0, TIMEOUT_IGNORED);
@@ -402,7 +403,7 @@ fn wait(api: &Api, fence: Fence) {
     }
 }
 
-/// Binds an image once and lets go again: OpenGL promises the other context's changes only after that
+/// Binds an image once and restores the binding: only after that does OpenGL guarantee the other context's changes
 /// (OpenGL 4.6 core specification, section 5.3.3, rule 4).
 fn bind_again(api: &Api, image: GlImage) {
     match image {

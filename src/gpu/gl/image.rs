@@ -1,4 +1,4 @@
-//! The host's images: what OpenGL says about them, and what is set on them while wgpu reads them.
+//! Host's images: the properties that OpenGL reports of them, and their parameters while wgpu reads them.
 
 use super::{
     api::Api,
@@ -24,21 +24,21 @@ pub enum GlImage {
         /// Name from `glGenRenderbuffers`.
         name: u32,
     },
-    /// Image that framebuffer `name` draws to; 0 is the window's. Framebuffers are not shared between contexts, so this
-    /// one works only in the host's own context; it is served by copies in and out.
+    /// Image that framebuffer `name` draws to; 0 is the window's. It works only in the host's own context, because
+    /// framebuffers are not shared between contexts. It is copied in and out.
     Framebuffer {
         /// Name from `glGenFramebuffers`, or 0.
         name: u32,
     },
 }
 
-/// The target of a texture of ours.
+/// Returns the target of one of Welkin's textures.
 pub(super) fn target_of(samples: u32) -> u32 {
     if samples > 1 { TEXTURE_2D_MULTISAMPLE } else { TEXTURE_2D }
 }
 
-/// Properties that OpenGL reports of an image. Asked at every use: a host may allocate an object anew under its old
-/// name.
+/// Properties that OpenGL reports of an image. Queried at every use, because a host may allocate an object anew under
+/// its old name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Facts {
     pub(super) width: u32,
@@ -54,18 +54,18 @@ pub(super) struct Facts {
 pub(super) struct Ask<'a> {
     pub(super) api: &'a Api,
     pub(super) info: &'a GlInfo,
-    /// A framebuffer of our own; its attachments are changed.
+    /// Welkin's framebuffer for queries, whose attachments are changed.
     pub(super) scratch: u32,
-    /// Whether the host draws linear colours to framebuffers that encode (`GL_FRAMEBUFFER_SRGB`).
+    /// Whether the host draws linear colours to framebuffers that encode them (`GL_FRAMEBUFFER_SRGB`).
     pub(super) encodes: bool,
 }
 
-/// Asks about `image`. `size` answers where OpenGL cannot (a window's framebuffer, textures before OpenGL ES 3.1).
+/// Queries `image`. `size` is used where OpenGL reports none (a window's framebuffer, textures before OpenGL ES 3.1).
 ///
 /// # Errors
-/// No such object, a target or format that cannot be served, named.
+/// There is no such object, or its target or format cannot be used; the message names it.
 pub(super) fn facts(ask: Ask<'_>, image: GlImage, side: TargetSide, size: (u32, u32)) -> Result<Facts> {
-    ask.api.take_error(); // only what the next calls raise counts
+    ask.api.take_error(); // so that only errors of the calls below count
     match image {
         GlImage::Texture { name, target } => texture_facts(ask, name, target, side, size),
         GlImage::Renderbuffer { name } => renderbuffer_facts(ask.api, name, side),
@@ -109,7 +109,7 @@ fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: TargetSide, size: (
         return Err(Error::invalid(side.parameter(), rest));
     }
     let internal = match named {
-        // Not a sized name: the driver chose, so the bits are counted.
+        // The format is not a sized name: the driver chose one, so its bits are queried.
         1..=4 | RGB | RGBA | RED | DEPTH_COMPONENT | DEPTH_STENCIL | 0x8C40 | 0x8C42 => {
             let bits = attached_bits(api, name, target, side, scratch);
             sized(bits, side)?
@@ -119,7 +119,7 @@ fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: TargetSide, size: (
     Ok(Facts { width, height, internal, samples })
 }
 
-/// Attaches the texture to `scratch` and counts its bits.
+/// Attaches the texture to `scratch` and queries its bits.
 fn attached_bits(api: &Api, name: u32, target: u32, side: TargetSide, scratch: u32) -> Bits {
     let attachment = if side == TargetSide::Depth { DEPTH_ATTACHMENT } else { COLOR_ATTACHMENT0 };
     api.BindFramebuffer(READ_FRAMEBUFFER, scratch);
@@ -160,7 +160,7 @@ fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: TargetSide) ->
     }
 }
 
-/// Stencil bits of the attachment that goes with `depth_attachment`.
+/// Returns the stencil bits of the attachment that goes with `depth_attachment`.
 fn stencil_bits(api: &Api, framebuffer: u32, depth_attachment: u32) -> i32 {
     let attachment = if depth_attachment == DEPTH { 0x1802 } else { STENCIL_ATTACHMENT };
     let mut found = [0; 2];
@@ -234,7 +234,7 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: TargetSide, size: (u32, u32)
                     let rest = format!("must draw to a colour buffer, framebuffer {name} has GL_NONE");
                     return Err(Error::invalid(side.parameter(), rest));
                 }
-                // The window's buffers are asked for one by one on desktop OpenGL, as GL_BACK on OpenGL ES.
+                // Desktop OpenGL names the window's buffers one by one, OpenGL ES as GL_BACK.
                 BACK if !info.is_es() => BACK_LEFT,
                 FRONT | 0x0406 if !info.is_es() => FRONT_LEFT,
                 other => other,
@@ -244,7 +244,7 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: TargetSide, size: (u32, u32)
         (TargetSide::Depth, _) => DEPTH_ATTACHMENT,
     };
     let mut bits = count_bits(api, DRAW_FRAMEBUFFER, attachment, side);
-    // A window may be able to encode and yet get what the host encoded itself.
+    // A window that is able to encode may still hold values that the host encoded itself.
     bits.srgb &= ask.encodes;
     let samples = api.uint(SAMPLES).max(1);
     let attached_size = if name == 0 { None } else { attached_size(ask, attachment, samples) };
@@ -258,7 +258,7 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: TargetSide, size: (u32, u32)
     Ok(Facts { width, height, internal: sized(bits, side)?, samples })
 }
 
-/// The size of what is attached to the bound framebuffer, where OpenGL tells.
+/// Returns the size of the image attached to the bound framebuffer, where OpenGL reports it.
 fn attached_size(ask: Ask<'_>, attachment: u32, samples: u32) -> Option<(u32, u32)> {
     let api = ask.api;
     let get = |pname| {
@@ -277,7 +277,7 @@ fn attached_size(ask: Ask<'_>, attachment: u32, samples: u32) -> Option<(u32, u3
     let (target, level) = (target_of(samples), get(FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL));
     let was = api.uint(if samples > 1 { TEXTURE_BINDING_2D_MULTISAMPLE } else { TEXTURE_BINDING_2D });
     api.BindTexture(target, name);
-    // Layers of arrays and faces of cubes have other targets.
+    // Layers of arrays and faces of cube maps have other targets.
     let size = (api.take_error() == NO_ERROR).then(|| {
         [TEXTURE_WIDTH, TEXTURE_HEIGHT].map(|pname| {
             let mut value = 0;
@@ -290,13 +290,13 @@ fn attached_size(ask: Ask<'_>, attachment: u32, samples: u32) -> Option<(u32, u3
     size.map(|[w, h]| (w, h)).filter(|s| s.0 > 0 && s.1 > 0)
 }
 
-/// A texture's parameters that change what wgpu reads from it. wgpu's backend sets some of them and restores none; they
-/// belong to the object, so the host would see them even across contexts.
+/// Texture parameters that change what wgpu reads from a texture. wgpu's backend sets some of them and restores none.
+/// They belong to the object, so the host would see the change even across contexts.
 #[derive(Clone, Debug)]
 pub(super) struct Parameters {
     name: u32,
     target: u32,
-    /// (parameter, what wgpu takes for granted, the host's)
+    /// (parameter, value that wgpu assumes, the host's value)
     list: Vec<(u32, i32, i32)>,
 }
 
@@ -306,7 +306,7 @@ impl Parameters {
         let swizzles = [TEXTURE_SWIZZLE_R, TEXTURE_SWIZZLE_G, TEXTURE_SWIZZLE_B, TEXTURE_SWIZZLE_A];
         list.extend(swizzles.into_iter().zip([RED, GREEN, BLUE, ALPHA].map(|v| v as i32)));
         if target == TEXTURE_2D {
-            // Unfiltered, or a depth texture counts as incomplete on OpenGL ES and reads as 0.
+            // With filtering, OpenGL ES takes a depth texture for incomplete and reads it as 0.
             list.extend([(TEXTURE_MIN_FILTER, NEAREST as i32), (TEXTURE_MAG_FILTER, NEAREST as i32)]);
             list.push((TEXTURE_COMPARE_MODE, NONE as i32));
             if info.has("GL_EXT_texture_sRGB_decode") {
@@ -322,7 +322,7 @@ impl Parameters {
         Self { name, target, list: list.into_iter().map(|(p, fresh)| (p, fresh, fresh)).collect() }
     }
 
-    /// Reads the host's values and sets what wgpu takes for granted.
+    /// Reads the host's values and sets those that wgpu assumes.
     pub(super) fn take(&mut self, api: &Api) {
         api.BindTexture(self.target, self.name);
         for (pname, fresh, was) in &mut self.list {
@@ -334,7 +334,7 @@ impl Parameters {
         }
     }
 
-    /// Puts the host's values back.
+    /// Restores the host's values.
     pub(super) fn give_back(&self, api: &Api) {
         api.BindTexture(self.target, self.name);
         for (pname, _, was) in &self.list {
@@ -343,7 +343,7 @@ impl Parameters {
     }
 }
 
-/// Makes a texture of our own with storage for level 0; multisampled where `samples` is more than 1.
+/// Creates a texture with storage for level 0; multisampled if `samples` is more than 1.
 pub(super) fn make_texture(api: &Api, internal: u32, (width, height): (u32, u32), samples: u32) -> u32 {
     let name = api.one(Api::GenTextures);
     let (w, h) = (width as i32, height as i32);

@@ -1,19 +1,19 @@
-//! Functions of OpenGL ES 3.2 in contexts of ES 3.0 and 3.1, which have them as extensions and by other names.
+//! Functions of OpenGL ES 3.2 in contexts of ES 3.0 and 3.1, which have them as extensions under other names.
 //!
-//! wgpu asks for the names of ES 3.2. A strict driver answers those with an error in a context before that (ANGLE:
-//! GL_INVALID_OPERATION), though the same function is there with a suffix.
+//! wgpu asks for the ES 3.2 names. In an older context a strict driver returns functions for these names that raise an
+//! error (ANGLE: GL_INVALID_OPERATION), although the same functions exist there with a suffix.
 
 use std::ffi::{CStr, CString, c_void};
 
 use super::check::GlInfo;
 
-/// Functions that became part of ES 3.2 together, and the extensions that have them, each with its suffix.
+/// Functions that joined ES 3.2 together, and the extensions that have them, each with its suffix.
 struct Later {
     functions: &'static [&'static str],
     extensions: &'static [(&'static str, &'static str)],
 }
 
-/// OpenGL ES 3.2 specification, appendix F ("Changes from GLSL ES 3.1"): functions that came from extensions.
+/// Functions that came from extensions: OpenGL ES 3.2 specification, appendix F ("Changes from GLSL ES 3.1").
 const LATER: &[Later] = &[
     Later {
         functions: &[
@@ -94,13 +94,13 @@ const LATER: &[Later] = &[
     },
 ];
 
-/// Names of the functions of ES 3.2 in this list.
+/// Returns the ES 3.2 names of all functions in the list.
 #[cfg(test)]
 fn functions() -> impl Iterator<Item = &'static str> {
     LATER.iter().flat_map(|later| later.functions.iter().copied())
 }
 
-/// The name by which this context has a function, where that is not the function's own.
+/// Returns the name of a function in this context, if it differs from `name`.
 pub(super) fn name_here(info: &GlInfo, name: &CStr) -> Option<CString> {
     if !info.is_es() || info.version >= (3, 2) {
         return None;
@@ -111,7 +111,7 @@ pub(super) fn name_here(info: &GlInfo, name: &CStr) -> Option<CString> {
     CString::new(format!("{name}{suffix}")).ok()
 }
 
-/// Finds functions by the names that this context has them by.
+/// Returns a loader that finds functions by their names in this context.
 pub(super) fn finder<'a>(
     info: &'a GlInfo,
     get: &'a dyn Fn(&CStr) -> *const c_void,

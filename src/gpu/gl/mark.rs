@@ -1,7 +1,7 @@
-//! Telling one OpenGL context from another, with OpenGL's own means: there is no portable call for it.
+//! Recognition of OpenGL contexts by OpenGL's own means, because no portable call tells one context from another.
 //!
-//! Vertex arrays are never shared between contexts, but their names repeat. So each adopted context gets one whose
-//! attribute 15 points to a number that no other mark of this process has.
+//! Vertex arrays are never shared between contexts, but their names repeat. So each adopted context gets a vertex array
+//! whose attribute 15 points to a number that no other mark in this process has.
 
 use std::{
     ffi::c_void,
@@ -18,7 +18,7 @@ const ATTRIBUTE: u32 = 15;
 static NEXT: AtomicUsize = AtomicUsize::new(0x5745_4C4B);
 static LIVE: Mutex<Vec<(u32, usize)>> = Mutex::new(Vec::new());
 
-/// A mark in one context.
+/// Mark in one context.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mark {
     array: u32,
@@ -27,20 +27,20 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// Whether a live mark of this process is in the current context: then the context has a device already.
+    /// Whether the current context has a live mark of this process, and so a device already.
     pub(super) fn any_here(api: &Api) -> bool {
         let live = LIVE.lock().unwrap_or_else(PoisonError::into_inner).clone();
         live.iter().any(|&(array, number)| reads(api, array) == Some(number))
     }
 
-    /// Marks the current context as one that has a device.
+    /// Marks the current context as the context of a device.
     pub(super) fn set(api: &Api) -> Self {
         let mark = Self::leave(api);
         LIVE.lock().unwrap_or_else(PoisonError::into_inner).push((mark.array, mark.number));
         mark
     }
 
-    /// Marks the current context, so that it is known again.
+    /// Marks the current context, so that it can be recognised.
     pub(super) fn leave(api: &Api) -> Self {
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let (array_was, buffer_was) = (api.uint(VERTEX_ARRAY_BINDING), api.uint(ARRAY_BUFFER_BINDING));
@@ -64,25 +64,26 @@ impl Mark {
         reads(api, self.array) == Some(self.number)
     }
 
-    /// Takes the mark off the current context.
+    /// Removes the mark from the current context.
     pub(super) fn remove(&self, api: &Api) {
         api.delete(Api::DeleteVertexArrays, self.array);
         api.delete(Api::DeleteBuffers, self.buffer);
         self.forget();
     }
 
-    /// Takes off what a context of the same share group can reach: its vertex array goes with its context.
+    /// Deletes the part of the mark that another context of the share group can reach; the vertex array goes with its
+    /// context.
     pub(super) fn remove_shared(&self, api: &Api) {
         api.delete(Api::DeleteBuffers, self.buffer);
     }
 
-    /// Strikes the mark off the list: its context is gone.
+    /// Removes the mark from the list of live marks, because its context no longer exists.
     pub(super) fn forget(&self) {
         LIVE.lock().unwrap_or_else(PoisonError::into_inner).retain(|&(_, number)| number != self.number);
     }
 }
 
-/// The number at vertex array `array` of the current context, if there is such an array.
+/// Returns the number stored in vertex array `array` of the current context, if there is such an array.
 fn reads(api: &Api, array: u32) -> Option<usize> {
     if api.IsVertexArray(array) == 0 {
         return None;

@@ -1,31 +1,31 @@
-//! Hosts that draw with OpenGL: a wgpu device round the host's context, and the host's images as wgpu textures.
+//! Hosts that draw with OpenGL: a wgpu device on the host's context, and the host's images as wgpu textures.
 //!
 //! # Two modes
-//! [`GlMode::Shared`]: the host makes a second context that shares objects with its own, and a callback that makes one
-//! or the other current. Welkin draws in the second one, so none of the host's state can change. Fences order the two:
-//! the host's commands end before Welkin's begin, and the other way round. Framebuffers are not shared, so targets are
-//! textures and renderbuffers.
+//! [`GlMode::Shared`]: the host creates a second context that shares objects with its own, and gives a callback that
+//! makes either one current. Welkin draws in the second context, so it cannot change the host's state. Fences order the
+//! two: the host's commands end before Welkin's begin, and Welkin's before the host's next ones. Framebuffers are not
+//! shared between contexts, so targets are textures and renderbuffers.
 //!
-//! [`GlMode::HostContext`]: Welkin draws in the host's own context. Its state is saved, set to what wgpu takes for
-//! granted, and put back (see the `state` room). Any framebuffer can be a target, the window's too, by copies in and
-//! out.
+//! [`GlMode::HostContext`]: Welkin draws in the host's own context. It saves the host's state, sets the state that wgpu
+//! assumes, and restores the host's state at the end (see the `state` room). Any framebuffer can be a target, the
+//! window's too: the picture is copied in and out.
 //!
 //! # What is upside down
-//! OpenGL counts rows from the bottom, wgpu from the top. wgpu's backend turns every vertex shader's y round
-//! (`gl_Position.y` is negated), so wgpu's top row lies in memory where OpenGL has its bottom row. A host's image is
-//! the other way round, and rows are never copied to mend that. Instead:
-//! - Geometry: multiply wgpu's clip-space y by -1 ([`CLIP_Y_SIGN`]). The two turns cancel, and wgpu's
-//!   front faces are clockwise then (`wgpu::FrontFace::Cw`), because it does not know of this turn.
+//! OpenGL counts rows from the bottom, wgpu from the top. wgpu's OpenGL backend negates y in every vertex shader
+//! (`gl_Position.y`), so wgpu's top row lies in memory where OpenGL has its bottom row. A host's image has the opposite
+//! order. Rows are never copied to correct that. Instead:
+//! - Geometry: multiply wgpu's clip-space y by -1 ([`CLIP_Y_SIGN`]). This undoes the backend's negation. wgpu does not
+//!   know of it, so front faces are then clockwise to wgpu (`wgpu::FrontFace::Cw`).
 //! - Full-screen passes: `@builtin(position).xy` is the host's texel, counted from its first row, in colour and depth
-//!   alike: `textureLoad` needs no turn. Only the way from texel to ray does: y in clip space is `2 (y + 0.5) / h - 1`
-//!   for a host's image, and not `1 - 2 (y + 0.5) / h`.
+//!   alike, so `textureLoad` needs no change. Only the step from texel to ray does: for a host's image, y in clip space
+//!   is `2 (y + 0.5) / h - 1`, not `1 - 2 (y + 0.5) / h`.
 //!
-//! Both are the sign [`CLIP_Y_SIGN`] on clip-space y. A host whose clip control has its origin at the upper left while
-//! it draws stores its rows from the top as wgpu does; it says so with its projection, whose y is then negated.
+//! In both cases clip-space y has the sign [`CLIP_Y_SIGN`]. A host that draws with its clip control's origin at the
+//! upper left stores rows from the top, as wgpu does. Such a host passes a projection with y negated.
 //!
 //! # Depth
-//! What comes to wgpu is the depth as stored, the window's from 0 to 1. Bind it as a `texture_2d<f32>` with an
-//! unfilterable sample type and use `textureLoad`: a `texture_depth_2d` becomes a shadow sampler in GLSL and fails.
+//! wgpu gets the depth as stored: window depth from 0 to 1. Bind it as a `texture_2d<f32>` with an unfilterable sample
+//! type and read it with `textureLoad`: a `texture_depth_2d` becomes a shadow sampler in GLSL and fails.
 
 mod api;
 mod blit;
@@ -60,5 +60,5 @@ pub use open::{GlDevice, adopt};
 pub use switch::{MakeCurrent, WhichContext};
 pub use target::{GlTarget, GlTargetDesc, Multisample};
 
-/// Sign of clip-space y with which wgpu's picture comes out the right way up in a host's image.
+/// Sign of clip-space y that turns wgpu's picture the right way up in a host's image.
 pub const CLIP_Y_SIGN: f32 = -1.0;

@@ -1,4 +1,4 @@
-//! The OpenGL enumerants this room uses, with their registry values, and their spelling for messages.
+//! OpenGL enumerants that this room uses, with their registry values, and their spelling for messages.
 #![allow(missing_docs)] // the names are OpenGL's own
 
 macro_rules! names {
@@ -54,7 +54,7 @@ names! {
     MAP_COLOR = 0x0D10; MAP_STENCIL = 0x0D11; RED_SCALE = 0x0D14; RED_BIAS = 0x0D15; GREEN_SCALE = 0x0D18;
     GREEN_BIAS = 0x0D19; BLUE_SCALE = 0x0D1A; BLUE_BIAS = 0x0D1B; ALPHA_SCALE = 0x0D1C; ALPHA_BIAS = 0x0D1D;
     DEPTH_SCALE = 0x0D1E; DEPTH_BIAS = 0x0D1F;
-    // compatibility profile modes in which nothing can be drawn
+    // modes of the compatibility profile in which nothing can be drawn
     RENDER_MODE = 0x0C40; RENDER = 0x1C00; LIST_INDEX = 0x0B33;
     // programs, vertex arrays, transform feedback
     CURRENT_PROGRAM = 0x8B8D; DELETE_STATUS = 0x8B80; VERTEX_ARRAY_BINDING = 0x85B5;
@@ -99,7 +99,7 @@ names! {
     RENDERBUFFER_WIDTH = 0x8D42; RENDERBUFFER_HEIGHT = 0x8D43; RENDERBUFFER_INTERNAL_FORMAT = 0x8D44;
     RENDERBUFFER_SAMPLES = 0x8CAB; COLOR_BUFFER_BIT = 0x4000; DEPTH_BUFFER_BIT = 0x0100; STENCIL_BUFFER_BIT = 0x0400;
     SRGB = 0x8C40;
-    // queries and a program of ours
+    // queries, and the program of the window's size check
     SAMPLES_PASSED = 0x8914; PRIMITIVES_GENERATED = 0x8C87; QUERY_NO_WAIT = 0x8E14;
     ANY_SAMPLES_PASSED = 0x8C2F; ANY_SAMPLES_PASSED_CONSERVATIVE = 0x8D6A; CURRENT_QUERY = 0x8865;
     QUERY_RESULT = 0x8866; QUERY_RESULT_AVAILABLE = 0x8867; VERTEX_SHADER = 0x8B31; FRAGMENT_SHADER = 0x8B30;
@@ -119,7 +119,7 @@ names! {
 /// `GL_TIMEOUT_IGNORED`.
 pub(crate) const TIMEOUT_IGNORED: u64 = u64::MAX;
 
-/// The spelling of an enumerant that a message may have to name.
+/// Returns the spelling of an enumerant that a message may name.
 pub(crate) fn spell(value: u32) -> String {
     let known = match value {
         INVALID_ENUM => "GL_INVALID_ENUM",

@@ -1,4 +1,4 @@
-//! OpenGL object that a wgpu texture stands for.
+//! OpenGL objects that wgpu textures stand for.
 
 use super::{api::Api, names::*};
 
@@ -8,7 +8,7 @@ pub(super) enum GlObject {
     /// Name and target.
     Texture(u32, u32),
     Renderbuffer(u32),
-    /// A framebuffer of ours; how wgpu draws to what it cannot attach itself.
+    /// One of Welkin's framebuffers, through which wgpu draws to images that it cannot attach itself.
     Framebuffer(u32),
 }
 
@@ -18,7 +18,7 @@ impl GlObject {
         name
     }
 
-    /// Attaches it to the bound framebuffer.
+    /// Attaches the object to the bound framebuffer.
     pub(super) fn attach(self, api: &Api, attachment: u32) {
         match self {
             Self::Texture(name, target) => api.FramebufferTexture2D(FRAMEBUFFER, attachment, target, name, 0),

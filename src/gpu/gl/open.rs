@@ -1,4 +1,4 @@
-//! Making a wgpu device round a host's OpenGL context.
+//! Creation of a wgpu device on a host's OpenGL context.
 
 use std::{
     ffi::{CStr, CString, c_void},
@@ -31,15 +31,15 @@ use crate::{
     },
 };
 
-/// A device round a host's OpenGL, and the way to the host's images.
+/// Device on a host's OpenGL, and the host itself.
 pub struct GlDevice {
-    /// The device; it enters the host's context by itself when it goes.
+    /// Device; it enters the host's context by itself when it is dropped.
     pub device: Arc<Device>,
-    /// The way in.
+    /// Host's context and images.
     pub host: Arc<GlHost>,
 }
 
-/// Features that Welkin uses where the driver has them.
+/// Features that Welkin uses if the driver has them.
 const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::FLOAT32_FILTERABLE)
     .union(wgpu::Features::RG11B10UFLOAT_RENDERABLE)
@@ -47,19 +47,19 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
     .union(wgpu::Features::DUAL_SOURCE_BLENDING);
 
-/// Makes a device of the OpenGL context that is current on this thread, or of one that shares its objects.
+/// Creates a device on the OpenGL context that is current on this thread, or on one that shares objects with it.
 ///
-/// The host's context is current before and after. Its state is put back in either mode.
+/// The host's context is current before and after. Its state is restored in either mode.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] for missing or NULL-answering callbacks; [`Status::WrongOrder`] if no context is current
-/// or the wrong one; [`Status::Unsupported`] if it is older than OpenGL 3.3 or OpenGL ES 3.0;
-/// [`Status::AlreadyWrapped`] if it has a device already; [`Status::NoAdapter`] if wgpu cannot use it, or its driver
-/// draws what is known wrong or not within 6 s.
+/// [`Status::InvalidArgument`] for callbacks that are missing or return NULL; [`Status::WrongOrder`] if no context or
+/// the wrong one is current; [`Status::Unsupported`] if the context is older than OpenGL 3.3 or OpenGL ES 3.0;
+/// [`Status::AlreadyWrapped`] if it has a device already; [`Status::NoAdapter`] if wgpu cannot use it, or if its driver
+/// fails the test of known answers (`src/gpu/known.rs`) or does not finish it in 6 s.
 ///
 /// # Safety
-/// The callbacks are what they are declared to be, and stay so until the device is gone; the contexts outlive that, or
-/// are destroyed as a whole.
+/// The callbacks must do what their types declare until the device is gone. The contexts must outlive the device, or be
+/// destroyed as a whole.
 pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
     let Some(get_proc) = desc.get_proc else {
         return Err(Error::invalid("get_proc", "must not be NULL"));
@@ -76,7 +76,7 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
             if Mark::any_here(&host) {
                 return Err(already_wrapped());
             }
-            // Two rounds: the probe that saving needs is made with nothing but bindings changed.
+            // Saves twice: saving needs the probe, and the probe must be created with nothing but bindings changed.
             let mut state = HostState::new(&host, &host_info);
             state.save(&host, 0);
             let probe = make_probe(&host);
@@ -125,8 +125,8 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
     }
 }
 
-/// An address as a `get_proc` answers it. Some drivers' wglGetProcAddress says 1, 2, 3 or -1 for a function that they
-/// have not (OpenGL Wiki, Load OpenGL Functions); no system has a function there.
+/// Returns the address from `get_proc`, or NULL if it cannot be one. For a missing function some drivers'
+/// wglGetProcAddress returns 1, 2, 3 or -1 (OpenGL Wiki, Load OpenGL Functions); no system has a function there.
 fn function_or_null(address: *const c_void) -> *const c_void {
     if matches!(address as isize, -1..=3) { std::ptr::null() } else { address }
 }
@@ -135,9 +135,9 @@ fn already_wrapped() -> Error {
     Error::new(Status::AlreadyWrapped, "this OpenGL context belongs to another device already: destroy that one first")
 }
 
-/// The current context's functions, by the names that it has them by, and what it is.
+/// Loads the current context's functions, by their names in that context, and queries its properties.
 fn load(get: &dyn Fn(&CStr) -> *const c_void) -> Result<(Api, GlInfo)> {
-    // SAFETY: the caller of `adopt` vouches that `get` answers NULL or the named OpenGL function.
+    // SAFETY: the caller of `adopt` vouches that `get` returns NULL or the named OpenGL function.
     let by = |get: &dyn Fn(&CStr) -> *const c_void| unsafe {
         let mut api = Api::load(get);
         api.load_suffixed(get);
@@ -149,7 +149,7 @@ fn load(get: &dyn Fn(&CStr) -> *const c_void) -> Result<(Api, GlInfo)> {
     Ok((api, info))
 }
 
-/// A framebuffer of ours that has everything, for asking about state; with its two textures.
+/// Creates a framebuffer with colour, depth and stencil, for reading state, and its two textures.
 fn make_probe(api: &Api) -> (u32, [u32; 2]) {
     let color = image::make_texture(api, RGBA8, (1, 1), 1);
     let depth = image::make_texture(api, DEPTH24_STENCIL8, (1, 1), 1);
@@ -161,13 +161,13 @@ fn make_probe(api: &Api) -> (u32, [u32; 2]) {
     (framebuffer, [color, depth])
 }
 
-/// Shows that the context Welkin got is another one than the host's, and shares its objects.
+/// Test that Welkin's context is not the host's own, and shares its objects.
 struct Proof {
     texture: u32,
     color_was: [f32; 4],
 }
 
-/// A blend colour that nobody has by chance.
+/// Blend colour that no host has by chance.
 const STRANGE: [f32; 4] = [0.123, 0.457, 0.789, 0.031_25];
 
 impl Proof {
@@ -210,7 +210,7 @@ struct Opened {
     queue: wgpu::Queue,
 }
 
-/// wgpu's objects, and the names of its own in the context.
+/// wgpu's objects, and the names of Welkin's own objects in the context.
 struct Parts {
     opened: Opened,
     backend: Backend,
@@ -219,8 +219,8 @@ struct Parts {
     scratch: u32,
 }
 
-/// Opens wgpu on the current context and has the driver draw what is known. Where shaders find other bytes in blocks
-/// than were written, wgpu is opened once more so that it writes them by `glBufferSubData`.
+/// Opens wgpu on the current context and tests the driver by known answers. If shaders read bytes from blocks that
+/// differ from those written, wgpu is opened once more so that it writes them by `glBufferSubData`.
 fn open_known(
     api: &Api,
     info: &GlInfo,
@@ -242,7 +242,7 @@ fn open_known(
     }
 }
 
-/// Has the driver draw what is known.
+/// Tests the driver by known answers.
 fn ask(opened: &Opened, api: &Api) -> std::result::Result<Backend, Fault> {
     let Opened { instance, adapter, device, queue } = opened;
     let trial = Device::around(instance.clone(), adapter.clone(), device.clone(), queue.clone(), true, None);
@@ -251,7 +251,7 @@ fn ask(opened: &Opened, api: &Api) -> std::result::Result<Backend, Fault> {
     Ok(backend)
 }
 
-/// Opens wgpu on the current context, whose state is a fresh one's.
+/// Opens wgpu on the current context, whose state is that of a fresh context.
 fn open(
     api: &Api,
     info: &GlInfo,
@@ -267,22 +267,22 @@ fn open(
         Err(_) => std::ptr::null(),
     };
     let options = wgpu::GlBackendOptions {
-        // A host that listens to debug messages should not hear Welkin's labels.
+        // Keeps Welkin's labels out of a host's debug messages.
         debug_fns: wgpu::GlDebugFns::Disabled,
         ..Default::default()
     };
-    // wgpu's loader panics where a driver answers something it does not expect; the checks before leave little of that.
+    // wgpu's loader panics at unexpected values from a driver; the checks before leave few of these.
     let exposed = catch_unwind(AssertUnwindSafe(|| {
-        // SAFETY: the context is current, and stays so until the caller has what it wants.
+        // SAFETY: the context is current, and stays so until this function returns.
         unsafe { gles::Adapter::new_external(loader, options) }
     }))
     .map_err(|_| refused(format!("wgpu cannot read the OpenGL context {:?}", info.version_text)))?
     .ok_or_else(|| refused(format!("wgpu cannot use the OpenGL context {:?}", info.version_text)))?;
     drop(shown);
     let mut instance = wgpu::InstanceDescriptor::new_without_display_handle();
-    // No backend: opening EGL here would make another context current behind the host's back.
+    // No backend: to open EGL here would make another context current without the host's knowledge.
     instance.backends = wgpu::Backends::empty();
-    // Without VALIDATION_INDIRECT_CALL above all, which compiles compute shaders that contexts of OpenGL 3.3 have not.
+    // No flags: above all not VALIDATION_INDIRECT_CALL, which needs compute shaders, missing in contexts of OpenGL 3.3.
     instance.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(instance);
     // SAFETY: the adapter is external and needs nothing of the instance.
@@ -300,7 +300,7 @@ fn open(
     Ok(Opened { instance, adapter, device, queue })
 }
 
-/// Makes what stays in the context beside wgpu's own objects. Leaves nothing behind on failure.
+/// Creates the objects that stay in the context beside wgpu's own. Leaves nothing behind on failure.
 fn finish(opened: Result<(Backend, Opened)>, api: &Api, probe: (u32, [u32; 2]), info: &GlInfo) -> Result<Parts> {
     match opened {
         Ok((backend, opened)) => {
@@ -316,7 +316,7 @@ fn finish(opened: Result<(Backend, Opened)>, api: &Api, probe: (u32, [u32; 2]), 
     }
 }
 
-/// Clears one texel, copies it, and reads it; learns the names of wgpu's own objects.
+/// Clears one texel, copies it and reads it back. This shows the names of wgpu's own objects.
 fn first_picture(opened: &Device, api: &Api) -> std::result::Result<Backend, Fault> {
     let vertex_array = api.uint(VERTEX_ARRAY_BINDING);
     let texture = |usage| {
@@ -350,7 +350,7 @@ fn first_picture(opened: &Device, api: &Api) -> std::result::Result<Backend, Fau
     encoder.copy_texture_to_texture(drawn.as_image_copy(), copied.as_image_copy(), drawn.size());
     opened.queue.submit([encoder.finish()]);
     let copy_framebuffer = api.uint(READ_FRAMEBUFFER_BINDING);
-    // Before the texel is read: reading waits as long as the driver likes.
+    // Must come before the texel is read, which would wait without a limit.
     if !finishes(api, known::LIMIT) {
         opened.give_up();
         return Err(Fault::Hang);
@@ -368,7 +368,7 @@ fn first_picture(opened: &Device, api: &Api) -> std::result::Result<Backend, Fau
     Ok(Backend { vertex_array, draw_framebuffer, copy_framebuffer })
 }
 
-/// Whether the GPU finishes what the current context was told, within a limit.
+/// Whether the GPU finishes the current context's commands within `limit`.
 fn finishes(api: &Api, limit: Duration) -> bool {
     let fence = api.FenceSync(SYNC_GPU_COMMANDS_COMPLETE, 0);
     let begun = Instant::now();
@@ -378,8 +378,8 @@ fn finishes(api: &Api, limit: Duration) -> bool {
         answer = api.ClientWaitSync(fence, SYNC_FLUSH_COMMANDS_BIT, step.as_nanos() as u64);
     }
     api.DeleteSync(fence);
-    // A context without the function, or one that refuses the wait, has nothing to wait by: reading the texel then
-    // tells.
+    // A context without the function, or one that refuses the wait, cannot be waited for; the read of the texel then
+    // shows whether the GPU finishes.
     answer != TIMEOUT_EXPIRED
 }
 

@@ -1,6 +1,6 @@
-//! Side of a target that a host's image serves: colour, depth, mask, classes or normals.
+//! Side of a target that a host's image belongs to: colour, depth, mask, classes or normals.
 
-/// Side of a target that an image serves.
+/// Side of a target that an image belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TargetSide {
     Color,
@@ -11,12 +11,12 @@ pub(super) enum TargetSide {
 }
 
 impl TargetSide {
-    /// Returns the noun for the image's contents, in messages.
+    /// Returns the noun for the image in messages.
     pub(super) fn noun(self) -> &'static str {
         &self.parameter()["target.".len()..]
     }
 
-    /// The field's path in errors.
+    /// Returns the field's path in errors.
     pub(super) fn parameter(self) -> &'static str {
         match self {
             Self::Color => "target.color",

@@ -1,26 +1,26 @@
-//! Switch between OpenGL contexts: the host's callback that makes one current, and the contexts that it is asked for.
+//! Switch between OpenGL contexts: the host's callback that makes one current, and the two contexts.
 
 use std::ffi::c_void;
 
 use crate::error::{Error, Result, Status};
 
 /// Makes a context current on the calling thread: 0 ([`WhichContext::Host`]) or 1 ([`WhichContext::Welkin`]). Returns 0
-/// when it is current, anything else when it could not be made so. Must not call back into Welkin.
+/// on success and any other value on failure. Must not call Welkin.
 pub type MakeCurrent = unsafe extern "C" fn(user: *mut c_void, which: u32) -> i32;
 
-/// Context that [`MakeCurrent`] is asked for.
+/// Context that [`MakeCurrent`] makes current.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhichContext {
-    /// The one the host draws in.
+    /// Context that the host draws in.
     Host = 0,
-    /// The one the host made for Welkin, sharing objects with its own.
+    /// Context that the host created for Welkin; it shares objects with the host's own.
     Welkin = 1,
 }
 
 impl WhichContext {
-    /// Refuses what the host's callback made current when it was asked for this context; `accepted` ends
-    /// `make_current must, asked for WK_OPENGL_CONTEXT_HOST, `.
+    /// Returns the error for a callback that made a wrong context current when asked for this one. `accepted` completes
+    /// the sentence `make_current must, asked for WK_OPENGL_CONTEXT_HOST, `.
     pub(super) fn refuse(self, accepted: impl std::fmt::Display) -> Error {
         let name = match self {
             Self::Host => "WK_OPENGL_CONTEXT_HOST",
@@ -30,7 +30,7 @@ impl WhichContext {
     }
 }
 
-/// The host's callback with its argument.
+/// Host's callback with its argument.
 #[derive(Clone, Copy)]
 pub(super) struct Switch {
     pub(super) call: MakeCurrent,
@@ -39,13 +39,13 @@ pub(super) struct Switch {
 
 // SAFETY: the contract of `GlHostDesc` says that the callback may be called on any thread that calls Welkin.
 unsafe impl Send for Switch {}
-// SAFETY: as above; calls never overlap, the gate sees to it.
+// SAFETY: as above; the gate ensures that calls never overlap.
 unsafe impl Sync for Switch {}
 
 impl Switch {
-    /// Asks the host to make a context current.
+    /// Calls the host to make a context current.
     pub(super) fn to(self, which: WhichContext) -> Result<()> {
-        // SAFETY: the host vouches for its callback and argument when it makes the device.
+        // SAFETY: the host vouches for its callback and argument when it creates the device.
         let answer = unsafe { (self.call)(self.user, which as u32) };
         if answer == 0 {
             return Ok(());

@@ -1,16 +1,16 @@
 //! A host's colour and depth as wgpu textures.
 //!
-//! | host's image                      | colour                                          | depth                       |
-//! |-----------------------------------|-------------------------------------------------|-----------------------------|
-//! | texture                           | drawn to and copied directly                    | read and attached directly  |
-//! | multisampled texture              | drawn to through a framebuffer of ours          | read directly, attached so  |
-//! | renderbuffer                      | drawn to directly                               | attached directly           |
-//! | framebuffer (the window's or any) | copied in, drawn to, copied back                | copied in (back, if asked)  |
+//! | host's image | colour | depth |
+//! |---|---|---|
+//! | texture | drawn to and copied directly | read and attached directly |
+//! | multisampled texture | drawn to through Welkin's own framebuffer | read directly, attached through it |
+//! | renderbuffer | drawn to directly | attached directly, read from a copy |
+//! | framebuffer (the window's or any other) | copied in, drawn to, copied back | copied in, copied back if asked |
 //!
-//! wgpu can neither read renderbuffers nor copy multisampled images on OpenGL: there we copy. Depth each time the
-//! target is asked for, so that it can be read as it is at that moment; colour before each draw that reads it.
+//! On OpenGL wgpu can neither read renderbuffers nor copy multisampled images, so Welkin copies them: depth each time
+//! the target is requested, so that shaders read its present contents; colour before each draw that reads it.
 //!
-//! No name of the host is ever deleted: each wgpu texture carries a drop callback, which tells wgpu that it does not
+//! Welkin never deletes the host's objects: each wgpu texture has a drop callback, which tells wgpu that it does not
 //! own the object.
 
 use std::sync::Arc;
@@ -29,93 +29,93 @@ use crate::error::Result;
 /// Treatment of multisampled images.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Multisample {
-    /// The wgpu textures have the host's samples: Welkin draws and reads depth per sample. From OpenGL 4.0 on; not on
-    /// OpenGL ES nor on a forced tier 0.
+    /// Keep the samples: the wgpu textures have the host's samples, and Welkin draws and reads depth per sample. Needs
+    /// OpenGL 4.0; not on OpenGL ES nor on a forced tier 0.
     #[default]
     Each,
-    /// The wgpu textures have one sample: colour comes in averaged and goes back to every sample alike, depth is that
-    /// of one sample. Not on OpenGL ES.
+    /// Resolve: the wgpu textures have one sample. Colour is averaged on the way in and copied to every sample on the
+    /// way out; depth is that of one sample. Not on OpenGL ES.
     Resolve,
 }
 
 /// Images that a host asks Welkin to draw into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct GlTargetDesc {
-    /// The picture.
+    /// Picture.
     pub color: GlImage,
-    /// Its depth, if it has one.
+    /// Depth, if there is any.
     pub depth: Option<GlImage>,
-    /// Where red is 1 the host's pixel stays: a texture of one sample, if there is one.
+    /// Mask, if there is one: a texture with one sample. The host's pixel stays where red is 1.
     pub mask: Option<GlImage>,
-    /// Material of what each pixel shows: a texture of one sample, if there is one.
+    /// Surface class of each pixel's surface, if there are any: a texture with one sample.
     pub surface_classes: Option<GlImage>,
-    /// Normals of what each pixel shows: a texture of one sample, if there is one.
+    /// Normals of each pixel's surface, if there are any: a texture with one sample.
     pub normals: Option<GlImage>,
-    /// Width in pixels; must be the images' own.
+    /// Width in pixels; must be that of the images.
     pub width: u32,
-    /// Height in pixels; must be the images' own.
+    /// Height in pixels; must be that of the images.
     pub height: u32,
-    /// A number the host raises when it makes an object anew under an old name.
+    /// Number that the host raises when it creates an object anew under an old name.
     pub generation: u64,
     /// Treatment of multisampled images.
     pub multisample: Multisample,
-    /// Whether depth may be written: what was copied in is copied back then.
+    /// Whether depth may be written; depth that was copied in is then copied back.
     pub write_depth: bool,
 }
 
-/// A target as wgpu textures, valid while the host is entered.
+/// Target as wgpu textures, valid while the host is entered.
 ///
-/// Row 0 is the host's bottom row, as everywhere in OpenGL, and wgpu counts it as the top: see the room's page on what
-/// is upside down.
+/// Row 0 is the host's bottom row, as always in OpenGL, while wgpu takes it for the top row: see "What is upside down"
+/// in this room's documentation.
 #[derive(Debug)]
 pub struct GlTarget {
-    /// Changes whenever the textures do; for caches of views and bind groups.
+    /// Number that changes whenever the textures do; for caches of views and bind groups.
     pub id: u64,
-    /// Colour to draw to (`RENDER_ATTACHMENT`; `COPY_SRC` and `TEXTURE_BINDING` as well where `color_read` is `None`).
+    /// Colour to draw to (`RENDER_ATTACHMENT`; also `COPY_SRC` and `TEXTURE_BINDING` if `color_read` is `None`).
     pub color: wgpu::Texture,
-    /// The picture to read (`TEXTURE_BINDING`), where wgpu cannot copy `color` itself;
-    /// [`HostBinding::refresh`](crate::gpu::HostBinding::refresh) fills it, and
-    /// [`View::record`](crate::frame::View::record) does.
+    /// Picture to read (`TEXTURE_BINDING`), if wgpu cannot copy `color` itself.
+    /// [`HostBinding::refresh`](crate::gpu::HostBinding::refresh) fills it;
+    /// [`View::record`](crate::frame::View::record) calls that.
     pub color_read: Option<wgpu::Texture>,
     /// Depth to attach.
     pub depth: Option<wgpu::Texture>,
     /// Depth to read, as an unfilterable float texture by `textureLoad`.
     pub depth_read: Option<wgpu::Texture>,
-    /// The mask, to read.
+    /// Mask to read.
     pub mask: Option<wgpu::Texture>,
-    /// The classes, to read.
+    /// Surface classes to read.
     pub surface_classes: Option<wgpu::Texture>,
-    /// The normals, to read.
+    /// Normals to read.
     pub normals: Option<wgpu::Texture>,
-    /// Samples of colour and depth.
+    /// Samples per pixel of colour and depth.
     pub samples: u32,
 }
 
-/// One side of a target, with what it takes to use it.
+/// One image of a target, with the objects that Welkin needs to use it.
 pub(super) struct TargetImage {
     pub(super) side: TargetSide,
     pub(super) image: GlImage,
     pub(super) facts: Facts,
     pub(super) parameters: Option<Parameters>,
-    /// Copy that wgpu uses instead of the host's image.
+    /// Copy that wgpu uses in place of the host's image.
     pub(super) copy: Option<Copied>,
-    /// Copy that wgpu reads while it draws to colour that it cannot copy.
+    /// Copy that wgpu reads while it draws to a colour image that it cannot copy.
     pub(super) reading: Option<Copied>,
 }
 
-/// Our copy of an image.
+/// Welkin's copy of an image.
 pub(super) struct Copied {
-    /// Framebuffer with the image: the host's own for [`GlImage::Framebuffer`].
+    /// Framebuffer with the image; for [`GlImage::Framebuffer`] the host's own.
     pub(super) from: BlitEnd,
-    /// Framebuffer with our texture.
+    /// Framebuffer with Welkin's texture.
     pub(super) to: BlitEnd,
-    /// Our texture.
+    /// Welkin's texture.
     pub(super) texture: u32,
-    /// Whether our texture is drawn to, and not the host's image: then it goes back.
+    /// Whether Welkin draws to its texture, not to the host's image; the texture is then copied back.
     pub(super) drawn_to: bool,
 }
 
-/// A target in the cache, with the objects of ours that serve it.
+/// Target in the cache, with Welkin's objects for it.
 pub(super) struct Entry {
     pub(super) desc: GlTargetDesc,
     pub(super) target: Arc<GlTarget>,
@@ -124,17 +124,17 @@ pub(super) struct Entry {
     pub(super) made: TargetObjects,
 }
 
-/// Objects of ours that serve a target.
+/// Objects that Welkin created for a target.
 #[derive(Default)]
 pub(super) struct TargetObjects {
     pub(super) framebuffers: Vec<u32>,
     pub(super) textures: Vec<u32>,
-    /// Attachments that were made: framebuffer, attachment, image.
+    /// Attachments of the framebuffers: framebuffer, attachment, image.
     pub(super) attached: Vec<(u32, u32, GlObject)>,
 }
 
 impl TargetObjects {
-    /// Deletes them.
+    /// Deletes the objects.
     pub(super) fn delete(&mut self, api: &Api) {
         self.framebuffers.drain(..).for_each(|name| api.delete(Api::DeleteFramebuffers, name));
         self.textures.drain(..).for_each(|name| api.delete(Api::DeleteTextures, name));
@@ -142,10 +142,10 @@ impl TargetObjects {
 }
 
 impl Entry {
-    /// Whether the host's objects are still what they were when this was built.
+    /// Whether the host's objects still have the properties that they had when the target was built.
     ///
     /// # Errors
-    /// As [`image::facts`].
+    /// The errors of [`image::facts`].
     pub(super) fn is_current(&self, ask: Ask<'_>) -> Result<bool> {
         let size = (self.desc.width, self.desc.height);
         for part in &self.parts {
@@ -162,8 +162,9 @@ impl Entry {
     /// A refused copy.
     pub(super) fn begin(&mut self, api: &Api) -> Result<()> {
         let size = (self.desc.width, self.desc.height);
-        // Anew, or a framebuffer would hold on to an object that the host has deleted and made again under its name;
-        // another context's changes are promised only then, too (OpenGL 4.6 core specification, section 5.3.3, rule 4).
+        // Attaches again: otherwise a framebuffer would keep an object that the host has deleted and created anew under
+        // its name. OpenGL also guarantees another context's changes only after that (OpenGL 4.6 core specification,
+        // section 5.3.3, rule 4).
         for (framebuffer, attachment, object) in &self.made.attached {
             api.BindFramebuffer(FRAMEBUFFER, *framebuffer);
             object.attach(api, *attachment);
@@ -180,7 +181,7 @@ impl Entry {
         Ok(())
     }
 
-    /// Copies the picture as it is now to where it is read.
+    /// Copies the present picture to the texture from which it is read.
     ///
     /// # Errors
     /// A refused copy.
@@ -190,7 +191,7 @@ impl Entry {
         copies.into_iter().try_for_each(|copy| blit::copy(api, copy.from, copy.to, COLOR_BUFFER_BIT, size))
     }
 
-    /// Copies anew what is only read, after something was drawn since [`Entry::begin`].
+    /// Copies again the images that are only read, after something was drawn since [`Entry::begin`].
     ///
     /// # Errors
     /// A refused copy.
@@ -205,16 +206,16 @@ impl Entry {
         Ok(())
     }
 
-    /// Whether depth is read from a copy of what is attached.
+    /// Whether depth is read from a copy of the attached depth.
     pub(super) fn reads_copied_depth(&self) -> bool {
         let is_copied = |part: &TargetImage| part.copy.as_ref().is_some_and(|copy| !copy.drawn_to);
         self.parts.iter().any(|part| part.side == TargetSide::Depth && is_copied(part))
     }
 
-    /// Copies back what was drawn into copies and gives the host's objects back as they were.
+    /// Copies back what was drawn into copies, and restores the parameters of the host's objects.
     ///
     /// # Errors
-    /// A refused copy; everything is given back all the same.
+    /// A refused copy; all parameters are restored in any case.
     pub(super) fn end(&self, api: &Api) -> Result<()> {
         let size = (self.desc.width, self.desc.height);
         let mut outcome = Ok(());
@@ -233,7 +234,7 @@ impl Entry {
         outcome
     }
 
-    /// The host's images in this target.
+    /// Iterates over the host's images in this target.
     pub(super) fn images(&self) -> impl Iterator<Item = GlImage> {
         self.parts.iter().map(|part| part.image)
     }

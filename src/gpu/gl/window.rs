@@ -1,18 +1,18 @@
-//! Whether the window is as large as the host says. OpenGL does not tell its size, but which samples of a draw pass:
-//! none of those outside it.
+//! Check whether the window has the size that the host gives. OpenGL does not report a window's size, but it reports
+//! whether samples of a draw pass, and none outside the window do.
 //!
-//! Asked in every frame by some lines of pixels that change nothing, and answered in a later one, since waiting would
-//! stall; only a window that is new is waited for.
+//! A few lines of pixels that change nothing are drawn in every frame, and their results are read in a later frame,
+//! because waiting would stall. Only a new window is waited for.
 
 use std::ffi::c_char;
 
 use super::{api::Api, check::GlInfo, names::*};
 use crate::error::{Error, Result};
 
-/// Beyond the window's right and upper edge, its last column, its last row, its first pixel.
+/// Number of lines: beyond the window's right and upper edges, its last column, its last row, its first pixel.
 const LINES: usize = 4;
 
-/// Program and queries of one context.
+/// Program and queries in one context.
 pub(super) struct WindowSize {
     program: u32,
     queries: [u32; LINES],
@@ -40,19 +40,19 @@ impl WindowSize {
         }
         api.LinkProgram(program);
         let mut queries = [0; LINES];
-        // SAFETY: as many names are asked for as there is room for.
+        // SAFETY: the array has room for as many names as are requested.
         unsafe { api.GenQueries(LINES as i32, queries.as_mut_ptr()) };
         Self { program, queries, asked: None }
     }
 
     pub(super) fn delete(&self, api: &Api) {
         api.DeleteProgram(self.program);
-        // SAFETY: as many names are passed as there are.
+        // SAFETY: the array has as many names as are passed.
         unsafe { api.DeleteQueries(LINES as i32, self.queries.as_ptr()) };
     }
 
-    /// Asks about a window said to be of `size`, unless an answer is out or the host counts samples itself. In the
-    /// state that wgpu takes for granted, which stays, with a vertex array bound.
+    /// Starts a query about a window that should have `size`, unless a query is pending or the host counts samples
+    /// itself. wgpu's assumed state must be set, with a vertex array bound; that state is kept.
     pub(super) fn ask(&mut self, api: &Api, (width, height): (u32, u32)) {
         let busy = [ANY_SAMPLES_PASSED, ANY_SAMPLES_PASSED_CONSERVATIVE].iter().any(|target| {
             let mut current = 0;
@@ -88,10 +88,10 @@ impl WindowSize {
         self.asked = Some((width, height));
     }
 
-    /// Takes the answer, if it is there or `wait` says so.
+    /// Reads the result if it is available, or waits for it if `wait` is set.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the window has another size than was asked about.
+    /// [`crate::Status::InvalidArgument`] if the window does not have the size of the query.
     pub(super) fn check(&mut self, api: &Api, wait: bool) -> Result<()> {
         let Some((width, height)) = self.asked else { return Ok(()) };
         let get = |query: u32, what: u32| {
@@ -107,7 +107,7 @@ impl WindowSize {
         let [beyond, column, row, first] = self.queries.map(|q| get(q, QUERY_RESULT));
         let relation = match (beyond, first && !(column && row)) {
             (true, _) => "larger",
-            // Where not even the first pixel is drawn, the window is hidden.
+            // If not even the first pixel was drawn, the window is hidden.
             (_, true) => "smaller",
             _ => return Ok(()),
         };

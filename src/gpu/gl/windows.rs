@@ -1,8 +1,8 @@
-//! The host's contexts in shared mode: one a window, all sharing objects with Welkin's one.
+//! Host's contexts in shared mode: one for each window, all sharing objects with Welkin's one.
 //!
-//! A call comes from the window whose context is current, and must go back to it; only the host's callback can make
-//! that so. A host whose callback knows one window only would find itself drawing into that one after a call from
-//! another.
+//! A call comes from the window whose context is current, and that context must be current again afterwards. Only the
+//! host's callback can make it so. A host whose callback knows only one window would draw into that window after a call
+//! from another.
 
 use super::{
     api::Api,
@@ -12,23 +12,23 @@ use super::{
 };
 use crate::error::Result;
 
-/// The contexts that calls came from so far.
+/// Contexts from which calls have come so far.
 pub(super) struct Windows {
     marks: Vec<Mark>,
     last: Option<usize>,
 }
 
 impl Windows {
-    /// Begins with the context that is current, the one that the device is made in.
+    /// Starts the list with the current context, in which the device is created.
     pub(super) fn new(host: &Api) -> Self {
         Self { marks: vec![Mark::leave(host)], last: Some(0) }
     }
 
-    /// Notes which context a call comes from; where it is another than last time, asks the host to make its context
-    /// current once, to see whether that is the same one. None need be current.
+    /// Records the context from which a call comes. If it is not that of the last call, asks the host once to make its
+    /// context current, and checks that this gives the same context. It is also valid that no context is current.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] if it is not.
+    /// [`Status::WrongOrder`] if the callback makes another context current.
     pub(super) fn enter(&mut self, host: &Api, switch: Switch) -> Result<()> {
         if host.GetString(VERSION).is_null() {
             self.last = None;
@@ -52,10 +52,10 @@ impl Windows {
         back
     }
 
-    /// Whether the context is current again that the call came from.
+    /// Checks that the context from which the call came is current again.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] if another one is.
+    /// [`Status::WrongOrder`] if another context is.
     pub(super) fn check_back(&self, host: &Api) -> Result<()> {
         match self.last {
             Some(last) if !self.marks[last].is_here(host) => Err(WhichContext::Host.refuse(
@@ -66,7 +66,7 @@ impl Windows {
         }
     }
 
-    /// Takes the marks off again, as far as the current context reaches.
+    /// Removes the marks, as far as the current context can reach them.
     pub(super) fn remove(&mut self, host: &Api) {
         for mark in self.marks.drain(..) {
             if mark.is_here(host) {

@@ -1,4 +1,4 @@
-//! Adoption of a host's Vulkan device: its handles are checked and led into wgpu.
+//! Adoption of a host's Vulkan device: its handles are checked and passed to wgpu.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -16,19 +16,19 @@ use crate::gpu::device::Device;
 /// Wraps a host's Vulkan device for drawing.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] names a null handle, a physical device or queue that does not belong, or facts
-/// that contradict each other; [`Status::Unsupported`] names what the host's Vulkan lacks;
-/// [`Status::AlreadyWrapped`] says that the queue has a Welkin device already; [`Status::OutOfMemory`] and
-/// [`Status::DeviceLost`] come from the driver.
+/// [`Status::InvalidArgument`], which names a null handle, a physical device or queue that does not belong to the rest,
+/// or properties that contradict each other; [`Status::Unsupported`], which names what the host's Vulkan lacks;
+/// [`Status::AlreadyWrapped`] if the queue already has a Welkin device; [`Status::OutOfMemory`] and
+/// [`Status::DeviceLost`] from the driver.
 ///
 /// # Safety
-/// Every handle in `desc` is live, belongs together as Vulkan requires and outlives the result and all wgpu
-/// objects made from it; the extensions and features listed are enabled on `device`; the queue is used by the
-/// contract in the [module's words](super); callbacks and `user` may be used from every thread that calls Welkin.
+/// Every handle in `desc` must be live, belong to the others as Vulkan requires, and outlive the result and all wgpu
+/// objects made from it. The listed extensions and features must be enabled on `device`. The queue must be used as the
+/// [module's contract](super) demands. Callbacks and `user` must allow use from every thread that calls Welkin.
 pub unsafe fn adopt(desc: &VulkanHostDesc<'_>) -> Result<VulkanHost> {
     let handles = checks::handles(desc)?;
     let extensions = facts::known_extensions(desc.enabled_device_extensions);
-    // SAFETY: the caller vouches for the handles; each step checks what the next relies on.
+    // SAFETY: the caller vouches for the handles; each step checks what the next one relies on.
     let (loaded, api_version, device, real) = unsafe {
         let loaded = checks::load_instance(desc, &handles)?;
         let api_version = checks::api_version(desc, &handles, &loaded)?;
@@ -37,7 +37,7 @@ pub unsafe fn adopt(desc: &VulkanHostDesc<'_>) -> Result<VulkanHost> {
         let (device, real) = checks::load_device(desc, &handles, &loaded, api_version, &extensions)?;
         (loaded, api_version, device, real)
     };
-    // SAFETY: family and index were checked against the physical device.
+    // SAFETY: family and index were checked for the physical device.
     let queue = unsafe { device.get_device_queue(desc.queue_family_index, desc.queue_index) };
     if queue == vk::Queue::null() {
         let rest = "must name a queue that device was created with: vkGetDeviceQueue gave NULL";
@@ -67,14 +67,14 @@ pub unsafe fn adopt(desc: &VulkanHostDesc<'_>) -> Result<VulkanHost> {
     opened
 }
 
-/// Leads the checked handles through wgpu's doors for foreign devices.
+/// Passes the checked handles to wgpu's functions for foreign devices.
 fn open(
     desc: &VulkanHostDesc<'_>,
     loaded: checks::LoadedInstance,
     device: ash::Device,
     record: &Arc<HostRecord>,
 ) -> Result<VulkanHost> {
-    // Property queries by chain are core from 1.1; the loader function answers for the extension's names too.
+    // Queries of property chains are core from 1.1 on; the loader function also finds them by the extension's names.
     let chained = ash::khr::get_physical_device_properties2::NAME;
     let has_chained = record.api_version >= vk::API_VERSION_1_1 || desc.enabled_instance_extensions.contains(&chained);
     let released = Arc::new(AtomicBool::new(false));
@@ -83,10 +83,10 @@ fn open(
         dispatch::unregister(queue);
         on_release.store(true, Ordering::Release);
     });
-    // The host has chosen its adapter: wgpu's own taste in conformant drivers must not hide it.
+    // The host has chosen its adapter, so wgpu's filter of non-conformant drivers must not hide it.
     let flags = wgpu::InstanceFlags::ALLOW_UNDERLYING_NONCOMPLIANT_ADAPTER;
-    // SAFETY: entry and instance are the host's; the extension list is what may be called; the callback keeps
-    // wgpu from destroying the host's instance.
+    // SAFETY: entry and instance are the host's; the extension list says what may be called; the callback keeps wgpu
+    // from destroying the host's instance.
     let hal_instance = unsafe {
         wgpu::hal::vulkan::Instance::from_raw(
             loaded.entry,
@@ -107,11 +107,11 @@ fn open(
     })?;
     let features = exposed.features & (image::FORMAT_FEATURES | desc.wanted_features);
     let limits = exposed.capabilities.limits.clone();
-    // Small blocks: the device's memory is mostly the host's.
+    // Small memory blocks, because the device's memory is mostly for the host.
     let hints = wgpu::MemoryHints::MemoryUsage;
     let raw = device.clone();
-    // SAFETY: the device was made from this physical device with these extensions; capability queries were
-    // narrowed to what is enabled; the callback keeps wgpu from destroying the host's device.
+    // SAFETY: the device was made from this physical device with these extensions; capability queries return only what
+    // is enabled; the callback keeps wgpu from destroying the host's device.
     let opened = unsafe {
         exposed.adapter.device_from_raw(
             device,

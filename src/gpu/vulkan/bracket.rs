@@ -1,15 +1,15 @@
-//! The barriers round a submission, recorded once: they depend only on the images and layouts, which repeat from
-//! frame to frame. They travel in the very `vkQueueSubmit` that wgpu makes, before and after its commands.
+//! Barriers around a submission, recorded once: they depend only on the images and layouts, which repeat from frame to
+//! frame. They go into the same `vkQueueSubmit` as wgpu's commands, before and after these.
 
 use ash::vk;
 
 use super::image::{self, HostImage, ImageRole};
 use crate::error::{Error, Result, Status};
 
-/// Different hand-overs kept; a host that swaps among a few images stays far below.
+/// Largest number of different hand-overs kept. A host that alternates among a few images stays far below.
 const MAX_BRACKETS: usize = 64;
 
-/// One image of a hand-over: all that its barriers depend on.
+/// One image of a hand-over, with everything that its barriers depend on.
 type Lent = (HostImage, ImageRole);
 
 struct Bracket {
@@ -17,7 +17,7 @@ struct Bracket {
     buffers: [vk::CommandBuffer; 2],
 }
 
-/// The recorded brackets of one host, the most recent last.
+/// Recorded brackets of one host, the most recent last.
 #[derive(Default)]
 pub(super) struct Brackets {
     pool: Option<vk::CommandPool>,
@@ -25,13 +25,13 @@ pub(super) struct Brackets {
 }
 
 impl Brackets {
-    /// Command buffers to run before (host's layouts to wgpu's) and after (wgpu's to the host's).
+    /// Returns the command buffers to run before (host's layouts to wgpu's) and after (wgpu's layouts to the host's).
     ///
     /// # Errors
     /// [`Status::OutOfMemory`] or [`Status::DeviceLost`].
     ///
     /// # Safety
-    /// `device` is the host's live device, `family` the queue's; the images are described truly.
+    /// `device` must be the host's live device, `family` the queue's, and the images' descriptions must be true.
     pub(super) unsafe fn of(
         &mut self,
         device: &ash::Device,
@@ -49,17 +49,17 @@ impl Brackets {
         Ok(self.recorded.last().map_or([vk::CommandBuffer::null(); 2], |b| b.buffers))
     }
 
-    /// Records the two buffers of a hand-over, reusing the oldest ones when there are too many.
+    /// Records the two buffers of a hand-over; reuses the oldest buffers if there are too many.
     ///
     /// # Safety
-    /// As for [`Self::of`].
+    /// The requirements of [`Self::of`].
     unsafe fn record(
         &mut self,
         device: &ash::Device,
         family: u32,
         lent: &[Lent],
     ) -> std::result::Result<[vk::CommandBuffer; 2], vk::Result> {
-        // SAFETY: the caller vouches for device and family; buffers come from this pool, and those reused are no
+        // SAFETY: the caller vouches for device and family; the buffers come from this pool, and reused ones are no
         // longer pending once the device is idle.
         unsafe {
             let pool = match self.pool {
@@ -78,7 +78,7 @@ impl Brackets {
                 let barriers: Vec<_> = lent.iter().map(|(image, role)| barrier(image, *role, taking)).collect();
                 let many = vk::CommandBufferUsageFlags::SIMULTANEOUS_USE;
                 device.begin_command_buffer(buffer, &vk::CommandBufferBeginInfo::default().flags(many))?;
-                // All stages on both sides: what the host did before and does after is not known here.
+                // All stages on both sides, because the host's work before and after is not known here.
                 let all = vk::PipelineStageFlags::ALL_COMMANDS;
                 device.cmd_pipeline_barrier(buffer, all, all, vk::DependencyFlags::empty(), &[], &[], &barriers);
                 device.end_command_buffer(buffer)?;
@@ -87,7 +87,7 @@ impl Brackets {
         }
     }
 
-    /// Whether the next new hand-over must first make room, which takes an idle queue.
+    /// Whether a new hand-over must first free brackets, which needs an idle queue.
     pub(super) fn is_full(&self) -> bool {
         self.recorded.len() >= MAX_BRACKETS
     }
@@ -95,7 +95,7 @@ impl Brackets {
     /// Frees the brackets for which `f` holds.
     ///
     /// # Safety
-    /// The queue is idle, and `device` is the host's live device.
+    /// The queue must be idle, and `device` must be the host's live device.
     pub(super) unsafe fn free(&mut self, device: &ash::Device, f: impl Fn(&[Lent]) -> bool) {
         let Some(pool) = self.pool else { return };
         self.recorded.retain(|b| {
@@ -108,10 +108,10 @@ impl Brackets {
         });
     }
 
-    /// Frees everything.
+    /// Frees all brackets and the command pool.
     ///
     /// # Safety
-    /// As for [`Self::free`].
+    /// The requirements of [`Self::free`].
     pub(super) unsafe fn destroy(&mut self, device: &ash::Device) {
         self.recorded.clear();
         if let Some(pool) = self.pool.take() {
@@ -130,7 +130,8 @@ fn driver_error(e: vk::Result) -> Error {
     Error::new(status, format!("the host's Vulkan device refused a command buffer: {e}"))
 }
 
-/// A full dependency on one layer of an image, with its change of layout.
+/// Returns a full dependency on one layer of an image, with its change of layout. `taking` is the change from the
+/// host's layout.
 fn barrier(image: &HostImage, role: ImageRole, taking: bool) -> vk::ImageMemoryBarrier<'static> {
     let home = image::home_layout(role);
     let (from, to) = if taking { (image.layout, home) } else { (home, image.final_layout) };

@@ -1,4 +1,5 @@
-//! Everything that would abort or panic inside the Vulkan backend, checked first and refused by name.
+//! Checks of everything that would abort or panic inside the Vulkan backend: each returns an error that names the
+//! fault.
 
 use std::ffi::{CStr, c_void};
 
@@ -9,7 +10,7 @@ use super::dispatch::{self, RealFunctions};
 use super::facts::EnabledFeatures;
 use crate::error::{Error, Result, Status};
 
-/// A host description that passed the checks which need no driver call.
+/// Host description that passed the checks which need no driver call.
 pub(super) struct Handles {
     pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
     pub instance_api_version: u32,
@@ -19,14 +20,14 @@ fn version_text(v: u32) -> String {
     format!("{}.{}", vk::api_version_major(v), vk::api_version_minor(v))
 }
 
-/// Names for a sentence: up to four of them, and how many more there are.
+/// Joins up to four names for a sentence, and says how many more there are.
 fn first_of(names: &[String]) -> String {
     let (shown, rest) = names.split_at(names.len().min(4));
     let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
     format!("{}{more}", shown.join(", "))
 }
 
-/// Null pointers, half-given callbacks and impossible versions.
+/// Checks for null pointers, callbacks without their counterpart, and impossible versions.
 pub(super) fn handles(desc: &VulkanHostDesc<'_>) -> Result<Handles> {
     let get = desc.get_instance_proc_addr;
     let get = get.ok_or_else(|| Error::range("get_instance_proc_addr", "vkGetInstanceProcAddr", "NULL"))?;
@@ -51,7 +52,7 @@ pub(super) fn handles(desc: &VulkanHostDesc<'_>) -> Result<Handles> {
     Ok(Handles { get_instance_proc_addr: get, instance_api_version: v })
 }
 
-/// The host's instance with wgpu's questions redirected, and the functions behind the redirections.
+/// Host's instance with some of wgpu's queries redirected, and the functions behind the redirections.
 pub(super) struct LoadedInstance {
     pub instance: ash::Instance,
     pub entry: ash::Entry,
@@ -59,11 +60,11 @@ pub(super) struct LoadedInstance {
     get_features2: Option<vk::PFN_vkGetPhysicalDeviceFeatures2>,
 }
 
-/// Loads the instance's functions; one that Vulkan 1.0 owes and the host's loader does not have is an error
-/// (calling it would abort the process).
+/// Loads the instance's functions. A Vulkan 1.0 function that the host's loader lacks is an error (calling it would
+/// abort the process).
 ///
 /// # Safety
-/// `handles` and `desc.instance` are the host's, as [`VulkanHostDesc`] demands.
+/// `handles` and `desc.instance` must be the host's, as [`VulkanHostDesc`] demands.
 pub(super) unsafe fn load_instance(desc: &VulkanHostDesc<'_>, handles: &Handles) -> Result<LoadedInstance> {
     let get = handles.get_instance_proc_addr;
     let address = |name: &CStr| {
@@ -74,7 +75,7 @@ pub(super) unsafe fn load_instance(desc: &VulkanHostDesc<'_>, handles: &Handles)
     let mut missing = Vec::new();
     let v1_0 = ash::InstanceFnV1_0::load(|name| {
         let found = address(name);
-        // Creation and destruction of the host's objects is never ours, and sparse images are not used.
+        // Welkin never creates or destroys the host's objects, and does not use sparse images.
         if found.is_null() {
             missing.push(name.to_string_lossy().into_owned());
         }
@@ -98,11 +99,11 @@ pub(super) unsafe fn load_instance(desc: &VulkanHostDesc<'_>, handles: &Handles)
         ash::InstanceFnV1_3::load(address),
     );
     let features2 = address(c"vkGetPhysicalDeviceFeatures2KHR");
-    // SAFETY: a non-null answer for this name has this signature.
+    // SAFETY: a non-null result for this name has this signature.
     let get_features2 =
         unsafe { std::mem::transmute::<*const c_void, Option<vk::PFN_vkGetPhysicalDeviceFeatures2>>(features2) };
     let global = |name: &CStr| {
-        // SAFETY: the loader function answers for global names with a null instance.
+        // SAFETY: the loader function accepts global names with a null instance.
         let f = unsafe { get(vk::Instance::null(), name.as_ptr()) };
         f.map_or(std::ptr::null(), |f| f as *const c_void)
     };
@@ -114,10 +115,11 @@ pub(super) unsafe fn load_instance(desc: &VulkanHostDesc<'_>, handles: &Handles)
     Ok(LoadedInstance { instance, entry, plain, get_features2 })
 }
 
-/// The physical device belongs to the instance, and its version with the instance's gives the version in force.
+/// Checks that the physical device belongs to the instance, and returns the version in force: the lower of the two
+/// versions.
 ///
 /// # Safety
-/// As for [`load_instance`].
+/// The requirements of [`load_instance`].
 pub(super) unsafe fn api_version(desc: &VulkanHostDesc<'_>, handles: &Handles, loaded: &LoadedInstance) -> Result<u32> {
     // SAFETY: the instance is live.
     let devices = unsafe { loaded.plain.enumerate_physical_devices() };
@@ -132,10 +134,10 @@ pub(super) unsafe fn api_version(desc: &VulkanHostDesc<'_>, handles: &Handles, l
     Ok(properties.api_version.min(handles.instance_api_version))
 }
 
-/// The queue exists and can draw and compute.
+/// Checks that the queue exists and supports graphics and compute.
 ///
 /// # Safety
-/// As for [`load_instance`], with the physical device checked.
+/// The requirements of [`load_instance`]; the physical device must have been checked.
 pub(super) unsafe fn queue_family(desc: &VulkanHostDesc<'_>, loaded: &LoadedInstance) -> Result<()> {
     // SAFETY: the physical device was checked.
     let families = unsafe { loaded.plain.get_physical_device_queue_family_properties(desc.physical_device) };
@@ -156,8 +158,8 @@ pub(super) unsafe fn queue_family(desc: &VulkanHostDesc<'_>, loaded: &LoadedInst
     Ok(())
 }
 
-/// Checks for what the backend needs beyond Vulkan 1.0, and for features that the host claims but cannot have: all of
-/// it at once.
+/// Checks for everything that the backend needs beyond Vulkan 1.0, and for features that the host claims but cannot
+/// have. Reports all faults at once.
 pub(super) fn extensions(
     told: u32,
     api_version: u32,
@@ -197,10 +199,10 @@ pub(super) fn extensions(
     Error::all(lacks)
 }
 
-/// Loads the device's functions with the queue calls redirected; fills in what the redirections call.
+/// Loads the device's functions with the queue calls redirected, and keeps the real functions for the redirections.
 ///
 /// # Safety
-/// As for [`load_instance`]; `desc.device` is live and was made from `desc.physical_device`.
+/// The requirements of [`load_instance`]; `desc.device` must be live and made from `desc.physical_device`.
 pub(super) unsafe fn load_device(
     desc: &VulkanHostDesc<'_>,
     handles: &Handles,

@@ -1,4 +1,4 @@
-//! Description of a host's Vulkan device: its handles, and what the host enabled.
+//! Description of a host's Vulkan device: its handles, and the extensions and features that the host enabled.
 
 use std::ffi::{CStr, c_void};
 
@@ -6,11 +6,11 @@ use ash::vk;
 
 use super::facts::EnabledFeatures;
 
-/// Description of a host's Vulkan device. All handles stay the host's and must outlive the
+/// Description of a host's Vulkan device. All handles remain the host's and must outlive the
 /// [`VulkanHost`](super::VulkanHost).
 #[derive(Clone, Copy, Debug)]
 pub struct VulkanHostDesc<'a> {
-    /// The host's `vkGetInstanceProcAddr` (from its loader, GLFW, SDL, volk, ...).
+    /// Host's `vkGetInstanceProcAddr` (from its loader, GLFW, SDL, volk, ...).
     pub get_instance_proc_addr: Option<vk::PFN_vkGetInstanceProcAddr>,
     /// Instance that `physical_device` came from.
     pub instance: vk::Instance,
@@ -26,16 +26,16 @@ pub struct VulkanHostDesc<'a> {
     pub enabled_device_extensions: &'a [&'a CStr],
     /// Device features that the host enabled; see [`EnabledFeatures::from_chain`].
     pub enabled_features: EnabledFeatures,
-    /// Family of the queue to submit on; it must draw and compute.
+    /// Family of the queue to submit to; it must support graphics and compute.
     pub queue_family_index: u32,
-    /// Index of the queue in that family, as created without flags.
+    /// Index of the queue in that family; the queue must have been created without flags.
     pub queue_index: u32,
-    /// Takes the host's queue lock; given together with `unlock_queue` or not at all.
+    /// Callback that takes the host's queue lock; given together with `unlock_queue` or not at all.
     pub lock_queue: Option<unsafe extern "C" fn(user: *mut c_void)>,
-    /// Releases the host's queue lock.
+    /// Callback that releases the host's queue lock.
     pub unlock_queue: Option<unsafe extern "C" fn(user: *mut c_void)>,
-    /// Handed to both callbacks.
+    /// Argument of both callbacks.
     pub user: *mut c_void,
-    /// wgpu features to enable where the host's device allows them; the rest is dropped.
+    /// wgpu features to enable if the host's device allows them; the others are left out.
     pub wanted_features: wgpu::Features,
 }

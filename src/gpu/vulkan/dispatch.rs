@@ -1,8 +1,8 @@
-//! The few Vulkan functions that stand between wgpu and a host's device: capability queries answered with what the host
-//! enabled, and queue calls made under the host's queue lock. One creation call loses a structure that old hosts do not
-//! know.
+//! Substitutes for a few Vulkan functions between wgpu and a host's device: capability queries, answered by what the
+//! host enabled; queue calls, made under the host's queue lock; and one creation call, without a structure that old
+//! hosts do not know.
 //!
-//! Vulkan entry points carry no user pointer, so the record behind each is found by the handle in its first
+//! Vulkan entry points have no user pointer, so a substitute finds its host's record by the handle in its first
 //! argument. Every other function goes straight to the driver.
 
 use std::cell::{Cell, RefCell};
@@ -13,14 +13,14 @@ use ash::vk;
 
 use super::facts::{EnabledFeatures, visible_extension};
 
-/// The host's lock round its queue. Both callbacks run on the thread that calls Welkin, never nested.
+/// Host's lock for its queue. Both callbacks run on the thread that calls Welkin, never nested.
 #[derive(Clone, Copy, Debug)]
 pub struct QueueLock {
-    /// Called right before Welkin uses the queue.
+    /// Callback that Welkin calls just before it uses the queue.
     pub lock: unsafe extern "C" fn(user: *mut c_void),
-    /// Called right after.
+    /// Callback that Welkin calls just after it has used the queue.
     pub unlock: unsafe extern "C" fn(user: *mut c_void),
-    /// Handed to both.
+    /// Argument of both callbacks.
     pub user: *mut c_void,
 }
 
@@ -30,7 +30,7 @@ unsafe impl Send for QueueLock {}
 // SAFETY: as above; the struct itself is never changed.
 unsafe impl Sync for QueueLock {}
 
-/// The real entry points that the substitutes below call.
+/// Real entry points that the substitutes below call.
 pub(super) struct RealFunctions {
     pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
     pub enumerate_device_extensions: vk::PFN_vkEnumerateDeviceExtensionProperties,
@@ -43,14 +43,14 @@ pub(super) struct RealFunctions {
     pub create_descriptor_set_layout: vk::PFN_vkCreateDescriptorSetLayout,
 }
 
-/// All that is known of one adopted device. Never changed after it is made.
+/// Properties of one adopted device. Never changed after creation.
 pub(super) struct HostRecord {
     pub instance: vk::Instance,
     pub physical_device: vk::PhysicalDevice,
     pub device: vk::Device,
     pub queue: vk::Queue,
     pub queue_family_index: u32,
-    /// The lower of the instance's and the device's version: what may be called.
+    /// Lower one of the instance's and the device's version, which says what may be called.
     pub api_version: u32,
     pub extensions: Vec<&'static CStr>,
     pub enabled: EnabledFeatures,
@@ -61,12 +61,12 @@ pub(super) struct HostRecord {
 static HOSTS: RwLock<Vec<Arc<HostRecord>>> = RwLock::new(Vec::new());
 
 thread_local! {
-    /// The host being adopted on this thread. Two devices may share one physical device with different
-    /// features, so while wgpu asks for capabilities this decides which record answers.
+    /// Record of the host that this thread is adopting. Two devices may share one physical device with different
+    /// features, so this decides which record answers wgpu's capability queries.
     static ADOPTING: RefCell<Option<Arc<HostRecord>>> = const { RefCell::new(None) };
 }
 
-/// Enters the record unless its queue is already there.
+/// Adds the record to the list, unless its queue is already there; returns whether it was added.
 pub(super) fn register(record: &Arc<HostRecord>) -> bool {
     let mut hosts = HOSTS.write().unwrap_or_else(PoisonError::into_inner);
     if hosts.iter().any(|h| h.queue == record.queue) {
@@ -81,7 +81,7 @@ pub(super) fn unregister(queue: vk::Queue) {
     HOSTS.write().unwrap_or_else(PoisonError::into_inner).retain(|h| h.queue != queue);
 }
 
-/// Runs `f` with `record` answering the capability queries made on this thread.
+/// Runs `f` while `record` answers the capability queries of this thread.
 pub(super) fn while_adopting<R>(record: &Arc<HostRecord>, f: impl FnOnce() -> R) -> R {
     struct Reset;
     impl Drop for Reset {
@@ -95,11 +95,11 @@ pub(super) fn while_adopting<R>(record: &Arc<HostRecord>, f: impl FnOnce() -> R)
 }
 
 thread_local! {
-    /// Command buffers to run before and after those of this thread's next submission on a queue.
+    /// Command buffers to run before and after the commands of this thread's next submission to a queue.
     static BRACKET: Cell<Option<(vk::Queue, [vk::CommandBuffer; 2])>> = const { Cell::new(None) };
 }
 
-/// Runs `f`, which submits once on `queue`, with `bracket` round the commands. Says whether it did submit.
+/// Runs `f`, which submits once to `queue`, with `bracket` around the commands. Returns whether `f` did submit.
 pub(super) fn with_bracket<R>(queue: vk::Queue, bracket: [vk::CommandBuffer; 2], f: impl FnOnce() -> R) -> bool {
     BRACKET.set(Some((queue, bracket)));
     f();
@@ -114,7 +114,7 @@ fn find(matches: impl Fn(&HostRecord) -> bool) -> Option<Arc<HostRecord>> {
     })
 }
 
-/// The function that stands in for `name` in the instance's table, if one does.
+/// Returns the substitute for `name` in the instance's table, if there is one.
 pub(super) fn instance_substitute(name: &CStr) -> Option<*const c_void> {
     Some(match name.to_bytes() {
         b"vkEnumerateDeviceExtensionProperties" => enumerate_device_extensions as *const c_void,
@@ -126,7 +126,7 @@ pub(super) fn instance_substitute(name: &CStr) -> Option<*const c_void> {
     })
 }
 
-/// The function that stands in for `name` in the device's table, if one does.
+/// Returns the substitute for `name` in the device's table, if there is one.
 pub(super) fn device_substitute(name: &CStr) -> Option<*const c_void> {
     Some(match name.to_bytes() {
         b"vkQueueSubmit" => queue_submit as *const c_void,
@@ -136,11 +136,11 @@ pub(super) fn device_substitute(name: &CStr) -> Option<*const c_void> {
     })
 }
 
-/// Looks an instance function up by either of its names: the extension's, or the core one that replaced it
-/// (a host on Vulkan 1.1 need not enable `VK_KHR_get_physical_device_properties2`).
+/// Looks up an instance function by its extension's name, or by the name of the core function that replaced it (a host
+/// on Vulkan 1.1 need not enable `VK_KHR_get_physical_device_properties2`).
 ///
 /// # Safety
-/// `get` is the host's `vkGetInstanceProcAddr` and `instance` a live instance of it.
+/// `get` must be the host's `vkGetInstanceProcAddr`, and `instance` a live instance.
 pub(super) unsafe fn lookup(
     get: vk::PFN_vkGetInstanceProcAddr,
     instance: vk::Instance,
@@ -159,7 +159,7 @@ pub(super) unsafe fn lookup(
     unsafe { get(instance, core.as_ptr()) }
 }
 
-/// `vkGetInstanceProcAddr` as wgpu sees it.
+/// `vkGetInstanceProcAddr` for wgpu.
 pub(super) unsafe extern "system" fn get_instance_proc_addr(
     instance: vk::Instance,
     name: *const c_char,
@@ -169,8 +169,8 @@ pub(super) unsafe extern "system" fn get_instance_proc_addr(
     let name = unsafe { CStr::from_ptr(name) };
     // SAFETY: the record's function and instance are the host's, live while it is registered.
     let real = unsafe { lookup(host.real.get_instance_proc_addr, instance, name) }?;
-    // SAFETY: each substitute has the signature of the function that it is named for, and a function pointer
-    // may travel as a pointer without type.
+    // SAFETY: each substitute has the signature of the function that it is named for, and a function pointer may be
+    // passed as an untyped pointer.
     Some(
         instance_substitute(name).map_or(real, |s| unsafe { std::mem::transmute::<_, unsafe extern "system" fn()>(s) }),
     )
@@ -188,7 +188,7 @@ unsafe extern "system" fn enumerate_device_extensions(
     let real = host.real.enumerate_device_extensions;
     let mut all: Vec<vk::ExtensionProperties> = Vec::new();
     let mut n = 0;
-    // SAFETY: the two calls follow the Vulkan protocol: first the count, then that many elements.
+    // SAFETY: the two calls follow the Vulkan protocol: first the count, then that number of elements.
     unsafe {
         let status = real(physical_device, layer, &raw mut n, std::ptr::null_mut());
         if status != vk::Result::SUCCESS {
@@ -223,7 +223,7 @@ unsafe extern "system" fn get_properties(
     properties: *mut vk::PhysicalDeviceProperties,
 ) {
     let Some(host) = find(|h| h.physical_device == physical_device) else { return };
-    // SAFETY: the arguments are passed on as they came; `properties` is then filled and valid.
+    // SAFETY: the arguments are passed on unchanged; `properties` is then filled and valid.
     unsafe {
         (host.real.get_properties)(physical_device, properties);
         (*properties).api_version = (*properties).api_version.min(host.api_version);
@@ -232,7 +232,7 @@ unsafe extern "system" fn get_properties(
 
 unsafe extern "system" fn get_features(physical_device: vk::PhysicalDevice, features: *mut vk::PhysicalDeviceFeatures) {
     let Some(host) = find(|h| h.physical_device == physical_device) else { return };
-    // SAFETY: the arguments are passed on as they came; `features` is then filled and valid.
+    // SAFETY: the arguments are passed on unchanged; `features` is then filled and valid.
     unsafe {
         (host.real.get_features)(physical_device, features);
         host.enabled.narrow_core(&mut *features);
@@ -245,22 +245,22 @@ unsafe extern "system" fn get_features2(
 ) {
     let Some(host) = find(|h| h.physical_device == physical_device) else { return };
     let Some(real) = host.real.get_features2 else { return };
-    // SAFETY: the arguments are passed on as they came; the chain is then filled and valid.
+    // SAFETY: the arguments are passed on unchanged; the chain is then filled and valid.
     unsafe {
         real(physical_device, features);
         host.enabled.narrow_chain(features);
     }
 }
 
-/// Answers with the host's own queue family alone: wgpu judges a device by its first family.
+/// Returns the host's own queue family only, because wgpu judges a device by its first family.
 unsafe extern "system" fn get_queue_families(
     physical_device: vk::PhysicalDevice,
     count: *mut u32,
     families: *mut vk::QueueFamilyProperties,
 ) {
     let Some(host) = find(|h| h.physical_device == physical_device) else { return };
-    // SAFETY: the driver is asked by the Vulkan protocol; `count` is valid and `families`, when not null, has room
-    // for `*count` elements.
+    // SAFETY: the driver is called by the Vulkan protocol; `count` is valid and `families`, when not null, has room for
+    // `*count` elements.
     unsafe {
         if families.is_null() {
             *count = 1;
@@ -276,14 +276,14 @@ unsafe extern "system" fn get_queue_families(
     }
 }
 
-/// Holds the host's queue lock.
+/// Guard of the host's queue lock.
 struct QueueGuard<'a>(Option<&'a QueueLock>);
 
 impl<'a> QueueGuard<'a> {
     fn new(host: &'a HostRecord) -> Self {
         let lock = host.lock.as_ref();
         if let Some(l) = lock {
-            // SAFETY: the host promised a callable function for `user` on this thread.
+            // SAFETY: the host promised a function that may be called with `user` on this thread.
             unsafe { (l.lock)(l.user) };
         }
         Self(lock)
@@ -312,8 +312,8 @@ unsafe extern "system" fn queue_submit(
     if bracket.is_some() {
         BRACKET.set(None);
     }
-    // SAFETY: `submits` has `count` valid elements, of which the one bracketed is copied with the same command
-    // buffers and two more round them; the queue is held.
+    // SAFETY: `submits` has `count` valid elements. The bracketed one is copied with the same command buffers, between
+    // two more. The queue lock is held.
     unsafe {
         let Some((_, [before, after])) = bracket else { return real(queue, count, submits, fence) };
         let theirs = std::slice::from_raw_parts((*submits).p_command_buffers, (*submits).command_buffer_count as usize);
@@ -341,8 +341,9 @@ unsafe extern "system" fn queue_wait_idle(queue: vk::Queue) -> vk::Result {
     unsafe { (host.real.queue_wait_idle)(queue) }
 }
 
-/// wgpu chains binding flags (Vulkan 1.2, `VK_EXT_descriptor_indexing`) to every layout, empty ones where no
-/// binding array is used, which is always so here. Below 1.2 the structure is not to be passed at all.
+/// Creates a layout without the structure of binding flags below Vulkan 1.2. wgpu chains that structure (Vulkan 1.2,
+/// `VK_EXT_descriptor_indexing`) to every layout; it is empty without binding arrays, which Welkin never uses. Below
+/// 1.2 it must not be passed.
 unsafe extern "system" fn create_descriptor_set_layout(
     device: vk::Device,
     info: *const vk::DescriptorSetLayoutCreateInfo<'_>,
@@ -351,7 +352,7 @@ unsafe extern "system" fn create_descriptor_set_layout(
 ) -> vk::Result {
     let Some(host) = find(|h| h.device == device) else { return vk::Result::ERROR_DEVICE_LOST };
     let real = host.real.create_descriptor_set_layout;
-    // SAFETY: the arguments are passed on as they came, save for an optional structure left out; `info` is valid.
+    // SAFETY: the arguments are passed on unchanged, except for the optional structure left out; `info` is valid.
     unsafe {
         if host.api_version >= vk::API_VERSION_1_2 {
             return real(device, info, allocator, layout);

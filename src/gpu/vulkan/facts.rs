@@ -1,19 +1,18 @@
-//! Features and extensions that a host enabled on its Vulkan device, and how they narrow what wgpu is told the device
-//! can do.
+//! Features and extensions that a host enabled on its Vulkan device, and the limits that they set on what wgpu sees.
 //!
-//! wgpu's Vulkan backend derives its behaviour from what the *physical* device supports, because it normally
-//! creates the logical device itself. On a host's device that would use features that the host never switched
-//! on. So the answers to wgpu's feature queries are narrowed here to what is enabled.
+//! wgpu's Vulkan backend looks at what the *physical* device supports, because it normally creates the logical device
+//! itself. On a host's device it would then use features that the host has not enabled. So the results of wgpu's
+//! feature queries are limited here to what is enabled.
 
 use std::ffi::{CStr, c_void};
 
 use ash::vk;
 
-/// The Vulkan features that the host enabled when it created its device, as far as they matter to Welkin.
+/// Vulkan features that the host enabled when it created its device, as far as Welkin uses them.
 ///
-/// The default is "nothing enabled", which works: Welkin then draws without timeline semaphores, without
-/// robust-access shortcuts and so on. A feature listed here that is not enabled is undefined behaviour in the
-/// driver; a feature left out only costs a little speed or a capability.
+/// The default is that nothing is enabled. Welkin then works without timeline semaphores, robust-access shortcuts and
+/// so on. To list a feature that is not enabled is undefined behaviour in the driver; to leave out an enabled one only
+/// costs a little speed or a capability.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnabledFeatures {
     /// `VkPhysicalDeviceFeatures` as enabled.
@@ -54,11 +53,11 @@ pub struct EnabledFeatures {
 
 impl EnabledFeatures {
     /// Reads the chain that the host gave to `vkCreateDevice`: a `VkDeviceCreateInfo`, or the
-    /// `VkPhysicalDeviceFeatures2` (or any other structure) that its `pNext` pointed to. Null means "nothing
-    /// enabled". Structures that Welkin does not know are skipped.
+    /// `VkPhysicalDeviceFeatures2` (or any other structure) that its `pNext` points to. Null means that nothing is
+    /// enabled. Structures that Welkin does not know are skipped.
     ///
     /// # Safety
-    /// `chain` is null or points to a valid chain of Vulkan structures, as `vkCreateDevice` requires.
+    /// `chain` must be null or point to a valid chain of Vulkan structures, as `vkCreateDevice` requires.
     pub unsafe fn from_chain(chain: *const c_void) -> Self {
         let mut enabled = Self::default();
         let mut next = chain.cast::<vk::BaseInStructure<'_>>();
@@ -72,10 +71,10 @@ impl EnabledFeatures {
         enabled
     }
 
-    /// Takes what one structure of the chain says.
+    /// Reads one structure of the chain.
     ///
     /// # Safety
-    /// `s` points to a valid structure of the type that its `sType` names.
+    /// `s` must point to a valid structure of the type that its `sType` names.
     unsafe fn read(&mut self, s: *const vk::BaseInStructure<'_>) {
         use vk::StructureType as T;
         // SAFETY: sType names the type behind the pointer, which the caller vouches for; the enabled-features
@@ -125,10 +124,10 @@ impl EnabledFeatures {
         }
     }
 
-    /// The single-feature structures that Vulkan 1.3 gathered, and draw parameters.
+    /// Reads the single-feature structures that Vulkan 1.3 combined, and that of draw parameters.
     ///
     /// # Safety
-    /// As for [`Self::read`].
+    /// The requirements of [`Self::read`].
     unsafe fn read_1_3_parts(&mut self, s: *const vk::BaseInStructure<'_>) {
         use vk::StructureType as T;
         // SAFETY: as in `read`.
@@ -185,7 +184,7 @@ impl EnabledFeatures {
         self.synchronization2 |= f.synchronization2 != 0;
     }
 
-    /// Narrows the core features that the driver reports to those enabled.
+    /// Removes the core features that are not enabled from those that the driver reports.
     pub(super) fn narrow_core(&self, reported: &mut vk::PhysicalDeviceFeatures) {
         const COUNT: usize = size_of::<vk::PhysicalDeviceFeatures>() / size_of::<vk::Bool32>();
         // SAFETY: VkPhysicalDeviceFeatures is a repr(C) block of VkBool32 (u32) and nothing else, so it is an
@@ -199,11 +198,12 @@ impl EnabledFeatures {
         }
     }
 
-    /// Narrows a whole chain as filled in by `vkGetPhysicalDeviceFeatures2`. A feature structure that this
-    /// table does not name belongs to an extension that [`visible_extension`] hides, so wgpu never asks for it.
+    /// Removes features that are not enabled from a whole chain, as filled in by `vkGetPhysicalDeviceFeatures2`. A
+    /// feature structure that is not in this table belongs to an extension that [`visible_extension`] hides, so wgpu
+    /// never asks for it.
     ///
     /// # Safety
-    /// `chain` is a valid, filled chain.
+    /// `chain` must be a valid, filled chain.
     pub(super) unsafe fn narrow_chain(&self, chain: *mut vk::PhysicalDeviceFeatures2<'_>) {
         // SAFETY: the caller vouches for the chain; each link begins with sType and pNext.
         unsafe {
@@ -216,10 +216,10 @@ impl EnabledFeatures {
         }
     }
 
-    /// Narrows one structure of a chain.
+    /// Removes features that are not enabled from one structure of a chain.
     ///
     /// # Safety
-    /// `s` points to a valid structure of the type that its `sType` names.
+    /// `s` must point to a valid structure of the type that its `sType` names.
     unsafe fn narrow(&self, s: *mut vk::BaseOutStructure<'_>) {
         use vk::StructureType as T;
         let keep = |field: &mut vk::Bool32, enabled: bool| *field = vk::Bool32::from(*field != 0 && enabled);
@@ -268,10 +268,10 @@ impl EnabledFeatures {
         }
     }
 
-    /// The single-feature structures of Vulkan 1.1 to 1.3, and those that Welkin never uses.
+    /// Does so for the single-feature structures of Vulkan 1.1 to 1.3, and for those that Welkin never uses.
     ///
     /// # Safety
-    /// As for [`Self::narrow`].
+    /// The requirements of [`Self::narrow`].
     unsafe fn narrow_rest(&self, s: *mut vk::BaseOutStructure<'_>) {
         use vk::StructureType as T;
         let keep = |field: &mut vk::Bool32, enabled: bool| *field = vk::Bool32::from(*field != 0 && enabled);
@@ -317,9 +317,9 @@ impl EnabledFeatures {
     }
 }
 
-/// The device extensions that matter to wgpu on a host's device, with the core version that absorbed each.
-/// Extensions outside this table stay hidden from wgpu: it would switch on code for them that a host's device
-/// need not be ready for (ray tracing, mesh shaders, external memory).
+/// Device extensions that wgpu may see on a host's device, each with the core version that includes it. All others stay
+/// hidden: for them wgpu would enable code that a host's device need not be prepared for (ray tracing, mesh shaders,
+/// external memory).
 const DEVICE_EXTENSIONS: &[(&CStr, u32)] = &[
     (ash::khr::swapchain::NAME, u32::MAX),
     (ash::khr::swapchain_mutable_format::NAME, u32::MAX),
@@ -330,7 +330,7 @@ const DEVICE_EXTENSIONS: &[(&CStr, u32)] = &[
     (ash::khr::multiview::NAME, vk::API_VERSION_1_1),
     (ash::khr::_16bit_storage::NAME, vk::API_VERSION_1_1),
     (ash::khr::image_format_list::NAME, vk::API_VERSION_1_2),
-    // Only queried of the physical device, for which it need not be enabled.
+    // Only queried on the physical device, for which it need not be enabled.
     (ash::khr::driver_properties::NAME, 0),
     (ash::khr::timeline_semaphore::NAME, vk::API_VERSION_1_2),
     (ash::khr::shader_float16_int8::NAME, vk::API_VERSION_1_2),
@@ -342,13 +342,13 @@ const DEVICE_EXTENSIONS: &[(&CStr, u32)] = &[
     (ash::ext::memory_budget::NAME, u32::MAX),
 ];
 
-/// The host's enabled extensions that wgpu is to know of, as names that live for ever.
+/// Returns the extensions enabled by the host that wgpu may see, as static names.
 pub(super) fn known_extensions(enabled: &[&CStr]) -> Vec<&'static CStr> {
     let known = DEVICE_EXTENSIONS.iter().map(|&(name, _)| name);
     known.filter(|name| enabled.contains(name)).collect()
 }
 
-/// Whether wgpu sees the device extension `name`: enabled by the host, or part of the core version in force.
+/// Whether wgpu sees the device extension `name`: the host enabled it, or it is part of the core version in force.
 pub(super) fn visible_extension(name: &CStr, enabled: &[&'static CStr], api_version: u32) -> bool {
     let row = DEVICE_EXTENSIONS.iter().find(|(known, _)| *known == name);
     row.is_some_and(|&(known, core_since)| enabled.contains(&known) || api_version >= core_since)

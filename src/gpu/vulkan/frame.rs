@@ -1,4 +1,5 @@
-//! One submission on a host's queue: images taken over and handed back in the host's layouts, and semaphores.
+//! Submission to a host's queue: images are taken over and handed back in the host's layouts, and semaphores are waited
+//! for and signalled.
 
 use std::sync::PoisonError;
 
@@ -10,40 +11,40 @@ use super::host::VulkanHost;
 use super::image::{self, HostImage, ImageRole};
 use crate::error::{Error, Result, Status};
 
-/// A semaphore of the host's.
+/// Semaphore of the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostSemaphore {
-    /// The semaphore.
+    /// Semaphore.
     pub semaphore: vk::Semaphore,
-    /// `None` for a binary semaphore; the value to wait for or to signal for a timeline one.
+    /// `None` for a binary semaphore; for a timeline semaphore the value to wait for or to signal.
     pub value: Option<u64>,
 }
 
 /// Images and semaphores that the host lends for one submission.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HandOver<'a> {
-    /// Images that the commands use, each at most once, with the texture that [`VulkanHost::import`] gave for it.
+    /// Images that the commands use, each at most once, with the texture that [`VulkanHost::import`] returned for it.
     pub images: &'a [(HostImage, ImageRole, &'a wgpu::Texture)],
-    /// Waited for before any of the commands; a binary one must already have its signal submitted.
+    /// Semaphores to wait for before any of the commands; the signal of a binary one must already be submitted.
     pub wait: &'a [HostSemaphore],
-    /// Signalled when all of the commands are done and the images are in their final layouts.
+    /// Semaphores to signal when all commands are done and the images are in their final layouts.
     pub signal: &'a [HostSemaphore],
 }
 
 impl VulkanHost {
-    /// Submits the commands of `encoder` on the host's queue: waits, takes the images over from the host's
-    /// layouts, runs the commands, brings the images into the layouts that the host wants, signals.
+    /// Submits the commands of `encoder` to the host's queue: waits for the semaphores, takes the images over from the
+    /// host's layouts, runs the commands, brings the images into the layouts that the host wants, and signals.
     ///
-    /// When this returns the work is submitted, not done.
+    /// On return the work is submitted, not done.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] names a semaphore that is null or of a kind that the host did not enable;
-    /// nothing is submitted then. A GPU fault in the commands comes as [`Status::Internal`] or
-    /// [`Status::DeviceLost`]; if they were refused for it, the semaphores are neither waited for nor signalled.
+    /// [`Status::InvalidArgument`], which names a semaphore that is null or of a kind that the host did not enable;
+    /// nothing is then submitted. [`Status::Internal`] or [`Status::DeviceLost`] for a GPU fault in the commands; if
+    /// they were refused for it, the semaphores are neither waited for nor signalled.
     ///
     /// # Safety
-    /// The images are described truly and the semaphores live, of the kind that `value` says; the queue is used
-    /// by the contract in the [module's words](super).
+    /// The images' descriptions must be true, and the semaphores live and of the kind that `value` says. The queue must
+    /// be used as the [module's contract](super) demands.
     pub unsafe fn submit(&self, mut encoder: wgpu::CommandEncoder, hand_over: &HandOver<'_>) -> Result<()> {
         self.check_semaphores("wait_semaphores", hand_over.wait)?;
         self.check_semaphores("signal_semaphores", hand_over.signal)?;
@@ -55,7 +56,7 @@ impl VulkanHost {
         encoder.transition_resources(std::iter::empty(), home);
         let commands = encoder.finish();
         let mut brackets = self.brackets.lock().unwrap_or_else(PoisonError::into_inner);
-        // SAFETY: the caller vouches for the images; when there must be room, the queue is waited for first.
+        // SAFETY: the caller vouches for the images; the queue is waited for before brackets are freed.
         let bracket = unsafe {
             if brackets.is_full() {
                 self.device.wait()?;
@@ -68,7 +69,7 @@ impl VulkanHost {
         // SAFETY: the caller vouches for the semaphores; they are staged for the submission right below.
         unsafe { self.stage(hand_over)? };
         let submitted = dispatch::with_bracket(self.record.queue, bracket, || self.device.queue.submit([commands]));
-        // SAFETY: the queue is only asked what is left over.
+        // SAFETY: the queue is only asked for the semaphores that are left.
         unsafe { self.unstage(hand_over)? };
         drop(turn);
         if submitted { Ok(()) } else { Err(refused()) }
@@ -91,7 +92,7 @@ impl VulkanHost {
     /// Stages the semaphores for the next submission.
     ///
     /// # Safety
-    /// The semaphores are live and of the kind that their value says.
+    /// The semaphores must be live and of the kind that their value says.
     unsafe fn stage(&self, hand_over: &HandOver<'_>) -> Result<()> {
         // SAFETY: the queue is not destroyed through the guard.
         let Some(queue) = (unsafe { self.device.queue.as_hal::<Vulkan>() }) else {
@@ -106,10 +107,10 @@ impl VulkanHost {
         Ok(())
     }
 
-    /// Takes back semaphores that no submission consumed, which means that wgpu refused the commands.
+    /// Removes semaphores that no submission has used, which means that wgpu refused the commands.
     ///
     /// # Safety
-    /// As for [`Self::stage`].
+    /// The requirements of [`Self::stage`].
     unsafe fn unstage(&self, hand_over: &HandOver<'_>) -> Result<()> {
         // SAFETY: the queue is not destroyed through the guard.
         if let Some(queue) = unsafe { self.device.queue.as_hal::<Vulkan>() } {

@@ -1,4 +1,4 @@
-//! Host of a Vulkan device: Welkin's device over it, and what the host handed over.
+//! Host of a Vulkan device: Welkin's device on it, and the objects that the host handed over.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,17 +10,17 @@ use super::imports::Imports;
 use crate::error::{Error, Result, Status};
 use crate::gpu::device::Device;
 
-/// Welkin's device over a host's Vulkan device, with what the host handed over. Dropping it destroys nothing of
-/// the host's.
+/// Welkin's device on a host's Vulkan device, and the objects that the host handed over. Dropping it destroys no object
+/// of the host.
 pub struct VulkanHost {
-    /// The device for contexts and views; it shows only what the host enabled.
+    /// Device for contexts and views; it shows only what the host enabled.
     pub device: Arc<Device>,
     pub(super) record: Arc<HostRecord>,
     pub(super) raw: ash::Device,
     pub(super) released: Arc<AtomicBool>,
     pub(super) images: Mutex<Imports>,
-    /// Held through a submission: semaphores and barriers belong to the next one, so staging them and submitting
-    /// is one step.
+    /// Brackets, locked during a submission: semaphores and barriers belong to the next submission, so staging them and
+    /// submitting must be one step.
     pub(super) brackets: Mutex<Brackets>,
 }
 
@@ -36,12 +36,12 @@ impl VulkanHost {
         &self.record.enabled
     }
 
-    /// Waits for the GPU (and so for every semaphore that was to be waited for), gives everything back and says whether
-    /// the host may now destroy its device.
+    /// Waits for the GPU (and so for every semaphore that a submission waits for), releases everything, and reports
+    /// whether the host may now destroy its device.
     ///
     /// # Errors
-    /// [`Status::InUse`] if contexts, views or textures made from this device are still alive: they keep it open,
-    /// and it closes when the last of them goes. [`Status::DeviceLost`] if the device was lost meanwhile.
+    /// [`Status::InUse`] if contexts, views or textures made from this device still exist: they keep it open, and it
+    /// closes with the last of them. [`Status::DeviceLost`] if the device was lost meanwhile.
     pub fn close(self) -> Result<()> {
         let waited = self.device.wait();
         let released = Arc::clone(&self.released);
@@ -56,7 +56,7 @@ impl VulkanHost {
 
 impl Drop for VulkanHost {
     fn drop(&mut self) {
-        // A device that is lost has nothing pending either.
+        // On a lost device nothing is pending either.
         let _ = self.device.wait();
         let brackets = self.brackets.get_mut().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the queue's work was waited for, and the host's device lives longer than this.

@@ -1,4 +1,4 @@
-//! Image of a host, a `VkImage`: its description, and the formats and layouts that stand for it.
+//! Image of a host, a `VkImage`: its description, and the formats and layouts that correspond to it.
 
 use ash::vk;
 use wgpu::{TextureFormat, TextureUses};
@@ -6,8 +6,8 @@ use wgpu::{TextureFormat, TextureUses};
 use super::names;
 use crate::error::{Error, Result};
 
-/// Features that let wgpu use the formats and sample counts that the host's images may have; none of them needs
-/// anything switched on in Vulkan.
+/// Features that let wgpu use the formats and sample counts that the host's images may have. None of them needs a
+/// Vulkan feature to be enabled.
 pub(super) const FORMAT_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
     .union(wgpu::Features::DEPTH32FLOAT_STENCIL8)
@@ -16,8 +16,8 @@ pub(super) const FORMAT_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUE
 /// Use that Welkin makes of a host's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageRole {
-    /// Drawn into, and copied to be read: needs `VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT` and `TRANSFER_SRC_BIT`, and with
-    /// several samples `sampleRateShading` enabled.
+    /// Drawn into, and copied for reading: needs `VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT` and `TRANSFER_SRC_BIT`;
+    /// multisampled, also `sampleRateShading` enabled.
     Colour,
     /// Depth that is read: needs `VK_IMAGE_USAGE_SAMPLED_BIT`.
     Depth,
@@ -25,10 +25,10 @@ pub enum ImageRole {
     Sampled,
 }
 
-/// A host's 2-D image, handed over for one submission. It stays the host's.
+/// 2-D image of the host, handed over for one submission. The host remains its owner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostImage {
-    /// The image; it belongs to the queue's family (or is shared concurrently) and has one mip level in use.
+    /// Image. It belongs to the queue's family (or is shared concurrently) and one of its mip levels is used.
     pub image: vk::Image,
     /// Format that the image was created with.
     pub format: vk::Format,
@@ -36,22 +36,22 @@ pub struct HostImage {
     pub width: u32,
     /// Height of the image, pixels.
     pub height: u32,
-    /// Samples a pixel: 1, 2, 4 or 8.
+    /// Samples per pixel: 1, 2, 4 or 8.
     pub samples: u32,
     /// Usage that the image was created with.
     pub usage: vk::ImageUsageFlags,
-    /// Array layers of the image; 1 for a plain one.
+    /// Number of array layers; 1 for a plain image.
     pub array_layers: u32,
-    /// Layer that is handed over, from 0.
+    /// Index of the layer that is handed over, from 0.
     pub layer: u32,
-    /// Layout that the host left it in. `UNDEFINED` (colour only) says that its content may be dropped.
+    /// Layout in which the host left the image. `UNDEFINED` (colour only) means that its contents may be discarded.
     pub layout: vk::ImageLayout,
-    /// Layout that the host wants it back in.
+    /// Layout in which the host wants the image back.
     pub final_layout: vk::ImageLayout,
 }
 
 impl HostImage {
-    /// Whether two descriptions mean the same Vulkan image, whatever layer and layouts they speak of.
+    /// Whether two descriptions mean the same Vulkan image, in whatever layers and layouts.
     pub(super) fn same_image(&self, other: &Self) -> bool {
         let rest =
             Self { layer: 0, layout: vk::ImageLayout::UNDEFINED, final_layout: vk::ImageLayout::UNDEFINED, ..*self };
@@ -59,10 +59,10 @@ impl HostImage {
         rest == other
     }
 
-    /// Refuses depth that was not created to be written, in a message about the parameter `name`.
+    /// Checks that depth was created with a usage that allows writing; `name` is the parameter in the message.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the usage.
+    /// [`crate::Status::InvalidArgument`], which names the usage.
     pub fn check_written(&self, name: &str) -> Result<()> {
         let needed = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
         if self.usage.contains(needed) {
@@ -73,7 +73,7 @@ impl HostImage {
         Err(Error::invalid(format!("{name}.usage"), rest))
     }
 
-    /// The aspects that a layout change must name.
+    /// Returns the aspects that a layout change must name.
     pub(super) fn aspects(&self) -> vk::ImageAspectFlags {
         match wgpu_format(self.format) {
             Some(f) if f.has_stencil_aspect() => vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL,
@@ -83,7 +83,7 @@ impl HostImage {
     }
 }
 
-/// The wgpu format whose Vulkan counterpart is `format`; `None` where Welkin does not serve it.
+/// Returns the wgpu format that corresponds to `format`; `None` if Welkin does not support it.
 pub(super) fn wgpu_format(format: vk::Format) -> Option<TextureFormat> {
     Some(match format {
         vk::Format::R8_UNORM => TextureFormat::R8Unorm,
@@ -112,7 +112,7 @@ pub(super) fn wgpu_format(format: vk::Format) -> Option<TextureFormat> {
     })
 }
 
-/// The state in which wgpu finds and leaves an imported image between submissions.
+/// Returns the state in which wgpu finds and leaves an imported image between submissions.
 pub(super) fn home_state(role: ImageRole) -> TextureUses {
     match role {
         ImageRole::Colour => TextureUses::COLOR_TARGET,
@@ -120,7 +120,7 @@ pub(super) fn home_state(role: ImageRole) -> TextureUses {
     }
 }
 
-/// The Vulkan layout behind [`home_state`], as wgpu's Vulkan backend maps it.
+/// Returns the Vulkan layout that wgpu's Vulkan backend uses for [`home_state`].
 pub(super) fn home_layout(role: ImageRole) -> vk::ImageLayout {
     match role {
         ImageRole::Colour => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,

@@ -1,4 +1,4 @@
-//! Importing of a host's `VkImage` as a texture: checks of its format, sample count, usage and layouts.
+//! Import of a host's `VkImage` as a texture: checks of its format, sample count, usage and layouts.
 
 use ash::vk;
 use wgpu::hal::vulkan::Api as Vulkan;
@@ -11,18 +11,18 @@ use super::{layouts, names};
 use crate::error::{Error, Result, Status};
 
 impl VulkanHost {
-    /// The texture over a host's image. Asking again for the same image gives the same texture.
+    /// Returns the texture of a host's image. The same image gives the same texture every time.
     ///
-    /// `name` is the parameter's name in messages. The texture may be drawn to or read only between this call
-    /// and [`VulkanHost::submit`] of the same image. When the host has destroyed the image, or
-    /// before, it calls [`VulkanHost::forget_image`].
+    /// `name` is the parameter's name in messages. The texture may be drawn to or read only between this call and the
+    /// [`VulkanHost::submit`] of the same image. The host must call [`VulkanHost::forget_image`] before or after it
+    /// destroys the image.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] names the field of `image` that does not fit; [`Status::Unsupported`] names a
-    /// format or sample count that this device or Welkin does not serve.
+    /// [`Status::InvalidArgument`], which names the field of `image` that does not fit; [`Status::Unsupported`], which
+    /// names a format or sample count that this device or Welkin does not support.
     ///
     /// # Safety
-    /// `image` describes a live image of the host's device truly.
+    /// The description `image` must be true, of a live image of the host's device.
     pub unsafe fn import(&self, name: &str, image: &HostImage, role: ImageRole) -> Result<wgpu::Texture> {
         let format = self.check_image(name, image, role)?;
         let mut images = self.images.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -39,9 +39,9 @@ impl VulkanHost {
         Ok(texture)
     }
 
-    /// Waits until the GPU no longer uses `image` and forgets it. To be called before or after the host destroys an
-    /// image that it handed over, but before it hands over another: Vulkan may give a new image the old one's handle.
-    /// What is left to do is destroying views, for which the image need not live. Not a frame's call.
+    /// Waits until the GPU no longer uses `image`, and forgets it. Must be called before or after the host destroys an
+    /// image that it handed over, but before it hands over another one, because Vulkan may give a new image the old
+    /// handle. Only views are still to be destroyed, for which the image need not exist. Not for use in a frame.
     ///
     /// # Errors
     /// [`Status::DeviceLost`].
@@ -57,15 +57,15 @@ impl VulkanHost {
         drop(images);
         let mut brackets = self.brackets.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let waited = self.device.wait();
-        // SAFETY: the queue's work was waited for (a lost device has none), with the brackets held.
+        // SAFETY: the queue's work was waited for (a lost device has none), and the brackets are locked.
         unsafe { brackets.free(&self.raw, |lent| lent.iter().any(|(i, _)| i.image == image)) };
         waited
     }
 
-    /// Makes the texture over an image whose description was checked.
+    /// Creates the texture of an image whose description was checked.
     ///
     /// # Safety
-    /// `image` describes a live image of the host's device truly.
+    /// The description `image` must be true, of a live image of the host's device.
     unsafe fn wrap(&self, image: &HostImage, role: ImageRole, format: TextureFormat) -> Result<wgpu::Texture> {
         let size =
             wgpu::Extent3d { width: image.width, height: image.height, depth_or_array_layers: image.array_layers };
@@ -92,8 +92,8 @@ impl VulkanHost {
             view_formats: &[],
         };
         let lost = || Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one");
-        // SAFETY: the device is on Vulkan; memory is external and there is a drop callback, so that wgpu destroys
-        // neither image nor memory; the state given is the one that `submit` brings the image into first.
+        // SAFETY: the device is on Vulkan. With external memory and a drop callback, wgpu destroys neither image nor
+        // memory. The given state is the one into which `submit` first brings the image.
         unsafe {
             let hal = self.device.device.as_hal::<Vulkan>().ok_or_else(lost)?;
             let memory = wgpu::hal::vulkan::TextureMemory::External;
@@ -102,7 +102,7 @@ impl VulkanHost {
         }
     }
 
-    /// Checks a description and gives its wgpu format.
+    /// Checks a description and returns its wgpu format.
     fn check_image(&self, name: &str, image: &HostImage, role: ImageRole) -> Result<TextureFormat> {
         let bad = |field: &str, accepted: &str, got: &dyn std::fmt::Display| {
             Err(Error::range(&format!("{name}.{field}"), accepted, got))
@@ -137,8 +137,8 @@ impl VulkanHost {
         Error::all(self.lacks(name, image, role)).map(|()| format)
     }
 
-    /// All that the host has to enable, list or create otherwise before it hands over an image that this device can
-    /// hold.
+    /// Lists everything that the host must enable, list or create differently before it hands over an image that this
+    /// device can support.
     fn lacks(&self, name: &str, image: &HostImage, role: ImageRole) -> Vec<Error> {
         let field = |name_of_field: &str| format!("{name}.{name_of_field}");
         let mut lacks = Vec::new();
@@ -168,14 +168,14 @@ impl VulkanHost {
         lacks
     }
 
-    /// Whether this device serves the format for the role and sample count.
+    /// Checks that this device supports the format for the role and sample count.
     fn check_format(&self, name: &str, image: &HostImage, format: TextureFormat, role: ImageRole) -> Result<()> {
         let raw = image.format;
         let unsupported = |what: String| Err(Error::unsupported(what).within(&format!("{name}.format")));
         if !self.device.device.features().contains(format.required_features()) {
             return unsupported(format!("this device does not serve {raw:?}"));
         }
-        // SAFETY: the adapter is only asked.
+        // SAFETY: the adapter is only queried.
         let mapped = unsafe { self.device.adapter.as_hal::<Vulkan>() }.map(|a| a.texture_format_as_raw(format));
         if mapped != Some(raw) {
             return unsupported(format!("this device holds {format:?} as {mapped:?}, not as {raw:?}"));
@@ -197,7 +197,7 @@ impl VulkanHost {
     }
 }
 
-/// The host's usage in wgpu's words.
+/// Converts the host's usage to wgpu's.
 fn usages(usage: vk::ImageUsageFlags, depth: bool) -> (wgpu::TextureUsages, TextureUses) {
     use vk::ImageUsageFlags as U;
     let attached = if depth {

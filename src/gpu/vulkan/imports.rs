@@ -1,30 +1,30 @@
-//! Imports of a host's images that are kept: the texture of each.
+//! Cache of the textures imported from a host's images.
 
 use super::image::{HostImage, ImageRole};
 
-/// Imports kept at once; a host with more images than this pays for a new import now and then.
+/// Largest number of imports kept; a host with more images pays for a new import now and then.
 const MAX_IMPORTS: usize = 64;
 
-/// A host's image with the texture that stands for it.
+/// Host's image and its texture.
 pub(super) struct Import {
     pub(super) image: HostImage,
     pub(super) role: ImageRole,
     pub(super) texture: wgpu::Texture,
 }
 
-/// The imports in use, the most recent last.
+/// Imports in use, the most recent last.
 #[derive(Default)]
 pub(super) struct Imports(pub(super) Vec<Import>);
 
 impl Imports {
-    /// The texture of an image imported in `role`, which becomes the most recent.
+    /// Returns the texture of an image imported in `role`, and makes it the most recent.
     pub(super) fn find(&mut self, image: &HostImage, role: ImageRole) -> Option<wgpu::Texture> {
         let at = self.0.iter().position(|i| i.role == role && i.image.same_image(image))?;
         self.0[at..].rotate_left(1);
         self.0.last().map(|i| i.texture.clone())
     }
 
-    /// Keeps an import, and returns the oldest if there are too many.
+    /// Keeps an import; returns the oldest one if there are too many.
     pub(super) fn keep(&mut self, import: Import) -> Option<Import> {
         let oldest = (self.0.len() >= MAX_IMPORTS).then(|| self.0.remove(0));
         self.0.push(import);

@@ -1,4 +1,4 @@
-//! Layouts that a host's image can be in, and what is missing where it cannot: a usage, a feature or an extension.
+//! Layouts that a host's image can have, and the usage, feature or extension that is missing where it cannot have one.
 
 use ash::vk;
 
@@ -9,9 +9,9 @@ use super::names::{feature_text, usage_names};
 const SWAPCHAIN: &str = "needs VK_KHR_swapchain enabled on the device and listed in enabled_device_extensions of the \
                          wk_vulkan_host_desc";
 
-/// Returns what keeps `image` from being in `layout`, as the end of a sentence about the layout; `None` if nothing
-/// does. The rules are those for image barriers (Vulkan specification, VkImageMemoryBarrier, valid usage). `presents`:
-/// `VK_KHR_swapchain` is enabled.
+/// Returns the reason for which `image` cannot be in `layout`, as the end of a sentence about the layout; `None` if it
+/// can. The rules are those of image barriers (Vulkan specification, VkImageMemoryBarrier, valid usage). `presents`
+/// says that `VK_KHR_swapchain` is enabled.
 pub(super) fn obstacle(
     layout: vk::ImageLayout,
     image: &HostImage,
@@ -67,7 +67,7 @@ pub(super) fn obstacle(
 pub(super) mod tests {
     use super::*;
 
-    /// A small image of a host, in any layout.
+    /// Returns a small image of a host, in layout `GENERAL`.
     pub fn image(format: vk::Format, usage: vk::ImageUsageFlags) -> HostImage {
         HostImage {
             image: ash::vk::Handle::from_raw(1),

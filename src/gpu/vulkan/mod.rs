@@ -1,23 +1,23 @@
 //! Hosts that own a Vulkan device: Welkin draws on the host's own `VkDevice` and `VkQueue`, into its images.
 //!
 //! # The queue contract
-//! Welkin submits on the host's queue itself: when a record call returns, its work *is submitted*. Vulkan wants
-//! a queue used by one thread at a time, so either the host stays away from the queue while any Welkin call
-//! with this device runs (record, create, destroy), or it passes [`VulkanHostDesc::lock_queue`] and
-//! `unlock_queue`, which Welkin calls round every `vkQueueSubmit` and `vkQueueWaitIdle` and nothing else.
-//! Inside the callbacks no Welkin function may be called.
+//! Welkin itself submits to the host's queue: when a record call returns, its work *is submitted*. Vulkan allows only
+//! one thread at a time to use a queue. So the host must either keep off the queue while any Welkin call with this
+//! device runs (record, create, destroy), or pass [`VulkanHostDesc::lock_queue`] and `unlock_queue`. Welkin calls these
+//! two around every `vkQueueSubmit` and `vkQueueWaitIdle`, and around nothing else. The callbacks must not call any
+//! Welkin function.
 //!
 //! # Images and order
-//! An image, or one layer of an array, is handed over for one submission ([`VulkanHost::submit`]) in the layout that
-//! the host left it in and comes back in the layout that it asks for. Work that the host submitted to the *same queue*
-//! before is waited for without a semaphore, and so is Welkin's by what the host submits to that queue afterwards: no
-//! barrier of the host's own is needed. Semaphores order work with other queues.
+//! The host hands over an image, or one layer of an array, for one submission ([`VulkanHost::submit`]). The image comes
+//! in the layout that the host left it in, and goes back in the layout that the host asks for. On the *same queue* no
+//! semaphore and no barrier of the host's own is needed: Welkin's work waits for what the host submitted before, and
+//! what the host submits afterwards waits for Welkin's work. Work on other queues is ordered by semaphores.
 //!
 //! # What the host must have enabled
-//! Nothing beyond Vulkan 1.1 and a queue that draws and computes, except `VK_KHR_swapchain` for images in
-//! `PRESENT_SRC_KHR` and `sampleRateShading` for colour of several samples. Timeline semaphores, robust access, 16-bit
-//! storage and the like are used where the host says that it enabled them ([`EnabledFeatures`]), and otherwise not:
-//! wgpu is shown only what is enabled. On Vulkan 1.0 the device needs `VK_KHR_maintenance1` and
+//! Nothing beyond Vulkan 1.1 and a queue for graphics and compute, except `VK_KHR_swapchain` for images in
+//! `PRESENT_SRC_KHR`, and `sampleRateShading` for multisampled colour. Timeline semaphores, robust access, 16-bit
+//! storage and similar features are used only where the host says that it enabled them ([`EnabledFeatures`]): wgpu sees
+//! only what is enabled. On Vulkan 1.0 the device needs `VK_KHR_maintenance1` and
 //! `VK_KHR_storage_buffer_storage_class`.
 
 mod adopt;

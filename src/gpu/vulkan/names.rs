@@ -1,19 +1,19 @@
-//! Names of Vulkan's features, layouts and usages, as messages spell them.
+//! Names of Vulkan's features, layouts and usages, spelled for messages.
 
 use ash::vk;
 
-/// A feature with where the host says that it enabled it.
+/// Returns a feature's name, and where the host says that it enabled it.
 pub(super) fn feature_text(name: &str) -> String {
     format!("{name} enabled on the device and listed in enabled_features of the wk_vulkan_host_desc")
 }
 
-/// The layout's name in Vulkan's headers.
+/// Returns the layout's name in Vulkan's headers.
 pub(super) fn layout_name(layout: vk::ImageLayout) -> String {
     let text = format!("{layout:?}");
     if text.starts_with(|c: char| c.is_ascii_digit()) { text } else { format!("VK_IMAGE_LAYOUT_{text}") }
 }
 
-/// The bits' names in Vulkan's headers.
+/// Returns the bits' names in Vulkan's headers.
 pub(super) fn usage_names(usage: vk::ImageUsageFlags, separator: &str) -> String {
     let text = format!("{usage:?}");
     let names = text.split(" | ").map(|n| format!("VK_IMAGE_USAGE_{n}_BIT"));

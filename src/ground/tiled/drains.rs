@@ -1,27 +1,27 @@
-//! Where the run-off of each cell of a tile ends: in a pit, or over the border of its block in the next one.
+//! Sink of each cell of a tile, where its run-off ends: in a pit, or across the border of its block in the next one.
 //!
-//! Run-off takes the steepest of the eight ways down, as on a single grid. Its way is looked up within blocks of 32 x
-//! 32 cells: a change of the ground is followed by the blocks that it touches, however far the water from them runs.
+//! Run-off takes the steepest of the eight directions down, as on a single grid. Paths are resolved within blocks of 32
+//! x 32 cells. A change of the ground therefore updates only the blocks that it touches, however far their water runs.
 
 use crate::terrain::{AROUND, CellId, CellRect, Terrain, TileKey};
 
-/// Cells along a side of a block; tiles are multiples of it.
+/// Cells along a side of a block; the side of a tile is a multiple of it.
 const BLOCK: usize = 32;
-/// Sink number of a cell whose way is not known yet.
+/// Sink number of a cell whose path is not known yet.
 const UNKNOWN: u16 = u16::MAX;
 
-/// Where run-off ends.
+/// End of the run-off of a cell within its block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sink {
-    /// In a cell that has no lower neighbour.
+    /// Cell that has no lower neighbour.
     Pit(CellId),
-    /// On a cell of another block, from where it goes on.
+    /// Cell of another block, from which the water flows on.
     On(CellId),
-    /// Beside a hole or the end of the terrain: it leaves.
+    /// Hole or edge of the terrain beside the cell: the water leaves.
     Out,
 }
 
-/// Sinks of a block's cells, and the water that has come to each in this step, mm times cells.
+/// Sinks of a block's cells, and the water that has reached each in this step, mm times cells.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrainBlock {
     pub sinks: Vec<Sink>,
@@ -29,7 +29,7 @@ pub(super) struct DrainBlock {
     pub gets: bool,
 }
 
-/// The sinks of a tile's cells.
+/// Sinks of a tile's cells.
 #[derive(Clone, Debug)]
 pub(super) struct Drains {
     bits: u32,
@@ -37,7 +37,8 @@ pub(super) struct Drains {
     pub blocks: Vec<DrainBlock>,
 }
 
-/// Heights go first, then places from the south-west: no two cells are equally high.
+/// Whether cell `a` is lower than `b`. Cells of equal height are ordered by place from the south-west, so no two cells
+/// are equally high.
 pub(super) fn is_lower(terrain: &Terrain, a: CellId, b: CellId) -> bool {
     let (low, high) = (terrain.height(a), terrain.height(b));
     if low != high {
@@ -47,7 +48,7 @@ pub(super) fn is_lower(terrain: &Terrain, a: CellId, b: CellId) -> bool {
     (ay, ax) < (by, bx)
 }
 
-/// The steepest way down.
+/// Returns the neighbour that is steepest downhill.
 fn below(terrain: &Terrain, cell: CellId) -> Sink {
     let height = f64::from(terrain.height(cell));
     let (mut steepest, mut down) = (f64::NEG_INFINITY, Sink::Pit(cell));
@@ -65,7 +66,7 @@ fn below(terrain: &Terrain, cell: CellId) -> Sink {
 }
 
 impl Drains {
-    /// Creates the drains of a tile, all still unknown.
+    /// Creates the drains of a tile, with all sinks unknown.
     pub fn new(terrain: &Terrain) -> Self {
         let side = terrain.side();
         let blocks = (side / BLOCK) * (side / BLOCK);
@@ -82,7 +83,7 @@ impl Drains {
         (y / BLOCK) * (side / BLOCK) + x / BLOCK
     }
 
-    /// Finds the ways of the blocks of a tile that a rectangle touches.
+    /// Finds the sinks in those blocks of a tile that a rectangle touches.
     pub fn find(&mut self, terrain: &Terrain, (slot, key): (u32, TileKey), rect: CellRect) {
         let own = terrain.rect(key);
         let Some(part) = own.meets(rect) else { return };
@@ -132,12 +133,12 @@ impl Drains {
         self.blocks[number] = DrainBlock { sinks, inflow, gets: false };
     }
 
-    /// Where the run-off of a cell ends.
+    /// Returns where the run-off of a cell ends.
     pub fn sink(&self, cell: usize) -> Sink {
         self.blocks[self.block_of(cell)].sinks[usize::from(self.of_cell[cell])]
     }
 
-    /// Adds to what runs off a cell in this step.
+    /// Adds run-off of a cell in this step.
     pub fn add(&mut self, cell: usize, water: f64) {
         let block = self.block_of(cell);
         let block = &mut self.blocks[block];

@@ -1,14 +1,14 @@
-//! Standing water on tiles: hollows that are found as water rises in them, wherever tiles end.
+//! Standing water on tiles. Hollows are found as water rises in them, and may cross the borders between tiles.
 //!
-//! The water of a pit rises over its neighbours from the lowest up (the priority-flood of Barnes, Lehman and Mulla
-//! 2014, of one hollow alone and no further than its water reaches) until the next cell has a lower neighbour on its
-//! other side: a saddle. What comes then spills over it into the pit beyond. Where two full waters spill into each
-//! other they become one, which rises from the saddle on; where it sinks below, they part (the hierarchy of hollows of
-//! Barnes, Callaghan and Wickert 2020 and 2021, found from below). So ground is looked at where water stands, and
-//! nowhere else: a change of the ground forgets the waters that it touches, and pours them anew.
+//! The water of a pit rises over its neighbours from the lowest up, until the next cell has a lower neighbour outside
+//! the water: a saddle. This is the priority-flood (Barnes, Lehman and Mulla 2014) of one hollow, and only as far as
+//! its water reaches. Further water spills over the saddle into the pit beyond. Two full waters that spill into each
+//! other become one, which rises on from the saddle; when it sinks below the saddle, they part again. This builds the
+//! depression hierarchy of Barnes, Callaghan and Wickert (2020 and 2021) from below. So the ground is examined only
+//! where water stands. After a change of the ground, the waters that it touches are discarded and poured again.
 //!
-//! Water is counted in millimetres times cells. Cells of one height follow each other by their place, so that what is
-//! found is the same for the same ground and water, however these came to be.
+//! Water is counted in millimetres times cells. Cells of equal height are ordered by place, so the same ground and
+//! water give the same hollows, whatever their history.
 
 mod parting;
 pub(super) mod saved;
@@ -18,10 +18,10 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 use super::drains::is_lower;
 use crate::terrain::{CellId, Terrain};
 
-/// No hollow.
+/// Number of no hollow or lake.
 const NONE: u32 = u32::MAX;
 
-/// A cell at the rim of a water; the lowest is the greatest, for the heap.
+/// Cell at the rim of a water. The lowest cell compares greatest, for the heap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Rim {
     height_mm: f64,
@@ -44,55 +44,58 @@ impl PartialOrd for Rim {
     }
 }
 
-/// How a hollow ends: what it holds then, and the cell beyond its saddle that it spills onto, if that is ground.
+/// End of a hollow: its capacity, and the cell beyond its saddle onto which it spills, if that is ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Close {
     capacity: f64,
     to: Option<CellId>,
 }
 
-/// A hollow as far as it is known.
+/// Hollow as far as it has been found.
 #[derive(Clone, Debug)]
 struct Hollow {
-    /// The two that it became one of.
+    /// The two hollows from which it was joined.
     parts: Option<[u32; 2]>,
-    /// Cells of its own in the order in which water covers them, their heights, mm, and what it holds when it stands
-    /// that high.
+    /// Cells of its own, in the order in which water covers them.
     cells: Vec<CellId>,
+    /// Heights of these cells, mm.
     levels_mm: Vec<f64>,
+    /// Water that the hollow holds when its level is at the cell, for each of these cells.
     held_at: Vec<f64>,
-    /// Cells of its parts, what these hold, and the height at which it begins, mm.
+    /// Number of cells of its parts.
     below: f64,
+    /// Water that its parts hold.
     base: f64,
+    /// Height at which it begins, mm.
     birth_mm: f64,
     close: Option<Close>,
 }
 
-/// A water: a hollow that is no part of another, and what it holds.
+/// Water in a hollow that is not part of another, and its volume.
 #[derive(Clone, Debug)]
 struct Lake {
     hollow: u32,
     held: f64,
     level_mm: f64,
-    /// Cells about those that are known; none where they have to be found again.
+    /// Cells around the known ones; `None` if they must be found again.
     rim: Option<BinaryHeap<Rim>>,
 }
 
-/// All standing water on a terrain.
+/// Standing water on a terrain.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lakes {
     hollows: Vec<Option<Hollow>>,
     free_hollows: Vec<u32>,
     lakes: Vec<Option<Lake>>,
     free_lakes: Vec<u32>,
-    /// Numbers of lakes, by the number of the tile and then by cell: one more than the number of the cell's lake, or 0;
-    /// empty for a tile without any.
+    /// Lake of each cell, by tile number and then by cell: the number of the lake plus 1, or 0 for none. Empty for a
+    /// tile without lakes.
     owners: Vec<Vec<u32>>,
-    /// How many there are.
+    /// Number of lakes.
     pub count: usize,
 }
 
-/// Where water goes on from a cell: the pit that its run-off ends in; none off the terrain.
+/// Function that returns the pit in which the run-off of a cell ends, or `None` if it leaves the terrain.
 pub(super) type PitBelow<'a> = &'a dyn Fn(CellId) -> Option<CellId>;
 
 fn height_mm(terrain: &Terrain, cell: CellId) -> f64 {
@@ -114,7 +117,7 @@ impl Hollow {
         Self { parts, cells, levels_mm, held_at, below: part_cells, base, birth_mm, close: None }
     }
 
-    /// Level of the water, mm, and how many cells lie under it, when it holds `held`.
+    /// Returns the water level, mm, and the number of cells under water, when the hollow holds `held`.
     fn level(&self, held: f64) -> (f64, f64) {
         if self.cells.is_empty() {
             return (self.birth_mm, self.below);
@@ -124,7 +127,7 @@ impl Hollow {
         (self.levels_mm[own - 1] + (held - self.held_at[own - 1]) / under, under)
     }
 
-    /// Returns the water that it holds when the water stands at a height above all known cells.
+    /// Returns the water in the hollow when its level is above all known cells.
     fn held_to(&self, level_mm: f64) -> f64 {
         let (held, from) = match (self.held_at.last(), self.levels_mm.last()) {
             (Some(held), Some(from)) => (*held, *from),
@@ -139,19 +142,19 @@ impl Hollow {
 }
 
 impl Lakes {
-    /// Makes room for a tile's number, without any water.
+    /// Makes room for a tile, without any water.
     pub fn reserve(&mut self, slot: u32) {
         if self.owners.len() <= slot as usize {
             self.owners.resize(slot as usize + 1, Vec::new());
         }
     }
 
-    /// The lake that a cell is known to lie in.
+    /// Returns the lake in which a cell is known to lie.
     pub fn lake_of(&self, slot: usize, cell: usize) -> Option<u32> {
         self.owners.get(slot)?.get(cell)?.checked_sub(1)
     }
 
-    /// Level of a lake, mm.
+    /// Returns the level of a lake, mm; negative infinity if there is none.
     pub fn level_mm(&self, lake: u32) -> f64 {
         self.lake(lake).map_or(f64::NEG_INFINITY, |l| l.level_mm)
     }
@@ -166,13 +169,13 @@ impl Lakes {
         self.lake_of(slot, cell).is_some_and(|lake| self.level_mm(lake) > f64::from(height_m) * 1e3)
     }
 
-    /// Cells under standing water.
+    /// Returns the number of cells under standing water.
     pub fn covered(&self) -> f64 {
         let lakes = (0..self.lakes.len() as u32).filter_map(|l| self.of(l));
         lakes.map(|(l, h)| h.level(l.held).1).sum()
     }
 
-    /// Forgets of a tile that was taken away in which lakes its cells lay.
+    /// Clears the lakes of the cells of a removed tile.
     pub fn clear(&mut self, slot: u32) {
         if let Some(owners) = self.owners.get_mut(slot as usize) {
             *owners = Vec::new();
@@ -183,7 +186,7 @@ impl Lakes {
         self.lakes.get(lake as usize)?.as_ref()
     }
 
-    /// A hollow of a lake and what the lake holds.
+    /// Returns a lake and its hollow.
     fn of(&self, lake: u32) -> Option<(&Lake, &Hollow)> {
         let l = self.lake(lake)?;
         Some((l, self.hollows.get(l.hollow as usize)?.as_ref()?))
@@ -198,7 +201,7 @@ impl Lakes {
         owners[at] = lake.wrapping_add(1);
     }
 
-    /// The lake of a pit, or a new one without water.
+    /// Returns the lake of a pit; creates one without water if there is none.
     fn lake_at(&mut self, terrain: &Terrain, pit: CellId) -> u32 {
         let (slot, at) = terrain.split(pit);
         if let Some(lake) = self.lake_of(slot, at) {
@@ -219,7 +222,7 @@ impl Lakes {
         lake
     }
 
-    /// Takes the next cell into a lake's hollow, or finds its saddle.
+    /// Adds the next cell to a lake's hollow, or finds its saddle.
     fn extend(&mut self, terrain: &Terrain, lake: u32) {
         if self.lake(lake).is_some_and(|l| l.rim.is_none()) {
             self.find_rim(terrain, lake);
@@ -265,7 +268,7 @@ impl Lakes {
         }
     }
 
-    /// All hollows of a tree.
+    /// Returns a hollow and all parts in its tree.
     fn tree(&self, hollow: u32) -> Vec<u32> {
         let (mut found, mut next) = (vec![hollow], 0);
         while next < found.len() {
@@ -276,7 +279,7 @@ impl Lakes {
         found
     }
 
-    /// The cells about a lake whose rim was given away.
+    /// Finds the cells around a lake whose rim was dropped.
     fn find_rim(&mut self, terrain: &Terrain, lake: u32) {
         let Some(hollow) = self.lake(lake).map(|l| l.hollow) else { return };
         let mut rim = BinaryHeap::new();
@@ -295,7 +298,7 @@ impl Lakes {
         }
     }
 
-    /// Puts water into a lake until it spills. Answers what is left.
+    /// Fills water into a lake until it spills. Returns the rest.
     fn fill(&mut self, terrain: &Terrain, lake: u32, water: f64) -> f64 {
         let short = |s: &Self| {
             s.of(lake).is_some_and(|(l, h)| {
@@ -323,13 +326,13 @@ impl Lakes {
         left
     }
 
-    /// Onto which cell a full lake spills.
+    /// Returns the cell onto which a full lake spills.
     fn spills_to(&self, lake: u32) -> Option<CellId> {
         let (l, h) = self.of(lake)?;
         h.close.filter(|c| l.held >= c.capacity)?.to
     }
 
-    /// Pours water into a pit. Answers what leaves the terrain.
+    /// Pours water into a pit. Returns the amount that leaves the terrain.
     pub fn pour(&mut self, terrain: &Terrain, pit_below: PitBelow<'_>, pit: CellId, water: f64) -> f64 {
         let mut lake = self.lake_at(terrain, pit);
         let mut left = self.fill(terrain, lake, water);
@@ -354,7 +357,7 @@ impl Lakes {
                 break;
             }
         }
-        // What only passed on what came has no water.
+        // A lake that only passed its water on holds none.
         for lake in made {
             if self.lake(lake).is_some_and(|l| l.held <= 0.0) {
                 self.forget(terrain, lake);
@@ -363,7 +366,7 @@ impl Lakes {
         left.max(0.0)
     }
 
-    /// Makes one of two full waters that spill into each other.
+    /// Joins two full waters that spill into each other.
     fn join(&mut self, terrain: &Terrain, a: u32, b: u32) -> u32 {
         for lake in [a, b] {
             if self.lake(lake).is_some_and(|l| l.rim.is_none()) {
@@ -389,7 +392,7 @@ impl Lakes {
             rim.pop();
         }
         let birth_mm = rim.peek().map_or(kept.level_mm, |r| r.height_mm);
-        // The order of the two is that of their pits, whoever was found first.
+        // The parts are ordered by their pits, so the order does not depend on which was found first.
         let mut parts = [kept.hollow, given.hollow];
         parts.sort_by_key(|part| self.pit_of(*part).map(|pit| (terrain.place(pit)[1], terrain.place(pit)[0])));
         let whole = Hollow::new(Some(parts), all, base[0] + base[1], birth_mm);
@@ -399,7 +402,7 @@ impl Lakes {
         keeps
     }
 
-    /// The first pit of a tree.
+    /// Returns the first pit of a tree.
     fn pit_of(&self, mut hollow: u32) -> Option<CellId> {
         loop {
             let h = self.hollows[hollow as usize].as_ref()?;
@@ -410,7 +413,7 @@ impl Lakes {
         }
     }
 
-    /// Says of all cells of a tree in which lake they lie.
+    /// Marks all cells of a tree as lying in a lake.
     fn label(&mut self, terrain: &Terrain, hollow: u32, lake: u32) {
         for part in self.tree(hollow) {
             let cells = self.hollows[part as usize].as_mut().map(|h| std::mem::take(&mut h.cells)).unwrap_or_default();

@@ -1,16 +1,16 @@
-//! Water on the tiles of the host's terrain: of every cell film and pores by the laws of [`super::water`], and in the
-//! hollows what runs off, wherever one tile ends and the next begins.
+//! Water on the tiles of the host's terrain: film and pores of every cell by the laws of [`super::water`], and run-off
+//! that collects in the hollows, across the borders between tiles.
 //!
-//! In a step each cell that is awake sheds water ([`drains`]), which is in its pit at the end of the step; pits fill,
-//! spill and join ([`lakes`]). Beside a hole and at the end of the terrain water leaves; nothing runs in. Runs of cells
-//! on which nothing falls, flows or dries are passed over, and so are tiles of which all runs rest. So rain = change of
-//! film, pores and standing water + evaporated + leaked + drained, where drained is also what went with cells that were
-//! taken away.
+//! In each step every awake cell sheds water, which reaches its pit by the end of the step ([`drains`]). Pits fill,
+//! spill and join ([`lakes`]). Water leaves at holes and at the edge of the terrain; none runs in from there. Runs of
+//! cells on which nothing falls, flows or dries are skipped, and so are tiles in which all runs rest. The balance is:
+//! rain = change of film, pores and standing water + evaporated + leaked + drained. Drained includes the water of cells
+//! that were removed.
 //!
-//! A change of the ground is followed by the blocks and the waters that it touches. Water that stood there is poured
-//! anew where it stood: off a floor that was raised, into a pit that was dug.
+//! When the ground changes, only the blocks and lakes that the change touches are updated. Water that stood there is
+//! poured again at the same place: off a floor that was raised, into a pit that was dug.
 //!
-//! Film and pores are kept in single precision, rounded down; what that takes off runs off.
+//! Film and pores are stored in single precision, rounded down. The rounding loss counts as run-off.
 
 mod drains;
 mod lakes;

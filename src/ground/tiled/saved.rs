@@ -1,4 +1,4 @@
-//! The water of a terrain of tiles as it is saved, and back. Heights are the host's: a state names them by their
+//! Saved form of the water on a tiled terrain. Heights are not saved: the host sets them, and the state only has their
 //! hashes.
 
 use serde::{Deserialize, Serialize};
@@ -14,22 +14,22 @@ use crate::{
     world::{binary_text, parse_error, text_binary, values, words},
 };
 
-/// Between two trees that are one, in the list of a water's pits.
+/// Word in the list of a lake's pits that joins the two trees before it.
 const JOINED: u64 = u64::MAX;
 
-/// The water of a tile as it is saved.
+/// Saved water of a tile.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedWaterTile {
     tile: [i32; 2],
     /// Hash of the heights and classes.
     cells: String,
-    /// Left out before it has water of its own: runs of equal film and pores, in base 64; for a hash, theirs.
+    /// Runs of equal film and pores, in base 64; for a hash, their hash. Left out if the tile has no state of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     water: Option<String>,
 }
 
-/// Water on tiles as it is saved.
+/// Saved water on tiles.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SavedTiles {
@@ -37,12 +37,13 @@ pub(crate) struct SavedTiles {
     cell_m: f64,
     tile_cells: u32,
     tiles: Vec<SavedWaterTile>,
-    /// Standing waters: pits of each with how they join, words of bits; and what each holds.
+    /// Lakes as words of bits: pits of each, and how they join.
     lakes: String,
+    /// Volume of each lake, as words of bits.
     held: String,
 }
 
-/// Runs of equal values: how many in 4 bytes, then the two numbers.
+/// Encodes runs of equal values: the length in 4 bytes, then the two numbers.
 fn runs(top: &[[f32; 2]]) -> Vec<u8> {
     let same = |a: &[f32; 2], b: &[f32; 2]| a.map(f32::to_bits) == b.map(f32::to_bits);
     let run = |run: &[[f32; 2]]| {
@@ -52,7 +53,7 @@ fn runs(top: &[[f32; 2]]) -> Vec<u8> {
     top.chunk_by(same).flat_map(run).collect()
 }
 
-/// The values that [`runs`] wrote, if they can be film and pores of so many cells, or of none.
+/// Decodes the values that [`runs`] wrote; `None` if they cannot be film and pores of `count` cells, or of none.
 fn of_runs(bytes: &[u8], count: usize) -> Option<Vec<[f32; 2]>> {
     let (runs, rest) = bytes.as_chunks::<12>();
     let mut top = Vec::new();
@@ -69,7 +70,7 @@ fn of_runs(bytes: &[u8], count: usize) -> Option<Vec<[f32; 2]>> {
     (rest.is_empty() && (top.is_empty() || top.len() == count)).then_some(top)
 }
 
-/// Added to places, which lie within 2^30 cells of the origin.
+/// Offset added to places, which lie within 2^30 cells of the origin.
 const MIDDLE: i32 = 1 << 30;
 
 fn word(place: [i32; 2]) -> u64 {
@@ -78,7 +79,7 @@ fn word(place: [i32; 2]) -> u64 {
 }
 
 impl SavedTiles {
-    /// `for_hash`: each tile's film and pores by their hash alone.
+    /// Creates the saved form. If `for_hash`, film and pores of each tile are given only by their hash.
     pub fn of(water: &TiledWater, terrain: &Terrain, for_hash: bool) -> Self {
         let tiles = water.keys.iter().filter_map(|(key, slot)| {
             let tile = water.tiles[*slot as usize].as_ref()?;
@@ -115,7 +116,7 @@ impl SavedTiles {
         }
     }
 
-    /// Refuses a terrain that is not the one of the state.
+    /// Checks that the terrain is the one of the state.
     fn check(&self, terrain: Option<&Terrain>) -> Result<()> {
         let unfit =
             |what: String| Err(Error::invalid("state", format!("holds the water of a terrain of tiles: {what}")));
@@ -140,11 +141,11 @@ impl SavedTiles {
         }
     }
 
-    /// The water that was saved, on the terrain that the host has set.
+    /// Returns the saved water, on the terrain that the host has set.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if that is another terrain, [`crate::Status::Parse`] for what can be no water
-    /// on it.
+    /// [`crate::Status::InvalidArgument`] if it is another terrain, [`crate::Status::Parse`] if the values cannot be
+    /// water on it.
     pub fn water(&self, terrain: Option<&Terrain>) -> Result<TiledWater> {
         self.check(terrain)?;
         let unfit = || parse_error("terrain_tiles must be the water that these tiles can hold");

@@ -1,4 +1,4 @@
-//! A step of the water on all tiles, in parts where it takes long.
+//! Step of the water on all tiles, which may be done in parts.
 
 use super::{
     drains::Sink,
@@ -17,22 +17,23 @@ use crate::{
     world::{Within, World},
 };
 
-/// Forcing of the ground in a step.
+/// Inputs of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct TiledStep<'a> {
     pub world: &'a World,
     pub terrain: &'a Terrain,
-    /// Simulation time in its middle, and its length, s.
+    /// Simulation time in the middle of the step, s.
     pub middle_s: f64,
+    /// Length of the step, s.
     pub seconds: f64,
-    /// The weather in its middle, and what it does to the ground.
+    /// Weather in the middle of the step, and its effect on the ground.
     pub conditions: &'a Conditions,
     pub forcing: &'a Forcing,
-    /// Water of level, open ground at the step's beginning.
+    /// Water of level, open ground at the beginning of the step.
     pub water: &'a GroundWater,
 }
 
-/// Water that a step brought and took, and whether any water changed.
+/// Water that a step added and removed, and whether any water changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SteppedTiles {
     pub flows: Flows,
@@ -40,8 +41,8 @@ pub(crate) struct SteppedTiles {
 }
 
 impl TiledWater {
-    /// Leads the water through a step, or a part of it until the time is over: one tile at least. None while tiles
-    /// remain.
+    /// Steps the water until the step is complete or the time budget is used up, at least one tile per call. Returns
+    /// `None` while tiles remain.
     pub fn step(&mut self, now: &TiledStep<'_>, budget: Option<Within>) -> Result<Option<SteppedTiles>> {
         let mut part = self.part.take().unwrap_or_default();
         let step = Step::new(now.forcing, now.seconds);
@@ -83,7 +84,7 @@ impl TiledWater {
         let overs = tile.rain.overs(now.world, now.middle_s, now.conditions)?;
         if !tile.begun {
             let water = tile.rain.first_water(&cells, (now.conditions, now.water), &overs, shelters);
-            // What it begins with counts as fallen.
+            // The initial water counts as rain.
             part.flows.rain += tile.begin(data, &water);
             part.changes = true;
         }
@@ -99,7 +100,7 @@ impl TiledWater {
         Ok(())
     }
 
-    /// Brings what ran off into its pits, and lowers what stands.
+    /// Pours run-off into its pits, and lowers standing water.
     fn finish(&mut self, terrain: &Terrain, step: &Step, flows: &mut Flows) {
         let came = self.gather(terrain, flows);
         flows.drained += pour_all((&self.tiles, &mut self.lakes), terrain, came);
@@ -115,7 +116,7 @@ impl TiledWater {
             (self.lakes.covered(), (terrain.all().len() * terrain.side() * terrain.side()) as f64);
     }
 
-    /// Collects the water that ran off in this step, by the pits that it comes to.
+    /// Collects the run-off of this step by the pits that it reaches.
     fn gather(&mut self, terrain: &Terrain, flows: &mut Flows) -> Vec<(CellId, f64)> {
         let mut ends: Vec<(Sink, f64)> = Vec::new();
         for slot in self.keys.values() {

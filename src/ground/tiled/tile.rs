@@ -18,18 +18,18 @@ pub(super) struct TileWater {
     pub key: TileKey,
     pub drains: Drains,
     pub rain: GridRain,
-    /// Whether it has water of its own by now; else that of level ground lies on it.
+    /// Whether the tile has a state of its own; else the water of level ground lies on it.
     pub begun: bool,
-    /// Film and pores, mm; empty while all of it is dry.
+    /// Film and pores, mm; empty while all cells are dry.
     top: Vec<[f32; 2]>,
-    /// By runs of cells: whether anything on them flows or dries.
+    /// Whether anything flows or dries on each run of cells.
     awake: Vec<bool>,
     any_awake: bool,
-    /// Hash of film and pores, until they change.
+    /// Cached hash of film and pores, until they change.
     hash: OnceLock<u64>,
 }
 
-/// A tile's cells, as what falls on them is found.
+/// Returns a tile's cells in the form that the rain on them needs.
 pub(super) fn cells_of<'a>(terrain: &Terrain, tile: &'a Tile) -> CellGrid<'a> {
     CellGrid {
         origin: terrain.origin_of(tile.key),
@@ -39,7 +39,7 @@ pub(super) fn cells_of<'a>(terrain: &Terrain, tile: &'a Tile) -> CellGrid<'a> {
     }
 }
 
-/// The nearest number of single precision that is not above.
+/// Rounds down to single precision.
 fn rounded_down(v: f64) -> f32 {
     let near = v as f32;
     if f64::from(near) > v { near.next_down() } else { near }
@@ -65,7 +65,7 @@ impl TileWater {
         self.top.get(cell).map_or([0.0; 2], |top| top.map(f64::from))
     }
 
-    /// Film and pores of all cells, none where all are dry.
+    /// Returns film and pores of all cells; empty if all are dry.
     pub fn tops(&self) -> &[[f32; 2]] {
         &self.top
     }
@@ -107,7 +107,7 @@ impl TileWater {
         self.hash.take();
     }
 
-    /// Takes up other cells of the terrain. Answers what left with those that are no ground now.
+    /// Updates the cells that the terrain changed. Returns the water that left with cells that are no longer ground.
     pub fn follow(&mut self, tile: &Tile, terrain: &Terrain, rect: CellRect) -> f64 {
         let Some(part) = terrain.rect(self.key).meets(rect) else { return 0.0 };
         let cells: Vec<usize> = part.cells().map(|place| terrain.in_tile(place)).collect();
@@ -127,7 +127,7 @@ impl TileWater {
         gone
     }
 
-    /// Takes saved film and pores.
+    /// Restores saved film and pores.
     pub fn restore(&mut self, top: Vec<[f32; 2]>) {
         (self.begun, self.top) = (true, top);
         self.any_awake = !self.top.is_empty();
@@ -135,7 +135,7 @@ impl TileWater {
         self.hash.take();
     }
 
-    /// Begins with what the weather has left on each cell.
+    /// Begins the state with the water that the weather has left on each cell. Returns that water, mm times cells.
     pub fn begin(&mut self, tile: &Tile, water: &[GroundWater]) -> f64 {
         self.begin_anew();
         self.begun = true;
@@ -155,8 +155,8 @@ impl TileWater {
         on_cells
     }
 
-    /// Leads film and pores through a step; what runs off is counted where it ends. Passes over runs that rest.
-    /// `rains`: whether anything falls on the tile.
+    /// Steps film and pores, and adds run-off to its sinks. Runs that rest are skipped. `rains`: whether anything falls
+    /// on the tile.
     pub fn step(&mut self, tile: &Tile, (slot, lakes): (usize, &Lakes), step: &Step, rains: bool) -> Flows {
         let mut flows = Flows::default();
         if !rains && !self.any_awake {

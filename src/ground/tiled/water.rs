@@ -1,4 +1,4 @@
-//! Water on a terrain of tiles as it is held, how it follows changes of the ground, and what is asked of it.
+//! Water on a tiled terrain: its state, its changes when the ground changes, and queries.
 
 use std::{
     collections::BTreeMap,
@@ -16,49 +16,50 @@ use crate::{
     terrain::{CellId, CellRect, Terrain, TileKey},
 };
 
-/// Depth of water where none stands, mm.
+/// Standing water of a cell where none stands, mm.
 const BARE_MM: f64 = -50.0;
-/// How far around a change of heights lie the cells by which a water is found: its own cell, the saddle beside it, and
-/// what is beyond that.
+/// Distance around a change of heights, in cells, within which lakes depend on it: a lake's own cell, the saddle beside
+/// it, and the cell beyond the saddle.
 const AROUND_LAKES: i32 = 2;
 
-/// A part of the terrain that is other than before.
+/// Part of the terrain that has changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Changed {
-    /// Revision of the terrain by this change.
+    /// Revision of the terrain after this change.
     pub revision: u64,
     pub rect: CellRect,
-    /// A tile was taken away.
+    /// Whether a tile was removed.
     pub is_removal: bool,
 }
 
-/// A step of which some tiles are done.
+/// Progress of a step of which some tiles are done.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepInParts {
-    /// The last tile that is done.
+    /// Last tile that is done.
     pub last: Option<TileKey>,
     pub flows: Flows,
     pub changes: bool,
 }
 
-/// The water on a terrain of tiles.
+/// Water on a tiled terrain.
 pub(crate) struct TiledWater {
-    /// Number of the terrain that it lies on.
+    /// Identity of the terrain on which it lies.
     id: u64,
-    /// By the numbers of the terrain's tiles.
+    /// Water of each tile, by the tile's number in the terrain.
     pub(super) tiles: Vec<Option<Box<TileWater>>>,
     pub(super) keys: BTreeMap<TileKey, u32>,
     pub(super) lakes: Lakes,
-    /// A step of which some tiles are done.
+    /// Progress of a step, if only some tiles are done.
     pub(super) part: Option<StepInParts>,
-    /// No other water had this number; and how often this one has changed otherwise than where the ground did.
+    /// Unique number of this water, and the number of its changes, except those where the ground changed.
     pub(super) version: (u64, u64),
-    /// Cells under standing water, and all cells, as the last step left them.
+    /// Number of cells under standing water, as the last step left them.
     pub(super) covered: f64,
+    /// Number of all cells.
     pub(super) cells: f64,
 }
 
-/// The pit that the run-off of a cell ends in; none off the terrain.
+/// Returns the pit in which the run-off of a cell ends; `None` if it leaves the terrain.
 pub(super) fn pit_below(tiles: &[Option<Box<TileWater>>], terrain: &Terrain, mut cell: CellId) -> Option<CellId> {
     loop {
         let (slot, at) = terrain.split(cell);
@@ -70,7 +71,7 @@ pub(super) fn pit_below(tiles: &[Option<Box<TileWater>>], terrain: &Terrain, mut
     }
 }
 
-/// Pours what came to pits, in the order of their places. Answers what leaves.
+/// Pours water into pits, in the order of their places. Returns the amount that leaves.
 pub(super) fn pour_all(
     (tiles, lakes): (&[Option<Box<TileWater>>], &mut Lakes),
     terrain: &Terrain,
@@ -93,7 +94,7 @@ pub(super) fn pour_all(
 }
 
 impl TiledWater {
-    /// On a terrain whose tiles are still to be followed.
+    /// Creates the water of a terrain whose tiles are still to be added ([`Self::follow`]).
     pub fn new(terrain: &Terrain) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         Self {
@@ -108,7 +109,7 @@ impl TiledWater {
         }
     }
 
-    /// On a terrain all of whose tiles are known.
+    /// Creates the water of a terrain with all its tiles.
     pub fn of_all(terrain: &Terrain) -> Self {
         let mut new = Self::new(terrain);
         for (_, tile) in terrain.all() {
@@ -118,18 +119,18 @@ impl TiledWater {
         new
     }
 
-    /// Whether it is the water of this terrain.
+    /// Whether this is the water of `terrain`.
     pub fn is_of(&self, terrain: &Terrain) -> bool {
         self.id == terrain.id
     }
 
-    /// Tiles of ours that a rectangle touches.
+    /// Returns the known tiles that a rectangle touches.
     fn touched(&self, terrain: &Terrain, rect: CellRect) -> Vec<(TileKey, u32)> {
         let keys = terrain.keys_within(rect);
         keys.filter_map(|key| Some((key, *self.keys.get(&key)?))).collect()
     }
 
-    /// Takes up a change of the ground. Answers what left with cells that are gone, mm times cells.
+    /// Updates the water after a change of the ground. Returns the water that left with removed cells, mm times cells.
     pub fn follow(&mut self, terrain: &Terrain, change: &Changed) -> f64 {
         let loose = self.let_loose(terrain, change);
         let mut drained = self.follow_tiles(terrain, change);
@@ -154,7 +155,7 @@ impl TiledWater {
         drained + pour_all((&self.tiles, &mut self.lakes), terrain, came)
     }
 
-    /// Forgets the waters that a change touches. Answers what stood where.
+    /// Removes the lakes that a change touches. Returns the places and amounts of their water.
     fn let_loose(&mut self, terrain: &Terrain, change: &Changed) -> Vec<([i32; 2], f64)> {
         let mut lakes = Vec::new();
         let rect = change.rect.grown(AROUND_LAKES);
@@ -176,7 +177,7 @@ impl TiledWater {
         cells.into_iter().filter_map(place).collect()
     }
 
-    /// Takes and leaves tiles as the terrain has them by now. Answers what left with cells that are gone.
+    /// Adds and removes tiles as the terrain now has them. Returns the water that left with removed cells.
     fn follow_tiles(&mut self, terrain: &Terrain, change: &Changed) -> f64 {
         let mut drained = 0.0;
         for key in terrain.keys_within(change.rect) {
@@ -203,7 +204,7 @@ impl TiledWater {
         drained
     }
 
-    /// Lets the run of a cell be stepped.
+    /// Wakes the run of a cell, so that it is stepped.
     pub(super) fn wake(&mut self, terrain: &Terrain, cell: CellId) {
         let (slot, at) = terrain.split(cell);
         if let Some(tile) = self.tiles.get_mut(slot).and_then(Option::as_mut) {
@@ -211,7 +212,7 @@ impl TiledWater {
         }
     }
 
-    /// Lets all water begin at its next step as the ground is then.
+    /// Discards all water; the next step begins with the ground as it is then.
     pub fn begin_anew(&mut self) {
         self.lakes = Lakes::default();
         for (slot, tile) in self.tiles.iter_mut().enumerate() {
@@ -222,7 +223,7 @@ impl TiledWater {
         self.version.1 += 1;
     }
 
-    /// Water of a cell; `even` is that of level ground, where a tile has none of its own yet.
+    /// Returns the water of a cell. `even` is the water of level ground, used where a tile has no state of its own.
     pub fn cell(&self, terrain: &Terrain, cell: CellId, even: &GroundWater) -> CellWater {
         let (slot, at) = terrain.split(cell);
         let own = self.tiles.get(slot).and_then(Option::as_ref).filter(|tile| tile.begun);
@@ -232,7 +233,8 @@ impl TiledWater {
         CellWater { film_mm, soaked: soaked_mm / PORES_MM, standing_mm: deep.unwrap_or(BARE_MM) }
     }
 
-    /// Water between cells, about a place in cells east and north of the origin; none where there is no ground.
+    /// Returns the water at a place in cells east and north of the origin, interpolated between cells; `None` where
+    /// there is no ground.
     pub fn between(&self, terrain: &Terrain, cells: DVec2, even: &GroundWater) -> Option<CellWater> {
         let about = terrain.about(cells)?;
         Some(about.fold(CellWater::default(), |sum, (cell, share)| {
@@ -245,39 +247,39 @@ impl TiledWater {
         }))
     }
 
-    /// Whether there is any water on tiles that have their own.
+    /// Whether there is any water on tiles that have a state of their own.
     pub fn is_wet(&self) -> bool {
         self.lakes.count > 0 || self.tiles.iter().flatten().any(|tile| tile.is_wet())
     }
 
-    /// Another number whenever water is other than before, but for where the ground has changed.
+    /// Returns a number that changes whenever the water changes, except where the ground changed.
     pub fn version(&self) -> (u64, u64) {
         self.version
     }
 
-    /// Counts water as other than before everywhere.
+    /// Counts all water as changed.
     pub fn count_version(&mut self) {
         self.version.1 += 1;
     }
 
-    /// Whether any water may stand on the cells beside one.
+    /// Whether any water may stand on the neighbours of a cell.
     pub fn has_lakes_near(&self, terrain: &Terrain, cell: CellId) -> bool {
         self.lakes.count > 0 && (self.lakes.has_any(terrain.split(cell).0) || terrain.is_at_border(cell))
     }
 
-    /// Level of the water that a cell lies under, mm.
+    /// Returns the level of the water that covers a cell, mm.
     pub fn level_mm(&self, terrain: &Terrain, cell: CellId) -> Option<f64> {
         let (slot, at) = terrain.split(cell);
         let level = self.lakes.level_mm(self.lakes.lake_of(slot, at)?);
         (level > f64::from(terrain.height(cell)) * 1e3).then_some(level)
     }
 
-    /// Share of the cells under standing water, as of the last step.
+    /// Returns the share of the cells under standing water, as of the last step.
     pub fn puddles(&self) -> f64 {
         if self.cells > 0.0 { self.covered / self.cells } else { 0.0 }
     }
 
-    /// All of it, mm times cells.
+    /// Returns all water, mm times cells.
     #[cfg(test)]
     pub fn total(&self) -> f64 {
         self.tiles.iter().flatten().map(|tile| tile.on_cells()).sum::<f64>() + self.lakes.total()

@@ -1,6 +1,6 @@
-//! DirectDraw surfaces (Microsoft, *Programming Guide for DDS*): a header of 128 bytes, 20 more where its pixel format
-//! is "DX10", then the mip levels from the largest on. Many programs read the shorter header alone, so that is the one
-//! that is written.
+//! DirectDraw surfaces (Microsoft, *Programming Guide for DDS*): a header of 128 bytes, 20 more bytes if its pixel
+//! format is "DX10", then the mip levels from the largest to the smallest. Many programs read only files with the
+//! shorter header, so that is the default for writing.
 
 use super::super::image::NoiseImage;
 use super::bytes::{bytes_of_level, check_levels, check_size, copy, cut_short, foreign, word};
@@ -8,15 +8,15 @@ use crate::error::{Error, Result, Status};
 
 pub const MAGIC: [u8; 4] = *b"DDS ";
 
-// Bytes of the parts.
+// Sizes of the parts, bytes.
 const HEADER: u32 = 124;
 const PIXEL_FORMAT: u32 = 32;
 const BEFORE_DATA: usize = 128;
-/// Bytes of the part that pixel formats called [`DX10`] have besides.
+/// Size of the extended header that follows the pixel format [`DX10`], bytes.
 const MORE: usize = 20;
 const DX10: [u8; 4] = *b"DX10";
 
-// Places of the fields.
+// Offsets of the fields, bytes.
 const AT_SIZE: usize = 4;
 const AT_HEIGHT: usize = 12;
 const AT_WIDTH: usize = 16;
@@ -33,22 +33,22 @@ const AT_DIMENSION: usize = 132;
 const AT_MISC: usize = 136;
 const AT_ARRAY: usize = 140;
 
-// dwFlags: caps, height, width, pitch, pixel format; mip levels; depth.
+// Bits of dwFlags: caps, height, width, pitch and pixel format; mip levels; depth.
 const FLAGS: u32 = 0x1 | 0x2 | 0x4 | 0x8 | 0x1000;
 const FLAG_LEVELS: u32 = 0x2_0000;
 const FLAG_DEPTH: u32 = 0x80_0000;
-// dwCaps: texture; more than one surface; mip levels.
+// Bits of dwCaps: texture; more than one surface; mip levels.
 const CAPS_TEXTURE: u32 = 0x1000;
 const CAPS_COMPLEX: u32 = 0x8;
 const CAPS_LEVELS: u32 = 0x40_0000;
-// dwCaps2.
+// Bits of dwCaps2.
 const CUBE_MAP: u32 = 0x200;
 const VOLUME: u32 = 0x20_0000;
-// Flags of pixel formats.
+// Flags of the pixel format.
 const ALPHA: u32 = 0x2;
 const FOUR_CC: u32 = 0x4;
 const LUMINANCE: u32 = 0x2_0000;
-// DXGI_FORMAT and D3D10_RESOURCE_DIMENSION.
+// Values of DXGI_FORMAT and D3D10_RESOURCE_DIMENSION.
 const R8_UNORM: u32 = 61;
 const A8_UNORM: u32 = 65;
 const NO_DIMENSION: u32 = 0;
@@ -93,8 +93,8 @@ pub fn read(bytes: &[u8]) -> Result<NoiseImage> {
     Ok(NoiseImage::of_levels(size, levels))
 }
 
-/// The dimension that the longer header gives, of which NVIDIA's exporter writes none; nothing where there is no longer
-/// header. Refuses texels other than one byte.
+/// Returns the dimension in the extended header; the inner `None` if it holds none (NVIDIA's exporter writes none), the
+/// outer `None` if there is no extended header. Checks that a texel is one byte.
 fn longer_header(bytes: &[u8]) -> Result<Option<Option<u32>>> {
     let flags = word(bytes, AT_PIXEL_FLAGS)?;
     if flags & FOUR_CC == 0 {
@@ -135,12 +135,12 @@ fn longer_header(bytes: &[u8]) -> Result<Option<Option<u32>>> {
     }
 }
 
-/// How a file says that its texels are one byte.
+/// Header and format by which a file says that its texels are bytes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Texels {
-    /// By the header of old, as luminance of 8 bits (L8).
+    /// Original header, as 8-bit luminance (L8).
     Luminance,
-    /// By the longer header, as R8_UNORM.
+    /// Extended header, as R8_UNORM.
     Red,
 }
 
@@ -155,7 +155,7 @@ pub fn write(image: &NoiseImage, texels: Texels) -> Vec<u8> {
     put(8, FLAGS | if has_levels { FLAG_LEVELS } else { 0 } | if is_volume { FLAG_DEPTH } else { 0 });
     put(AT_HEIGHT, height);
     put(AT_WIDTH, width);
-    // dwPitchOrLinearSize: bytes of a row.
+    // dwPitchOrLinearSize: size of a row, bytes.
     put(20, width);
     put(AT_DEPTH, if is_volume { depth } else { 0 });
     put(AT_LEVELS, levels);

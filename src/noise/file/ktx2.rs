@@ -1,5 +1,5 @@
 //! Khronos textures (Khronos 2020, *KTX File Format Specification*, version 2.0): header, index of the mip levels, data
-//! format descriptor, then the levels from the smallest on.
+//! format descriptor, then the levels from the smallest to the largest.
 
 use super::super::image::NoiseImage;
 use super::bytes::{bytes_of_level, check_levels, check_size, copy, cut_short, foreign, long, word};
@@ -7,7 +7,7 @@ use crate::error::{Error, Result, Status};
 
 pub const MAGIC: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 
-// Places of the fields.
+// Offsets of the fields, bytes.
 const AT_FORMAT: usize = 12;
 const AT_WIDTH: usize = 20;
 const AT_HEIGHT: usize = 24;
@@ -17,17 +17,17 @@ const AT_FACES: usize = 36;
 const AT_LEVELS: usize = 40;
 const AT_SCHEME: usize = 44;
 const AT_INDEX: usize = 80;
-/// Bytes of a level in the index: place, length, length without supercompression.
+/// Size of a level's entry in the index, bytes: offset, length, length without supercompression.
 const LEVEL: usize = 24;
 
 /// VK_FORMAT_R8_UNORM.
 const R8_UNORM: u32 = 9;
 
-/// Data format descriptor of it (Khronos, *Data Format Specification* 1.3, section 5): its length; a basic block of
-/// version 2 with 40 bytes; colours by red, green and blue, primaries of BT.709, linear; one byte a texel; one sample
-/// of 8 bits, red, from 0 to 255.
+/// Data format descriptor of R8_UNORM (Khronos, *Data Format Specification* 1.3, section 5): its length; a basic block
+/// of version 2 with 40 bytes; colour model RGB, primaries of BT.709, linear; one byte per texel; one sample of 8 bits,
+/// red, from 0 to 255.
 const DESCRIPTOR: [u32; 11] = [44, 0, 2 | 40 << 16, 1 | 1 << 8 | 1 << 16, 0, 1, 0, 7 << 16, 0, 0, 255];
-/// The key that names the writer with its value: their length, they themselves, and zeros up to a multiple of 4 bytes.
+/// Key and value that name the writer: their length, the two themselves, and zeros up to a multiple of 4 bytes.
 const WRITER: &[u8] = b"\x11\0\0\0KTXwriter\0Welkin\0\0\0\0";
 
 pub fn read(bytes: &[u8]) -> Result<NoiseImage> {
@@ -45,7 +45,7 @@ pub fn read(bytes: &[u8]) -> Result<NoiseImage> {
             return Err(foreign(field, name, got));
         }
     }
-    // A plane has no depth.
+    // A two-dimensional texture has depth 0.
     let depth = word(bytes, AT_DEPTH)?.max(1);
     let size =
         [("pixelWidth", word(bytes, AT_WIDTH)?), ("pixelHeight", word(bytes, AT_HEIGHT)?), ("pixelDepth", depth)];
@@ -76,14 +76,14 @@ pub fn write(image: &NoiseImage) -> Vec<u8> {
 
     let mut file = MAGIC.to_vec();
     let put = |file: &mut Vec<u8>, values: &[u32]| values.iter().for_each(|v| file.extend_from_slice(&v.to_le_bytes()));
-    // Format, bytes of its type; size; no layers, one face; levels; no supercompression.
+    // Format, size of its type; width, height, depth; no layers, one face; levels; no supercompression.
     let depth = if depth > 1 { depth } else { 0 };
     put(&mut file, &[R8_UNORM, 1, width, height, depth, 0, 1, count as u32, 0]);
     let [at, length] = [descriptor_at, 4 * DESCRIPTOR.len()].map(|n| n as u32);
-    // Places and lengths of the descriptor, the keys and what supercompression would share.
+    // Offsets and lengths of the descriptor, of the keys, and of the data that supercompression would share.
     put(&mut file, &[at, length, writer_at as u32, WRITER.len() as u32, 0, 0, 0, 0]);
 
-    // Levels stand at multiples of 4 bytes, the smallest first.
+    // Levels begin at multiples of 4 bytes, the smallest first.
     let mut places = vec![0; count];
     let mut end = writer_at + WRITER.len();
     for (place, bytes) in places.iter_mut().zip(image.levels()).rev() {

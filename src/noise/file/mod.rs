@@ -1,4 +1,4 @@
-//! Noise in files: DDS and KTX2 textures of one channel of 8 bits, planes and volumes, with mip levels.
+//! Noise files: DDS and KTX2 textures with one channel of 8 bits, in two or three dimensions, with mip levels.
 
 mod bytes;
 mod dds;
@@ -12,14 +12,14 @@ use super::image::{NoiseImage, empty};
 use super::settings::MOST_TEXELS;
 use crate::error::{Error, Result, Status, shown};
 
-/// Most bytes of a file: a texture of the most texels with its mip levels, and room for what else formats hold.
+/// Largest size of a file, bytes: the largest texture with its mip levels, and room for the format's headers.
 const MOST_BYTES: u64 = 2 * MOST_TEXELS;
 
 impl NoiseImage {
-    /// Reads a DDS or KTX2 file, as [`NoiseImage::from_bytes`].
+    /// Reads a DDS or KTX2 file; [`NoiseImage::from_bytes`] says which.
     ///
     /// # Errors
-    /// [`Status::Io`] where the file cannot be read; those of [`NoiseImage::from_bytes`].
+    /// [`Status::Io`] if the file cannot be read; otherwise the errors of [`NoiseImage::from_bytes`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let name = path.display().to_string();
@@ -33,14 +33,14 @@ impl NoiseImage {
         Self::from_bytes(&bytes).map_err(|e| e.found_in(&name))
     }
 
-    /// Reads a texture of one channel of 8 bits, a plane or a volume: DDS with the pixel format A8, L8, R8_UNORM or
-    /// A8_UNORM, or KTX2 with VK_FORMAT_R8_UNORM and without supercompression. Mip levels that it has are kept; none
-    /// are made.
+    /// Reads a texture with one channel of 8 bits, in two or three dimensions: DDS with the pixel format A8, L8,
+    /// R8_UNORM or A8_UNORM, or KTX2 with VK_FORMAT_R8_UNORM and without supercompression. Keeps the file's mip levels
+    /// and computes none.
     ///
     /// # Errors
-    /// [`Status::Unsupported`] for other files, formats, cube maps, arrays and textures of more than 2^27 texels;
-    /// [`Status::Parse`] for bytes cut short or that contradict themselves; [`Status::OutOfMemory`]. The message names
-    /// the field of the file.
+    /// [`Status::Unsupported`] for other files and formats, cube maps, arrays, and textures of more than 2^27 texels;
+    /// [`Status::Parse`] for bytes that are cut short or contradict themselves; [`Status::OutOfMemory`]. The message
+    /// names the field of the file.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         check_length(bytes.len() as u64)?;
         if bytes.starts_with(&dds::MAGIC) {
@@ -52,19 +52,18 @@ impl NoiseImage {
         }
     }
 
-    /// The image as a DDS file with its mip levels, as luminance of 8 bits (L8): the form of it that most programs
-    /// read.
+    /// Writes the image as a DDS file with its mip levels, as 8-bit luminance (L8), the form that most programs read.
     pub fn to_dds(&self) -> Vec<u8> {
         dds::write(self, dds::Texels::Luminance)
     }
 
-    /// The image as a DDS file with its mip levels and the longer header, called DX10, with the format R8_UNORM: for
-    /// programs that want the format by its name. Fewer read it.
+    /// Writes the image as a DDS file with its mip levels and the extended header (DX10), in the format R8_UNORM: for
+    /// programs that need the format by name. Fewer programs read it.
     pub fn to_dds_dx10(&self) -> Vec<u8> {
         dds::write(self, dds::Texels::Red)
     }
 
-    /// The image as a KTX2 file with VK_FORMAT_R8_UNORM and its mip levels.
+    /// Writes the image as a KTX2 file with VK_FORMAT_R8_UNORM and its mip levels.
     pub fn to_ktx2(&self) -> Vec<u8> {
         ktx2::write(self)
     }

@@ -1,4 +1,4 @@
-//! Set of empty tables, as a kit makes it for a planet.
+//! Creation of the empty tables for a planet.
 
 use std::sync::{
     OnceLock,
@@ -18,10 +18,10 @@ use crate::sky::settings::MOST_WAVELENGTHS;
 use crate::sky::uniforms::AirUniform;
 
 impl Kit {
-    /// Makes the tables of a planet, empty.
+    /// Creates the tables of a planet, empty.
     ///
     /// # Errors
-    /// For a planet whose wavelengths are no set.
+    /// Fails for a planet whose wavelengths are no valid set.
     pub(super) fn empty_set(&self, planet: &Planet, detail: Detail) -> Result<TableSet> {
         static SETS: AtomicU64 = AtomicU64::new(0);
         let device = &self.device;
@@ -30,7 +30,7 @@ impl Kit {
         let results: Vec<_> = Name::RESULTS.iter().map(table).collect();
         let air = uniform_buffer(device, "sky air", bytes_of(&AirUniform::of(planet)));
         let mut each = AirUniform::of_parts(&parts(planet, self.settings.wavelengths)?);
-        // A build has one triple's sources before it at a time.
+        // A build reads the sources of one triple at a time.
         let alone = |a: &AirUniform| AirUniform { layer: 0.0, layers: 1.0, ..*a };
         let buffer = |a| uniform_buffer(device, "sky air of a triple", bytes_of(&alone(a)));
         let airs = each.iter().map(buffer).collect();

@@ -1,4 +1,4 @@
-//! The first texel of all tables, which an OpenGL driver must draw before the rest is asked of it.
+//! Test that an OpenGL driver can draw one texel of the tables before the rest is submitted.
 
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -7,17 +7,18 @@ use super::{Build, Kit, Name, table_named};
 use crate::error::{Error, Result, Status};
 use crate::gpu::readback;
 
-/// A GPU that has not drawn one texel after so long never will; before it in the queue lies at most what the host drew.
+/// Time after which a GPU that has not drawn one texel counts as hung. At most the host's own work is before it in the
+/// queue.
 const LIMIT: Duration = Duration::from_secs(20);
 
 impl Kit {
-    /// On OpenGL, the first time: draws one texel of the first strip, which the strip then draws over, and waits for
-    /// it. NVIDIA's 580.159 never finishes it, and whoever waits for a frame after it would wait for ever. Inside a
-    /// host's conditional render nothing is drawn: tables that are then taken for built would stay empty.
+    /// On OpenGL, the first time, draws one texel of the first strip and waits for it; the strip draws over it later.
+    /// NVIDIA's driver 580.159 never finishes this texel, and a wait for any frame after it would never end. Inside a
+    /// host's conditional render nothing is drawn; the tables would then count as built but be empty.
     ///
     /// # Errors
-    /// [`Status::DeviceLost`] if the GPU does not finish; [`Status::WrongOrder`] if nothing was drawn, and the next
-    /// call tries again.
+    /// [`Status::DeviceLost`] if the GPU does not finish. [`Status::WrongOrder`] if nothing was drawn; the next call
+    /// tries again.
     pub(super) fn begin(&self, build: &Build) -> Result<()> {
         let caps = self.device.caps();
         if caps.backend != wgpu::Backend::Gl || self.begun.load(Ordering::Acquire) {
@@ -40,7 +41,7 @@ impl Kit {
             );
             Error::new(Status::DeviceLost, text)
         })?;
-        // A sum of weights, near 1.
+        // The first texel is a sum of weights near 1.
         let Some(norms) = table_named(&build.set, &build.scratch, Name::Norms) else { return Ok(()) };
         let texels = readback::bytes(&self.device, &norms.texture, 0)?;
         let first = half::f16::from_le_bytes([texels[0], texels[1]]).to_f32();

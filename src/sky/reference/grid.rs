@@ -1,7 +1,7 @@
-//! Where the source of multiple scattering is tabulated: altitudes, sun angles and directions.
+//! Grid on which the source of multiple scattering is tabulated: altitudes, sun angles and directions.
 //!
-//! Altitudes crowd where the scatterers are, sun angles crowd about the terminator. Both are uniform in a coordinate
-//! that has a closed form, so that look-ups need no search.
+//! Altitudes are dense where the scatterers are, and sun angles are dense around the terminator. Both are uniform in a
+//! coordinate that has a closed form, so that look-ups need no search.
 
 use std::f64::consts::PI;
 
@@ -13,15 +13,16 @@ use super::ray::horizon_mu;
 #[derive(Clone, Debug)]
 pub struct Altitudes {
     top_m: f64,
-    /// Heights and shares of the crowding terms 1 - exp(-h / height), the shares over their value at the top.
+    /// Heights and shares of the terms 1 - exp(-h / height) that make the nodes dense; the shares are divided by their
+    /// value at the top.
     terms: Vec<(f64, f64)>,
     linear_share: f64,
-    /// The nodes, from 0 to the top.
+    /// Nodes from 0 to the top, m.
     pub nodes_m: Vec<f64>,
 }
 
 impl Altitudes {
-    /// `n` nodes (at least 4).
+    /// Creates `n` nodes (at least 4).
     pub fn new(medium: &Medium, n: usize) -> Self {
         let present: Vec<f64> = (0..2)
             .filter(|i| medium.scattering[*i].iter().any(|b| *b > 0.0) && medium.scale_height_m[*i] > 0.0)
@@ -55,15 +56,15 @@ impl Altitudes {
 pub struct SunAngles {
     center: f64,
     width: f64,
-    /// Share of the crowding, and the values of its arc tangent at 0 and pi.
+    /// Share of the dense part, and the values of its arc tangent at 0 and pi.
     crowd: f64,
     ends: (f64, f64),
-    /// The nodes, from 0 to pi, radians.
+    /// Nodes from 0 to pi, radians.
     pub nodes: Vec<f64>,
 }
 
 impl SunAngles {
-    /// `n` nodes (at least 4). The crowd stands about the sun angles at which the air's height falls into shadow.
+    /// Creates `n` nodes (at least 4), dense around the sun angles at which the shadow's edge passes through the air.
     pub fn new(medium: &Medium, n: usize) -> Self {
         let dip = (-horizon_mu(medium, medium.top_m)).clamp(0.0, 1.0).asin();
         let (center, width) = (0.5 * PI + 0.3 * dip, (0.7 * dip).max(0.06));
@@ -85,7 +86,7 @@ impl SunAngles {
     }
 }
 
-/// Bisection for the place in [lo, hi] where the rising function `f` takes `value`.
+/// Bisection for the position in [lo, hi] at which the increasing function `f` has the value `value`.
 fn invert(value: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (lo + hi);
@@ -98,8 +99,9 @@ fn invert(value: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (lo + hi)
 }
 
-/// Directions over which radiance is integrated at one altitude: cosines of the zenith angle with weights, Gauss in
-/// sqrt of the distance to the horizon on both of its sides, where radiance has its steep gradient and its step.
+/// Directions over which radiance is integrated at one altitude: cosines of the zenith angle, with weights. The rule is
+/// Gauss's in the square root of the distance to the horizon, on both sides of it, where radiance has a steep gradient
+/// and a step.
 pub fn zenith_rule(medium: &Medium, altitude_m: f64, rule_below: &Gauss, rule_above: &Gauss) -> Vec<(f64, f64)> {
     let horizon = horizon_mu(medium, altitude_m);
     let side = |rule: &Gauss, far: f64| -> Vec<(f64, f64)> {
@@ -115,7 +117,7 @@ pub fn zenith_rule(medium: &Medium, altitude_m: f64, rule_below: &Gauss, rule_ab
     nodes
 }
 
-/// Midpoints of `n` equal parts of half a turn. The sky is the same on both sides of the sun's vertical plane.
+/// Midpoints of `n` equal parts of [0, pi]. The sky is symmetric about the sun's vertical plane.
 pub fn azimuths(n: usize) -> Vec<f64> {
     (0..n).map(|i| PI * (i as f64 + 0.5) / n as f64).collect()
 }

@@ -1,10 +1,10 @@
-//! Sample points along a ray, placed where the air is, with the transmittance back to the ray's start.
+//! Sample points along a ray, dense where the air is, with the transmittance back to the start of the ray.
 
 use super::medium::{MEDIA, Medium};
 use super::quadrature::Gauss;
 use super::ray::Ray;
 
-/// A point of a ray with what every integral along it needs.
+/// Sample point of a ray with the values that every integral along it needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sample {
     /// Distance from the ray's origin, m.
@@ -13,30 +13,32 @@ pub struct Sample {
     pub altitude_m: f64,
     /// Cosine of the ray's zenith angle here.
     pub mu: f64,
-    /// Per wavelength: path length x gas scattering x transmittance back to the start, 1.
+    /// Path length x gas scattering x transmittance back to the start, per wavelength; dimensionless.
     pub gas: [f64; 3],
-    /// Per wavelength: path length x haze scattering x transmittance back to the start, 1.
+    /// Path length x haze scattering x transmittance back to the start, per wavelength; dimensionless.
     pub haze: [f64; 3],
 }
 
-/// How finely a ray is cut.
+/// Settings that divide a ray into panels.
 #[derive(Clone, Copy)]
 pub struct Cutting<'a> {
-    /// Altitudes at which panels end, ascending, the first 0 and the last the top.
+    /// Altitudes at which panels end, ascending; the first is 0, the last the top.
     pub altitudes_m: &'a [f64],
-    /// Rule inside a panel.
+    /// Quadrature rule inside a panel.
     pub rule: &'a Gauss,
-    /// Panels are halved until their optical depth is below this.
+    /// Optical depth below which panels are not halved any more.
     pub panel_depth: f64,
 }
 
-/// Optical depth beyond which what lies farther is not seen (e^-46 = 1e-20).
+/// Optical depth beyond which nothing can be seen (e^-46 = 1e-20).
 const BLACK: f64 = 46.0;
-/// Halvings of a panel: 2^24 parts of the longest panel are below a metre on any planet that is accepted.
+/// Largest number of halvings of a panel. On any accepted planet, 2^24 parts of the longest panel are shorter than a
+/// metre.
 const MAX_HALVINGS: u32 = 24;
 
-/// Samples of `ray` between two distances into `samples` (cleared first), and the columns of the whole piece. `cuts`
-/// are further distances at which panels end (edges of the shadow). Samples stop where nothing can be seen any more.
+/// Fills `samples` (cleared first) with the samples of `ray` between two distances, and returns the columns of that
+/// interval. `cuts` are further distances at which panels end (the edges of the shadow). Samples stop where nothing can
+/// be seen any more.
 pub fn march(
     ray: &Ray,
     medium: &Medium,
@@ -60,7 +62,7 @@ pub fn march(
     marks.retain(|s| (span.0..=span.1).contains(s));
     marks.sort_by(f64::total_cmp);
     for pair in marks.windows(2) {
-        // Rounding leaves slivers where two marks mean the same point.
+        // Where two marks mean the same point, rounding leaves a tiny interval, which is skipped.
         if pair[1] - pair[0] > 1e-12 * (pair[1].abs() + 1.0) {
             let side = if 0.5 * (pair[0] + pair[1]) < to_perigee { -1.0 } else { 1.0 };
             walk.panel(side, ray.u_at(pair[0]).0, ray.u_at(pair[1]).0, 0);
@@ -78,7 +80,8 @@ struct RayWalk<'a> {
 }
 
 impl RayWalk<'_> {
-    /// One panel from u = `a` to u = `b` (descending before the perigee), halved while it is optically thick.
+    /// Integrates one panel from u = `a` to u = `b` (descending before the perigee), and halves it while it is
+    /// optically thick.
     fn panel(&mut self, side: f64, a: f64, b: f64, halvings: u32) {
         let rule = self.cutting.rule;
         let n = rule.len();
@@ -88,10 +91,10 @@ impl RayWalk<'_> {
         let mut total = [0.0; MEDIA];
         for (i, point) in points.iter_mut().enumerate() {
             let u = middle + half * rule.nodes[i];
-            // Never above the top by rounding, where the density ends at once.
+            // Rounding must not put the point above the top, where the density drops to 0.
             let altitude = (self.ray.perigee_altitude_m() + u * u).min(self.medium.top_m);
             let density = self.medium.density(altitude);
-            // du < 0 before the perigee, where distance grows as u falls.
+            // Before the perigee du is negative, because u falls as the distance grows.
             let ds = half * side * self.ray.stretch(u);
             *point = [density[0] * ds, density[1] * ds, density[2] * ds, ds, u];
             (0..MEDIA).for_each(|k| total[k] += rule.weights[i] * point[k]);
@@ -109,7 +112,7 @@ impl RayWalk<'_> {
         (0..MEDIA).for_each(|k| self.columns[k] += total[k]);
     }
 
-    /// Samples of one panel.
+    /// Appends the samples of one panel.
     fn emit(&mut self, side: f64, points: &[[f64; MEDIA + 2]]) {
         let rule = self.cutting.rule;
         let n = points.len();
@@ -143,7 +146,7 @@ mod tests {
     use super::*;
     use crate::planet::Planet;
 
-    /// For gas alone the in-scattered share is 1 - T exactly.
+    /// For gas alone the in-scattered share is exactly 1 - T.
     #[test]
     fn weights_of_a_gas_sum_to_what_is_not_transmitted() {
         for thickness in [1e-3, 1.0, 30.0, 1e4] {

@@ -7,12 +7,12 @@ use crate::planet::Planet;
 /// Number of media: gas, haze, ozone, always in this order.
 pub const MEDIA: usize = 3;
 
-/// The air of a planet as the integrals see it.
+/// Optical properties of a planet's air, as the integrals use them.
 #[derive(Clone, Copy, Debug)]
 pub struct Medium {
     /// Radius of the ground, m.
     pub bottom_m: f64,
-    /// Altitude where the air ends, m.
+    /// Altitude of the top of the air, m.
     pub top_m: f64,
     /// Extinction at density 1 per medium and wavelength, 1/m.
     pub extinction: [[f64; 3]; MEDIA],
@@ -27,7 +27,7 @@ pub struct Medium {
 }
 
 impl Medium {
-    /// The air of `planet`, which must have been checked.
+    /// Air of `planet`, which must have been checked.
     pub fn of(planet: &Planet) -> Self {
         Self {
             bottom_m: planet.bottom_radius_m,
@@ -44,8 +44,9 @@ impl Medium {
         }
     }
 
-    /// Densities relative to the ground's (gas, haze) or the centre's (ozone). Below altitude 0 the density stays at 1
-    /// (real air 100 m down is 1 % denser, but a scale height of centimetres would overflow); above the top it is 0.
+    /// Densities relative to those at the ground (gas, haze) or at the centre of the layer (ozone). Below altitude 0
+    /// the density stays at 1: real air 100 m down is 1 % denser, but a scale height of centimetres would overflow.
+    /// Above the top it is 0.
     pub fn density(&self, altitude_m: f64) -> [f64; MEDIA] {
         if altitude_m > self.top_m {
             return [0.0; MEDIA];
@@ -54,25 +55,25 @@ impl Medium {
         [exponential(altitude_m, gas), exponential(altitude_m, haze), self.ozone(altitude_m)]
     }
 
-    /// The tent of the ozone layer.
+    /// Density of the ozone layer, a tent function of altitude.
     pub fn ozone(&self, altitude_m: f64) -> f64 {
         let (center, half_width) = self.ozone_m;
         if half_width <= 0.0 { 0.0 } else { (1.0 - (altitude_m - center).abs() / half_width).max(0.0) }
     }
 
-    /// Optical depth per wavelength of columns given in metres at density 1.
+    /// Optical depth per wavelength of columns, which are in metres at density 1.
     pub fn optical_depth(&self, columns_m: &[f64; MEDIA]) -> [f64; 3] {
         let [gas, haze, ozone] = &self.extinction;
         std::array::from_fn(|c| gas[c] * columns_m[0] + haze[c] * columns_m[1] + ozone[c] * columns_m[2])
     }
 
-    /// Transmittance per wavelength of columns given in metres at density 1.
+    /// Transmittance per wavelength of columns, which are in metres at density 1.
     pub fn transmittance(&self, columns_m: &[f64; MEDIA]) -> [f64; 3] {
         self.optical_depth(columns_m).map(|tau| (-tau).exp())
     }
 
-    /// Altitudes between which the densities are smooth on the scale of one integration panel, ascending, from 0 to
-    /// the top. Layers that hold nothing leave no mark.
+    /// Altitudes that divide the air into intervals in which densities are smooth enough for one integration panel;
+    /// ascending, from 0 to the top. Media without extinction add none.
     pub fn panel_altitudes(&self) -> Vec<f64> {
         let mut marks = vec![0.0, self.top_m];
         for (h, beta) in self.scale_height_m.iter().zip(&self.extinction) {
@@ -86,7 +87,7 @@ impl Medium {
         }
         marks.retain(|m| (0.0..=self.top_m).contains(m));
         marks.sort_by(f64::total_cmp);
-        // Two marks closer than a tenth of their height do as one; the ends stay.
+        // Of marks closer than a tenth of their height one is kept; the ends always stay.
         let mut kept: Vec<f64> = vec![0.0];
         for m in marks {
             if m > kept[kept.len() - 1] * 1.1 + 1e-9 && m < self.top_m * 0.95 {
@@ -98,13 +99,13 @@ impl Medium {
     }
 }
 
-/// exp(-h / H), 1 below altitude 0; a scale height of 0 means nothing above the ground.
+/// exp(-h / H), 1 below altitude 0; a scale height of 0 means no medium above the ground.
 fn exponential(altitude_m: f64, scale_height_m: f64) -> f64 {
     if altitude_m <= 0.0 { 1.0 } else { (-altitude_m / scale_height_m).exp() }
 }
 
-/// Phase function of gas, 1/sr: 3/(16 pi) (1 + nu^2) (Rayleigh). `nu` is the cosine between the directions to the
-/// sun and of the view, both pointing away from the point.
+/// Phase function of gas, 1/sr: 3/(16 pi) (1 + nu^2) (Rayleigh). `nu` is the cosine of the angle between the directions
+/// to the sun and of the view, both pointing away from the point.
 pub fn rayleigh_phase(nu: f64) -> f64 {
     3.0 / (16.0 * PI) * (1.0 + nu * nu)
 }
@@ -112,7 +113,7 @@ pub fn rayleigh_phase(nu: f64) -> f64 {
 /// Phase function of haze, 1/sr (Cornette and Shanks 1992, eq. 8):
 /// 3/(8 pi) (1 - g^2)/(2 + g^2) (1 + nu^2) / (1 + g^2 - 2 g nu)^(3/2). `nu` as in [`rayleigh_phase`], `|g| < 1`.
 pub fn mie_phase(nu: f64, g: f64) -> f64 {
-    // Both signs of g are turned into a forward peak, where (1 - g)^2 + 2 g (1 - nu) does not cancel.
+    // A negative g is mirrored into a forward peak, where (1 - g)^2 + 2 g (1 - nu) does not suffer from cancellation.
     let (nu, g) = if g < 0.0 { (-nu, -g) } else { (nu, g) };
     let d = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - nu).max(0.0);
     3.0 / (8.0 * PI) * (1.0 - g) * (1.0 + g) / (2.0 + g * g) * (1.0 + nu * nu) / (d * d.sqrt())
@@ -142,7 +143,8 @@ mod tests {
 
     #[test]
     fn haze_phase_has_the_known_peaks_and_sides() {
-        // Times 4 pi: peak, value at 90 degrees and half-width at half maximum, computed apart from the formula.
+        // Multiplied by 4 pi: the peak, the value at 90 degrees, and the half-width at half maximum, computed
+        // independently of the formula.
         let table = [(0.75, 32.8, 0.131, 12.4), (0.85, 90.6, 0.0676, 7.1), (0.95, 806.0, 0.0192, 2.25)];
         for (g, peak, side, half_width_deg) in table {
             let p = |deg: f64| 4.0 * PI * mie_phase(deg.to_radians().cos(), g);

@@ -1,17 +1,17 @@
-//! The sky in f64 on the CPU: the truth that tests, queries and the lab call.
+//! The sky in f64 on the CPU: the reference solution for tests, queries and the lab.
 //!
-//! [`Reference::solve`] finds the light that the air holds under every height of the sun; after that
-//! [`Reference::radiance`], [`Reference::aerial`] and [`Reference::irradiance`] answer for any place and direction,
-//! from below the ground's level to space. Order 1 (light scattered once) is integrated along the asked ray with
-//! quadrature towards the sun at every point and cut at the edges of the planet's shadow; the orders above come from
-//! the source function on a grid ([`source`], `solve`), whose resolution can be doubled to see what it leaves.
+//! [`Reference::solve`] computes the light in the air for every height of the sun. After that [`Reference::radiance`],
+//! [`Reference::aerial`] and [`Reference::irradiance`] answer for any position and direction, from below the ground's
+//! level to space. Order 1 (light scattered once) is integrated along the given ray, with a quadrature towards the sun
+//! at every point; the ray is cut at the edges of the planet's shadow. Higher orders come from the source function on a
+//! grid ([`source`], `solve`). Doubling the grid's resolution shows its error.
 //!
-//! Conventions: altitude 0 is the ground's sphere; below it the density stays at its ground value and the ground lies
-//! at the point's own level. Angles in radians: zenith angles from the vertical at the observer, azimuth of the view
-//! relative to the sun's. Radiances in the unit of [`Planet::solar_irradiance`] per steradian. Sun rays are parallel;
-//! refraction is left out here (see `sky::sun_disc` for the disc's displacement). Nothing here touches a device, and
-//! threads are spawned only if [`Options::threads`] is above 1; all answers are functions of the arguments alone,
-//! equal for any number of threads.
+//! Conventions: altitude 0 is the ground's sphere. Below it the density stays at its ground value, and the ground lies
+//! at the point's own level. Angles are in radians: zenith angles from the vertical at the observer, and the azimuth of
+//! the view relative to the sun's. Radiances are in the unit of [`Planet::solar_irradiance`] per steradian. Sun rays
+//! are parallel. Refraction is left out (see `src/sky/disc.rs` for the disc's displacement). No device is used. Threads
+//! are spawned only if [`Options::threads`] is above 1. All results depend only on the arguments and are equal for any
+//! number of threads.
 
 pub mod grid;
 pub mod march;
@@ -37,32 +37,32 @@ use self::sun::{SunTable, disc_strips, scattered_once, sun_transmittance, with_p
 use crate::error::{Error, Result, check_range};
 use crate::planet::Planet;
 
-/// How many times light may have been scattered.
+/// Number of times that light may have been scattered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Orders {
     /// Exactly this many, at least 1; the ground counts as a scatterer.
     Exactly(usize),
-    /// Until what is left, judged as a geometric series from the last two orders, is below `tolerance` of the light at
-    /// every place that matters, `(0, 0.1]`, and at most `limit` orders; what is left is then added as that series.
+    /// Orders until the tail is below `tolerance` of the light at every relevant grid point, `(0, 0.1]`, but at most
+    /// `limit` orders. The tail is estimated from the last two orders as a geometric series, and is then added.
     Converged {
-        /// Share of the light that the added tail may have.
+        /// Largest share of the light that the added tail may have.
         tolerance: f64,
-        /// Orders after which the tail is added however large.
+        /// Number of orders after which the tail is added however large it is.
         limit: usize,
     },
 }
 
-/// How the truth is computed.
+/// Settings of a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Orders of scattering. Default: converged with a tail of 2 %, at most 60 (the tail, a geometric series, is itself
-    /// good to a hundredth, so the light is good to 0.05 %).
+    /// Orders of scattering. By default they are converged with a tail of 2 %, at most 60 orders. The tail is itself
+    /// within a hundredth of its value, so the light is within 0.05 %.
     pub orders: Orders,
-    /// Grids. Default: [`Resolution::QUICK`].
+    /// Sizes of the grids. Default: [`Resolution::QUICK`].
     pub resolution: Resolution,
-    /// Strips into which the sun's disc is cut, `[1, 64]`; 1 is a point. Default 1.
+    /// Number of strips into which the sun's disc is cut, `[1, 64]`; 1 is a point. Default 1.
     pub disc_strips: usize,
-    /// Threads to spawn while solving, `[1, 1024]`; 1 spawns none. Default 1.
+    /// Number of threads to spawn while solving, `[1, 1024]`; 1 spawns none. Default 1.
     pub threads: usize,
 }
 
@@ -77,7 +77,7 @@ impl Default for Options {
     }
 }
 
-/// Where the observer is, where the sun stands and where the view goes.
+/// Position of the observer, of the sun, and the direction of the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Altitude of the observer above the ground's sphere, m, at least -1e5.
@@ -91,7 +91,7 @@ pub struct View {
 }
 
 impl View {
-    /// A view with its angles in degrees.
+    /// Creates a view from angles in degrees.
     pub fn degrees(altitude_m: f64, sun_zenith: f64, view_zenith: f64, azimuth: f64) -> Self {
         Self {
             altitude_m,
@@ -116,7 +116,7 @@ fn check_altitude(altitude_m: f64) -> Result<()> {
 /// Light along a ray, per wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Along {
-    /// Radiance scattered into the ray by the air. The ground's own reflection and the sun's disc are not in it.
+    /// Radiance scattered into the ray by the air, without the ground's reflection and the sun's disc.
     pub radiance: [f64; 3],
     /// Transmittance to the end of the ray; 0 for a sky ray that meets the ground.
     pub transmittance: [f64; 3],
@@ -124,12 +124,12 @@ pub struct Along {
     pub ground: bool,
 }
 
-/// Light on a horizontal surface that faces up, per wavelength.
+/// Light on a horizontal surface facing up, per wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Irradiance {
-    /// From the sun itself.
+    /// Irradiance from the sun itself.
     pub direct: [f64; 3],
-    /// From the upper half of the sky without the sun.
+    /// Irradiance from the upper hemisphere without the sun.
     pub sky: [f64; 3],
 }
 
@@ -147,7 +147,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Solves for `planet`.
+    /// Solves the sky of `planet`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a planet or option out of range.
@@ -211,22 +211,22 @@ impl Reference {
         self.source = Some(solver.source(&sum));
     }
 
-    /// Orders that were computed one by one.
+    /// Number of orders that were computed one by one.
     pub fn orders(&self) -> usize {
         self.orders
     }
 
-    /// Largest share of the light at any place of the grid that the orders left out have (as a geometric series).
+    /// Largest share of the light at any grid point that the tail has, estimated as a geometric series.
     pub fn tail(&self) -> f64 {
         self.tail
     }
 
-    /// The planet.
+    /// Planet of the solution.
     pub fn planet(&self) -> &Planet {
         &self.planet
     }
 
-    /// Radiance of the sky in a direction, to the end of the air or to the ground.
+    /// Radiance of the air in a direction, up to the end of the air or to the ground.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a number that is not finite or out of its range.
@@ -239,8 +239,8 @@ impl Reference {
         Ok(along)
     }
 
-    /// Light scattered into a piece of a ray and its transmittance. A ray that meets the ground's sphere before ends
-    /// there.
+    /// Light scattered into the first `distance_m` of a ray, and its transmittance. The ray ends at the ground's sphere
+    /// if it meets that earlier.
     ///
     /// # Errors
     /// As [`Reference::radiance`]; `distance_m` must be in `[0, 1e12]` m.
@@ -250,7 +250,7 @@ impl Reference {
         Ok(self.along(view, distance_m, &GAUSS_16, true))
     }
 
-    /// Light on a horizontal surface that faces up, at any altitude. `sun_zenith` in radians, `[0, pi]`.
+    /// Light on a horizontal surface facing up, at any altitude. `sun_zenith` is in radians, `[0, pi]`.
     ///
     /// # Errors
     /// As [`Reference::radiance`].
@@ -267,7 +267,7 @@ impl Reference {
         let azimuths = grid::azimuths(24);
         let mut sky = [0.0; 3];
         for (x, w) in zeniths.nodes.iter().zip(&zeniths.weights) {
-            // mu = x^2 puts the points where the sky's gradient is, at the horizon.
+            // The substitution mu = x^2 concentrates the points at the horizon, where the sky's gradient is steep.
             let x = 0.5 + 0.5 * x;
             let weight = w * x * (x * x) * 2.0 * PI / azimuths.len() as f64;
             for azimuth in &azimuths {
@@ -303,7 +303,7 @@ impl Reference {
         out
     }
 
-    /// Radiance scattered into a piece of a ray per unit irradiance of a point sun.
+    /// Radiance scattered into an interval of a ray, per unit irradiance of a point sun.
     fn scattered(&self, ray: &Ray, span: (f64, f64), mu_s: f64, nu: f64, rule: &Gauss, exact_sun: bool) -> [f64; 3] {
         let medium = &self.medium;
         let cutting = Cutting { altitudes_m: &self.panel_altitudes, rule, panel_depth: 2.0 };
@@ -330,17 +330,17 @@ impl Reference {
     }
 }
 
-/// Factor on the last order that adds the orders after it as a geometric series, at one place of the grid.
+/// Factor on the last order that gives the sum of the orders after it as a geometric series, at one grid point.
 fn geometric_tail(previous: &Nodes, last: &Nodes, node: usize) -> [f64; 3] {
     let (a, b) = (previous.total(node), last.total(node));
     std::array::from_fn(|c| {
-        // A ratio above .98 means a medium too thick for this to say anything.
+        // A ratio above 0.98 means a medium too thick for the series to be meaningful.
         let q = if a[c] > 0.0 { (b[c] / a[c]).clamp(0.0, 0.98) } else { 0.0 };
         q / (1.0 - q)
     })
 }
 
-/// The tail's largest share of the light over the places that hold more than 1e-9 of the brightest one's.
+/// Largest share of the tail in the light, over the grid points that have more than 1e-9 of the brightest one's light.
 fn largest_tail(previous: &Nodes, last: &Nodes, sum: &Nodes) -> f64 {
     let brightest = (0..sum.gas.len()).flat_map(|n| sum.total(n)).fold(0.0, f64::max);
     let share = |node: usize| {

@@ -1,4 +1,4 @@
-//! Integration and interpolation rules that the sky's truth is built on.
+//! Integration and interpolation rules of the sky's reference solution.
 
 use std::sync::LazyLock;
 
@@ -8,17 +8,17 @@ pub struct Gauss {
     pub nodes: Vec<f64>,
     /// Weights; they sum to 2.
     pub weights: Vec<f64>,
-    /// `running[i * n + j]`: weight of the value at node j in the integral from -1 to node i. Exact, as the rule
-    /// through the nodes is, for polynomials below degree n.
+    /// Weights of the partial integrals: `running[i * n + j]` is the weight of the value at node j in the integral
+    /// from -1 to node i. Exact for polynomials of degree below n.
     pub running: Vec<f64>,
 }
 
-/// The rule for smooth panels of optical paths.
+/// Rule for smooth panels of optical paths.
 pub static GAUSS_16: LazyLock<Gauss> = LazyLock::new(|| Gauss::new(16));
 
 impl Gauss {
-    /// The rule with `n` nodes (at least 1), exact for polynomials of degree 2 n - 1. Nodes by Newton's method on the
-    /// Legendre polynomial from Tricomi's first guess.
+    /// Creates the rule with `n` nodes (at least 1), exact for polynomials of degree 2 n - 1. The nodes are found by
+    /// Newton's method on the Legendre polynomial, starting from Tricomi's estimate.
     pub fn new(n: usize) -> Self {
         let n = n.max(1);
         let mut nodes = vec![0.0; n];
@@ -48,7 +48,7 @@ impl Gauss {
         self.nodes.len()
     }
 
-    /// Never: a rule has at least one node.
+    /// Whether the rule has no node, which never happens.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
@@ -70,7 +70,8 @@ fn legendre(n: usize, x: f64) -> Vec<f64> {
     p
 }
 
-/// The cardinal polynomials of the nodes, written in Legendre polynomials and integrated term by term.
+/// Weights of the partial integrals: cardinal polynomials of the nodes, expanded in Legendre polynomials and integrated
+/// term by term.
 fn running_weights(nodes: &[f64], weights: &[f64]) -> Vec<f64> {
     let n = nodes.len();
     let at: Vec<Vec<f64>> = nodes.iter().map(|x| legendre(n + 1, *x)).collect();
@@ -87,8 +88,8 @@ fn running_weights(nodes: &[f64], weights: &[f64]) -> Vec<f64> {
     running
 }
 
-/// Index of the first of four neighbours and their weights for cubic (Lagrange) interpolation at `x` in units of the
-/// node spacing, among `n` nodes (at least 4) at 0, 1, .. n - 1. Beyond the ends it holds the end's value.
+/// Index of the first of four neighbours, and their weights, for cubic (Lagrange) interpolation at `x` in units of the
+/// node spacing, among `n` nodes (at least 4) at 0, 1, .. n - 1. Beyond the ends the value is that of the end.
 pub fn cubic(x: f64, n: usize) -> (usize, [f64; 4]) {
     let x = x.clamp(0.0, (n - 1) as f64);
     let first = (x as usize).saturating_sub(1).min(n - 4);

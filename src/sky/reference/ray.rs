@@ -1,8 +1,8 @@
 //! Straight rays through spherical shells, and the columns of air along them.
 //!
-//! Everything is written in altitudes: r^2 - R^2 is formed as h (2 R + h), and a point on a ray is known by
-//! u = sqrt(h - h_p), where h_p is the altitude of the ray's perigee. In u the path element ds = 2 r / sqrt(r + r_p) du
-//! has no pole at the perigee and an exponential density becomes a Gaussian, so that few Gauss points give 10 digits.
+//! All formulas use altitudes: r^2 - R^2 is computed as h (2 R + h). A point on a ray is given by u = sqrt(h - h_p),
+//! where h_p is the altitude of the ray's perigee. In u the path element ds = 2 r / sqrt(r + r_p) du has no pole at the
+//! perigee, and an exponential density becomes a Gaussian, so that few Gauss points give 10 digits.
 
 use super::medium::{MEDIA, Medium};
 use super::quadrature::GAUSS_16;
@@ -16,23 +16,23 @@ pub struct Ray {
     pub altitude_m: f64,
     /// Cosine of the angle between the ray and the vertical at its origin.
     pub mu: f64,
-    /// Radius of the perigee of the whole line, m.
+    /// Radius at the perigee of the whole line, m.
     pub perigee_radius_m: f64,
     /// Altitude of the origin above the perigee, m.
     above_perigee_m: f64,
 }
 
-/// How a ray ends.
+/// End of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
-    /// It leaves the air.
+    /// The ray leaves the air.
     Space,
-    /// It meets the ground.
+    /// The ray meets the ground.
     Ground,
 }
 
 impl Ray {
-    /// A ray in a planet of `medium`; `mu` in [-1, 1].
+    /// Creates a ray on a planet of `medium`; `mu` is in [-1, 1].
     pub fn new(medium: &Medium, altitude_m: f64, mu: f64) -> Self {
         let mu = mu.clamp(-1.0, 1.0);
         let r = medium.bottom_m + altitude_m;
@@ -59,8 +59,8 @@ impl Ray {
         self.altitude_m + growth / (r + r_there).max(f64::MIN_POSITIVE)
     }
 
-    /// Distance from the origin to the ground, m; `None` if the ray misses it. A point below altitude 0 stands on
-    /// the ground of its own level: it sees ground below its horizontal plane at once and none above.
+    /// Distance from the origin to the ground, m; `None` if the ray misses it. A point below altitude 0 stands on the
+    /// ground of its own level: below its horizontal plane it sees ground at distance 0, above it none.
     pub fn distance_to_ground(&self) -> Option<f64> {
         if self.mu >= 0.0 {
             return None;
@@ -78,7 +78,8 @@ impl Ray {
         Some(h * (2.0 * self.bottom_m + h) / (to_perigee + chord))
     }
 
-    /// Part of the ray that lies in the air: distances of its start and end, and how it ends. `None` if it misses.
+    /// Interval of the ray inside the air: distances of its start and end, and how it ends. `None` if the ray misses
+    /// the air.
     pub fn in_air(&self, medium: &Medium) -> Option<(f64, f64, End)> {
         let to_perigee = -self.radius_m() * self.mu;
         let headroom = medium.top_m - self.perigee_altitude_m();
@@ -96,7 +97,7 @@ impl Ray {
         }
     }
 
-    /// u = sqrt(altitude above the perigee) and the side of the perigee (-1 before, 1 after) at a distance.
+    /// Returns u = sqrt(altitude above the perigee) at a distance, and the side of the perigee (-1 before, 1 after).
     pub fn u_at(&self, distance_m: f64) -> (f64, f64) {
         let t = self.radius_m() * self.mu + distance_m;
         let r = (self.perigee_radius_m * self.perigee_radius_m + t * t).sqrt();
@@ -104,7 +105,7 @@ impl Ray {
         (if sum > 0.0 { t.abs() / sum.sqrt() } else { 0.0 }, if t < 0.0 { -1.0 } else { 1.0 })
     }
 
-    /// u at an altitude, 0 below the perigee.
+    /// Value of u at an altitude; 0 below the perigee.
     pub fn u_of_altitude(&self, altitude_m: f64) -> f64 {
         (altitude_m - self.altitude_m + self.above_perigee_m).max(0.0).sqrt()
     }
@@ -114,14 +115,14 @@ impl Ray {
         side * u * (2.0 * self.perigee_radius_m + u * u).sqrt() - self.radius_m() * self.mu
     }
 
-    /// ds/du at `u`, m.
+    /// Derivative ds/du at `u`, m.
     pub fn stretch(&self, u: f64) -> f64 {
         let rp = self.perigee_radius_m;
         2.0 * (rp + u * u) / (2.0 * rp + u * u).max(f64::MIN_POSITIVE).sqrt()
     }
 
-    /// Columns between two distances along the ray, m at density 1 per medium. Relative error below 1e-9 for smooth
-    /// profiles of any scale height.
+    /// Columns between two distances along the ray, in m at density 1 for each medium. The relative error is below 1e-9
+    /// for smooth profiles of any scale height.
     pub fn columns(&self, medium: &Medium, from_m: f64, to_m: f64) -> [f64; MEDIA] {
         if to_m <= from_m {
             return [0.0; MEDIA];
@@ -134,8 +135,8 @@ impl Ray {
         std::array::from_fn(|i| a[i] + b[i])
     }
 
-    /// Columns from the origin to the end of the air, whether or not the ground is in between (the part below
-    /// altitude 0 counts with density 1).
+    /// Columns from the origin to the end of the air, even if the ground is in between. The part below altitude 0
+    /// counts with density 1.
     pub fn columns_to_space(&self, medium: &Medium) -> [f64; MEDIA] {
         let u0 = self.above_perigee_m.sqrt();
         let u_top = self.u_of_altitude(medium.top_m);
@@ -152,7 +153,7 @@ impl Ray {
         if u_high <= u_low {
             return [0.0; MEDIA];
         }
-        // Below altitude 0 the exponential media stand at density 1.
+        // Below altitude 0 the exponential media have density 1.
         let u_ground = self.u_of_altitude(0.0).clamp(u_low, u_high);
         let below = self.distance_of(u_ground, 1.0) - self.distance_of(u_low, 1.0);
         let mut out = [0.0; MEDIA];
@@ -177,7 +178,7 @@ impl Ray {
         if density == 0.0 {
             return 0.0;
         }
-        // Panels end where the density has fallen by e^3, e^12, e^40 from the leg's lowest point.
+        // Panels end where the density has fallen by e^3, e^12 and e^40 from the lowest point of the leg.
         let mut sum = 0.0;
         let mut from = a;
         for fall in [3.0, 12.0, 40.0] {
@@ -190,7 +191,7 @@ impl Ray {
         density * sum
     }
 
-    /// Integral of the ozone tent over u in [a, b], in closed form: with t the distance from the perigee, the integral
+    /// Integral of the ozone tent over u in [a, b] in closed form. With t the distance from the perigee, the integral
     /// of r dt is (t r + r_p^2 asinh(t / r_p)) / 2.
     fn ozone_leg(&self, medium: &Medium, a: f64, b: f64) -> f64 {
         let (center, half_width) = medium.ozone_m;
@@ -201,7 +202,7 @@ impl Ray {
         let at = |altitude: f64| {
             let u = self.u_of_altitude(altitude).clamp(a, b);
             let (t, r) = (u * (2.0 * rp + u * u).sqrt(), rp + u * u);
-            // Below a millimetre the second term is nothing and its logarithm no number.
+            // With r_p below a millimetre the second term is negligible, and its logarithm would not be finite.
             let bend = if rp > 1e-3 { rp * rp * (t / rp).asinh() } else { 0.0 };
             (t, 0.5 * (t * r + bend))
         };
@@ -211,7 +212,7 @@ impl Ray {
         ((rise + fall) / half_width).max(0.0)
     }
 
-    /// Column of the ozone tent from the origin to the end of the air in a direction that misses the ground, m.
+    /// Column of the ozone tent from the origin to the end of the air, m, in a direction that misses the ground.
     pub fn ozone_to_space(&self, medium: &Medium) -> f64 {
         let u0 = self.above_perigee_m.sqrt();
         let u_top = self.u_of_altitude(medium.top_m);
@@ -221,8 +222,8 @@ impl Ray {
         self.ozone_leg(medium, 0.0, u0.min(u_top)) + self.ozone_leg(medium, 0.0, u_top)
     }
 
-    /// Gauss integral of `density` ds over u in [a, b], cut where the path element itself bends: near a perigee that
-    /// lies close to the planet's centre compared with the leg's length.
+    /// Gauss integral of `density` ds over u in [a, b]. The interval is cut where the path element itself bends, which
+    /// is near a perigee that is close to the planet's centre compared with the length of the leg.
     fn panel(&self, a: f64, b: f64, density: &dyn Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         let mut from = a;
@@ -236,17 +237,18 @@ impl Ray {
     }
 }
 
-/// Cosine of the angle to the horizon at an altitude: rays with a smaller `mu` meet the ground. 0 at and below
+/// Cosine of the horizon's zenith angle at an altitude. Rays with a smaller `mu` meet the ground. It is 0 at and below
 /// altitude 0.
 pub fn horizon_mu(medium: &Medium, altitude_m: f64) -> f64 {
     let h = altitude_m.max(0.0);
     -(h * (2.0 * medium.bottom_m + h)).sqrt() / (medium.bottom_m + h)
 }
 
-/// Part of a ray in the planet's shadow for a sun at infinity, as distances along the ray; `None` if all of it is lit.
-/// `mu_s` is the cosine of the sun's zenith angle at the origin, `nu` of the angle between ray and sun.
+/// Interval of a ray in the planet's shadow, for a sun at infinity, as distances along the ray; `None` if all of the
+/// ray is lit. `mu_s` is the cosine of the sun's zenith angle at the origin, and `nu` that of the angle between ray and
+/// sun.
 pub fn shadow(ray: &Ray, mu_s: f64, nu: f64) -> Option<(f64, f64)> {
-    // The shadow is the half of a cylinder of the ground's radius that lies behind the planet.
+    // The shadow is a half cylinder of the ground's radius that begins behind the planet.
     let r = ray.radius_m();
     let h = ray.altitude_m;
     let a = (1.0 - nu) * (1.0 + nu);
@@ -266,7 +268,7 @@ pub fn shadow(ray: &Ray, mu_s: f64, nu: f64) -> Option<(f64, f64)> {
         let (x, y) = (q / a, if q == 0.0 { 0.0 } else { c / q });
         (x.min(y), x.max(y))
     };
-    // Behind the planet: r mu_s + s nu < 0.
+    // A point is behind the planet where r mu_s + s nu < 0.
     let turn = -r * mu_s / nu;
     if nu > 0.0 {
         to = to.min(turn);
@@ -278,7 +280,7 @@ pub fn shadow(ray: &Ray, mu_s: f64, nu: f64) -> Option<(f64, f64)> {
     (to > from).then_some((from, to))
 }
 
-/// Whether the sun is hidden by the planet at a point.
+/// Whether the planet hides the sun at a point.
 pub fn sun_hidden(medium: &Medium, altitude_m: f64, mu_s: f64) -> bool {
     mu_s < horizon_mu(medium, altitude_m)
 }
@@ -304,7 +306,7 @@ mod tests {
             let column = Ray::new(&m, 0.0, mu).columns_to_space(&m)[0];
             assert!((column / 8000.0 / air_mass - 1.0).abs() < 3e-5, "{zenith_deg}: {}", column / 8000.0);
         }
-        // Refraction and the real profile make Kasten and Young 1989 differ by up to 7 % at the horizon.
+        // Refraction and the real profile let Kasten and Young 1989 differ by up to 7 % at the horizon.
         for (zenith_deg, air_mass) in [(60.0, 1.9943), (75.0, 3.8129), (80.0, 5.586), (85.0, 10.306)] {
             let mu = f64::cos(f64::to_radians(zenith_deg));
             let column = Ray::new(&m, 0.0, mu).columns_to_space(&m)[0];
@@ -312,7 +314,7 @@ mod tests {
         }
     }
 
-    /// Plain Simpson sums with millions of steps: slow, independent of the substitution and of the panels.
+    /// Plain Simpson sums with millions of steps: slow, but independent of the substitution and of the panels.
     fn brute_columns(m: &Medium, altitude_m: f64, mu: f64, length_m: f64, n: usize) -> [f64; MEDIA] {
         let r = m.bottom_m + altitude_m;
         let mut out = [0.0; MEDIA];
@@ -361,7 +363,7 @@ mod tests {
             let middle = start + 0.43 * (end - start);
             let (whole, a, b) =
                 (ray.columns(&m, start, end), ray.columns(&m, start, middle), ray.columns(&m, middle, end));
-            // The same path walked from its other end.
+            // The same path, followed from its other end.
             let h = ray.altitude_at(middle);
             let back_mu = -(ray.radius_m() * mu + middle) / (m.bottom_m + h);
             let back = Ray::new(&m, h, back_mu).columns(&m, 0.0, middle - start);

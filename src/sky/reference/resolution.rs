@@ -1,30 +1,32 @@
-//! Resolution of a solution: sizes of its grids and rules.
+//! Resolution of a reference solution: sizes of its grids and quadrature rules.
 
 use crate::error::{Result, check_range};
 
-/// Sizes of the grids and rules.
+/// Sizes of the grids and quadrature rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    /// Altitudes at which the source is tabulated, `[4, 200]`.
+    /// Number of altitudes at which the source is tabulated, `[4, 200]`.
     pub altitudes: usize,
-    /// Sun angles at which it is tabulated, `[8, 400]`.
+    /// Number of sun angles at which the source is tabulated, `[8, 400]`.
     pub sun_angles: usize,
-    /// Zenith angles of radiance above the horizon, and half as many below, `[4, 200]`.
+    /// Number of zenith angles of radiance above the horizon, `[4, 200]`; below it there are half as many.
     pub zeniths: usize,
-    /// Azimuths of radiance over half a turn, `[4, 200]`.
+    /// Number of azimuths of radiance on [0, pi], `[4, 200]`.
     pub azimuths: usize,
-    /// Points per panel of a ray, `[2, 32]`.
+    /// Number of points in a panel of a ray, `[2, 32]`.
     pub panel_points: usize,
-    /// Zenith and azimuth nodes of the haze's source, `[5, 400]` each.
+    /// Numbers of zenith and azimuth nodes of the haze's source, `[5, 400]` each.
     pub haze_directions: (usize, usize),
 }
 
 impl Resolution {
-    /// For everyday tests: a second or two. Against [`Resolution::FINE`] 95 % of all views from the ground to space,
-    /// sun down to 96 degrees, are within 0.3 % in clear air and 0.6 % in haze (visibility 12 km).
+    /// Resolution for everyday tests, which takes a second or two. Compared with [`Resolution::FINE`], 95 % of all
+    /// views from the ground to space, with the sun down to 96 degrees, are within 0.3 % in clear air and 0.6 % in haze
+    /// (visibility 12 km).
     pub const QUICK: Self =
         Self { altitudes: 12, sun_angles: 30, zeniths: 14, azimuths: 8, panel_points: 3, haze_directions: (25, 13) };
-    /// For truths: half a minute to minutes. Against twice this resolution 95 % of the same views are within 0.1 %.
+    /// Resolution for reference values, which takes half a minute to minutes. Compared with twice this resolution, 95 %
+    /// of the same views are within 0.1 %.
     pub const FINE: Self =
         Self { altitudes: 24, sun_angles: 60, zeniths: 28, azimuths: 16, panel_points: 5, haze_directions: (49, 25) };
 

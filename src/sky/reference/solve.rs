@@ -1,8 +1,8 @@
-//! Multiple scattering by orders: the radiance of one order, integrated over all directions at the nodes of a grid,
-//! is the source of the next.
+//! Multiple scattering by orders. The radiance of one order, integrated over all directions at the nodes of a grid, is
+//! the source of the next order.
 //!
-//! Order 1 is light scattered once in the air. The ground is a scatterer like the air: light that has met the ground
-//! n - 1 times or air and ground together n - 1 times before its last scattering in the air belongs to order n.
+//! Order 1 is light scattered once in the air. The ground counts as a scatterer like the air: light belongs to order n
+//! if it was scattered n - 1 times by air and ground together before its last scattering in the air.
 
 use std::f64::consts::PI;
 
@@ -15,7 +15,7 @@ use super::resolution::Resolution;
 use super::source::{Moments, Nodes, Place, Source};
 use super::sun::{SunTable, scattered_once, with_phase};
 
-/// The grids and rules of one solution.
+/// Grids and rules of one solution.
 pub struct Solver<'a> {
     pub medium: &'a Medium,
     pub altitudes: Altitudes,
@@ -29,35 +29,36 @@ pub struct Solver<'a> {
     panel_rule: Gauss,
     panel_altitudes: Vec<f64>,
     has_haze: bool,
-    /// Suns so far down that no air sees them: order 1 is below `DARK` of its brightest everywhere.
+    /// Flags of the suns so far below the horizon that no air sees them: there order 1 is below `DARK` of its brightest
+    /// value everywhere.
     dark: Vec<bool>,
 }
 
-/// Light below this share of the brightest is not followed: it is a millionth of what the stars give.
+/// Share of the brightest light below which light is ignored. It is a millionth of the stars' light.
 const DARK: f64 = 1e-12;
 
-/// Result of one altitude's sweep: source [sun] and [sun][zenith][azimuth], and the ground's irradiance [sun].
+/// Result of the sweep at one altitude: source [sun] and [sun][zenith][azimuth], and the ground's irradiance [sun].
 struct Row {
     gas: Vec<Moments>,
     haze: Vec<[f64; 3]>,
     irradiance: Vec<[f64; 3]>,
 }
 
-/// A ray of the sweep: what does not depend on the sun.
+/// A ray of the sweep with the values that do not depend on the sun.
 struct Prepared {
     ray: Ray,
     weight: f64,
     samples: Vec<(Sample, Place)>,
     span: (f64, f64),
-    /// Distance and transmittance to the ground, if the ray ends there.
+    /// Distance to the ground, and transmittance over it, if the ray ends there.
     ground: Option<(f64, [f64; 3])>,
 }
 
-/// Light that falls on the air in a sweep.
+/// Light that falls on the air and the ground in a sweep.
 enum SweepLight<'a> {
-    /// The sun itself, and the ground in direct sunlight.
+    /// Direct sunlight.
     Sun,
-    /// Light scattered before.
+    /// Light that has been scattered before.
     Scattered(&'a Source, &'a [[f64; 3]]),
 }
 
@@ -80,7 +81,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Source of order 2: single scattering and the sunlit ground.
+    /// Source of order 2: light scattered once, and the sunlit ground.
     pub fn first(&mut self, threads: usize) -> Nodes {
         let nodes = self.sweep(&SweepLight::Sun, threads);
         let suns = self.dark.len();
@@ -110,7 +111,8 @@ impl<'a> Solver<'a> {
         if threads == 1 {
             rows.iter_mut().enumerate().for_each(|(i, row)| *row = Some(self.row(i, light)));
         } else {
-            // Every thread takes each `threads`-th altitude, so that the long low rows are shared out.
+            // Each thread takes every `threads`-th altitude, so that the low altitudes, which take longest, are shared
+            // out.
             let mut shares: Vec<Vec<(usize, &mut Option<Row>)>> = (0..threads).map(|_| Vec::new()).collect();
             rows.iter_mut().enumerate().for_each(|(i, row)| shares[i % threads].push((i, row)));
             std::thread::scope(|scope| {
@@ -135,7 +137,7 @@ impl<'a> Solver<'a> {
         nodes
     }
 
-    /// The sweep at one altitude: all directions, all sun angles.
+    /// Sweep at one altitude, over all directions and sun angles.
     fn row(&self, index: usize, light: &SweepLight<'_>) -> Row {
         let altitude = self.altitudes.nodes_m[index];
         let rule = zenith_rule(self.medium, altitude, &self.below, &self.above);
@@ -191,7 +193,7 @@ impl<'a> Solver<'a> {
         prepared
     }
 
-    /// Radiance of the order along one ray.
+    /// Radiance of the present order along one ray.
     fn radiance(
         &self,
         p: &Prepared,
@@ -221,7 +223,7 @@ impl<'a> Solver<'a> {
         out
     }
 
-    /// Light scattered once; panels are cut anew where the shadow's edge crosses the ray.
+    /// Radiance of light scattered once. If the shadow's edge crosses the ray, its panels are cut there.
     fn sunlit(&self, p: &Prepared, mu_s: f64, nu: f64, scratch: &mut Vec<Sample>) -> [f64; 3] {
         let dark = shadow(&p.ray, mu_s, nu).filter(|(from, to)| *from < p.span.1 && *to > p.span.0);
         scratch.clear();
@@ -282,12 +284,13 @@ impl<'a> Solver<'a> {
         out
     }
 
-    /// The haze's phase function between the table's directions and the rule's, as cosine series in azimuth:
-    /// [zenith of the table][ray][mode], times the rule's weight and 2 pi. Rows are scaled so that equal light from all
-    /// sides gives the same light into all directions, which the rule alone misses for sharp peaks.
+    /// Phase function of the haze between the directions of the table and those of the quadrature rule, as cosine
+    /// series in azimuth: [zenith of the table][ray][mode], times the rule's weight and 2 pi. Rows are normalised so
+    /// that equal light from all sides is scattered equally into all directions; for sharp peaks the rule alone does
+    /// not achieve that.
     fn kernel(&self, rays: &[Prepared]) -> Vec<f64> {
         let (zeniths, modes) = (self.resolution.haze_directions.0, self.azimuths.len());
-        // Enough azimuths for the sharpest peak that the modes can carry.
+        // Enough azimuths for the sharpest peak that the modes can represent.
         let fine = azimuths(8 * modes);
         let cosines: Vec<f64> = fine.iter().flat_map(|a| (0..modes).map(move |m| (m as f64 * a).cos())).collect();
         let mut kernel = vec![0.0; zeniths * rays.len() * modes];
@@ -311,7 +314,8 @@ impl<'a> Solver<'a> {
         kernel
     }
 
-    /// Haze source at one node: the radiance as cosine series, scattered mode by mode, summed at the table's azimuths.
+    /// Haze source at one node. The radiance is expanded in cosine series, scattered mode by mode, and summed at the
+    /// azimuths of the table.
     fn haze_source(&self, rays: &[Prepared], radiance: &[[f64; 3]], kernel: &[f64], source: &mut Vec<[f64; 3]>) {
         let modes = self.azimuths.len();
         let mut series = vec![[0.0; 3]; rays.len() * modes];
@@ -338,14 +342,14 @@ impl<'a> Solver<'a> {
                     let cosine = (m as f64 * a).cos();
                     (0..3).for_each(|c| sum[c] += cosine * v[c]);
                 }
-                // A cut series of a sharp peak swings below 0 beside it.
+                // A truncated series of a sharp peak falls below 0 beside the peak.
                 source.push(sum.map(|v| v.max(0.0)));
             }
         }
     }
 }
 
-/// Whether haze adds to a sample's light: its look-up is the costly one.
+/// Whether haze contributes to a sample's light. Its look-up is the expensive one.
 pub fn haze_matters(s: &Sample) -> bool {
     (0..3).any(|c| s.haze[c] > 1e-7 * s.gas[c] && s.haze[c] > 1e-14)
 }

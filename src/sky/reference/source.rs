@@ -1,8 +1,10 @@
-//! The light that the air scatters into a direction at a point, having been scattered before: tables and look-ups.
+//! Light that the air scatters into a direction at a point after it has been scattered before: tables and look-ups.
 //!
 //! Gas: the Rayleigh phase function is a polynomial of degree 2, so the light that gas scatters into any direction
-//! follows exactly from the second moments of the radiance, four numbers per wavelength (sun in the xz plane).
+//! follows exactly from the second moments of the radiance, four numbers per wavelength (with the sun in the xz plane).
+//!
 //! Haze: a table over directions in the local frame (zenith angle, azimuth from the sun), cubic between nodes.
+//!
 //! Both are per unit of scattering coefficient, so that they vary slowly with altitude.
 
 use std::f64::consts::PI;
@@ -13,19 +15,19 @@ use super::quadrature::{cubic_weights, linear};
 /// Second moments of radiance per wavelength: xx, yy, zz, xz.
 pub type Moments = [f64; 12];
 
-/// One order's source, or a sum of orders, at the nodes.
+/// Source of one order, or of a sum of orders, at the nodes.
 #[derive(Clone, Debug)]
 pub struct Nodes {
-    /// Moments by altitude and sun.
+    /// Moments, ordered by altitude, then sun.
     pub gas: Vec<Moments>,
-    /// Haze source by altitude, sun, zenith and azimuth; empty where haze does not scatter.
+    /// Haze source, ordered by altitude, sun, zenith and azimuth; empty if haze does not scatter.
     pub haze: Vec<[f64; 3]>,
-    /// Radiance that the ground reflects, by sun.
+    /// Radiance that the ground reflects, for each sun.
     pub ground: Vec<[f64; 3]>,
 }
 
 impl Nodes {
-    /// Adds `other` times a factor that depends on the altitude, the sun and the wavelength.
+    /// Adds `other` times a factor that depends on altitude, sun and wavelength.
     pub fn add(&mut self, other: &Self, factor: impl Fn(usize) -> [f64; 3]) {
         let directions = if self.gas.is_empty() { 0 } else { self.haze.len() / self.gas.len() };
         for (node, (a, b)) in self.gas.iter_mut().zip(&other.gas).enumerate() {
@@ -45,39 +47,39 @@ impl Nodes {
     }
 }
 
-/// Where along a ray the source is asked: the parts that do not depend on the sun.
+/// Position along a ray for a look-up of the source, without what depends on the sun.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// Coordinate in altitude, node units.
+    /// Coordinate in altitude, in node units.
     pub altitude: f64,
-    /// Cosine and sine of the ray's zenith angle.
+    /// Cosine of the ray's zenith angle.
     pub mu: f64,
-    /// Its sine.
+    /// Sine of the ray's zenith angle.
     pub sine: f64,
-    /// The angle itself, radians.
+    /// Zenith angle of the ray, radians.
     pub zenith: f64,
 }
 
-/// The tables made ready for look-ups.
+/// Tables in the form that look-ups read.
 pub struct Source {
     altitudes: Altitudes,
     suns: SunAngles,
-    /// Moments on a grid `REFINE` times finer, linear between nodes.
+    /// Moments on a grid `REFINE` times finer, for linear interpolation.
     gas: Vec<Moments>,
     gas_size: (usize, usize),
-    /// Haze source, laid out alike, `REFINE_HAZE` times finer in altitude and sun; single precision, because it is
-    /// large.
+    /// Haze source with the same layout, `REFINE_HAZE` times finer in altitude and sun; in single precision, because it
+    /// is large.
     haze: Vec<[f32; 3]>,
     haze_size: (usize, usize),
     haze_directions: (usize, usize),
 }
 
-/// How much finer the tables are made in altitude and sun angle by cubic interpolation, so that look-ups can be linear.
+/// Factors by which cubic interpolation refines the tables in altitude and sun angle, so that look-ups can be linear.
 const REFINE: (usize, usize) = (4, 8);
 const REFINE_HAZE: (usize, usize) = (2, 3);
 
 impl Source {
-    /// Look-up tables of the nodes' values; `directions` is the haze's grid (zenith, azimuth).
+    /// Creates the look-up tables of the nodes' values; `directions` is the size of the haze's grid (zenith, azimuth).
     pub fn new(altitudes: &Altitudes, suns: &SunAngles, nodes: &Nodes, directions: (usize, usize)) -> Self {
         let (na, ns) = (altitudes.nodes_m.len(), suns.nodes.len());
         let (fine_a, fine_s) = ((na - 1) * REFINE.0 + 1, (ns - 1) * REFINE.1 + 1);
@@ -106,14 +108,15 @@ impl Source {
         }
     }
 
-    /// The place of a ray's sample.
+    /// Position of a ray's sample.
     pub fn place(&self, altitude_m: f64, mu: f64) -> Place {
         let sine = ((1.0 - mu) * (1.0 + mu)).sqrt();
         Place { altitude: self.altitudes.coordinate(altitude_m), mu, sine, zenith: mu.clamp(-1.0, 1.0).acos() }
     }
 
-    /// Light scattered into the ray by gas and by haze per unit of their scattering coefficients. `mu_s` is the cosine
-    /// of the sun's zenith angle at the place, `nu` of the angle between ray and sun; haze only if asked for.
+    /// Light scattered into the ray by gas and by haze, per unit of their scattering coefficients. `mu_s` is the cosine
+    /// of the sun's zenith angle at the position, and `nu` that of the angle between ray and sun. Haze is computed only
+    /// if `with_haze` is set.
     pub fn at(&self, place: &Place, mu_s: f64, nu: f64, with_haze: bool) -> ([f64; 3], [f64; 3]) {
         let mu_s = mu_s.clamp(-1.0, 1.0);
         let sun_sine = ((1.0 - mu_s) * (1.0 + mu_s)).sqrt();
@@ -136,7 +139,7 @@ impl Source {
         let (a, b, c, d) = (&self.gas[row], &self.gas[row + 1], &self.gas[row + ns], &self.gas[row + ns + 1]);
         let (wa, wb, wc, wd) = ((1.0 - fi) * (1.0 - fj), (1.0 - fi) * fj, fi * (1.0 - fj), fi * fj);
         let (x2, z2) = (x * x, place.mu * place.mu);
-        // 1 + (direction . direction')^2, summed over the radiance's directions.
+        // Sum of 1 + (direction . direction')^2 over the directions of the radiance.
         let (kx, ky, kz, kxz) = (1.0 + x2, 1.0 + (1.0 - x2 - z2).max(0.0), 1.0 + z2, 2.0 * x * place.mu);
         std::array::from_fn(|k| {
             let m = |n: usize| wa * a[n] + wb * b[n] + wc * c[n] + wd * d[n];
@@ -164,7 +167,7 @@ impl Source {
                 let (z, over_pole) = fold(z0 + dz as isize, nz);
                 for (dp, wp) in wp.iter().enumerate() {
                     let (p, _) = fold(p0 + dp as isize, np);
-                    // Over the pole the azimuth turns by half.
+                    // Across the pole the azimuth changes by pi.
                     let p = if over_pole { np - 1 - p } else { p };
                     let v = &self.haze[base + z * np + p];
                     let weight = w * wz * wp;
@@ -176,19 +179,19 @@ impl Source {
     }
 }
 
-/// Logarithm above a floor. Light falls by e for each 0.7 degrees of the sun in twilight: its logarithm is what a grid
-/// of that width can hold.
+/// Logarithm above a floor. In twilight light falls by e for each 0.7 degrees of the sun; a grid of such steps can
+/// represent its logarithm, but not the light itself.
 fn to_log(v: f64, floor: f64) -> f64 {
     v.max(floor).max(f64::MIN_POSITIVE).ln()
 }
 
-/// Back; what stands at the floor is nothing.
+/// Inverse of `to_log`; values at the floor become 0.
 fn from_log(v: f64, floor: f64) -> f64 {
     let v = v.exp();
     if v > 2.0 * floor { v } else { 0.0 }
 }
 
-/// Moments as logarithms of the squares' and the mixed one as a share of its bound, sqrt(xx zz).
+/// Moments as logarithms of the squares' moments, with the mixed moment as a share of its bound, sqrt(xx zz).
 fn moments_to_logs(m: &Moments, floor: f64) -> Moments {
     std::array::from_fn(|k| {
         if k < 9 {
@@ -199,7 +202,7 @@ fn moments_to_logs(m: &Moments, floor: f64) -> Moments {
     })
 }
 
-/// Back.
+/// Inverse of `moments_to_logs`.
 fn logs_to_moments(m: &Moments, floor: f64) -> Moments {
     let mut out: Moments = std::array::from_fn(|k| if k < 9 { from_log(m[k], floor) } else { 0.0 });
     for k in 9..12 {
@@ -208,14 +211,14 @@ fn logs_to_moments(m: &Moments, floor: f64) -> Moments {
     out
 }
 
-/// Cubic stencil at `x` (node units) that may reach one node beyond either end.
+/// Cubic stencil at `x` (node units), which may reach one node beyond either end.
 fn mirrored(x: f64, n: usize) -> (isize, [f64; 4]) {
     let x = x.clamp(0.0, (n - 1) as f64);
     let first = (x as isize).min(n as isize - 2) - 1;
     (first, cubic_weights(x - first as f64))
 }
 
-/// Mirrors an index at both ends; says whether it did.
+/// Mirrors an index at both ends, and returns whether it was beyond one.
 fn fold(i: isize, n: usize) -> (usize, bool) {
     let last = n as isize - 1;
     if i < 0 {
@@ -251,7 +254,7 @@ fn refine<T: Real, const K: usize>(
     out
 }
 
-/// The two precisions that tables are kept in.
+/// Precisions in which tables are kept.
 trait Real: Copy + std::ops::Add<Output = Self> + std::ops::Mul<Output = Self> {
     fn from_f64(v: f64) -> Self;
 }

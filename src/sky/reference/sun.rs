@@ -1,12 +1,12 @@
-//! Sunlight that reaches a point, and light scattered once from it.
+//! Sunlight that reaches a point, and the light that is scattered once from it.
 
 use super::march::Sample;
 use super::medium::{Medium, mie_phase, rayleigh_phase};
 use super::quadrature::linear;
 use super::ray::{Ray, horizon_mu, sun_hidden};
 
-/// Transmittance from a point to a sun at zenith angle cosine `mu_s`, a point of light at infinity; 0 behind the
-/// planet. By quadrature.
+/// Transmittance from a point to the sun, which is a point at infinity with the zenith angle cosine `mu_s`; 0 behind
+/// the planet. Computed by quadrature.
 pub fn sun_transmittance(medium: &Medium, altitude_m: f64, mu_s: f64) -> [f64; 3] {
     if sun_hidden(medium, altitude_m, mu_s) {
         return [0.0; 3];
@@ -14,8 +14,9 @@ pub fn sun_transmittance(medium: &Medium, altitude_m: f64, mu_s: f64) -> [f64; 3
     medium.transmittance(&Ray::new(medium, altitude_m, mu_s).columns_to_space(medium))
 }
 
-/// Samples of the sun's zenith angle over its disc with their shares: the disc cut into strips parallel to the horizon,
-/// by the Gauss-Chebyshev rule of the second kind, exact for polynomials. One strip is the sun as a point.
+/// Samples of the sun's zenith angle over its disc, with their shares. The disc is cut into strips parallel to the
+/// horizon by the Gauss-Chebyshev rule of the second kind, which is exact for polynomials. With one strip the sun is a
+/// point.
 pub fn disc_strips(sun_zenith: f64, angular_radius: f64, strips: usize) -> Vec<(f64, f64)> {
     let n = strips.max(1);
     (1..=n)
@@ -26,17 +27,18 @@ pub fn disc_strips(sun_zenith: f64, angular_radius: f64, strips: usize) -> Vec<(
         .collect()
 }
 
-/// Columns towards the sun for the many look-ups of multiple scattering: logarithms of the exponential media's
-/// tabulated, linear between nodes; ozone's in closed form. Its error is held against quadrature in the tests.
+/// Table of the columns towards the sun, for the many look-ups of multiple scattering. It holds the logarithms of the
+/// columns of the exponential media, with linear interpolation; ozone's column has a closed form. Tests compare it with
+/// quadrature.
 pub struct SunTable {
     medium: Medium,
     altitudes: usize,
     angles: usize,
-    /// [altitude][angle], gas and haze.
+    /// Columns of gas and haze in the order [altitude][angle].
     columns: Vec<[f64; 2]>,
 }
 
-/// Columns below this length at density 1 count as it: no light is lost in a millimetre of air.
+/// Smallest column at density 1; shorter ones count as this. A millimetre of air takes no light.
 const LEAST_COLUMN_M: f64 = 1e-3;
 
 impl SunTable {
@@ -57,7 +59,7 @@ impl SunTable {
         Self { medium: *medium, altitudes, angles, columns }
     }
 
-    /// As [`sun_transmittance`].
+    /// Transmittance to the sun, as [`sun_transmittance`] computes it.
     pub fn transmittance(&self, altitude_m: f64, mu_s: f64) -> [f64; 3] {
         let h = altitude_m.clamp(0.0, self.medium.top_m);
         let horizon = horizon_mu(&self.medium, h);
@@ -77,8 +79,8 @@ impl SunTable {
     }
 }
 
-/// Light scattered once into a ray by gas and by haze, before the phase functions, per unit irradiance of the sun.
-/// `samples` are the ray's with panels cut at the edges of the `shadow`.
+/// Light scattered once into a ray by gas and by haze, without the phase functions, per unit irradiance of the sun.
+/// `samples` are those of the ray, with panels cut at the edges of the `shadow`.
 pub fn scattered_once(
     ray: &Ray,
     samples: &[Sample],
@@ -102,7 +104,7 @@ pub fn scattered_once(
     (gas, haze)
 }
 
-/// The radiance of [`scattered_once`] with its phase functions.
+/// Radiance from the results of [`scattered_once`], with the phase functions applied.
 pub fn with_phase(medium: &Medium, nu: f64, gas: &[f64; 3], haze: &[f64; 3]) -> [f64; 3] {
     let (p, m) = (rayleigh_phase(nu), mie_phase(nu, medium.asymmetry_g));
     std::array::from_fn(|c| p * gas[c] + m * haze[c])

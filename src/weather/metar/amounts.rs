@@ -1,8 +1,8 @@
-//! Amounts of a report's cloud groups: which rule a station follows, and the cover of each layer by it.
+//! Amounts of a report's cloud groups: which rule a station follows, and the cover of each layer by that rule.
 
 use super::super::kinds::CloudAmountRule;
 
-/// Amount of a cloud group, in the order of the classes.
+/// Amount of a cloud group, in increasing order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Amount {
     /// FEW: up to 2 eighths of the sky.
@@ -16,7 +16,7 @@ pub(super) enum Amount {
 }
 
 impl Amount {
-    /// Middle of the class, eighths.
+    /// Returns the middle of the class, eighths.
     fn middle(self) -> f64 {
         match self {
             Self::Few => 1.5,
@@ -26,11 +26,11 @@ impl Amount {
         }
     }
 
-    /// Sky hidden by the layers up to group `nth` of `count` groups of this class that follow each other, eighths.
+    /// Returns the sky hidden by the layers up to group `nth` of `count` consecutive groups of this class, eighths.
     ///
-    /// One group alone hides the middle of its class. Of several the sums rise within the class as values do on average
-    /// that fall evenly between its bounds, nth / (count + 1) of the way. Groups of FEW have nothing below them and
-    /// share the middle in equal parts.
+    /// A single group hides the middle of its class. The sums of several groups rise within the class as the expected
+    /// values of random values spread evenly between its bounds: nth / (count + 1) of the way. Groups of FEW have
+    /// nothing below them and share the middle in equal parts.
     fn sum(self, nth: usize, count: usize) -> f64 {
         let part = nth as f64 / (count + 1) as f64;
         match self {
@@ -42,20 +42,20 @@ impl Amount {
     }
 }
 
-/// Cover of a layer whose group gives no amount, fraction: half the sky but a little, as SCT.
+/// Cover of a layer whose group gives no amount: a little less than half the sky, as SCT.
 const UNKNOWN_COVER: f64 = 3.5 / 8.0;
 
-/// Rule that a station follows, by its location indicator (ICAO Doc 7910): sums in the United States with its
-/// territories and in Canada (K, C; Alaska, Hawaii and the Pacific islands under P but for Kiribati's PC and PL; TI,
-/// TJ; NSTU, MUGM), each layer by itself elsewhere. American bases abroad follow their own handbook under the host
-/// country's letters, which cannot be told.
+/// Returns the rule that a station follows, by its location indicator (ICAO Doc 7910). Sums hold in the United States
+/// with its territories and in Canada (K, C; P for Alaska, Hawaii and the Pacific islands, except Kiribati's PC and PL;
+/// TI, TJ; NSTU, MUGM); elsewhere each layer counts by itself. American bases abroad follow their own handbook under
+/// the host country's letters, and cannot be recognised.
 pub(super) fn rule_of(station: &str) -> CloudAmountRule {
     let under = |prefixes: &[&str]| prefixes.iter().any(|p| station.starts_with(p));
     let american = under(&["K", "C", "P", "TI", "TJ", "NSTU", "MUGM"]) && !under(&["PC", "PL"]);
     if american { CloudAmountRule::Sums } else { CloudAmountRule::Layers }
 }
 
-/// Covers of the layers of `groups`, lowest first, fractions; `None` is a group without an amount.
+/// Returns the covers of the layers of `groups`, lowest first, 0 to 1; `None` is a group without an amount.
 pub(super) fn covers(groups: &[Option<Amount>], rule: CloudAmountRule) -> Vec<f64> {
     if rule == CloudAmountRule::Sums {
         return covers_of_sums(groups);
@@ -63,13 +63,13 @@ pub(super) fn covers(groups: &[Option<Amount>], rule: CloudAmountRule) -> Vec<f6
     groups.iter().map(|g| g.map_or(UNKNOWN_COVER, |a| a.middle() / 8.0)).collect()
 }
 
-/// Covers where each group counts the sky hidden up to its layer.
+/// Returns the covers if each group counts the sky hidden up to its layer.
 ///
-/// A group whose class is below that of a lower one, or unknown, counts in that one's class: a sum cannot fall. Layers
-/// lie independently of each other (random overlap, as everywhere in Welkin), so that of the sky which those below
-/// leave open a layer covers (s - below) / (1 - below): each cover is above 0, and 1 minus the product of what they
-/// leave open stays within each group's class. What is reported above an overcast cannot be seen from the sums and has
-/// its own class.
+/// A group whose class is below that of a lower group, or unknown, counts in the lower group's class, because a sum
+/// cannot fall. Layers are placed independently of each other (random overlap, as everywhere in Welkin). Of the sky
+/// that the layers below leave open, a layer therefore covers (s - below) / (1 - below): each cover is above 0, and 1
+/// minus the product of the open shares stays within each group's class. Sums say nothing about a layer above an
+/// overcast; it has its own class.
 fn covers_of_sums(groups: &[Option<Amount>]) -> Vec<f64> {
     let mut highest = Amount::Few;
     let classes: Vec<Amount> = groups
@@ -104,7 +104,7 @@ mod tests {
         assert!(good, "{got:?} where {want:?} is wanted");
     }
 
-    /// Every row of up to five groups of any class.
+    /// Every sequence of up to five groups of any class.
     fn rows() -> Vec<Vec<Option<A>>> {
         let any = [Some(A::Few), Some(A::Scattered), Some(A::Broken), Some(A::Overcast), None];
         let mut all = vec![vec![]];

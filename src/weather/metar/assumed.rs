@@ -1,11 +1,11 @@
-//! Values that stand in for what a report does not say.
+//! Values assumed for what a report does not give.
 
 use super::parse::Parsed;
 use super::phenomena::{Descriptor, Intensity, Phenomenon, WeatherGroup};
 use crate::weather::model::{Weather, saturation_pressure_hpa};
 
-/// Names in [`super::MetarReport::assumed`], each the field of [`Weather`] that holds what is assumed; `time` is the
-/// report's own. The order is that of the bits in the C API and never changes.
+/// Names in [`super::MetarReport::assumed`]. Each is the field of [`Weather`] that holds an assumed value; `time` is
+/// the report's own time. The order is that of the bits in the C API and never changes.
 pub const ASSUMED_FIELDS: [&str; 12] = [
     "wind",
     "wind.from_deg",
@@ -21,20 +21,20 @@ pub const ASSUMED_FIELDS: [&str; 12] = [
     "time",
 ];
 
-/// Relative humidity of a report without a dew point.
+/// Relative humidity for a report without a dew point.
 const HUMIDITY: f64 = 0.7;
 
-/// Temperature where snow falls or lies in the wind, or drops freeze, C.
+/// Temperature assumed if snow falls or is blown, or if drops freeze, C.
 ///
 /// Below -0.4 C more snow than rain falls at 97.5 % of 6883 stations of the northern hemisphere (Jennings, Winchell,
-/// Livneh and Molotch 2018, Nature Communications 9, 1148); freezing rain, freezing drizzle and ice pellets come most
+/// Livneh and Molotch 2018, Nature Communications 9, 1148). Freezing rain, freezing drizzle and ice pellets occur most
 /// often slightly below 0 C (Cortinas, Bernstein, Robbins and Strapp 2004, Weather and Forecasting 19, 377).
 const FROZEN_C: f64 = -1.0;
-/// Temperature where rain and snow fall together, or an instrument cannot tell which, C: at that of even chances, on
-/// average over the same stations (Jennings et al. 2018).
+/// Temperature assumed if rain and snow fall together, or an instrument cannot tell them apart, C: on average over the
+/// same stations, both are then equally likely (Jennings et al. 2018).
 const MIXED_C: f64 = 1.0;
 
-/// Temperature that a group of weather bounds from above, C; `None` if it may come at any.
+/// Returns the upper bound that a group of weather sets to the temperature, C; `None` without one.
 fn bound_c(g: &WeatherGroup) -> Option<f64> {
     use {Descriptor as D, Phenomenon as P};
     let has = |p: P| g.phenomena.contains(&p);
@@ -47,17 +47,18 @@ fn bound_c(g: &WeatherGroup) -> Option<f64> {
     }
 }
 
-/// Temperature at which air of dew point `dew_c` has [`HUMIDITY`], C: the inverse of [`saturation_pressure_hpa`].
+/// Returns the temperature at which air of dew point `dew_c` has [`HUMIDITY`], C: the inverse of
+/// [`saturation_pressure_hpa`].
 fn temperature_of_dew_c(dew_c: f64) -> f64 {
     let x = libm::log(saturation_pressure_hpa(dew_c) / HUMIDITY / 6.112);
     243.12 * x / (17.62 - x)
 }
 
-/// Sets temperature and humidity to what the report says, or to what its weather and dew point leave possible, and
-/// names what is assumed.
+/// Sets temperature and humidity to the reported values, or to values that its weather and dew point allow, and names
+/// those that are assumed.
 ///
-/// A missing temperature is 15 C, or follows from the dew point at 70 %; where the weather bounds it, it is not above
-/// that bound.
+/// A missing temperature is 15 C, or follows from the dew point at a humidity of 70 %. It is at most the bound that the
+/// weather sets.
 pub(super) fn temperature_and_humidity(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
     if let Some(t) = p.temperature_c {
         w.temperature_c = t;
@@ -77,9 +78,9 @@ pub(super) fn temperature_and_humidity(p: &Parsed, w: &mut Weather, assumed: &mu
     }
 }
 
-/// Farthest visibility that the present weather leaves where the report does not give it, m: below 1 km in fog and in
-/// storms of dust and sand, at most 5 km in mist, haze, smoke, dust and sand (WMO-No. 306, code table 4678 and
-/// 15.8.17); infinite without them.
+/// Returns the largest visibility that the present weather allows if the report gives none, m: below 1 km in fog and in
+/// dust and sand storms, at most 5 km in mist, haze, smoke, dust and sand (WMO-No. 306, code table 4678 and 15.8.17);
+/// infinite otherwise.
 pub(super) fn visibility_bound_m(p: &Parsed) -> f64 {
     use {Descriptor as D, Phenomenon as P};
     let bound = |g: &WeatherGroup| {

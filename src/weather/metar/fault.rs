@@ -1,4 +1,4 @@
-//! Words of a report with their places, and the sentence for a word that does not belong there.
+//! Words of a report with their positions, and the error for a word in the wrong place.
 
 use crate::error::{Error, Status};
 
@@ -9,7 +9,7 @@ pub(super) struct Word<'a> {
     pub at: usize,
 }
 
-/// The report's words; an equals sign ends the report as the end of the text does.
+/// Splits a report into words. An equals sign ends the report, as the end of the text does.
 pub(super) fn words(report: &str) -> Vec<Word<'_>> {
     let body = report.split('=').next().unwrap_or("");
     let mut words = Vec::new();
@@ -27,12 +27,12 @@ pub(super) fn words(report: &str) -> Vec<Word<'_>> {
     words
 }
 
-/// The refusal: place of `byte` in `report` as line and column, what was expected, what is there.
+/// Creates the error: position of `byte` in `report` as line and column, what was expected, and what was found.
 pub(super) fn fault(report: &str, byte: usize, expected: &str, found: Option<&str>) -> Error {
     let before = &report[..byte.min(report.len())];
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-    // A long or binary word would drown the message: escapes of a character take up to ten bytes.
+    // A long or binary word would hide the message: the escape of a character takes up to ten bytes.
     let short = |w: &str| format!("{:?}", w.chars().take(24).collect::<String>()).chars().take(48).collect::<String>();
     let found = found.map_or_else(|| "the end".into(), short);
     Error::new(Status::Parse, format!("METAR line {line}, column {column}: expected {expected}, found {found}"))

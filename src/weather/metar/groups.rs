@@ -1,5 +1,5 @@
-//! The groups of figures: wind, visibility, runway visual range, cloud, temperatures, pressure, sea. Each function
-//! reads one word and answers `None` if the word is not that group.
+//! Groups of figures: wind, visibility, runway visual range, cloud, temperatures, pressure, sea. Each function reads
+//! one word and returns `None` if the word is not that group.
 
 use std::ops::RangeInclusive;
 
@@ -14,16 +14,16 @@ const KNOT_M_S: f64 = 1852.0 / 3600.0;
 /// Hectopascals in an inch of mercury (ICAO, at 0 C).
 const INCH_HG_HPA: f64 = 33.8639;
 
-/// A figure that may be marked as missing by slashes.
+/// A figure that slashes may mark as missing.
 pub(super) type Reading<T> = Option<T>;
 
-/// All of `text` as a number of 1 to 6 digits.
+/// Reads all of `text` as a number of 1 to 6 digits.
 fn digits(text: &str) -> Option<u32> {
     let plain = !text.is_empty() && text.len() <= 6 && text.bytes().all(|b| b.is_ascii_digit());
     if plain { text.parse().ok() } else { None }
 }
 
-/// Whether `text` is nothing but slashes, `n` of them.
+/// Whether `text` consists of exactly `n` slashes.
 fn missing(text: &str, n: usize) -> bool {
     text.len() == n && text.bytes().all(|b| b == b'/')
 }
@@ -33,7 +33,7 @@ fn unmeasured(text: &str) -> bool {
     !text.is_empty() && (text.bytes().all(|b| b == b'/') || text.bytes().all(|b| b == b'M'))
 }
 
-/// Splits after `n` bytes if that is a character's border.
+/// Splits after `n` bytes if a character ends there.
 fn split(text: &str, n: usize) -> Option<(&str, &str)> {
     (text.is_char_boundary(n) && n <= text.len()).then(|| text.split_at(n))
 }
@@ -48,14 +48,14 @@ pub(super) struct WindGroup {
     pub variable: bool,
 }
 
-/// Speed of a wind: two or three digits, or P and digits for "more than".
+/// Reads the speed of a wind: two or three digits, or P and digits for "more than".
 fn speed(text: &str) -> Option<f64> {
     let figures = text.strip_prefix('P').unwrap_or(text);
     if (2..=3).contains(&figures.len()) { digits(figures).map(f64::from) } else { None }
 }
 
-/// `24009KT`, `18018G31KT`, `VRB02KT`, `02003MPS`, `24109G120KT`, `P99KT` speeds; the outer `None` is "not a wind", the
-/// inner one a wind that is missing (`/////KT`). Nothing but zeros is calm, however many.
+/// Reads a wind: `24009KT`, `18018G31KT`, `VRB02KT`, `02003MPS`, `24109G120KT`, `P99KT` speeds. The outer `None` is
+/// "not a wind", the inner one a missing wind (`/////KT`). Any number of zeros alone is calm.
 pub(super) fn wind(text: &str) -> Option<Reading<WindGroup>> {
     let (figures, unit) = [("KT", KNOT_M_S), ("MPS", 1.0), ("KMH", 1.0 / 3.6), ("KPH", 1.0 / 3.6)]
         .iter()
@@ -81,7 +81,7 @@ pub(super) fn wind(text: &str) -> Option<Reading<WindGroup>> {
     possible.then_some(Some(WindGroup { speed_m_s, from_deg, gust_m_s, variable: direction == "VRB" }))
 }
 
-/// `160V220`: the range over which the direction varies, degrees.
+/// Reads `160V220`: the range over which the direction varies, degrees.
 pub(super) fn wind_range(text: &str) -> Option<(f64, f64)> {
     let (from, to) = text.split_once('V')?;
     let angle = |t: &str| if t.len() == 3 { digits(t).filter(|d| *d <= 360).map(f64::from) } else { None };
@@ -92,12 +92,12 @@ pub(super) fn wind_range(text: &str) -> Option<(f64, f64)> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct VisibilityGroup {
     pub metres: f64,
-    /// The figure is a lower bound.
+    /// Whether the figure is a lower bound.
     pub at_least: bool,
 }
 
-/// `0150`, `9999`, `4500NDV`, `4500SW` (older reports), `12KM`; the inner `None` is missing (`////NDV`). 0000 is below
-/// 50 m: 25 m. 9999 and 10KM are lower bounds; more kilometres are seen.
+/// Reads `0150`, `9999`, `4500NDV`, `4500SW` (older reports), `12KM`; the inner `None` is missing (`////NDV`). 0000
+/// means below 50 m and becomes 25 m. 9999 and 10KM are lower bounds; larger numbers of kilometres are exact.
 pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> {
     if text == "////NDV" {
         return Some(None);
@@ -118,9 +118,9 @@ pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> 
     Some(Some(group))
 }
 
-/// `10SM`, `P6SM`, `1/2SM`, `M1/4SM` in statute miles, `whole` a number of miles in the word before. 10 is a lower
-/// bound, because automatic stations see no further and most observers report no more (FMH-1, table 12-1); 11 and more
-/// are seen. M (less than) counts as the figure itself. The inner `None` is missing (`////SM`).
+/// Reads `10SM`, `P6SM`, `1/2SM`, `M1/4SM` in statute miles; `whole` is a number of miles in the word before. 10 is a
+/// lower bound, because automatic stations measure no further and most observers report no more (FMH-1, table 12-1); 11
+/// and more are exact. A figure with M (less than) counts as the figure itself. The inner `None` is missing (`////SM`).
 pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Reading<VisibilityGroup>> {
     let figures = text.strip_suffix("SM")?;
     if whole.is_none() && unmeasured(figures) {
@@ -134,7 +134,7 @@ pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Readin
     let part = match bare.split_once('/') {
         Some((a, b)) => {
             let below = digits(b).filter(|b| *b > 0)?;
-            // The space of a mixed number is often lost: 11/2SM is one and a half, 11/16SM is not.
+            // The space in a mixed number is often missing: 11/2SM is one and a half, but 11/16SM is a fraction.
             let (glued, above) =
                 if whole.is_none() && a.len() == 2 && digits(a)? >= below { split(a, 1)? } else { ("0", a) };
             f64::from(digits(glued)?) + f64::from(digits(above)?) / f64::from(below)
@@ -148,7 +148,7 @@ pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Readin
         .then_some(Some(VisibilityGroup { metres, at_least: more || (miles == 10.0 && !figures.starts_with('M')) }))
 }
 
-/// `1000SW`, `100NW`: visibility in a direction, metres. The direction is not kept.
+/// Reads `1000SW`, `100NW`: visibility in a direction, metres. The direction is not kept.
 fn directional_visibility(text: &str) -> Option<f64> {
     let figures = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let direction = &text[figures.len()..];
@@ -156,7 +156,7 @@ fn directional_visibility(text: &str) -> Option<f64> {
     if known && (3..=4).contains(&figures.len()) { digits(figures).map(|m| f64::from(m).max(25.0)) } else { None }
 }
 
-/// `R18R/0350N`, `R04R/2600V5000FT`, `R27L/P1500U`, `R25/1800FT/D`; the inner `None` is missing (`R18R/////`).
+/// Reads `R18R/0350N`, `R04R/2600V5000FT`, `R27L/P1500U`, `R25/1800FT/D`; the inner `None` is missing (`R18R/////`).
 pub(super) fn runway_visual_range(text: &str) -> Option<Reading<RunwayVisualRange>> {
     let (runway, rest) = text.strip_prefix('R')?.split_once('/')?;
     let (number, side) = split(runway, 2)?;
@@ -186,20 +186,20 @@ pub(super) fn runway_visual_range(text: &str) -> Option<Reading<RunwayVisualRang
     }))
 }
 
-/// Cloud of a report: a layer, a sky without, or one that is hidden.
+/// Cloud of a report: a layer, a clear sky, or an obscured one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum CloudGroup {
     /// Amount, and base above the station, m; `None` where missing.
     Layer { amount: Reading<Amount>, base_m: Reading<f64>, kind: CloudKind },
-    /// Nothing (significant) there, or nothing seen by an instrument.
+    /// No (significant) cloud, or none detected by an instrument.
     Clear,
-    /// Hidden, with the vertical visibility in m if known.
+    /// Obscured sky, with the vertical visibility in m if known.
     Obscured(Reading<f64>),
-    /// The instrument saw nothing it could report (`//////`).
+    /// No cloud information from the instrument (`//////`).
     Missing,
 }
 
-/// `SCT042`, `BKN018CB`, `BKN015///`, `///015`, `VV001`, `CLR`, `//////CB`.
+/// Reads `SCT042`, `BKN018CB`, `BKN015///`, `///015`, `VV001`, `CLR`, `//////CB`.
 pub(super) fn cloud(text: &str) -> Option<CloudGroup> {
     if matches!(text, "SKC" | "CLR" | "NSC" | "NCD") {
         return Some(CloudGroup::Clear);
@@ -233,10 +233,10 @@ pub(super) fn cloud(text: &str) -> Option<CloudGroup> {
     Some(if missing { CloudGroup::Missing } else { CloudGroup::Layer { amount, base_m, kind } })
 }
 
-/// Temperatures that a report may carry, C: those that a `Weather` takes.
+/// Accepted temperatures of a report, C: those of a `Weather`.
 const CELSIUS: RangeInclusive<f64> = -90.0..=60.0;
 
-/// A temperature: two digits, M (or a minus) for below zero, or missing.
+/// Reads a temperature: two digits, with M (or a minus) for below zero, or missing.
 fn celsius(text: &str) -> Option<Reading<f64>> {
     if matches!(text, "//" | "" | "XX" | "M" | "MM") {
         return Some(None);
@@ -245,23 +245,23 @@ fn celsius(text: &str) -> Option<Reading<f64>> {
     if figures.len() != 2 {
         return None;
     }
-    // Minus zero says that the reading was between 0 and -0.5; a plain 0 keeps equality simple.
+    // Minus zero means a reading between 0 and -0.5; a plain 0 keeps comparisons simple.
     let t = f64::from(digits(figures)?) * sign + 0.0;
     CELSIUS.contains(&t).then_some(Some(t))
 }
 
-/// `11/10`, `M03/M05`, `03/`, `///05`, `M/M`: temperature and dew point.
+/// Reads `11/10`, `M03/M05`, `03/`, `///05`, `M/M`: temperature and dew point.
 pub(super) fn temperatures(text: &str) -> Option<(Reading<f64>, Reading<f64>)> {
     let (t, d) = match (text.strip_suffix("///"), text.strip_prefix("///")) {
         (Some(t), _) => (t, "//"),
         (_, Some(d)) => ("//", d),
         _ => text.split_once('/')?,
     };
-    // A lone slash or two are no temperatures: `//` is present weather that an instrument could not tell.
+    // One or two slashes alone are no temperatures: `//` is present weather that an instrument could not identify.
     if text.len() > 2 { Some((celsius(t)?, celsius(d)?)) } else { None }
 }
 
-/// `Q1009`, `Q998`, `A2986`, `Q////`: pressure at sea level, hPa.
+/// Reads `Q1009`, `Q998`, `A2986`, `Q////`: pressure at sea level, hPa.
 pub(super) fn pressure(text: &str) -> Option<Reading<f64>> {
     let (unit, figures) = split(text, 1)?;
     let factor = match unit {
@@ -285,8 +285,8 @@ pub(super) struct SeaGroup {
     pub wave_height_m: Reading<f64>,
 }
 
-/// `W10/S5`, `WM01/S2`, `W///S3`, `W10/S/`, `W19/H75` (height in decimetres), `W///H///`: what could not be measured is
-/// slashes.
+/// Reads `W10/S5`, `WM01/S2`, `W///S3`, `W10/S/`, `W19/H75` (height in decimetres), `W///H///`. Slashes stand for
+/// values that could not be measured.
 pub(super) fn sea(text: &str) -> Option<SeaGroup> {
     let body = text.strip_prefix('W')?;
     let (water, surface) = split(body, if body.starts_with('M') { 3 } else { 2 })?;

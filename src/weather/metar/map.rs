@@ -1,4 +1,4 @@
-//! Meaning of a report: words of intensity become rates, classes become figures.
+//! Conversion of a report to a weather: words of intensity become rates, classes become values.
 
 use super::amounts;
 use super::assumed;
@@ -11,15 +11,15 @@ use crate::weather::kinds::{AerosolKind, CloudAmountRule, CloudKind, FogKind, Lo
 use crate::weather::model::{Aerosol, CloudLayer, Fog, Lofted, Precipitation, Sea, Weather, Wind};
 use crate::weather::{LN_20, air, hydrometeors, particles, precipitation};
 
-/// Base of a layer whose height a report leaves out, m.
+/// Base of a layer whose height the report leaves out, m.
 const ASSUMED_BASE_M: f64 = 600.0;
-/// Vertical visibility of a hidden sky without a figure, m.
+/// Vertical visibility of an obscured sky without a figure, m.
 const ASSUMED_VERTICAL_M: f64 = 60.0;
 
-/// Rates of light, moderate and heavy, mm/h: middles of the classes (the heavy class is open).
+/// Returns the rates for light, moderate and heavy, mm/h: the middles of the classes (the heavy class is open).
 ///
-/// Rain: AMS Glossary (2.5 and 7.6 mm/h divide). Showers: WMO-No. 8 (2.5, 10 and 50). Drizzle: AMS (0.3 and 0.5). Snow
-/// in melted water: Rasmussen et al. 1999 (1.0 and 2.5); used only where visibility does not tell it.
+/// Rain: AMS Glossary (bounds 2.5 and 7.6 mm/h). Showers: WMO-No. 8 (2.5, 10 and 50). Drizzle: AMS (0.3 and 0.5). Snow
+/// in melted water: Rasmussen et al. 1999 (1.0 and 2.5), used only if visibility does not give the rate.
 fn class_rate_mm_h(kind: PrecipitationKind, convective: bool) -> [f64; 3] {
     use PrecipitationKind as K;
     match kind {
@@ -35,19 +35,19 @@ fn class_rate_mm_h(kind: PrecipitationKind, convective: bool) -> [f64; 3] {
     }
 }
 
-/// Bounds of rain's classes, mm/h: steady (AMS) and convective (WMO-No. 8).
+/// Bounds of the classes of rain, mm/h: steady (AMS) and convective (WMO-No. 8).
 const RAIN_CLASSES_MM_H: [[(f64, f64); 3]; 2] =
     [[(0.1, 2.5), (2.5, 7.6), (7.6, 50.0)], [(0.1, 2.5), (2.5, 10.0), (10.0, 50.0)]];
 
-/// Rate of rain, mm/h: the class's middle, or less where so much rain could not be seen through as far as the report
-/// says, but not below the class.
+/// Returns the rate of rain, mm/h: the middle of the class, or less if so much rain would allow less visibility than
+/// reported, but not below the class.
 fn rain_rate_mm_h(kind: PrecipitationKind, intensity: Intensity, convective: bool, extinction_per_m: f64) -> f64 {
     let (lo, hi) = RAIN_CLASSES_MM_H[usize::from(convective)][class(intensity)];
     let middle = class_rate_mm_h(kind, convective)[class(intensity)];
     middle.min(hydrometeors::rain_rate_mm_h(extinction_per_m)).clamp(lo, hi)
 }
 
-/// Bounds of snowfall's classes in melted water, mm/h (Rasmussen et al. 1999).
+/// Bounds of the classes of snowfall in melted water, mm/h (Rasmussen et al. 1999).
 const SNOW_CLASSES_MM_H: [(f64, f64); 3] = [(0.05, 1.0), (1.0, 2.5), (2.5, 10.0)];
 
 fn class(intensity: Intensity) -> usize {
@@ -58,20 +58,21 @@ fn class(intensity: Intensity) -> usize {
     }
 }
 
-/// Melted rate of snow, mm/h: what makes the reported visibility (`extinction_per_m` after the air's), or six tenths of
-/// it where fog or blowing snow share the blame, held to the bounds of the reported intensity.
+/// Returns the melted rate of snow, mm/h: the one that gives the reported visibility (`extinction_per_m` is without the
+/// air's). Where fog or blowing snow contribute, snow counts with six tenths of the extinction. Limited to the bounds
+/// of the reported intensity.
 fn snow_rate_mm_h(intensity: Intensity, extinction_per_m: f64, shared: bool) -> f64 {
     let (lo, hi) = SNOW_CLASSES_MM_H[class(intensity)];
     hydrometeors::snow_rate_mm_h(extinction_per_m * if shared { 0.6 } else { 1.0 }).clamp(lo, hi)
 }
 
-/// Kind and liquid part of what a group lets fall.
+/// Returns the kind of a group's precipitation, and its liquid share.
 fn falling_kind(g: &WeatherGroup, temperature_c: f64) -> (PrecipitationKind, Option<f64>) {
     use {Phenomenon as P, PrecipitationKind as K};
     let has = |p: P| g.phenomena.contains(&p);
     let freezing = g.descriptor == Some(Descriptor::Freezing);
     let first = g.phenomena.iter().copied().find(|p| p.falls());
-    // The predominant part is named first (WMO-No. 306, 15.8.9).
+    // The predominant type is named first (WMO-No. 306, 15.8.9).
     let liquid_first = first.is_some_and(|p| matches!(p, P::Rain | P::Drizzle));
     let part = Some(if liquid_first { 0.6 } else { 0.4 });
     let liquid = has(P::Rain) || has(P::Drizzle);
@@ -89,7 +90,7 @@ fn falling_kind(g: &WeatherGroup, temperature_c: f64) -> (PrecipitationKind, Opt
         Some(P::IcePellets) => (K::IcePellets, None),
         Some(P::Hail) => (K::Hail, None),
         Some(P::SmallHail) => (K::SmallHail, None),
-        // Unknown precipitation: rain melts above about 2 C and snow survives below about 0 (Matsuo and Sasyo 1981).
+        // Unknown precipitation: snow melts above about 2 C and survives below about 0 (Matsuo and Sasyo 1981).
         Some(P::UnknownPrecipitation) if freezing => (K::FreezingRain, None),
         Some(P::UnknownPrecipitation) if temperature_c > 2.0 => (K::Rain, None),
         Some(P::UnknownPrecipitation) if temperature_c > 0.0 => (K::Sleet, None),
@@ -101,7 +102,7 @@ fn falling_kind(g: &WeatherGroup, temperature_c: f64) -> (PrecipitationKind, Opt
 fn precipitation(p: &Parsed, w: &Weather) -> Precipitation {
     use Phenomenon as P;
     let here = |g: &&WeatherGroup| g.intensity != Intensity::Vicinity;
-    // Thunder in the vicinity (VCTS) is another place's.
+    // Thunder in the vicinity (VCTS) is not at the station.
     let thunder = p.weather.iter().filter(here).any(|g| g.descriptor == Some(Descriptor::Thunderstorm));
     let falls = |g: &&WeatherGroup| {
         here(g) && g.descriptor != Some(Descriptor::Blowing) && g.descriptor != Some(Descriptor::Drifting)
@@ -125,7 +126,7 @@ fn precipitation(p: &Parsed, w: &Weather) -> Precipitation {
     Precipitation { kind, rate_mm_h, liquid_fraction, showers, thunderstorm: thunder, hail: hail && !hail_is_all }
 }
 
-/// Fog, particles and lifted matter, from all groups that are here.
+/// Sets fog, particles and lifted matter from all groups at the station.
 fn obscurations(p: &Parsed, w: &mut Weather) {
     use {Descriptor as D, Phenomenon as P};
     for g in p.weather.iter().filter(|g| g.intensity != Intensity::Vicinity) {
@@ -163,7 +164,7 @@ fn lift(w: &mut Weather, lofted: LoftedKind, aerosol: AerosolKind) {
     w.aerosol = Aerosol::of(aerosol);
 }
 
-/// Layers of the report by `rule`, and the vertical visibility.
+/// Sets the layers of the report by `rule`, and the vertical visibility.
 fn clouds(p: &Parsed, rule: CloudAmountRule, w: &mut Weather, assumed: &mut Vec<&'static str>) {
     let groups =
         p.clouds.iter().filter_map(|g| if let CloudGroup::Layer { amount, .. } = g { Some(*amount) } else { None });
@@ -193,8 +194,8 @@ fn clouds(p: &Parsed, rule: CloudAmountRule, w: &mut Weather, assumed: &mut Vec<
     name_the_thundercloud(w);
 }
 
-/// Thunder comes from a cumulonimbus: where no layer is named so, the lowest that covers half the sky is one, else the
-/// lowest.
+/// Names the cumulonimbus from which thunder comes. If no layer is one, the lowest that covers half the sky becomes
+/// one, else the lowest.
 fn name_the_thundercloud(w: &mut Weather) {
     let named = w.clouds.iter().any(|c| c.kind == CloudKind::Cumulonimbus);
     if !w.precipitation.thunderstorm || named {
@@ -225,8 +226,8 @@ fn wind(p: &Parsed, assumed: &mut Vec<&'static str>) -> Wind {
     }
 }
 
-/// Visibility as a figure; where the report says only "at least", what humidity and precipitation leave, at least that
-/// much; where it says nothing, not more than its fog or haze leaves.
+/// Returns the visibility, m. If the report gives only a lower bound, it follows from humidity and precipitation, and
+/// is at least that bound. If the report gives none, it is at most what its fog or haze allow.
 fn visibility_m(p: &Parsed, w: &Weather, assumed: &mut Vec<&'static str>) -> f64 {
     let (least, most) = match p.visibility {
         _ if p.cavok => (10_000.0, f64::INFINITY),
@@ -241,10 +242,10 @@ fn visibility_m(p: &Parsed, w: &Weather, assumed: &mut Vec<&'static str>) -> f64
     particles::unlimited_visibility_m(w.relative_humidity, falling).clamp(least, most)
 }
 
-/// The weather and its surroundings.
+/// Converts a report to its weather and circumstances.
 ///
 /// # Errors
-/// [`Status::Parse`] if the figures cannot stand together; the groups' own ranges keep that from happening.
+/// [`Status::Parse`] if the values are not consistent; the groups' own ranges prevent that.
 pub(super) fn report(p: Parsed, options: &MetarOptions) -> Result<MetarReport> {
     let rule = match options.cloud_amounts {
         CloudAmountRule::ByStation => amounts::rule_of(&p.station),
@@ -285,7 +286,7 @@ fn weather(p: &Parsed, rule: CloudAmountRule, assumed: &mut Vec<&'static str>) -
         None => assumed.push("pressure_hpa"),
     }
     obscurations(p, &mut w);
-    // Snow's rate needs the visibility and an open-ended visibility needs the rate: a first figure serves the second.
+    // The rate of snow needs the visibility, and an open-ended visibility needs the rate: a first value serves both.
     w.visibility_m = p.visibility.map_or(10_000.0, |v| v.metres);
     w.precipitation = precipitation(p, &w);
     w.visibility_m = visibility_m(p, &w, assumed);
@@ -340,7 +341,7 @@ mod tests {
             assert_eq!(said, taken, "{station}");
         }
         assert_near(&covers("LFPG", R::ByStation, "OVC020 BKN045").0, &[1.0, bkn]);
-        // What is hidden in all is what the highest group says.
+        // The highest group gives the total hidden sky.
         let clear: f64 = covers("KADW", R::ByStation, groups).0.iter().map(|c| 1.0 - c).product();
         assert!((1.0 - clear - bkn).abs() < 1e-12, "{clear}");
     }

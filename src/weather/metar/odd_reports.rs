@@ -1,10 +1,10 @@
-//! Tests: reports as airports send them, with everything the code form (WMO-No. 306, FM 15) allows, and what comes out
-//! of damage.
+//! Tests with reports as airports send them, with everything that the code form (WMO-No. 306, FM 15) allows, and with
+//! damaged reports.
 
 use crate::Status;
 use crate::weather::{CloudKind, MetarReport, PrecipitationKind, Weather, derive};
 
-/// Reports that must be read, most of them with one group that is rare.
+/// Reports that must be read, most of them with one rare group.
 const READ: &[&str] = &[
     "METAR EFHK 121150Z AUTO 00000KT 9999NDV NCD M12/M15 Q1031",
     "METAR LFPG 121200Z AUTO VRB02KT 9999 NSC 21/11 Q1019 NOSIG",
@@ -70,7 +70,7 @@ const READ: &[&str] = &[
     "METAR EGPD 121120Z 20012KT 9999 DZ SHRA BKN012 10/09 Q1003 A2962 INTER 3000",
 ];
 
-/// Reports with words that are no group, with those words: all else is read.
+/// Reports with words that are no group, and those words; everything else is read.
 const UNREAD: &[(&str, &[&str])] = &[
     ("METAR UEEE 121100Z 00000MPS 9999 NSC M91/M92 Q1042", &["M91/M92"]),
     ("METAR UEEE 121100Z 00000MPS 9999 FEW015TCB 12/10 Q1042", &["FEW015TCB"]),
@@ -85,12 +85,12 @@ const UNREAD: &[(&str, &[&str])] = &[
     ("METAR KCGF 260045Z 25005KY 10SM BKN040 20/10 A3005", &["25005KY"]),
     ("METAR KMER 111445Z 00000KT 8M OVC024 09/09 A3031", &["8M"]),
     ("METAR KDEN 321853Z 24009KT 10SM CLR 28/04 A3012", &["321853Z"]),
-    // What follows a foreign word is not the weather now.
+    // Words after an unknown word do not describe the weather now.
     ("METAR EGLL 121120Z 24010KT 9999 NCD 10/05 Q1013 TEMPORARY 3000 RA", &["TEMPORARY", "3000", "RA"]),
     ("METAR EGLL 121120Z 24010KT 9999 NCD 10/05 TEMPORARY 3000 RA Q1013", &["TEMPORARY", "3000", "RA"]),
 ];
 
-/// Reports with groups glued, parted, out of order, marked or left out: every word is read.
+/// Reports with groups joined, split, out of order, marked as missing or left out: every word is read.
 const WHOLE: &[&str] = &[
     "KNXP 111456Z AUTO A3030 RMK AO2 SLPNO",
     "KMRH 111458Z AUTO RMK AO2 TSNO",
@@ -241,10 +241,10 @@ fn odd_groups_mean_what_they_say() {
     assert_eq!((of("YSSY").trend.as_str(), of("MMMX").remarks.as_str()), ("FM1230 18020G32KT", "HZY"));
 }
 
-/// 20,000 damaged reports: none panics, and what is accepted is a weather that derives.
+/// 20,000 damaged reports: none panics, and each that is accepted gives a weather from which conditions derive.
 #[test]
 fn damaged_reports_neither_panic_nor_give_what_cannot_be() {
-    // Linear congruence (Knuth, MMIX): the upper bits pick.
+    // A linear congruential generator (Knuth, MMIX); the upper bits choose.
     let mut state = 0x5EED_u64;
     let mut pick = |n: usize| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

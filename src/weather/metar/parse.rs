@@ -1,9 +1,9 @@
-//! The groups of a report, one after another: which word is which group, and which words are none.
+//! Reads the groups of a report one after another: which word is which group, and which words are none.
 //!
-//! Stations leave out what they could not measure (FMH-1, 12.5), mark it (`////`, `M`), glue groups together, change
-//! their order and add words of their own. So a word is read as whatever group it is, in any order up to the pressure;
-//! what follows the pressure is no longer the weather at the time of the report. A word that is no group is kept as
-//! unread.
+//! Stations leave out what they could not measure (FMH-1, 12.5), mark it (`////`, `M`), join groups without a space,
+//! change their order and add words of their own. A word is therefore read as any group that it fits, in any order up
+//! to the pressure. Words after the pressure no longer describe the weather at the time of the report. A word that is
+//! no group is kept as unread.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use super::supplements;
 use crate::error::{Error, Result, Status};
 use crate::weather::model::MAX_CLOUD_LAYERS;
 
-/// A report as it is written, before it means weather.
+/// A report as written, before it is converted to weather.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Parsed {
     pub special: bool,
@@ -31,7 +31,7 @@ pub(super) struct Parsed {
     pub lowest_visibility_m: Option<f64>,
     pub runways: Vec<RunwayVisualRange>,
     pub weather: Vec<WeatherGroup>,
-    /// The station could not tell the present weather (`//`, PWINO).
+    /// Whether the station could not tell the present weather (`//`, PWINO).
     pub weather_unknown: bool,
     pub clouds: Vec<CloudGroup>,
     pub temperature_c: Reading<f64>,
@@ -43,13 +43,13 @@ pub(super) struct Parsed {
     /// Words that are no group, in the report's order.
     pub unread: Vec<String>,
     pub places: MetarPlaces,
-    /// Whether words from here on no longer say what the weather is now.
+    /// Whether the following words no longer describe the weather now.
     ended: bool,
-    /// Groups of the weather so far, those marked as missing included.
+    /// Number of weather groups so far, with those marked as missing.
     groups: usize,
 }
 
-/// The words still to read.
+/// The words that are still to be read.
 struct Reader<'a> {
     report: &'a str,
     words: Vec<Word<'a>>,
@@ -61,20 +61,20 @@ impl<'a> Reader<'a> {
         self.words.get(self.next + ahead).map(|w| w.text)
     }
 
-    /// Takes the next word if `read` understands it.
+    /// Takes the next word if `read` accepts it.
     fn optional<T>(&mut self, read: impl Fn(&str) -> Option<T>) -> Option<T> {
         let value = read(self.peek(0)?)?;
         self.next += 1;
         Some(value)
     }
 
-    /// Byte at which word `index` begins, or the last one ends.
+    /// Returns the byte at which word `index` begins, or at which the last word ends.
     fn at(&self, index: usize) -> usize {
         let end = self.words.last().map_or(0, |w| w.at + w.text.len());
         self.words.get(index).map_or(end, |w| w.at)
     }
 
-    /// Bytes of the words from `first` up to the next one.
+    /// Returns the byte range of the words from `first` up to the next one.
     fn bytes_since(&self, first: usize) -> Range<usize> {
         match self.words.get(first..self.next) {
             Some([one, .., last]) => one.at..last.at + last.text.len(),
@@ -87,7 +87,7 @@ impl<'a> Reader<'a> {
         fault(self.report, self.at(index), expected, self.words.get(index).map(|w| w.text))
     }
 
-    /// Text and bytes from here to before RMK or to the end; takes those words.
+    /// Takes the words from here to RMK or to the end, and returns their text and byte range.
     fn rest(&mut self, up_to_remarks: bool) -> (String, Range<usize>) {
         let first = self.next;
         while self.peek(0).is_some_and(|w| !(up_to_remarks && is_remarks(w))) {
@@ -98,13 +98,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Four letters or digits, the first a letter.
+/// Reads a station: four letters or digits, the first a letter.
 fn station(text: &str) -> Option<String> {
     let good = text.len() == 4 && text.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit());
     (good && text.as_bytes()[0].is_ascii_uppercase() && text != "AUTO").then(|| text.into())
 }
 
-/// `171853Z`: day, hour and minute; some leave out the Z.
+/// Reads `171853Z`: day, hour and minute; some stations leave out the Z.
 fn time(text: &str) -> Option<(u32, u32, u32)> {
     let figures = text.strip_suffix('Z').unwrap_or(text);
     if figures.len() != 6 || !figures.bytes().all(|b| b.is_ascii_digit()) {
@@ -115,12 +115,12 @@ fn time(text: &str) -> Option<(u32, u32, u32)> {
     ((1..=31).contains(&day) && hour < 24 && minute < 60).then_some((day, hour, minute))
 }
 
-/// Beginning of the remarks.
+/// Whether a word begins the remarks.
 fn is_remarks(text: &str) -> bool {
     matches!(text, "RMK" | "RMKS")
 }
 
-/// Beginning of a trend forecast; TEMP0 is a frequent misspelling.
+/// Whether a word begins a trend forecast; TEMP0 is a frequent misspelling.
 fn is_trend(text: &str) -> bool {
     let from = text.strip_prefix("FM").is_some_and(|t| t.bytes().all(|b| b.is_ascii_digit()));
     matches!(text, "NOSIG" | "BECMG" | "TEMPO" | "TEMP0" | "INTER") || from || text.starts_with("PROB")
@@ -129,8 +129,8 @@ fn is_trend(text: &str) -> bool {
 /// Reads all groups.
 ///
 /// # Errors
-/// [`Status::Parse`] with line, column and what was expected where there is no station, no observation, or no group of
-/// the weather.
+/// [`Status::Parse`] with line, column and what was expected, if there is no station, no observation, or no weather
+/// group.
 pub(super) fn parse(report: &str) -> Result<Parsed> {
     if report.len() > MAX_METAR_BYTES {
         let message = format!("METAR must be at most {MAX_METAR_BYTES} bytes, got {}", report.len());
@@ -149,17 +149,16 @@ pub(super) fn parse(report: &str) -> Result<Parsed> {
             (p.trend, p.places.trend) = r.rest(true);
         } else if !group(&mut r, &mut p) {
             first_unread.get_or_insert(r.next);
-            // After the temperatures a foreign word ends the groups as the pressure does: what follows may be a
-            // forecast.
+            // After the temperatures an unknown word ends the groups, as the pressure does: a forecast may follow.
             p.ended |= p.temperature_c.is_some();
             p.unread.push(word.into());
             r.next += 1;
         }
     }
     p.places.unread = first_unread.map_or(0..0, |i| r.words[i].at..r.words[i].at + r.words[i].text.len());
-    // The present weather's identifier did not work (FMH-1, 12.7.2), or nothing did.
+    // The sensor for present weather did not work (FMH-1, 12.7.2), or nothing did.
     p.weather_unknown |= p.remarks.split(' ').any(|w| w == "PWINO") || p.groups == 0;
-    // A station that could measure nothing still closes its report by remarks.
+    // A station that could measure nothing still ends its report with remarks.
     if p.groups == 0 && !remarked {
         let expected = "a group of the weather, such as 24009KT, 4500, 10SM, -RA, SCT042, 11/10 or Q1009";
         return Err(r.refuse(first_unread.unwrap_or(r.words.len()), expected));
@@ -180,9 +179,9 @@ fn heading(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
             Some("NIL") => return Err(r.refuse(r.next, "an observation; this station sent none")),
             Some("AUTO") => p.automatic = true,
             Some("COR") => p.corrected = true,
-            // Canada numbers its corrections by letters.
+            // Canada marks its corrections with letters.
             Some(w) if w.len() == 3 && w.starts_with("CC") => p.corrected = true,
-            // Sent late (Canada, United States).
+            // RTD: sent late (Canada, United States).
             Some("RTD") => {}
             Some(w) if p.time.is_none() && time(w).is_some() => p.time = time(w),
             _ => return Ok(()),
@@ -191,7 +190,7 @@ fn heading(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
     }
 }
 
-/// Takes the next group, of one word or of several; `false` if the next word is none.
+/// Takes the next group, of one word or of several. Returns `false` if the next word is none.
 fn group(r: &mut Reader<'_>, p: &mut Parsed) -> bool {
     let Some(word) = r.peek(0) else { return false };
     let is_now = !p.ended;
@@ -219,10 +218,10 @@ fn runway(r: &Reader<'_>, word: &str, p: &mut Parsed) -> bool {
     true
 }
 
-/// Marks in place of a group that could not be measured: slashes, and the letter M of American stations.
+/// Reads marks in place of a group that could not be measured: slashes, and the letter M of American stations.
 fn missing(word: &str, p: &mut Parsed) -> bool {
     let slashes = word.bytes().all(|b| b == b'/');
-    // Two stand for the present weather, six and more for the clouds.
+    // Two slashes stand for the present weather, six and more for the clouds.
     p.weather_unknown |= slashes && word.len() == 2;
     if slashes && word.len() >= 6 {
         p.clouds.push(CloudGroup::Missing);
@@ -230,7 +229,7 @@ fn missing(word: &str, p: &mut Parsed) -> bool {
     slashes || matches!(word, "M" | "MM" | "MMM" | "MMMM" | "MMMMM" | "MISG" | "KT" | "MPS")
 }
 
-/// Temperatures and pressure, which are read wherever they stand. Some stations give the pressure in both units; the
+/// Reads temperatures and pressure, at any place in the report. Some stations give the pressure in both units; the
 /// first counts.
 fn air(word: &str, p: &mut Parsed) -> bool {
     if let Some(pressure) = groups::pressure(word) {
@@ -250,8 +249,8 @@ fn sea(word: &str, p: &mut Parsed) -> bool {
     group.is_some()
 }
 
-/// Reads a group whose figures and unit stand apart (`1 1/2SM`, `1/4 SM`, `24009 KT`); the number of its words, 0 if
-/// there is none.
+/// Reads a group whose figures and unit are separate words (`1 1/2SM`, `1/4 SM`, `24009 KT`). Returns the number of its
+/// words, 0 if there is none.
 fn spaced(r: &Reader<'_>, p: &mut Parsed) -> usize {
     let (Some(first), Some(second)) = (r.peek(0), r.peek(1)) else { return 0 };
     let third = r.peek(2).unwrap_or("");
@@ -272,7 +271,7 @@ fn spaced(r: &Reader<'_>, p: &mut Parsed) -> usize {
     if two { 2 } else { 0 }
 }
 
-/// A word as a group, or as several that lack the blank between them: `SCT120BKN180`.
+/// Reads a word as a group, or as several groups without a space between them: `SCT120BKN180`.
 fn pieces(word: &str, p: &mut Parsed) -> bool {
     if one(word, p) {
         return true;
@@ -286,11 +285,11 @@ fn pieces(word: &str, p: &mut Parsed) -> bool {
     read
 }
 
-/// Longest word that is taken apart, bytes.
+/// Longest word that is split into groups, bytes.
 const MAX_GLUED_BYTES: usize = 40;
 
-/// Groups that stand in a word without blanks, of which one at least has figures: letters alone make words of any
-/// language.
+/// Splits a word without spaces into groups. At least one of them must have figures, because letters alone form words
+/// of any language.
 fn split(word: &str, figures: bool) -> Option<Vec<&str>> {
     let has_figures = |t: &str| {
         groups::wind(t).flatten().is_some()
@@ -326,7 +325,7 @@ fn visibility_of(word: &str) -> Option<Reading<VisibilityGroup>> {
     groups::visibility_miles(None, word).or_else(|| groups::visibility_metres(word))
 }
 
-/// Takes one word that says what wind, sight, weather or sky are now; `false` if it does not, or says it again.
+/// Takes one word that gives wind, visibility, weather or sky now. Returns `false` if it does not, or repeats one.
 fn one(word: &str, p: &mut Parsed) -> bool {
     if word == "CAVOK" {
         p.cavok = true;
@@ -346,8 +345,8 @@ fn one(word: &str, p: &mut Parsed) -> bool {
     true
 }
 
-/// A visibility, or a further one: with a direction, or without where an automatic station cannot tell it (`9999
-/// 3100`). The first is the prevailing one.
+/// Reads a visibility, or a further one: with a direction, or without if an automatic station cannot tell it
+/// (`9999 3100`). The first is the prevailing one.
 fn visibility(word: &str, sight: Reading<VisibilityGroup>, p: &mut Parsed) -> bool {
     if p.visibility.is_none() && !p.cavok {
         p.visibility = sight;

@@ -1,19 +1,19 @@
-//! The groups of present weather: `+TSRA`, `FZFG`, `BLSN` (WMO code table 4678).
+//! Groups of present weather: `+TSRA`, `FZFG`, `BLSN` (WMO code table 4678).
 
 /// Prefix of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Intensity {
     /// `-`
     Light,
-    /// nothing
+    /// no prefix
     Moderate,
     /// `+`
     Heavy,
-    /// `VC`: 8 to 16 km away, not here.
+    /// `VC`: in the vicinity, 8 to 16 km away.
     Vicinity,
 }
 
-/// How something is.
+/// Descriptor of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Descriptor {
     Shallow,
@@ -58,12 +58,12 @@ pub(super) enum Phenomenon {
 pub(super) struct WeatherGroup {
     pub intensity: Intensity,
     pub descriptor: Option<Descriptor>,
-    /// In the report's order, the predominant first.
+    /// Phenomena in the report's order, the predominant first.
     pub phenomena: Vec<Phenomenon>,
 }
 
 impl Phenomenon {
-    /// Whether it falls.
+    /// Whether it is precipitation.
     pub fn falls(self) -> bool {
         use Phenomenon as P;
         matches!(
@@ -130,7 +130,7 @@ fn fits(descriptor: Descriptor, phenomena: &[Phenomenon]) -> bool {
     }
 }
 
-/// Reads a group; the inner `None` is present weather that the instrument could not tell (`//`).
+/// Reads a group. The inner `None` is present weather that the instrument could not identify (`//`).
 pub(super) fn weather(text: &str) -> Option<Option<WeatherGroup>> {
     if text == "//" {
         return Some(None);
@@ -144,7 +144,7 @@ pub(super) fn weather(text: &str) -> Option<Option<WeatherGroup>> {
     if !rest.is_ascii() || rest.is_empty() || rest.len() % 2 != 0 || rest.len() > 10 {
         return None;
     }
-    // Some write showers and thunder together.
+    // Some stations report showers and thunder together.
     rest = rest.strip_prefix("SHTS").map_or(rest, |_| &rest[2..]);
     let described = descriptor(&rest[..2]);
     if described.is_some() {
@@ -175,7 +175,7 @@ mod tests {
         assert_eq!(read("TS"), Some((I::Moderate, Some(D::Thunderstorm), vec![])));
         assert_eq!(read("FZFG"), Some((I::Moderate, Some(D::Freezing), vec![P::Fog])));
         assert_eq!(weather("//"), Some(None));
-        // Not in the code, but sent.
+        // Not in the code, but sent by stations.
         assert_eq!(read("-SHTSRA"), Some((I::Light, Some(D::Thunderstorm), vec![P::Rain])));
         assert_eq!(read("TSSHRA"), Some((I::Moderate, Some(D::Thunderstorm), vec![P::Rain])));
         assert_eq!(read("-RABR"), Some((I::Light, None, vec![P::Rain, P::Mist])));

@@ -1,10 +1,10 @@
-//! Groups of a report that say nothing of the weather now: recent weather, wind shear, states of runways, military
-//! colours, rainfall so far.
+//! Groups of a report that do not describe the weather now: recent weather, wind shear, runway states, military colour
+//! codes, rainfall.
 
 use super::phenomena;
 
-/// Whether a word is such a group. Some are as short as anything: after the pressure (`ended`) all that begin like a
-/// state of a runway count, before it only what cannot be another group.
+/// Whether a word is such a group. Some groups are very short. After the pressure (`ended`) every word that begins like
+/// a runway state counts; before it, only words that cannot be another group.
 pub(super) fn is_supplement(text: &str, ended: bool) -> bool {
     let colour = matches!(text, "BLU+" | "BLU" | "WHT" | "GRN" | "YLO" | "YLO1" | "YLO2" | "AMB" | "RED")
         || text.starts_with("BLACK");
@@ -14,7 +14,8 @@ pub(super) fn is_supplement(text: &str, ended: bool) -> bool {
     colour || recent || shear || out_of_order || is_runway_state(text) || (ended && begins_as_runway(text))
 }
 
-/// `R24/CLRD70`, `R88/290095`, `R01/SNOCLO`, and the older forms: `88490391`, `08CLRD62`.
+/// Whether a word is a runway state: `R24/CLRD70`, `R88/290095`, `R01/SNOCLO`, or an older form: `88490391`,
+/// `08CLRD62`.
 fn is_runway_state(text: &str) -> bool {
     let figures = |t: &str, n: usize| t.len() == n && t.bytes().all(|b| b.is_ascii_digit() || b == b'/');
     if figures(text, 8) {
@@ -29,7 +30,8 @@ fn is_runway_state(text: &str) -> bool {
         && (figures(state, 6) || state.starts_with("CLRD") || state == "SNOCLO")
 }
 
-/// Whatever begins with R and has a figure or a slash: runways in local forms, Australia's rainfall (`RF00.0/016.4`).
+/// Whether a word begins with R and has a digit or a slash: runways in local forms, Australia's rainfall
+/// (`RF00.0/016.4`).
 fn begins_as_runway(text: &str) -> bool {
     text.strip_prefix('R').is_some_and(|r| r.contains('/') || r.starts_with(|c: char| c.is_ascii_digit()))
 }

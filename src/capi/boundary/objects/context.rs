@@ -19,7 +19,7 @@ pub(in crate::capi) struct ContextObject {
 }
 
 impl ContextObject {
-    /// A new context of a device.
+    /// Creates the object of a new context of a device.
     pub(in crate::capi) fn new(cell: Arc<DeviceCell>, context: Context) -> Self {
         Self { cell, context: RwLock::new(context) }
     }

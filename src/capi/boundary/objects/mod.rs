@@ -1,5 +1,5 @@
-//! Objects that handles stand for: one file holds the handle's opaque type in C, the object in Rust and the lock that
-//! orders its calls.
+//! Objects behind the handles. One file holds the handle's opaque type in C, the object in Rust, and the lock that
+//! orders the object's calls.
 
 pub(in crate::capi) mod context;
 pub(in crate::capi) mod device;

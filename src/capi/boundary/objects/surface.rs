@@ -19,7 +19,7 @@ pub(in crate::capi) struct SurfaceObject {
 }
 
 impl SurfaceObject {
-    /// A new surface of a device.
+    /// Creates the object of a new surface of a device.
     pub(in crate::capi) fn new(cell: Arc<DeviceCell>, surface: Surface) -> Self {
         Self { cell, surface: Mutex::new(surface) }
     }

@@ -13,9 +13,9 @@ pub struct wk_texture {
 pub(in crate::capi) struct TextureObject {
     pub(in crate::capi) cell: Arc<DeviceCell>,
     pub(in crate::capi) texture: wgpu::Texture,
-    /// A checked `wk_format`.
+    /// Format of the texture, a checked `wk_format`.
     pub(in crate::capi) format: u32,
-    /// Reads and writes wait for the GPU; one at a time.
+    /// Lock of reads and writes, which wait for the GPU, one at a time.
     pub(in crate::capi) transfer: Mutex<()>,
 }
 

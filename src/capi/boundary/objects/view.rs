@@ -21,16 +21,16 @@ pub(in crate::capi) struct ViewObject {
     pub(in crate::capi) cell: Arc<DeviceCell>,
     pub(in crate::capi) context: Arc<ContextObject>,
     view: Mutex<View>,
-    /// Whether the host samples the veil, which then is handed over after each frame.
+    /// Whether the host samples the veil. Each frame then hands the veil over to the host.
     veil: AtomicBool,
-    /// Whether it samples the cube map of what stands around.
+    /// Whether the host samples the cube map of the surroundings.
     environment: AtomicBool,
-    /// Whether it samples the map of the clouds' shadows.
+    /// Whether the host samples the map of the clouds' shadows.
     cloud_shadows: AtomicBool,
 }
 
 impl ViewObject {
-    /// A new view of a context, of which the host samples nothing yet.
+    /// Creates the object of a new view of a context. The host samples none of its textures yet.
     pub(in crate::capi) fn new(context: Arc<ContextObject>, view: View) -> Self {
         Self {
             cell: context.cell.clone(),
@@ -42,7 +42,7 @@ impl ViewObject {
         }
     }
 
-    /// From now on the veil is handed over.
+    /// Notes that the host samples the veil: later frames hand it over.
     pub(in crate::capi) fn uses_veil(&self) {
         self.veil.store(true, Ordering::Relaxed);
     }
@@ -52,7 +52,7 @@ impl ViewObject {
         self.veil.load(Ordering::Relaxed)
     }
 
-    /// From now on the cube map is handed over.
+    /// Notes that the host samples the cube map: later frames hand it over.
     pub(in crate::capi) fn uses_environment(&self) {
         self.environment.store(true, Ordering::Relaxed);
     }
@@ -62,7 +62,7 @@ impl ViewObject {
         self.environment.load(Ordering::Relaxed)
     }
 
-    /// From now on the map of the clouds' shadows is handed over.
+    /// Notes that the host samples the map of the clouds' shadows: later frames hand it over.
     pub(in crate::capi) fn uses_cloud_shadows(&self) {
         self.cloud_shadows.store(true, Ordering::Relaxed);
     }

@@ -1,11 +1,11 @@
-//! Bindings in the host's context: programs, vertex arrays, buffers, textures, samplers, images, framebuffers,
+//! Bindings of the host's context: programs, vertex arrays, buffers, textures, samplers, images, framebuffers,
 //! transform feedback.
 
 use super::super::{api::Api, check::GlInfo, names::*};
 
-/// wgpu's backend uses this many texture units, samplers and buffer slots at most, counted from 0.
+/// Largest number of texture units, samplers and buffer slots that wgpu's backend uses, counted from 0.
 const SLOTS: u32 = 16;
-/// Storage images it may bind.
+/// Largest number of storage images that it binds.
 const IMAGES: u32 = 8;
 
 #[derive(Clone, Copy, Default)]
@@ -25,7 +25,7 @@ struct Image {
     format: u32,
 }
 
-/// The indexed bindings of one kind of buffer.
+/// Indexed bindings of one kind of buffer.
 struct IndexedBuffers {
     target: u32,
     binding: u32,
@@ -75,7 +75,7 @@ pub(super) struct Bindings {
     indexed: Vec<IndexedBuffers>,
     /// (target, binding query)
     textures: Vec<(u32, u32)>,
-    /// Saved texture names, `textures.len()` a unit.
+    /// Saved texture names, `textures.len()` for each unit.
     bound: Vec<u32>,
     samplers: Vec<u32>,
     images: Vec<Image>,
@@ -108,7 +108,7 @@ impl Bindings {
         }
         let mut buffers = vec![
             (ARRAY_BUFFER, ARRAY_BUFFER_BINDING, 0),
-            // The copy targets are their own binding queries (OpenGL 3.1, ES 3.0).
+            // For the copy targets, the target is also the binding query (OpenGL 3.1, ES 3.0).
             (COPY_READ_BUFFER, COPY_READ_BUFFER, 0),
             (COPY_WRITE_BUFFER, COPY_WRITE_BUFFER, 0),
             (PIXEL_PACK_BUFFER, PIXEL_PACK_BUFFER_BINDING, 0),
@@ -147,7 +147,7 @@ impl Bindings {
         }
     }
 
-    /// The host's framebuffer for reading.
+    /// Returns the host's framebuffer for reading.
     pub(super) fn read_framebuffer(&self) -> u32 {
         self.read
     }
@@ -218,7 +218,7 @@ impl Bindings {
         for indexed in &self.indexed {
             indexed.restore(api);
         }
-        // The element buffer belongs to the vertex array, so that comes first; wgpu's own array is left behind.
+        // The vertex array comes first, because the element buffer belongs to it; wgpu's own array is no longer bound.
         api.BindVertexArray(self.vertex_array);
         for (target, _, name) in &self.buffers {
             api.BindBuffer(*target, *name);

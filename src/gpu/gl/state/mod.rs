@@ -1,13 +1,14 @@
-//! The host's OpenGL state while Welkin draws in the host's own context: saved, set to what wgpu takes for granted,
-//! and put back.
+//! Host's OpenGL state in [`super::GlMode::HostContext`]: saved before Welkin draws, set to what wgpu assumes, and
+//! restored after.
 //!
-//! *Leaks in*: wgpu's backend sets most of what it needs at every pass (masks, scissor, blending, stencil, samplers),
-//! but trusts a context of its own for the rest: a vertex array that is not 0, no rasteriser discard, filled polygons,
-//! the default clip control, packed pixels, no logic operation, every sample covered, nothing clamped. `normalise` sets
-//! that. *Leaks out*: everything it sets. One list serves both: what is saved is the union.
+//! *Host state that would affect wgpu*: wgpu's backend sets most of what it needs at every pass (masks, scissor,
+//! blending, stencil, samplers). For the rest it assumes a context of its own: a vertex array other than 0, no
+//! rasteriser discard, filled polygons, the default clip control, tightly packed pixels, no logic operation, full
+//! sample coverage, no colour clamping. `normalise` sets that. *wgpu state that would affect the host*: everything that
+//! wgpu sets. One list serves both: the union is saved.
 //!
-//! Not in the list because they cannot be put aside: conditional rendering and queries that count (the `counting` room
-//! refuses them).
+//! Conditional rendering and active queries are not in the list, because they cannot be suspended; the `counting` room
+//! refuses them.
 
 mod bind;
 mod pixel;
@@ -19,14 +20,14 @@ use super::{
     names::*,
 };
 
-/// One `glEnable` switch, and how a fresh context has it.
+/// One `glEnable` switch, and its value in a fresh context.
 struct Toggle {
     cap: u32,
     fresh: bool,
     was: bool,
 }
 
-/// The saved state of one context. Everything is allocated when the device is made, nothing in a frame.
+/// Saved state of one context. All memory is allocated with the device, none during a frame.
 pub(super) struct HostState {
     toggles: Vec<Toggle>,
     raster: raster::Raster,
@@ -46,8 +47,9 @@ impl HostState {
         }
     }
 
-    /// Reads the host's state. Leaves the private framebuffer `probe` bound: some drivers clamp what they answer (the
-    /// stencil reference, the blend colour) to what the bound framebuffer can hold, and `probe` holds everything.
+    /// Reads the host's state. Leaves the private framebuffer `probe` bound, because some drivers clamp values that
+    /// they return (the stencil reference, the blend colour) to the range of the bound framebuffer; that of `probe` is
+    /// wide enough for all.
     pub(super) fn save(&mut self, api: &Api, probe: u32) {
         self.pending_error = api.take_error();
         for t in &mut self.toggles {
@@ -59,12 +61,12 @@ impl HostState {
         self.pixels.save(api);
     }
 
-    /// Whether the host had switch `cap` on when its state was saved.
+    /// Whether the host had switch `cap` on when the state was saved.
     pub(super) fn was_on(&self, cap: u32) -> bool {
         self.toggles.iter().any(|t| t.cap == cap && t.was)
     }
 
-    /// Sets what a fresh context has, with wgpu's vertex array `vao` bound.
+    /// Sets the state of a fresh context, with wgpu's vertex array `vao` bound.
     pub(super) fn normalise(&self, api: &Api, vao: u32) {
         self.bindings.normalise(api, vao);
         for t in self.toggles.iter().filter(|t| t.was != t.fresh) {
@@ -74,14 +76,15 @@ impl HostState {
         self.pixels.normalise(api);
     }
 
-    /// Puts the host's state back as it was when saved. Answers the first error that OpenGL raised meanwhile.
+    /// Restores the host's saved state. Returns the first error that OpenGL has raised since the save.
     pub(super) fn restore(&self, api: &Api) -> u32 {
         self.bindings.restore(api);
         self.raster.restore(api);
         self.pixels.restore(api);
         let raised = api.take_error();
         raise(api, self.pending_error, self.bindings.read_framebuffer());
-        // Debug output is one of these: a host that listens hears nothing of what happened in between.
+        // One of the switches is debug output: the host's debug callback gets no messages about what came before this
+        // loop.
         for t in &self.toggles {
             api.set_enabled(t.cap, t.was);
         }
@@ -89,7 +92,7 @@ impl HostState {
     }
 }
 
-/// Raises the error that the host had not yet read when this call began, so that the host still finds it.
+/// Raises the error that was pending when the state was saved, so that the host still finds it.
 fn raise(api: &Api, error: u32, read_framebuffer: u32) {
     match error {
         INVALID_ENUM => api.Enable(NONE),
@@ -104,7 +107,7 @@ fn raise(api: &Api, error: u32, read_framebuffer: u32) {
     }
 }
 
-/// The switches that this context knows.
+/// Lists the switches that exist in this context.
 fn toggles(api: &Api, info: &GlInfo) -> Vec<Toggle> {
     let es = info.is_es();
     let mut list: Vec<(u32, bool)> = vec![
@@ -127,7 +130,7 @@ fn toggles(api: &Api, info: &GlInfo) -> Vec<Toggle> {
     add(info.knows((4, 3), (3, 0), &["GL_ARB_ES3_compatibility"]), PRIMITIVE_RESTART_FIXED_INDEX, false);
     add(info.knows((4, 3), (3, 2), &["GL_KHR_debug"]), DEBUG_OUTPUT, false);
     add(!es || info.has("GL_EXT_depth_clamp"), DEPTH_CLAMP, false);
-    // wgpu means an sRGB format to encode; other formats do not care. OpenGL ES has it always on.
+    // wgpu expects an sRGB format to encode; the switch has no effect on other formats. In OpenGL ES it is always on.
     add(!es || info.has("GL_EXT_sRGB_write_control"), FRAMEBUFFER_SRGB, true);
     add(!es || info.has("GL_EXT_multisample_compatibility"), MULTISAMPLE, true);
     add(!es || info.has("GL_EXT_multisample_compatibility"), SAMPLE_ALPHA_TO_ONE, false);
@@ -152,6 +155,6 @@ fn toggles(api: &Api, info: &GlInfo) -> Vec<Toggle> {
     for cap in [ALPHA_TEST, POLYGON_STIPPLE, LINE_STIPPLE] {
         add(info.profile == GlProfile::Compatibility, cap, false);
     }
-    api.take_error(); // a limit that a driver does not know must not count against a later call
+    api.take_error(); // An unknown limit raises an error on some drivers, which must not be blamed on a later call.
     list.into_iter().map(|(cap, fresh)| Toggle { cap, fresh, was: fresh }).collect()
 }

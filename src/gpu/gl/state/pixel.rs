@@ -1,4 +1,4 @@
-//! How pixels travel to and from memory: alignment, strides, and the compatibility profile's scale and bias.
+//! Transfer of pixels to and from memory: alignment, strides, and the compatibility profile's scale and bias.
 
 use super::super::{
     api::Api,
@@ -6,7 +6,7 @@ use super::super::{
     names::*,
 };
 
-/// A pixel store value and what wgpu takes for granted: rows packed to the byte, nothing skipped or swapped.
+/// Pixel store parameters and the values that wgpu assumes: rows packed to the byte, nothing skipped or swapped.
 const EVERYWHERE: &[(u32, i32)] = &[
     (UNPACK_ALIGNMENT, 1),
     (UNPACK_ROW_LENGTH, 0),
@@ -37,7 +37,7 @@ const COMPRESSED: &[(u32, i32)] = &[
     (PACK_COMPRESSED_BLOCK_DEPTH, 0),
     (PACK_COMPRESSED_BLOCK_SIZE, 0),
 ];
-/// The compatibility profile's pixel transfer: applies to uploads, read-backs and copies alike.
+/// Pixel transfer of the compatibility profile, which applies to uploads, read-backs and copies alike.
 const TRANSFER: &[(u32, f32)] = &[
     (MAP_COLOR, 0.0),
     (MAP_STENCIL, 0.0),

@@ -6,7 +6,7 @@ use super::super::{
     names::*,
 };
 
-/// One viewport with its scissor and depth range.
+/// Viewport with its scissor and depth range.
 #[derive(Clone, Copy, Default)]
 struct GlViewport {
     rect: [f32; 4],
@@ -15,7 +15,7 @@ struct GlViewport {
     depth: [f64; 2],
 }
 
-/// Blending and mask of one colour buffer: source and destination of colour, then of alpha; two equations.
+/// Blending and mask of one colour buffer: source and destination factors of colour, then of alpha; two equations.
 #[derive(Clone, Copy, Default)]
 struct Target {
     blend: bool,
@@ -24,7 +24,7 @@ struct Target {
     mask: [u8; 4],
 }
 
-/// One side of the stencil test.
+/// One face's state of the stencil test.
 #[derive(Clone, Copy, Default)]
 struct Stencil {
     func: u32,
@@ -59,11 +59,11 @@ const BACK_NAMES: [u32; 7] = [
 pub(super) struct Raster {
     views: Vec<GlViewport>,
     targets: Vec<Target>,
-    /// Viewports of their own state (OpenGL 4.1).
+    /// Whether each viewport has its own state (OpenGL 4.1).
     many_views: bool,
-    /// Masks and blend switches per colour buffer (OpenGL 3.0, ES 3.2).
+    /// Whether each colour buffer has its own mask and blend switch (OpenGL 3.0, ES 3.2).
     many_masks: bool,
-    /// Blend functions per colour buffer (OpenGL 4.0, ES 3.2).
+    /// Whether each colour buffer has its own blend function (OpenGL 4.0, ES 3.2).
     many_blends: bool,
     desktop: bool,
     compatibility: bool,
@@ -89,7 +89,7 @@ const CLAMPS: [u32; 3] = [CLAMP_READ_COLOR, CLAMP_VERTEX_COLOR, CLAMP_FRAGMENT_C
 impl Raster {
     pub(super) fn new(api: &Api, info: &GlInfo) -> Self {
         let many_views = info.knows((4, 1), (0, 0), &["GL_ARB_viewport_array"]);
-        // What a mask was is asked by a function of ES 3.1.
+        // Reading a buffer's mask needs a function of ES 3.1.
         let indexed: &[&str] = match info.is_es() {
             true if info.version >= (3, 1) => &["GL_EXT_draw_buffers_indexed", "GL_OES_draw_buffers_indexed"],
             true => &[],
@@ -137,7 +137,7 @@ impl Raster {
             self.polygon_offset[2] = api.floats::<1>(POLYGON_OFFSET_CLAMP)[0];
         }
         if self.desktop {
-            // Core profiles have one mode and may write one value; older drivers write two.
+            // Core profiles have one polygon mode and may write one value; older drivers write two.
             let modes = api.ints::<4>(POLYGON_MODE);
             let back = if self.compatibility { modes[1] } else { modes[0] };
             self.polygon_mode = [modes[0] as u32, back as u32];
@@ -146,7 +146,7 @@ impl Raster {
                 *value = api.uint(name);
             }
             if self.compatibility {
-                api.ClampColor(CLAMP_FRAGMENT_COLOR, 0); // stays so: or the blend colour is answered clamped
+                api.ClampColor(CLAMP_FRAGMENT_COLOR, 0); // stays off: otherwise the blend colour is returned clamped
             }
         }
         self.blend_color = api.floats(BLEND_COLOR);
@@ -296,7 +296,7 @@ impl Raster {
     }
 }
 
-/// Sets one switch of one viewport or colour buffer.
+/// Sets one switch of one viewport or one colour buffer.
 fn switch_at(api: &Api, cap: u32, index: u32, is_on: bool) {
     if is_on { api.Enablei(cap, index) } else { api.Disablei(cap, index) }
 }

@@ -1,10 +1,10 @@
-//! Water that goes: it sinks, parts at saddles, and is let loose where the ground changes.
+//! Loss of standing water: lakes sink, part at saddles, and are released where the ground changes.
 
 use super::{Hollow, Lake, Lakes, NONE, put};
 use crate::terrain::{CellId, Terrain};
 
 impl Lakes {
-    /// Lowers every water by `depth_mm`. Answers how much went; `bared` gets the cells that fall dry.
+    /// Lowers every lake by `depth_mm`. Returns the amount lost; `bared` receives the cells that fall dry.
     pub fn sink(&mut self, terrain: &Terrain, depth_mm: f64, bared: &mut Vec<CellId>) -> f64 {
         let all: Vec<u32> = (0..self.lakes.len() as u32).filter(|l| self.lakes[*l as usize].is_some()).collect();
         let (mut gone, mut losing) = (0.0, Vec::new());
@@ -18,7 +18,8 @@ impl Lakes {
         gone
     }
 
-    /// Takes water from a lake, or from its parts below their saddle. Answers what it took itself.
+    /// Takes water from a lake, or from its parts once it has sunk below their saddle. Returns the amount taken from
+    /// the lake itself.
     fn lose(
         &mut self,
         terrain: &Terrain,
@@ -61,7 +62,7 @@ impl Lakes {
         held - base
     }
 
-    /// Makes lakes of their own of the two parts of one, full to their saddle.
+    /// Splits a lake into its two parts, each full to the saddle.
     fn part(&mut self, terrain: &Terrain, lake: u32, parts: [u32; 2]) -> [u32; 2] {
         let Some(whole) = self.lakes[lake as usize].take() else { return [lake; 2] };
         if let Some(h) = self.hollows[whole.hollow as usize].take() {
@@ -84,7 +85,7 @@ impl Lakes {
         [lake, other]
     }
 
-    /// Forgets a lake and puts its water on the cells that it stood on, mm.
+    /// Removes a lake and puts its water on the cells where it stood, mm.
     pub fn let_loose(&mut self, terrain: &Terrain, lake: u32, loose: &mut Vec<(CellId, f64)>) {
         let Some((l, _)) = self.of(lake) else { return };
         let (level_mm, held, first) = (l.level_mm, l.held, loose.len());
@@ -96,13 +97,13 @@ impl Lakes {
         let found: f64 = loose[first..].iter().map(|w| w.1).sum();
         match loose[first..].first_mut() {
             Some(w) => w.1 += held - found,
-            // Less than rounding shows.
+            // The water is thinner than rounding can show: all of it goes to the pit.
             None => loose.extend(self.tree(l.hollow).first().and_then(|h| self.pit_of(*h)).map(|pit| (pit, held))),
         }
         self.forget(terrain, lake);
     }
 
-    /// All water.
+    /// Returns all water.
     #[cfg(test)]
     pub fn total(&self) -> f64 {
         self.lakes.iter().flatten().map(|l| l.held).sum()

@@ -1,9 +1,9 @@
-//! Standing water as it is saved, and back.
+//! Saved form of lakes.
 
 use super::{Lakes, PitBelow};
 use crate::terrain::{CellId, Terrain};
 
-/// A hollow's tree, to be saved: pits, and after every two trees that they are one.
+/// Element of a hollow's tree in its saved form, which lists the pits and, after each two trees, that they join.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum LakeBranch {
     Pit(CellId),
@@ -11,7 +11,7 @@ pub(crate) enum LakeBranch {
 }
 
 impl Lakes {
-    /// Each water as it is saved: its tree and what it holds.
+    /// Returns the saved form of each lake: its tree and its volume.
     pub fn saved(&self) -> impl Iterator<Item = (Vec<LakeBranch>, f64)> {
         self.lakes.iter().flatten().map(|l| {
             let mut branches = Vec::new();
@@ -28,7 +28,7 @@ impl Lakes {
         })
     }
 
-    /// Restores a water that was saved. Says whether it can be one of this terrain.
+    /// Restores a saved lake. Returns whether it is valid on this terrain.
     pub fn restore(&mut self, terrain: &Terrain, pit_below: PitBelow<'_>, branches: &[LakeBranch], held: f64) -> bool {
         let mut stack: Vec<u32> = Vec::new();
         for branch in branches {
@@ -61,7 +61,7 @@ impl Lakes {
         if !(held > 0.0 && more >= 0.0) || self.fill(terrain, lake, more) > 0.0 {
             return false;
         }
-        // Not by adding up: what was held to the bit.
+        // Set directly, since adding up would not give the same bits.
         let level = self.of(lake).map_or(0.0, |(_, h)| h.level(held).0);
         if let Some(l) = self.lakes[lake as usize].as_mut() {
             (l.held, l.level_mm) = (held, level);
