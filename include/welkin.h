@@ -18,56 +18,57 @@
  *
  * OWNERSHIP
  *
- * wk_x_create writes a new handle to its out-parameter, on success only. wk_x_destroy(handle) ends it; NULL does
- * nothing. Destroy children before parents: a device has contexts, surfaces and textures, a context has views. A
- * parent with live children answers WK_ERROR_IN_USE. A handle looks like a pointer but is a number, and Welkin never
- * dereferences it: a handle that is dead, foreign or of another kind gives WK_ERROR_BAD_HANDLE. Structs, texts and
- * lists that you pass in stay yours; Welkin reads them during the call only. Texts that come back live as long as
- * their function says. Native objects (windows, OpenGL names, Vulkan handles) stay the host's.
+ * wk_x_create writes a new handle to its out-parameter, on success only. wk_x_destroy(handle) destroys the object;
+ * NULL does nothing. Destroy children before parents: a device has contexts, surfaces and textures, a context has
+ * views. Destroying a parent with live children gives WK_ERROR_IN_USE. A handle looks like a pointer but is a number,
+ * and Welkin never dereferences it: a handle that is dead, foreign or of another kind gives WK_ERROR_BAD_HANDLE.
+ * Structs, texts and lists that you pass in stay yours; Welkin reads them during the call only. How long a returned
+ * text stays valid is stated at its function. Native objects (windows, OpenGL names, Vulkan handles) stay the host's.
  *
  * ERRORS
  *
- * Every call answers a wk_status: 0 or more is an answer, less than 0 a failure. A failed call writes no output,
- * changes nothing and draws nothing. wk_last_error_message() has the calling thread's message, which names the
+ * Every call returns a wk_status: 0 and positive values mean success, negative ones failure. A failed call writes no
+ * output, changes nothing and draws nothing. wk_last_error_message() has the calling thread's message, which names the
  * parameter and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`;
- * wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or throws. It catches a fault of
- * its own and answers WK_ERROR_INTERNAL. The device then answers WK_ERROR_POISONED, and only destroying works.
+ * wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or throws. If a fault in Welkin
+ * itself is caught, the call returns WK_ERROR_INTERNAL. After that, every call on the device returns
+ * WK_ERROR_POISONED, except those that destroy.
  *
  * STRUCTS
  *
  * Structs begin with struct_size, struct_type and next. Start from WK_X_INIT (or wk_x_init, which writes the same
- * bytes) and change fields. Later versions append fields whose zero means "as before". So a library takes structs of
- * older headers and fills in defaults, and structs of newer headers if the fields that it does not know are zero.
- * `next` leads to extension structs where a call names them; an unknown one is refused. Reserved fields must be 0.
- * Zero is a value (0 degrees, north, calm), never "default". What you may leave out has a bit in `has`. Lists are
- * (pointer, count, stride): stride is the size of an element in your header. Reals are doubles and must be finite.
- * Texts are NUL-terminated UTF-8. Sizes are in bytes.
+ * bytes) and change fields. Later versions append fields for which zero means "as before". A library therefore accepts
+ * structs of older headers, whose missing fields get their defaults, and structs of newer headers if the fields that
+ * it does not know are zero. `next` points to extension structs where a call names them; an unknown one is refused.
+ * Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An optional field has a bit in
+ * `has`. Lists are (pointer, count, stride): stride is the size of an element in your header. Reals are doubles and
+ * must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
  *
  * THREADS
  *
- * You may call functions from any thread. `const T *` is shared: any number of calls with it at the same time. `T *`
- * is exclusive: one call at a time with that handle, and none with its `const` at the same time. Calls that break this
- * rule wait for each other. Welkin starts no threads. With an OpenGL host make all calls that draw, create or destroy
- * on the thread where its context is (or can be made) current; what you destroy on another thread is released at the
- * device's next call. Call no Welkin function inside a callback: it would answer WK_ERROR_WRONG_ORDER.
+ * You may call functions from any thread. `const T *` is shared: any number of calls may use the handle at the same
+ * time. `T *` is exclusive: one call at a time with that handle, and no `const` call with it at the same time. Calls
+ * that break this rule wait for each other. Welkin starts no threads. With an OpenGL host make all calls that draw,
+ * create or destroy on the thread where its context is (or can be made) current; what you destroy on another thread is
+ * released at the device's next call. Call no Welkin function inside a callback: it would return WK_ERROR_WRONG_ORDER.
  *
  * UNITS AND COORDINATES
  *
- * Units are SI. A field's name ends in its unit, except for metres, seconds and radians. Angles that people use by
- * name are in degrees (_deg). Azimuths are clockwise from true north; wind direction is where the wind comes from.
- * Positions are in the host's world, in double precision, however far from its origin. See Contexts for world frames
- * and Frames for matrices, depth and clip space. Colours are linear Rec. 709 unless they say otherwise.
+ * Units are SI. A field's name ends in its unit, except for metres, seconds and radians. Angles that people usually
+ * state in degrees are in degrees (_deg). Azimuths are clockwise from true north; wind direction is where the wind
+ * comes from. Positions are in the host's world, in double precision, however far from its origin. See Contexts for
+ * world frames and Frames for matrices, depth and clip space. Colours are linear Rec. 709 unless they say otherwise.
  *
  * DETERMINISM
  *
- * The same description, timeline, seed and time give the same world on every machine. Channels of one simulator with
- * the same input agree, and wk_context_state_hash lets them compare. Changes of weather carry absolute times. Pictures
- * are bit-identical from run to run on one driver; drivers differ in the last bits.
+ * On every machine, the same description, timeline, seed and time give the same world. Channels of one simulator with
+ * the same input agree; wk_context_state_hash lets them check that. Changes of weather have absolute times. Pictures
+ * are bit-identical from run to run on one driver; between drivers the last bits differ.
  *
  * WHAT COMES LATER, AND HOW
  *
  * Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a
- * major version, and later versions add new ones. Settled for what is planned, so that a host can prepare:
+ * major version, and later versions add new ones. Settled for planned features, so that a host can prepare:
  * - The sea is drawn by new functions of the context. It tests and writes the host's depth, which a frame lends with
  *   wk_frame.depth_access.
  * - Soil materials of the terrain's tiles are new functions of the context.
@@ -79,7 +80,7 @@
  *
  * CONTENTS
  *
- * Each section begins with its name in brackets, which stays from version to version: search for it.
+ * Each section begins with its name in brackets. The name stays the same from version to version: search for it.
  *
  * What every call answers
  *   [status]          Status, versions, messages
@@ -167,7 +168,7 @@ extern "C" {
  * ====================================================================================================
  * [status] Status, versions, messages
  *
- * Every call answers a wk_status. 0 and positive values are answers, negative ones failures. A failed call writes no
+ * Every call returns a wk_status: 0 and positive values mean success, negative ones failure. A failed call writes no
  * output. wk_last_error_message() then says which parameter was wrong and what is accepted, and wk_last_error_field()
  * gives that parameter or field alone.
  * ====================================================================================================
@@ -229,7 +230,7 @@ typedef uint32_t wk_log_level;
  */
 typedef void (*wk_log_fn)(void *user, wk_log_level level, const char *message);
 
-/** The type of a tagged struct: its second field. WK_X_INIT sets it. */
+/** The type of a tagged struct, in its second field. WK_X_INIT sets it. */
 typedef uint32_t wk_struct_type;
 
 /** wk_device_desc */
@@ -360,36 +361,39 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_METAR_OPTIONS 90
 
 /**
- * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
+ * Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never
+ * freed.
  */
 WK_API const char *wk_status_name(wk_status status);
 
 /**
- * The message of the calling thread's last failed call: one sentence that begins with the function's name and names
- * the parameter and the accepted range. Empty before the first failure; successful calls leave it alone. Never NULL;
- * valid until the next failing call of this thread.
+ * Returns the message of the calling thread's last failed call: one sentence that begins with the function's name and
+ * names the parameter and the accepted range. Empty before the first failure; successful calls do not change it. Never
+ * NULL; valid until the next failing call of this thread.
  */
-WK_API const char *wk_last_error_message(void);
+WK_API
+const char *wk_last_error_message(void);
 
 /**
- * The parameter or field that the calling thread's last failed call was about, as a path of names in this header that
- * begins at the function's parameter or at a struct's name: `frame.projection`, `shelters[2].half_size_m`,
- * `wk_sky_settings.suns`, `time_s`. A host's editor can mark a control by it. The last failure with
- * WK_ERROR_INVALID_ARGUMENT always has one; empty where a failure is about no field, and before the first failure.
+ * Returns the parameter or field that the calling thread's last failed call was about, as a path of names in this
+ * header that begins at the function's parameter or at a struct's name: `frame.projection`, `shelters[2].half_size_m`,
+ * `wk_sky_settings.suns`, `time_s`. A host's editor can use it to mark a control. A failure with
+ * WK_ERROR_INVALID_ARGUMENT always has one. Empty where a failure is about no field, and before the first failure.
  * Never NULL; valid until the next failing call of this thread.
  */
-WK_API const char *wk_last_error_field(void);
+WK_API
+const char *wk_last_error_field(void);
 
 /**
- * The library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the major
- * version is equal and its minor version is at least the header's. Each of the three may be NULL.
+ * Gets the library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the
+ * major versions are equal and its minor version is at least the header's. Each of the three pointers may be NULL.
  */
 WK_API wk_status wk_version(uint32_t *major, uint32_t *minor, uint32_t *patch);
 
 /**
  * Sends Welkin's messages, and its graphics layer's warnings and errors, to `callback` from now on; NULL stops them.
  * They are off by default, and Welkin never prints. There is one callback in a process. `max_level` is the least
- * severe level that is sent. If `callback` fails, it must return normally; Welkin ignores the failure.
+ * severe level that is sent. `callback` must always return normally, even if it fails; Welkin ignores its failures.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown level; WK_ERROR_IN_USE in a Rust program that has its own logger.
  */
 WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_level max_level);
@@ -399,14 +403,14 @@ WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_leve
  * [device] Devices
  *
  * A wk_device is one native queue or OpenGL context, with everything that its contexts share: pipelines, tables,
- * caches. Make one here (below), from the host's OpenGL context, from the host's Vulkan device, or, in Rust, from the
- * host's wgpu device. All later calls are the same for all four.
+ * caches. Create one here (below), from the host's OpenGL context, from the host's Vulkan device, or, in Rust, from
+ * the host's wgpu device. All later calls are the same for all four.
  *
- * Make one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
- * (driver reset, unplugged) every call that needs it answers WK_ERROR_DEVICE_LOST: those that create, build, draw,
- * read or write what lies on it, and wk_context_get_ambient. A context's weather, time, settings, other queries and
- * state need no GPU and go on: save the state with wk_context_save, destroy the views, contexts and the device, create
- * them again, and load the state.
+ * Create one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
+ * (driver reset, unplugged), every call that needs it answers WK_ERROR_DEVICE_LOST: calls that create, build or draw,
+ * calls that read or write GPU resources, and wk_context_get_ambient. A context's weather, time, settings, state and
+ * other queries need no GPU and go on working. To recover, save the state with wk_context_save, destroy the views, the
+ * contexts and the device, create them again, and load the state.
  * ====================================================================================================
  */
 
@@ -416,7 +420,7 @@ typedef struct wk_device wk_device;
 /** Native graphics interfaces. */
 typedef uint32_t wk_backend_flags;
 
-/** Draws nothing and needs no GPU: for tests of your own code. */
+/** No graphics: draws nothing and needs no GPU, for tests of your own code. */
 #define WK_BACKEND_NOOP 1
 /** Vulkan. */
 #define WK_BACKEND_VULKAN 2
@@ -426,13 +430,13 @@ typedef uint32_t wk_backend_flags;
 #define WK_BACKEND_DX12 8
 /** OpenGL or OpenGL ES. */
 #define WK_BACKEND_GL 16
-/** Any that works, the best first. */
+/** Any interface that works, the best one first. */
 #define WK_BACKEND_ANY 30
 
 /** Flags of an own device. */
 typedef uint32_t wk_device_flags;
 
-/** Use no compute shaders, even where the device has them: draws as on an OpenGL 3.3 machine. */
+/** Use no compute shaders, even where the device has them. Welkin then draws as on an OpenGL 3.3 machine. */
 #define WK_DEVICE_FORCE_TIER0 1
 /** Use the software driver. */
 #define WK_DEVICE_FORCE_SOFTWARE 2
@@ -447,7 +451,7 @@ typedef struct wk_device_desc {
     const void *next;
     /** Native interfaces that may be used. Default WK_BACKEND_ANY. */
     wk_backend_flags backends;
-    /** Default 0. */
+    /** Flags of the device. Default 0. */
     wk_device_flags flags;
 } wk_device_desc;
 
@@ -468,11 +472,11 @@ typedef struct wk_caps {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** The native interface that it uses. */
+    /** Native interface that the device uses. */
     wk_backend_flags backend;
     /**
-     * 0: no compute (OpenGL 3.3 to 4.2, OpenGL on macOS). 1: compute. Features that need tier 1 answer
-     * WK_ERROR_UNSUPPORTED by name on tier 0.
+     * Tier of features: 0 without compute shaders (OpenGL 3.3 to 4.2, OpenGL on macOS), 1 with them. On tier 0
+     * features that need tier 1 answer WK_ERROR_UNSUPPORTED by name.
      */
     uint32_t tier;
     /** 1 for a software driver, which draws on the CPU, else 0. */
@@ -481,11 +485,11 @@ typedef struct wk_caps {
     uint32_t max_texture_size;
     /** Most cloud layers in a wk_weather. */
     uint32_t max_cloud_layers;
-    /** Most places or rays in one batch query. */
+    /** Most positions or rays in one batch query. */
     uint32_t max_batch;
-    /** The adapter's own name, UTF-8; lives as long as the device. */
+    /** Name that the adapter reports, UTF-8; lives as long as the device. */
     const char *adapter_name;
-    /** The driver's own name and version, UTF-8; lives as long as the device. */
+    /** Name and version that the driver reports, UTF-8; lives as long as the device. */
     const char *driver;
 } wk_caps;
 
@@ -505,23 +509,23 @@ typedef struct wk_caps {
 }
 
 /**
- * Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle,
- * which you destroy with `wk_device_destroy`; else it stays untouched. Thread: any. Errors: WK_ERROR_NO_ADAPTER if no
- * driver fits the request, or an OpenGL driver draws a few known texels wrong or does not finish them within 6 s;
- * WK_ERROR_INVALID_ARGUMENT by name.
+ * Creates an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out_device` is a new
+ * handle, which you destroy with `wk_device_destroy`; else it stays untouched. Thread: any. Errors:
+ * WK_ERROR_NO_ADAPTER if no driver fits the request, or if an OpenGL driver draws a few known test texels wrong or
+ * does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT by name.
  */
 WK_API wk_status wk_device_create(const wk_device_desc *desc, wk_device **out_device);
 
 /**
  * Destroys a device. NULL does nothing.
- * Thread: for a device on an OpenGL context, one where that context is (or can be made) current; elsewhere, or when
- * the context is already gone, its objects are abandoned. For other devices any.
+ * Thread: any, except for a device on an OpenGL context. Destroy that on a thread where the context is (or can be
+ * made) current; elsewhere, or when the context is already gone, its GPU objects are abandoned.
  * Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
  */
 WK_API wk_status wk_device_destroy(wk_device *device);
 
 /**
- * WK_OK while the device works, WK_ERROR_DEVICE_LOST or WK_ERROR_POISONED when it no longer does.
+ * Returns WK_OK while the device works, WK_ERROR_DEVICE_LOST or WK_ERROR_POISONED when it no longer does.
  * Thread: any, at any time.
  */
 WK_API wk_status wk_device_get_status(const wk_device *device);
@@ -551,7 +555,7 @@ WK_API wk_status wk_caps_init(wk_caps *out, uint32_t struct_size);
  * [texture] Textures of an own device
  *
  * For hosts without graphics of their own: programs that want pictures in memory, or that draw with Welkin only. Hosts
- * with OpenGL, Vulkan or wgpu hand over their own images instead and need none of this.
+ * with OpenGL, Vulkan or wgpu pass their own images instead and do not need these textures.
  * ====================================================================================================
  */
 
@@ -571,7 +575,7 @@ typedef uint32_t wk_format;
 #define WK_FORMAT_BGRA8_SRGB 4
 /** Half floats, 8 bytes: scene-linear colour. */
 #define WK_FORMAT_RGBA16_FLOAT 5
-/** Floats, 16 bytes: scene-linear colour. Not on every driver as a target. */
+/** Floats, 16 bytes: scene-linear colour. Some drivers do not support it as a target. */
 #define WK_FORMAT_RGBA32_FLOAT 6
 /** One float, 4 bytes: depth as the host's projection gives it. */
 #define WK_FORMAT_R32_FLOAT 7
@@ -586,9 +590,9 @@ typedef struct wk_texture_desc {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Pixels. Range [1, wk_caps.max_texture_size], default 1. */
+    /** Width, pixels. Range [1, wk_caps.max_texture_size], default 1. */
     uint32_t width;
-    /** Pixels. Range [1, wk_caps.max_texture_size], default 1. */
+    /** Height, pixels. Range [1, wk_caps.max_texture_size], default 1. */
     uint32_t height;
     /** Default WK_FORMAT_RGBA8_UNORM. */
     wk_format format;
@@ -618,7 +622,7 @@ wk_status wk_texture_create(wk_device *device,
                             wk_texture **out_texture);
 
 /**
- * Destroys a texture. NULL does nothing. Views that use it keep it alive for as long as they need it.
+ * Destroys a texture. NULL does nothing. Views that use the texture keep it alive for as long as they need it.
  * Thread: any.
  */
 WK_API wk_status wk_texture_destroy(wk_texture *texture);
@@ -636,16 +640,12 @@ wk_status wk_texture_write(wk_texture *texture,
 
 /**
  * Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, the first row the
- * picture's top. `data_size` is the room at `data`: at least `bytes_per_row` times the height. Slow: do not call it in
- * every frame.
+ * picture's top. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the height.
+ * Slow: do not call it in every frame.
  * Thread: exclusive.
  * Errors: WK_ERROR_UNSUPPORTED for WK_FORMAT_R8_UNORM.
  */
-WK_API
-wk_status wk_texture_read(wk_texture *texture,
-                          void *data,
-                          size_t data_size,
-                          uint32_t bytes_per_row);
+WK_API wk_status wk_texture_read(wk_texture *texture, void *data, size_t data_size, uint32_t bytes_per_row);
 
 /**
  * Writes the default of every field: the same bytes as `WK_TEXTURE_DESC_INIT`. `struct_size` is `sizeof(wk_texture_desc)`
@@ -659,9 +659,9 @@ wk_status wk_texture_desc_init(wk_texture_desc *out,
  * ====================================================================================================
  * [surface] Windows
  *
- * For hosts without graphics of their own: Welkin presents to a window that the host names by its native handle. The
- * host makes the window, keeps its event loop, and tells Welkin when its size changes. Resized, hidden, minimised and
- * lost windows give a status and never a fault.
+ * For hosts without graphics of their own: Welkin presents to a window that the host identifies by its native handle.
+ * The host makes the window, runs its event loop, and tells Welkin when its size changes. Resized, hidden, minimised
+ * and lost windows give a status and never a fault.
  *
  *   wk_device_create_for_window, wk_surface_create, wk_surface_configure
  *   each frame: wk_surface_acquire, wk_view_record (wk_own_target.surface), wk_surface_present
@@ -689,7 +689,7 @@ typedef uint32_t wk_window_kind;
 
 /**
  * A native window. Welkin ignores fields that its kind does not use. The window must outlive the surface, and its
- * connection the device.
+ * display connection must outlive the device.
  */
 typedef struct wk_window {
     /** sizeof(wk_window) of your header. */
@@ -793,8 +793,9 @@ wk_status wk_surface_create(wk_device *device,
 WK_API wk_status wk_surface_destroy(wk_surface *surface);
 
 /**
- * Configures a surface, the first time or after its window changed. An acquired image is given back undrawn. With a
- * width or height of 0 the call succeeds, and acquire answers WK_ERROR_SURFACE_OUTDATED until there is an area.
+ * Configures a surface, the first time or after its window changed. An acquired image is returned undrawn. With a
+ * width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the surface is
+ * configured with an area.
  * Thread: exclusive.
  * Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if it is gone.
  */
@@ -803,8 +804,8 @@ WK_API wk_status wk_surface_configure(wk_surface *surface, const wk_surface_conf
 /**
  * Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
  * Thread: exclusive.
- * Answers WK_PENDING if the window shows nothing now: skip this frame.
- * Errors: WK_ERROR_SURFACE_OUTDATED: configure again, also while it is minimised.
+ * Returns WK_PENDING if the window shows nothing now: skip this frame.
+ * Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while it is minimised.
  */
 WK_API wk_status wk_surface_acquire(wk_surface *surface);
 
@@ -841,7 +842,7 @@ wk_status wk_surface_config_init(wk_surface_config *out,
  * sample what Welkin drew into it, as OpenGL requires between contexts.
  *
  * HOST_CONTEXT: Welkin draws in the host's own context. It saves every piece of state that it touches, sets it, and
- * puts it back. Any framebuffer can be a target, the window's (0) too, by copies in and out.
+ * restores it. Any framebuffer can be a target, also the window's (0), by copies in and out.
  *
  * In SHARED mode one device serves all windows whose contexts share objects, with one view for each. In HOST_CONTEXT
  * mode a device belongs to one context.
@@ -854,9 +855,9 @@ wk_status wk_surface_config_init(wk_surface_config *out,
 
 /**
  * Returns the address of an OpenGL function, or NULL, as glfwGetProcAddress, SDL_GL_GetProcAddress, eglGetProcAddress
- * or glXGetProcAddress do. With WGL, ask wglGetProcAddress, then GetProcAddress of opengl32.dll, which exports what
- * OpenGL 1.1 had. Welkin reads 1, 2, 3 and -1 as NULL: some drivers' wglGetProcAddress returns them. Called with the
- * host's or Welkin's context current.
+ * or glXGetProcAddress do. With WGL, call wglGetProcAddress, then GetProcAddress of opengl32.dll, which exports the
+ * functions of OpenGL 1.1. Welkin treats 1, 2, 3 and -1 as NULL: some drivers' wglGetProcAddress returns them. Welkin
+ * calls this function while the host's or its own context is current.
  */
 typedef const void *(*wk_opengl_get_proc_fn)(void *user, const char *name);
 
@@ -871,7 +872,7 @@ typedef uint32_t wk_opengl_mode;
 
 /** Its own context, which shares objects with the host's. */
 #define WK_OPENGL_SHARED 0
-/** The host's context, whose state it puts back. */
+/** The host's context, whose state Welkin restores. */
 #define WK_OPENGL_HOST_CONTEXT 1
 
 /** Order of the two contexts' commands in shared mode. */
@@ -882,7 +883,7 @@ typedef uint32_t wk_opengl_handover;
 /** By a flush alone: enough, and cheaper, where one queue serves both contexts. Measure before you rely on it. */
 #define WK_OPENGL_FLUSH 1
 
-/** The host's OpenGL. */
+/** Access to a host's OpenGL: its functions, contexts and options. */
 typedef struct wk_opengl_host_desc {
     /** sizeof(wk_opengl_host_desc) of your header. */
     uint32_t struct_size;
@@ -932,10 +933,10 @@ typedef uint32_t wk_opengl_image_kind;
 #define WK_OPENGL_TEXTURE 1
 /** A renderbuffer. */
 #define WK_OPENGL_RENDERBUFFER 2
-/** The attachments of a framebuffer, 0 being the window's; only in the host's own context. */
+/** The attachments of a framebuffer; 0 is the window's. Only in the host's own context. */
 #define WK_OPENGL_FRAMEBUFFER 3
 
-/** A host's image, embedded in wk_opengl_target. */
+/** A host's image, embedded in wk_opengl_target and wk_occluder_map. */
 typedef struct wk_opengl_image {
     /** Default WK_OPENGL_NONE. */
     wk_opengl_image_kind kind;
@@ -985,11 +986,11 @@ typedef struct wk_opengl_target {
      * A mask of one sample: where red is 1, the host's pixel stays; where it is 0, Welkin draws weather. Default none.
      */
     wk_opengl_image mask;
-    /** Pixels; must equal the images' size, and a window's present size. Default 0; must be given. */
+    /** Width, pixels; must equal the images' width, and a window's present width. Default 0; must be given. */
     uint32_t width;
-    /** Pixels; must equal the images' size, and a window's present size. Default 0; must be given. */
+    /** Height, pixels; must equal the images' height, and a window's present height. Default 0; must be given. */
     uint32_t height;
-    /** Raise this number when you make an object again under an old name. It must never fall. Default 0. */
+    /** Increase this number when you create an object again under an old name. It must never fall. Default 0. */
     uint64_t generation;
     /** Default WK_OPENGL_MULTISAMPLE_EACH. */
     wk_opengl_multisample multisample;
@@ -1029,7 +1030,7 @@ typedef struct wk_opengl_target {
 typedef uint32_t wk_opengl_context;
 
 /**
- * The context that the host draws in. With several windows: the one that was current when the call came (remember it
+ * The context that the host draws in. With several windows: the one that was current when Welkin was called (store it
  * for each thread).
  */
 #define WK_OPENGL_CONTEXT_HOST 0
@@ -1041,13 +1042,12 @@ typedef uint32_t wk_opengl_context;
  * `wk_device_destroy`; call that while the contexts live. Welkin never deletes the host's objects.
  * Thread: the one on which the host's context is current.
  * Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or return NULL; WK_ERROR_WRONG_ORDER if no context
- * is current, or the wrong one, or conditional rendering or a query that counts is active in WK_OPENGL_HOST_CONTEXT;
- * WK_ERROR_UNSUPPORTED if it is too old; WK_ERROR_ALREADY_WRAPPED if it has a wk_device; WK_ERROR_NO_ADAPTER, with the
- * driver's name, if its driver draws a few known texels wrong or does not finish them within 6 s.
+ * or the wrong one is current, or, in WK_OPENGL_HOST_CONTEXT, if conditional rendering or a query that counts samples
+ * or primitives is active; WK_ERROR_UNSUPPORTED if the context's version is too old; WK_ERROR_ALREADY_WRAPPED if it
+ * has a wk_device; WK_ERROR_NO_ADAPTER, with the driver's name, if its driver draws a few known texels wrong or does
+ * not finish them within 6 s.
  */
-WK_API
-wk_status wk_device_create_opengl(const wk_opengl_host_desc *desc,
-                                  wk_device **out_device);
+WK_API wk_status wk_device_create_opengl(const wk_opengl_host_desc *desc, wk_device **out_device);
 
 /**
  * Writes the default of every field: the same bytes as `WK_OPENGL_HOST_DESC_INIT`. `struct_size` is `sizeof(wk_opengl_host_desc)`
@@ -1070,9 +1070,9 @@ wk_status wk_opengl_target_init(wk_opengl_target *out,
  * [vulkan] Vulkan hosts
  *
  * Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits its own work: when
- * wk_view_record returns, the work is on the queue. Only one thread at a time may use a VkQueue. So either keep other
+ * wk_view_record returns, the work is on the queue. Only one thread at a time may use a VkQueue. Either keep other
  * threads away from the queue during Welkin's calls on this device, or pass lock_queue and unlock_queue, which Welkin
- * calls around every submission. Call no Welkin function inside them.
+ * calls around every submission. Call no Welkin function inside these two.
  *
  * Welkin takes an image in the layout in which the host left it and returns it in the layout that the host asks for.
  * On one queue no semaphores are needed: Welkin's work waits for what the host submitted before, and what the host
@@ -1142,11 +1142,13 @@ typedef struct wk_vulkan_host_desc {
      * VkPhysicalDevice..Features structs. Read during the call. NULL (the default): no feature is enabled.
      */
     const void *enabled_features;
-    /** Takes the host's queue lock. Give it together with unlock_queue, or leave both NULL (the default). */
+    /**
+     * Function that takes the host's queue lock. Set it together with unlock_queue, or leave both NULL (the default).
+     */
     wk_vulkan_queue_fn lock_queue;
-    /** Releases it. */
+    /** Function that releases the lock. */
     wk_vulkan_queue_fn unlock_queue;
-    /** Passed to both. Default NULL. */
+    /** Pointer that is passed to both functions. Default NULL. */
     void *user;
 } wk_vulkan_host_desc;
 
@@ -1185,33 +1187,35 @@ typedef struct wk_vulkan_image {
     uint64_t image;
     /** VkFormat that it was created with. Default 0; must be given. */
     uint32_t format;
-    /** Pixels. Default 0; must be given. */
+    /** Width, pixels. Default 0; must be given. */
     uint32_t width;
-    /** Pixels. Default 0; must be given. */
+    /** Height, pixels. Default 0; must be given. */
     uint32_t height;
     /**
-     * Samples of a pixel. Default 1. Colour with several needs sampleRateShading in enabled_features of the
+     * Samples of a pixel. Default 1. Colour with several samples needs sampleRateShading in enabled_features of the
      * wk_vulkan_host_desc.
      */
     uint32_t samples;
     /**
-     * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is
-     * read, DEPTH_STENCIL_ATTACHMENT too for depth with WK_DEPTH_ACCESS_READ_WRITE.
+     * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for images
+     * that are read, and also DEPTH_STENCIL_ATTACHMENT for depth with WK_DEPTH_ACCESS_READ_WRITE.
      */
     uint32_t usage;
     /** Array layers that it was created with. Default 1. For an occluder map it must be 1. */
     uint32_t array_layers;
     /**
-     * The layer handed over, such as one eye of a stereo or multiview host; the others stay untouched. Default 0.
+     * Array layer that is handed over, such as one eye of a stereo or multiview host; the others stay untouched.
+     * Default 0.
      */
     uint32_t layer;
     /**
-     * VkImageLayout in which the host left that layer. Default 0 (UNDEFINED: its content may be dropped; colour only).
+     * VkImageLayout in which the host left that layer. Default 0 (UNDEFINED: its content may be discarded; colour
+     * only).
      */
     uint32_t layout;
     /**
-     * VkImageLayout in which the host wants it back. Default 0; must be given. PRESENT_SRC_KHR, here and in `layout`,
-     * needs VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
+     * VkImageLayout in which Welkin returns the layer. Default 0; must be given. PRESENT_SRC_KHR, here and in
+     * `layout`, needs VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
      */
     uint32_t final_layout;
     /** Must be 0. */
@@ -1254,7 +1258,7 @@ typedef struct wk_vulkan_semaphore {
     const void *next;
     /** VkSemaphore. Default 0; must be given. */
     uint64_t semaphore;
-    /** Value to wait for or to signal, of a timeline semaphore. Default 0. */
+    /** Value of a timeline semaphore to wait for or to signal. Default 0. */
     uint64_t value;
     /** Default WK_VULKAN_SEMAPHORE_BINARY. */
     wk_vulkan_semaphore_kind kind;
@@ -1297,13 +1301,17 @@ typedef struct wk_vulkan_target {
     const wk_vulkan_semaphore *wait_semaphores;
     /** Semaphores to signal when all is drawn and the images are in their final layouts. At most 16. */
     const wk_vulkan_semaphore *signal_semaphores;
-    /** Number of waits. Default 0. */
+    /** Number of wait_semaphores. Default 0. */
     uint32_t wait_count;
-    /** Bytes from one wait to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default. */
+    /**
+     * Bytes from one wait semaphore to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
+     */
     uint32_t wait_stride;
-    /** Number of signals. Default 0. */
+    /** Number of signal_semaphores. Default 0. */
     uint32_t signal_count;
-    /** Bytes from one signal to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default. */
+    /**
+     * Bytes from one signal semaphore to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
+     */
     uint32_t signal_stride;
     /**
      * Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
@@ -1349,8 +1357,8 @@ WK_API wk_status wk_device_create_vulkan(const wk_vulkan_host_desc *desc, wk_dev
  * Waits until the GPU no longer uses a VkImage, and forgets it. Call it for each image that you handed over, before or
  * after you destroy it (an engine may rebuild its swapchain inside a call), but before you hand over a new one: Vulkan
  * may give the new image the old handle, and Welkin would draw into the dead image. As always, destroy an image only
- * when the GPU has finished with it: after the signals of its last wk_view_record, or after vkDeviceWaitIdle. An
- * unknown image is no error. Slow: do not call it in every frame.
+ * when the GPU has finished with it: after the semaphores that its last wk_view_record signals, or after
+ * vkDeviceWaitIdle. An unknown image is no error. Slow: do not call it in every frame.
  * Thread: exclusive on the device.
  */
 WK_API
@@ -1393,7 +1401,7 @@ wk_status wk_vulkan_target_init(wk_vulkan_target *out,
  * ====================================================================================================
  * [weather_kinds] Kinds of weather
  *
- * Kinds that a report names by words. The numbers never change.
+ * Kinds that a report names by words. Their numbers never change.
  * ====================================================================================================
  */
 
@@ -1424,11 +1432,11 @@ typedef uint32_t wk_aerosol_kind;
 /** Fog and mist: suspended droplets at the ground. */
 typedef uint32_t wk_fog_kind;
 
-/** No fog: the aerosol takes what visibility lacks. */
+/** No fog: all extinction that the reported visibility requires beyond the air's is aerosol. */
 #define WK_FOG_NONE 0
 /** Mist (METAR BR): droplets, 1 to 5 km. */
 #define WK_FOG_MIST 1
-/** Shallow fog (METAR MIFG): below 2 m, clear above. */
+/** Shallow fog (METAR MIFG): up to 2 m, clear above. */
 #define WK_FOG_SHALLOW 2
 /** Patches of fog (METAR BCFG). */
 #define WK_FOG_PATCHES 3
@@ -1439,7 +1447,7 @@ typedef uint32_t wk_fog_kind;
 /** Freezing fog (METAR FZFG): supercooled droplets. */
 #define WK_FOG_FREEZING 6
 
-/** Cloud genera, and the two that METAR names. */
+/** Cloud genera, and the two kinds that METAR names. */
 typedef uint32_t wk_cloud_kind;
 
 /** Not known: Welkin chooses by height, cover and precipitation. */
@@ -1468,9 +1476,9 @@ typedef uint32_t wk_cloud_kind;
 #define WK_CLOUD_CIRROCUMULUS 11
 
 /**
- * Kind of precipitation. For the types of rain choose: frontal (stratiform): RAIN, usually 1 to 10 mm/h; convective:
- * RAIN with WK_PRECIPITATION_SHOWERS, 10 to 100 mm/h; relief (orographic), with many small drops: DRIZZLE, 0.5 to 3
- * mm/h; drizzle: DRIZZLE, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each.
+ * Kind of precipitation. For the types of rain choose: frontal (stratiform) rain: RAIN, usually 1 to 10 mm/h;
+ * convective rain: RAIN with WK_PRECIPITATION_SHOWERS, 10 to 100 mm/h; relief (orographic) rain, with many small
+ * drops: DRIZZLE, 0.5 to 3 mm/h; drizzle: DRIZZLE, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each.
  */
 typedef uint32_t wk_precipitation_kind;
 
@@ -1532,7 +1540,7 @@ typedef uint32_t wk_surface_state;
 #define WK_SURFACE_FROST 4
 /** Ice. */
 #define WK_SURFACE_ICE 5
-/** Lying snow; see snow_depth_m. */
+/** Lying snow; see surface_snow_depth_m. */
 #define WK_SURFACE_SNOW 6
 
 /*
@@ -1540,9 +1548,9 @@ typedef uint32_t wk_surface_state;
  * [weather] Weather
  *
  * A wk_weather describes the weather: plain data in SI units, which every call copies. Start from WK_WEATHER_INIT (a
- * clear standard day), a METAR report or a preset, and change what you know better. Zero is a value everywhere (0
- * degrees, north, calm, 0 %). What may be unknown has a bit in `has`: where the bit is clear, Welkin ignores the field
- * and derives the value by a named physical law. All reals are doubles.
+ * clear standard day), a METAR report or a preset, and change the fields that you know better. Zero is a value
+ * everywhere (0 degrees, north, calm, 0 %). A field that may be unknown has a bit in `has`: where the bit is clear,
+ * Welkin ignores the field and derives the value by a named physical law. All reals are doubles.
  * ====================================================================================================
  */
 
@@ -1570,7 +1578,7 @@ typedef struct wk_cloud_layer {
     wk_cloud_layer_has_flags has;
     /** Kind of cloud. Default WK_CLOUD_UNKNOWN. */
     wk_cloud_kind kind;
-    /** Fraction of the sky that it covers (eighths / 8). Range [0, 1], default 0. */
+    /** Fraction of the sky that the layer covers (eighths / 8). Range [0, 1], default 0. */
     double cover;
     /** Base above the station, m. Range [0, 20000], default 0. */
     double base_m;
@@ -1582,16 +1590,17 @@ typedef struct wk_cloud_layer {
     double droplet_radius_um;
     /**
      * Optional: speed of the wind that carries the layer, m/s. Range [0, 150]; else that of the weather's wind at the
-     * middle of the layer, which grows and veers with height (docs/clouds.md). A change of it moves no cloud at once.
+     * middle of the layer, which grows and veers with height (docs/clouds.md). Changing it does not displace any
+     * cloud.
      */
     double wind_m_s;
     /**
-     * Optional, with the field before: where that wind comes from, degrees clockwise from true north. Range [0, 360].
+     * Optional, with wind_m_s: direction that this wind comes from, degrees clockwise from true north. Range [0, 360].
      */
     double wind_from_deg;
-    /** Distance from cloud to cloud, m. Range [50, 200000]; 0, the default, by kind and thickness. */
+    /** Typical distance between clouds, m. Range [50, 200000]; 0, the default, by kind and thickness. */
     double spacing_m;
-    /** Time in which its clouds come and go, s. Range [60, 1e6]; 0, the default, is 1200. */
+    /** Lifetime of the layer's clouds, s. Range [60, 1e6]; 0, the default, is 1200. */
     double life_s;
 } wk_cloud_layer;
 
@@ -1678,8 +1687,8 @@ typedef struct wk_weather {
     /** Flags of the optional fields that are set. Default 0. */
     wk_weather_has_flags has;
     /**
-     * Meteorological optical range at the station, m: where 550 nm light falls to 5 % (the reported visibility). It is
-     * total: air, haze, fog, rain and snow together. Range [1, 1e6], default 40000.
+     * Meteorological optical range at the station, m: the distance at which 550 nm light falls to 5 % (the reported
+     * visibility). It is the total of air, haze, fog, rain and snow together. Range [1, 1e6], default 40000.
      */
     double visibility_m;
     /**
@@ -1703,15 +1712,16 @@ typedef struct wk_weather {
     wk_aerosol_kind aerosol_kind;
     /** Fog or mist. Default WK_FOG_NONE. */
     wk_fog_kind fog_kind;
-    /** Optional: exponent with which extinction falls, wavelength^-exponent. Range [-1, 4]; else by kind. */
+    /** Optional: Angstrom exponent: extinction falls as wavelength^-exponent. Range [-1, 4]; else by kind. */
     double aerosol_angstrom_exponent;
     /** Optional: single scattering albedo at 550 nm. Range [0, 1]; else by kind and humidity. */
     double aerosol_single_scattering_albedo;
     /** Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity. */
     double aerosol_asymmetry;
     /**
-     * Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. At least the
-     * station's altitude over 4.6 is used (435 m at 2000 m), because the sky counts densities from the sea.
+     * Optional: scale height of the particles, over which their density falls to 1/e, m. Range [10, 20000]; else by
+     * kind. The value used is at least the station's altitude over 4.6 (435 m at 2000 m), because the sky counts
+     * densities from sea level.
      */
     double aerosol_scale_height_m;
     /** Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility. */
@@ -1719,8 +1729,8 @@ typedef struct wk_weather {
     /** Optional: fraction of the ground under fog. Range [0, 1]; else by kind. */
     double fog_coverage;
     /**
-     * Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog
-     * that the reported visibility looks over or past.
+     * Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog,
+     * where the observer reports the visibility over or past the fog.
      */
     double fog_visibility_inside_m;
     /** Kind of precipitation. Default WK_PRECIPITATION_NONE. */
@@ -1729,7 +1739,7 @@ typedef struct wk_weather {
     wk_precipitation_flags precipitation_flags;
     /** Precipitation rate, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls. */
     double precipitation_rate_mm_h;
-    /** Optional: liquid fraction of it. Range [0, 1]; else by kind. */
+    /** Optional: liquid fraction of the precipitation. Range [0, 1]; else by kind. */
     double precipitation_liquid_fraction;
     /** Mean wind at 10 m above ground, m/s. Range [0, 120], default 0. */
     double wind_speed_m_s;
@@ -1738,8 +1748,8 @@ typedef struct wk_weather {
     /** Optional: highest 3-second gust, m/s. Range [wind_speed_m_s, 150]; else from the turbulence. */
     double wind_gust_m_s;
     /**
-     * Optional, together with the next field: start of the range of varying direction, degrees; the range runs
-     * clockwise. Range [0, 360].
+     * Optional, together with the next field: start of the range within which the direction varies, degrees; the range
+     * runs clockwise. Range [0, 360].
      */
     double wind_variable_from_deg;
     /** End of that range, degrees. Range [0, 360]. 0 to 360 means all directions (VRB). */
@@ -1858,7 +1868,7 @@ typedef uint32_t wk_override_flags;
 #define WK_OVERRIDE_WETNESS 1024
 
 /**
- * Your own values in place of the laws that couple the parts of the weather. An extension: put it into
+ * Your own values in place of the laws that derive one part of the weather from another. An extension: put it into
  * wk_weather.next.
  */
 typedef struct wk_weather_overrides {
@@ -1868,26 +1878,27 @@ typedef struct wk_weather_overrides {
     wk_struct_type struct_type;
     /** The next extension. Default NULL. */
     const void *next;
-    /** Flags of the fields that are set; laws give the others. Default 0. */
+    /** Flags of the fields that are set; the laws give the others. Default 0. */
     wk_override_flags set;
-    /** Must be 0. */
-    uint32_t reserved0;
     /**
-     * Aerosol extinction at 550 nm and station height, 1/m, in place of the share of the visibility. Range [0, 10].
+     * Aerosol extinction at 550 nm and station height, 1/m, in place of the share that visibility gives. Range [0,
+     * 10].
      */
+    uint32_t reserved0;
+    /** Extinction inside the ground layer, 1/m, in place of the rest that visibility gives. Range [0, 10]. */
     double aerosol_extinction_per_m;
-    /** Extinction inside the ground layer, 1/m, in place of the rest of the visibility. Range [0, 10]. */
+    /** Extinction inside the ground layer, 1/m, in place of the rest of the visibility's. Range [0, 10]. */
     double fog_extinction_per_m;
     /** Extinction of precipitation, 1/m, in place of what the drop and flake spectra give. Range [0, 10]. */
     double precipitation_extinction_per_m;
     /** Visibility in the air above a mist or fog, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog. */
     double visibility_above_fog_m;
     /**
-     * Growth factor of particles by humidity, over their size at 80 %. Range [0.1, 20]; law: Haenel's; 1 switches
-     * growth off.
+     * Growth factor of particles by humidity, relative to their size at 80 %. Range [0.1, 20]; law: Haenel's; 1
+     * switches growth off.
      */
     double humidity_growth;
-    /** Air density at sea level over the standard's. Range [0, 10]. */
+    /** Ratio of the air density at sea level to the standard's. Range [0, 10]. */
     double rayleigh_density_ratio;
     /** Scale height of the air, m. Range [100, 50000]. */
     double rayleigh_scale_height_m;
@@ -1947,13 +1958,14 @@ wk_status wk_weather_overrides_init(wk_weather_overrides *out,
  * ====================================================================================================
  * [report] Weather reports and presets
  *
- * Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads what is there, in any order up
- * to the pressure. Fields that the report leaves out or marks as missing keep their defaults, or what the rest of the
- * report makes likely, and have a bit in wk_metar.assumed; words that are no group of the code change nothing and are
- * counted. So a calm wind (00000KT) and one that nobody measured (/////KT) differ by WK_METAR_ASSUMED_WIND.
+ * Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads the groups that are present, in
+ * any order up to the pressure. Fields that the report leaves out or marks as missing keep their defaults, or get
+ * values that the rest of the report makes likely; each has a bit in wk_metar.assumed. A calm wind (00000KT) and one
+ * that nobody measured (/////KT) thus differ by WK_METAR_ASSUMED_WIND. Words that are no group of the code change
+ * nothing and are counted.
  *
- * No report says how high its station lies: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up in
- * your list of airports and set it, because cloud bases, visibility and temperature refer to that height.
+ * No report contains the altitude of its station: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up
+ * in your list of airports and set the altitude, because cloud bases, visibility and temperature refer to that height.
  * ====================================================================================================
  */
 
@@ -1966,21 +1978,21 @@ typedef uint32_t wk_metar_flags;
 #define WK_METAR_AUTOMATIC 2
 /** A correction (COR). */
 #define WK_METAR_CORRECTED 4
-/** The report says only that visibility is at least so much (CAVOK, 9999, 10SM). */
+/** The report gives only a lower limit of the visibility (CAVOK, 9999, 10SM). */
 #define WK_METAR_VISIBILITY_IS_MINIMUM 8
 
 /** Fields that a report leaves out or marks as missing. */
 typedef uint32_t wk_metar_assumed_flags;
 
-/** wind_speed_m_s, with all of the wind: calm is assumed. */
+/** wind_speed_m_s and the rest of the wind: calm is assumed. */
 #define WK_METAR_ASSUMED_WIND 1
 /** wind_from_deg: 0 is assumed. */
 #define WK_METAR_ASSUMED_WIND_DIRECTION 2
-/** visibility_m: what humidity and what falls leave, at most 1 km in fog and 5 km in mist or haze. */
+/** visibility_m: as humidity and precipitation allow, at most 1 km in fog and 5 km in mist or haze. */
 #define WK_METAR_ASSUMED_VISIBILITY 4
-/** The present weather (`//`): neither precipitation nor fog nor haze is assumed. */
+/** Present weather (`//`): neither precipitation nor fog nor haze is assumed. */
 #define WK_METAR_ASSUMED_PRECIPITATION 8
-/** The clouds (`//////`, or no group at all): none are assumed beside those that are reported. */
+/** Clouds (`//////`, or no group at all): none are assumed besides those that are reported. */
 #define WK_METAR_ASSUMED_CLOUDS 16
 /** base_m of a layer (`BKN///`): 600 m is assumed. */
 #define WK_METAR_ASSUMED_CLOUD_BASE 32
@@ -1989,8 +2001,8 @@ typedef uint32_t wk_metar_assumed_flags;
 /** vertical_visibility_m (`VV///`): 60 m is assumed. */
 #define WK_METAR_ASSUMED_VERTICAL_VISIBILITY 128
 /**
- * temperature_c: 15, at most -1 where it snows or drops freeze, at most 1 where rain and snow fall together or what
- * falls is unknown; from the dew point at 70 % if only that is there.
+ * temperature_c: 15; at most -1 in snow or freezing precipitation; at most 1 where rain and snow fall together or the
+ * precipitation is unknown. If only the dew point is reported, the temperature for 70 % relative humidity.
  */
 #define WK_METAR_ASSUMED_TEMPERATURE 256
 /** relative_humidity: 0.7, or what a dew point gives at the assumed temperature. */
@@ -2000,25 +2012,28 @@ typedef uint32_t wk_metar_assumed_flags;
 /** wk_metar.day, hour and minute: 0. */
 #define WK_METAR_ASSUMED_TIME 2048
 
-/** How the amounts of cloud groups count. Nations differ, and a report does not say which practice it follows. */
+/** Meaning of the amounts in cloud groups. Nations differ, and a report does not say which practice it follows. */
 typedef uint32_t wk_cloud_amount_rule;
 
 /**
- * By the station's first letters: sums in the United States with its territories and in Canada (K, C; P but for PC and
- * PL; TI, TJ, NSTU, MUGM), layers elsewhere. American bases abroad report sums under the host country's letters: set
- * the rule for them.
+ * By the first letters of the station: sums in the United States with its territories and in Canada (K, C; P except PC
+ * and PL; TI, TJ, NSTU, MUGM), layers elsewhere. American bases abroad report sums under the host country's letters:
+ * set the rule for them.
  */
 #define WK_CLOUD_AMOUNT_BY_STATION 0
 /**
- * Each group counts what its layer and all lower ones hide (Federal Meteorological Handbook No. 1, 9.4.2 b and 9.5.2).
+ * The amount of a group is the cover of its layer and all lower ones together (Federal Meteorological Handbook No. 1,
+ * 9.4.2 b and 9.5.2).
  */
 #define WK_CLOUD_AMOUNT_SUMS 1
-/** Each group counts its layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2). */
+/**
+ * The amount of a group is the cover of its layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2).
+ */
 #define WK_CLOUD_AMOUNT_LAYERS 2
 
 /**
- * Place and time of a report, and what of it the weather does not hold. Offsets and lengths are bytes in the text that
- * you passed; 0 and 0 where the report has no such part.
+ * Place and time of a report, and the parts of it that wk_weather has no fields for. Offsets and lengths are bytes in
+ * the text that you passed; 0 and 0 where the report has no such part.
  */
 typedef struct wk_metar {
     /** sizeof(wk_metar) of your header. */
@@ -2042,23 +2057,23 @@ typedef struct wk_metar {
     /** Rule by which the amounts of clouds were read: WK_CLOUD_AMOUNT_SUMS or WK_CLOUD_AMOUNT_LAYERS. */
     wk_cloud_amount_rule cloud_amounts;
     /**
-     * Lowest visibility in some direction, m, where the report states one beside the prevailing one (`4000 1500NE`,
-     * `9999 3100`), else 0. For information: the weather has the prevailing one.
+     * Lowest visibility in some direction, m, where the report states one besides the prevailing visibility
+     * (`4000 1500NE`, `9999 3100`), else 0. For information: the weather has the prevailing visibility.
      */
     double lowest_visibility_m;
-    /** Where the runway visual ranges begin. */
+    /** Offset of the runway visual ranges. */
     uint32_t runways_offset;
     /** Bytes from the first to the last of them. */
     uint32_t runways_length;
-    /** Where the trend forecast begins, its first word (NOSIG, BECMG, TEMPO) included. */
+    /** Offset of the trend forecast, whose first word (NOSIG, BECMG, TEMPO) is included. */
     uint32_t trend_offset;
     /** Bytes of the trend forecast. */
     uint32_t trend_length;
-    /** Where the remarks begin, after RMK. */
+    /** Offset of the remarks, after RMK. */
     uint32_t remarks_offset;
     /** Bytes of the remarks. */
     uint32_t remarks_length;
-    /** Where the first word stands that is no group of the code. */
+    /** Offset of the first word that is no group of the code. */
     uint32_t unread_offset;
     /** Bytes of that word. */
     uint32_t unread_length;
@@ -2093,7 +2108,7 @@ typedef struct wk_metar {
     /* reserved0 */ 0 \
 }
 
-/** How a report is read. */
+/** Options for reading a report. */
 typedef struct wk_metar_options {
     /** sizeof(wk_metar_options) of your header. */
     uint32_t struct_size;
@@ -2101,7 +2116,7 @@ typedef struct wk_metar_options {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** How the amounts of cloud groups count. Default WK_CLOUD_AMOUNT_BY_STATION. */
+    /** Meaning of the amounts in cloud groups. Default WK_CLOUD_AMOUNT_BY_STATION. */
     wk_cloud_amount_rule cloud_amounts;
     /** Must be 0. */
     uint32_t reserved0;
@@ -2118,12 +2133,12 @@ typedef struct wk_metar_options {
 
 /**
  * Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`, with cloud amounts by
- * the station's rule. Its cloud layers go to `layers`, which has room for `layer_capacity` of `layer_size` bytes
- * (sizeof(wk_cloud_layer) of your header; 16 always suffice), and out_weather->clouds leads there: keep it as long as
- * the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it from a list of airports. Thread:
- * any. Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the
- * weather, with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers
- * do not fit.
+ * the station's rule. Its cloud layers are written to `layers`, which has room for `layer_capacity` elements of
+ * `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 elements always suffice). out_weather->clouds points
+ * there: keep `layers` as long as the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it
+ * from a list of airports. Thread: any. Errors: WK_ERROR_PARSE for a text without a station, without an observation
+ * (NIL) or without any group of the weather, with line and column, what was expected there and what was found;
+ * WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
  */
 WK_API
 wk_status wk_weather_from_metar(const char *report,
@@ -2134,7 +2149,7 @@ wk_status wk_weather_from_metar(const char *report,
                                 wk_metar *out_metar);
 
 /**
- * Reads a report as wk_weather_from_metar does, and as `options` say. NULL is every default.
+ * Reads a report as wk_weather_from_metar does, with `options`. NULL means all defaults.
  * Thread: any.
  * Errors: as wk_weather_from_metar; WK_ERROR_INVALID_ARGUMENT for an unknown rule.
  */
@@ -2148,7 +2163,7 @@ wk_status wk_weather_from_metar_with(const char *report,
                                      wk_metar *out_metar);
 
 /**
- * Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the
+ * Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset gives the
  * names.
  * Thread: any.
  * Errors: WK_ERROR_INVALID_ARGUMENT for a name that is not listed; the message lists them.
@@ -2187,15 +2202,16 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
  * [context] Contexts
  *
  * A wk_context has the weather, the time and the place that all views of a simulator share. It is a function of its
- * description, its timeline and its time: two contexts with the same input answer the same, on every machine.
+ * description, its timeline and its time: two contexts with the same input give the same answers on every machine.
  *
- * The world. FLAT: the ground is a plane, altitude is the up coordinate. TANGENT: east-north-up at the origin's place,
- * with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat and tangent worlds
- * are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world). Directions in answers are
- * unit vectors (east, north, up) at the place asked for; azimuths are degrees clockwise from true north.
+ * The kind of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT: east-north-up at the
+ * origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat
+ * and tangent worlds are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world).
+ * Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are degrees clockwise from
+ * true north.
  *
- * Altitudes count from mean sea level everywhere in this header. In an ECEF world that lies geoid_height_m of
- * wk_context_desc above the ellipsoid; with the default of 0 heights above the ellipsoid are taken for altitudes.
+ * Altitudes count from mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m
+ * of wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
  * ====================================================================================================
  */
 
@@ -2205,13 +2221,13 @@ typedef struct wk_context wk_context;
 /** How the host's world is placed on the planet. */
 typedef uint32_t wk_world_kind;
 
-/** A plane: up is the same everywhere, altitude is the up coordinate plus the origin's. */
+/** A plane: up is the same everywhere. Altitude is the up coordinate plus the origin's altitude. */
 #define WK_WORLD_FLAT 0
-/** East-north-up at the origin's place, the curved planet below. */
+/** East-north-up at the origin's place, with the curved planet below. */
 #define WK_WORLD_TANGENT 1
 /**
- * Earth-centred, Earth-fixed (WGS 84); axes and grid bearing have no effect, and the origin only affects the sunlight
- * that dries a simulated ground (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
+ * Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect; the origin only affects the sunlight that
+ * dries a simulated ground (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
  */
 #define WK_WORLD_ECEF 2
 
@@ -2226,21 +2242,21 @@ typedef uint32_t wk_axes;
 /** Source of the exposure: one value for all channels of a simulator, never measured from a view. */
 typedef uint32_t wk_exposure_mode;
 
-/** From the light that falls on level ground; exposure_value is a compensation in stops, [-20, 20]. */
+/** Automatic, from the light that falls on level ground; exposure_value is a compensation in stops, [-20, 20]. */
 #define WK_EXPOSURE_AUTO 0
-/** exposure_value is an exposure value at ISO 100, [-20, 30]: 15 a sunny day, -4 a moonlit night. */
+/** Exposure value at ISO 100: exposure_value, [-20, 30], is 15 for a sunny day, -4 for a moonlit night. */
 #define WK_EXPOSURE_EV100 1
-/** exposure_value is display units per cd/m^2, (0, 1e6]. */
+/** Factor: exposure_value is display units per cd/m^2, (0, 1e6]. */
 #define WK_EXPOSURE_FACTOR 2
-/** In a wk_frame: the context's exposure; exposure_value is not used. */
+/** Exposure of the context, for a wk_frame; exposure_value is not used. */
 #define WK_EXPOSURE_OF_CONTEXT 3
 
 /** Curve from exposed luminance to display values. */
 typedef uint32_t wk_tone_curve;
 
-/** Clamp. */
+/** Identity, clamped to the display's range. */
 #define WK_TONE_LINEAR 0
-/** 1 - exp(-x) a channel: bright skies never burn out. */
+/** 1 - exp(-x) in each channel: bright skies never clip to white. */
 #define WK_TONE_EXPONENTIAL 1
 /** Hable's filmic curve, white at 11.2. */
 #define WK_TONE_FILMIC 2
@@ -2253,9 +2269,9 @@ typedef struct wk_context_desc {
     wk_struct_type struct_type;
     /** NULL (the default), or a chain of wk_sky_settings and wk_simulation_desc. */
     const void *next;
-    /** Default WK_WORLD_FLAT. */
+    /** Placement of the host's world on the planet. Default WK_WORLD_FLAT. */
     wk_world_kind world_kind;
-    /** Default WK_AXES_Z_UP. */
+    /** Directions of the host's axes. Default WK_AXES_Z_UP. */
     wk_axes axes;
     /** Latitude of the host's (0, 0, 0), degrees north. Range [-90, 90], default 50. */
     double latitude_deg;
@@ -2267,16 +2283,16 @@ typedef struct wk_context_desc {
     double grid_bearing_deg;
     /** Seed of everything random. Default 0. */
     uint64_t seed;
-    /** A planet file's text (TOML, UTF-8; docs/planets.md), read during the call. Default NULL: the Earth. */
+    /** Text of a planet file (TOML, UTF-8; docs/planets.md), read during the call. Default NULL: the Earth. */
     const char *planet_toml;
     /**
-     * Exposure of frames that have none of their own. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused
-     * here.
+     * Source of the exposure for frames that set none of their own. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT
+     * is refused here.
      */
     wk_exposure_mode exposure_mode;
-    /** Default WK_TONE_EXPONENTIAL. */
+    /** Curve from exposed luminance to display values. Default WK_TONE_EXPONENTIAL. */
     wk_tone_curve tone_curve;
-    /** See wk_exposure_mode. Default 0. */
+    /** Value of the exposure, as wk_exposure_mode says. Default 0. */
     double exposure_value;
     /**
      * Universal time at simulation time 0, seconds since 1970-01-01T00:00:00Z without leap seconds (Unix time).
@@ -2284,7 +2300,7 @@ typedef struct wk_context_desc {
      */
     double utc_at_zero_s;
     /**
-     * A directory, UTF-8, for the sky's finished tables; Welkin makes it if needed. A later start with the same
+     * Path of a directory, UTF-8, for finished sky tables; Welkin creates it if needed. A later start with the same
      * planet, sky settings and weather reads the tables instead of building them. Welkin keeps the tables of the first
      * drawn weather and those of wk_context_build_sky: the newest 32 of all programs that name the directory (2 MB
      * each). If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read during the call.
@@ -2293,9 +2309,9 @@ typedef struct wk_context_desc {
     const char *cache_dir;
     /**
      * Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation),
-     * m: 47.8 at Frankfurt, -30 at New York. One number for the context; it varies by some metres over 100 km. For
-     * WK_WORLD_ECEF, whose coordinates know the ellipsoid alone: altitudes, the tops of fog and the bases of clouds
-     * among them, count from mean sea level. Without effect in other worlds. Range [-120, 120], default 0.
+     * m: 47.8 at Frankfurt, -30 at New York. One number holds for the whole context; in nature it varies by some
+     * metres over 100 km. Only WK_WORLD_ECEF uses it, because its coordinates refer to the ellipsoid, while altitudes,
+     * tops of fog and bases of clouds count from mean sea level. Range [-120, 120], default 0.
      */
     double geoid_height_m;
 } wk_context_desc;
@@ -2322,14 +2338,14 @@ typedef struct wk_context_desc {
 }
 
 /**
- * Receives how much of a long operation is done, from 0 to 1, never less than before. Return 0 to go on; anything else
- * ends the operation with WK_ERROR_ABORTED. It must not call Welkin and must not unwind. It may draw with the host's
- * own means, an OpenGL context included.
+ * Receives the completed share of a long operation, from 0 to 1, never less than before. Return 0 to go on; anything
+ * else ends the operation with WK_ERROR_ABORTED. The function must not call Welkin and must not unwind. It may draw by
+ * the host's own means, also with an OpenGL context.
  */
 typedef int32_t (*wk_progress_fn)(void *user, double share);
 
 /**
- * Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
+ * Creates a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
  * `wk_context_destroy`. The weather is a clear standard day at noon until you set another.
  * Thread: exclusive on the device.
  * Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field.
@@ -2341,39 +2357,39 @@ wk_status wk_context_create(wk_device *device,
 
 /**
  * Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
- * call; NULL means the Earth. Light and queries are those of the new planet at once; nothing is blended. The sky's
- * tables follow as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the
- * radius, the top or the wavelengths differ, the next frame shows a draft of the new planet at once
- * (docs/planets.md).
+ * call; NULL means the Earth. Light and queries use the new planet at once, without blending. The sky's tables follow
+ * as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the radius, the
+ * top or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
  * Thread: exclusive.
  * Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet
  * stays as it was.
  */
-WK_API
-wk_status wk_context_set_planet(wk_context *context,
-                                const char *planet_toml);
+WK_API wk_status wk_context_set_planet(wk_context *context, const char *planet_toml);
 
 /**
- * Sets the curve from luminance to the display for the next frames, as tone_curve of wk_context_desc did.
+ * Sets the curve from luminance to display values for the next frames, in place of tone_curve of wk_context_desc.
  * Thread: exclusive.
  */
 WK_API wk_status wk_context_set_tone_curve(wk_context *context, wk_tone_curve curve);
 
 /**
- * Builds the sky's tables for the context's planet and the weather of its present time completely, so that no frame
- * has to. Call it at load time, behind a progress bar. It takes tables that another context of the device already
- * shows or that lie in the context's cache_dir, and writes new ones there. Without this call the first frame shows a
- * draft of the sky, within 3 of 255 of the whole one, and 120 frames refine it without a visible step.
- * WK_FRAME_NO_HISTORY in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else
- * it is called about sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no
- * file. Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's
- * own again while `progress` runs. Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
+ * Builds the sky's tables completely for the context's planet and present weather, so that no frame has to. Call it at
+ * load time, behind a progress bar. It reuses tables that another context of the device already shows or that lie in
+ * the context's cache_dir, and writes new ones there. Without this call the first frame shows a draft of the sky,
+ * within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY in a frame
+ * builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about sixteen
+ * times, the last time with 1. An aborted build leaves the context as it was and writes no file. Thread: exclusive on
+ * the context. For a device on an OpenGL context the rule of wk_view_record applies; while `progress` runs, Welkin has
+ * given that context back to the host. Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
  */
-WK_API wk_status wk_context_build_sky(wk_context *context, wk_progress_fn progress, void *user);
+WK_API
+wk_status wk_context_build_sky(wk_context *context,
+                               wk_progress_fn progress,
+                               void *user);
 
 /**
  * Destroys a context. NULL does nothing.
- * Thread: any; the GPU's part is released at the device's next call if it must be.
+ * Thread: any. GPU objects that need the host's OpenGL context are released at the device's next call.
  * Errors: WK_ERROR_IN_USE while it has views.
  */
 WK_API wk_status wk_context_destroy(wk_context *context);
@@ -2390,32 +2406,32 @@ wk_status wk_context_desc_init(wk_context_desc *out,
  * ====================================================================================================
  * [sky] How the sky is drawn
  *
- * Four models share the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
- * scattering in clear air and haze. The others are for comparison and for slow machines. A wk_sky_settings goes into
- * wk_context_desc.next, or to wk_context_set_sky_settings later.
+ * Four models use the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
+ * scattering in clear air and haze. The others are for comparison and for slow machines. Put a wk_sky_settings into
+ * wk_context_desc.next, or pass it to wk_context_set_sky_settings later.
  * ====================================================================================================
  */
 
 /** Model of the sky. */
 typedef uint32_t wk_sky_model;
 
-/** Light scattered more than once keeps its direction, order by order. The default. */
+/** Multiple scattering keeps its dependence on direction, order by order. The default. */
 #define WK_SKY_DIRECTIONAL 0
 /**
- * Light scattered more than once is the same in all directions (Hillaire 2020); less accurate and quicker to build.
- * docs/lab charts both.
+ * Multiple scattering is the same in all directions (Hillaire 2020); less accurate and quicker to build. docs/lab
+ * charts both.
  */
 #define WK_SKY_ISOTROPIC 1
 /**
- * Light scattered once, from a table over altitude, view angle and sun angle (Elek 2008), as in older systems; light
- * scattered more often is missing.
+ * Single scattering alone, from a table over altitude, view angle and sun angle (Elek 2008), as in older systems;
+ * multiple scattering is missing.
  */
 #define WK_SKY_TABLE_3D 2
-/** As the default, but light scattered once is marched in every pixel: a reference for the tables. */
+/** As the default, but single scattering is ray-marched in every pixel: a reference for the tables. */
 #define WK_SKY_BRUTE_FORCE 3
 
 /**
- * Sizes of the sky's tables. An extension: put it into wk_context_desc.next. Or set it later by
+ * Model of the sky and sizes of its tables. An extension: put it into wk_context_desc.next. Or set it later by
  * wk_context_set_sky_settings, with `next` NULL.
  */
 typedef struct wk_sky_settings {
@@ -2428,29 +2444,30 @@ typedef struct wk_sky_settings {
     /** Model of the sky. Default WK_SKY_DIRECTIONAL. */
     wk_sky_model model;
     /**
-     * Orders of scattering computed one by one; a geometric series stands for the rest. Range [3, 16], default 5.
+     * Orders of scattering that are computed one by one; a geometric series stands for the higher ones. Range [3, 16],
+     * default 5.
      */
     uint32_t orders;
-    /** Sun angles of the planet's tables. Range [16, 128], default 64. */
+    /** Number of sun angles in the planet's tables. Range [16, 128], default 64. */
     uint32_t suns;
-    /** Altitudes of the planet's tables. Range [8, 64], default 22. */
+    /** Number of altitudes in the planet's tables. Range [8, 64], default 22. */
     uint32_t altitudes;
-    /** Azimuths on [0, pi] of an observer's sky. Range [8, 256], default 40. */
+    /** Number of azimuths over [0, pi] in an observer's sky table. Range [8, 256], default 40. */
     uint32_t sky_azimuths;
-    /** Rows of an observer's sky above the horizon. Range [8, 256], default 80. */
+    /** Rows above the horizon in an observer's sky table. Range [8, 256], default 80. */
     uint32_t sky_above;
-    /** Rows of an observer's sky below the horizon. Range [8, 256], default 40. */
+    /** Rows below the horizon in an observer's sky table. Range [8, 256], default 40. */
     uint32_t sky_below;
-    /** Distances of the air in front of things. Range [4, 64], default 16. */
+    /** Number of distances in the table of the air in front of objects. Range [4, 64], default 16. */
     uint32_t air_slices;
-    /** Cells of a march per pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64. */
+    /** Steps of the ray march in each pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64. */
     uint32_t march_cells;
     /**
-     * Wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean the
-     * planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel over the
-     * luminance is 6 % with 3, 2.4 % with 9, and 15 are within 1 % of 40. The time to build tables grows in
-     * proportion, for a change of air as for a moving sun: five times with 15. Pixels cost the same.
-     * WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
+     * Number of wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean
+     * the planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel over
+     * the luminance is 6 % with 3 wavelengths and 2.4 % with 9; with 15 it is within 1 % of the result with 40. The
+     * time to build tables grows in proportion, both for a change of air and for a moving sun: five times with 15. The
+     * cost of a pixel stays the same. WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
      */
     uint32_t wavelengths;
 } wk_sky_settings;
@@ -2474,10 +2491,10 @@ typedef struct wk_sky_settings {
 
 /**
  * Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
- * WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on, and that frame shows a draft of the sky as
- * a first frame does; wk_context_build_sky after this call makes the final picture ready. Pipelines of another model
- * are compiled in that frame. The same settings again change nothing. Thread: exclusive. Errors:
- * WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. The settings stay as they were.
+ * WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on. That frame shows a draft of the sky, as a
+ * first frame does, unless wk_context_build_sky has prepared the final picture after this call. Pipelines of another
+ * model are compiled in that frame. Setting the same values again changes nothing. Thread: exclusive. Errors:
+ * WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. After an error the settings stay as they were.
  */
 WK_API wk_status wk_context_set_sky_settings(wk_context *context, const wk_sky_settings *settings);
 
@@ -2493,17 +2510,17 @@ wk_status wk_sky_settings_init(wk_sky_settings *out,
  * ====================================================================================================
  * [timeline] Weather over time
  *
- * The host owns simulation time: seconds in double precision, moved forward by wk_context_update. Weather is a
- * timeline of changes, each with an absolute start and a duration; between changes it stays. A change that begins
- * during another one is laid over it, so neither the weather nor its rate of change jumps. The same calls in the same
+ * The host owns simulation time: seconds in double precision, advanced by wk_context_update. Weather is a timeline of
+ * changes, each with an absolute start and a duration; between changes it is constant. A change that begins during
+ * another one is superimposed on it, so neither the weather nor its rate of change jumps. The same calls in the same
  * order give the same weather on every machine.
  *
- * Sun and moon follow from place and universal time, which is tied to simulation time, or stand where the host puts
- * them.
+ * The positions of sun and moon follow from place and universal time, which is tied to simulation time, unless the
+ * host sets them.
  * ====================================================================================================
  */
 
-/** A direction to the sun or moon, given by the host in place of the almanac. */
+/** Direction to the sun or moon that the host sets in place of the almanac's. */
 typedef struct wk_given_direction {
     /** sizeof(wk_given_direction) of your header. */
     uint32_t struct_size;
@@ -2511,9 +2528,9 @@ typedef struct wk_given_direction {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Degrees clockwise from true north. Range [-360, 360], default 180. */
+    /** Azimuth, degrees clockwise from true north. Range [-360, 360], default 180. */
     double azimuth_deg;
-    /** Degrees above the horizon, without refraction. Range [-90, 90], default 45. */
+    /** Elevation above the horizon, degrees, without refraction. Range [-90, 90], default 45. */
     double elevation_deg;
 } wk_given_direction;
 
@@ -2540,39 +2557,40 @@ wk_status wk_context_set_weather(wk_context *context,
                                  double transition_s);
 
 /**
- * Moves simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame before
- * the views record. Weather and light are functions of time and follow at once. A simulated ground
- * (WK_GROUND_SIMULATED) takes one step for every 10 s. One call steps for at most 50 ms, and at least once. If steps
- * remain, as after a leap of hours, the call answers WK_PENDING: call it again with the same time, in a loop or once a
- * frame, until it answers WK_OK. Until then water on the ground is drawn and answered as of wk_context_get_state_time,
- * settings take effect only after the remaining steps, and a later time is taken up when these are done. So the state
- * is the same however many calls it takes. A leap of more than a day starts the ground a day before its end, as wet as
- * the weather reports it then.
- * Thread: exclusive. Answers WK_PENDING, which is no error, while steps remain.
- * Errors: WK_ERROR_WRONG_ORDER if it lies before the present.
+ * Advances simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame
+ * before the views record. Weather and light are functions of time and change at once. A simulated ground
+ * (WK_GROUND_SIMULATED) takes one step for every 10 s. One call computes steps for at most 50 ms, and at least one
+ * step. If steps remain, as after a leap of hours, the call returns WK_PENDING: call it again with the same time, in a
+ * loop or once a frame, until it returns WK_OK. Until then, water on the ground is drawn and queried as of
+ * wk_context_get_state_time, settings take effect only after the remaining steps, and a later time counts only when
+ * these are done. The state therefore does not depend on the number of calls. A leap of more than a day starts the
+ * ground a day before its end, as wet as the weather reports it then.
+ * Thread: exclusive. Returns WK_PENDING, which is no error, while steps remain.
+ * Errors: WK_ERROR_WRONG_ORDER if `time_s` is before the present.
  */
 WK_API
 wk_status wk_context_update(wk_context *context,
                             double time_s);
 
 /**
- * Simulation time of the state, s: that of the last wk_context_update, or earlier while that answers WK_PENDING. The
- * difference is how far the state lags behind. It never goes back, except by wk_context_load.
+ * Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while that
+ * returns WK_PENDING. The difference is how far the state lags behind. It never decreases, except by wk_context_load.
  * Thread: concurrent.
  */
 WK_API wk_status wk_context_get_state_time(const wk_context *context, double *out_state_time_s);
 
 /**
  * Ties universal time to simulation time: universal time is `utc_s` (Unix time, seconds without leap seconds) at
- * simulation time `time_s`. Before the first call it is wk_context_desc.utc_at_zero_s at simulation time 0.
+ * simulation time `time_s`. Before the first call, universal time is wk_context_desc.utc_at_zero_s at simulation
+ * time 0.
  * Thread: exclusive.
  */
 WK_API wk_status wk_context_set_clock(wk_context *context, double utc_s, double time_s);
 
 /**
- * Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in
- * [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as
- * Unix time has it. Thread: any.
+ * Gets the Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000];
+ * `second` in [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the
+ * next day, as in Unix time. Thread: any.
  */
 WK_API
 wk_status wk_utc_from_calendar(int32_t year,
@@ -2584,45 +2602,51 @@ wk_status wk_utc_from_calendar(int32_t year,
                                double *out_utc_s);
 
 /**
- * Puts the sun into a given direction; NULL returns it to the almanac.
+ * Sets the direction of the sun; NULL returns to the almanac.
  * Thread: exclusive.
  */
 WK_API wk_status wk_context_set_sun(wk_context *context, const wk_given_direction *direction);
 
 /**
- * Puts the moon into a given direction (its phase follows from the sun's place); NULL returns it to the almanac.
+ * Sets the direction of the moon (its phase follows from the sun's direction); NULL returns to the almanac.
  * Thread: exclusive.
  */
 WK_API wk_status wk_context_set_moon(wk_context *context, const wk_given_direction *direction);
 
 /**
- * Sets the exposure of frames that have none of their own; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused
- * here.
+ * Sets the exposure of frames that do not set their own; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused here.
  * Thread: exclusive.
  */
-WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode mode, double value);
+WK_API
+wk_status wk_context_set_exposure(wk_context *context,
+                                  wk_exposure_mode mode,
+                                  double value);
 
 /**
  * Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
- * weather, time, clock, given sun and moon, planet, exposure, tone curve, fog law, shelters, lamps, rain areas, wind
- * grid, the terrain with its water, and the world, place, seed and ground model that it belongs to. Of the tiles of a
- * wk_terrain it has the water alone. Not included:
- * how it is drawn (sky settings, views, plans), and the images of wk_context_set_occluder_maps, because each channel
- * may have its own. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing else is written
- * and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
+ * weather, time, clock, directions of sun and moon that the host set, planet, exposure, tone curve, fog law, shelters,
+ * lamps, rain areas, wind grid, the terrain with its water, and the world, place, seed and ground model that it
+ * belongs to. For the tiles of a wk_terrain it has only the water. Not included: how the state is drawn (sky settings,
+ * views, plans), and the images of wk_context_set_occluder_maps, because each channel may have its own. `*out_size`
+ * gets the bytes needed, even if `capacity` is too small (then nothing else is written and the call fails) or `buffer`
+ * is NULL with `capacity` 0 (then it succeeds).
  * Thread: concurrent.
- * Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
+ * Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
  */
-WK_API wk_status wk_context_save(const wk_context *context, void *buffer, size_t capacity, size_t *out_size);
+WK_API
+wk_status wk_context_save(const wk_context *context,
+                          void *buffer,
+                          size_t capacity,
+                          size_t *out_size);
 
 /**
  * Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
- * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF instead of
- * these two geoid_height_m), seed and ground_model. A state of an earlier version that holds no planet and tone curve
- * needs the same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state,
- * as they were when it was saved, before. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that are no saved state,
- * are cut short, have even one byte changed, or have another format, which the message names (this version reads
- * format 2; save states of format 1 again, because they did not say what place they were of);
+ * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF
+ * geoid_height_m in place of the last two), seed and ground_model. A state of an earlier version without planet and
+ * tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before
+ * the call, set them as they were when the state was saved. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that
+ * are no saved state, are truncated, differ from the saved ones in even one byte, or have another format, which the
+ * message names (this version reads format 2; save states of format 1 again, because they did not record their place);
  * WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
  */
 WK_API
@@ -2631,12 +2655,14 @@ wk_status wk_context_load(wk_context *context,
                           size_t size);
 
 /**
- * Gets a hash of what wk_context_save writes. It is equal on two channels whose contexts show the same world from now
- * on.
+ * Gets a hash of the state that wk_context_save writes. It is equal on two channels whose contexts show the same world
+ * from now on.
  * Thread: concurrent.
- * Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
+ * Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
  */
-WK_API wk_status wk_context_state_hash(const wk_context *context, uint64_t *out_hash);
+WK_API
+wk_status wk_context_state_hash(const wk_context *context,
+                                uint64_t *out_hash);
 
 /**
  * Writes the default of every field: the same bytes as `WK_GIVEN_DIRECTION_INIT`. `struct_size` is `sizeof(wk_given_direction)`
@@ -2650,12 +2676,14 @@ wk_status wk_given_direction_init(wk_given_direction *out,
  * ====================================================================================================
  * [fog_law] Fog laws of older simulators
  *
- * Fog follows from the weather and is lit by sun and sky. For pictures that must look as before, Welkin can draw the
- * laws of older systems instead: linear, exponential, exponential squared, on range or plane distance.
+ * Normally fog follows from the weather and is lit by sun and sky. For pictures that must look as before, Welkin can
+ * draw the laws of older systems instead: linear, exponential or exponential squared, by range or by plane distance.
  * ====================================================================================================
  */
 
-/** Curve of the fog: V is the share of an object's colour that is left at distance d, 1 clear, 0 all fog. */
+/**
+ * Curve of the fog: V is the share of an object's colour that is left at distance d. V = 1 is clear, V = 0 is all fog.
+ */
 typedef uint32_t wk_fog_curve;
 
 /** No fog at all, whatever the weather. */
@@ -2670,9 +2698,9 @@ typedef uint32_t wk_fog_curve;
 /** Measure of distance. */
 typedef uint32_t wk_fog_distance;
 
-/** From the camera's centre: turning the camera changes nothing. */
+/** Distance from the camera's centre: turning the camera changes nothing. */
 #define WK_FOG_DISTANCE_RANGE 0
-/** From the camera's plane, as in the oldest systems. */
+/** Distance from the camera's plane, as in the oldest systems. */
 #define WK_FOG_DISTANCE_PLANE 1
 
 /** Flags of the optional fields of a wk_fog_law that are set. */
@@ -2689,28 +2717,28 @@ typedef struct wk_fog_law {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Default WK_FOG_CURVE_CLEAR. */
+    /** Curve of the fog. Default WK_FOG_CURVE_CLEAR. */
     wk_fog_curve curve;
-    /** Default WK_FOG_DISTANCE_RANGE. */
+    /** Measure of distance. Default WK_FOG_DISTANCE_RANGE. */
     wk_fog_distance distance;
     /** Flags of the optional fields that are set. Default 0. */
     wk_fog_law_has_flags has;
     /** Must be 0. */
     uint32_t reserved0;
-    /** Linear: distance where fog begins, m. Range [0, 1e9], default 0. */
+    /** Distance where linear fog begins, m. Range [0, 1e9], default 0. */
     double start_m;
-    /** Linear: distance where all is fog, m. Above start_m, at most 1e9; default 1000. */
+    /** Distance where linear fog is complete, m. Above start_m, at most 1e9; default 1000. */
     double end_m;
-    /** Exponential and squared: density, 1/m. Range [0, 10], default 0.003. */
+    /** Density of exponential and exponential squared fog, 1/m. Range [0, 10], default 0.003. */
     double density_per_m;
     /**
-     * Optional: radiance that the picture fades into, cd/m^2 a channel. Range [0, 1e12]; else that of deep fog under
-     * the present light.
+     * Optional: radiance into which the picture fades, cd/m^2 a channel. Range [0, 1e12]. Without it Welkin uses the
+     * radiance of deep fog under the present light.
      */
     double color[3];
     /**
-     * Elevation above the horizon up to which sky pixels fade, rad: fully at the horizon, not at all here. Range [0,
-     * pi], default 0.2. 0 leaves the sky as it is, pi covers all of it.
+     * Elevation above the horizon up to which sky pixels fade, rad. The fade is full at the horizon and ends at this
+     * elevation. Range [0, pi], default 0.2. 0 leaves the sky as it is, pi covers all of it.
      */
     double sky_band;
 } wk_fog_law;
@@ -2739,7 +2767,7 @@ WK_API wk_status wk_context_set_fog_law(wk_context *context, const wk_fog_law *f
 
 /**
  * Gets the distance beyond which a fog law leaves less than 1/255 of an object's colour, m: you need not draw anything
- * farther away. It uses the law's measure of distance, and is infinite if the law never reaches that.
+ * farther away. The distance is measured as the law measures it, and infinite if the law always leaves more.
  * Thread: any.
  */
 WK_API
@@ -2747,8 +2775,8 @@ wk_status wk_fog_law_cull_distance(const wk_fog_law *fog_law,
                                    double *out_distance_m);
 
 /**
- * Gets the distance beyond which air of a visibility (meteorological optical range, m, [1, 1e6]) leaves less than
- * 1/255 of an object's contrast, m: about 1.85 times the visibility.
+ * Gets the distance beyond which air of a given visibility leaves less than 1/255 of an object's contrast, m: about
+ * 1.85 times the visibility. visibility_m is the meteorological optical range, m, [1, 1e6].
  * Thread: any.
  */
 WK_API wk_status wk_visibility_cull_distance(double visibility_m, double *out_distance_m);
@@ -2781,13 +2809,15 @@ typedef struct wk_conditions {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Total extinction at 550 nm, 1/m: air, particles and fog at station height, and what falls at the position. */
+    /**
+     * Total extinction at 550 nm, 1/m: air, particles and fog at station height, and precipitation at the position.
+     */
     double extinction_per_m;
-    /** Meteorological optical range of that extinction, m; at most 1e9, as without any air. */
+    /** Meteorological optical range of that extinction, m; at most 1e9, which stands for no air at all. */
     double visibility_m;
     /** Air temperature at 2 m, degrees Celsius. */
     double temperature_c;
-    /** Fraction. */
+    /** Relative humidity, a fraction. */
     double relative_humidity;
     /** Pressure reduced to sea level, hPa. */
     double pressure_hpa;
@@ -2805,24 +2835,24 @@ typedef struct wk_conditions {
     double aerosol_extinction_per_m;
     /** Exponent of the particles' extinction: (wavelength / 550 nm)^-exponent. */
     double aerosol_angstrom_exponent;
-    /** At 550 nm. */
+    /** Single-scattering albedo of the particles at 550 nm. */
     double aerosol_single_scattering_albedo;
-    /** Mean cosine of the phase function. */
+    /** Mean cosine of the particles' phase function. */
     double aerosol_asymmetry;
     /** Scale height of the particles: density falls by 1/e over it, m. */
     double aerosol_scale_height_m;
     /** Extinction inside the layer at the ground, at 550 nm, 1/m; 0 if there is none. */
     double fog_extinction_per_m;
-    /** Base of the layer, m. */
+    /** Base of the layer at the ground, m. */
     double fog_base_m;
-    /** Top of the layer, m. */
+    /** Top of the layer at the ground, m. */
     double fog_top_m;
-    /** Depth of its soft upper edge, m. */
+    /** Depth of the layer's soft upper edge, m. */
     double fog_softness_m;
     /** Fraction of the ground that the layer covers. */
     double fog_coverage;
     /**
-     * Fraction of the sky hidden by all layers together. During a change it stays between the values at both ends.
+     * Fraction of the sky that all layers together hide. During a change it stays between the values at both ends.
      */
     double cloud_cover;
     /** Rain, mm/h. */
@@ -2837,9 +2867,9 @@ typedef struct wk_conditions {
     double hail_mm_h;
     /** Fraction of rain and drizzle that freezes where it lands. */
     double freezing;
-    /** How convective it is: 0 steady, 1 showers. */
+    /** Convectiveness of the precipitation: 0 steady, 1 showers. */
     double showers;
-    /** Whether there is thunder: 0 to 1. */
+    /** Presence of thunder, 0 to 1. */
     double thunder;
     /** Extinction by all precipitation, at 550 nm, 1/m. */
     double precipitation_extinction_per_m;
@@ -2861,13 +2891,13 @@ typedef struct wk_conditions {
     double significant_wave_height_m;
     /** Height of the swell, m; 0 without swell. */
     double swell_height_m;
-    /** Its peak period, s. */
+    /** Peak period of the swell, s. */
     double swell_period_s;
-    /** Its direction of travel: east component of the unit vector. */
+    /** Direction in which the swell travels: east component of the unit vector. */
     double swell_east;
-    /** Its direction of travel: north component of the unit vector. */
+    /** Direction in which the swell travels: north component of the unit vector. */
     double swell_north;
-    /** Water, degrees Celsius. */
+    /** Sea temperature, degrees Celsius. */
     double sea_temperature_c;
     /** Wetness of the ground: 0 dry, 0.3 damp, 1 under a closed film. */
     double wetness;
@@ -2875,7 +2905,7 @@ typedef struct wk_conditions {
     double puddles;
     /** Fraction of the ground under ice or frost. */
     double ice;
-    /** Lying snow, m. */
+    /** Depth of lying snow, m. */
     double snow_depth_m;
     /** Ozone column, Dobson units. */
     double ozone_du;
@@ -2945,7 +2975,7 @@ typedef struct wk_conditions {
     /* ice_crystals_mm_h */ 0.0 \
 }
 
-/** A horizontally mixed layer of cloud; plain values of a list. */
+/** Horizontally uniform layer of cloud; plain values of a list. */
 typedef struct wk_cloud_slab {
     /** Fraction of the sky covered. */
     double cover;
@@ -2966,14 +2996,14 @@ typedef struct wk_cloud_slab {
 } wk_cloud_slab;
 
 /**
- * Gets the conditions at a position and a past or future simulation time. What falls is what falls at the position
- * itself: that of the rain areas there (wk_context_set_rain_areas), mixed by their rims, and nothing above the cloud
- * that it falls from. rain_mm_h and drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at.
- * precipitation_extinction_per_m, extinction_per_m and visibility_m go with what falls there. All other fields are the
- * weather's, the same everywhere, at the station's height unless they say otherwise.
+ * Gets the conditions at a position and a past or future simulation time. Precipitation is that at the position
+ * itself: it includes the rain areas there (wk_context_set_rain_areas), weighted by their rims, and is zero above the
+ * cloud that it falls from. rain_mm_h and drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at.
+ * precipitation_extinction_per_m, extinction_per_m and visibility_m include that precipitation. All other fields are
+ * the weather's: the same everywhere, at the station's height unless they say otherwise.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: before
- * the end of the last change that was over at the last update.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
+ * before the end of the last change that was over at the last update.
  */
 WK_API
 wk_status wk_context_get_conditions(const wk_context *context,
@@ -2982,9 +3012,10 @@ wk_status wk_context_get_conditions(const wk_context *context,
                                     wk_conditions *out_conditions);
 
 /**
- * Gets the cloud layers at a position and time, low ones first; position and time as in wk_context_get_conditions.
- * `*out_count` gets their number, at most 16, even if `capacity` is too small (then nothing else is written and the
- * call fails) or 0 (then it succeeds). `slab_size` is sizeof(wk_cloud_slab) of your header.
+ * Gets the cloud layers at a position and time, low ones first; position and time are as in wk_context_get_conditions.
+ * `*out_count` gets their number, at most 16. With capacity 0 nothing else is written, and the call succeeds. If
+ * `capacity` is too small, the call writes only the number and fails. `slab_size` is sizeof(wk_cloud_slab) of your
+ * header.
  * Thread: concurrent.
  */
 WK_API
@@ -3006,11 +3037,12 @@ WK_API wk_status wk_conditions_init(wk_conditions *out, uint32_t struct_size);
  * ====================================================================================================
  * [query] Queries: light and visibility
  *
- * These answer at any place of the host's world, for the present or (functions that end in _at) for any past or future
- * simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or moon that
- * the host has placed stands there at all times. Only wk_context_get_ambient and wk_context_get_ambient_at read the
- * sky's tables. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and cd/m^2,
- * three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric value.
+ * These functions answer at any place of the host's world, for the present or (functions that end in _at) for any past
+ * or future simulation time that the timeline still knows. The answers are in closed form and need no device. If the
+ * host has placed the sun or the moon, it stands there at all times. Only wk_context_get_ambient and
+ * wk_context_get_ambient_at read the sky's tables. Directions are unit vectors (east, north, up) at the queried place.
+ * Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722)
+ * is the photometric value.
  *
  * Lists are (pointer, count, size of an element in your header). Welkin checks everything before it writes anything.
  * ====================================================================================================
@@ -3024,27 +3056,29 @@ typedef struct wk_celestial {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Direction towards it, without refraction, as scattering uses it. */
+    /** Direction to the body, without refraction, as scattering uses it. */
     double direction[3];
-    /** Direction towards it as it appears, lifted by refraction. */
+    /** Direction to the body as it appears, lifted by refraction. */
     double apparent[3];
-    /** Direction in the disc's plane towards the middle of the lit limb (moon). */
+    /** For the moon: direction in the disc's plane towards the middle of the lit limb. */
     double bright_limb[3];
     /** Illuminance above the air on a surface facing it, lux a channel. */
     double illuminance_lux[3];
-    /** Degrees clockwise from true north, [0, 360). */
+    /** Azimuth, degrees clockwise from true north, [0, 360). */
     double azimuth_deg;
-    /** Degrees above the horizon, without refraction. */
+    /** Elevation above the horizon, degrees, without refraction. */
     double elevation_deg;
-    /** Degrees above the horizon as it appears. */
+    /** Elevation above the horizon as it appears, degrees. */
     double apparent_elevation_deg;
     /** Angular radius, rad. */
     double angular_radius;
-    /** Lit fraction of the face. */
+    /** Lit fraction of the disc. */
     double lit;
-    /** Vertical over horizontal diameter of the disc. */
+    /** Ratio of the disc's vertical to its horizontal diameter. */
     double flattening;
-    /** Share of its direct light that clouds above the place let through, on the mean over places at its height. */
+    /**
+     * Share of the body's direct light that passes the clouds above the place, averaged over all places at its height.
+     */
     double direct_share;
 } wk_celestial;
 
@@ -3067,8 +3101,8 @@ typedef struct wk_celestial {
 }
 
 /**
- * Light that arrives at a place, after air, clouds and fog; plain values of a list. Light scattered forward once by
- * fog counts as the sun's or the moon's.
+ * Light that arrives at a place, after air, clouds and fog; plain values of a list. Light that fog has scattered
+ * forward once counts as direct light of the sun or the moon.
  */
 typedef struct wk_ground_light {
     /** Direct sun on a surface facing it, lux a channel. */
@@ -3083,7 +3117,7 @@ typedef struct wk_ground_light {
 
 /** Two points of the host's world, m; plain values of a list. */
 typedef struct wk_segment {
-    /** Position of the eye. */
+    /** Position of the observer. */
     double from_m[3];
     /** Position of the object, at least a millimetre away. */
     double to_m[3];
@@ -3091,18 +3125,16 @@ typedef struct wk_segment {
 
 /** Transmittance and visibility between two points; plain values of a list. */
 typedef struct wk_between {
-    /**
-     * Share of light that gets through, per channel (wavelengths of the planet, 620, 550 and 450 nm for the Earth).
-     */
+    /** Transmittance, per channel (wavelengths of the planet; 620, 550 and 450 nm for the Earth). */
     double transmittance[3];
     /**
      * Meteorological optical range along the segment, m: the distance at which 550 nm light would fall to 5 % if the
-     * air were everywhere as on this segment. Infinite if nothing stops light.
+     * air were everywhere as on this segment. Infinite if nothing attenuates light.
      */
     double visibility_m;
 } wk_between;
 
-/** The sky's light on surfaces of any slope. */
+/** Light of the sky on surfaces of any orientation. */
 typedef struct wk_ambient {
     /** sizeof(wk_ambient) of your header. */
     uint32_t struct_size;
@@ -3167,9 +3199,9 @@ wk_status wk_context_get_moon_at(const wk_context *context,
                                  wk_celestial *out_moon);
 
 /**
- * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Clouds count by
- * what of them lies above a place, as the mean over places at its height. `position_size` and `light_size` are the
- * bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header. Thread: concurrent.
+ * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
+ * a place count, by their mean effect over all places at its height. `position_size` and `light_size` are the bytes
+ * from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header. Thread: concurrent.
  */
 WK_API
 wk_status wk_context_get_light(const wk_context *context,
@@ -3194,9 +3226,9 @@ wk_status wk_context_get_light_at(const wk_context *context,
                                   uint32_t light_size);
 
 /**
- * Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog,
- * precipitation and clouds drawn as a volume count, a deck and the host's objects do not. `segment_size` and
- * `between_size` are the sizes of an element in your header. Thread: concurrent.
+ * Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. They include air,
+ * haze, fog, precipitation and clouds drawn as a volume, but neither clouds drawn as a deck nor the host's objects.
+ * `segment_size` and `between_size` are the sizes of an element in your header. Thread: concurrent.
  */
 WK_API
 wk_status wk_context_get_between(const wk_context *context,
@@ -3221,11 +3253,11 @@ wk_status wk_context_get_between_at(const wk_context *context,
                                     uint32_t between_size);
 
 /**
- * Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction,
- * a vector (east, north, up) at the place, of length 1 within 0.001. There the air, fog, rain, snow and clouds drawn
- * as a volume before it leave 5 % of the light of 550 nm, and so 5 % of its contrast. Infinite where more is left at
- * the end of the air or on the planet's ground. Thread: concurrent. Errors: as wk_context_get_conditions;
- * WK_ERROR_INVALID_ARGUMENT naming the direction.
+ * Gets the slant visual range from a place at a simulation time, m: the distance up to which a black object is seen
+ * along a direction, a vector (east, north, up) at the place, of length 1 within 0.001. At that distance the air, fog,
+ * rain, snow and clouds drawn as a volume in front of the object leave 5 % of its contrast, that is 5 % of light at
+ * 550 nm. Infinite if more is left at the end of the air or at the planet's ground. Thread: concurrent. Errors: as
+ * wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
  */
 WK_API
 wk_status wk_context_get_visibility_at(const wk_context *context,
@@ -3235,8 +3267,8 @@ wk_status wk_context_get_visibility_at(const wk_context *context,
                                        double *out_visibility_m);
 
 /**
- * Gets the sky's light on surfaces of any slope at a place. It reads the sky's tables: it builds them if no frame has
- * done so yet, and waits for the GPU once after every change of the air.
+ * Gets the sky's light on surfaces of any orientation at a place. It reads the sky's tables: it builds them if no
+ * frame has done so yet, and waits for the GPU once after every change of the air.
  * Thread: as wk_view_record.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the position.
  */
@@ -3246,8 +3278,8 @@ wk_status wk_context_get_ambient(wk_context *context,
                                  wk_ambient *out_ambient);
 
 /**
- * As wk_context_get_ambient, at a simulation time. The clear sky's pattern is that of the air that the tables show;
- * how bright all of it is, and clouds and fog, are those of `time_s`. Thread: as wk_view_record. Errors: as
+ * As wk_context_get_ambient, at a simulation time. The clear sky's distribution is that of the air in the present
+ * tables; its brightness, clouds and fog are those of `time_s`. Thread: as wk_view_record. Errors: as
  * wk_context_get_ambient and wk_context_get_conditions.
  */
 WK_API
@@ -3272,26 +3304,27 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
  * ====================================================================================================
  * [radiance] Queries: the sky's light by direction
  *
- * For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as
- * the picture shows it where the host drew nothing. It has the clear air, clouds as the model draws them, fog with
- * what falls in it, the night's glow, and below the horizon the planet's own ground. It has no discs of sun and moon
- * (wk_context_get_light has their light), no stars and planets, no rain areas, and nothing that the host drew.
+ * For sensors, reflections and lighting that the host computes itself: the radiance of the sky in a direction, as the
+ * picture shows it where the host drew nothing. It includes the clear air, clouds as the model draws them, fog with
+ * precipitation, the glow of the night sky, and below the horizon the planet's own ground. It excludes the discs of
+ * sun and moon (wk_context_get_light has their light), stars and planets, rain areas, and everything that the host
+ * drew.
  *
- * The double-precision reference of the sky answers on the calling thread; no device is asked. The first question in a
- * new air solves the reference (a second or two; weather in transition is a new air at every time), and other threads
- * that ask meanwhile wait. The last four airs are kept for all contexts of a device. docs/reflections.md has what a
- * direction costs and how far pictures may be off.
+ * The double-precision reference of the sky computes the answers on the calling thread, without the device. The first
+ * query in a new air solves the reference, which takes a second or two; other threads that query meanwhile wait.
+ * Weather in transition is a new air at every time. The solutions of the last four airs are kept for all contexts of a
+ * device. docs/reflections.md has the cost of a direction and the difference from pictures.
  * ====================================================================================================
  */
 
 /** The sky's light from one direction; plain values of a list. */
 typedef struct wk_sky_radiance {
-    /** cd/m^2, three channels of linear Rec. 709, none below 0. */
+    /** Radiance, cd/m^2, three channels of linear Rec. 709, none below 0. */
     double radiance_cd_m2[3];
 } wk_sky_radiance;
 
 /**
- * Gets the sky's radiance at a place towards directions now, at most wk_caps.max_batch of them. A direction is a
+ * Gets the sky's radiance at a place in several directions now, at most wk_caps.max_batch of them. A direction is a
  * vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the bytes
  * from one element to the next: 24 or more, and sizeof(wk_sky_radiance) of your header. Thread: concurrent. Errors:
  * WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
@@ -3324,9 +3357,9 @@ wk_status wk_context_get_sky_radiance_at(const wk_context *context,
  * ====================================================================================================
  * [wind] Queries: wind and rain
  *
- * How the air moves and how far it has moved, what falls through it, and what lands on a surface, at any place and any
- * simulation time that the timeline still knows. The answers are in closed form and need no device. Vectors are (east,
- * north, up) at the place. Only wk_context_get_rain_on_at knows shelters.
+ * Velocity and displacement of the air, precipitation, and rain on surfaces, at any place and any simulation time that
+ * the timeline still knows. The answers are in closed form and need no device. Vectors are (east, north, up) at the
+ * place. Only wk_context_get_rain_on_at takes shelters into account.
  * ====================================================================================================
  */
 
@@ -3343,12 +3376,12 @@ typedef struct wk_wind {
     /** Mean velocity, without gusts, m/s. */
     double mean_m_s[3];
     /**
-     * Displacement of the air at 10 m since simulation time 0, gusts included, m; the same at every place. Move what
-     * the air carries by differences of this, never by velocity times time: it is continuous whatever the weather
-     * does, and the same to the last bit on every channel.
+     * Displacement of the air at 10 m since simulation time 0, gusts included, m; the same at every place. Move
+     * objects that the air carries by differences of this displacement, never by velocity times time: it stays
+     * continuous through all changes of the weather, and is equal to the last bit on every channel.
      */
     double displacement_m[3];
-    /** Standard deviation of gusts along the mean wind, m/s. */
+    /** Standard deviation of the wind speed along the mean wind, by gusts, m/s. */
     double gust_deviation_m_s;
 } wk_wind;
 
@@ -3374,11 +3407,11 @@ typedef struct wk_rainfall {
     /** Rate of rain and drizzle on level ground, mm/h. */
     double rate_mm_h;
     /**
-     * Drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al. 1968; scaled
-     * so that they give the rate).
+     * Number of drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al.
+     * 1968; scaled so that they give the rate).
      */
     double number_per_m3;
-    /** Water in the air, g/m^3. */
+    /** Liquid water in the air, g/m^3. */
     double liquid_g_m3;
     /** Extinction by the drops, 1/m. */
     double extinction_per_m;
@@ -3386,26 +3419,26 @@ typedef struct wk_rainfall {
     double mean_diameter_mm;
     /** Median volume diameter, mm: half of the water in the air is in smaller drops. */
     double median_volume_diameter_mm;
-    /** Drops that land on level ground, 1/(m^2 s). */
+    /** Number of drops that land on level ground, 1/(m^2 s). */
     double drops_per_m2_s;
     /**
-     * Velocity of the median drop of the falling water, m/s: half of the water falls steeper, the other half flatter.
-     * Draw occluder maps along its direction. It falls at Gunn and Kinzer's (1949) speed and moves with the wind at 10
-     * m.
+     * Velocity of the median drop of the falling water, m/s: half of the water falls more steeply, the other half
+     * less. Render occluder maps along its direction. The drop falls at the speed of Gunn and Kinzer (1949) and moves
+     * with the wind at 10 m.
      */
     double fall_velocity_m_s[3];
     /** Hail, small hail and ice pellets on level ground, mm/h of melted water. */
     double ice_mm_h;
     /**
-     * Stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), pellets of 0.5 to 5 mm, which are frozen
-     * raindrops.
+     * Number of stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), or pellets of 0.5 to 5 mm,
+     * which are frozen raindrops.
      */
     double stones_per_m3;
     /** Extinction by the stones, 1/m. */
     double stone_extinction_per_m;
     /** Mean diameter of the stones in the air, mm. */
     double stone_diameter_mm;
-    /** Stones that land on level ground, 1/(m^2 s). */
+    /** Number of stones that land on level ground, 1/(m^2 s). */
     double stones_per_m2_s;
 } wk_rainfall;
 
@@ -3433,17 +3466,17 @@ typedef struct wk_rainfall {
 typedef struct wk_rain_surface {
     /** Position in the host's world, m. */
     double position_m[3];
-    /** Normal of its wet side, (east, north, up) of the place; of any length but 0. */
+    /** Normal of the surface's wet side, (east, north, up) at the place; of any length but 0. */
     double normal[3];
-    /** Its velocity, m/s (east, north, up). Range [-1000, 1000] each. */
+    /** Velocity of the surface, m/s (east, north, up). Range [-1000, 1000] each. */
     double velocity_m_s[3];
-    /** Its area, m^2. Range [0, 1e6]. */
+    /** Area of the surface, m^2. Range [0, 1e6]. */
     double area_m2;
 } wk_rain_surface;
 
 /** Rain on a surface; plain values of a list. */
 typedef struct wk_rain_on {
-    /** Water, mm/h, which is litres for each square metre and hour. */
+    /** Water, mm/h, which is litres per square metre and hour. */
     double rate_mm_h;
     /** Drops of 0.1 to 6 mm on the whole surface, 1/s. */
     double drops_per_s;
@@ -3451,11 +3484,11 @@ typedef struct wk_rain_on {
 
 /**
  * Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
- * the ground's roughness up to 100 m, and above grows and veers to the geostrophic wind (docs/clouds.md). Gusts have
- * Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the station's
- * altitude above mean sea level, and reported wind holds 10 m above it. A host with terrain asks at the station's
- * altitude plus the height above its own ground. At and below the roughness length there is no wind. Thread:
- * concurrent. Errors: as wk_context_get_conditions.
+ * the ground's roughness up to 100 m; above that it grows and veers to the geostrophic wind (docs/clouds.md). Gusts
+ * have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the
+ * station's altitude above mean sea level; the reported wind is the wind 10 m above it. A host with terrain should
+ * query the station's altitude plus the height above its own ground. At and below the roughness length there is no
+ * wind. Thread: concurrent. Errors: as wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_wind_at(const wk_context *context,
@@ -3464,9 +3497,9 @@ wk_status wk_context_get_wind_at(const wk_context *context,
                                  wk_wind *out_wind);
 
 /**
- * Gets what falls at a place of the host's world and a simulation time. What falls begins in the lower half of the
- * clouds, at most 500 m above their bases, averaged over what covers the sky; above that nothing falls. Thread:
- * concurrent. Errors: as wk_context_get_conditions.
+ * Gets the precipitation at a place of the host's world and a simulation time. It begins in the lower half of the
+ * clouds, at most 500 m above their bases, averaged over the clouds that cover the sky; above that nothing falls.
+ * Thread: concurrent. Errors: as wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_rainfall_at(const wk_context *context,
@@ -3475,13 +3508,13 @@ wk_status wk_context_get_rainfall_at(const wk_context *context,
                                      wk_rainfall *out_rainfall);
 
 /**
- * Gets what lands on surfaces at a simulation time, at most wk_caps.max_batch of them. Every size of drop comes along
- * its own slant, in the wind at 10 m with its gusts and in the wind that the surface makes by moving. A windscreen at
- * 25 m/s meets far more than the ground. Boxes (wk_context_set_shelters) keep rain off where they shelter a point 5 cm
- * before the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
+ * Gets the rain on surfaces at a simulation time, at most wk_caps.max_batch of them. Drops of each size arrive along
+ * their own slant, in the wind at 10 m with its gusts and relative to the moving surface. A windscreen at 25 m/s meets
+ * far more than the ground. Boxes (wk_context_set_shelters) keep rain off where they shelter a point 5 cm in front of
+ * the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
  * sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
  * Thread: concurrent.
- * Errors: as wk_context_get_conditions; the field of a surface by name and range.
+ * Errors: as wk_context_get_conditions; the wrong field of a surface with its range.
  */
 WK_API
 wk_status wk_context_get_rain_on_at(const wk_context *context,
@@ -3512,12 +3545,12 @@ WK_API wk_status wk_rainfall_init(wk_rainfall *out, uint32_t struct_size);
  * the images. All matrices are column-major with column vectors (OpenGL, Vulkan, glm): m[4 * column + row].
  *
  * position_m gives the camera's position in double precision; Welkin ignores the translation of `view`. Any projection
- * works: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far, reversed depth.
+ * works: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far plane, reversed depth.
  *
  * Welkin reads depth as the projection gives it, z / w mapped to the depth buffer's 0 to 1. With WK_DEPTH_LOGARITHMIC
  * the host's shaders must have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
  *
- * `target` points to the images, in the struct for the kind of device: wk_own_target, wk_opengl_target,
+ * `target` points to the images, in the struct for the kind of device: wk_own_target, wk_opengl_target or
  * wk_vulkan_target.
  * ====================================================================================================
  */
@@ -3548,19 +3581,19 @@ typedef uint32_t wk_frame_flags;
 #define WK_FRAME_CUT 1
 /**
  * Draw a picture that depends on seed, time and view alone, without any history. If the sky's tables are not complete
- * yet, this frame builds them, which takes as long as many frames: use it for stills and comparisons, not for every
+ * yet, this frame builds them, which takes as long as many frames. Use it for stills and comparisons, not for every
  * frame of a changing weather.
  */
 #define WK_FRAME_NO_HISTORY 2
 /** Depth is reversed: 1 is near, 0 is far. */
 #define WK_FRAME_DEPTH_REVERSED 4
 /**
- * The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with
- * a viewport of positive height. Without it the first row lies at clip y = +1.
+ * The first row of the images lies at clip y = -1. This is always so in OpenGL (there the flag need not be set), and
+ * in Vulkan with a viewport of positive height. Without the flag the first row lies at clip y = +1.
  */
 #define WK_FRAME_FIRST_ROW_AT_MINUS_Y 8
 /**
- * Measure what each effect costs: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for each,
+ * Measure the cost of each effect: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for each,
  * so the frame is slower and its picture may differ by rounding. Use it now and then, not in every frame.
  * WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
  */
@@ -3574,9 +3607,7 @@ typedef uint32_t wk_frame_flags;
 /** Meaning of the numbers in the host's colour. */
 typedef uint32_t wk_color_space;
 
-/**
- * Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which WK_STAGE_TONE does anything.
- */
+/** Linear Rec. 709, proportional to luminance (cd_m2_per_unit). WK_STAGE_TONE has an effect only in this space. */
 #define WK_COLOR_SCENE_LINEAR 0
 /** Already tone-mapped, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly. */
 #define WK_COLOR_DISPLAY_LINEAR 1
@@ -3584,52 +3615,57 @@ typedef uint32_t wk_color_space;
 #define WK_COLOR_DISPLAY_SRGB 2
 
 /**
- * Access of Welkin to the target's depth. Nothing that this version draws is opaque, so both give the same picture;
- * sea and terrain will be.
+ * Access of Welkin to the target's depth. This version draws nothing opaque, so both values give the same picture. The
+ * sea and terrain of later versions will be opaque.
  */
 typedef uint32_t wk_depth_access;
 
-/** Read it: not a bit of it changes, and Welkin draws nothing opaque of its own. */
+/** Read it: Welkin leaves every bit as it is, and draws nothing opaque of its own. */
 #define WK_DEPTH_ACCESS_READ 0
 /**
  * Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays.
  * Needs depth that can be attached: a depth format, as many samples as the colour, and in Vulkan
- * DEPTH_STENCIL_ATTACHMENT among its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an
- * own device, whose depth is WK_FORMAT_R32_FLOAT.
+ * DEPTH_STENCIL_ATTACHMENT among its usage. Not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, nor on
+ * an own device, whose depth is WK_FORMAT_R32_FLOAT.
  */
 #define WK_DEPTH_ACCESS_READ_WRITE 1
 
 /**
- * A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over
- * blue, green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw
- * nothing. Masked pixels stay yours. Where nothing of what it shows is in the frame, all is black.
+ * A false-colour picture that replaces a frame's picture, for developers. It shows one quantity per pixel on a scale
+ * from black over blue, green, yellow and red to white. The call with the quantity's stage draws it; other calls of
+ * the frame draw nothing. Masked pixels stay the host's. If the frame contains nothing of the quantity, all is black.
  */
 typedef uint32_t wk_diagnostic;
 
 /** The picture itself. */
 #define WK_DIAGNOSTIC_NONE 0
-/** Distance along the ray, by decades: black 1 m or less, white 100 km and more, and the sky. Stage MEDIUM. */
+/**
+ * Distance along the ray, on a scale by decades: black for 1 m or less, white for 100 km or more, and for the sky.
+ * Stage MEDIUM.
+ */
 #define WK_DIAGNOSTIC_DISTANCE 1
 /**
- * Optical depth of air, fog and what falls between the eye and what is seen: black 0, 1 a step, white 5 and more. The
- * columns of rain areas are left out. Stage MEDIUM.
+ * Optical depth of air, fog and precipitation between the eye and the visible surface: black 0, 1 a step, white 5 or
+ * more. The columns of rain areas are left out. Stage MEDIUM.
  */
 #define WK_DIAGNOSTIC_OPTICAL_DEPTH 2
 /** Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE. */
 #define WK_DIAGNOSTIC_WETNESS 3
 /**
- * Error by what the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white,
- * by decades: black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
+ * Error due to the air, fog and clear sky that the plan leaves out: the relative change of luminance over a hundredth
+ * of white, on a scale by decades. Black is 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage
+ * MEDIUM.
  */
 #define WK_DIAGNOSTIC_PLAN_ERROR 4
 /**
- * How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
+ * Number of times that drops, flakes or stones were drawn over a pixel: black 0, 4 a step, white 20 or more. Stage
+ * PARTICLES.
  */
 #define WK_DIAGNOSTIC_OVERDRAW 5
 /**
- * The wind that carries what falls, 2 m over what you drew: black a calm, 4 m/s a step, white 20 m/s and more. Each
- * square of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The sky is black. Stage
- * MEDIUM.
+ * Speed of the wind that carries the precipitation, 2 m above the host's surfaces: black a calm, 4 m/s a step, white
+ * 20 m/s or more. Each square of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The
+ * sky is black. Stage MEDIUM.
  */
 #define WK_DIAGNOSTIC_WIND 6
 
@@ -3645,31 +3681,31 @@ typedef struct wk_frame {
     uint64_t frame_id;
     /** Position of the camera in the host's world, m. Default 0, 0, 0. */
     double position_m[3];
-    /** World to eye; only its rotation counts. Default identity. */
+    /** Matrix from world to eye; only its rotation counts. Default identity. */
     double view[16];
-    /** Eye to clip, invertible. Default identity. */
+    /** Matrix from eye to clip space; it must be invertible. Default identity. */
     double projection[16];
-    /** Default WK_DEPTH_PROJECTION. */
+    /** Relation of depth to distance. Default WK_DEPTH_PROJECTION. */
     wk_depth_kind depth_kind;
-    /** Default WK_CLIP_ZERO_TO_ONE. */
+    /** Range of clip-space z. Default WK_CLIP_ZERO_TO_ONE. */
     wk_clip_space clip_space;
-    /** C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is LOGARITHMIC. Default 1. */
+    /** Constant C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is LOGARITHMIC. Default 1. */
     double logarithmic_c;
     /**
      * Distance at depth 1 of logarithmic depth, m. Range [1e-3, 1e12] where depth_kind is LOGARITHMIC. Default 1e7.
      */
     double logarithmic_far_m;
-    /** Default 0. */
+    /** Flags of the frame. Default 0. */
     wk_frame_flags flags;
-    /** Default WK_COLOR_SCENE_LINEAR. */
+    /** Colour space of the host's colour. Default WK_COLOR_SCENE_LINEAR. */
     wk_color_space color_space;
     /** Luminance of the value 1 in a scene-linear colour image, cd/m^2. Range [1e-9, 1e9], default 1. */
     double cd_m2_per_unit;
-    /** Default WK_EXPOSURE_OF_CONTEXT. */
+    /** Source of the exposure. Default WK_EXPOSURE_OF_CONTEXT. */
     wk_exposure_mode exposure_mode;
     /** Must be 0. */
     uint32_t reserved0;
-    /** See wk_exposure_mode. Default 0. */
+    /** Value of the exposure, as wk_exposure_mode says. Default 0. */
     double exposure_value;
     /**
      * The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, by the kind of device. May be NULL for
@@ -3677,13 +3713,13 @@ typedef struct wk_frame {
      */
     const void *target;
     /**
-     * Velocity of the camera in the host's world, m/s, at most 2000 in all. Streaks of rain lean against it. Default
-     * 0, 0, 0.
+     * Velocity of the camera in the host's world, m/s; its length is at most 2000. Rain streaks lean against it.
+     * Default 0, 0, 0.
      */
     double velocity_m_s[3];
-    /** Default WK_DEPTH_ACCESS_READ. */
+    /** Access of Welkin to the target's depth. Default WK_DEPTH_ACCESS_READ. */
     wk_depth_access depth_access;
-    /** Default WK_DIAGNOSTIC_NONE. */
+    /** False-colour picture to draw in place of the frame's. Default WK_DIAGNOSTIC_NONE. */
     wk_diagnostic diagnostic;
 } wk_frame;
 
@@ -3713,13 +3749,14 @@ typedef struct wk_frame {
 }
 
 /**
- * Light for the host's own shading of a frame, in the numbers of its color_space. A surface of colour c with normal n
- * shows c * (ambient + direct * max(dot(n, direction), 0)).
+ * Light for the host's own shading of a frame, in the units of the frame's color_space. A surface of colour c with
+ * normal n shows c * (ambient + direct * max(dot(n, direction), 0)).
  *
- * Scene-linear: exact for matt surfaces. Display spaces: the light includes the tone curve at the frame's exposure, so
- * one pair of lights cannot be right for every surface. It is right for a grey card of 18 %, in shade and facing the
- * sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer) encodes the result. With
- * WK_COLOR_DISPLAY_SRGB both are encoded numbers, as fixed-function OpenGL multiplies them.
+ * In scene-linear space this is exact for matt surfaces. In display spaces the light includes the tone curve at the
+ * frame's exposure, so one pair of lights cannot be right for every surface. It is right for a grey card of 18 %, both
+ * in shade and facing the sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer)
+ * encodes the result. With WK_COLOR_DISPLAY_SRGB c and the light are both encoded numbers, as fixed-function OpenGL
+ * multiplies them.
  */
 typedef struct wk_frame_light {
     /** sizeof(wk_frame_light) of your header. */
@@ -3730,9 +3767,11 @@ typedef struct wk_frame_light {
     const void *next;
     /** Unit vector in the host's world towards the sun, or towards the moon where that is brighter. */
     double direction[3];
-    /** Its direct light on a surface that faces it, after air, clouds and fog; 0 below the horizon. */
+    /**
+     * Direct light from that direction on a surface that faces it, after air, clouds and fog; 0 below the horizon.
+     */
     double direct[3];
-    /** Light of sky, clouds and fog on level ground. */
+    /** Light from sky, clouds and fog on level ground. */
     double ambient[3];
     /** Light from the ground on a surface that faces down, for hosts with one ambient light above and one below. */
     double ambient_below[3];
@@ -3762,24 +3801,24 @@ typedef struct wk_own_target {
     const void *next;
     /** The image to draw into. Default NULL. */
     const wk_texture *color;
-    /** If `color` is NULL: the surface whose acquired image is drawn into. Default NULL. */
+    /** Surface to draw into if `color` is NULL: Welkin draws into its acquired image. Default NULL. */
     const wk_surface *surface;
-    /** The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel. */
+    /** Depth of the host's picture, as large as `color`; with NULL (the default) every pixel shows the sky. */
     const wk_texture *depth;
     /**
-     * A mask: where it is 1, the host's pixel stays (cab, HUD); where it is 0, Welkin draws weather. As large as
+     * Mask: where it is 1, the host's pixel stays (cab, HUD); where it is 0, Welkin draws weather. As large as
      * `color`. Default NULL.
      */
     const wk_texture *mask;
     /**
-     * Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
+     * Surface class of each pixel: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
      * default. R8_UNORM or the like, as large as `color`. Default NULL.
      */
     const wk_texture *surface_classes;
     /**
      * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
-     * formats, n in float formats. Where a pixel is no unit vector (a cleared pixel), Welkin uses the host's terrain
-     * or depth. As large as `color`. Default NULL.
+     * formats, n in float formats. Where a pixel holds no unit vector (a cleared pixel), Welkin uses the normal of the
+     * host's terrain or depth. As large as `color`. Default NULL.
      */
     const wk_texture *normals;
 } wk_own_target;
@@ -3798,8 +3837,8 @@ typedef struct wk_own_target {
 }
 
 /**
- * Gets the light with which the host should light its own objects in a frame; call it before you draw them. Of `frame`
- * the camera's position, the color_space with cd_m2_per_unit, and the exposure count; its target is ignored.
+ * Gets the light with which the host should light its own objects in a frame; call it before you draw them. It reads
+ * the camera's position, color_space, cd_m2_per_unit and the exposure of `frame`, and ignores the target.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field.
  */
@@ -3839,7 +3878,7 @@ wk_status wk_frame_light_init(wk_frame_light *out,
  *   BACKGROUND  the sky behind everything; before or after the opaque things
  *   SURFACE     water on surfaces: darker, with the sky in it; after the opaque things, needs depth, free where it is dry
  *   MEDIUM      fog and aerial perspective on all that was drawn so far
- *   PARTICLES   what falls and flies
+ *   PARTICLES   particles that fall and fly
  *   LENS        water on the windscreen
  *   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
  *
@@ -3893,18 +3932,18 @@ typedef uint32_t wk_stage_flags;
 /** Everything in one call. */
 #define WK_STAGE_ALL 127
 
-/** Flags of a report's optional fields that are set. */
+/** Flags of the optional fields of a wk_report that are set. */
 typedef uint32_t wk_report_flags;
 
 /** wk_report.ms. */
 #define WK_REPORT_HAS_MS 1
 /** wk_report.predicted_ms: the view has a budget, its picture was gauged and a time was reported. */
 #define WK_REPORT_HAS_PREDICTED_MS 2
-/** wk_report.reported_ms: wk_view_report_time was called since the frame. */
+/** wk_report.reported_ms: wk_view_report_time was called after the frame. */
 #define WK_REPORT_HAS_REPORTED_MS 4
 /** wk_report.predicted_error and predicted_error_bound: the view has a budget and its picture was gauged. */
 #define WK_REPORT_HAS_PREDICTED_ERROR 8
-/** wk_report.checked_error_bound and checked_error: it was gauged again since. */
+/** wk_report.checked_error_bound and checked_error: the picture was gauged again afterwards. */
 #define WK_REPORT_HAS_CHECKED_ERROR 16
 
 /** Costs and contents of a view's last frame. */
@@ -3917,16 +3956,16 @@ typedef struct wk_report {
     const void *next;
     /** The host's frame number; UINT64_MAX before the first frame. */
     uint64_t frame_id;
-    /** Full-screen draws recorded for this frame so far. */
+    /** Number of full-screen draws recorded for this frame so far. */
     uint32_t passes;
     /**
-     * Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final
-     * quality.
+     * Number of tables built, refined or blended for this frame so far; 0 when only the camera turned and the sky has
+     * its final quality.
      */
     uint32_t tables_rebuilt;
     /** Display units per cd/m^2 that were applied; 0 if nothing was drawn. */
     double exposure;
-    /** Bytes of GPU memory that the view holds for itself. */
+    /** GPU memory that the view uses for itself, bytes. */
     uint64_t bytes;
     /** Flags of the following fields that are set. */
     wk_report_flags has;
@@ -3939,7 +3978,7 @@ typedef struct wk_report {
     double ms;
     /** Predicted time of the weather in this frame, ms, from the times reported before it. */
     double predicted_ms;
-    /** Time that the host reported for it, ms. */
+    /** Time that the host reported for this frame, ms. */
     double reported_ms;
     /**
      * Estimated error of what this frame left out, without parts that still fade: 95th percentile over the gauged
@@ -3948,25 +3987,25 @@ typedef struct wk_report {
     double predicted_error;
     /** Upper end of the 95 % confidence interval of that percentile over all pixels. */
     double predicted_error_bound;
-    /** For the newest gauge's picture: the bound predicted for what it left out ... */
+    /** Error of the last gauged picture: the bound that was predicted for the parts left out ... */
     double checked_error_bound;
-    /** ... and the error that was found. */
+    /** ... and the error that was measured. */
     double checked_error;
-    /** Drops and stones around the camera; those in the picture were drawn. */
+    /** Number of drops and stones around the camera; those in the picture were drawn. */
     uint32_t drops;
-    /** Flakes around the camera; those in the picture were drawn. 0 if none were. */
+    /** Number of flakes around the camera; those in the picture were drawn. 0 if none were. */
     uint32_t flakes;
     /** Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any. */
     double drop_weight;
-    /** Splashes, 1/(m^2 s) on level ground, that were left out for lack of room: those of the smallest drops. */
+    /** Splashes left out for lack of room, 1/(m^2 s) on level ground: those of the smallest drops. */
     double splashes_left_out_per_m2_s;
-    /** Stones, 1/(m^2 s), that did not bounce for lack of room: the smallest ones. */
+    /** Stones that did not bounce for lack of room, 1/(m^2 s): the smallest ones. */
     double stones_left_out_per_m2_s;
-    /**
-     * The contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
-     */
+    /** Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn. */
     double contrast_gain;
-    /** Distance up to which flakes were drawn, m; farther snow is extinction alone. 0 if none were. */
+    /**
+     * Distance up to which flakes were drawn, m; farther away snow is extinction alone. 0 if no flakes were drawn.
+     */
     double flakes_to_m;
 } wk_report;
 
@@ -4015,9 +4054,9 @@ typedef uint32_t wk_effect;
 #define WK_EFFECT_COMPOSITION 5
 /** Textures for the host's own shaders. */
 #define WK_EFFECT_VEIL 6
-/** Taking the host's context and images, and giving them back. */
+/** Acquiring the host's context and images, and returning them. */
 #define WK_EFFECT_HAND_OVER 7
-/** Rain. */
+/** Rain, hail and snow near the camera. */
 #define WK_EFFECT_PARTICLES 8
 /** Water on surfaces. */
 #define WK_EFFECT_SURFACE 9
@@ -4030,9 +4069,11 @@ typedef struct wk_effect_cost {
     wk_effect effect;
     /** 0. */
     uint32_t reserved0;
-    /** Its name in English; lives as long as the library. */
+    /** Name of the effect in English; lives as long as the library. */
     const char *name;
-    /** Wall time around a submission that is waited for, the CPU's part included, ms. 0 if it did not run. */
+    /**
+     * Wall time around a submission that is waited for, including the CPU's part, ms. 0 if the effect did not run.
+     */
     double ms;
 } wk_effect_cost;
 
@@ -4053,8 +4094,8 @@ WK_API wk_status wk_view_destroy(wk_view *view);
  * Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty. Welkin checks
  * the frame before any work: after an error nothing is drawn, built or changed.
  * Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
- * Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT
- * naming the field; WK_ERROR_DEVICE_LOST.
+ * Errors: WK_ERROR_WRONG_ORDER if a stage is repeated or out of order; WK_ERROR_UNSUPPORTED and
+ * WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST.
  */
 WK_API
 wk_status wk_view_record(wk_view *view,
@@ -4068,10 +4109,10 @@ wk_status wk_view_record(wk_view *view,
 WK_API wk_status wk_view_get_report(wk_view *view, wk_report *out_report);
 
 /**
- * Gets the cost of each effect of the view's last frame, in the order in which they happen. `*out_count` gets their
- * number, 0 if the frame was not measured (WK_FRAME_MEASURE), even if `capacity` is too small (then nothing else is
+ * Gets the cost of each effect of the view's last frame, in the order in which they run. `*out_count` gets their
+ * number (0 if the frame was not measured, WK_FRAME_MEASURE), even if `capacity` is too small (then nothing else is
  * written and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later
- * versions may know more effects.
+ * versions may have more effects.
  * Thread: exclusive on the view.
  */
 WK_API
@@ -4098,8 +4139,8 @@ WK_API wk_status wk_report_init(wk_report *out, uint32_t struct_size);
  * [veil] Textures for the host's transparent things
  *
  * Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
- * the light that air, fog and rain add on the way to a point, and the share of the light behind it that gets through.
- * The published sampling functions, GLSL and WGSL, map clip coordinates and distance to texels.
+ * the light that air, fog and rain add on the way to a point, and the transmittance up to it. The published sampling
+ * functions, GLSL and WGSL, map clip coordinates and distance to texels.
  * ====================================================================================================
  */
 
@@ -4113,13 +4154,13 @@ typedef struct wk_frame_textures {
     const void *next;
     /** Light that air and fog add, RGB half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage. */
     uint64_t light;
-    /** Share of the light behind that gets through, RGB half floats: as `light`. */
+    /** Transmittance: share of the light from behind that passes, RGB half floats: as `light`. */
     uint64_t through;
-    /** Pixels of both. */
+    /** Width of both textures, pixels. */
     uint32_t width;
-    /** Pixels of both. */
+    /** Height of both textures, pixels. */
     uint32_t height;
-    /** Multiply `light` by this to get units of the host's colour. */
+    /** Factor that converts `light` to units of the host's colour. */
     double light_scale;
 } wk_frame_textures;
 
@@ -4170,15 +4211,16 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
  * ====================================================================================================
  * [environment] A cube map of what stands around the camera
  *
- * For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its
- * clouds, fog and rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the
- * host lights by those itself), stars and the host's objects; the night's glow is even. Its axes are those of the
- * host's world: a shader looks it up by the reflected direction as it is. Level m of the 7 is what a mirror of
- * roughness m/6 shows (the distribution of Trowbridge and Reitz, alpha = roughness^2; Karis 2013, Real Shading in
- * Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the specular light before the surface's
- * reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their filters by a sampler object. Welkin
- * draws one face a frame, in turn; all six in the first frame, in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and
- * where light or weather leap. Views whose hosts do not ask have none of it.
+ * For reflections in the host's own objects: paint, water, windows. Six faces of 64 x 64 texels show the sky with its
+ * clouds, fog and rain as far as the horizon, and the planet's ground below. They leave out the discs of the sun and
+ * the moon (the host lights its objects by those itself), the stars and the host's objects; the night's glow is
+ * uniform. The axes are those of the host's world: a shader samples with the reflected direction as it is. Level m of
+ * the 7 levels is prefiltered for a mirror of roughness m/6 (the distribution of Trowbridge and Reitz, alpha =
+ * roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the
+ * specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their
+ * filters by a sampler object. Welkin draws one face a frame, in turn. It draws all six in the first frame, in frames
+ * with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather jump. Views whose hosts never ask for the cube
+ * map do not draw it.
  * ====================================================================================================
  */
 
@@ -4195,17 +4237,15 @@ typedef struct wk_environment {
      * VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT (VK_FORMAT_R16G16B16A16_SFLOAT).
      */
     uint64_t texture;
-    /** Texels of a face's edge. */
+    /** Edge of a face, texels. */
     uint32_t size;
-    /** Levels, down to one texel. */
+    /** Number of mip levels, down to one texel. */
     uint32_t level_count;
-    /**
-     * Multiply texels by this to get cd/m^2; 0 before the first frame. It changes only where all faces are drawn.
-     */
+    /** Factor from texels to cd/m^2; 0 before the first frame. It changes only in frames that draw all faces. */
     double cd_m2_per_unit;
     /**
-     * Multiply texels by this to get units of the last frame's colour of a scene-linear host, else display values
-     * before the tone curve.
+     * Factor from texels to units of the last frame's colour for a scene-linear host, or else to display values before
+     * the tone curve.
      */
     double light_scale;
 } wk_environment;
@@ -4224,14 +4264,12 @@ typedef struct wk_environment {
 
 /**
  * Gets the native texture of the cube map. From the first call on, the first call of each frame with
- * WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws what is due of it. It belongs to the view and stays the same until that
- * is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such wk_view_record call. Call
- * this after each frame for its scales. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own device,
- * which has no shaders of the host's.
+ * WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays the
+ * same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
+ * wk_view_record call. Call this after each frame for its scales. Thread: exclusive on the view. Errors:
+ * WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
-WK_API
-wk_status wk_view_get_environment(wk_view *view,
-                                  wk_environment *out_environment);
+WK_API wk_status wk_view_get_environment(wk_view *view, wk_environment *out_environment);
 
 /**
  * Writes the default of every field: the same bytes as `WK_ENVIRONMENT_INIT`. `struct_size` is `sizeof(wk_environment)`
@@ -4245,19 +4283,20 @@ wk_status wk_environment_init(wk_environment *out,
  * ====================================================================================================
  * [plan] Plan and budget of a view
  *
- * With a tolerance, a view gauges its own pictures. In every eighth frame it composes a grid of 64 x 36 of its pixels
- * with everything and without each part of the weather, and reads the differences back some frames later without
- * waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
- * Under a budget of time, parts also fade out as the reported times demand, starting with those whose loss is
- * perceived least for the time that they save. They come back when there is time again. After a jump of camera, sun or
+ * With a tolerance, a view gauges its own pictures. In every eighth frame it draws a grid of 64 x 36 of its pixels
+ * with everything and without each part of the weather, and reads the differences back some frames later, without
+ * waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again when they
+ * matter. Under a budget of time, further parts fade out until the reported times fit, starting with those whose loss
+ * is least visible for the time that it saves. They come back when there is time again. After a jump of camera, sun or
  * weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
  *
- * A part has a number (WK_PART_), a name and rungs. Rung 0 is all of it; the last is nothing of it, or the cheapest
- * that stands for it. Later versions have more parts, at the end: wk_plan.part_count says how many,
- * wk_view_get_part_plan what they are called.
+ * A part has a number (WK_PART_), a name and rungs, which are its levels of detail. Rung 0 draws all of it; the last
+ * rung draws nothing, or the cheapest substitute. Later versions append parts: wk_plan.part_count has their number,
+ * wk_view_get_part_plan their names.
  *
- * Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
- * percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
+ * Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white), where Y' and Y are luminances after exposure
+ * with and without parts left out, as the 95th percentile over the picture's pixels. A tolerance also limits the error
+ * of the worst pixel, to ten times the tolerance.
  *
  * Leaving parts out changes no simulation: time, weather and state stay the same on all channels of a simulator.
  * Channels that must also leave out the same parts pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or with one
@@ -4281,28 +4320,27 @@ typedef uint32_t wk_part_wish_has_flags;
 /** rung */
 #define WK_PART_WISH_HAS_RUNG 2
 
-/** A part of the weather that a picture may do with less of, by its number. */
+/** A part of the weather that a picture can reduce or leave out, by its number. */
 typedef uint32_t wk_part;
 
 /** Air and haze between the camera and what the host drew. Rungs: all, none. */
 #define WK_PART_AIR 0
-/** Fog, mist, dust and what falls, as a layer. Rungs: all, none. */
+/** Fog, mist, dust and precipitation, as a layer. Rungs: all, none. */
 #define WK_PART_FOG 1
 /** The clear sky above the horizon, behind clouds. Rungs: all, none. */
 #define WK_PART_SKY 2
 /**
- * Streaks and splashes of rain, where the view has no rain model of the host's choice. Rungs: drops (each near the
- * camera by itself), cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it
- * is drawn).
+ * Streaks and splashes of rain, unless the host chose the view's rain model. Rungs: drops (single ones near the
+ * camera), cones (in place of drops), none (all rain is a veil; without WK_PART_FOG no rain is drawn at all).
  */
 #define WK_PART_RAIN 3
-/** Stars, planets and the glow of the night between them. Rungs: all, none (an even sky of the same light). */
+/** Stars, planets and the glow of the night sky between them. Rungs: all, none (a uniform sky of the same light). */
 #define WK_PART_STARS 4
 /** Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK). */
 #define WK_PART_CLOUDS 5
 /**
- * Flakes of falling snow, where the view has no snow model of the host's choice. Rungs: flakes, none (all snow is a
- * veil, and without WK_PART_FOG too nothing of it is drawn).
+ * Flakes of falling snow, unless the host chose the view's snow model. Rungs: flakes, none (all snow is a veil;
+ * without WK_PART_FOG no snow is drawn at all).
  */
 #define WK_PART_SNOW 6
 
@@ -4320,15 +4358,15 @@ typedef struct wk_part_wish {
     wk_part part;
     /**
      * Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the
-     * same. Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says what of a tolerance and a
-     * time is not kept.
+     * same. Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says whether the tolerance or the
+     * time is exceeded.
      */
     uint32_t rung;
     /** 0. */
     uint32_t reserved;
     /**
-     * Optional: how much the part matters to those who look, which says what is left out first under a budget of time.
-     * Range [0, 1], default wk_part_plan.importance.
+     * Optional: importance of the part to viewers. A budget of time leaves out the less important parts first. Range
+     * [0, 1], default wk_part_plan.importance.
      */
     double importance;
 } wk_part_wish;
@@ -4345,7 +4383,7 @@ typedef struct wk_part_wish {
     /* importance */ 0.0 \
 }
 
-/** How wrong a view's pictures may be, and how long they may take. */
+/** Limits for a view's pictures: how wrong they may be, and how long they may take. */
 typedef struct wk_budget {
     /** sizeof(wk_budget) of your header. */
     uint32_t struct_size;
@@ -4355,19 +4393,19 @@ typedef struct wk_budget {
     const void *next;
     /** Flags of the optional fields that are set. Default 0: everything is drawn. */
     wk_budget_has_flags has;
-    /** Length of `wishes`. Default 0: parts that are not in it are planned, and matter as by default. */
+    /** Length of `wishes`. Default 0. Parts that are not in the list are planned with their default importance. */
     uint32_t wish_count;
     /** sizeof(wk_part_wish) of your header. */
     uint32_t wish_stride;
     /** 0. */
     uint32_t reserved;
-    /** Wishes for single parts, each of them once. */
+    /** Wishes for single parts, at most one for each part. */
     const wk_part_wish *wishes;
-    /** Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen. */
+    /** Optional: largest error by leaving parts out. Range (0, 1]; 0.01 is not visible. */
     double tolerance;
     /**
-     * Optional: longest time of the weather in a frame, ms; wins over the tolerance. Range (0, 1000]. The plan knows
-     * only the times of wk_view_report_time.
+     * Optional: longest time that the weather may take in a frame, ms; wins over the tolerance. Range (0, 1000]. The
+     * plan knows times only from wk_view_report_time.
      */
     double milliseconds;
 } wk_budget;
@@ -4386,20 +4424,23 @@ typedef struct wk_budget {
     /* milliseconds */ 0.0 \
 }
 
-/** Part of a budget that could not be kept, by the estimates. */
+/** Limit of a budget that could not be kept, by the estimates. */
 typedef uint32_t wk_gave_way;
 
 /** Nothing had to give way. */
 #define WK_GAVE_WAY_NOTHING 0
-/** The tolerance: the time allows no better picture. */
+/** The tolerance: a better picture would take longer than the budget. */
 #define WK_GAVE_WAY_TOLERANCE 1
 /**
- * Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes longer
- * than the budget.
+ * Time and the tolerance: even with every part left out, or with the pinned parts, the picture takes longer than the
+ * budget.
  */
 #define WK_GAVE_WAY_TIME 2
 
-/** Parts that a view's last frame left out. Errors are estimates from the gauged pixels. */
+/**
+ * Plan of a view's last frame: the errors by what it left out, and its cost. Errors are estimates from the gauged
+ * pixels.
+ */
 typedef struct wk_plan {
     /** sizeof(wk_plan) of your header. */
     uint32_t struct_size;
@@ -4407,7 +4448,7 @@ typedef struct wk_plan {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** How many parts there are: their numbers are below it. */
+    /** Number of parts. Parts are numbered from 0. */
     uint32_t part_count;
     /** Limit of the budget that could not be kept. */
     wk_gave_way gave_way;
@@ -4417,11 +4458,11 @@ typedef struct wk_plan {
     double error_bound;
     /** Error of the worst gauged pixel. */
     double worst;
-    /** Work of the picture as planned, in units of a pixel with none of the parts; 0 before the first gauge. */
+    /** Work of the picture as planned, in units of one pixel without any part; 0 before the first gauge. */
     double work;
     /** Work of the picture with everything, in the same units. */
     double work_of_everything;
-    /** Predicted time of the picture from the times reported so far, ms; 0 before the first. */
+    /** Time of the picture predicted from the times reported so far, ms; 0 before the first report. */
     double milliseconds;
 } wk_plan;
 
@@ -4447,15 +4488,15 @@ typedef uint32_t wk_plan_reason;
 #define WK_PLAN_REASON_EVERYTHING_ASKED 0
 /** This picture has not been gauged yet, or must not depend on earlier ones: everything is drawn. */
 #define WK_PLAN_REASON_NOT_GAUGED 1
-/** The weather has none of it, or the recorded stages do not draw it. */
+/** The weather does not have this part, or the recorded stages do not draw it. */
 #define WK_PLAN_REASON_ABSENT 2
-/** With less of it the error would be beyond the tolerance. */
+/** With less of the part the error would exceed the tolerance. */
 #define WK_PLAN_REASON_NEEDED 3
-/** The error with less of it is within the tolerance. */
+/** The error with less of the part is within the tolerance. */
 #define WK_PLAN_REASON_WITHIN_TOLERANCE 4
-/** The host pinned it. */
+/** The host pinned the part. */
 #define WK_PLAN_REASON_PINNED 5
-/** The time allows no more. */
+/** The budget of time allows no more of the part. */
 #define WK_PLAN_REASON_OUT_OF_TIME 6
 
 /** One part of a plan. */
@@ -4466,31 +4507,35 @@ typedef struct wk_part_plan {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Why it is drawn as it is. */
+    /** Why the part is drawn as it is. */
     wk_plan_reason reason;
-    /** The rung at which it is drawn once it has faded; 0, all of it, if there is none of it. */
+    /** Rung at which the part is drawn once fading is over; 0, all of it, if the weather does not have the part. */
     uint32_t rung;
-    /** How many rungs it has. */
+    /** Number of its rungs. */
     uint32_t rung_count;
     /** 0. */
     uint32_t reserved;
-    /** Its name in saved plans and messages, UTF-8; lives as long as the process, as the other texts do. */
+    /**
+     * Name of the part in saved plans and messages, UTF-8. This text and the other two live as long as the process.
+     */
     const char *name;
-    /** That of the rung. */
+    /** Name of the rung. */
     const char *rung_name;
-    /** The reason in a few words of English. */
+    /** Reason in a few words of English. */
     const char *reason_text;
-    /** How much it matters where a budget does not say. */
+    /** Importance of the part where a budget does not set it. */
     double importance;
-    /** How much of it is drawn: 1 all, 0 its last rung, between while it fades or on another. */
+    /**
+     * Share of the part that is drawn: 1 all of it, 0 its last rung, between them while it fades or on a rung between.
+     */
     double share;
-    /** Error of the picture with this part alone at its last rung, as last gauged. */
+    /** Error of the picture with this part alone at its last rung, as of the last gauge. */
     double error;
-    /** Error of the worst gauged pixel with this part alone at its last rung, as last gauged. */
+    /** Error of the worst gauged pixel with this part alone at its last rung, as of the last gauge. */
     double worst;
     /**
-     * Work that all of it adds to this picture with everything, or would add, in units of a pixel with none of the
-     * parts.
+     * Work that the whole part adds, or would add, to this picture with everything, in units of one pixel without any
+     * part.
      */
     double work;
 } wk_part_plan;
@@ -4515,7 +4560,7 @@ typedef struct wk_part_plan {
 }
 
 /**
- * Sets the tolerance and the time of the view's pictures; NULL draws everything again. Unchanged after an error.
+ * Sets the limits for the view's pictures: tolerance and time. NULL draws everything again. Unchanged after an error.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -4530,14 +4575,14 @@ WK_API wk_status wk_view_set_budget(wk_view *view, const wk_budget *budget);
 WK_API wk_status wk_view_report_time(wk_view *view, double milliseconds);
 
 /**
- * Gets what the view's last frame left out.
+ * Gets the plan of the view's last frame.
  * Thread: exclusive on the view.
  */
 WK_API wk_status wk_view_get_plan(wk_view *view, wk_plan *out_plan);
 
 /**
- * Says of one part how much of it the view's last frame drew, and why; and what the part is called, before any frame
- * too. Thread: exclusive on the view. Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
+ * Gets how much of one part the view's last frame drew, and why. The part's name can be read before any frame too.
+ * Thread: exclusive on the view. Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
  */
 WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part part, wk_part_plan *out_part);
 
@@ -4546,20 +4591,16 @@ WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part part, wk_part_plan
  * settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing
  * else is written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
  * Thread: exclusive on the view.
- * Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: some frames follow each
- * jump of camera, sun or weather.
+ * Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet, which is so for some
+ * frames after each jump of camera, sun or weather.
  */
-WK_API
-wk_status wk_view_save_plan(wk_view *view,
-                            void *buffer,
-                            size_t capacity,
-                            size_t *out_size);
+WK_API wk_status wk_view_save_plan(wk_view *view, void *buffer, size_t capacity, size_t *out_size);
 
 /**
- * Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part; the rest of the view's
- * budget stays, and wk_view_set_budget ends it. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes that
- * are no such plan or of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT naming the
- * setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
+ * Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
+ * budget stays; wk_view_set_budget removes the pins. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes
+ * that are no such plan or of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT naming
+ * the setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
  */
 WK_API wk_status wk_view_load_plan(wk_view *view, const void *plan, size_t size);
 
@@ -4592,36 +4633,38 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  * [rain] Rain
  *
  * WK_STAGE_PARTICLES draws rain wherever the weather has it. The rate decides how many drops fall and how fast. Near
- * drops have places of their own, farther ones are streaks on cones. Both follow from seed and time alone, so all
- * channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops, the host's
- * depth hides them, sky, ground, sun and lamps light them, and they splash on what the picture shows within ten
- * metres.
+ * drops are drawn one by one, farther ones as streaks on cones around the camera. Both depend only on seed and time,
+ * so all channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops; the
+ * host's depth hides them; sky, ground, sun and lamps light them. They splash on the surfaces that the picture shows
+ * within ten metres.
  *
- * Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is gone,
- * whatever the wind. So it is wet on the windward side of a box, dry on its lee side and dry inside. Planes cut a box
- * to any convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
+ * Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is not
+ * drawn, whatever the wind. The windward side of a box is therefore wet; its lee side and its inside are dry. Planes
+ * cut a box to any convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
  * ====================================================================================================
  */
 
-/** wk_rain.shutter_s of an eye, which adds up light over about this time by day. Streaks are long and faint. */
+/** wk_rain.shutter_s for the eye, which integrates light over about this time by day. Streaks are long and faint. */
 #define WK_RAIN_SHUTTER_EYE_S 0.05
 
-/** wk_rain.shutter_s of a video camera whose shutter is open for a whole frame of 60 a second: the default. */
+/**
+ * wk_rain.shutter_s for a video camera at 60 frames a second with its shutter open for a whole frame: the default.
+ */
 #define WK_RAIN_SHUTTER_CAMERA_60_S 0.016666666666666666
 
-/** wk_rain.shutter_s of a camera in good light. Streaks are short. */
+/** wk_rain.shutter_s for a camera in good light. Streaks are short. */
 #define WK_RAIN_SHUTTER_CAMERA_500_S 0.002
 
-/** wk_rain.contrast_gain for trainers: on a display of eight bits rain by day is as visible as in a film. */
+/** wk_rain.contrast_gain for trainers: on an 8-bit display rain by day is then as visible as in a film. */
 #define WK_RAIN_GAIN_TRAINER 4.0
 
-/** How a view draws rain; what falls is the same. */
+/** How a view draws rain. The rain that falls does not depend on it. */
 typedef uint32_t wk_rain_model;
 
 /**
- * Welkin chooses: single drops to 1.9 m and cones to 14.8 m; with a wk_budget less, where the picture does not need it
- * or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
- * wk_context_set_wind_field) the drops follow it, on devices with compute shaders.
+ * Welkin chooses: single drops to 1.9 m and cones to 14.8 m. With a wk_budget it draws less where the picture does not
+ * need it or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
+ * wk_context_set_wind_field) the drops follow that wind, on devices with compute shaders.
  */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */
@@ -4631,12 +4674,12 @@ typedef uint32_t wk_rain_model;
  * rain without compute shaders (wk_caps.tier 0). No splashes.
  */
 #define WK_RAIN_MODEL_CONES 2
-/** Single drops to 4 m, each where seed and time put it; cones beyond only where lamps light the rain. */
+/** Single drops to 4 m, each at a place that seed and time give; cones beyond only where lamps light the rain. */
 #define WK_RAIN_MODEL_DROPS 3
 /** Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1). */
 #define WK_RAIN_MODEL_INTEGRATED 4
 
-/** How a view draws what falls: rain, hail and splashes. What falls does not depend on it. */
+/** How a view draws rain, hail and splashes. The precipitation itself does not depend on it. */
 typedef struct wk_rain {
     /** sizeof(wk_rain) of your header. */
     uint32_t struct_size;
@@ -4650,17 +4693,17 @@ typedef struct wk_rain {
      */
     double shutter_s;
     /**
-     * Most drops to draw; if more fall, each drawn drop stands for several. Range [1000, 8 000 000], or 0, the
-     * default: 400 000, and 100 000 on a software driver.
+     * Largest number of drops to draw; if more fall, each drawn drop stands for several. Range [1000, 8 000 000], or
+     * 0, the default: 400 000, and 100 000 on a software driver.
      */
     uint32_t most_drops;
     /** A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose. */
     wk_rain_model model;
     /**
-     * Contrast of rain, over that in nature. Range [1, 16], or 0, the default: 1, as in nature. Beyond 1 a streak,
-     * stone or splash hides as much as that many of them one before the other. This departs from physics, for displays
-     * on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water and queries do
-     * not depend on it. Set the same value on all channels of a simulator.
+     * Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain above 1, a
+     * streak, stone or splash hides as much as that many of them in a row. This departs from physics, for displays on
+     * which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water and queries do not
+     * depend on it. Set the same value on all channels of a simulator.
      */
     double contrast_gain;
 } wk_rain;
@@ -4707,7 +4750,7 @@ typedef struct wk_shelter {
 
 /**
  * Planes that cut a wk_shelter to another convex shape; put it into the shelter's chain. The part of the box beyond
- * any plane keeps nothing off. Describe a convex shape by the box around it and the planes of its faces.
+ * any plane does not keep rain off. Describe a convex shape by the box around it and the planes of its faces.
  */
 typedef struct wk_shelter_shape {
     /** sizeof(wk_shelter_shape) of your header. */
@@ -4739,16 +4782,14 @@ typedef struct wk_shelter_shape {
 
 /**
  * Sets how the view draws rain; NULL returns to the default. Unchanged after an error. Thread: exclusive on the view.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model, or more drops of
- * it, than the device can draw.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model that the device
+ * cannot draw, or for more drops than it can draw with the model.
  */
-WK_API
-wk_status wk_view_set_rain(wk_view *view,
-                           const wk_rain *rain);
+WK_API wk_status wk_view_set_rain(wk_view *view, const wk_rain *rain);
 
 /**
- * Sets the boxes that keep rain off, in place of those before; set moving ones again in every frame. count 0 removes
- * all. At most 32. Unchanged after an error.
+ * Sets the boxes that keep rain off and replaces those set before; set moving ones again in every frame. count 0
+ * removes all. At most 32. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
  */
@@ -4782,19 +4823,19 @@ wk_status wk_shelter_shape_init(wk_shelter_shape *out,
  * ====================================================================================================
  * [snow] Snow
  *
- * WK_STAGE_PARTICLES draws falling snow wherever the weather has it: flakes of the sizes and speeds that rate, kind
- * and temperature give, each at a place that follows from seed and time alone, so all channels of a simulator draw the
- * same flakes. The wind carries them, the host's depth hides them, shelters and occluder maps keep them off, sky,
- * ground, sun and lamps light them. What is farther than the flakes is extinction in the air.
+ * WK_STAGE_PARTICLES draws falling snow wherever the weather has it. Rate, kind and temperature give the sizes and
+ * speeds of the flakes; seed and time alone give their places, so all channels of a simulator draw the same flakes.
+ * The wind carries them; the host's depth hides them; shelters and occluder maps keep them off; sky, ground, sun and
+ * lamps light them. Beyond the distance of the flakes, snow is extinction in the air.
  * ====================================================================================================
  */
 
-/** How a view draws falling snow; what falls is the same. */
+/** How a view draws falling snow. The snow that falls does not depend on it. */
 typedef uint32_t wk_snow_model;
 
 /**
- * Flakes near the camera; with a wk_budget none, where the picture does not need them or the time does not allow them
- * (WK_PART_SNOW).
+ * Flakes near the camera. With a wk_budget there are none where the picture does not need them or the time does not
+ * allow them (WK_PART_SNOW).
  */
 #define WK_SNOW_MODEL_AUTOMATIC 0
 /** No flakes: all snow is extinction in the air. */
@@ -4802,7 +4843,7 @@ typedef uint32_t wk_snow_model;
 /** Flakes, whatever a budget says. */
 #define WK_SNOW_MODEL_FLAKES 2
 
-/** How a view draws falling snow. What falls does not depend on it. */
+/** How a view draws falling snow. The snow that falls does not depend on it. */
 typedef struct wk_snow {
     /** sizeof(wk_snow) of your header. */
     uint32_t struct_size;
@@ -4811,13 +4852,14 @@ typedef struct wk_snow {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Exposure time of a picture, s: flakes that move by more than their size in it are streaks. Range [1e-4, 0.1],
-     * default 1/250, at which flakes in a light wind show their shapes.
+     * Exposure time of a picture, s: flakes that move farther than their own size in this time become streaks. Range
+     * [1e-4, 0.1], default 1/250, at which flakes in a light wind show their shapes.
      */
     double shutter_s;
     /**
-     * Most flakes to draw. The more, the farther they reach, up to 16 m; of what there is no room for some stand for
-     * others. Range [1000, 8 000 000], or 0, the default: 1 000 000, and 60 000 on a software driver.
+     * Largest number of flakes to draw. The more, the farther they reach, up to 16 m. If there are too many, each
+     * drawn flake stands for several. Range [1000, 8 000 000], or 0, the default: 1 000 000, and 60 000 on a software
+     * driver.
      */
     uint32_t most_flakes;
     /** A WK_SNOW_MODEL_ constant; 0, the default, lets Welkin choose. */
@@ -4852,11 +4894,12 @@ WK_API wk_status wk_snow_init(wk_snow *out, uint32_t struct_size);
  * [area] Rain areas
  *
  * Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
- * weather's rain and drizzle give way to the area's, smoothly over the rim inside its border. Where areas overlap, a
- * later one in the list lies over the earlier ones. A camera inside sees drops of the rate at each drop's own place.
- * From outside the rain is a shaft with falling curtains, which leans as the drops fall behind their cloud. All
- * queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas. Where
- * clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud over it. wk_context_save keeps them.
+ * area's rain replaces the weather's rain and drizzle; the change is smooth over the rim inside the region's border.
+ * Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside, the drops at each
+ * place follow the rain rate there. From outside, the rain is a shaft with falling curtains; it leans because the
+ * drops fall behind their cloud. All queries of rain and visibility include the areas, and so does the ground's
+ * wetness by the weather of the moment. Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud above it.
+ * wk_context_save keeps the areas.
  * ====================================================================================================
  */
 
@@ -4873,9 +4916,9 @@ typedef uint32_t wk_area_rain;
 /** Motion of a rain area. */
 typedef uint32_t wk_area_motion;
 
-/** The wind at 10 m with its gusts, by its displacement. */
+/** Motion with the wind at 10 m, gusts included (its displacement). */
 #define WK_AREA_MOTION_WITH_WIND 0
-/** A velocity of its own. */
+/** Motion at the area's own velocity. */
 #define WK_AREA_MOTION_OWN 1
 
 /** Kind of snow in a rain area. */
@@ -4899,48 +4942,48 @@ typedef struct wk_rain_area {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Its centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height has no effect.
-     * Default 0, 0, 0.
+     * Centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height has no effect. Default
+     * 0, 0, 0.
      */
     double center_m[3];
     /**
-     * Half the extent of an ellipse to the right of the heading and along it, m. Range [10, 1e6], default 2000, 2000.
+     * Half extents of the ellipse to the right of the heading and along it, m. Range [10, 1e6], default 2000, 2000.
      */
     double semi_axes_m[2];
     /**
-     * Corners of a polygon in place of the ellipse, in either direction around it, two numbers each: distance from the
-     * centre to the right of the heading and along it, m, within 1e6. The region must be convex and larger than 1 m^2.
-     * Default 0.
+     * Corners of a polygon that replaces the ellipse, in either direction around it. Each corner is two numbers: the
+     * distance from the centre to the right of the heading, and along it, m, within 1e6. The region must be convex and
+     * larger than 1 m^2. Default 0.
      */
     double corners_m[16];
-    /** Corners of the polygon, [3, 8], or 0, the default, for the ellipse. */
+    /** Number of corners of the polygon, [3, 8], or 0, the default, for the ellipse. */
     uint32_t corner_count;
-    /** Default WK_AREA_RAIN_STEADY. */
+    /** Kind of rain. Default WK_AREA_RAIN_STEADY. */
     wk_area_rain rain;
     /** Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0. */
     double heading_deg;
     /**
-     * Width inside of the border over which the rain fades, m. Range [1, 1e6], at most an ellipse's smaller half
-     * extent, or the radius of the largest circle in a polygon. Default 500.
+     * Width of the band inside the border over which the rain fades, m. Range [1, 1e6]; at most the smaller half
+     * extent of an ellipse, or the radius of the largest circle in a polygon. Default 500.
      */
     double rim_m;
     /** Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10. */
     double rate_mm_h;
     /**
-     * Altitude of the cloud base above mean sea level (not above the ground), m: above it falls neither the area's
-     * rain nor the weather's. Range [-1000, 20 000], default 1500.
+     * Altitude of the cloud base above mean sea level (not above the ground), m. Above it neither the area's rain nor
+     * the weather's falls. Range [-1000, 20 000], default 1500.
      */
     double top_m;
-    /** Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN. */
+    /** Velocity to the east and north with WK_AREA_MOTION_OWN, m/s, each within [-200, 200]. Default 0, 0. */
     double velocity_m_s[2];
     /**
-     * Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10]. With WK_AREA_MOTION_WITH_WIND not
-     * before what the timeline still knows, except 0, from which the wind's displacement counts. Default 0.
+     * Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10]. With WK_AREA_MOTION_WITH_WIND a time
+     * that the timeline still knows, or 0, from which the wind's displacement counts. Default 0.
      */
     double at_s;
-    /** Default WK_AREA_MOTION_WITH_WIND. */
+    /** Motion of the area. Default WK_AREA_MOTION_WITH_WIND. */
     wk_area_motion motion;
-    /** Snow that falls in place of the rain. Default WK_AREA_SNOW_NONE, the only one in this version. */
+    /** Snow that falls in place of the rain. Default WK_AREA_SNOW_NONE, the only value that this version accepts. */
     wk_area_snow snow;
 } wk_rain_area;
 
@@ -4965,8 +5008,8 @@ typedef struct wk_rain_area {
 }
 
 /**
- * Sets the rain areas, in place of those before. They move by themselves: set them again only to change them. count 0
- * removes all. At most 16. Unchanged after an error.
+ * Replaces the list of rain areas; count 0 removes all. At most 16. Areas move by themselves: set them again only to
+ * change them. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range; WK_ERROR_UNSUPPORTED for snow.
  */
@@ -4987,9 +5030,9 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * [wind_grid] Wind that varies in space
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
- * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, on patches of fog and dust, and on
- * drops and flakes near a camera, in place of a wind field's (wk_context_set_wind_field). Everything else follows the
- * weather's wind.
+ * They act in wk_context_get_wind_at, in the rain on surfaces and windscreens, on patches of fog and dust, and on
+ * drops and flakes near a camera, in place of those of a wind field (wk_context_set_wind_field). Everything else
+ * follows the weather's wind.
  * ====================================================================================================
  */
 
@@ -5002,8 +5045,8 @@ typedef uint32_t wk_wind_grid_kind;
 #define WK_WIND_GRID_ADDED 1
 
 /**
- * Velocities of the air at the nodes of a grid that is level and aligned to true north, linear between nodes along
- * each axis. Outside the grid the weather's wind blows: make the grid large enough for the flow to have become that
+ * Velocities of the air at the nodes of a grid that is level and aligned to true north, interpolated linearly between
+ * nodes along each axis. Outside the grid the weather's wind blows: make the grid so large that the flow equals that
  * wind at its border.
  */
 typedef struct wk_wind_grid {
@@ -5014,18 +5057,18 @@ typedef struct wk_wind_grid {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * The lowest node farthest to the south-west, in the host's world, m, within 1e12 m of the origin. Default 0, 0,
-     * 0.
+     * Position of the lowest, south-western node, in the host's world, m, within 1e12 m of the origin. Default 0,
+     * 0, 0.
      */
     double origin_m[3];
     /** Distance between nodes east, north and up, m. Range [0.01, 10 000], default 1, 1, 1. */
     double cell_m[3];
-    /** Number of nodes east, north and up. Range 2 to 64, 64 and 32, default 2, 2, 2. */
+    /** Number of nodes east, north and up. Range 2 to 64 east and north, 2 to 32 up; default 2, 2, 2. */
     uint32_t nodes[3];
     /** A WK_WIND_GRID_ constant, default WK_WIND_GRID_WHOLE. */
     wk_wind_grid_kind kind;
     /**
-     * Three numbers for each node (east, north, up), m/s, of at most 300 m/s together. Nodes run from west to east,
+     * Three numbers for each node (east, north, up), m/s, each vector of at most 300 m/s. Nodes run from west to east,
      * rows from south to north, layers upwards. Copied by the call.
      */
     const float *velocities_m_s;
@@ -5050,7 +5093,7 @@ typedef struct wk_wind_grid {
 }
 
 /**
- * Sets a wind that varies in space, in place of the one before; NULL removes it. Unchanged after an error.
+ * Sets a wind that varies in space and replaces the one set before; NULL removes it. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -5066,39 +5109,39 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * ====================================================================================================
  * [wind_field] Wind round terrain and buildings
  *
- * A context can solve for the wind in a box of air about a place: it goes round the terrain of
- * wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too,
- * comes in as the weather's wind and leaves behind. It acts where a wind grid of your own would
- * (wk_context_set_wind_grid): in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on drops and
- * flakes near a camera. Nothing is solved unless you ask for it.
+ * A context can solve for the wind in a box of air about a place. The wind enters the box as the weather's, flows
+ * round the terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of
+ * wk_context_set_shelters, including moving ones, and leaves on the downwind side. The field has effect where a wind
+ * grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in the rain on surfaces and
+ * windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
  * ====================================================================================================
  */
 
-/** How a wind field is led through time. */
+/** Time dependence of a wind field. */
 typedef uint32_t wk_wind_field_mode;
 
 /**
- * The mean wind: solved for over the first moments after the wind or an obstacle has changed, then it rests at no
- * cost. Gusts are as strong, against the weather's, as the mean is there.
+ * The mean wind. It is solved for over the first moments after the wind or an obstacle has changed; after that it
+ * rests at no cost. The weather's gusts are scaled in proportion to the local mean wind.
  */
 #define WK_WIND_FIELD_STEADY 0
 /**
- * The wind with gusts, the whirls that come in with it and those that obstacles shed, stepped all the time.
- * docs/wind-field.md says what sizes a core keeps up with.
+ * The wind with gusts, with the eddies that it brings and those that obstacles shed, stepped all the time.
+ * docs/wind-field.md has the sizes that a CPU core can keep up with.
  */
 #define WK_WIND_FIELD_RUNNING 1
 
-/** Effect of terrain and boxes on air that passes along them. */
+/** Friction of terrain and boxes on air that flows along them. */
 typedef uint32_t wk_wind_walls;
 
-/** They slow it, by the weather's roughness length. */
+/** Terrain and boxes slow the air, by the weather's roughness length. */
 #define WK_WIND_WALLS_ROUGH 0
-/** It slides. */
+/** Air slides along them without friction. */
 #define WK_WIND_WALLS_SMOOTH 1
 
 /**
  * A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and
- * top it goes over into the weather's wind.
+ * top it blends into the weather's wind.
  */
 typedef struct wk_wind_field {
     /** sizeof(wk_wind_field) of your header. */
@@ -5108,8 +5151,8 @@ typedef struct wk_wind_field {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Middle of the field's floor, in the host's world, m, within 1e12 m of the origin: no higher than the lowest
-     * ground that matters. Where it moves the field follows by whole cells. Default 0, 0, 0.
+     * Middle of the field's floor, in the host's world, m, within 1e12 m of the origin; no higher than the lowest
+     * ground that matters. When it moves, the field follows by whole cells. Default 0, 0, 0.
      */
     double floor_center_m[3];
     /**
@@ -5126,8 +5169,8 @@ typedef struct wk_wind_field {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Memory that the field may take, bytes; more is refused, and the message says how much is needed. Range [1048576,
-     * 17179869184], default 1073741824.
+     * Largest memory for the field, bytes. A field that needs more is refused, and the message says how much it needs.
+     * Range [1048576, 17179869184], default 1073741824.
      */
     uint64_t most_bytes;
 } wk_wind_field;
@@ -5146,7 +5189,7 @@ typedef struct wk_wind_field {
     /* most_bytes */ UINT64_C(1073741824) \
 }
 
-/** How a wind field stands. */
+/** State of a wind field. */
 typedef struct wk_wind_field_report {
     /** sizeof(wk_wind_field_report) of your header. */
     uint32_t struct_size;
@@ -5155,26 +5198,26 @@ typedef struct wk_wind_field_report {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * 1: there is a field. 0: none is set, its time has not come, or its first steady state is still being solved for;
-     * all else is 0 then.
+     * 1: there is a field. 0: none is set, its start time has not come, or its first steady state is still being
+     * solved for; all other fields are 0 then.
      */
     uint32_t present;
-    /** 1: it is steady and rests; nothing is stepped. */
+    /** 1: the field is steady and rests; nothing is stepped. */
     uint32_t rests;
     /** Simulation time of the field, s: the present, or up to one step before it. */
     double time_s;
     /**
-     * Simulation time at which it last began from a steady field, s: when it was first set, after a leap of more than
-     * 60 s, or far off.
+     * Simulation time at which the field last began from a steady state, s: when it was first set, after a leap of
+     * more than 60 s, or after a move too far for its cells to follow.
      */
     double begun_s;
-    /** Length of its steps, s. */
+    /** Length of the field's steps, s. */
     double step_s;
-    /** Its lowest corner, farthest to the south-west, in the host's world, m. */
+    /** Lowest, south-western corner of the field, in the host's world, m. */
     double corner_m[3];
-    /** The largest component of the wind anywhere in it, m/s. */
+    /** Largest component of the wind anywhere in the field, m/s. */
     double fastest_m_s;
-    /** Memory that it may take, bytes. */
+    /** Memory that the field may use, bytes. */
     uint64_t bytes;
 } wk_wind_field_report;
 
@@ -5194,11 +5237,12 @@ typedef struct wk_wind_field_report {
 }
 
 /**
- * Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. The
- * same size, mode and walls at another place move it by whole cells; anything else begins it anew. wk_context_update
- * leads it in steps on a grid anchored at time 0, whatever is drawn: the same on every channel. It begins with the
- * steady field of its first moment. Part of the saved state. Unchanged after an error. Thread: exclusive. Errors:
- * WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
+ * Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. A
+ * field with the same size, mode and walls at another place moves there by whole cells; any other field begins anew.
+ * wk_context_update advances it in steps on a grid anchored at time 0, whatever is drawn, so it is the same on every
+ * channel. It begins with the steady field of its first moment. Part of the saved state. Unchanged after an error.
+ * Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time
+ * that has passed.
  */
 WK_API
 wk_status wk_context_set_wind_field(wk_context *context,
@@ -5206,9 +5250,9 @@ wk_status wk_context_set_wind_field(wk_context *context,
                                     double start_time_s);
 
 /**
- * How the wind field stands now.
+ * Gets the state of the wind field now.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for a structure that is none.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid output struct.
  */
 WK_API wk_status wk_context_get_wind_field_report(const wk_context *context, wk_wind_field_report *out_report);
 
@@ -5230,16 +5274,16 @@ wk_status wk_wind_field_report_init(wk_wind_field_report *out,
  * ====================================================================================================
  * [occluder] Maps of what keeps rain off
  *
- * For everything that boxes cannot describe, give up to four depth images of your world, of standing or moving things,
- * from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
+ * For shelter that boxes cannot describe, give up to four depth images of your world, of standing or moving objects,
+ * from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
  *
- * A map knows nothing of what its surfaces hide. Draw it along wk_rainfall.fall_velocity_m_s: then it hides nothing
- * that matters for half of the rain, and little for the rest. Where things stand below others (a pier below a deck),
- * add maps along slower drops: the same wind with fall speeds of 3.4 and 2.1 m/s. What a map shows is exact to two
- * texels.
+ * A map does not show what is hidden behind its surfaces. Render it along wk_rainfall.fall_velocity_m_s: then what is
+ * hidden does not matter for half of the rain, and little for the rest. Where objects stand below others (a pier below
+ * a deck), add maps along slower drops: the same wind with fall speeds of 3.4 and 2.1 m/s. The edges of mapped
+ * surfaces are exact to two texels.
  *
- * Welkin copies a map during the call. Work that you submitted to the queue before (or, with OpenGL, issued) is
- * included. Afterwards the image is yours again.
+ * Welkin copies a map during the call. The copy includes work that you submitted to the queue (or, with OpenGL,
+ * issued) before the call. Afterwards the image is yours again.
  * ====================================================================================================
  */
 
@@ -5248,10 +5292,10 @@ typedef uint32_t wk_occluder_map_flags;
 
 /** Its depth is reversed: 1 is near, 0 is far. */
 #define WK_OCCLUDER_MAP_DEPTH_REVERSED 1
-/** The first row of the image lies at clip y = -1: always so in OpenGL (there it need not be set). */
+/** The first row of the image lies at clip y = -1. In OpenGL this is always so, and the flag need not be set. */
 #define WK_OCCLUDER_MAP_FIRST_ROW_AT_MINUS_Y 2
 
-/** A depth image of things that keep rain off: one sample, from 8 to 4096 texels along either side. */
+/** A depth image of objects that keep rain off: one sample, from 8 to 4096 texels along either side. */
 typedef struct wk_occluder_map {
     /** sizeof(wk_occluder_map) of your header. */
     uint32_t struct_size;
@@ -5268,24 +5312,24 @@ typedef struct wk_occluder_map {
     wk_occluder_map_flags flags;
     /** Default WK_CLIP_ZERO_TO_ONE. */
     wk_clip_space clip_space;
-    /** Simulation time of what it shows, s. Default 0. */
+    /** Simulation time at which the objects stood as the map shows them, s. Default 0. */
     double time_s;
     /**
-     * Velocity of what it shows, m/s, at most 2000 in all, so that a truck's own map need not be drawn in every frame.
-     * Default 0, 0, 0.
+     * Velocity of the objects in the map, m/s, at most 2000 in all. With it, the map of a moving truck need not be
+     * rendered in every frame. Default 0, 0, 0.
      */
     double velocity_m_s[3];
-    /** The image on an own device. Default NULL. */
+    /** The image on one of Welkin's own devices. Default NULL. */
     const wk_texture *texture;
     /** The image of a Vulkan host. Default NULL. */
     const wk_vulkan_image *vulkan;
     /** The image of an OpenGL host: a depth texture or renderbuffer. Default none. */
     wk_opengl_image opengl;
-    /** Texels of an OpenGL host's image; must be its own. Default 0. */
+    /** Width of an OpenGL host's image, texels; must equal the image's own. Default 0. */
     uint32_t width;
-    /** Texels of an OpenGL host's image; must be its own. Default 0. */
+    /** Height of an OpenGL host's image, texels; must equal the image's own. Default 0. */
     uint32_t height;
-    /** For an OpenGL host's image: raise it when you make an object again under an old name. Default 0. */
+    /** For an OpenGL host's image: increase it when you create an object again under an old name. Default 0. */
     uint64_t generation;
 } wk_occluder_map;
 
@@ -5308,8 +5352,8 @@ typedef struct wk_occluder_map {
 }
 
 /**
- * Sets the maps of things that keep rain off, in place of those before. count 0 removes them. At most 4. After an
- * error the maps before stay. They are not part of a saved state, because each channel may have its own.
+ * Sets the maps of objects that keep rain off and replaces those set before. count 0 removes them. At most 4. After an
+ * error the previous maps stay. They are not part of a saved state, because each channel may have its own.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
  * WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.
@@ -5333,7 +5377,7 @@ wk_status wk_occluder_map_init(wk_occluder_map *out,
  * [light] Lamps
  *
  * Head lights, work lights, search lights: the host's lamps light what Welkin draws in their beams (rain, snow, hail,
- * splashes and clouds) and shine in wet ground. The host lights its own world itself.
+ * splashes and clouds) and are reflected in wet ground. The host lights its own world itself.
  * ====================================================================================================
  */
 
@@ -5347,11 +5391,11 @@ typedef struct wk_light {
     const void *next;
     /** Position in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0. */
     double position_m[3];
-    /** Direction that it shines in, in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0. */
+    /** Direction of the beam, in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0. */
     double direction[3];
     /**
      * Luminous intensity in the middle of the beam, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000
-     * each. A low beam has about 10 000, a work light 2000 to 5000.
+     * each. A low beam has about 10 000 cd, a work light 2000 to 5000 cd.
      */
     double intensity_cd[3];
     /** Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10. */
@@ -5373,7 +5417,7 @@ typedef struct wk_light {
 }
 
 /**
- * Sets the host's lamps, in place of those before; set moving ones again in every frame. count 0 removes all. At
+ * Sets the host's lamps and replaces those set before; set moving ones again in every frame. count 0 removes all. At
  * most 64. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
@@ -5395,17 +5439,17 @@ WK_API wk_status wk_light_init(wk_light *out, uint32_t struct_size);
  * [stars] Stars
  *
  * At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the
- * zodiacal light and the Milky Way behind its sky, where they stand over the context's place by its clock; by day, in
- * fog and under closed clouds there is nothing of it. A budget may leave them out (WK_PART_STARS).
+ * zodiacal light and the Milky Way behind its sky, at their positions over the context's place and time. By day, in
+ * fog and under closed clouds none of them is drawn. A budget may leave them out (WK_PART_STARS).
  * ====================================================================================================
  */
 
 /** Flags of the settings in a wk_stars. */
 typedef uint32_t wk_stars_flags;
 
-/** stars and star_count: the host's own stars in place of the catalogue's. */
+/** stars and star_count: the host's own stars replace the catalogue's. */
 #define WK_STARS_OWN 1
-/** celestial_to_world: the host turns the heavens itself. */
+/** celestial_to_world: the host orients the celestial sphere itself. */
 #define WK_STARS_TURNED 2
 /** No planets. */
 #define WK_STARS_NO_PLANETS 4
@@ -5418,22 +5462,24 @@ typedef struct wk_stars {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Default 0: the catalogue's stars and the planets, where they stand over the Earth. */
+    /** Default 0: the catalogue's stars and the planets, at their positions over the Earth. */
     wk_stars_flags flags;
-    /** Stars in `stars`, at most 1 000 000. Default 0. */
+    /** Number of stars in `stars`, at most 1 000 000. Default 0. */
     uint32_t star_count;
     /**
-     * With WK_STARS_OWN: four numbers a star: right ascension, degrees, declination, degrees in [-90, 90], both in the
-     * equator and equinox of J2000.0; visual magnitude in [-30, 30]; temperature of its colour as a black body, K, in
-     * [1000, 100000]. Copied. Default NULL.
+     * With WK_STARS_OWN: four numbers for each star: right ascension, degrees, and declination, degrees in [-90, 90],
+     * both in the equator and equinox of J2000.0; visual magnitude in [-30, 30]; colour temperature of a black body,
+     * K, in [1000, 100000]. Copied. Default NULL.
      */
     const double *stars;
     /**
      * With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole)
-     * to (east, north, up), column after column. Default the identity.
+     * to (east, north, up), column-major. Default the identity.
      */
     double celestial_to_world[9];
-    /** Strength of the airglow. Range [0, 10], default 1: near the sun's least activity; 1.7 at the greatest. */
+    /**
+     * Strength of the airglow. Range [0, 10], default 1, as near the minimum of solar activity; 1.7 at the maximum.
+     */
     double airglow;
 } wk_stars;
 
@@ -5450,16 +5496,17 @@ typedef struct wk_stars {
 }
 
 /**
- * Sets how the night sky is drawn; NULL returns to the default. All but the list of stars is part of the saved state:
- * a context that loads one keeps its own list. Unchanged after an error. Thread: exclusive. Errors:
+ * Sets how the night sky is drawn; NULL returns to the default. Part of the saved state, except the list of stars: a
+ * context that loads a state keeps its own list. Unchanged after an error. Thread: exclusive. Errors:
  * WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API wk_status wk_context_set_stars(wk_context *context, const wk_stars *stars);
 
 /**
  * Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at
- * a simulation time. It falls with the sky's light, and with what air, fog and clouds take of the star's. Minus
- * infinity where nothing comes through. Thread: concurrent. Errors: as wk_context_get_conditions.
+ * a simulation time. It falls with the brightness of the sky, and with the extinction of the star's light in air, fog
+ * and clouds. Minus infinity where no starlight gets through. Thread: concurrent. Errors: as
+ * wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_limiting_magnitude_at(const wk_context *context,
@@ -5477,16 +5524,16 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
  * ====================================================================================================
  * [cloud_map] Cloud map
  *
- * Where over the ground layers of cloud stand: a storm ahead of the runway, a clearing over the harbour. The map holds
- * in pictures, shadows, the light of a place and all questions about clouds. docs/clouds.md has an example.
+ * A map of where cloud layers stand over the ground: a storm ahead of the runway, a clearing over the harbour. The map
+ * applies to pictures, shadows, the light at a place and all queries about clouds. docs/clouds.md has an example.
  * ====================================================================================================
  */
 
 /**
- * How much of the cover that layers have in the weather they have over each part of the ground. Give a layer cover 1,
- * and the map says its cover. The map is level, aligned to true north and stands still over the ground; clouds go
- * through it with their wind, and grow and dissolve as it says. Linear between the middles of cells; beyond the
- * outermost middles theirs hold on.
+ * Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. Give a
+ * layer cover 1, and the map is its cover. The map is level, aligned to true north and fixed to the ground. Clouds
+ * drift through it with their wind, and grow and dissolve as the map says. Values are linear between the middles of
+ * cells; beyond the outermost middles they stay constant.
  */
 typedef struct wk_cloud_map {
     /** sizeof(wk_cloud_map) of your header. */
@@ -5496,8 +5543,7 @@ typedef struct wk_cloud_map {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Middle of the cell farthest to the south-west, east and north of the world's origin, m. Range [-1e7, 1e7],
-     * default 0, 0.
+     * Middle of the south-western cell: metres east and north of the world's origin. Range [-1e7, 1e7], default 0, 0.
      */
     double first_m[2];
     /** Side of a cell, m. Range [100, 50 000], default 1000. */
@@ -5505,12 +5551,12 @@ typedef struct wk_cloud_map {
     /** Number of cells east and north. Range [1, 128], default 1, 1. */
     uint32_t cells[2];
     /**
-     * Layers whose base above the station lies between these follow the map, m. Range [-1000, 20 000], the lower one
-     * first, default -1000, 20 000: all layers.
+     * Lowest and highest base of the layers that follow the map, above the station, m. Range [-1000, 20 000], the
+     * lower one first, default -1000, 20 000: all layers.
      */
     double base_m[2];
     /**
-     * A number for each cell in [0, 1]: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows
+     * Numbers in [0, 1], one for each cell: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows
      * from south to north. Copied by the call.
      */
     const float *cover;
@@ -5535,8 +5581,8 @@ typedef struct wk_cloud_map {
 }
 
 /**
- * Lays a map on layers of cloud, in place of the one before; NULL takes it off. Clouds change at once. Part of the
- * saved state. With WK_CLOUD_MODEL_DECK it holds for light alone. Unchanged after an error. Thread: exclusive. Errors:
+ * Sets the map of cloud cover, in place of the one before; NULL removes it. Clouds change at once. Part of the saved
+ * state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error. Thread: exclusive. Errors:
  * WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API
@@ -5553,13 +5599,14 @@ WK_API wk_status wk_cloud_map_init(wk_cloud_map *out, uint32_t struct_size);
  * ====================================================================================================
  * [clouds] Clouds
  *
- * Layers of cloud come with the weather: wk_cloud_layer, a report, a preset. wk_context_set_cloud_model says how views
- * draw them. Conditions, what falls and light on the mean are the same either way. docs/clouds.md has costs and
- * errors.
+ * Cloud layers come with the weather: from wk_cloud_layer, a report or a preset. wk_context_set_cloud_model sets how
+ * views draw them. Conditions, precipitation and the mean light are the same for both models. docs/clouds.md has costs
+ * and errors.
  *
- * Volumes cast shadows: the stage SURFACE darkens and brightens what the host drew from its depth, in the ratio of the
- * light at each pixel's place to the light on the mean, in which the host lit it (wk_context_get_light). A host that
- * lights a thing of its own by itself, such as the view out of a cab, asks for the share at its place.
+ * Clouds drawn as a volume cast shadows. The host lights its picture by the mean light (wk_context_get_light). From
+ * the host's depth, the stage SURFACE multiplies each pixel by the ratio of the light at its place to the mean light.
+ * A host that lights an object separately, such as the view out of a cab, can query the share at the object's place
+ * (wk_context_get_sun_share).
  * ====================================================================================================
  */
 
@@ -5572,23 +5619,24 @@ typedef uint32_t wk_cloud_model;
  */
 #define WK_CLOUD_MODEL_DECK 0
 /**
- * Layers of a volume that one can fly through, lit by sun or moon, sky and ground. A closed layer seen from below is
- * drawn as a deck. A sixteenth of the pixels is computed in a frame: count wk_frame.frame_id up by one.
+ * Layers of a volume that one can fly through, lit by the sun or moon, the sky and the ground. A closed layer seen
+ * from below is drawn as a deck. Each frame computes a sixteenth of the pixels, in turn by wk_frame.frame_id: count it
+ * up by one.
  */
 #define WK_CLOUD_MODEL_VOLUME 1
 
-/** Effects of clouds that a view draws beside the clouds. */
+/** Optional effects of clouds that a view draws. */
 typedef uint32_t wk_clouds_flags;
 
 /**
- * Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in their shadows.
- * Drawn with WK_STAGE_SURFACE where the host gives depth and does not read the map of shadows itself
- * (wk_view_get_cloud_shadows), up to 10 km away; 24 look-ups a pixel. Without it the air is as bright as on the mean
- * over places.
+ * Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in the clouds'
+ * shadows. Drawn with WK_STAGE_SURFACE, up to 10 km away, where the host gives depth and does not read the shadow map
+ * itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without it the air has the mean brightness over
+ * places.
  */
 #define WK_CLOUDS_SHAFTS 1
 
-/** How finely a view draws clouds that are a volume. */
+/** Quality of clouds that a view draws as a volume. */
 typedef struct wk_clouds {
     /** sizeof(wk_clouds) of your header. */
     uint32_t struct_size;
@@ -5596,11 +5644,11 @@ typedef struct wk_clouds {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** How many steps a ray takes: twice the value, twice as many. Range [0.125, 32], default 2. */
+    /** Relative number of steps a ray takes: twice the value, twice as many steps. Range [0.125, 32], default 2. */
     double fineness;
     /**
-     * One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier
-     * frames: 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
+     * Side of a square of pixels, of which each frame computes one and takes the others from earlier frames: 1, 2 or
+     * 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
      */
     uint32_t square_side;
     /** WK_CLOUDS_* flags. Default 0. */
@@ -5626,10 +5674,11 @@ wk_status wk_context_set_cloud_model(wk_context *context,
                                      wk_cloud_model cloud_model);
 
 /**
- * Gets the share of the direct light of sun or moon, whichever is brighter, that clouds let through to a place, in
- * [0, 1]: in the shadow of a cloud, or between two. wk_ground_light.sun_lux times this over wk_celestial.direct_share
- * is the sun's light at the very place. With WK_CLOUD_MODEL_DECK it is the mean, wk_celestial.direct_share. The first
- * question makes the field that clouds are cut out of, in some tenths of a second.
+ * Gets the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to a
+ * place, in [0, 1]: low in the shadow of a cloud, high between two. wk_ground_light.sun_lux times this over
+ * wk_celestial.direct_share is the sun's light at that very place. With WK_CLOUD_MODEL_DECK it is the mean,
+ * wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some tenths
+ * of a second.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -5640,14 +5689,12 @@ wk_status wk_context_get_sun_share(const wk_context *context,
                                    double *out_share);
 
 /**
- * Sets how finely the view draws clouds; NULL returns to the default. Unchanged after an error. docs/lab/README.md has
- * cost and error of some choices.
+ * Sets the quality of the clouds in a view; NULL returns to the default. Unchanged after an error. docs/lab/README.md
+ * has the cost and error of some choices.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API
-wk_status wk_view_set_clouds(wk_view *view,
-                             const wk_clouds *clouds);
+WK_API wk_status wk_view_set_clouds(wk_view *view, const wk_clouds *clouds);
 
 /**
  * Writes the default of every field: the same bytes as `WK_CLOUDS_INIT`. `struct_size` is `sizeof(wk_clouds)`
@@ -5659,14 +5706,14 @@ WK_API wk_status wk_clouds_init(wk_clouds *out, uint32_t struct_size);
  * ====================================================================================================
  * [cloud_shadow] Shadows of clouds as a texture
  *
- * For the host's own materials: the share of the direct light of sun or moon that broken clouds let through, as one
- * native texture for all places about the camera. The published sampling function, GLSL and WGSL, looks it up.
+ * A native texture for the host's own materials: the share of the direct light of the sun or moon that broken clouds
+ * let through, for all places around the camera. The published sampling function, in GLSL and WGSL, looks it up.
  * ====================================================================================================
  */
 
 /**
- * The map of the clouds' shadows, and how it lay in the view's last frame: a plane at the station's height, fixed to
- * the air that carries the clouds, which repeats every 20 km.
+ * Map of the clouds' shadows, and its placement in the view's last frame. The map is a plane at the station's height.
+ * It moves with the air that carries the clouds, and repeats every 20 km.
  */
 typedef struct wk_cloud_shadows {
     /** sizeof(wk_cloud_shadows) of your header. */
@@ -5676,33 +5723,34 @@ typedef struct wk_cloud_shadows {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Share of the direct light of sun or moon, whichever is brighter, that clouds let through: one channel of 8 bits,
-     * an OpenGL texture name (GL_TEXTURE_2D, GL_R8) or a VkImage (VK_FORMAT_R8_UNORM). Sample it with a linear filter
-     * that repeats.
+     * Share of the direct light of the sun or the moon, whichever is brighter, that clouds let through. One channel of
+     * 8 bits: an OpenGL texture name (GL_TEXTURE_2D, GL_R8) or a VkImage (VK_FORMAT_R8_UNORM). Sample it with a linear
+     * filter and a repeating wrap mode.
      */
     uint64_t texture;
-    /** Texels of both sides. */
+    /** Width, texels; equal to the height. */
     uint32_t width;
-    /** Texels of both sides. */
+    /** Height, texels; equal to the width. */
     uint32_t height;
     /**
      * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
      * Single precision is enough once the fourth column includes the camera's position.
      */
     double uv_from_world[2][4];
-    /** Row of a matrix, used as uv_from_world: it gives the height of a place over the plane, m. */
+    /** Row of a matrix, used like uv_from_world: it gives the height of a place above the plane, m. */
     double height_from_world[4];
-    /** u and v of the place in the plane that the camera of the last frame stood over. */
+    /** u and v of the point of the plane below the camera of the last frame. */
     double camera_uv[2];
-    /** Share of the direct light on the mean over places: wk_context_get_light has that light. */
+    /** Mean share of the direct light over all places: wk_context_get_light returns that mean light. */
     double mean_share;
     /**
-     * How far shadows are told apart, 0 to 1: 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and under a light
-     * near the horizon. The texture means nothing then.
+     * Weight of the texture against mean_share, 0 to 1. It is 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and
+     * with the light near the horizon: the texture is then meaningless.
      */
     double told;
     /**
-     * Height over the plane, m, from which on shadows are not told apart: 100 m above the base of the lowest clouds.
+     * Height above the plane, m, from which on mean_share replaces the texture: 100 m above the base of the lowest
+     * clouds.
      */
     double top_m;
 } wk_cloud_shadows;
@@ -5725,15 +5773,13 @@ typedef struct wk_cloud_shadows {
 
 /**
  * Gets the native texture of the clouds' shadows. From the first call on, the first wk_view_record of each frame
- * brings it up to date, and WK_STAGE_SURFACE lays no shadows of clouds any more: your materials do. It belongs to the
- * view and stays the same until that is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
- * calls. Call this after each frame for how the map lies. If you draw before Welkin, use that of the last frame, or
- * record WK_STAGE_PREPARE first. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own device, which
- * has no shaders of the host's.
+ * updates it, and WK_STAGE_SURFACE no longer draws cloud shadows: your materials do. The texture belongs to the view
+ * and stays the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
+ * calls. Call this after each frame for the placement of the map. If you draw before Welkin, use the placement of the
+ * last frame, or record WK_STAGE_PREPARE first. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own
+ * device, where the host has no shaders.
  */
-WK_API
-wk_status wk_view_get_cloud_shadows(wk_view *view,
-                                    wk_cloud_shadows *out_shadows);
+WK_API wk_status wk_view_get_cloud_shadows(wk_view *view, wk_cloud_shadows *out_shadows);
 
 /**
  * Gets the text of the sampling function: NUL-terminated UTF-8 that lives as long as the process.
@@ -5753,11 +5799,11 @@ wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
  * ====================================================================================================
  * [lightning] Lightning
  *
- * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20
+ * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes three times a minute in each square of 20
  * km, or as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the
- * storm cells: all channels see the same ones, and any time can be shown again. Views draw channels, the glow of
- * clouds and air, and light rain and wet ground by them. The host asks for events to play thunder, and for light to
- * light its own scene:
+ * storm cells: all channels see the same flashes, and any time can be shown again. Views draw the lightning channels,
+ * the glow of clouds and air, and the light of flashes on rain and wet ground. The host queries flashes to play
+ * thunder, and their light to light its own scene:
  *
  * wk_flash flashes[16];
  * uint32_t count = 0;
@@ -5765,15 +5811,15 @@ wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
  * for (uint32_t i = 0; i < count; i++)
  *     play_thunder_at(flashes[i].time_s + flashes[i].thunder_delay_s, flashes[i].distance_m);
  *
- * A frame has the light from the view's frame before it to its own time: a flash is neither missed nor doubled,
- * however many frames a second there are.
+ * A frame has the light of flashes from the time of the view's previous frame to its own: no flash is missed or
+ * doubled, whatever the frame rate.
  * ====================================================================================================
  */
 
 /** Flags of the settings in a wk_lightning. */
 typedef uint32_t wk_lightning_flags;
 
-/** flashes_per_minute: the host's rate in place of the weather's. */
+/** flashes_per_minute: the host's rate replaces the weather's. */
 #define WK_LIGHTNING_RATE 1
 
 /** How flashes flicker in a picture. */
@@ -5783,11 +5829,11 @@ typedef uint32_t wk_flicker;
 #define WK_FLICKER_AS_IN_NATURE 0
 /**
  * At most three changes of luminance a second, for viewers whom flicker may harm: each drawn flash rises once and
- * fades, and the next one comes a second later at the earliest. Events and light that are asked for stay.
+ * fades, and the next one comes a second later at the earliest. Queries of flashes and of their light do not change.
  */
 #define WK_FLICKER_LIMITED 1
 
-/** How often it flashes, where, and how views draw it. */
+/** Rate and places of flashes, and how views draw them. */
 typedef struct wk_lightning {
     /** sizeof(wk_lightning) of your header. */
     uint32_t struct_size;
@@ -5800,22 +5846,22 @@ typedef struct wk_lightning {
     /** Default WK_FLICKER_AS_IN_NATURE. */
     wk_flicker flicker;
     /**
-     * With WK_LIGHTNING_RATE: flashes a minute of each square of 20 km, whatever the weather. Range [0, 60], default
-     * 0.
+     * With WK_LIGHTNING_RATE: flashes a minute in each square of 20 km, whatever the weather. Range [0, 60],
+     * default 0.
      */
     double flashes_per_minute;
-    /** Storm cells in `cells`, at most 16, in place of the weather's. Default 0. */
+    /** Number of storm cells in `cells`, at most 16; they replace the weather's. Default 0. */
     uint32_t cell_count;
-    /** Tall things in `masts`, at most 64. Default 0. */
+    /** Number of tall objects in `masts`, at most 64. Default 0. */
     uint32_t mast_count;
     /**
-     * Five numbers a cell: its middle in the host's world, m (the height does not matter); the distance from it within
-     * which two of three flashes start, m, in [0, 1e5]; flashes a minute in [0, 60]. Copied. Default NULL.
+     * Five numbers for each cell: its middle in the host's world, m (the height does not matter); the distance from it
+     * within which two of three flashes start, m, in [0, 1e5]; flashes a minute in [0, 60]. Copied. Default NULL.
      */
     const double *cells;
     /**
-     * Three numbers each: the tip in the host's world, m. Masts draw ground flashes; so do the tops of shelters.
-     * Copied. Default NULL.
+     * Three numbers for each mast: its tip in the host's world, m. Masts attract ground flashes; so do the tops of
+     * shelters. Copied. Default NULL.
      */
     const double *masts;
 } wk_lightning;
@@ -5834,7 +5880,7 @@ typedef struct wk_lightning {
     /* masts */ NULL \
 }
 
-/** Where a flash goes. */
+/** Place where a flash ends. */
 typedef uint32_t wk_flash_kind;
 
 /** To the ground. */
@@ -5850,18 +5896,18 @@ typedef struct wk_flash_trigger {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** When its first stroke comes, s of simulation time, not before the present. Range [-1e10, 1e10], default 0. */
+    /** Simulation time of its first stroke, s, not before the present. Range [-1e10, 1e10], default 0. */
     double time_s;
     /**
-     * Where it strikes in the host's world, m; one within the cloud passes over it. A shelter in its way ends it.
-     * Default 0, 0, 0.
+     * Place where it strikes in the host's world, m; a flash within the cloud passes over it. A shelter in its path
+     * ends it. Default 0, 0, 0.
      */
     double position_m[3];
-    /** Largest peak current of its strokes, kA. Range [0, 500], default 0: by chance. At least 1 otherwise. */
+    /** Largest peak current of its strokes, kA. Range [1, 500], or 0, the default: random. */
     double peak_ka;
     /** Default WK_FLASH_KIND_TO_GROUND. */
     wk_flash_kind kind;
-    /** Strokes. Range [0, 26], default 0: by chance. */
+    /** Number of strokes. Range [0, 26], default 0: random. */
     uint32_t strokes;
 } wk_flash_trigger;
 
@@ -5877,27 +5923,27 @@ typedef struct wk_flash_trigger {
     /* strokes */ 0 \
 }
 
-/** A flash as a place has it; plain values of a list. */
+/** A flash as seen and heard from a place; plain values of a list. */
 typedef struct wk_flash {
-    /** Number of its own among the flashes of the context. */
+    /** Number that identifies the flash within the context. */
     uint64_t id;
-    /** When its first stroke comes, s of simulation time. */
+    /** Simulation time of its first stroke, s. */
     double time_s;
-    /** Where it goes. */
+    /** Place where it ends. */
     wk_flash_kind kind;
-    /** Strokes, or steps of the light of one within the cloud. */
+    /** Number of strokes; for a flash within the cloud, number of steps of its light. */
     uint32_t strokes;
     /** Largest peak current of its strokes, kA. */
     double peak_ka;
-    /** Position of what it struck, or of the middle of its way in the cloud, in the host's world, m. */
+    /** Position of what it struck, or of the middle of its path in the cloud, in the host's world, m. */
     double position_m[3];
-    /** Distance of the nearest point of its channel, m. */
+    /** Distance to the nearest point of its channel, m. */
     double distance_m;
     /** Direction to position_m. */
     double direction[3];
     /**
-     * Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, 331.3 m/s and 0.606
-     * m/s for each degree Celsius.
+     * Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, which is 331.3 m/s
+     * plus 0.606 m/s for each degree Celsius.
      */
     double thunder_delay_s;
 } wk_flash;
@@ -5910,11 +5956,11 @@ typedef struct wk_flash_light {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Illuminance on surfaces that face the sources, all together, lux a channel. */
+    /** Illuminance on surfaces that face the sources, summed over all sources, lux a channel. */
     double facing_lux[3];
     /** Illuminance on level ground, lux. */
     double level_lux;
-    /** Direction to the middle of the light; straight up where there is none. */
+    /** Direction to the middle of the light; straight up where there is no light. */
     double direction[3];
 } wk_flash_light;
 
@@ -5929,8 +5975,8 @@ typedef struct wk_flash_light {
 }
 
 /**
- * Sets how often it flashes, where, and how views draw it; NULL returns to the default. Part of the saved state.
- * Unchanged after an error.
+ * Sets how often it flashes, where, and how views draw the flashes; NULL returns to the default. Part of the saved
+ * state. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -5944,11 +5990,12 @@ WK_API wk_status wk_context_set_lightning(wk_context *context, const wk_lightnin
 WK_API wk_status wk_context_trigger_flash(wk_context *context, const wk_flash_trigger *flash);
 
 /**
- * Gets the flashes that begin from `from_s` on until `until_s`, 3600 s at most, within `most_distance_m` of a place of
- * the host's world (on the map; at most 50000 m), in order of time: past or to come. `*out_count` gets their number
- * even if `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds).
- * `flash_size` is sizeof(wk_flash) of your header. Where the timeline has forgotten the weather of then, the first
- * that it knows counts. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ * Gets the flashes that begin from `from_s` on until `until_s`, at most 3600 s later, within `most_distance_m` of a
+ * place of the host's world (horizontal distance; at most 50000 m), in order of time, past or future. `*out_count`
+ * gets their number even if `capacity` is too small (then nothing else is written and the call fails) or 0 (then it
+ * succeeds). `flash_size` is sizeof(wk_flash) of your header. For times whose weather the timeline has dropped, the
+ * earliest weather that it still has applies. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the
+ * parameter.
  */
 WK_API
 wk_status wk_context_get_flashes(const wk_context *context,
@@ -5962,9 +6009,9 @@ wk_status wk_context_get_flashes(const wk_context *context,
                                  uint32_t *out_count);
 
 /**
- * Gets the light of flashes at a place of the host's world, on the mean of `exposure_s`, [0, 1], before `time_s`; with
- * 0 that of the very moment. A host lights its own scene by it, with the time from its last frame as exposure. Thread:
- * concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ * Gets the light of flashes at a place of the host's world, averaged over the `exposure_s`, [0, 1], before `time_s`;
+ * with 0, at that instant. Use it to light the host's own scene, with the time since its last frame as exposure.
+ * Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
 WK_API
 wk_status wk_context_get_flash_light(const wk_context *context,
@@ -5999,16 +6046,16 @@ wk_status wk_flash_light_init(wk_flash_light *out,
  * ====================================================================================================
  * [windscreen] Water on the windscreen
  *
- * A view may look through a window. Rain lands on it at the rate and speed at which the window meets it. Beads merge,
- * run down by gravity or up by the air, are wiped, and bend the picture behind them. Mist on the inside blurs the
- * picture. Snow lies on it until wipers take it or heat melts it. The stage LENS draws this over everything drawn so
- * far, inside the window only; pixels of the mask stay. In a call with TONE the glass lies before the tone curve if
- * the target is a float one, else after it.
+ * A view may look through a window. Rain lands on it at the rate and speed with which the window meets the drops.
+ * Beads merge, run down by gravity or up with the air, are wiped, and refract the picture behind them. Mist on the
+ * inside blurs the picture. Snow lies on the window until wipers remove it or heat melts it. The stage LENS draws this
+ * over everything drawn so far, inside the window only; pixels of the mask stay. In a call with TONE, the glass is
+ * drawn before the tone curve if the target is a float one, else after it.
  *
  * The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
- * WK_STAGE_PREPARE or the first stage after it. The frame rate changes nothing, and views of one seed and history
- * agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a frame comes more than half a second after the
- * one before, the water takes the declared state of that moment: a function of seed, time and rain. With
+ * WK_STAGE_PREPARE or the first stage after it. The water does not depend on the frame rate, and views of one seed and
+ * history agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a frame comes more than half a second
+ * after the one before, the water takes the default state of that moment: a function of seed, time and rain. With
  * WK_FRAME_NO_HISTORY it always has that state. Without a windscreen, or where it is dry and clear, LENS costs
  * nothing.
  * ====================================================================================================
@@ -6031,8 +6078,8 @@ typedef struct wk_wiper_arm {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Pivot, m right of and above the pane's lower left corner (that of its bounds), along the glass. Range [-4, 12]
-     * each. Default 0, 0.
+     * Position of the pivot along the glass, m right of and above the lower left corner of the pane or of its bounds.
+     * Range [-4, 12] each. Default 0, 0.
      */
     double pivot_m[2];
     /** Distance from the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6. */
@@ -6047,7 +6094,8 @@ typedef struct wk_wiper_arm {
     /** Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90. */
     double far_deg;
     /**
-     * Position of the blade in this frame: 0 parked, 1 at the far end. Between two frames it moves evenly. Default 0.
+     * Position of the blade in this frame: 0 parked, 1 at the far end. Between two frames it moves at constant speed.
+     * Default 0.
      */
     double position;
     /** Width of the rubber on the glass, m. Range [0, 0.1], default 0.006. */
@@ -6083,31 +6131,33 @@ typedef struct wk_windscreen {
     /**
      * Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower
      * left, lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex,
-     * edges in [0.05, 8] m, within 20 m. Its slope against gravity follows from the frame's view matrix. Default 1 m x
-     * 0.6 m across the view, 0.7 m away.
+     * edges in [0.05, 8] m, within 20 m. Its slope relative to gravity follows from the frame's view matrix. Default 1
+     * m x 0.6 m across the view, 0.7 m away.
      */
     double corners_m[12];
     /** Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6. */
     double distance_m;
     /**
-     * Velocity of the glass relative to the air (the vehicle's minus the wind's) in the camera's axes, m/s: decides
-     * how many drops it meets. Range [-400, 400] each, default 0, 0, 0.
+     * Velocity of the glass relative to the air (the vehicle's minus the wind's) in the camera's axes, m/s; it decides
+     * how many drops the glass meets. Range [-400, 400] each, default 0, 0, 0.
      */
     double velocity_m_s[3];
     /**
-     * Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the
+     * Speed of the air along the glass at the drops' height, upwards, m/s; it drives the beads. About 0.7 of the
      * vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
      */
     double airflow_m_s;
     /**
-     * Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as
+     * Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as a
      * shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box does
-     * not count: one that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
+     * not count: a box that holds the camera and ends within 3 m in front of the glass. Range [0, 1], default 1.
      */
     double exposed;
-    /** Mist on the inside. Range [0, 1], default 0. */
+    /** Amount of mist on the inside. Range [0, 1], default 0. */
     double fogging;
-    /** How far the blower has cleared the mist, from the lower edge upwards. Range [0, 1], default 0. */
+    /**
+     * Share of the pane that the blower has cleared of mist, from the lower edge upwards. Range [0, 1], default 0.
+     */
     double demist;
     /** The wipers; may be NULL if there are none. Read during the call only. */
     const wk_wiper_arm *arms;
@@ -6116,8 +6166,8 @@ typedef struct wk_windscreen {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Heat that the glass gets from wires in it or from a blower, W/m^2: melts snow, once it outweighs what cold air
-     * takes. A heated windscreen has some 600. Range [0, 3000], default 0.
+     * Heat that wires in the glass or a blower give to it, W/m^2. It melts snow once it exceeds the loss to cold air.
+     * A heated windscreen has about 600. Range [0, 3000], default 0.
      */
     double heat_w_m2;
 } wk_windscreen;
@@ -6150,17 +6200,17 @@ typedef struct wk_windscreen_report {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Drops that hit the pane in a second (rain from 0.1 mm of diameter). */
+    /** Number of drops that hit the pane in a second (rain drops from 0.1 mm in diameter). */
     double drops_per_s;
-    /** Water that hits it, mm/h on its area. */
+    /** Rate of the water that hits the pane, mm/h on its area. */
     double water_mm_h;
     /** Share of the pane under water, 0 to 1. */
     double covered;
-    /** Water on it, kg. */
+    /** Mass of the water on the pane, kg. */
     double water_kg;
     /** Simulation time of the state, s. */
     double state_time_s;
-    /** Water in the snow on it, kg. */
+    /** Mass of the water in the snow on the pane, kg. */
     double snow_kg;
 } wk_windscreen_report;
 
@@ -6180,7 +6230,7 @@ typedef struct wk_windscreen_report {
 /**
  * Sets the window that the view looks through; NULL removes it. If you drive, wipe or turn the camera, set it again
  * before each frame: the water stays on the glass as long as the glass keeps its size. Unchanged after an error. With
- * a window the stage LENS answers WK_ERROR_UNSUPPORTED for multisampled colour and for projections of parallel rays.
+ * a window, recording the stage LENS gives WK_ERROR_UNSUPPORTED for multisampled colour and for parallel projections.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -6188,8 +6238,8 @@ WK_API wk_status wk_view_set_windscreen(wk_view *view, const wk_windscreen *wind
 
 /**
  * Gets how much water is on the view's windscreen as of its last frame, and how much lands on it. Reads the state back
- * and waits for the GPU: call it now and then, not in every frame. All 0 without a windscreen or before its first
- * frame.
+ * and waits for the GPU: call it now and then, not in every frame. All 0 without a windscreen or before the view's
+ * first frame.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_DEVICE_LOST.
  */
@@ -6221,37 +6271,37 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  * ====================================================================================================
  * [ground] Wet ground
  *
- * The stage SURFACE reads the host's depth and draws water onto its picture. Wet ground is darker and mirrors the sky,
- * paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in the display
- * spaces Welkin takes the shown colour for the ground's own. Ground without a wk_surface_class is natural and hardly
- * mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky; of objects only shelters and occluder
- * maps appear in them, as dark shapes.
+ * The stage SURFACE reads the host's depth and draws water onto the host's picture. Wet ground is darker and mirrors
+ * the sky, paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in
+ * the display spaces Welkin takes the shown colour as the ground's own. Ground without a wk_surface_class is natural
+ * and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky. Of the host's objects,
+ * only shelters and occluder maps appear in them, as dark shapes.
  *
  * Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
- * wk_context_desc.next it is a state that fills, drains and dries over time, and wk_context_save keeps it.
+ * wk_context_desc.next it is instead a state that fills, drains and dries over time, and that wk_context_save keeps.
  * ====================================================================================================
  */
 
 /**
- * Material of the ground. An image of the target (the byte of red) counts first, then the wk_ground_grid or the tiles
- * of the wk_terrain, then the context's default.
+ * Material of the ground. The first source that names one decides: an image of the target (the byte of red), then the
+ * wk_ground_grid or the tiles of the wk_terrain, then the context's default.
  */
 typedef uint32_t wk_surface_class;
 
 /**
- * In an image or a grid: the next source decides. As the context's default: natural ground, which is vegetation where
- * the host's colour is green and soil elsewhere.
+ * No material. In an image or a grid the next source then decides. As the context's default it means natural ground:
+ * vegetation where the host's colour is green, soil elsewhere.
  */
 #define WK_SURFACE_CLASS_UNSPECIFIED 0
 /** Earth, sand, gravel: darkens and hardly mirrors. */
 #define WK_SURFACE_CLASS_SOIL 1
-/** Bare rock: darkens, and shines in parts. */
+/** Bare rock: darkens, and shines in places. */
 #define WK_SURFACE_CLASS_ROCK 2
 /** Asphalt, concrete, paving: darkens, gets a film that mirrors, and puddles. */
 #define WK_SURFACE_CLASS_PAVED 3
 /** Grass, crops, shrubs, trees: hardly changes. */
 #define WK_SURFACE_CLASS_VEGETATION 4
-/** Water that the host draws: rain leaves it as it is. */
+/** Water that the host draws: Welkin leaves it as it is. */
 #define WK_SURFACE_CLASS_WATER 5
 /** Roofs and walls: darken and shine, without puddles. */
 #define WK_SURFACE_CLASS_BUILDING 6
@@ -6264,21 +6314,25 @@ typedef struct wk_ground {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Depth of water there, mm, as tyres meet it: the film, plus standing water in a hollow. */
+    /** Depth of the water, mm, as tyres meet it: the film, plus standing water in a hollow. */
     double water_mm;
-    /** Film on level ground outside hollows, mm; on the host's terrain the film at the place. */
+    /**
+     * Depth of the film on level ground outside hollows, mm; on the host's terrain, that of the film at the place.
+     */
     double film_mm;
-    /** Wetness of all the ground, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film. */
+    /**
+     * Wetness of the ground everywhere, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
+     */
     double wetness;
-    /** Share of all the ground, or of the host's terrain, under standing water. */
+    /** Share of all ground, or of the host's terrain, that is under standing water. */
     double puddles;
     /** 1 where standing water covers the place, else 0. Off the host's terrain only paved ground has puddles. */
     uint32_t in_puddle;
-    /** 0. */
+    /** Always 0. */
     uint32_t reserved0;
-    /** Material of the ground there, by the host's terrain, else by the context's default. */
+    /** Material of the ground at the place, from the host's terrain or else from the context's default. */
     wk_surface_class surface_class;
-    /** 0. */
+    /** Always 0. */
     uint32_t reserved1;
 } wk_ground;
 
@@ -6301,32 +6355,32 @@ typedef struct wk_ground {
 typedef uint32_t wk_ground_model;
 
 /**
- * The weather of the moment: as reported, or as wet as the rain of the moment keeps it. When the rain ends, the ground
- * is dry.
+ * The weather of the moment: the ground is as wet as reported, or as the present rain keeps it. It is dry as soon as
+ * the rain ends.
  */
 #define WK_GROUND_REPORTED 0
 /**
- * A state that begins at simulation time 0 as wet as the weather has the ground then. Rain fills pores, film and
- * hollows; they drain and dry by wind, sun and humidity (Penman 1948) in steps of 10 s. A leap of more than a day is
- * simulated over its last day, which begins as wet as the weather has the ground then. See wk_context_update for leaps
- * that take more than one call.
+ * A simulated state. At simulation time 0 it starts with the wetness of the weather at that time. Rain fills pores,
+ * film and hollows; they drain and dry by wind, sun and humidity (Penman 1948) in steps of 10 s. After a leap of more
+ * than a day only the last day is simulated, which starts with the wetness of the weather at that time. See
+ * wk_context_update for leaps that take more than one call.
  */
 #define WK_GROUND_SIMULATED 1
 
 /** Source of the lying snow. */
 typedef uint32_t wk_lying_snow_model;
 
-/** The weather of the moment: as deep as it reports (wk_conditions.snow_depth_m), everywhere. */
+/** The weather of the moment: snow as deep as it reports (wk_conditions.snow_depth_m), everywhere. */
 #define WK_LYING_SNOW_REPORTED 0
 /**
- * A state that begins as deep as the weather reports. Snowfall fills it; it settles, drifts, slides, melts and
- * refreezes in steps of 60 s, on level, open ground and on each cell of the host's terrain
- * (wk_context_set_ground_grid). An update that moves time by more than a day is fast-forward
- * (wk_context_accumulate); of one of more than 30 days the last 30 count.
+ * A simulated state that starts with the reported depth. Snowfall fills it; the snow settles, drifts, slides, melts
+ * and refreezes in steps of 60 s. It is simulated on level, open ground and on each cell of the host's terrain
+ * (wk_context_set_ground_grid). An update that moves time by more than a day runs as a fast-forward
+ * (wk_context_accumulate); after one of more than 30 days only the last 30 are simulated.
  */
 #define WK_LYING_SNOW_SIMULATED 1
 
-/** Simulated state of a context. An extension: put it into wk_context_desc.next. */
+/** Settings of a context's simulated state. An extension: put it into wk_context_desc.next. */
 typedef struct wk_simulation_desc {
     /** sizeof(wk_simulation_desc) of your header. */
     uint32_t struct_size;
@@ -6334,11 +6388,11 @@ typedef struct wk_simulation_desc {
     wk_struct_type struct_type;
     /** The next extension. Default NULL. */
     const void *next;
-    /** Default WK_GROUND_REPORTED. */
+    /** Source of the ground's wetness. Default WK_GROUND_REPORTED. */
     wk_ground_model ground_model;
     /** Must be 0. */
     uint32_t reserved0;
-    /** Default WK_LYING_SNOW_REPORTED. */
+    /** Source of the lying snow. Default WK_LYING_SNOW_REPORTED. */
     wk_lying_snow_model lying_snow_model;
     /** Must be 0. */
     uint32_t reserved1;
@@ -6357,8 +6411,8 @@ typedef struct wk_simulation_desc {
 
 /**
  * Gets the water on the ground at a place of the host's world, as of wk_context_get_state_time. On the host's terrain
- * (wk_context_set_ground_grid, wk_context_set_terrain) and up to 3 m above it, the answer is that of its cells.
- * Elsewhere it is that of level, open ground with the hollows that are drawn, a pattern fixed to the world by the
+ * (wk_context_set_ground_grid, wk_context_set_terrain) and up to 3 m above it, the answer is for the terrain's cell.
+ * Elsewhere it is for level, open ground with the hollows that Welkin draws: a pattern fixed to the world by the
  * context's seed.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
@@ -6369,7 +6423,7 @@ wk_status wk_context_get_ground(const wk_context *context,
                                 wk_ground *out_ground);
 
 /**
- * Sets the class of ground for which neither the target's image nor the host's terrain has one. Default
+ * Sets the surface class of ground that has none from the target's image or the host's terrain. Default
  * WK_SURFACE_CLASS_UNSPECIFIED: natural ground. Part of the saved state.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown class.
@@ -6395,17 +6449,17 @@ WK_API wk_status wk_ground_init(wk_ground *out, uint32_t struct_size);
  * [ground_grid] Water on the host's terrain
  *
  * Give the heights of your terrain on a grid, and Welkin computes wetness and puddles cell by cell. Rain areas and
- * standing boxes (wk_context_set_shelters) decide what falls where. Water runs off and fills the terrain's hollows
- * until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the water, and
+ * standing boxes (wk_context_set_shelters) determine the rain that each cell receives. Water runs off and fills the
+ * terrain's hollows until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the water, and
  * wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a state, which
- * wk_context_save keeps together with the heights; else it is the weather's wetness, spread over the hollows.
+ * wk_context_save keeps together with the heights. Otherwise it is the weather's wetness, spread over the hollows.
  * ====================================================================================================
  */
 
 /**
  * Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square
- * cell around it; water is linear between nodes. Outside lies the world's ground; the picture blends into it over two
- * cells.
+ * cell around it; water is linear between nodes. Outside the grid lies the world's ground, into which the picture
+ * blends over two cells.
  */
 typedef struct wk_ground_grid {
     /** sizeof(wk_ground_grid) of your header. */
@@ -6415,8 +6469,8 @@ typedef struct wk_ground_grid {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * The node farthest to the south-west, in the host's world, m, within 1e12 m of the origin; heights count from its
-     * own. Default 0, 0, 0.
+     * Position of the south-western node in the host's world, m, within 1e12 m of the origin; the heights count from
+     * its height. Default 0, 0, 0.
      */
     double origin_m[3];
     /** Distance between nodes, m. Range [0.01, 10 000], default 1. Puddles need several cells. */
@@ -6428,7 +6482,7 @@ typedef struct wk_ground_grid {
      * call.
      */
     const float *heights_m;
-    /** Numbers in heights_m: the product of `nodes`. */
+    /** Number of values in heights_m: the product of `nodes`. */
     uint32_t height_count;
     /** Must be 0. */
     uint32_t reserved0;
@@ -6437,7 +6491,7 @@ typedef struct wk_ground_grid {
      * by the call. Default NULL: 0 for all cells.
      */
     const uint8_t *surface_classes;
-    /** Numbers in surface_classes: 0 (the default), or height_count. */
+    /** Number of values in surface_classes: 0 (the default), or height_count. */
     uint32_t surface_class_count;
     /** Must be 0. */
     uint32_t reserved1;
@@ -6460,31 +6514,34 @@ typedef struct wk_ground_grid {
 }
 
 /**
- * Water of a cell of the host's terrain; plain values of a list. Packed, the list can be uploaded as a texture of four
- * floats.
+ * Water of a cell of the host's terrain; plain values of a list. A packed list can be uploaded as a texture of four
+ * floats per texel.
  */
 typedef struct wk_ground_cell {
     /** Film: water between and on the grains, mm; 0 under standing water. */
     float film_mm;
-    /** Water in the pores, as a share of what they can hold. */
+    /** Water in the pores, as a share of their capacity, 0 to 1. */
     float soaked;
     /** Standing water, mm. */
     float standing_mm;
-    /** Share under ice, by the weather of the moment; freezing rain leaves none where standing boxes keep it off. */
+    /**
+     * Share of the cell under ice, by the weather of the moment; freezing rain leaves no ice where standing boxes keep
+     * it off.
+     */
     float ice;
 } wk_ground_cell;
 
 /**
  * Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. Setting the
- * same grid again keeps its water, even with other classes; another grid begins as wet as level ground is. May take
- * some tenths of a second for the largest grids. Unchanged after an error.
+ * same grid again keeps its water, even with other classes; a different grid starts as wet as level ground is. May
+ * take some tenths of a second for the largest grids. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API wk_status wk_context_set_ground_grid(wk_context *context, const wk_ground_grid *ground_grid);
 
 /**
- * Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights; `cell_size` is
+ * Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights. `cell_size` is
  * sizeof(wk_ground_cell) of your header. `out_revision` gets a number that changes whenever the cells change, at most
  * once every 10 s of simulation time. With capacity 0 the call returns only this number, so you can skip uploads when
  * nothing has changed. Thread: concurrent. Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT
@@ -6509,14 +6566,15 @@ wk_status wk_ground_grid_init(wk_ground_grid *out,
  * ====================================================================================================
  * [ground_texture] Water on the host's terrain as a texture
  *
- * For the host's own materials: the water of the terrain's cells as one native texture, of a grid
- * (wk_context_set_ground_grid) uploaded once for the host and for the stage SURFACE, of tiles (wk_context_set_terrain)
- * those about a place. One texel for each cell, the first one south-west, rows to the north, in every graphics
- * interface. Published functions, GLSL and WGSL, compute how it looks.
+ * A native texture for the host's own materials, with the water of the terrain's cells. A grid
+ * (wk_context_set_ground_grid) is uploaded once for both the host and the stage SURFACE; of tiles
+ * (wk_context_set_terrain) the texture has those around a place. Each cell is one texel; the first one is the
+ * south-western cell, and rows go north, in every graphics interface. Published functions, in GLSL and WGSL, compute
+ * how the wet surface looks.
  * ====================================================================================================
  */
 
-/** The water of the terrain's cells on the GPU, of a grid or about a place on tiles. */
+/** Texture of the water of the terrain's cells: of a whole grid, or of the tiles around a place. */
 typedef struct wk_ground_texture {
     /** sizeof(wk_ground_texture) of your header. */
     uint32_t struct_size;
@@ -6525,21 +6583,23 @@ typedef struct wk_ground_texture {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * RGBA half floats, an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT): film_mm,
-     * soaked, standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing water up to 65 504 mm.
-     * Where none stands, standing_mm is negative: the depth of its hollow's level below the ground, mm, or -50 where
-     * the hollow is dry. So a shore between texels lies where it crosses 0.
+     * RGBA half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT). The
+     * channels are film_mm, soaked, standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing
+     * water up to 65 504 mm. Where no water stands, standing_mm is negative: it is the depth of the hollow's water
+     * level below the ground, mm, or -50 where the hollow is dry. A shore between texels therefore lies where
+     * standing_mm crosses 0.
      */
     uint64_t texture;
     /**
-     * Changes whenever `texture` becomes another object, whatever its name: after another grid was set or loaded.
+     * Number that changes whenever `texture` becomes another object, even one of the same name: after another grid was
+     * set or loaded.
      */
     uint64_t generation;
     /** Revision of the texture's contents, as in wk_context_get_ground_cells. */
     uint64_t revision;
-    /** Texels: the grid's nodes east and north. */
+    /** Width, texels: the grid's number of nodes east. */
     uint32_t width;
-    /** Texels: the grid's nodes east and north. */
+    /** Height, texels: the grid's number of nodes north. */
     uint32_t height;
     /**
      * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
@@ -6548,8 +6608,9 @@ typedef struct wk_ground_texture {
      */
     double uv_from_world[2][4];
     /**
-     * The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of
-     * wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.
+     * Texture of the snow on the same grid, an object like `texture`; its channels are depth_m, density_kg_m3, wetness
+     * and albedo of wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation
+     * time.
      */
     uint64_t snow_texture;
 } wk_ground_texture;
@@ -6570,25 +6631,25 @@ typedef struct wk_ground_texture {
 
 /**
  * Gets the native texture of the terrain's water, up to date: call it after each wk_context_update. It costs nothing
- * if nothing has changed. Changes come at most once every 10 s of simulation time; this call, or a wk_view_record with
+ * if nothing has changed. Changes come at most once every 10 s of simulation time. This call, or a wk_view_record with
  * SURFACE, uploads them in order with the host's work on the device's queue or context. The texture belongs to the
- * context and stays the same until another grid, or none, is set or loaded: wait for the GPU's work that samples it
- * before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It
- * has no mipmaps; choose filter and wrap yourself. Thread: exclusive. Errors: WK_ERROR_WRONG_ORDER without a terrain;
- * WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ * context and stays the same until another grid, or none, is set or loaded; before that, wait for GPU work that
+ * samples the texture. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy
+ * from it. It has no mipmaps; choose filter and wrap yourself. Thread: exclusive. Errors: WK_ERROR_WRONG_ORDER without
+ * a terrain; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
 WK_API
 wk_status wk_context_get_ground_texture(wk_context *context,
                                         wk_ground_texture *out_texture);
 
 /**
- * Gets the native textures of the tiles about a place, up to date, as wk_context_get_ground_texture does those of a
- * grid: a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at a time.
- * `uv_from_world` is where it is now; where no tile has ground there is neither water nor snow. Call it after each
- * wk_context_update, and for several cameras before you draw each. It costs nothing if nothing has changed; all of it
- * is uploaded where the window has moved. Both textures stay the same as long as the context lives. Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT for a place that is none; WK_ERROR_WRONG_ORDER where no tile reaches into the
- * window; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ * Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
+ * The textures cover a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at
+ * a time. `uv_from_world` is its present placement; where no tile has ground there is neither water nor snow. Call it
+ * after each wk_context_update; with several cameras, call it before you draw each one. It costs nothing if nothing
+ * has changed; after a move the whole window is uploaded. Both textures stay the same as long as the context lives.
+ * Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile
+ * reaches into the window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
 WK_API
 wk_status wk_context_get_terrain_texture(wk_context *context,
@@ -6596,11 +6657,13 @@ wk_status wk_context_get_terrain_texture(wk_context *context,
                                          wk_ground_texture *out_texture);
 
 /**
- * Gets the text of the functions that compute how a place of the texture looks: how dark, how much of it mirrors, how
- * rough. NUL-terminated UTF-8 that lives as long as the process.
+ * Gets the text of the functions that compute how a texel's surface looks: how dark it is, how much of it mirrors, and
+ * how rough it is. NUL-terminated UTF-8 that lives as long as the process.
  * Thread: any.
  */
-WK_API wk_status wk_get_ground_snippet(wk_shading_language language, const char **out_text);
+WK_API
+wk_status wk_get_ground_snippet(wk_shading_language language,
+                                const char **out_text);
 
 /**
  * Writes the default of every field: the same bytes as `WK_GROUND_TEXTURE_INIT`. `struct_size` is `sizeof(wk_ground_texture)`
@@ -6614,15 +6677,16 @@ wk_status wk_ground_texture_init(wk_ground_texture *out,
  * ====================================================================================================
  * [snowpack] Lying snow
  *
- * The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it (wk_surface.snow_depth_m):
- * patches first, then whole, on what faces up. With WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a
- * state: it falls, settles, drifts, slides, melts into the ground's water and refreezes, on level, open ground and on
- * each cell of the host's terrain (wk_context_set_ground_grid, wk_context_set_terrain), and wk_context_save keeps it.
- * Standing boxes (wk_context_set_shelters) keep it off and cast drifts.
+ * The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it
+ * (wk_weather.surface_snow_depth_m), on surfaces that face up: first in patches, then everywhere. With
+ * WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a simulated state: it falls, settles, drifts, slides,
+ * melts into the ground's water and refreezes. The state covers level, open ground and each cell of the host's terrain
+ * (wk_context_set_ground_grid, wk_context_set_terrain), and wk_context_save keeps it. Standing boxes
+ * (wk_context_set_shelters) keep snow off the ground and cause drifts.
  * ====================================================================================================
  */
 
-/** How a wheel holds on the ground, as far as snow decides it. */
+/** Class of the grip that snow leaves to a wheel. */
 typedef uint32_t wk_snow_friction;
 
 /** No snow, or too little to matter. */
@@ -6640,22 +6704,22 @@ typedef uint32_t wk_snow_friction;
 typedef struct wk_lying_snow {
     /** Depth, m. */
     double depth_m;
-    /** Ice and water, kg/m^2: millimetres of water. */
+    /** Mass of ice and liquid water, kg/m^2 (millimetres of water). */
     double mass_kg_m2;
-    /** kg/m^3; 0 without snow. */
+    /** Density, kg/m^3; 0 without snow. */
     double density_kg_m3;
-    /** Held water over what the snow can hold, 0 to 1. */
+    /** Liquid water in the snow over the most that it can hold, 0 to 1. */
     double wetness;
-    /** Albedo of visible light; 0 without snow. */
+    /** Albedo for visible light; 0 without snow. */
     double albedo;
-    /** Share of the ground that it covers. */
+    /** Share of the ground that snow covers, 0 to 1. */
     double cover;
     /**
-     * The place above or below the one asked for on the snow's surface, in the host's world: the terrain's height
-     * raised by the snow. Off the host's terrain the place itself.
+     * Point of the snow's surface above or below the queried position, in the host's world: at the terrain's height
+     * plus the snow's depth. Off the host's terrain, the queried position itself.
      */
     double surface_m[3];
-    /** How a wheel holds. */
+    /** Grip of a wheel. */
     wk_snow_friction friction;
     /** 0. */
     uint32_t reserved0;
@@ -6670,15 +6734,15 @@ typedef struct wk_snow_strip {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * The path's points in the host's world, m, within 1e12 m of the origin; their heights do not matter. The path's
-     * ends are cut straight, its bends are round. Read during the call.
+     * Points of the path in the host's world, m, within 1e12 m of the origin; their heights do not matter. The path
+     * has square ends and round bends. Read during the call.
      */
     const double (*points_m)[3];
     /** Number of points. Range 2 to 1024. */
     uint32_t point_count;
     /** Must be 0. */
     uint32_t reserved0;
-    /** From side to side, m. Range [0.01, 1000], default 1. */
+    /** Width of the strip, m. Range [0.01, 1000], default 1. */
     double width_m;
 } wk_snow_strip;
 
@@ -6695,9 +6759,9 @@ typedef struct wk_snow_strip {
 
 /**
  * Gets the snow at places of the host's world, at most wk_caps.max_batch of them, as of wk_context_get_state_time. On
- * the host's terrain and up to 3 m above it, the answer is that between its cells, elsewhere that of level, open
- * ground. `position_size` and `snow_size` are the bytes from one element to the next: 24 or more, and
- * sizeof(wk_lying_snow) of your header.
+ * the host's terrain and up to 3 m above it, the answer is interpolated between the terrain's cells; elsewhere it is
+ * that of level, open ground. `position_size` and `snow_size` are the bytes from one element to the next: 24 or more,
+ * and sizeof(wk_lying_snow) of your header.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
  */
@@ -6710,8 +6774,8 @@ wk_status wk_context_get_lying_snow(const wk_context *context,
                                     uint32_t snow_size);
 
 /**
- * Takes the snow of a strip of the host's terrain away, but for the lowest `left_m` (range [0, 100]): a plough, a
- * shovel. `out_mass_kg` gets what was taken and may be NULL.
+ * Removes the snow of a strip of the host's terrain except the lowest `left_m` (range [0, 100]), as a plough or a
+ * shovel does. `out_mass_kg` gets the removed mass and may be NULL.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without a terrain or without
  * WK_LYING_SNOW_SIMULATED, and while steps of an update remain.
@@ -6723,21 +6787,23 @@ wk_status wk_context_take_snow(wk_context *context,
                                double *out_mass_kg);
 
 /**
- * Presses the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense: a wheel's track.
+ * Compacts the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense: a wheel's track.
  * Thread: exclusive.
  * Errors: as wk_context_take_snow.
  */
 WK_API wk_status wk_context_press_snow(wk_context *context, const wk_snow_strip *strip);
 
 /**
- * Moves time on by `hours`, in (0, 720], and lays the snow of that time by steps of ten minutes, so that a lesson may
- * begin after a night's snowfall. The laws are those of ordinary steps; the state differs from theirs by up to some
- * percent and remembers that it was laid so (wk_context_state_hash). All else is led as by wk_context_update, to the
- * end: with the largest terrain this may take some seconds.
+ * Advances time by `hours`, in (0, 720], and simulates the snow of that time in steps of ten minutes, so that a lesson
+ * can begin after a night's snowfall. The laws are those of ordinary steps. The resulting state differs from theirs by
+ * up to some percent, and records that it was made in this way (wk_context_state_hash). Everything else is advanced as
+ * by wk_context_update, to the end: with the largest terrain this may take some seconds.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the range; WK_ERROR_WRONG_ORDER while steps of an update remain.
  */
-WK_API wk_status wk_context_accumulate(wk_context *context, double hours);
+WK_API
+wk_status wk_context_accumulate(wk_context *context,
+                                double hours);
 
 /**
  * Writes the default of every field: the same bytes as `WK_SNOW_STRIP_INIT`. `struct_size` is `sizeof(wk_snow_strip)`
@@ -6750,18 +6816,19 @@ WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
  * [terrain] Terrain in tiles
  *
  * The host's terrain as a lattice of equal cells, level and aligned to true north at its origin, cut into square tiles
- * with keys. Each cell has a height and a class of surface, or is a hole. Tiles are added, removed, and changed by
- * rectangles, in time that grows with the rectangle: a bucket may dig in every frame. Water, the wind field and
- * queries read the tiles. With WK_GROUND_SIMULATED each cell has water of its own, and hollows join across the borders
- * of tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has tiles or one wk_ground_grid.
+ * with keys. Each cell has a height and a class of surface, or is a hole. Tiles can be added and removed, and
+ * rectangles of their cells changed. The time of a change grows with the rectangle, so a bucket may dig in every
+ * frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell has its own water, and
+ * hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has
+ * either tiles or one wk_ground_grid.
  *
- * Heights belong to the host: wk_context_save keeps the water of the tiles, and wk_context_load wants the same tiles
- * set before. wk_context_set_terrain and the functions of tiles may be called between updates at any time; while steps
- * remain (WK_PENDING) they act after these.
+ * Heights belong to the host: wk_context_save saves only the water of the tiles, and wk_context_load requires that the
+ * same tiles have been set before. wk_context_set_terrain and the functions of tiles may be called between updates at
+ * any time; while steps remain (WK_PENDING) they take effect after these.
  * ====================================================================================================
  */
 
-/** In surface_classes of wk_terrain_cells: a cell without ground. Water beside it runs off. */
+/** Value in surface_classes of wk_terrain_cells for a cell without ground. Water beside it runs off. */
 #define WK_TERRAIN_HOLE 255
 
 /** The lattice of a terrain in tiles. */
@@ -6773,15 +6840,15 @@ typedef struct wk_terrain {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * The south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin; heights count from
-     * its own. Default 0, 0, 0.
+     * Position of the south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin. Heights
+     * of cells count from its height. Default 0, 0, 0.
      */
     double origin_m[3];
     /** Distance between cells, m. Range [0.01, 10 000], default 1. Puddles need several cells. */
     double cell_m;
     /**
-     * Cells along each side of a tile: a power of two from 32 to 1024. Default 256. The tiles of a terrain may have
-     * 16 777 216 cells together.
+     * Number of cells along each side of a tile: a power of two from 32 to 1024. Default 256. The tiles of a terrain
+     * may have 16 777 216 cells together.
      */
     uint32_t tile_cells;
     /** Must be 0. */
@@ -6811,44 +6878,45 @@ typedef struct wk_terrain_cells {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Key of the tile: how many tiles it lies east and north of the origin, each within 1 000 000; negative to the
-     * west and south. Default 0, 0.
+     * Key of the tile: its position east and north of the origin in tiles, each within 1 000 000; negative to the west
+     * and south. Default 0, 0.
      */
     int32_t tile[2];
-    /** The rectangle's south-western cell in the tile, east and north. Default 0, 0. */
+    /** Position of the rectangle's south-western cell in the tile, cells east and north. Default 0, 0. */
     uint32_t first_cell[2];
-    /** Cells of the rectangle east and north. Default 0, 0: all of the tile. */
+    /** Size of the rectangle, cells east and north. Default 0, 0: the whole tile. */
     uint32_t cells[2];
     /**
-     * Heights above the terrain's origin, m, within 1e5. Copied by the call. NULL with a count of 0 leaves them as
-     * they are; a new tile needs them. That of a hole may be anything, also NaN: what is no height is not read.
+     * Heights above the terrain's origin, m, within 1e5. Copied by the call. NULL with a count of 0 leaves the heights
+     * unchanged; a new tile needs them. The height of a hole is not read and may be anything, also NaN.
      */
     const float *heights_m;
-    /** Numbers in heights_m, at least as many as the rectangle reaches over. */
+    /** Length of heights_m: at least the rectangle's extent with its stride. */
     uint32_t height_count;
     /**
-     * Numbers from the beginning of a row in heights_m to that of the next. Default 0: rows follow without a gap.
+     * Distance between the beginnings of neighbouring rows in heights_m, numbers. Default 0: rows follow without a
+     * gap.
      */
     uint32_t height_stride;
     /**
      * Class of each cell: a wk_surface_class, 0 to use the context's default, or WK_TERRAIN_HOLE. Copied by the call.
-     * NULL with a count of 0 leaves them as they are; in a new tile 0.
+     * NULL with a count of 0 leaves the classes unchanged; in a new tile they are then 0.
      */
     const uint8_t *surface_classes;
-    /** Numbers in surface_classes, at least as many as the rectangle reaches over. */
+    /** Length of surface_classes: at least the rectangle's extent with its stride. */
     uint32_t surface_class_count;
     /**
-     * Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a
-     * gap.
+     * Distance between the beginnings of neighbouring rows in surface_classes, numbers. Default 0: rows follow without
+     * a gap.
      */
     uint32_t surface_class_stride;
-    /** 1 where no_data_m counts, else 0, the default: every number in heights_m is a height. */
+    /** 1 if no_data_m is used; 0, the default, if every number in heights_m is a height. */
     uint32_t has_no_data;
     /**
-     * Stands in heights_m for cells of which there are no data, and NaN then does too: -9999, -32768, or what your
-     * source has. These cells become holes, whatever surface_classes says of them but a class of ground; a hole
-     * becomes ground again by its class. Must be no height in use: of no cell to which surface_classes gives a class
-     * other than 0, and of no cell with ground beside the rectangle in its tile. Default 0.
+     * Number in heights_m for cells without data, such as -9999, -32768, or your source's own; NaN then also means no
+     * data. These cells become holes. A hole becomes ground again when surface_classes gives it a class. The number
+     * must not be a height in use: neither that of a cell to which surface_classes gives a class other than 0, nor
+     * that of a cell with ground in the same tile outside the rectangle. Default 0.
      */
     float no_data_m;
 } wk_terrain_cells;
@@ -6871,31 +6939,33 @@ typedef struct wk_terrain_cells {
     /* no_data_m */ 0.0f \
 }
 
-/** The terrain under a place; plain values of a list. */
+/** Terrain at a queried place; plain values of a list. */
 typedef struct wk_terrain_point {
-    /** Height of the ground above the terrain's origin, m, linear between cells; 0 where there is none. */
+    /**
+     * Height of the ground above the terrain's origin, m, interpolated linearly between cells; 0 where there is none.
+     */
     double height_m;
-    /** Revision of the nearest cell's tile: the terrain's when it changed last. 0 where there is no ground. */
+    /** Revision of the terrain at the last change of the nearest cell's tile. 0 where there is no ground. */
     uint64_t revision;
-    /** Key of that tile. */
+    /** Key of the nearest cell's tile. */
     int32_t tile[2];
-    /** Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED where none is given. */
+    /** Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED if it has none. */
     wk_surface_class surface_class;
     /** 1 on the ground of a tile, else 0. */
     uint32_t has_ground;
 } wk_terrain_point;
 
 /**
- * Sets the lattice of a terrain in tiles, still without any, in place of the tiles or the wk_ground_grid before; NULL
- * leaves no tiles. The lattice that is set already stays with its tiles. Unchanged after an error.
+ * Sets the lattice of a terrain in tiles, at first without tiles. It replaces all tiles or the wk_ground_grid set
+ * before; NULL leaves no tiles. Setting the present lattice again keeps its tiles. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API wk_status wk_context_set_terrain(wk_context *context, const wk_terrain *terrain);
 
 /**
- * Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is; one
- * that is there keeps its water. Takes some tens of milliseconds for 256 x 256 cells. Unchanged after an error.
+ * Adds a tile, or replaces the values of all cells of an existing tile. A new tile begins as wet as level ground; an
+ * existing one keeps its water. Takes some tens of milliseconds for 256 x 256 cells. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT naming the field, or for more
  * cells than a terrain may have.
@@ -6903,15 +6973,17 @@ WK_API wk_status wk_context_set_terrain(wk_context *context, const wk_terrain *t
 WK_API wk_status wk_context_set_terrain_tile(wk_context *context, const wk_terrain_cells *terrain_cells);
 
 /**
- * Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the
- * ground lets it: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water
+ * Changes the heights, the classes, or both, of a rectangle of a tile's cells. Water that stands there flows as the
+ * new ground allows: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water
  * that it touches, not with the tile or the terrain. Unchanged after an error. Thread: exclusive. Errors: as
  * wk_context_set_terrain_tile, and for the key of no tile.
  */
-WK_API wk_status wk_context_update_terrain(wk_context *context, const wk_terrain_cells *terrain_cells);
+WK_API
+wk_status wk_context_update_terrain(wk_context *context,
+                                    const wk_terrain_cells *terrain_cells);
 
 /**
- * Takes a tile away with the water on it. Where it was, water of the other tiles runs off.
+ * Removes a tile and the water on it. Where it was, water of the other tiles runs off.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for the key of no tile.
  */

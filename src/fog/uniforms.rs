@@ -30,6 +30,7 @@ impl FogModel {
     }
 
     /// Returns the block that shaders read (`FogUniform` of `fog/uniform.wgsl`).
+    #[doc(hidden)]
     pub fn uniform(&self) -> FogUniform {
         let v = |d: DVec3| d.as_vec3().to_array();
         let lobes = &self.lobes;

@@ -101,6 +101,7 @@ impl Cells {
     }
 
     /// Creates the declared state of a step.
+    #[doc(hidden)]
     pub fn declared(step: &StepUniform) -> Self {
         let size = [step.key[2], step.key[3]];
         let cells = (0..size[0] * size[1]).map(|i| declare(step, [(i % size[0]) as i32, (i / size[0]) as i32]));
@@ -145,11 +146,13 @@ impl Cells {
     }
 
     /// Returns the state a step later, without snow.
+    #[doc(hidden)]
     pub fn stepped(&self, step: &StepUniform) -> Self {
         self.stepped_under(step, None)
     }
 
     /// Returns the state a step later, with the snow that lay on the glass before the step.
+    #[doc(hidden)]
     pub fn stepped_under(&self, step: &StepUniform, snow: Option<&Snow>) -> Self {
         let moves = self.each(|cell| self.decide(step, cell));
         self.each(|cell| self.gather(step, (&moves, snow), cell))
@@ -281,6 +284,7 @@ impl Snow {
     }
 
     /// Creates the declared state of a step.
+    #[doc(hidden)]
     pub fn declared(step: &StepUniform) -> Self {
         let [_, flake, melt, most] = step.snow;
         Self::of(step, |cell| {
@@ -294,6 +298,7 @@ impl Snow {
     }
 
     /// Returns the state a step later.
+    #[doc(hidden)]
     pub fn settled(&self, step: &StepUniform) -> Self {
         Self::of(step, |cell| {
             if swept(step, cell.map(|v| v * 16 + 8)) {

@@ -34,6 +34,7 @@ const DIRECTION_UNIT: f64 = 4096.0;
 /// `Step` of `shaders/glass/cells.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[doc(hidden)]
 pub struct StepUniform {
     /// Hash of (seed, step), hash of the seed, columns, rows.
     pub key: [u32; 4],
@@ -165,7 +166,9 @@ impl Tables {
         DVec2::new(largest[1].into(), largest[2].into())
     }
 
-    /// Returns the uniforms of `step`. `arms` has the wipers and the angles of their blades before and now, rad.
+    /// Returns the uniforms of `step`. `arms` has the wipers and the lower and higher angle of their blades in the
+    /// step, rad.
+    #[doc(hidden)]
     pub fn at(
         &mut self,
         (acting, reach): (&StepConditions, &Reach),

@@ -330,6 +330,7 @@ impl ViewRays {
     }
 
     /// Returns the rays in the form that shaders read (`DepthUniform` of `common/depth.wgsl`).
+    #[doc(hidden)]
     pub fn uniform(&self) -> DepthUniform {
         let [o, ox, oy] = self.origin.map(|v| v.as_vec3().to_array());
         let [d, dx, dy] = self.direction.map(|v| v.as_vec3().to_array());
@@ -360,6 +361,7 @@ fn contradiction(field: &str, what: &str) -> Error {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
+#[doc(hidden)]
 pub struct DepthUniform {
     pub origin: [f32; 3],
     pub turn_offset: f32,

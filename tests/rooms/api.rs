@@ -167,7 +167,7 @@ impl ApiReader<'_> {
 
     /// Takes an item that `from` defines and `module` shows.
     fn take_item(&mut self, module: &ModulePath, from: &ModulePath, item: &syn::Item, alias: Option<String>) {
-        let Some(name) = item_name(item) else { return };
+        let Some(name) = item_name(item).filter(|_| !is_hidden(attributes_of(item))) else { return };
         let place = [module.as_slice(), &[alias.unwrap_or_else(|| name.clone())]].concat().join("::");
         let mut add = |line: String| _ = self.lines.insert(line);
         match item {

@@ -54,7 +54,7 @@ pub(super) const STORAGE: [&str; 2] = ["GL_ARB_buffer_storage", "GL_EXT_buffer_s
 
 const FLOATS: &str = "GL_ARB_color_buffer_float";
 
-/// What the two functions return on this thread.
+/// Answers of the two functions on this thread.
 struct Face {
     real: GetString,
     version: Option<CString>,
