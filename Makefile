@@ -128,7 +128,7 @@ drivers: setup ## twelve scenes on other drivers beside this system's, with vali
 	$(MAKE) --no-print-directory stage PROFILE=dev
 	scripts/drivers.sh "$(abspath $(TARGET_DIR))/stage/dev" "$(abspath $(TARGET_DIR))/drivers"
 
-drivers-all: setup ## every scene, gallery and lab picture on every driver: hours, outside `make accept`
+drivers-all: setup ## every scene, gallery and lab picture on every driver: a good hour, outside `make accept`
 	$(MAKE) --no-print-directory host PROFILE=release
 	cargo build --locked --release --package welkin-lab
 	scripts/drivers-all.sh "$(abspath $(TARGET_DIR))/stage/release" "$(abspath $(TARGET_DIR))/drivers"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws every scene with every software driver: those of tests/drivers, the gallery and the lab's. Hours; not a test of
+# Draws every scene with every software driver: those of tests/drivers, the gallery and the lab's. A good hour; no test of
 # its own, but what docs/drivers.md is written from. Differences are printed, a scene that is not drawn fails.
 #
 #   scripts/drivers-all.sh STAGE DIR    STAGE holds the built library and glfw_host, DIR keeps drivers and pictures

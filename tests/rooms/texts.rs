@@ -18,6 +18,37 @@ fn hops() -> Vec<(String, String)> {
     text.lines().filter(is_numbered).filter(|l| l.contains("` `")).flat_map(pairs).collect()
 }
 
+/// Rooms that each way through the code passes, hop by hop, from the lines of ARCHITECTURE.md.
+fn ways(text: &str) -> Vec<Vec<String>> {
+    let mut ways = Vec::new();
+    for line in text.lines() {
+        if line.starts_with("1. `") {
+            ways.push(Vec::new());
+        }
+        let is_hop = line.split_once(". `").is_some_and(|(n, _)| n.parse::<u32>().is_ok()) && line.contains("` `");
+        if let (true, Some(way)) = (is_hop, ways.last_mut()) {
+            let path: Vec<&str> = line.split('`').nth(1).unwrap_or_default().split('/').collect();
+            way.push(path[..path.len().min(2)].join("/"));
+        }
+    }
+    ways.into_iter().filter(|way| !way.is_empty()).collect()
+}
+
+#[test]
+fn the_ways_through_the_code_are_short_and_return_to_no_room() {
+    let found = ways(&read(&root().join("ARCHITECTURE.md")));
+    assert_eq!(found.len(), 5, "{found:?}");
+    for way in found {
+        assert!((3..=8).contains(&way.len()), "{way:?}");
+        let mut passed = way.clone();
+        passed.dedup();
+        let rooms: BTreeSet<_> = passed.iter().collect();
+        assert_eq!(rooms.len(), passed.len(), "{way:?} returns to a room that it left");
+    }
+    let back = "1. `src/a/x.rs` `f` does;\n2. `src/b.rs` `g` does;\n3. `src/a/y.rs` `h` does.\n";
+    assert_eq!(ways(back), [["src/a", "src/b.rs", "src/a"]]);
+}
+
 #[test]
 fn the_ways_through_the_code_lead_past_functions_that_stand_there() {
     let hops = hops();
