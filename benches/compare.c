@@ -1,5 +1,6 @@
-/* Frames of one build of the library, as many as it is asked for: scripts/compare-speed runs two of these by turns, each with its own header
- * and library. A line on stdin draws some frames of a turning camera; the answer is their processor time, ms a frame. */
+/* Draws as many frames as it is asked for with one build of the library. scripts/compare-speed runs two of these
+ * programs in turn, each with its own header and library. Each line on stdin asks for some frames of a turning camera;
+ * the answer is their processor time in ms per frame. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <math.h>
@@ -17,7 +18,7 @@ static void check(wk_status status)
     }
 }
 
-/* Of the whole process: a software driver draws on threads of its own. */
+/* Processor time of the whole process, because a software driver draws on threads of its own. */
 static double processor_ms(void)
 {
     struct timespec t;
@@ -25,7 +26,8 @@ static double processor_ms(void)
     return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
 
-/* 2 m above the ground, a little upward, turned to the right by so many degrees; 55 degrees high, infinite reversed depth. */
+/* Places the camera 2 m above the ground, tilted slightly up and turned right by `degrees`. Vertical field of view 55
+ * degrees, infinite reversed depth. */
 static void look(wk_frame *frame, double degrees, double aspect)
 {
     const double turn = degrees * 0.017453292519943295, rise = 0.1;
@@ -84,7 +86,7 @@ int main(int argc, char **argv)
             look(&frame, 0.25 * (double)frame.frame_id, (double)texture.width / texture.height);
             check(wk_view_record(view, &frame, WK_STAGE_ALL));
         }
-        /* Waits for them. */
+        /* Waits until the frames are finished. */
         check(wk_texture_read(color, pixels, bytes, texture.width * 4));
         printf("%.3f\n", (processor_ms() - begun) / FRAMES);
         fflush(stdout);

@@ -1,6 +1,6 @@
-/* The command line of the examples in C and C++, and the files that they write: --help and --version are answered on
- * standard output, wrong arguments are named on standard error with status 2, and a file has its name only when it is
- * complete, also where Ctrl-C ends the program. */
+/* The command line of the C and C++ examples, and safe writing of their files. --help and --version print to standard
+ * output. A wrong argument is named on standard error, with exit status 2. A file gets its final name only when it is
+ * complete, even if Ctrl-C ends the program. */
 #ifndef COMMAND_LINE_H
 #define COMMAND_LINE_H
 
@@ -12,7 +12,7 @@
 
 #include "welkin.h"
 
-/* Answers --help and --version wherever they stand; the program then ends with status 0. */
+/* Handles --help and --version at any position; the program then ends with status 0. */
 static inline bool command_line_answered(int argc, char **argv, const char *name, const char *usage)
 {
     for (int i = 1; i < argc; i++) {
@@ -30,20 +30,20 @@ static inline bool command_line_answered(int argc, char **argv, const char *name
     return false;
 }
 
-/* Names what is wrong with an argument, and answers the program's status. */
+/* Prints what is wrong with an argument and returns the program's exit status. */
 static inline int command_line_refused(const char *name, const char *argument, const char *why)
 {
     fprintf(stderr, "%s: %s%s; %s --help lists the options\n", name, why, argument, name);
     return 2;
 }
 
-/* For an argument that no option takes. */
+/* Reports an argument that no option takes. */
 static inline int command_line_unknown(const char *name, const char *argument)
 {
     return command_line_refused(name, argument, argument[0] == '-' ? "unknown option " : "unexpected argument ");
 }
 
-/* A whole number between two others; false, with a line on stderr, for anything else. */
+/* Parses a whole number within a range. For anything else, returns false and prints a line on stderr. */
 static inline bool command_line_number(const char *name, const char *option, const char *text, int least, int most, int *value)
 {
     char *end = NULL;
@@ -65,7 +65,7 @@ static inline void part_interrupted(int which)
     raise(which);
 }
 
-/* The name to write a file under until it is complete: picture.part.png for picture.png. One file at a time. */
+/* Temporary name of a file until it is complete: picture.part.png for picture.png. One file at a time. */
 static inline const char *part_begin(const char *path)
 {
     const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
@@ -76,11 +76,11 @@ static inline const char *part_begin(const char *path)
     return part_name;
 }
 
-/* Gives the file its name, or removes what there is of it; false if it is not there. */
+/* Renames the complete file to `path`, or removes the temporary file. Returns false if `path` was not written. */
 static inline bool part_end(const char *path, bool complete)
 {
 #ifdef _WIN32
-    if (complete) remove(path); /* rename replaces no file there */
+    if (complete) remove(path); /* on Windows, rename does not replace an existing file */
 #endif
     const bool ok = complete && rename(part_name, path) == 0;
     if (!ok) remove(part_name);

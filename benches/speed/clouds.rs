@@ -1,5 +1,5 @@
-//! Cost of clouds to a frame on a software driver, in copies (see [`crate::copies`]) and of a clear sky's frame: the
-//! eye looks 15 degrees up.
+//! Cost of clouds per frame on a software driver, in copies (see [`crate::copies`]) and relative to a clear sky's
+//! frame. The camera looks 15 degrees up.
 
 use std::sync::Arc;
 
@@ -20,10 +20,10 @@ use crate::copies::{SIZE, Scene, measured, median, quantile, world};
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const PITCH_RAD: f64 = 0.26;
-/// Of a camera that turns, rad a frame: 30 degrees a second at 60 Hz.
+/// Rotation of a turning camera, rad per frame: 30 degrees per second at 60 Hz.
 const TURN_RAD: f64 = 0.0087;
 
-/// A world under these layers.
+/// Creates a world with these cloud layers.
 fn under(
     device: &Arc<Device>,
     shared: &Arc<Shared>,
@@ -54,13 +54,13 @@ pub fn three_layers() -> [CloudLayer; 3] {
 
 /// Most steps of a ray through a layer at fineness 1 (`shaders/clouds/march.wgsl`).
 const STEPS: f64 = 96.0;
-/// 95th percentile of the difference of luminance up to which steps need not be doubled.
+/// Doubling the steps is not needed if the 95th percentile of the luminance difference is at most this.
 const SAME: f64 = 0.01;
-/// Finenesses that are tried; the last is the most that there is.
+/// Finenesses to try; the last is the highest available.
 const TRIED: [f64; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
 
-/// The brute force: of the finenesses tried the least whose picture of broken cumulus, marched in every pixel, stays
-/// the same with twice as many steps; the greatest where no picture does.
+/// Finds the fineness for brute force: the lowest of [`TRIED`] at which the picture of broken cumulus, marched in every
+/// pixel, stays the same with twice as many steps. If there is none, returns the highest.
 fn brute_force() -> Fallible<f64> {
     let device = Device::headless(&DeviceOptions::default())?;
     let context = under(&device, &Arc::new(Shared::new(&device)?), &cumulus(), CloudModel::Volume)?;
@@ -98,17 +98,17 @@ fn brute_force() -> Fallible<f64> {
     Ok(enough)
 }
 
-/// Frames before a change of weather, in which the sky's tables have come to their final quality, and after it, each a
-/// twentieth of a second; the change takes [`COMES_S`].
+/// Number of frames before a change of weather, by which the sky's tables have reached their final quality, and after
+/// it. A frame is a twentieth of a second; the change takes [`COMES_S`].
 const FRAMES: [u64; 2] = [160, 120];
 const COMES_S: f64 = 3.0;
 
-/// Prints what frames take while fair cumulus becomes a layer of stratocumulus under cirrus, over the median after it.
+/// Prints the frame times while fair cumulus changes to stratocumulus under cirrus, relative to the median afterwards.
 fn changed() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions::default())?;
     let mut context = under(&device, &Arc::new(Shared::new(&device)?), &cumulus(), CloudModel::Volume)?;
     let mut scene = Scene::new("", &context.clone(), PITCH_RAD)?;
-    // The scene's own hold on its context ends here, or nobody may change it.
+    // Drops the scene's reference to the context, because a shared context cannot be changed.
     scene.context = under(&device, &Arc::new(Shared::new(&device)?), &[], CloudModel::Volume)?;
     let (color, mut times) = (texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1), Vec::new());
     for id in 1..=FRAMES[0] + FRAMES[1] {
@@ -141,7 +141,7 @@ fn changed() -> Fallible<()> {
     Ok(())
 }
 
-/// The same clouds at night, in the light of so many lamps on the ground.
+/// Creates a night with these clouds, lit by a number of lamps on the ground.
 fn at_night(device: &Arc<Device>, shared: &Arc<Shared>, layers: &[CloudLayer], lamps: usize) -> Fallible<Arc<Context>> {
     let mut context = under(device, shared, layers, CloudModel::Volume)?;
     let changing = Arc::get_mut(&mut context).ok_or("the world is shared already")?;
@@ -158,7 +158,7 @@ fn at_night(device: &Arc<Device>, shared: &Arc<Shared>, layers: &[CloudLayer], l
     Ok(context)
 }
 
-/// What the brute force is called.
+/// Name of the brute-force scene.
 const BRUTE: &str = "broken cumulus, every pixel in as many steps as it takes";
 
 fn scenes(device: &Arc<Device>, fineness: f64) -> Fallible<Vec<Scene>> {

@@ -1,7 +1,8 @@
-//! Cost of a frame on a software driver, in copies: a copy is a full-screen pass of the same size that loads one
-//! texel a pixel. Pictures are of 640x360; `SIZE="1280x720"` measures others.
+//! Cost of a frame on a software driver, in copies. A copy is a full-screen pass of the same size that loads one texel
+//! per pixel. Pictures have 640x360 pixels; set another size by `SIZE="1280x720"`.
 //!
-//! Counted is the processor time of all of the process's threads, so that what else the machine does falls on neither.
+//! The measured time is the processor time of all threads of the process, so that other load on the machine affects
+//! neither side.
 
 use std::sync::Arc;
 
@@ -24,24 +25,24 @@ pub use welkin_support::processor::median;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Size of pictures where nothing else is asked.
+/// Default size of pictures.
 pub const SIZE: (u32, u32) = (640, 360);
-/// Copies in one submission, so that a submission's own work is next to nothing beside them.
+/// Copies per submission, enough to make the submission's own cost negligible.
 const COPIES: u32 = 16;
-/// Where the sun stands.
+/// Elevation of the sun.
 const HIGH_SUN_DEG: f64 = 60.0;
-/// Rounds of all scenes; the median of each counts.
+/// Rounds over all scenes; the median of each scene counts.
 const ROUNDS: usize = 9;
-/// Frames without work on tables after which there is none.
+/// Number of frames in a row without work on tables after which the tables are complete.
 pub const SETTLED: u32 = 12;
 
-/// The number below which such a share of numbers lies.
+/// The value below which this share of the numbers lies.
 pub fn quantile(of: &mut [f64], share: f64) -> f64 {
     of.sort_by(f64::total_cmp);
     of[((of.len() - 1) as f64 * share) as usize]
 }
 
-/// The clock: a pass that loads a texel and writes it.
+/// The unit of cost: a pass that loads a texel and writes it.
 pub struct Copying {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
@@ -99,23 +100,24 @@ impl Copying {
     }
 }
 
-/// What is asked by `SIZE=1280x720`.
+/// Parses a size such as `1280x720`.
 pub fn size_of(text: &str) -> Fallible<(u32, u32)> {
     let (width, height) = text.split_once('x').ok_or_else(|| format!("{text} is not WIDTHxHEIGHT"))?;
     Ok((width.parse()?, height.parse()?))
 }
 
-/// One weather over a picture, and the calls in which its frames are drawn.
+/// One weather over a picture, and the stages in which its frames are drawn.
 pub struct Scene {
     pub name: &'static str,
     pub context: Arc<Context>,
     pub view: View,
     pub camera: Camera,
-    /// How far the camera turns from frame to frame, about the vertical.
+    /// Rotation of the camera from frame to frame about the vertical, rad.
     pub turn_rad: f64,
-    /// How far it climbs from frame to frame, m.
+    /// Climb of the camera from frame to frame, m.
     pub climb_m: f64,
-    /// How far the sun moves from frame to frame, degrees; other than 0 only in a context of its own.
+    /// Movement of the sun from frame to frame, degrees. It may differ from 0 only if the scene has a context of its
+    /// own.
     pub sun_deg: f64,
     pub flags: FrameFlags,
     pub calls: Vec<Stages>,
@@ -125,7 +127,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// All that is drawn before tone, with depth, by a camera at rest 2 m above the ground that looks north and
+    /// Draws all stages before tone mapping, with depth. The camera is at rest 2 m above the ground and looks north and
     /// `pitch_rad` up.
     pub fn new(name: &'static str, context: &Arc<Context>, pitch_rad: f64) -> Fallible<Self> {
         let (eye, ahead) = (DVec3::new(0.0, 0.0, 2.0), DVec3::new(0.0, pitch_rad.cos(), pitch_rad.sin()));
@@ -145,7 +147,7 @@ impl Scene {
         })
     }
 
-    /// Draws frames until the tables of the sky, which come in parts, stand.
+    /// Draws frames until the sky's tables, which are built in parts, are complete.
     fn settle(&mut self, device: &Device, color: &wgpu::Texture, depth: &wgpu::Texture) -> Fallible<()> {
         let (mut since, mut frames) = (0, 0);
         while since < SETTLED && frames < 1000 {
@@ -156,8 +158,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Measures one frame between two copies, after one that is not counted: a software driver drops the code of
-    /// shaders that it has not run for long where there are many, and makes it again.
+    /// Measures one frame between two copies. A frame before that is not counted: with many shaders, a software driver
+    /// drops the code of those that have not run for long, and compiles it again.
     fn measure(
         &mut self,
         device: &Device,
@@ -196,7 +198,7 @@ impl Scene {
     }
 }
 
-/// A world under a high sun and a moon at an elevation, degrees.
+/// Creates a world under a high sun, with the moon at an elevation, degrees.
 pub fn world(device: &Arc<Device>, shared: &Arc<Shared>, weather: &Weather, moon_deg: f64) -> Fallible<Arc<Context>> {
     let mut context = Context::new(device.clone(), shared.clone(), ContextDesc::default())?;
     context.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg: HIGH_SUN_DEG }))?;
@@ -207,7 +209,7 @@ pub fn world(device: &Arc<Device>, shared: &Arc<Shared>, weather: &Weather, moon
     Ok(Arc::new(context))
 }
 
-/// A wind that is slow within 60 m of a place 150 m ahead.
+/// Creates a wind that is slow within 60 m of a place 150 m ahead.
 fn slow_place() -> WindGrid {
     let speed = |i: u32| {
         let from = DVec2::new(f64::from(i % 33), f64::from(i / 33 % 33)) - 16.0;
@@ -222,7 +224,7 @@ fn slow_place() -> WindGrid {
     }
 }
 
-/// The scenes: weathers in one call, clear noon in calls of its own for each stage, and a picture of nothing but sky.
+/// Scenes: each weather in one call, clear noon with a call per stage, and a picture that shows only sky.
 fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
     let shared = Arc::new(Shared::new(device)?);
     let haze = Weather { visibility_m: 3000.0, ..Weather::default() };
@@ -270,7 +272,7 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
     Ok(made)
 }
 
-/// Measures scenes beside copies in turn, over level ground seen by eyes that look `pitch_rad` up, and prints on what.
+/// Measures scenes and copies in turn and prints the device used. Cameras look `pitch_rad` up over level ground.
 pub fn measured(pitch_rad: f64, scenes: impl Fn(&Arc<Device>) -> Fallible<Vec<Scene>>) -> Fallible<Vec<Scene>> {
     let device = Device::headless(&DeviceOptions::default())?;
     let size = std::env::var("SIZE").map_or(Ok(SIZE), |asked| size_of(&asked))?;

@@ -1,5 +1,5 @@
-//! Cost to a frame of the cube map of what stands around the camera: one face, and all six, interleaved with frames
-//! without it.
+//! Cost per frame of the cube map of the camera's surroundings: one face, and all six, interleaved with frames without
+//! it.
 
 use std::{sync::Arc, time::Instant};
 
@@ -17,7 +17,7 @@ type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: (u32, u32) = (1280, 720);
 
-/// Milliseconds of a frame that is waited for.
+/// Time of a frame until the GPU has finished it, ms.
 fn ms(device: &Device, context: &Context, view: &mut View, frame: &Frame<'_>) -> Fallible<f64> {
     let start = Instant::now();
     view.record(context, frame, Stages::ALL)?;
@@ -30,7 +30,7 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-/// Prints both costs beside that of the frame.
+/// Prints both costs next to that of the frame.
 pub fn run() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions::default())?;
     let shared = Arc::new(Shared::new(&device)?);
@@ -50,7 +50,7 @@ pub fn run() -> Fallible<()> {
         for id in 0..120u64 {
             let mut frame = Frame::new(id, camera, &color, Some(&depth));
             let whole = id == 0 || id % 4 == 0;
-            // All faces; the sky's tables stand after the first frame.
+            // Draws all faces; the sky's tables are complete after the first frame.
             frame.flags = if whole { FrameFlags::NO_HISTORY } else { FrameFlags(0) };
             let plain = ms(&device, &context, &mut without, &frame)?;
             let more = ms(&device, &context, &mut with, &frame)? - plain;

@@ -1,5 +1,6 @@
-//! Cost to a frame of rain, snow and what they leave on the ground, on a software driver, in copies (see
-//! [`crate::copies`]), beside the same frame in dry weather and without each of the stages that draw them.
+//! Cost per frame of rain, snow and their effect on the ground, on a software driver, in copies (see
+//! [`crate::copies`]). It is compared with the same frame in dry weather, and without each of the stages that draw
+//! them.
 
 use std::sync::Arc;
 
@@ -13,10 +14,10 @@ use crate::copies::{Scene, measured, median, world};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Visibility beside what falls, m.
+/// Visibility apart from precipitation, m.
 const VISIBILITY_M: f64 = 10_000.0;
 
-/// A time at which no cone of the rain exchanges its streaks, as in four frames of five, s; at 0 one does.
+/// A time at which no rain cone swaps its streaks, as in four of five frames, s; at time 0 one does.
 const STEADY_S: f64 = 0.1;
 
 fn falls(kind: PrecipitationKind, rate_mm_h: f64) -> Weather {
@@ -63,7 +64,7 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
     Ok(made)
 }
 
-/// Prints the copies of each scene, and how many the dry one has less.
+/// Prints the copies of each scene, and how many fewer the dry scene needs.
 pub fn run() -> Fallible<()> {
     let mut scenes = measured(0.0, scenes)?;
     let dry = median(&mut scenes[0].copies);

@@ -1,8 +1,8 @@
-//! The first picture of a new process with empty caches, and the frames while weather changes: how long a host waits,
-//! when the picture has its final quality, and how much the slowest frame takes beside the median of those that follow
-//! it.
+//! The first picture of a new process with empty caches, and the frames during a change of weather: how long a host
+//! waits, when the picture reaches its final quality, and how long the slowest frame takes relative to the median of
+//! the frames after it.
 //!
-//! Each scene runs in a process of its own, whose drivers have neither a cache of their own nor one on disk.
+//! Each scene runs in a process of its own, with the drivers' caches empty in memory and on disk.
 
 use std::{process::Command, sync::Arc, time::Instant};
 
@@ -21,11 +21,11 @@ type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
 const FRAMES: u64 = 250;
 
-/// What a scene begins with, and what it changes to.
+/// The first weather of a scene, and the weather it changes to.
 struct Script {
     name: &'static str,
     first: &'static str,
-    /// The report of frame `CHANGE`, and over how many seconds its weather comes.
+    /// The report set at frame `CHANGE`, and the duration of the change, s.
     then: Option<(&'static str, f64)>,
 }
 
@@ -43,14 +43,14 @@ const SCRIPTS: [Script; 4] = [
         then: Some(("LOWI 121220Z 24008KT 2000 BR OVC010 12/11 Q1005", 3.0)),
     },
 ];
-/// Frame with which the weather changes.
+/// Frame at which the weather changes.
 const CHANGE: u64 = 125;
 
 fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
     textures::texture(device, (SIZE.width, SIZE.height), format, 1)
 }
 
-/// One scene, in this process.
+/// Runs one scene in this process.
 fn script(script: &Script) -> Fallible<()> {
     let detailed = std::env::var_os("FIRST_FRAMES").is_some();
     let start = Instant::now();
@@ -73,7 +73,7 @@ fn script(script: &Script) -> Fallible<()> {
     context.set_weather(&Weather::from_metar(script.first)?.weather, 0.0, 0.0)?;
     let mut view = View::new(&context)?;
     step("view");
-    // In floats, so that no dither stands for a change.
+    // Floats, so that dither does not look like a change.
     let (color, depth) =
         (texture(&device, wgpu::TextureFormat::Rgba16Float), texture(&device, wgpu::TextureFormat::R32Float));
     let row = |y: u32| if y >= 180 { 0.1 / (30.0 * 180.0 / (y as f32 - 179.0)) } else { 0.0 };
@@ -86,7 +86,7 @@ fn script(script: &Script) -> Fallible<()> {
     let (mut times, mut pictures, mut ends) = (Vec::new(), Vec::new(), Vec::new());
     let mut aside = 0.0;
     for id in 0..if script.then.is_some() { FRAMES } else { CHANGE } {
-        // What the host does itself is not counted.
+        // The host's own work is not counted.
         let before = Instant::now();
         device.queue.write_texture(color.as_image_copy(), &grey, rows, SIZE);
         device.wait()?;
@@ -128,15 +128,15 @@ fn median(times: &[f64]) -> f64 {
     sorted[sorted.len() / 2]
 }
 
-/// Steps of 255 are counted in so many parts.
+/// Number of parts into which a step of 1/255 is divided.
 const PARTS: f64 = 200.0;
 
-/// A pixel's channels as a display gets them, in parts of 255ths.
+/// A pixel's channels as a display gets them, in those parts.
 fn encoded(pixel: &[f32; 4]) -> [u16; 3] {
     [0, 1, 2].map(|c| (PARTS * 255.0 * srgb_encode(f64::from(pixel[c].clamp(0.0, 1.0)))).round() as u16)
 }
 
-/// Largest difference of two pictures, in 255ths.
+/// Largest difference between two pictures, in 255ths.
 fn apart(a: &[u16], b: &[u16]) -> f64 {
     a.iter().zip(b).map(|(x, y)| f64::from(x.abs_diff(*y)) / PARTS).fold(0.0, f64::max)
 }

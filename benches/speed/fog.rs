@@ -1,5 +1,5 @@
-//! Cost of fog to a pixel: a full-screen pass that reads colour and depth and applies the fog, against one that only
-//! copies the colour.
+//! Cost of fog per pixel: a full-screen pass that reads colour and depth and applies fog, against one that only copies
+//! the colour.
 
 use std::time::Instant;
 
@@ -54,7 +54,7 @@ impl Bench {
         };
         let (colour, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
         let target = texture(wgpu::TextureFormat::Rgba16Float).create_view(&Default::default());
-        // Ground in the lower half, nothing in the upper.
+        // Ground in the lower half, sky in the upper.
         let texels: Vec<f32> = (0..SIZE.width * SIZE.height)
             .map(|i| (i / SIZE.width) as f32 / 180.0 - 1.0)
             .map(|s| if s > 0.0 { 0.1 * s / 3.0 } else { 0.0 })
@@ -97,7 +97,7 @@ impl Bench {
         fullscreen::pipeline(&self.device.device, &self.module, stages, &[&self.layout], &targets)
     }
 
-    /// Milliseconds of a pass.
+    /// Time of a pass, ms.
     fn time(&self, pipeline: &wgpu::RenderPipeline, model: &FogModel) -> Fallible<f64> {
         let gpu = &self.device.device;
         let mut bytes = bytemuck::bytes_of(&model.uniform()).to_vec();
@@ -130,7 +130,7 @@ impl Bench {
             self.device.submit_and_wait(encoder)?;
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
-        // The least is what the work itself takes; more is what else the machine did.
+        // The minimum is the time of the work itself; longer times include other load on the machine.
         Ok(times.into_iter().fold(f64::INFINITY, f64::min))
     }
 }

@@ -1,5 +1,5 @@
-//! The windscreen: a frame with water on the glass against the same frame without, and a step of the water, interleaved
-//! in one run.
+//! The windscreen: a frame with water on the glass against one without, and one simulation step of the water,
+//! interleaved in one run.
 
 use std::{sync::Arc, time::Instant};
 
@@ -22,7 +22,7 @@ fn least(times: &[f64]) -> f64 {
     times.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// A car's: 1.4 m x 0.7 m of glass at 0.7 m, which is 350 x 175 cells.
+/// A car's windscreen: 1.4 m x 0.7 m of glass at a distance of 0.7 m, which is 350 x 175 cells.
 pub fn windscreen() -> Windscreen {
     let corners = [(-0.7, -0.35), (0.7, -0.35), (0.7, 0.35), (-0.7, 0.35)].map(|(x, y)| DVec3::new(x, y, -0.7));
     Windscreen { pane: Pane::Quad(corners), velocity_m_s: DVec3::new(0.0, 0.0, -15.0), ..Windscreen::default() }
@@ -49,7 +49,7 @@ pub fn run() -> Fallible<()> {
             Ok(start.elapsed().as_secs_f64() * 1e3)
         };
         context.update(f64::from(i) / 10.0)?;
-        // Six steps at once, then pictures of the same moment.
+        // Runs six steps at once, then draws pictures of the same moment.
         time(&mut bare, &context, 3 * i + 1, Stages::PREPARE)?;
         let six = time(&mut glazed, &context, 3 * i + 1, Stages::PREPARE)?;
         let still = time(&mut glazed, &context, 3 * i + 2, Stages::PREPARE)?;

@@ -1,7 +1,7 @@
-//! Time of each effect on a GPU at 1920x1080 and 3840x2160, by the GPU's own timestamps, as the Markdown page
-//! `docs/lab/gpu.md`: `cargo bench --bench speed -- gpu`. `SIZES="320x180"` measures other pictures.
+//! Time of each effect on a GPU at 1920x1080 and 3840x2160, from the GPU's own timestamps. Prints the Markdown page
+//! `docs/lab/gpu.md`: `cargo bench --bench speed -- gpu`. Set other sizes by `SIZES="320x180"`.
 //!
-//! Frames are handed over while the GPU is still busy with other work, so that it never waits for the CPU between two
+//! Frames are submitted while the GPU is still busy with other work, so that it never waits for the CPU between two
 //! timestamps.
 
 use std::{sync::Arc, time::Instant};
@@ -29,11 +29,12 @@ use crate::{
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Frames of a scene in a round, and rounds.
+/// Frames of a scene per round, and rounds.
 const FRAMES: u64 = 8;
 const ROUNDS: usize = 4;
 const CLEARED: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
-/// Passes that clear a square picture to keep the GPU busy while frames are handed over, and the picture's side.
+/// Number of passes that clear a square picture to keep the GPU busy while frames are submitted, and the picture's
+/// side.
 const FILLING: (u32, u32) = (40, 4096);
 
 /// Reads the GPU's clock between submissions.
@@ -71,14 +72,14 @@ impl Clock {
         }
     }
 
-    /// Marks the moment at which all that was handed over so far is done.
+    /// Writes a timestamp for the moment at which all work submitted so far is done.
     fn mark(&self, device: &Device, index: u32) {
         let mut encoder = device.device.create_command_encoder(&Default::default());
         empty_pass(&mut encoder, &self.target, CLEARED, Some((&self.queries, index)));
         device.submit(encoder);
     }
 
-    /// Milliseconds between the marks.
+    /// Times between the timestamps, ms.
     fn between(&self, device: &Device) -> Fallible<Vec<f64>> {
         let mut encoder = device.device.create_command_encoder(&Default::default());
         encoder.resolve_query_set(&self.queries, 0..FRAMES as u32 + 1, &self.resolved, 0);
@@ -92,18 +93,18 @@ impl Clock {
     }
 }
 
-/// What changes from frame to frame.
+/// Change from frame to frame.
 #[derive(Clone, Copy, PartialEq)]
 enum Change {
-    /// The camera turns by 30 degrees a second at 60 frames a second.
+    /// The camera turns by 30 degrees per second at 60 frames per second.
     Turns,
-    /// It climbs by 5 cm a frame and turns.
+    /// The camera climbs by 5 cm per frame and turns.
     Climbs,
-    /// The sun moves by 0.05 degrees a frame.
+    /// The sun moves by 0.05 degrees per frame.
     Sun,
 }
 
-/// A scene, and the one beyond which its cost is told.
+/// A scene, and the name of the scene to which its cost is compared.
 struct Scene {
     name: &'static str,
     beyond: &'static str,
@@ -112,7 +113,7 @@ struct Scene {
     change: Change,
     stages: Stages,
     flags: FrameFlags,
-    /// How far the eye looks up, rad, and how high it is, m.
+    /// Pitch of the camera, rad, and its height, m.
     pitch_rad: f64,
     height_m: f64,
     frame_id: u64,
@@ -128,7 +129,7 @@ impl Scene {
         camera
     }
 
-    /// One frame a sixtieth of a second after the last; milliseconds of the calling thread in `record`.
+    /// Records one frame, a sixtieth of a second after the last; returns the calling thread's time in `record`, ms.
     fn record(&mut self, (color, depth): (&wgpu::Texture, &wgpu::Texture)) -> Fallible<f64> {
         self.frame_id += 1;
         let frame_id = self.frame_id;
@@ -144,7 +145,7 @@ impl Scene {
     }
 }
 
-/// A bench of pictures of one size.
+/// A benchmark with pictures of one size.
 struct Bench {
     device: Arc<Device>,
     clock: Clock,
@@ -168,7 +169,7 @@ impl Bench {
         }
     }
 
-    /// Keeps the GPU busy while what is measured is handed over.
+    /// Keeps the GPU busy while the measured work is submitted.
     fn fill(&self) {
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         for _ in 0..FILLING.0 {
@@ -177,7 +178,7 @@ impl Bench {
         self.device.submit(encoder);
     }
 
-    /// Milliseconds of the GPU that each of the frames takes which `record` hands over.
+    /// GPU time of each frame that `record` submits, ms.
     fn timed(&self, mut record: impl FnMut() -> Fallible<()>) -> Fallible<Vec<f64>> {
         let mut gpu = Vec::new();
         for _ in 0..ROUNDS {
@@ -192,7 +193,7 @@ impl Bench {
         Ok(gpu)
     }
 
-    /// Milliseconds of the GPU a full-screen pass that loads a texel and writes it, the median.
+    /// GPU time of a full-screen pass that loads a texel and writes it, median, ms.
     fn copy_ms(&self) -> Fallible<f64> {
         let copying = Copying::new(&self.device, (self.color.width(), self.color.height()))?;
         let mut gpu = self.timed(|| {
@@ -204,7 +205,7 @@ impl Bench {
         Ok(median(&mut gpu))
     }
 
-    /// Milliseconds of the GPU and of the calling thread a frame of a scene, medians.
+    /// GPU time and calling thread's time per frame of a scene, medians, ms.
     fn measure(&self, scene: &mut Scene) -> Fallible<(f64, f64)> {
         let pictures = (&self.color, &self.depth);
         let (mut frames, mut since) = (0, 0);
@@ -224,7 +225,7 @@ impl Bench {
     }
 }
 
-/// Wind that varies in space, so that what falls through it is stepped.
+/// Wind that varies in space, so that falling particles are integrated step by step.
 fn wind() -> WindGrid {
     let nodes = [32, 32, 16];
     let velocity = |i: u32| [4.0 + 0.05 * (i % 32) as f32, 0.0, 0.0];
@@ -256,7 +257,7 @@ impl Maker {
         self.scene(name, beyond, &Weather::default())
     }
 
-    /// The air, and what is in it.
+    /// Scenes of the sky, haze and fog.
     fn air(&self) -> Fallible<Vec<Scene>> {
         let haze = Weather { visibility_m: 3000.0, ..Weather::default() };
         let mut night = self.clear("a night of stars", "")?;
@@ -315,7 +316,7 @@ impl Maker {
         behind_glass.context.set_weather(&Weather { precipitation: shower, ..Weather::default() }, 0.0, 0.0)?;
         behind_glass.stages = Stages::ALL.without(Stages::PARTICLES.with(Stages::SURFACE));
         behind_glass.view.set_windscreen(Some(&glass::windscreen()))?;
-        // Far more small drops than nature has, so that all of them fall.
+        // Far more small drops than in nature, so that the air has as many as are to be drawn.
         let many = (PrecipitationKind::Drizzle, 500.0);
         Ok(vec![
             falls(DRY, "", PrecipitationKind::None, 0.0)?,
@@ -373,13 +374,13 @@ const CLEAR_UP: &str = "clear noon, looking up";
 const DRY: &str = "haze of 3 km, dry";
 const COLD: &str = "haze of 3 km, cold";
 
-/// Pictures that are measured.
+/// Sizes of the measured pictures.
 fn sizes() -> Fallible<Vec<(u32, u32)>> {
     let asked = std::env::var("SIZES").unwrap_or_else(|_| "1920x1080 3840x2160".into());
     asked.split_whitespace().map(size_of).collect()
 }
 
-/// What a reader of the table should know.
+/// Notes for the reader of the table.
 const READING: &str = "
 Scenes look over level ground, so that half of each picture is air before a plain. Rain wets the ground, so its rows have wet surfaces too. *Record*
 is what a frame takes of the CPU at its least size; *memory* is the view's own, at the last size.
@@ -388,7 +389,7 @@ NVIDIA's data-centre GPUs draw pixels with few of their processors: an H100 with
 a laptop's worth. Compute passes have all of it.
 ";
 
-/// What others published, each on its own machine.
+/// Results published by others, each measured on its authors' machine.
 const PUBLISHED: &str = "
 ## Published beside it
 
@@ -403,7 +404,7 @@ Each was measured on its authors' machine; none was run here.
 | 150,000 particles of rain, 3840x2160, RTX 3090 | 0.175 |
 ";
 
-/// Prints the page; on a software driver without `SIZES`, that it takes a GPU.
+/// Prints the page. On a software driver without `SIZES`, prints that a GPU is needed.
 pub fn run() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions::default())?;
     let has_clock = device.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);

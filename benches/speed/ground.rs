@@ -1,4 +1,4 @@
-//! Cost of wet ground to a picture: the stage SURFACE over a picture of which half is ground, against the same picture
+//! Cost of wet ground per picture: the stage SURFACE over a picture that is half ground, against the same picture when
 //! dry.
 
 use std::time::Instant;
@@ -23,7 +23,7 @@ pub fn run() -> Fallible<()> {
     let shared = std::sync::Arc::new(Shared::new(&device)?);
     let texture = |format| textures::texture(&device, (SIZE.width, SIZE.height), format, 1);
     let (color, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
-    // Level ground 2 m below the eye, from the picture's middle down.
+    // Level ground 2 m below the camera, from the middle of the picture down.
     let row = |y: u32| 0.1 * (y as f32 - 179.5).max(0.0) / 180.0 * 0.45f32.tan() / 2.0;
     let texels: Vec<f32> = (0..SIZE.width * SIZE.height).map(|i| row(i / SIZE.width)).collect();
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.width * 4), rows_per_image: None };
@@ -41,7 +41,7 @@ pub fn run() -> Fallible<()> {
     for (name, state, rate) in grounds {
         let mut context = Context::new(device.clone(), shared.clone(), ContextDesc::default())?;
         context.set_sun(Some(GivenDirection { azimuth_deg: 60.0, elevation_deg: 35.0 }))?;
-        // All that water can do: film, puddles and rings.
+        // Every effect of water: film, puddles and rings.
         context.set_default_surface_class(SurfaceClass::Paved);
         let surface = Surface { state: Some(state), ..Surface::default() };
         let kind = if rate > 0.0 { PrecipitationKind::Rain } else { PrecipitationKind::None };
@@ -50,7 +50,8 @@ pub fn run() -> Fallible<()> {
         let view = View::new(&context)?;
         scenes.push((name, context, view, [f64::INFINITY; 3]));
     }
-    // In turn, so that what else the machine does falls on all of them; the least time is the work's own.
+    // Measured in turn, so that other load on the machine affects all of them; the minimum is the time of the work
+    // itself.
     for id in 0..25 {
         for (_, context, view, least) in &mut scenes {
             for (k, (stages, least)) in sets.iter().zip(least).enumerate() {

@@ -1,4 +1,4 @@
-//! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
+//! Benchmarks that print ratios measured within one run: `make bench`. `cargo bench -- record` runs only the named ones
 //! (clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, sky,
 //! wind).
 

@@ -1,11 +1,11 @@
-//! Cost of building textures of noise, at once and in steps that frames have room for.
+//! Cost of building noise textures, at once and in steps small enough for a frame.
 
 use std::time::{Duration, Instant};
 
 use welkin::gpu::{Device, DeviceOptions};
 use welkin::noise::{NoiseImage, NoiseKind, NoiseSettings, NoiseTexture};
 
-/// Texels of a step, in all channels together.
+/// Texels per step, summed over all channels.
 const STEP: u32 = 1 << 16;
 
 fn ms(time: Duration) -> f64 {
@@ -22,7 +22,7 @@ pub fn run() -> welkin::Result<()> {
         ("a volume of their edges", NoiseKind::Cellular, 3, 4, [32; 3]),
     ] {
         let settings = NoiseSettings { kind, octaves, frequency: [frequency; 3], ..Default::default() };
-        // The driver compiles in the first of them.
+        // The driver compiles in the first round.
         let mut best = [Duration::MAX; 3];
         for _ in 0..3 {
             let start = Instant::now();

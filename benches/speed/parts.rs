@@ -1,5 +1,6 @@
-//! Costs to a picture of the parts that a plan may leave out, and of the gauge: the constants of the rooms'
-//! `candidates`, in units of a pixel with none of them. And how far times predicted from them are from measured ones.
+//! Cost per picture of the parts that a plan may leave out, and of the gauge. These are the constants of the rooms'
+//! `candidates`, in units of a pixel with none of the parts. Also measures how far times predicted from them are from
+//! measured times.
 
 use std::{sync::Arc, time::Instant};
 
@@ -18,7 +19,7 @@ type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
 
-/// A rung of each of air, fog, sky and rain.
+/// The rungs of air, fog, sky and rain.
 type Rungs = [usize; 4];
 const ALL: Rungs = [0; 4];
 const NONE: Rungs = [1, 1, 1, 2];
@@ -46,7 +47,7 @@ impl Bench {
         Ok(Self { device, context, view, color, depth, frame_id: 0, snow: 0 })
     }
 
-    /// Ground from row `horizon` of the picture down, sky above it.
+    /// Draws ground from row `horizon` of the picture down, and sky above it.
     fn world(&self, horizon: u32) {
         let row = |y: u32| if y >= horizon { 0.1 / (30.0 * 180.0 / (y as f32 - 179.0).max(1.0)) } else { 0.0 };
         let texels: Vec<f32> = (0..SIZE.width * SIZE.height).map(|i| row(i / SIZE.width)).collect();
@@ -71,7 +72,7 @@ impl Bench {
         self.frame()
     }
 
-    /// Time of a frame with flakes alone in times of the one without them before it, likewise.
+    /// Time of a frame with flakes only, relative to the frame without them before it: the median of many.
     fn ratio_of_snow(&mut self) -> Fallible<f64> {
         let mut ratios = Vec::new();
         for _ in 0..42 {
@@ -83,10 +84,10 @@ impl Bench {
         Ok(median(&mut ratios[1..]))
     }
 
-    /// Time of a frame with parts at these rungs in times of the one with none before it: the median of many, so that
-    /// whatever else the machine does falls on both.
+    /// Time of a frame with parts at these rungs, relative to the frame with none before it. The median of many is
+    /// taken, so that other load on the machine affects both.
     fn ratio(&mut self, rungs: Rungs) -> Fallible<f64> {
-        // The first of each compiles.
+        // The first frame of each compiles.
         let mut ratios = Vec::new();
         for _ in 0..42 {
             let none = self.frame_with(NONE)?;
@@ -98,7 +99,7 @@ impl Bench {
     fn set(&mut self, weather: &str, time_s: f64) -> Fallible<()> {
         self.context.set_weather(&Weather::preset(weather)?, time_s, 0.0)?;
         self.context.update(time_s)?;
-        // The tables follow a new air for some frames.
+        // The tables need some frames to follow a new air.
         for _ in 0..40 {
             self.frame()?;
         }
@@ -111,8 +112,9 @@ fn median(of: &mut [f64]) -> f64 {
     of[of.len() / 2]
 }
 
-/// Scenes and sets of parts one after the other: the time predicted before the first frame of each, by what earlier
-/// ones took, against the median that it then takes. A fixed picture drawn before each frame is the clock.
+/// Runs scenes and sets of parts one after the other. Compares the time predicted before the first frame of each, from
+/// the times of earlier ones, with the median measured afterwards. A fixed picture drawn before each frame serves as
+/// the clock.
 fn predictions(bench: &mut Bench) -> Fallible<()> {
     let (mut within, mut all, mut worst) = (0, 0, 0.0f64);
     let mut clock = View::new(&bench.context)?;
@@ -130,7 +132,7 @@ fn predictions(bench: &mut Bench) -> Fallible<()> {
         bench.world(horizon);
         bench.set(weather, bench.frame_id as f64 + 1.0)?;
         for rungs in [ALL, [1, 0, 0, 0], [0, 1, 0, 0], NONE, [0, 0, 1, 0], [0, 0, 0, 1], [0, 0, 0, 2], ALL] {
-            // Where it does not rain, no more than is there.
+            // In dry weather, skip the reduced rungs of rain.
             if !weather.contains("rain") && rungs[3] != 0 && rungs != NONE {
                 continue;
             }
@@ -188,7 +190,8 @@ pub fn run() -> Fallible<()> {
     for _ in 0..16 {
         bench.frame()?;
     }
-    // One frame in eight has a gauge: each frame in times of the one before it, by its place among eight.
+    // One frame in eight has a gauge. Collects each frame's time relative to the one before it, by position among the
+    // eight.
     let (mut ratios, mut before) = ([const { Vec::new() }; 8], bench.frame()?);
     for i in 0..328 {
         let now = bench.frame()?;

@@ -1,4 +1,4 @@
-//! Cost of the sky's radiance as a query: a new air, and each direction after that, on one thread.
+//! Cost of the sky's radiance as a query on one thread: for a new air, and then for each direction.
 
 use std::{sync::Arc, time::Instant};
 
@@ -12,7 +12,7 @@ use welkin::{
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Directions of a call, spread over the upper half (`above`) or the lower one.
+/// Directions for a call, spread over the upper half (`above`) or the lower one.
 fn directions(above: bool) -> Vec<DVec3> {
     let toward = |i: u32| {
         let z = (f64::from(i) + 0.5) / 256.0;
@@ -30,12 +30,12 @@ fn ms_each(context: &Context, height_m: f64, above: bool) -> Fallible<f64> {
         context.sky_radiance(at, &list, 0.0)?;
         Ok(start.elapsed().as_secs_f64() * 1e3 / list.len() as f64)
     };
-    // The first call fills tables of the ground's light.
+    // The first call fills the tables of the light from the ground.
     time()?;
     Ok((0..3).map(|_| time()).collect::<Fallible<Vec<_>>>()?.into_iter().fold(f64::INFINITY, f64::min))
 }
 
-/// Prints seconds a new air and milliseconds a direction.
+/// Prints the time for a new air in s, and the time per direction in ms.
 pub fn run() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions { backends: wgpu::Backends::NOOP, ..Default::default() })?;
     let shared = Arc::new(Shared::new(&device)?);

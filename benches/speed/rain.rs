@@ -1,5 +1,5 @@
-//! Rain: cost against the number of drops, what boxes and maps that keep it off and lamps add, and that dry weather
-//! costs nothing.
+//! Rain: cost against the number of drops; the added cost of boxes and maps that shelter from it, and of lamps; and
+//! that dry weather costs nothing.
 
 use std::{sync::Arc, time::Instant};
 
@@ -26,7 +26,7 @@ struct Bench {
     color: wgpu::Texture,
     depth: wgpu::Texture,
     frame_id: u64,
-    /// Of the picture, rad.
+    /// Vertical field of view, rad.
     fov: f64,
 }
 
@@ -53,7 +53,7 @@ impl Bench {
         Ok(self.context.update(time_s)?)
     }
 
-    /// Milliseconds of the stage of the drops, waited for.
+    /// Time of the stage PARTICLES until the GPU has finished it, ms.
     fn frame(&mut self) -> Fallible<f64> {
         self.frame_id += 1;
         self.context.update(self.context.time_s() + 1.0 / 60.0)?;
@@ -76,7 +76,7 @@ impl Bench {
         Ok(self.view.set_rain(asked)?)
     }
 
-    /// Medians of `n` frames of either, taken in turn.
+    /// Median times of `n` frames of each kind, drawn in turn.
     fn compare(
         &mut self,
         n: usize,
@@ -93,7 +93,8 @@ impl Bench {
         Ok((median(&mut a[1..]), median(&mut b[1..])))
     }
 
-    /// Medians of some frames of either in turn: the first after a change may pay for it.
+    /// Median times of some frames of each kind in turn. The first frame after a change is left out, as it may include
+    /// the change's cost.
     fn in_turns(
         &mut self,
         mut first: impl FnMut(&mut Self) -> Fallible<()>,
@@ -117,7 +118,7 @@ fn median(v: &mut [f64]) -> f64 {
     v[v.len() / 2]
 }
 
-/// What rain areas before the camera add to the drops, and the rim of one that it stands in.
+/// Prints the added cost of rain areas in front of the camera, and of the rim of an area in which the camera stands.
 fn areas(bench: &mut Bench) -> Fallible<()> {
     let area = |i: u32| RainArea {
         center_m: [(f64::from(i % 4) - 1.5) * 2500.0, 6000.0 + f64::from(i / 4) * 2500.0, 0.0],
@@ -143,7 +144,7 @@ fn areas(bench: &mut Bench) -> Fallible<()> {
     Ok(bench.context.set_rain_areas(&[])?)
 }
 
-/// The map of a bridge over level ground, along the fall of the drops.
+/// Creates the occluder map of a bridge over level ground, along the drops' direction of fall.
 fn map(bench: &Bench, side: u32) -> Fallible<(wgpu::Texture, Taken)> {
     let fall = bench.context.rain_at(DVec3::ZERO, bench.context.time_s())?.fall_velocity_m_s.normalize();
     let (eye, half, deep) = (DVec3::new(0.0, 8.0, 0.0) - fall * 60.0, 24.0, 120.0);
@@ -179,7 +180,7 @@ fn maps(bench: &mut Bench) -> Fallible<()> {
     Ok(bench.context.set_occluder_maps(&[])?)
 }
 
-/// What drops cost that are found by compute shaders, against those that are drawn one by one without.
+/// Compares the cost of drops found by compute shaders with that of drops drawn one by one without them.
 fn one_by_one(bench: &mut Bench, each: &[u32]) -> Fallible<()> {
     let mut other = Bench::new(&DeviceOptions { force_tier0: true, ..DeviceOptions::default() })?;
     other.weather(100.0, 1.0)?;
@@ -197,7 +198,8 @@ fn one_by_one(bench: &mut Bench, each: &[u32]) -> Fallible<()> {
     Ok(())
 }
 
-/// What a state costs, in the wind round a building: in a picture, and in one so narrow that hardly a drop is drawn.
+/// Prints the cost of simulated drops in the wind around a building: with a normal field of view, and with one so
+/// narrow that hardly any drop is drawn.
 fn integrated(bench: &mut Bench, each: &[u32]) -> Fallible<()> {
     let around = |x: f64, y: f64| {
         let (r2, a2) = ((x * x + y * y).max(1.0), 1.0);
@@ -247,7 +249,7 @@ pub fn run() -> Fallible<()> {
         println!("  {drops} drops: {name} {a:.2} ms, {other} {b:.2} ms, {:.2} times", b / a);
     }
     integrated(&mut bench, &[base, 4 * base])?;
-    // Far more small drops than nature has, so that all of them fall.
+    // Far more small drops than in nature, so that the air has as many as are to be drawn.
     bench.falls(PrecipitationKind::Drizzle, 500.0, bench.context.time_s() + 1.0)?;
     let (depth, taken) = map(&bench, 512)?;
     let hit = [OccluderMap { depth: &depth, taken }];

@@ -1,4 +1,4 @@
-//! CPU time of `View::record`: against an empty wgpu pass with its submit, interleaved in one run.
+//! CPU time of `View::record` against that of an empty wgpu pass with its submission, interleaved in one run.
 
 use std::{
     sync::Arc,
@@ -21,7 +21,7 @@ fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
     textures::texture(device, (64, 36), format, 1)
 }
 
-/// A pass that draws nothing, which may begin with a timestamp.
+/// Records a pass that draws nothing, optionally with a timestamp at its start.
 pub fn empty_pass(
     encoder: &mut wgpu::CommandEncoder,
     target: &wgpu::TextureView,
@@ -56,16 +56,16 @@ fn median(mut times: Vec<Duration>) -> f64 {
     times[times.len() / 2].as_secs_f64() * 1e6
 }
 
-/// What changes from frame to frame.
+/// Change from frame to frame.
 #[derive(Clone, Copy, PartialEq)]
 enum Change {
-    /// The camera turns under a given sun and a clear sky.
+    /// The camera turns, with a given sun and a clear sky.
     Turn,
-    /// The camera drives and turns over a curved world under cloud, rain and fog.
+    /// The camera drives and turns on a curved world with clouds, rain and fog.
     Drive,
-    /// The same while time runs at its own pace, sixty frames a second.
+    /// As `Drive`, and time advances at sixty frames per second.
     Time,
-    /// The same without the clouds, which have passes of their own.
+    /// As `Time` without the clouds, which have passes of their own.
     RainAlone,
 }
 
@@ -77,7 +77,7 @@ fn rainy(has_clouds: bool) -> Weather {
     Weather { visibility_m: 2500.0, fog: Fog::of(FogKind::Mist), clouds, precipitation, ..Weather::default() }
 }
 
-/// The GPU is idle before each timed call, so that only the CPU's part is counted.
+/// Waits until the GPU is idle before each timed call, so that only CPU time is counted.
 fn compare(change: Change, backends: wgpu::Backends) -> Fallible<()> {
     let device = Device::headless(&DeviceOptions { backends, ..Default::default() })?;
     let shared = Arc::new(Shared::new(&device)?);

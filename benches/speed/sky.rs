@@ -1,5 +1,5 @@
-//! One frame of the default sky, its tables for a moved sun and observer included, against a march in every pixel that
-//! uses the same multiple scattering, interleaved in one run.
+//! One frame of the default sky, including its tables for a new sun and observer, against a march in every pixel with
+//! the same multiple scattering, interleaved in one run.
 
 use std::time::Instant;
 
@@ -67,7 +67,7 @@ impl Sky {
         Ok(Self { tables, volume, pipeline, camera, target: target.create_view(&Default::default()) })
     }
 
-    /// Milliseconds of tables for `observer`, and of the picture.
+    /// Times of the tables for `observer` and of the picture, ms.
     fn frame(&mut self, device: &Device, observer: &Observer) -> Fallible<(f64, f64)> {
         let start = Instant::now();
         let mut encoder = device.device.create_command_encoder(&Default::default());
@@ -83,7 +83,7 @@ impl Sky {
     }
 }
 
-/// The least of several times: what the machine needs when nothing else runs.
+/// The minimum of several times: the time needed when nothing else runs.
 fn least(times: &[f64]) -> f64 {
     times.iter().copied().fold(f64::INFINITY, f64::min)
 }

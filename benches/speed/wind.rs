@@ -1,13 +1,13 @@
-//! Cost of a step of a wind field: per cell, and against the time that it leads over.
+//! Cost of a step of a wind field: per cell, and relative to the simulated time.
 
 use std::time::Instant;
 
 use glam::{DVec3, dvec3};
 use welkin::flow::{FlowBox, FlowField, FlowObstacles, FlowSettings};
 
-/// Cells of a field that one core may keep up with, and of one twice as large.
+/// Cells of a field that one core can simulate in real time, and of one twice as large.
 const SIZES: [[u32; 3]; 2] = [[64, 64, 16], [128, 64, 16]];
-/// Length of a step, s: that of a running field.
+/// Length of a step, s: as in a running simulation.
 const STEP_S: f64 = 0.5;
 
 pub fn run() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,6 +1,6 @@
 /*
- * The least that a program can do with an installed Welkin: make a device that needs no GPU, put weather into it, ask
- * it back. Built in the tests against the installed tree, by pkg-config and by find_package(welkin).
+ * The smallest program that uses an installed Welkin: it creates a device that needs no GPU, sets weather and queries
+ * it. The tests build it against the installed tree, with pkg-config and with find_package(welkin).
  */
 #include <stdio.h>
 

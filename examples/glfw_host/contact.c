@@ -1,4 +1,4 @@
-/* Draws all combinations offscreen, writes each as a PNG and all of them small on one sheet. */
+/* Draws all combinations offscreen, writes each as a PNG and shows all of them, scaled down, on one sheet. */
 #include "contact.h"
 
 #include <stdio.h>
@@ -13,7 +13,7 @@ typedef struct cost {
     int count;
 } cost;
 
-/* The last of three frames counts: the first one compiles and builds tables, the second is timed effect by effect. */
+/* Draws three frames and keeps the last: the first compiles shaders and builds tables, the second times each effect. */
 static bool draw(demo *d, cost *sum)
 {
     d->cut = true;
@@ -44,7 +44,7 @@ static bool save(demo *d, sheet *s, int row, const char *out, uint8_t *rgb)
     snprintf(path, sizeof path, "%s/%02d_%s.png", out, d->report + 1, name);
     if (!png_write_rgb8(path, rgb, p->shown_width, p->shown_height))
         return false;
-    /* All of them take minutes on a software driver: whoever waits sees each one come. */
+    /* All of them take minutes on a software driver, so each path is printed as soon as its file is written. */
     printf("%s\n", path);
     fflush(stdout);
     return true;

@@ -1,4 +1,4 @@
-/* The state of the demonstration and its frame: host's world, then weather, then the display. */
+/* The demonstration's state and its frame: first the host's world, then the weather, then the copy for the display. */
 #include "demo.h"
 
 #include <stdio.h>
@@ -8,7 +8,7 @@
 
 #include "objects.h"
 
-/* Without weather there is no sky that lights the scene: a made-up afternoon. */
+/* Light for frames without weather, which have no sky to light the scene: a made-up afternoon. */
 static light bare_light(void)
 {
     light l = {.sun_direction = direction(200.0, 40.0), .illuminance = {92e3f, 86e3f, 78e3f}, .cd_m2_per_unit = 3e4};
@@ -120,10 +120,10 @@ bool demo_draw(demo *d)
         return false;
     l.lamps = d->lamps;
     if (l.lamps.intensity_cd[1] > 0.0f)
-        l.cd_m2_per_unit = fmax(l.cd_m2_per_unit, 1.0); /* what a lamp lights must fit into half floats */
+        l.cd_m2_per_unit = fmax(l.cd_m2_per_unit, 1.0); /* a lamp's light must stay within the range of half floats */
     picture *p = &d->picture;
     scene_draw(&d->scene, &c, &l, p->width, p->height, p->reversed, p->frame);
-    glFinish(); /* for the figures only: a simulator would not wait here */
+    glFinish(); /* only to measure the time: a simulator would not wait here */
     double drawn = demo_clock_ms();
     if (weather && d->measure && !weather_measure(&d->weather, p, &c, l.cd_m2_per_unit, d->frame))
         return false;
@@ -131,7 +131,7 @@ bool demo_draw(demo *d)
         return false;
     glFinish();
     double end = demo_clock_ms();
-    /* Welkin's TONE stage leaves the picture tone-mapped; without it the host maps its own. */
+    /* With weather, Welkin's TONE stage has tone-mapped the picture; without it, the host tone-maps it itself. */
     picture_present(p, weather ? 0.0f : 1.6f);
     d->weather_ms = end - drawn;
     d->ms = end - start;

@@ -1,4 +1,4 @@
-/* What is shown at the moment: which report, hour and camera; draws one frame of it. */
+/* What the demonstration currently shows (report, hour and camera), and the function that draws a frame of it. */
 #ifndef DEMO_H
 #define DEMO_H
 
@@ -17,28 +17,28 @@ typedef struct demo {
     report_list reports;
     weather_link weather;
     int report, hour, camera;
-    const camera *still; /* a camera of the caller's in place of the four; NULL: none */
-    lamp_pair lamps;     /* of the host; intensity 0: off */
-    bool bare; /* without weather: what the host draws by itself */
+    const camera *still; /* a camera from the caller in place of the four built-in ones; NULL: none */
+    lamp_pair lamps;     /* the host's lamps; intensity 0: off */
+    bool bare; /* without weather: only what the host itself draws */
     bool cut;  /* the camera jumped */
-    bool measure; /* time each effect of the next frame, whose picture is of no use */
-    bool history; /* frames go on from those before although time stands */
-    bool moving; /* time runs, and weather changes over some seconds */
-    double time_s; /* of the simulation while it stands still */
+    bool measure; /* time each effect in the next frame; that frame's picture is not used */
+    bool history; /* use the history of earlier frames although time stands still */
+    bool moving; /* time runs, and the weather changes over some seconds */
+    double time_s; /* simulation time while it stands still */
     double started_ms;
     uint64_t frame;
-    double ms; /* the last frame, GPU included */
-    double weather_ms; /* Welkin's part of it */
+    double ms; /* duration of the last frame, GPU included */
+    double weather_ms; /* Welkin's share of it */
 } demo;
 
 /*
- * `data` is the folder with the terrain and the reports, `planet` the text of a planet file or NULL. The host's context is current. See
- * picture_create for the size.
+ * `data` is the folder with the terrain and the reports; `planet` is the text of a planet file, or NULL. The host's
+ * OpenGL context must be current. For the size, see picture_create.
  */
 bool demo_open(demo *d, const platform *p, const char *data, const char *planet, int width, int height, int finer);
 void demo_close(demo *d);
 
-/* Each goes round. `step` is 1 or -1. */
+/* Step through reports, hours and cameras, wrapping around at the ends. `step` is 1 or -1. */
 bool demo_next_report(demo *d, int step);
 bool demo_next_hour(demo *d, int step);
 void demo_next_camera(demo *d, int step);
@@ -50,7 +50,7 @@ bool demo_draw(demo *d);
 
 const char *demo_camera_name(const demo *d);
 
-/* Milliseconds of a steady clock. */
+/* Time of a monotonic clock, ms. */
 double demo_clock_ms(void);
 
 #endif

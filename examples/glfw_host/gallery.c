@@ -1,4 +1,5 @@
-/* Takes one shot after the other, each with weather of its own from the start: no picture depends on the one before. */
+/* Takes the gallery's shots one after the other. Each starts with fresh weather, so no picture depends on an earlier
+ * one. */
 #include "gallery.h"
 
 #include <stdio.h>
@@ -13,7 +14,7 @@
 #define RAIN_ON_GLASS_S 50.0
 #define GLASS_STEP_S (1.0 / 20.0)
 
-/* Water on glass has a history: it is stepped without a picture. */
+/* Water on glass has a history, so its earlier frames are simulated without drawing a picture. */
 static bool let_it_rain_on_the_glass(demo *d, const shot *s)
 {
     int steps = (int)(RAIN_ON_GLASS_S / GLASS_STEP_S);
@@ -38,7 +39,7 @@ static bool write(const char *path, const uint8_t *rgb, int width, int height)
     return ok;
 }
 
-/* Each square of four pixels becomes its mean. */
+/* Averages each 2 x 2 square of pixels. */
 static void halve(uint8_t *rgb, int *width, int *height)
 {
     int w = *width / 2, h = *height / 2;

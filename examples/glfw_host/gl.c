@@ -10,7 +10,8 @@ GL_FUNCTIONS(GL_DEFINE)
 #undef GL_DEFINE
 PFNGLCLIPCONTROLPROC glClipControl;
 
-/* ISO C has no cast from an object pointer to a function pointer; every system with OpenGL lets one copy the bytes. */
+/* ISO C has no cast from an object pointer to a function pointer. Copying the bytes works on every system with
+ * OpenGL. */
 static void get(const platform *p, const char *name, void *function, size_t size)
 {
     const void *address = p->get_proc(p->user, name);

@@ -1,4 +1,4 @@
-/* OpenGL 3.3 core by function pointers, got from whoever made the context (GLFW or EGL). */
+/* OpenGL 3.3 core through function pointers, loaded from the library that created the context (GLFW or EGL). */
 #ifndef GL_H
 #define GL_H
 
@@ -8,7 +8,7 @@
 
 #include "platform.h"
 
-/* Every function that the host calls: name, type. */
+/* Every OpenGL function that the host calls: name, type. */
 #define GL_FUNCTIONS(X)                                                \
     X(glActiveTexture, PFNGLACTIVETEXTUREPROC)                         \
     X(glAttachShader, PFNGLATTACHSHADERPROC)                           \
@@ -76,14 +76,15 @@
 GL_FUNCTIONS(GL_DECLARE)
 #undef GL_DECLARE
 
-/* OpenGL 4.5; NULL on older contexts. With it depth can be reversed, which keeps distance exact to the horizon. */
+/* From OpenGL 4.5; NULL on older contexts. It allows reversed depth, which stays precise up to the horizon. */
 extern PFNGLCLIPCONTROLPROC glClipControl;
 
-/* Gets all of them; false, with the name on stderr, if one that is needed is missing. */
+/* Loads all of them. If a required function is missing, returns false and prints its name on stderr. */
 bool gl_load(const platform *p);
 
-/* Compiles and links; exits with the driver's message if the program's own GLSL is wrong. */
-/* A long fragment shader goes on in fragment_end: C99 promises no string of more than 4095 characters. Else NULL. */
+/* Compiles and links a program. If the program's own GLSL is wrong, prints the driver's message and exits. */
+/* `fragment_end` continues a long fragment shader, because C99 guarantees string literals of at most 4095 characters;
+ * otherwise NULL. */
 GLuint gl_program(const char *vertex, const char *fragment, const char *fragment_end);
 
 #endif

@@ -1,4 +1,4 @@
-/* Heights from the file, the road and the pad cut into them, and the mesh of rings. */
+/* Reads heights from the file, cuts the road and the pad into them, and builds the terrain mesh from rings. */
 #include "ground.h"
 
 #include <stdio.h>
@@ -6,7 +6,7 @@
 
 #include "png_file.h"
 
-/* 3 arc seconds at 36.59 degrees north; the site's place from the middle of the data. */
+/* Cell size: 3 arc seconds at 36.59 degrees north; and the site's position relative to the middle of the data. */
 #define SPACING_EAST_M 74.4
 #define SPACING_NORTH_M 92.5
 #define SITE_EAST_M 8400.0
@@ -25,7 +25,7 @@
 #define FIRST_RING_M 3.0
 #define LAST_RING_M 120000.0
 
-/* Index folded back into 0..n-1: the data go on mirrored. */
+/* Mirrors an index back into 0..n-1, so that the terrain repeats mirrored beyond the data. */
 static int fold(int i, int n)
 {
     int period = 2 * (n - 1);
@@ -38,13 +38,13 @@ static double sample(const ground *g, int column, int row)
     return g->heights[fold(row, g->height) * g->width + fold(column, g->width)];
 }
 
-/* Catmull-Rom through four values. */
+/* Catmull-Rom interpolation of four values. */
 static double cubic(const double p[4], double t)
 {
     return p[1] + 0.5 * t * (p[2] - p[0] + t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])));
 }
 
-/* The land without road and pad. */
+/* Terrain height without road and pad. */
 static double natural_height(const ground *g, double x, double y)
 {
     double c = (x + SITE_EAST_M) / SPACING_EAST_M + 0.5 * (g->width - 1);
@@ -60,7 +60,7 @@ static double natural_height(const ground *g, double x, double y)
     return cubic(rows, r - row);
 }
 
-/* Metres along and to the right of the axis that the site looks down. */
+/* Position in metres along the site's view axis, and to the right of it. */
 static void to_site(double x, double y, double *along, double *right)
 {
     vec3 d = direction(SITE_VIEW_AZIMUTH_DEG, 0.0);
@@ -75,7 +75,7 @@ static void from_site(double along, double right, double *x, double *y)
     *y = along * d.y - right * d.x;
 }
 
-/* The road winds about the axis. */
+/* The road winds around the axis. */
 static double road_right(double along)
 {
     return 10.0 + 26.0 * sin((along - 30.0) / 150.0) + 60.0 * (1.0 - cos(along / 620.0));
@@ -137,7 +137,7 @@ bool ground_load(ground *g, const char *png_path)
         ground_free(g);
         return false;
     }
-    /* A road is graded: the land's height, averaged over 120 m. */
+    /* The road is graded: its height is the terrain's, averaged over 120 m. */
     for (int i = 0; i < ROAD_POINTS; i++) {
         double sum = 0.0, x, y;
         for (int k = -12; k <= 12; k++) {
@@ -161,7 +161,7 @@ void ground_free(ground *g)
 
 double ground_sunlit(const ground *g, vec3 from, vec3 sun)
 {
-    const double disc = 0.0047; /* the sun's radius, rad: the width of its shadow's edge */
+    const double disc = 0.0047; /* the sun's angular radius, rad: half the width of the penumbra */
     double flat = hypot(sun.x, sun.y), lit = 1.0;
     if (sun.z <= -disc)
         return 0.0;
@@ -171,7 +171,7 @@ double ground_sunlit(const ground *g, vec3 from, vec3 sun)
     for (double d = 60.0; d < 20000.0 && lit > 0.0; d *= 1.22) {
         double above = from.z + rise * d - ground_z(g, from.x + dx * d, from.y + dy * d);
         lit = fmin(lit, 0.5 + 0.5 * above / (disc * d));
-        if (from.z + rise * d > 1100.0) /* above every summit of the data */
+        if (from.z + rise * d > 1100.0) /* above every summit in the data */
             break;
     }
     return clamp(lit, 0.0, 1.0);

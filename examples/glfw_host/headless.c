@@ -1,5 +1,5 @@
-/* OpenGL without a display, by EGL: no X server, no window, no surface where the driver can do without. Windows has no
- * such thing: there a window that is never shown serves. */
+/* OpenGL without a display, through EGL: no X server and no window, and no surface where the driver allows that.
+ * Windows has no equivalent, so a hidden window is used there. */
 #include "platform.h"
 
 #ifdef _WIN32
@@ -56,7 +56,7 @@ static bool has(const char *extensions, const char *name)
     return at && (at[strlen(name)] == ' ' || at[strlen(name)] == '\0');
 }
 
-/* The first GPU that answers, or Mesa's software driver. */
+/* Picks the first GPU that works, or Mesa's software driver. */
 static bool open_display(void)
 {
     const char *client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -88,7 +88,7 @@ static bool open_contexts(void)
 {
     static const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     static const EGLint tiny[] = {EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
-    /* The newest core profile that the driver has; 3.3 is enough for the host. */
+    /* The newest core profile that the driver offers; the host needs only 3.3. */
     static const EGLint versions[][2] = {{4, 5}, {4, 3}, {3, 3}};
     bool surfaceless = has(eglQueryString(egl.display, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context");
     EGLConfig config;

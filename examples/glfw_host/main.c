@@ -1,6 +1,6 @@
 /*
- * A simulator's world in OpenGL, with Welkin's weather in it. With a display it opens a window; with none it writes
- * pictures. What a simulator's author would copy is weather_link.c: the rest is the simulator.
+ * A simulator's world in OpenGL, with Welkin's weather in it. With a display it opens a window; without one it writes
+ * pictures. A simulator's author would copy weather_link.c; the rest is the simulator.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,7 +26,7 @@ static const char USAGE[] =
 
 static const char NAME[] = "glfw_host";
 
-/* Options of a value; false, with a line on stderr, for a value that does not serve. */
+/* Handles options that take a value. For a bad value, returns false and prints a line on stderr. */
 static bool read_size(const char *text, int *width, int *height)
 {
     int end = 0;
@@ -44,7 +44,8 @@ static bool is_one_of(const char *word, const char *const *words)
     return *words != NULL;
 }
 
-/* The text of a file, to be freed; NULL with a line on stderr if it cannot be read. */
+/* Returns the text of a file, which the caller frees. If it cannot be read, returns NULL and prints a line on
+ * stderr. */
 static char *text_of(const char *path)
 {
     FILE *file = fopen(path, "rb");
@@ -65,7 +66,7 @@ int main(int argc, char **argv)
     const char *data = "examples/data", *out = "out", *planet_file = NULL;
     int width = 0, height = 0, frames = 0, report = 0;
     bool headless = !window_possible(), gallery = false;
-    char **names = argv; /* gathered where the arguments stood */
+    char **names = argv; /* collected in place, over the arguments */
     int name_count = 0;
     static const char *const WITH_VALUE[] = {"--data", "--out", "--planet", "--frames", "--report", "--size", NULL};
     if (command_line_answered(argc, argv, NAME, USAGE))

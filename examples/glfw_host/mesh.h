@@ -1,4 +1,4 @@
-/* Triangles in memory, and the two solids that everything built stands for: boxes and cones. */
+/* Triangles in memory, and the two solids from which all objects are built: boxes and cones. */
 #ifndef MESH_H
 #define MESH_H
 
@@ -8,10 +8,10 @@
 #include "vec.h"
 
 typedef struct vertex {
-    float position[3]; /* m, east north up of the site */
+    float position[3]; /* metres east, north and up of the site */
     float normal[3];
     float albedo[3]; /* linear Rec. 709 reflectance */
-    float road;      /* m to the right of the road's centre line; only the ground's shader looks at it */
+    float road;      /* m to the right of the road's centre line; only the ground's shader reads it */
 } vertex;
 
 typedef struct mesh {
@@ -24,10 +24,10 @@ uint32_t mesh_vertex(mesh *m, vertex v);
 void mesh_triangle(mesh *m, uint32_t a, uint32_t b, uint32_t c);
 void mesh_free(mesh *m);
 
-/* A box of `size`, its middle at the origin of `place`. */
+/* Adds a box of `size`, centred at the origin of `place`. */
 void mesh_box(mesh *m, mat4 place, vec3 size, vec3 albedo);
 
-/* A cone that stands on `foot`, smooth all round. */
+/* Adds a cone standing on `foot`, with smooth normals. */
 void mesh_cone(mesh *m, vec3 foot, double radius, double height, int sides, vec3 albedo);
 
 #endif

@@ -11,13 +11,13 @@ vec3 objects_survey_eye(const ground *g)
     return vec(0.0, 0.0, ground_z(g, 0.0, 0.0) + 9.0);
 }
 
-/* A box in the frame of `parent`, its middle at (x, y, z). */
+/* Adds a box in the frame of `parent`, centred at (x, y, z). */
 static void part(mesh *m, mat4 parent, vec3 middle, vec3 size, vec3 albedo)
 {
     mesh_box(m, multiply(parent, translation(middle)), size, albedo);
 }
 
-/* A beam of `length` along the arm's y axis, from a joint; returns the frame at its far end. */
+/* Adds a beam of `length` along the arm's y axis, starting at a joint; returns the frame at its far end. */
 static mat4 beam(mesh *m, mat4 joint, double pitch_deg, double length, double width, double depth)
 {
     mat4 turned = multiply(joint, rotation(0, RAD(pitch_deg)));
@@ -51,7 +51,7 @@ static void excavator(const ground *g, mesh *m)
 {
     double x, y;
     ground_pad(&x, &y);
-    /* It looks to the right of the axis, so that boom and cab both show from the hillside. */
+    /* The excavator faces to the right of the axis, so that both boom and cab are visible from the hillside. */
     mat4 base = multiply(translation(vec(x, y, ground_z(g, x, y))), rotation(2, RAD(-SITE_VIEW_AZIMUTH_DEG - 70.0)));
     undercarriage(m, base);
     mat4 house = multiply(base, multiply(translation(vec(0, 0, 1.1)), rotation(2, RAD(12.0))));
@@ -70,7 +70,7 @@ static void excavator(const ground *g, mesh *m)
     bucket(m, end);
 }
 
-/* Each post looks as tall as the next: what differs from one to another is the air between. */
+/* All posts look equally tall from the eye: they differ only in the air in front of them. */
 static void posts(const ground *g, mesh *m)
 {
     vec3 eye = objects_survey_eye(g);
@@ -87,7 +87,7 @@ static void posts(const ground *g, mesh *m)
     }
 }
 
-/* Numbers in [0, 1) that are the same in every run. */
+/* Pseudo-random numbers in [0, 1), the same in every run. */
 static double chance(uint32_t *state)
 {
     *state = *state * 1664525u + 1013904223u; /* Numerical Recipes' generator: good enough for trees */
@@ -102,7 +102,7 @@ static void wood(const ground *g, mesh *m)
         vec3 at = scale(direction(azimuth, 0.0), away);
         double tall = 7.0 + 9.0 * chance(&state), green = 0.75 + 0.5 * chance(&state);
         double patch = sin(at.x / 90.0 + 1.3) + sin(at.y / 70.0) + sin((at.x + at.y) / 130.0);
-        /* Trees stand in groves, off the road, off the pad, and not before the posts. */
+        /* Trees stand in groves. None stand on the road, on the pad, or in front of the posts. */
         double side = remainder(azimuth - SITE_VIEW_AZIMUTH_DEG, 360.0);
         double pad_x, pad_y;
         ground_pad(&pad_x, &pad_y);
@@ -128,7 +128,7 @@ void objects_bridge(const ground *g, solid boxes[BRIDGE_BOXES])
     mat4 foot = multiply(translation(vec(x, y, ground_z(g, x, y))), rotation(2, -atan2(ahead_x - x, ahead_y - y)));
     const double clear = BRIDGE_CLEARANCE_M;
     int n = 0;
-    /* x across the road, y along it. */
+    /* x runs across the road, y along it. */
     boxes[n++] = (solid){multiply(foot, translation(vec(0, 0, clear + 0.5))), vec(70, 13, 1.0)};
     for (int side = -1; side <= 1; side += 2) {
         boxes[n++] = (solid){multiply(foot, translation(vec(0, 6.375 * side, clear + 1.5))), vec(70, 0.25, 1.0)};
@@ -154,7 +154,7 @@ void objects_barn(const ground *g, solid boxes[BARN_BOXES])
     vec3 away = scale(direction(BARN_AZIMUTH_DEG, 0.0), BARN_AWAY_M);
     double x = pad_x + away.x, y = pad_y + away.y;
     mat4 foot = multiply(translation(vec(x, y, ground_z(g, x, y))), rotation(2, RAD(-BARN_AZIMUTH_DEG)));
-    /* x along the ridge, y to windward; walls go into the ground, which is not level. */
+    /* x runs along the ridge, y to windward; the walls extend below the ground, which is not level. */
     boxes[0] = (solid){multiply(foot, translation(vec(0, 0, 1.5))), vec(16, 9, 6)};
     boxes[1] = (solid){multiply(foot, translation(vec(0, 0, 4.65))), vec(17, 10, 0.3)};
     boxes[2] = (solid){multiply(foot, translation(vec(0, -6.0, 2.9))), vec(9, 3.2, 0.15)};
@@ -169,7 +169,7 @@ void objects_barn_mesh(const ground *g, mesh *m)
     objects_barn(g, boxes);
     for (int i = 0; i < BARN_BOXES; i++)
         mesh_box(m, boxes[i].place, boxes[i].size, i == 0 ? boards : i < 3 ? slates : beams);
-    /* A door under the porch, and windows beside it. */
+    /* A door under the porch, with windows beside it. */
     part(m, boxes[0].place, vec(0, -4.52, -0.1), vec(2.6, 0.06, 2.8), beams);
     for (int side = -1; side <= 1; side += 2)
         part(m, boxes[0].place, vec(5.9 * side, -4.52, 0.4), vec(1.3, 0.06, 1.1), GLASS);

@@ -13,12 +13,12 @@ typedef struct swatch {
 
 typedef struct box {
     size_t first, count;
-    double error; /* what splitting it could gain: variance times pixels along its longest axis */
+    double error; /* possible gain from splitting the box: variance along its longest axis times pixels */
     int axis;
     double mean[3];
 } box;
 
-/* About as the eye weighs differences of encoded red, green and blue. */
+/* Approximate weights of the eye for differences of encoded red, green and blue. */
 static const float WEIGHTS[3] = {3, 4, 2};
 
 static int by_color(const void *a, const void *b) { return memcmp(a, b, 3); }
@@ -29,7 +29,7 @@ static int by_axis(const void *a, const void *b)
     return ((const swatch *)a)->c[sort_axis] - ((const swatch *)b)->c[sort_axis];
 }
 
-/* The distinct colours, each with how often it is there. */
+/* Collects the distinct colours, each with the number of its pixels. */
 static size_t gather(swatch *list, const uint8_t *rgb, size_t pixels)
 {
     for (size_t i = 0; i < pixels; i++) {
@@ -66,7 +66,7 @@ static void measure(box *b, const swatch *list)
     }
 }
 
-/* Cuts a box in two at the mean of its longest axis. */
+/* Splits a box in two at the mean of its longest axis. */
 static void split(box *low, box *high, swatch *list)
 {
     sort_axis = low->axis;
@@ -122,7 +122,7 @@ bool palette_choose(palette *p, const uint8_t *rgb, int width, int height, uint8
         cut(p, list, gather(list, rgb, pixels));
     for (int y = 0; list && errors && y < height; y++) {
         float *here = errors + (size_t)(y % 2) * row, *below = errors + (size_t)(1 - y % 2) * row;
-        int step = y % 2 ? -1 : 1; /* to and fro, so that errors make no slanted lines */
+        int step = y % 2 ? -1 : 1; /* alternate the direction row by row, so that errors form no slanted lines */
         memset(below, 0, row * sizeof *below);
         for (int i = 0; i < width; i++) {
             int x = step > 0 ? i : width - 1 - i;
@@ -133,7 +133,7 @@ bool palette_choose(palette *p, const uint8_t *rgb, int width, int height, uint8
             int k = nearest(p, wanted);
             indices[(size_t)y * (size_t)width + (size_t)x] = (uint8_t)k;
             for (int c = 0; c < 3; c++) {
-                float e = (wanted[c] - p->rgb[k][c]) * (0.85f / 16.0f); /* less than all of it: calmer, and fewer bytes */
+                float e = (wanted[c] - p->rgb[k][c]) * (0.85f / 16.0f); /* not all of it: calmer, smaller file */
                 at[3 * step + c] += 7.0f * e, under[-3 * step + c] += 3.0f * e;
                 under[c] += 5.0f * e, under[3 * step + c] += e;
             }

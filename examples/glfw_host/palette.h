@@ -1,4 +1,5 @@
-/* A picture in 256 colours of its own: a third of the bytes, and its grain hides the steps of eight bits. */
+/* Converts a picture to a palette of 256 colours of its own: a third of the bytes, and its grain hides 8-bit
+ * banding. */
 #ifndef PALETTE_H
 #define PALETTE_H
 
@@ -10,7 +11,8 @@ typedef struct palette {
     int count;
 } palette;
 
-/* Chooses the colours (median cut, Heckbert 1982) and writes one index a pixel, errors carried on (Floyd and Steinberg 1976). */
+/* Chooses the colours (median cut, Heckbert 1982) and writes one index per pixel with error diffusion (Floyd and
+ * Steinberg 1976). */
 bool palette_choose(palette *p, const uint8_t *rgb, int width, int height, uint8_t *indices);
 
 #endif

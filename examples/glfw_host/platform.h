@@ -1,6 +1,7 @@
 /*
- * Who made the OpenGL contexts: GLFW where there is a display, EGL where there is none. Both make two, the host's own
- * and a second one that shares its objects, in which Welkin draws: so none of the host's OpenGL state can change.
+ * The source of the OpenGL contexts: GLFW with a display, EGL without one. Both create two contexts: the host's own,
+ * and a second one that shares its objects. Welkin draws in the second one, so it cannot change any of the host's
+ * OpenGL state.
  */
 #ifndef PLATFORM_H
 #define PLATFORM_H
@@ -14,12 +15,13 @@
 typedef struct platform {
     /* Address of an OpenGL function, or NULL. */
     const void *(*get_proc)(void *user, const char *name);
-    /* Makes one of the two contexts current on the calling thread; 0 if that went well. */
+    /* Makes one of the two contexts current on the calling thread; returns 0 on success. */
     int (*make_current)(void *user, uint32_t which);
     void *user;
 } platform;
 
-/* Contexts without any display. False, with a message on stderr, if this machine has no EGL that serves. */
+/* Creates contexts without a display. If this machine has no usable EGL, returns false and prints a message on
+ * stderr. */
 bool headless_open(platform *p);
 void headless_close(platform *p);
 

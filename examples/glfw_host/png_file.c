@@ -1,4 +1,5 @@
-/* PNG files by libpng. libpng reports faults by longjmp, so nothing is allocated between setjmp and the work. */
+/* PNG files by libpng. libpng reports errors by longjmp, so nothing is allocated between setjmp and the libpng
+ * calls. */
 #include "png_file.h"
 
 #include <stdio.h>
@@ -36,7 +37,7 @@ bool png_read_grey16(const char *path, uint16_t **pixels, int *width, int *heigh
         *height = (int)png_get_image_height(png, info);
         if (png_get_bit_depth(png, info) != 16 || png_get_color_type(png, info) != PNG_COLOR_TYPE_GRAY)
             png_error(png, "is not a 16-bit grey picture");
-        png_set_swap(png); /* PNG is big-endian; the machines that this runs on are little-endian */
+        png_set_swap(png); /* PNG is big-endian; the machines that run this are little-endian */
         int passes = png_set_interlace_handling(png);
         data = malloc((size_t)*width * (size_t)*height * sizeof *data);
         if (!data)
@@ -56,13 +57,13 @@ bool png_read_grey16(const char *path, uint16_t **pixels, int *width, int *heigh
     return true;
 }
 
-/* Rows of RGB, or of indices where there is a palette. */
+/* Writes rows of RGB, or of palette indices if there is a palette. */
 static bool write_rows(const char *path, const uint8_t *pixels, int width, int height, const uint8_t (*colors)[3], int count)
 {
     const size_t row_bytes = (size_t)width * (colors ? 1 : 3);
     FILE *file = fopen(part_begin(path), "wb");
     if (!file)
-        return part_end(path, false) || fail(path, "cannot be written"); /* nothing of it is there */
+        return part_end(path, false) || fail(path, "cannot be written"); /* no partial file is left */
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, (png_voidp)path, on_fault, NULL);
     png_infop info = png_create_info_struct(png);
     volatile bool ok = false;

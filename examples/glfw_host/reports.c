@@ -1,17 +1,18 @@
-/* Reading the reports; the hours of one autumn day at the site. */
+/* Reads the weather reports. Also has the hours of one autumn day at the site. */
 #include "reports.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* 2026-10-22 00:00 UTC. The sun sets then where the camera looks, and a half moon stands in the evening sky. */
+/* 2026-10-22 00:00 UTC. On this day the sun sets in the camera's direction, and a half moon stands in the evening
+ * sky. */
 #define DAY_S 1792627200.0
 #define UTC(hours, minutes) (DAY_S + (hours)*3600.0 + (minutes)*60.0)
 
 const hour HOURS[HOUR_COUNT] = {
     {"noon", UTC(17, 20)},       /* local noon */
     {"low sun", UTC(21, 40)},
-    {"sunset", UTC(22, 42)},     /* the disc touches the hills */
+    {"sunset", UTC(22, 42)},     /* the sun's disc touches the hills */
     {"dusk", UTC(23, 10)},
     {"moonlight", UTC(25, 30)},
 };

@@ -7,8 +7,8 @@
 #define MAX_REPORTS 64
 
 typedef struct report {
-    char name[64];   /* the comment above it */
-    char metar[256]; /* as an airport sends it */
+    char name[64];   /* from the comment line above the report */
+    char metar[256]; /* the report as an airport sends it */
 } report;
 
 typedef struct report_list {
@@ -16,12 +16,13 @@ typedef struct report_list {
     int count;
 } report_list;
 
-/* A file of `# name` lines, each followed by a report. False, with a message on stderr, if there is none in it. */
+/* Reads a file of `# name` lines, each followed by a report. If it has none, returns false and prints a message on
+ * stderr. */
 bool reports_read(report_list *list, const char *path);
 
 typedef struct hour {
     const char *name;
-    double utc_s; /* seconds since 1970-01-01 00:00 UTC, leap seconds not counted */
+    double utc_s; /* seconds since 1970-01-01 00:00 UTC, without leap seconds */
 } hour;
 
 #define HOUR_COUNT 5

@@ -1,4 +1,4 @@
-/* Uploads the world, keeps its shadows, draws it. */
+/* Uploads the world, updates its shadows and draws it. */
 #include "scene.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@
 
 #define NEAR_M 0.5
 #define SHADOW_SIZE 2048
-#define SHADOW_HALF_M 70.0 /* about the pad */
+#define SHADOW_HALF_M 70.0 /* around the pad */
 
 static void attribute(GLuint index, GLint count, size_t offset)
 {
@@ -115,7 +115,7 @@ mat4 camera_projection(const camera *c, double aspect, bool reversed)
     return p;
 }
 
-/* The terrain's own shadows, a value a vertex, worked out anew when the sun has moved a quarter of a degree. */
+/* Shadows cast by the terrain, one value per vertex, computed again when the sun has moved by a quarter of a degree. */
 static void shade_terrain(scene *s, vec3 sun)
 {
     if (dot(sun, s->shaded_for) > cos(RAD(0.25)))
@@ -129,7 +129,7 @@ static void shade_terrain(scene *s, vec3 sun)
     glBufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)(s->mesh.vertex_count * sizeof(float)), s->lit);
 }
 
-/* World to shadow clip space: a square about the pad, seen along the sun's rays. */
+/* World to shadow clip space: a square around the pad, seen along the sun's rays. */
 static mat4 shadow_matrix(const scene *s, vec3 sun)
 {
     double x, y;
@@ -206,7 +206,7 @@ static void set_lamps(GLuint p, const lamp_pair *l)
     glUniform2f(glGetUniformLocation(p, "lamp_cosines"), (float)cos(RAD(l->outer_deg)), (float)cos(RAD(l->inner_deg)));
 }
 
-/* What takes the sky's light from what is below it. */
+/* Sets the bridge's deck, which blocks the sky's light for what is below it. */
 static void set_deck(const scene *s)
 {
     solid boxes[BRIDGE_BOXES];

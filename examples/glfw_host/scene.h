@@ -1,4 +1,4 @@
-/* The host's world on the GPU and how it is drawn: what a simulator has before it has weather. */
+/* The host's world on the GPU and how it is drawn: the part a simulator has before it has weather. */
 #ifndef SCENE_H
 #define SCENE_H
 
@@ -12,7 +12,7 @@ typedef struct camera {
     double fov_y;  /* rad */
 } camera;
 
-/* What stands there in some pictures only. */
+/* Objects that stand in some pictures only. */
 typedef enum extra { NO_EXTRA, BRIDGE, BARN, EXTRAS } extra;
 
 typedef struct scene {
@@ -21,27 +21,27 @@ typedef struct scene {
     GLsizei ground_indices, object_indices;
     GLsizei extra_first[EXTRAS], extra_indices[EXTRAS];
     extra extra;
-    bool empty; /* nothing is drawn, as from space */
+    bool empty; /* draw nothing, as seen from space */
     GLuint array, vertices, indices, sunlit;
     GLuint shadow_texture, shadow_frame;
     GLuint program, shadow_program;
-    vec3 shaded_for; /* the sun's direction for which terrain shadows were worked out */
+    vec3 shaded_for; /* the sun's direction for which the terrain's shadows were computed */
     float *lit;
 } scene;
 
 bool scene_create(scene *s, const char *terrain_png);
 void scene_destroy(scene *s);
 
-/* World to eye, without translation. */
+/* World to eye, rotation only. */
 mat4 camera_view(const camera *c);
 
 /*
- * Eye to clip, far plane at infinity. Reversed (near 1, far 0) with zero-to-one clip space where OpenGL can do so,
- * else as OpenGL has always done.
+ * Eye to clip, far plane at infinity. Where OpenGL supports it, depth is reversed (near 1, far 0) in zero-to-one clip
+ * space; otherwise it is OpenGL's usual depth.
  */
 mat4 camera_projection(const camera *c, double aspect, bool reversed);
 
-/* Draws the world into the bound framebuffer, which it clears. */
+/* Clears the bound framebuffer and draws the world into it. */
 void scene_draw(scene *s, const camera *c, const light *l, int width, int height, bool reversed, GLuint framebuffer);
 
 #endif

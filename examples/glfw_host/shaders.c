@@ -1,4 +1,4 @@
-/* The world, its shadow map, and the last pass that encodes the picture for the display. */
+/* GLSL of the world, its shadow map, and the last pass, which encodes the picture for the display. */
 #include "shaders.h"
 
 const char *const SCENE_VERTEX =
@@ -26,10 +26,10 @@ const char *const SCENE_FRAGMENT =
     "uniform bool ground;\n"
     "uniform vec2 pad;\n"               /* east, north, m */
     "uniform vec3 sun_direction;\n"
-    "uniform vec3 sun_illuminance;\n"   /* on a surface that faces the sun */
+    "uniform vec3 sun_illuminance;\n"   /* on a surface facing the sun */
     "uniform vec3 ambient[9];\n"        /* radiance of the sky as spherical harmonics */
     "uniform sampler2DShadow shadow_map;\n"
-    "uniform float per_unit;\n"         /* 1 / luminance of the value 1 */
+    "uniform float per_unit;\n"         /* 1 / luminance of the picture value 1 */
     "layout(location = 0) out vec4 colour;\n"
     "layout(location = 1) out vec4 surface_class;\n"
     "const float PI = 3.14159265;\n"
@@ -48,7 +48,7 @@ const char *const SCENE_FRAGMENT =
     "    return mix(n, 0.5, smoothstep(0.3, 1.0, footprint / size));\n"
     "}\n"
 
-    /* The pad's dirt ends in a ragged line. */
+    /* The pad's dirt has a ragged edge. */
     "float pad_edge(float foot) { return length(v_position.xy - pad) + 5.0 * (noise(3.0, foot) - 0.5); }\n"
     "float footprint() { return sqrt(length(dFdx(v_position.xy)) * length(dFdy(v_position.xy))); }\n"
 
@@ -77,7 +77,8 @@ const char *const SCENE_FRAGMENT =
     "    return mix(asphalt, albedo, smoothstep(3.5 - soft, 3.6 + soft, d));\n"
     "}\n"
 
-    /* A wk_surface_class: paved road, soil beside it and on the pad, rock on steep faces, plants elsewhere; machines and sheds. */
+    /* Returns a wk_surface_class: paved road; soil beside it and on the pad; rock on steep faces; plants elsewhere.
+     * Also machines and sheds. */
     "float made_of(vec3 n) {\n"
     "    if (!ground) return v_albedo.g > 1.5 * v_albedo.r ? 4.0 : 6.0;\n"
     "    if (abs(v_road) < 3.55) return 3.0;\n"
@@ -85,12 +86,12 @@ const char *const SCENE_FRAGMENT =
     "    return n.z < 0.75 ? 2.0 : 4.0;\n"
     "}\n";
 
-/* How the ground and all else is lit. */
+/* Lighting of the ground and all objects. */
 const char *const SCENE_FRAGMENT_END =
     "uniform vec3 lamp_position[2], lamp_direction[2], lamp_intensity;\n"
-    "uniform vec2 lamp_cosines;\n"     /* of where the beam has ended, of where it is full */
-    "uniform vec3 deck_foot, deck_right;\n" /* middle of the underside of a bridge; across the road */
-    "uniform vec2 deck_half;\n"        /* 0: there is none */
+    "uniform vec2 lamp_cosines;\n"     /* of the angle where the beam ends, of the angle where it starts to fade */
+    "uniform vec3 deck_foot, deck_right;\n" /* centre of a bridge's underside; direction across the road */
+    "uniform vec2 deck_half;\n"        /* 0: no bridge */
 
     "float sun_visibility(float cosine) {\n"
     "    if (any(lessThan(v_shadow, vec3(0.0))) || any(greaterThan(v_shadow, vec3(1.0)))) return v_sunlit;\n"
@@ -111,8 +112,9 @@ const char *const SCENE_FRAGMENT_END =
     "    return max(e, vec3(0.0));\n"
     "}\n"
 
-    /* Part of the sky over level ground that a level rectangle hides, one of whose corners is `a` away over its height; odd in
-       both, so that four corners make any rectangle (Howell, Catalog of Radiation Heat Transfer Configuration Factors, B-4). */
+    /* Share of the sky over level ground that a level rectangle hides, when one of its corners is above the point and
+     * the opposite one is at `a`, divided by its height. Odd in both components, so that four corners make any
+     * rectangle (Howell, Catalog of Radiation Heat Transfer Configuration Factors, B-4). */
     "float hidden_by(vec2 a) {\n"
     "    vec2 r = inversesqrt(1.0 + a * a);\n"
     "    return (a.x * r.x * atan(a.y * r.x) + a.y * r.y * atan(a.x * r.y)) / (2.0 * PI);\n"
@@ -121,7 +123,7 @@ const char *const SCENE_FRAGMENT_END =
     "    vec3 p = v_position - deck_foot;\n"
     "    if (deck_half.x == 0.0 || p.z > 0.02 || (p.z > -0.02 && n.z > 0.5)) return 1.0;\n"
     "    vec2 at = vec2(dot(p.xy, deck_right.xy), dot(p.xy, vec2(-deck_right.y, deck_right.x)));\n"
-    /* The underside is lit by ground that lies in the deck's own shade. */
+    /* The underside is lit by the ground in the deck's own shade. */
     "    if (p.z > -0.02 && n.z < -0.5) return 0.35;\n"
     "    float below = max(-p.z, 0.02);\n"
     "    vec2 a = (-deck_half - at) / below, b = (deck_half - at) / below;\n"
@@ -159,7 +161,7 @@ const char *const SHADOW_FRAGMENT =
     "#version 330 core\n"
     "void main() {}\n";
 
-/* One triangle that covers the picture. */
+/* One triangle that covers the whole picture. */
 const char *const PRESENT_VERTEX =
     "#version 330 core\n"
     "void main() {\n"
@@ -170,17 +172,18 @@ const char *const PRESENT_VERTEX =
 const char *const PRESENT_FRAGMENT =
     "#version 330 core\n"
     "uniform sampler2D picture;\n"
-    "uniform int finer;\n"        /* samples along each side of a pixel */
+    "uniform int finer;\n"        /* samples along each side of a displayed pixel */
     "uniform float exposure;\n"   /* 0: the picture is tone-mapped already */
     "out vec4 encoded;\n"
-    "uniform float grain;\n"      /* 1: hides the steps of eight bits; 0: none, for files that are to be small */
+    "uniform float grain;\n"      /* 1: hides 8-bit banding; 0: none, for small files */
     "float dither(uvec2 p) {\n"
     "    uint h = p.x * 0x8da6b343u ^ p.y * 0xd8163841u;\n"
     "    h = (h ^ (h >> 15u)) * 0x2c1b3c6du; h = (h ^ (h >> 12u)) * 0x297a2d39u;\n"
     "    return float(h >> 8u) / 16777216.0 - 0.5;\n"
     "}\n"
     "void main() {\n"
-    /* Samples are averaged as the display's light: averaged before the tone curve, an edge before the sun would stay jagged. */
+    /* Samples are averaged after tone mapping, as display light. Averaged before it, an edge in front of the sun would
+     * stay jagged. */
     "    ivec2 first = ivec2(gl_FragCoord.xy) * finer;\n"
     "    vec3 x = vec3(0.0);\n"
     "    for (int i = 0; i < finer * finer; i++) {\n"

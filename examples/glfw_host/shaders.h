@@ -1,4 +1,4 @@
-/* The host's own GLSL. It knows nothing of weather: it draws a clear world in the light it is given. */
+/* The host's own GLSL. It knows nothing of weather: it draws a clear world in the light that it is given. */
 #ifndef SHADERS_H
 #define SHADERS_H
 

@@ -1,4 +1,4 @@
-/* Layout, averaging down, and a 5 x 7 dot font for captions. */
+/* Layout, downscaling by averages, and a 5 x 7 dot font for captions. */
 #include "sheet.h"
 
 #include <ctype.h>
@@ -9,7 +9,7 @@
 #define LINE 20 /* height of a caption */
 #define TITLE_HEIGHT (LINE + GAP)
 
-/* Seven rows of five dots, the leftmost in bit 4. */
+/* Glyphs of seven rows of five dots; bit 4 is the leftmost dot. */
 static const uint8_t GLYPHS[128][7] = {
     ['%'] = {0x19,0x19,0x02,0x04,0x08,0x13,0x13},
     ['('] = {0x02,0x04,0x08,0x08,0x08,0x04,0x02},

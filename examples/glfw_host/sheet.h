@@ -8,20 +8,21 @@
 typedef struct sheet {
     uint8_t *rgb;
     int width, height;
-    int cell_width, cell_height; /* of the small copies */
+    int cell_width, cell_height; /* size of the small copies */
 } sheet;
 
 bool sheet_create(sheet *s, int columns, int rows, int cell_width, int cell_height);
 void sheet_destroy(sheet *s);
 
-/* Captions: above a column, and above a row of pictures. Upper case is all there is; the rest is left out. */
+/* Captions above a column and above a row of pictures. The font has upper case only; characters that it lacks are left
+ * out. */
 void sheet_title(sheet *s, int column, const char *text);
 void sheet_caption(sheet *s, int row, const char *text);
 
-/* A picture of any size that is a whole multiple of the cell's, averaged down. */
+/* Adds a picture, averaged down. Its size must be a whole multiple of the cell's. */
 void sheet_put(sheet *s, int column, int row, const uint8_t *rgb, int width, int height);
 
-/* Writes text onto any 8-bit picture: its upper left corner, `zoom` pixels a dot. */
+/* Writes text onto any 8-bit picture, from its upper left corner, with `zoom` pixels per dot. */
 void draw_text(uint8_t *rgb, int width, int height, int x, int y, int zoom, const char *text);
 
 #endif

@@ -1,4 +1,4 @@
-/* Weather in Welkin's own terms, where a report has no figure for it. */
+/* Weather set in Welkin's own terms, for what a report cannot state. */
 #include "shots.h"
 
 #include "objects.h"
@@ -30,7 +30,7 @@ static void fall(wk_weather *w, wk_precipitation_kind kind, double rate_mm_h, do
     w->wind_from_deg = wind_from_deg;
 }
 
-/* `cloud` may be NULL. */
+/* Sets the weather; `cloud` may be NULL. */
 static bool set(demo *d, wk_weather *w, const wk_cloud_layer *cloud)
 {
     w->clouds = cloud;
@@ -46,7 +46,7 @@ bool sun_at(demo *d, double azimuth_deg, double elevation_deg)
     return weather_check(wk_context_set_sun(d->weather.context, &sun));
 }
 
-/* Clear air at one of the host's hours; sun and moon where the almanac has them. */
+/* Clear air at one of the host's hours, with sun and moon where the almanac puts them. */
 static bool clear(demo *d, int hour)
 {
     wk_weather w = weather_here(40e3, 0.5);
@@ -55,7 +55,7 @@ static bool clear(demo *d, int hour)
 
 static bool noon(demo *d) { return clear(d, 0); }
 
-/* Some minutes before the hour at which the disc touches the hills. */
+/* Some minutes before the hour at which the sun's disc touches the hills. */
 static bool sunset(demo *d)
 {
     return clear(d, 2) && weather_clock(&d->weather, HOURS[2].utc_s - 300.0);
@@ -64,7 +64,7 @@ static bool sunset(demo *d)
 static bool twilight(demo *d) { return clear(d, 3); }
 static bool night(demo *d) { return clear(d, 4); }
 
-/* The same clear air with the sun elsewhere, for the pictures from high up. */
+/* Clear air with the sun in another place, for the pictures from high up. */
 static bool clear_with_sun(demo *d, double azimuth_deg, double elevation_deg)
 {
     return clear(d, 0) && sun_at(d, azimuth_deg, elevation_deg);
@@ -74,7 +74,7 @@ static bool twelve_km(demo *d) { return clear_with_sun(d, 60, 25); }
 static bool space(demo *d) { return clear_with_sun(d, 30, 5); }
 static bool shadow(demo *d) { return clear_with_sun(d, 10, -9); }
 
-/* Layers of cloud as a volume, from the lowest up. */
+/* Draws cloud layers as volumes, ordered from the lowest up. */
 static bool cloudy(demo *d, const wk_cloud_layer *layers, uint32_t count)
 {
     wk_weather w = weather_here(40e3, 0.5);
@@ -112,7 +112,7 @@ static bool altocumulus(demo *d)
     return cloudy(d, &l, 1) && sun_at(d, 170, 40);
 }
 
-/* The sun stands in the picture, above its middle. */
+/* The sun is in the picture, above its middle. */
 static bool halo(demo *d)
 {
     wk_cloud_layer l = layer(WK_CLOUD_CIRROSTRATUS, 1.0, 8500.0);
@@ -123,11 +123,11 @@ static bool halo(demo *d)
 static bool limb_with_clouds(demo *d)
 {
     wk_cloud_layer l[] = {layer(WK_CLOUD_STRATUS, 0.5, 1000.0), layer(WK_CLOUD_CIRRUS, 0.3, 9000.0)};
-    l[0].spacing_m = 20e3; /* whole fields of cloud: single ones are smaller than a pixel */
+    l[0].spacing_m = 20e3; /* whole cloud fields: single clouds are smaller than a pixel */
     return cloudy(d, l, 2) && sun_at(d, 60, 30);
 }
 
-/* Haze under gaps, the sun in front, to the left. */
+/* Haze under gaps in the cloud, with the sun ahead, to the left. */
 static bool shafts(demo *d)
 {
     wk_weather w = weather_here(8000, 0.7);
@@ -263,7 +263,7 @@ static bool wet_road(demo *d)
     w.surface_state = WK_SURFACE_STANDING_WATER;
     w.wind_speed_m_s = 2.0;
     w.wind_from_deg = 250.0;
-    /* Against the sun, as a photographer would: a stop less. */
+    /* Against the sun, exposed one stop less, as a photographer would. */
     return sun_at(d, 255, 9) && set(d, &w, &heaps) &&
            weather_check(wk_context_set_cloud_model(d->weather.context, WK_CLOUD_MODEL_VOLUME)) &&
            weather_check(wk_context_set_exposure(d->weather.context, WK_EXPOSURE_AUTO, -1.0));
@@ -279,7 +279,7 @@ static bool blowing_sand(demo *d)
     return sun_at(d, 150, 40) && set(d, &w, NULL);
 }
 
-/* `ahead_m` down the axis that the site looks along. */
+/* A rain area whose centre lies `ahead_m` along the site's view axis and `right_m` to the right of it. */
 static wk_rain_area shower(double ahead_m, double right_m, double semi_right_m, double semi_ahead_m, double rate_mm_h)
 {
     wk_rain_area a = WK_RAIN_AREA_INIT;
@@ -310,7 +310,7 @@ static bool rain_shaft(demo *d)
            weather_check(wk_context_set_rain_areas(d->weather.context, areas, 3, sizeof areas[0]));
 }
 
-/* A cell of cumulonimbus stands over the rain by itself, with its anvil. */
+/* A single cumulonimbus with its anvil stands over the rain. */
 static bool thunderstorm(demo *d)
 {
     wk_weather w = weather_here(70e3, 0.5);
@@ -318,13 +318,13 @@ static bool thunderstorm(demo *d)
     const wk_rain_area area = shower(27000, 500, 5500, 4500, 40);
     w.wind_speed_m_s = 9.0;
     w.wind_from_deg = 200.0;
-    /* A cloud in full sun is brighter than the ground that cameras are set by. */
+    /* A cloud in full sun is brighter than the ground, to which cameras are exposed. */
     return sun_at(d, SITE_VIEW_AZIMUTH_DEG - 70.0, 24) && set(d, &w, &heaps) &&
            weather_check(wk_context_set_exposure(d->weather.context, WK_EXPOSURE_AUTO, -0.8)) &&
            weather_check(wk_context_set_rain_areas(d->weather.context, &area, 1, sizeof area));
 }
 
-/* The sun stands behind the viewer, below 42 degrees. */
+/* The sun stands behind the viewer, lower than 42 degrees. */
 static bool rainbow(demo *d)
 {
     wk_weather w = weather_here(35e3, 0.6);
@@ -355,13 +355,13 @@ static bool under_the_bridge(demo *d)
 {
     wk_weather w = weather_here(4000, 0.95);
     wk_cloud_layer cloud = overcast(WK_CLOUD_NIMBOSTRATUS, 600);
-    fall(&w, WK_PRECIPITATION_RAIN, 20.0, 5.0, 85.0); /* from behind the camera */
+    fall(&w, WK_PRECIPITATION_RAIN, 20.0, 5.0, 85.0); /* wind from behind the camera */
     solid boxes[BRIDGE_BOXES];
     objects_bridge(&d->scene.ground, boxes);
     return sun_at(d, 200, 35) && set(d, &w, &cloud) && shelter(d, boxes, BRIDGE_BOXES);
 }
 
-/* Two lamps on a roof behind the camera, one for each side of the work. */
+/* Two lamps on a roof behind the camera, one on each side. */
 static bool work_lights(demo *d)
 {
     wk_weather w = weather_here(4000, 0.95);
@@ -387,7 +387,7 @@ static bool work_lights(demo *d)
            weather_check(wk_context_set_lights(d->weather.context, lights, 2, sizeof lights[0]));
 }
 
-/* A cab's upright window, 0.6 m away: 1 m wide and 0.56 m high. The rain meets it at 12 m/s. */
+/* A cab's upright window at 0.6 m, 1 m wide and 0.56 m high. The rain hits it at 12 m/s. */
 static bool cab(demo *d, const wk_wiper_arm *arms, uint32_t arm_count)
 {
     wk_windscreen w = WK_WINDSCREEN_INIT;
@@ -405,7 +405,7 @@ static bool without_wipers(demo *d, double time_s)
     return cab(d, NULL, 0);
 }
 
-/* There and back in 1.5 s. */
+/* The wiper moves there and back in 1.5 s. */
 static bool with_wipers(demo *d, double time_s)
 {
     const double pivots_m[2] = {0.22, 0.68};
@@ -420,10 +420,10 @@ static bool with_wipers(demo *d, double time_s)
     return cab(d, arms, 2);
 }
 
-/* The eye on the hillside from which the posts' distances count, and a driver's on the road. */
+/* The eye on the hillside from which the posts' distances are measured, and a driver's eye on the road. */
 #define HILLSIDE 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 1.5, 50.0
 #define ROADSIDE(elevation) 12.0, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 3.0, elevation, 50.0
-/* Beside the excavator's way to its pad. */
+/* Beside the excavator's track to its pad. */
 #define YARD 20.0, -50.0, 5.0, SITE_VIEW_AZIMUTH_DEG + 48.0, -8.0, 50.0
 /* In the lee of the barn. */
 #define LEE 42.0, -8.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 78.0, -3.0, 50.0

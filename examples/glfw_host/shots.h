@@ -1,33 +1,33 @@
-/* The pictures of docs/gallery.md: where each is taken from, when, and in what weather. */
+/* The pictures of docs/gallery.md: from where each is taken, when, and in what weather. */
 #ifndef SHOTS_H
 #define SHOTS_H
 
 #include "demo.h"
 #include "objects.h"
 
-enum world { WORLD, WITH_BRIDGE, WITH_BARN, NO_WORLD /* from so high that the host's land would end in the picture */ };
+enum world { WORLD, WITH_BRIDGE, WITH_BARN, NO_WORLD /* seen from so high that the host's land would end */ };
 
 typedef struct shot {
     const char *name, *caption;
-    /* Where the camera stands: down the road and right of it, above the ground, m. */
+    /* Camera position: metres down the road, to the right of it, and above the ground. */
     double along_m, right_m, up_m;
     double azimuth_deg, elevation_deg, fov_y_deg;
-    /* Sets sun and weather, and all else that is there. */
+    /* Sets sun, weather and everything else in the shot. */
     bool (*prepare)(demo *d);
     enum world world;
-    /* The window that the camera looks through at a time: it has been in the rain for 50 s. NULL: none. */
+    /* The window through which the camera looks at a given time: it has been in the rain for 50 s. NULL: none. */
     bool (*windscreen)(demo *d, double time_s);
-    /* Written at half the size: of grain or of few things. */
+    /* Written at half the size, for pictures with grain or with few objects. */
     bool small;
 } shot;
 
 extern const shot SHOTS[];
 extern const int SHOT_COUNT;
 
-/* Puts the sun there from now on. */
+/* Sets the sun from now on. */
 bool sun_at(demo *d, double azimuth_deg, double elevation_deg);
 
-/* Tells Welkin of boxes that keep weather off. */
+/* Gives Welkin boxes that keep off the weather. */
 #define MOST_SHELTERS BRIDGE_BOXES
 bool shelter(demo *d, const solid *boxes, int count);
 

@@ -1,4 +1,4 @@
-/* Snow that lies, led through the hours of a night and a morning on the site's own terrain. */
+/* Lying snow, simulated through the hours of a night and a morning on the site's own terrain. */
 #include "snow_shots.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #define CELL_M 0.5
 #define ROAD_HALF_WIDTH_M 4.0
 
-/* The site's context with snow as a state in place of the one that the demo has. */
+/* Replaces the demo's context by one for the site that simulates snow. */
 static bool begin(demo *d)
 {
     wk_simulation_desc simulation = WK_SIMULATION_DESC_INIT;
@@ -25,7 +25,7 @@ static bool begin(demo *d)
            weather_check(wk_view_create(d->weather.context, NULL, &d->weather.view));
 }
 
-/* Heights and classes of the ground about the pad. */
+/* Heights and surface classes of the ground around the pad. */
 static bool tell_ground(demo *d)
 {
     const ground *g = &d->scene.ground;
@@ -52,7 +52,7 @@ static bool tell_ground(demo *d)
     return ok;
 }
 
-/* From now on. */
+/* Sets the weather from now on. */
 static bool weather_from(demo *d, double from_deg, double temperature_c, double snow_mm_h, double wind_m_s, double cover)
 {
     wk_weather w = WK_WEATHER_INIT;
@@ -73,7 +73,7 @@ static bool weather_from(demo *d, double from_deg, double temperature_c, double 
     return weather_check(wk_context_set_weather(d->weather.context, &w, d->time_s, 0.0));
 }
 
-/* The same with wind from the right of the hillside's view. */
+/* As weather_from, with wind from the right as seen from the hillside. */
 static bool weather(demo *d, double temperature_c, double snow_mm_h, double wind_m_s, double cover)
 {
     return weather_from(d, SITE_VIEW_AZIMUTH_DEG + 80.0, temperature_c, snow_mm_h, wind_m_s, cover);
@@ -124,7 +124,7 @@ bool thaw(demo *d)
            weather(d, 7.0, 0.0, 3.0, 0.3);
 }
 
-/* The barn in a wind that goes round it. */
+/* The barn, with the wind flowing around it. */
 static bool storm_at_the_barn(demo *d)
 {
     solid boxes[BARN_BOXES];
@@ -132,7 +132,7 @@ static bool storm_at_the_barn(demo *d)
     objects_barn(&d->scene.ground, boxes);
     for (int axis = 0; axis < 3; axis++)
         field.floor_center_m[axis] = boxes[0].place.m[12 + axis];
-    field.floor_center_m[2] -= 6.0; /* the lowest ground about it */
+    field.floor_center_m[2] -= 6.0; /* the lowest ground around it */
     for (int axis = 0; axis < 3; axis++)
         field.cell_m[axis] = 1.0, field.cells[axis] = axis < 2 ? 96 : 32;
     return begin(d) && tell_ground(d) && shelter(d, boxes, BARN_BOXES) && sun_at(d, 200, 20) &&

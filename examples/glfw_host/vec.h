@@ -1,4 +1,4 @@
-/* Vectors and 4x4 matrices in double precision: column-major, column vectors, as OpenGL and Welkin take them. */
+/* Vectors and 4x4 matrices in double precision: column-major, for column vectors, as in OpenGL and Welkin. */
 #ifndef VEC_H
 #define VEC_H
 
@@ -63,7 +63,7 @@ static inline mat4 translation(vec3 t)
     return r;
 }
 
-/* Right-handed turn about an axis: 0 = x, 1 = y, 2 = z. */
+/* Right-handed rotation about an axis: 0 = x, 1 = y, 2 = z. */
 static inline mat4 rotation(int axis, double angle)
 {
     int i = (axis + 1) % 3, j = (axis + 2) % 3;
@@ -87,7 +87,7 @@ static inline vec3 transform_direction(mat4 a, vec3 d)
                m[2] * d.x + m[6] * d.y + m[10] * d.z);
 }
 
-/* World to eye for a camera at the world's origin: x right, y up, -z ahead. */
+/* World to eye for a camera at the world's origin: x right, y up, -z forward. */
 static inline mat4 look_along(vec3 ahead, vec3 up)
 {
     vec3 back = scale(normalize(ahead), -1.0), right = normalize(cross(up, back)), top = cross(back, right);

@@ -1,4 +1,4 @@
-/* The link: set up once, told the weather and the time, asked for the light, and called after the host has drawn. */
+/* The link to Welkin: set up once, given weather and time, queried for light, and called after the host has drawn. */
 #include "weather_link.h"
 
 #include <stdio.h>
@@ -20,14 +20,14 @@ bool weather_open(weather_link *w, const platform *p, const char *planet_toml)
     host.make_current = p->make_current;
     host.user = p->user;
 
-    /* Where the host's coordinates lie on the planet: east, north, up of the site, up from sea level. */
+    /* The host's frame on the planet: east, north and up of the site; up counts from sea level. */
     wk_context_desc place = WK_CONTEXT_DESC_INIT;
     place.world_kind = WK_WORLD_TANGENT;
     place.latitude_deg = SITE_LATITUDE_DEG;
     place.longitude_deg = SITE_LONGITUDE_DEG;
     place.planet_toml = planet_toml;
 
-    /* Rain as trainees should see it: at the default's contrast, as in nature, hardly any shows by day. */
+    /* More contrast for rain, so that trainees see it: at the default, as in nature, hardly any shows by day. */
     wk_rain rain = WK_RAIN_INIT;
     rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
 
@@ -52,7 +52,7 @@ bool weather_report(weather_link *w, const char *metar, double transition_s)
     wk_cloud_layer layers[16];
     if (!weather_check(wk_weather_from_metar(metar, layers, 16, sizeof layers[0], &weather, NULL)))
         return false;
-    weather.station_altitude_m = SITE_ALTITUDE_M; /* reports do not carry it */
+    weather.station_altitude_m = SITE_ALTITUDE_M; /* reports do not contain it */
     return weather_check(wk_context_set_weather(w->context, &weather, w->time_s, transition_s));
 }
 
@@ -61,7 +61,7 @@ bool weather_clock(weather_link *w, double utc_s)
     return weather_check(wk_context_set_clock(w->context, utc_s, w->time_s));
 }
 
-/* Of light that a host of 60 frames a second has in one. */
+/* Exposure over which a flash's light is averaged: one frame at 60 frames per second. */
 #define FLASH_EXPOSURE_S (1.0 / 60.0)
 
 bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
@@ -71,13 +71,13 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
     wk_ambient sky = WK_AMBIENT_INIT;
     wk_ground_light arriving;
     w->time_s = time_s;
-    /* WK_PENDING passes: a simulated ground that lags after a leap goes on in the next frame. */
+    /* WK_PENDING is no error: a simulated ground that lags after a jump in time continues in the next frame. */
     if (!weather_check(wk_context_update(w->context, time_s)) || !weather_check(wk_context_get_sun(w->context, &at, &sun)) ||
         !weather_check(wk_context_get_moon(w->context, &at, &moon)) || !weather_check(wk_context_get_ambient(w->context, &at, &sky)) ||
         !weather_check(wk_context_get_light(w->context, &at, 1, sizeof at, &arriving, sizeof arriving)))
         return false;
 
-    /* This host's shaders have one lamp: whichever of the two gives more. */
+    /* This host's shaders have one light: the sun or the moon, whichever is brighter. */
     bool by_day = arriving.sun_lux[1] >= arriving.moon_lux[1];
     const double *lux = by_day ? arriving.sun_lux : arriving.moon_lux, *to = by_day ? sun.apparent : moon.apparent;
     l->sun_direction = vec(to[0], to[1], to[2]);
@@ -86,7 +86,7 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
         for (int k = 0; k < 9; k++)
             l->ambient[k][channel] = (float)sky.sh9[3 * k + channel];
     }
-    /* A flash of lightning outshines both, for the time of a frame. */
+    /* A flash of lightning that is brighter than both replaces it for one frame. */
     wk_flash_light flash = WK_FLASH_LIGHT_INIT;
     if (!weather_check(wk_context_get_flash_light(w->context, &at, time_s, FLASH_EXPOSURE_S, &flash)))
         return false;
@@ -95,7 +95,7 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
         for (int channel = 0; channel < 3; channel++)
             l->illuminance[channel] = (float)flash.facing_lux[channel];
     }
-    /* A white card on the ground has the value 1, by day and by night. */
+    /* A white card on the ground has the picture value 1, by day and by night. */
     l->cd_m2_per_unit = fmax(fmax(arriving.total_lux, flash.level_lux), 1e-4) / PI;
     return true;
 }
@@ -107,7 +107,7 @@ static bool record(weather_link *w, const picture *p, const camera *c, double cd
     target.color.kind = target.depth.kind = target.surface_classes.kind = WK_OPENGL_TEXTURE;
     target.color.name = p->color;
     target.depth.name = p->depth;
-    target.surface_classes.name = p->classes; /* the road is paved: it alone mirrors */
+    target.surface_classes.name = p->classes; /* tells which pixels are the paved road: it alone reflects */
     target.width = (uint32_t)p->width;
     target.height = (uint32_t)p->height;
     target.generation = w->generation;
@@ -145,7 +145,7 @@ bool weather_measure(weather_link *w, const picture *p, const camera *c, double 
     wk_effect_cost costs[16];
     const uint32_t room = sizeof costs / sizeof costs[0];
     const uint32_t flags = WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE;
-    /* Once for what is compiled at its first use, under a frame number of its own. */
+    /* The first call compiles what is used for the first time. It has a frame number of its own. */
     if (!record(w, p, c, cd_m2_per_unit, ~frame, flags, WK_STAGE_ALL) ||
         !record(w, p, c, cd_m2_per_unit, frame, flags, WK_STAGE_ALL) ||
         !weather_check(wk_view_get_costs(w->view, costs, room, sizeof costs[0], &w->cost_count)))
@@ -160,7 +160,7 @@ bool weather_measure(weather_link *w, const picture *p, const camera *c, double 
 
 void weather_resized(weather_link *w)
 {
-    w->generation++; /* OpenGL gives old names to new textures */
+    w->generation++; /* OpenGL may give the names of deleted textures to new ones */
 }
 
 const char *weather_adapter(weather_link *w)

@@ -10,7 +10,7 @@
 
 #include "demo.h"
 
-static GLFWwindow *windows[2]; /* the one on the screen, and a hidden one whose context Welkin draws in */
+static GLFWwindow *windows[2]; /* the visible window, and a hidden one in whose context Welkin draws */
 
 static const void *get_proc(void *user, const char *name)
 {
@@ -36,7 +36,7 @@ static void on_fault(int code, const char *message)
 bool window_possible(void)
 {
 #ifdef _WIN32
-    return true; /* a session without a desktop has no window station, and glfwInit says so */
+    return true; /* without a desktop session there is no window station, and glfwInit reports that */
 #else
     return getenv("DISPLAY") || getenv("WAYLAND_DISPLAY");
 #endif
@@ -45,7 +45,7 @@ bool window_possible(void)
 static GLFWwindow *create(int width, int height, GLFWwindow *share, bool visible)
 {
     static const int versions[][2] = {{4, 5}, {4, 3}, {3, 3}};
-    glfwSetErrorCallback(NULL); /* a version that is not there is no fault */
+    glfwSetErrorCallback(NULL); /* an OpenGL version that does not exist here is no error */
     GLFWwindow *w = NULL;
     for (int v = 0; v < 3 && !w; v++) {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, versions[v][0]);

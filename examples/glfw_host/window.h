@@ -1,4 +1,4 @@
-/* A window with keys, by GLFW. */
+/* A window with keyboard control, by GLFW. */
 #ifndef WINDOW_H
 #define WINDOW_H
 
@@ -6,17 +6,17 @@
 
 #include "platform.h"
 
-/* Whether there is a display to open a window on. */
+/* Checks whether there is a display for a window. */
 bool window_possible(void);
 
-/* The two contexts of a window, visible or not, of which the host's is current; window_end closes them. False, with a
- * message on stderr, if there are none. */
+/* Creates the two contexts with a window, visible or not, and makes the host's current; window_end closes them. On
+ * failure, returns false and prints a message on stderr. */
 bool window_contexts(platform *p, int width, int height, bool visible);
 void window_end(void);
 
 /*
- * Runs until the window is closed, or for `frames` frames if that is not 0, beginning with report `first` (from 1).
- * Answers the process's exit code.
+ * Runs until the window is closed, or for `frames` frames if that is not 0, starting with report `first` (counted from
+ * 1). Returns the process's exit code.
  */
 int window_run(const char *data, const char *planet, int width, int height, int frames, int first);
 

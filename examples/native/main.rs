@@ -1,4 +1,4 @@
-//! A Rust host with its own `wgpu::Device`: it draws its world, Welkin draws the weather into the same textures.
+//! A Rust host with its own `wgpu::Device`. It draws its world, and Welkin draws the weather into the same textures.
 //!
 //! `cargo run --release --example native [-- FILE.png [METAR]]` writes one picture.
 
@@ -22,7 +22,7 @@ type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: (u32, u32) = (640, 360);
 
-/// Where the camera stands over the terrain, on the valley's level floor, m east and north of its centre.
+/// Camera position on the level floor of the valley, m east and north of the terrain's centre.
 const AT: Vec2 = Vec2::new(2604.0, 138.8);
 
 #[repr(C)]
@@ -34,7 +34,7 @@ struct HostUniform {
     sky_light: [f32; 4],
 }
 
-/// Everything the host owns: Welkin knows nothing of it but `device` and the two targets.
+/// Everything the host owns. Welkin sees only `device` and the two targets.
 struct Host {
     device: Arc<Device>,
     pipeline: wgpu::RenderPipeline,
@@ -46,7 +46,7 @@ struct Host {
     terrain: world::Terrain,
 }
 
-/// The host makes its own instance, adapter, device and queue, and lends them to Welkin.
+/// Creates the host's own instance, adapter, device and queue, and lends them to Welkin.
 fn lend_device() -> Fallible<Arc<Device>> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
@@ -123,7 +123,7 @@ impl Host {
         Ok(Self { pipeline, uniform, group, color, depth, classes, terrain, device: lent.clone() })
     }
 
-    /// Vertices relative to the camera, so that f32 holds them.
+    /// Vertices relative to the camera, so that f32 is precise enough.
     fn vertices(&self, eye: DVec3) -> wgpu::Buffer {
         let mut mesh = world::mesh(&self.terrain, eye.truncate().as_vec2());
         for v in &mut mesh {
@@ -141,7 +141,7 @@ impl Host {
         buffer
     }
 
-    /// Draws the host's own world, lit by what Welkin's query says of sun and sky.
+    /// Draws the host's own world, lit by Welkin's answers about sun and sky.
     fn draw(&self, encoder: &mut wgpu::CommandEncoder, camera: &Camera, scene: &Scene, world: &wgpu::Buffer) {
         let pad = |v: [f64; 3]| [v[0] as f32, v[1] as f32, v[2] as f32, 0.0];
         let block = HostUniform {
@@ -178,7 +178,7 @@ impl Host {
     }
 }
 
-/// The host's world with the weather drawn into it.
+/// Draws the host's world with the weather in it.
 fn take(host: &Host, shared: &Arc<Shared>, weather: Weather, path: &str) -> Fallible<()> {
     let mut context = Context::new(host.device.clone(), shared.clone(), ContextDesc::default())?;
     let ground = f64::from(host.terrain.height(AT));
@@ -195,7 +195,7 @@ fn take(host: &Host, shared: &Arc<Shared>, weather: Weather, path: &str) -> Fall
     let mut encoder = host.device.device.create_command_encoder(&Default::default());
     let scene = context.scene_at(eye, context.time_s())?;
     host.draw(&mut encoder, &camera, &scene, &vertices);
-    // The road is paved, and it alone mirrors.
+    // Marks the paved road, which alone reflects.
     let frame = Frame { surface_classes: Some(&host.classes), ..Frame::new(1, camera, &host.color, Some(&host.depth)) };
     view.record_into(&context, &frame, Stages::ALL, &mut encoder)?;
     host.device.submit_and_wait(encoder)?;
@@ -209,7 +209,7 @@ const USAGE: &str =
     "usage: native [FILE.png [METAR]]   one picture of the weather of a report (native.png, rain at Tri-Cities)
        native --help | --version";
 
-/// Draws the picture that the arguments ask for.
+/// Draws the picture for the arguments.
 fn run(path: &str, metar: &str) -> Fallible<()> {
     let weather = Weather::from_metar(metar)?.weather;
     let host = Host::new()?;

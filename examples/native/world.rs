@@ -1,4 +1,4 @@
-//! The host's world: real terrain, a road, posts at known distances, a simple excavator of boxes.
+//! The host's world: measured terrain, a road, posts at known distances, a simple excavator built from boxes.
 
 use glam::{Vec2, Vec3};
 use welkin::ground::SurfaceClass;
@@ -9,7 +9,7 @@ pub struct Vertex {
     pub position: [f32; 3],
     pub normal: [f32; 3],
     pub albedo: [f32; 3],
-    /// Number of what it is made of.
+    /// Number of the surface class.
     pub class: f32,
 }
 
@@ -93,8 +93,8 @@ fn cuboid(foot: Vec3, size: Vec3, albedo: Vec3, out: &mut Vec<Vertex>) {
     }
 }
 
-/// The whole world as triangles in the host's axes (x east, y north, z up; metres above the sea), seen from `eye`:
-/// the road leads north from there.
+/// The whole world as triangles in the host's axes (x east, y north, z up; metres above sea level), as seen from `eye`.
+/// The road leads north from `eye`.
 pub fn mesh(terrain: &Terrain, eye: Vec2) -> Vec<Vertex> {
     let mut out = Vec::new();
     terrain.mesh(&mut out);

@@ -7,11 +7,11 @@
 
 namespace {
 
-/* The pane: upright, before the eye. */
+/* The pane: upright, in front of the eye. */
 const double LEFT = -0.40, RIGHT = 0.40, BOTTOM = -0.42, TOP = 0.31, AHEAD = 0.8;
-const double PIVOT_X = 0.66, PIVOT_Y = 0.03, LENGTH = 0.62, INNER = 0.1, PARKED = 172.0, FAR = 92.0; /* m along the glass, degrees */
+const double PIVOT_X = 0.66, PIVOT_Y = 0.03, LENGTH = 0.62, INNER = 0.1, PARKED = 172.0, FAR = 92.0; /* m and degrees */
 
-/* There and back in 1.4 s, slower at the ends. */
+/* Wiper position, 0 to 1: there and back in 1.4 s, slower at both ends. */
 double stroke(double time_s) { return 0.5 - 0.5 * std::cos(2.0 * osg::PI * time_s / 1.4); }
 
 } // namespace
@@ -25,7 +25,7 @@ Cab::Cab(const osg::Matrixd &seat, Colors colors) : seat_(seat), root_(new osg::
     root_->addChild(make_box({0.28, AHEAD - 0.2, BOTTOM + 0.04}, {0.16, 0.03, 0.12}, dark, colors));
     blade_->addChild(make_box({0.5 * (INNER + LENGTH), 0, 0}, {LENGTH - INNER, 0.012, 0.014}, dark, colors));
     blade_->addChild(make_box({0.5 * INNER, 0, 0}, {INNER, 0.02, 0.01}, dark, colors));
-    blade_->setDataVariance(osg::Object::DYNAMIC); /* no optimizer may flatten it */
+    blade_->setDataVariance(osg::Object::DYNAMIC); /* keeps OSG's optimizer from flattening it */
     root_->addChild(blade_);
     move_wiper(0.0);
 }
@@ -39,7 +39,7 @@ void Cab::move_wiper(double time_s)
 
 void Cab::set_shelter(wk_context *context) const
 {
-    /* Roof, back and sides in one box about the driver, up to just behind the glass. */
+    /* One box around the driver for roof, back and sides, from the back to just behind the glass. */
     const osg::Vec3d middle = osg::Vec3d(0, -0.1, -0.3) * seat_;
     wk_shelter box = WK_SHELTER_INIT;
     std::copy_n(middle.ptr(), 3, box.center_m);
@@ -51,7 +51,8 @@ void Cab::set_shelter(wk_context *context) const
 
 void Cab::set_windscreen(wk_view *view, const wk_context *context, double time_s) const
 {
-    /* What the glass meets is rain in moving air: its velocity against the air, in the camera's axes. The cab stands. */
+    /* Velocity of the cab relative to the air, in the camera's axes: rain moves with the air, and the cab stands
+     * still. */
     wk_wind wind = WK_WIND_INIT;
     const osg::Vec3d eye = seat_.getTrans();
     const double at[3] = {eye.x(), eye.y(), eye.z()};
@@ -66,7 +67,7 @@ void Cab::set_windscreen(wk_view *view, const wk_context *context, double time_s
     arm.position = stroke(time_s);
     wk_windscreen pane = WK_WINDSCREEN_INIT;
     const double corners[12] = {LEFT, BOTTOM, -AHEAD, RIGHT, BOTTOM, -AHEAD, RIGHT, TOP, -AHEAD, LEFT, TOP, -AHEAD};
-    std::copy_n(corners, 12, pane.corners_m); /* the camera's axes, as this driver looks straight ahead */
+    std::copy_n(corners, 12, pane.corners_m); /* in the camera's axes, as this driver looks straight ahead */
     pane.velocity_m_s[0] = met.x(), pane.velocity_m_s[1] = met.z(), pane.velocity_m_s[2] = -met.y();
     pane.arms = &arm;
     pane.arm_count = 1;

@@ -1,4 +1,4 @@
-/* The excavator's cab, seen from its seat: posts and roof, what keeps the rain off, and the windscreen with its wiper. */
+/* The excavator's cab, seen from its seat: posts and roof, the shelter from rain, and the windscreen with its wiper. */
 #ifndef CAB_HPP
 #define CAB_HPP
 
@@ -15,7 +15,7 @@ public:
     osg::ref_ptr<osg::Node> node() const { return root_; }
 
     void set_shelter(wk_context *context) const;
-    /* In every frame, before the view records; the blade moves with simulation time. */
+    /* Call in every frame before the view records; the blade moves with simulation time. */
     void set_windscreen(wk_view *view, const wk_context *context, double time_s) const;
     void move_wiper(double time_s);
 

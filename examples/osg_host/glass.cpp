@@ -1,4 +1,5 @@
-/* Glass of the host's own: drawn in OSG's transparent bin, after Welkin's air, with the air before it from the veil. */
+/* The host's own glass: drawn in OSG's transparent bin, after Welkin's air. The veil gives the air in front of the
+ * glass. */
 #include <cmath>
 
 #include <osg/BlendFunc>
@@ -10,7 +11,7 @@
 
 namespace {
 
-const int LIGHT_UNIT = 6, THROUGH_UNIT = 7; /* texture units that nothing else here uses */
+const int LIGHT_UNIT = 6, THROUGH_UNIT = 7; /* texture units that nothing else in this program uses */
 
 const char *const VERTEX = R"(#version 130
 out float far_away;
@@ -19,7 +20,7 @@ void main() {
     gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;
 })";
 
-/* The published functions go before this. */
+/* Welkin's published veil functions are inserted before this. */
 const char *const FRAGMENT = R"(
 uniform sampler2D veil_light, veil_through;
 uniform vec3 veil; /* light_scale; 1 / width and height of the picture */
@@ -36,14 +37,15 @@ void main() {
     gl_FragColor = vec4(display ? encoded(min(color, vec3(1.0))) : color, 0.45);
 })";
 
-/* Binds the veil of the view that is being drawn: two windows have two of them. */
+/* Binds the veil of the view being drawn: with two windows there are two veils. */
 struct WithVeil : osg::Drawable::DrawCallback {
     void drawImplementation(osg::RenderInfo &info, const osg::Drawable *drawable) const override
     {
         osg::State &state = *info.getState();
         auto *view = dynamic_cast<welkin_osg::View *>(info.getCurrentCamera()->getUserData());
         wk_frame_textures veil = WK_FRAME_TEXTURES_INIT;
-        /* Only where the air was drawn before this: else the whole picture gets its air later, glass and all. */
+        /* Only where the air is drawn before the glass: otherwise the whole picture gets its air later, glass
+         * included. */
         if (view && view->shown && (view->before_transparent & WK_STAGE_MEDIUM) && view->get())
             welkin_osg::check(wk_view_get_frame_textures(view->get(), &veil));
         const osg::Program::PerContextProgram *program = state.getLastAppliedProgramObject();
@@ -59,7 +61,7 @@ struct WithVeil : osg::Drawable::DrawCallback {
     {
         state.setActiveTextureUnit(unit);
         glBindTexture(GL_TEXTURE_2D, GLuint(name));
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR); /* parameters are the host's to set */
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR); /* the host sets the texture parameters */
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
     }
@@ -70,7 +72,7 @@ struct WithVeil : osg::Drawable::DrawCallback {
 osg::ref_ptr<osg::Node> make_glass(const world_site &site, Colors colors)
 {
     osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
-    for (double away : {40.0, 160.0, 640.0, 2560.0}) { /* each as large in the picture as the next */
+    for (double away : {40.0, 160.0, 640.0, 2560.0}) { /* all look equally large */
         const double azimuth = osg::DegreesToRadians(site.azimuth_deg - 9.0 + 4.0 * std::log2(away / 40.0) / 2.0);
         const osg::Vec3d ahead(std::sin(azimuth), std::cos(azimuth), 0.0), right(ahead.y(), -ahead.x(), 0.0);
         const osg::Vec3d middle = osg::Vec3d(site.eye[0], site.eye[1], site.eye[2] - 0.012 * away) + ahead * away;

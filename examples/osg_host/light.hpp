@@ -1,4 +1,5 @@
-/* OpenGL's light 0 from Welkin's sun, moon and sky: for fixed-function lighting and shaders that read gl_LightSource. */
+/* Sets OpenGL's light 0 from Welkin's sun, moon and sky, for fixed-function lighting and shaders that read
+ * gl_LightSource. */
 #ifndef LIGHT_HPP
 #define LIGHT_HPP
 
@@ -6,10 +7,10 @@
 
 #include "welkin_osg.hpp"
 
-/* A pre-draw callback, to be added after View::attach: it runs on the thread that draws, and so needs no lock. */
+/* A pre-draw callback, to be added after View::attach. It runs on the thread that draws, so it needs no lock. */
 class WeatherLight : public osg::Camera::DrawCallback {
 public:
-    /* Takes the view's light over and makes it stand still in the world. */
+    /* Replaces the view's light, and fixes it in the world. */
     WeatherLight(welkin_osg::View *weather, osg::View *view);
     void operator()(osg::RenderInfo &info) const override;
 

@@ -1,6 +1,6 @@
 /*
- * A simulator on OpenSceneGraph with Welkin's weather: `osg_host --data ../data` opens a window, --help lists the rest.
- * welkin_osg.hpp is the part to copy; light.cpp, glass.cpp, cab.cpp and weather.cpp show one thing each.
+ * A simulator on OpenSceneGraph with Welkin's weather. `osg_host --data ../data` opens a window; --help lists the
+ * options. welkin_osg.hpp is the part to copy; light.cpp, glass.cpp, cab.cpp and weather.cpp show one feature each.
  */
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@
 
 namespace {
 
-/* Reads the window when everything, the presenter too, has been drawn. */
+/* Reads the window's pixels after everything has been drawn, the presenter included. */
 struct Capture : osg::Camera::DrawCallback {
     void operator()(osg::RenderInfo &info) const override
     {
@@ -32,7 +32,7 @@ struct Capture : osg::Camera::DrawCallback {
         GLint samples = 0;
         glGetIntegerv(GL_SAMPLES, &samples);
         GLuint frame = 0, color = 0;
-        if (samples > 0) { /* Mesa's software driver reads one sample of a window: the mean of all is made by hand */
+        if (samples > 0) { /* Mesa's software driver reads one sample of a window: average them here */
             gl->glGenFramebuffers(1, &frame);
             gl->glGenRenderbuffers(1, &color);
             gl->glBindRenderbuffer(GL_RENDERBUFFER_EXT, color);
@@ -50,7 +50,7 @@ struct Capture : osg::Camera::DrawCallback {
             gl->glDeleteFramebuffers(1, &frame);
         }
     }
-    bool wanted = false; /* changed between frames, with all threads at rest */
+    bool wanted = false; /* changed only between frames, while all threads are stopped */
     osg::ref_ptr<osg::Image> image = new osg::Image;
 };
 
@@ -65,7 +65,7 @@ struct CabGlass : osg::Camera::DrawCallback {
     osg::ref_ptr<welkin_osg::View> weather;
 };
 
-/* The veil is filled from the first frame on if it was asked for before. */
+/* Asks for the veil before the first frame, so that it is filled from the first frame on. */
 struct AskForVeil : osg::Camera::DrawCallback {
     explicit AskForVeil(welkin_osg::View *weather) : weather(weather) {}
     void operator()(osg::RenderInfo &) const override
@@ -76,7 +76,7 @@ struct AskForVeil : osg::Camera::DrawCallback {
     osg::ref_ptr<welkin_osg::View> weather;
 };
 
-/* Rain that trainees notice: as in nature, hardly any shows by day (docs/rain-contrast.md). */
+/* More contrast for rain, so that trainees notice it: as in nature, hardly any shows by day (docs/rain-contrast.md). */
 struct TrainersRain : osg::Camera::DrawCallback {
     explicit TrainersRain(welkin_osg::View *weather) : weather(weather) {}
     void operator()(osg::RenderInfo &) const override
@@ -89,7 +89,7 @@ struct TrainersRain : osg::Camera::DrawCallback {
         told = view;
     }
     osg::ref_ptr<welkin_osg::View> weather;
-    mutable wk_view *told = nullptr; /* looked at by the drawing thread alone */
+    mutable wk_view *told = nullptr; /* read and written by the drawing thread only */
 };
 
 struct Window {
@@ -99,7 +99,8 @@ struct Window {
     osg::ref_ptr<Capture> capture = new Capture;
 };
 
-/* On the hillside above the excavator, or in the seat of another one beside it; x right, y ahead, z up. */
+/* The eye on the hillside above the excavator, or in the seat of another excavator beside it; x right, y ahead, z
+ * up. */
 osg::Matrixd seat(const world_site &site, bool cab)
 {
     const double azimuth = osg::DegreesToRadians(site.azimuth_deg + (cab ? 18.0 : 3.0));
@@ -131,7 +132,7 @@ private:
     osgViewer::CompositeViewer viewer_;
     world_site site_ = {};
     osg::Matrixd seat_;
-    osg::Vec4 background_{0.55f, 0.60f, 0.66f, 1.0f}; /* what a program without a sky has behind everything */
+    osg::Vec4 background_{0.55f, 0.60f, 0.66f, 1.0f}; /* clear colour of a program without a sky */
     osg::ref_ptr<osg::Group> scene_;
     std::unique_ptr<Cab> cab_;
     osg::ref_ptr<WeatherOfWindows> weather_;
@@ -163,7 +164,7 @@ bool Host::open_window_of(Window &window, int number)
     window.weather = new welkin_osg::View(weather_->of(context));
     window.weather->shown = options_.precipitation == Precipitation::Welkin;
     set_target(*window.view, options_, *window.weather);
-    camera->setUserData(window.weather); /* where the glass finds its veil */
+    camera->setUserData(window.weather); /* the glass finds its veil here */
     if (options_.check) window.state->attach(window.weather, camera);
     else window.weather->attach(camera);
     camera->addPreDrawCallback(new TrainersRain(window.weather));
@@ -187,7 +188,7 @@ bool Host::open()
         scene_->addChild(cab_->node());
     }
     weather_ = new WeatherOfWindows(options_, site_);
-    world_free(); /* OSG and the weather have their own copies */
+    world_free(); /* OSG and the weather have copies of their own */
     time_s_ = 3600.0 * options_.leap_h;
     viewer_.setRealizeOperation(weather_);
     viewer_.setThreadingModel(options_.threading);
@@ -210,7 +211,7 @@ void Host::draw(int frames, bool weather, double step_s)
     }
 }
 
-/* After a leap a simulated ground takes more than one update: a picture that stands alone waits for it. */
+/* After a jump in time, a simulated ground takes more than one update. A single picture waits for it. */
 void Host::catch_up()
 {
     const auto lags = [](const Window &window) { return window.weather->weather->pending.load(); };
@@ -219,12 +220,12 @@ void Host::catch_up()
     if (frames > 0) std::cout << "the ground lagged for " << frames << " more frames" << std::endl;
 }
 
-/* Draws some frames and answers the last one of each window. */
+/* Draws some frames and returns the last one of each window. */
 std::vector<osg::ref_ptr<osg::Image>> Host::pictures(int frames, bool weather, double step_s)
 {
     draw(frames - 1, weather, step_s);
     catch_up();
-    viewer_.stopThreading(); /* what a drawing thread reads may be changed only while there is none */
+    viewer_.stopThreading(); /* data that drawing threads read may be changed only while they are stopped */
     for (Window &window : windows_) window.capture->wanted = true;
     viewer_.startThreading();
     draw(1, weather, step_s);
@@ -246,7 +247,7 @@ double changed_share(const osg::Image &a, const osg::Image &b)
     return double(changed) / double(a.getTotalSizeInBytes());
 }
 
-/* Off, on, off. */
+/* Draws without weather, with it, and without it again, and compares the pictures. */
 bool Host::check()
 {
     bool ok = true;
@@ -270,7 +271,7 @@ bool Host::check()
     return ok;
 }
 
-/* One file for each window: picture.png, picture-1.png. */
+/* Writes one file per window: picture.png, picture-1.png. */
 bool Host::write()
 {
     const auto read = pictures(options_.frames, options_.precipitation == Precipitation::Welkin, 1.0 / 60.0);
@@ -289,7 +290,7 @@ void Host::resize()
     for (Window &window : windows_)
         if (auto *shown = dynamic_cast<osgViewer::GraphicsWindow *>(window.view->getCamera()->getGraphicsContext()))
             shown->setWindowRectangle(0, 0, options_.width * 3 / 4, options_.height / 2);
-    draw(10, true, 1.0 / 60.0); /* the window system answers within some frames */
+    draw(10, true, 1.0 / 60.0); /* the window system takes some frames to respond */
 }
 
 int Host::run()
@@ -301,13 +302,13 @@ int Host::run()
     if (ok && options_.out.empty() && !options_.check)
         for (int i = 0; (options_.frames == 0 || i < options_.frames) && !viewer_.done(); i++) {
             if (cab_) cab_->move_wiper(viewer_.getFrameStamp()->getSimulationTime());
-            viewer_.frame(); /* simulation time is the clock's */
+            viewer_.frame(); /* simulation time follows the clock */
         }
-    /* The order of the end: drawing threads, Welkin while the windows' contexts live, windows. */
+    /* Shutdown order: drawing threads; Welkin, while the windows' contexts are alive; windows. */
     viewer_.stopThreading();
     if (options_.close_window)
         for (Window &window : windows_)
-            if (auto *context = window.view->getCamera()->getGraphicsContext()) context->close(); /* none where none opened */
+            if (auto *context = window.view->getCamera()->getGraphicsContext()) context->close(); /* null: no window */
     if (weather_) weather_->close();
     return ok ? 0 : 1;
 }

@@ -65,7 +65,7 @@ int read_options(osg::ArgumentParser &arguments, Options &o)
         return 0;
     }
     if (command_line_answered(arguments.argc(), arguments.argv(), "osg_host", "")) return 0;
-    /* What is left was understood by nobody. */
+    /* The remaining arguments are unknown. */
     if (arguments.argc() > 1) return command_line_unknown("osg_host", arguments[1]);
     arguments.writeErrorMessages(std::cerr);
     if (o.window_target && o.shared) {

@@ -1,4 +1,4 @@
-/* What the command line asks for. */
+/* The command line's options. */
 #ifndef OPTIONS_HPP
 #define OPTIONS_HPP
 
@@ -7,7 +7,7 @@
 #include <osg/ArgumentParser>
 #include <osgViewer/ViewerBase>
 
-enum class Msaa { None, Osg, Textures };            /* Osg: its renderbuffers, resolved before Welkin draws */
+enum class Msaa { None, Osg, Textures };            /* Osg: OSG's renderbuffers, resolved before Welkin draws */
 enum class Precipitation { Welkin, Osg, None };
 
 struct Options {
@@ -23,7 +23,8 @@ struct Options {
     osgViewer::ViewerBase::ThreadingModel threading = osgViewer::ViewerBase::SingleThreaded;
 };
 
-/* The status to end with at once: 0 after --help and --version, 2 after a line on stderr for what is not understood; -1: go on. */
+/* Returns the exit status if the program should end at once: 0 after --help and --version, 2 after printing an error on
+ * stderr. Returns -1 to continue. */
 int read_options(osg::ArgumentParser &arguments, Options &options);
 
 #endif

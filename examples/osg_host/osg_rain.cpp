@@ -2,7 +2,7 @@
 
 #include "scene.hpp"
 
-/* As OSG's own example sets it up: one intensity for particles and fog, and the fog's colour behind everything. */
+/* As in OSG's own example: one intensity for particles and fog, and the fog's colour as the background. */
 osg::Vec4 add_osg_rain(osg::Group &scene)
 {
     osg::ref_ptr<osgParticle::PrecipitationEffect> rain = new osgParticle::PrecipitationEffect;

@@ -9,7 +9,8 @@
 
 namespace {
 
-/* Per pixel, since its triangles are large; lit by OpenGL's light 0 as the objects are, fogged by OpenGL's fog where it is on. */
+/* Lit per pixel, because the triangles are large: by OpenGL's light 0, as the objects are. OpenGL's fog applies where
+ * it is on. */
 const char *const GROUND_VERTEX = R"(#version 130
 out vec3 place, normal;
 out float road, ahead;
@@ -141,7 +142,7 @@ osg::ref_ptr<osg::Group> make_scene(const Options &options, Colors colors, world
     scene->addChild(geometry(world_objects(), colors));
     scene->addChild(make_glass(site, colors));
 
-    /* Lit by the view's light alone: OpenGL's own ambient light would be there by night, too. */
+    /* Lit by the view's light only: OpenGL's own ambient light would remain at night. */
     osg::ref_ptr<osg::LightModel> none = new osg::LightModel;
     none->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
     osg::ref_ptr<osg::Material> own = new osg::Material;

@@ -7,7 +7,8 @@
 
 namespace {
 
-/* From OpenGL 4.5's state tables and the compatibility profile's: what drawing, copying and reading pixels depend on. */
+/* OpenGL state that drawing, copying and reading pixels depend on, from the state tables of OpenGL 4.5 and of the
+ * compatibility profile. */
 const GLenum VALUES[] = {
     0x0B40, 0x0B45, 0x0B46, 0x0B54, 0x0B70, 0x0B72, 0x0B73, 0x0B74, 0x0B91, 0x0B92, 0x0B93, 0x0B94, 0x0B95, 0x0B96, 0x0B97, 0x0B98,
     0x0BA0, 0x0BA2, 0x0BA6, 0x0BA7, 0x0BA8, 0x0C01, 0x0C02, 0x0C10, 0x0C22, 0x0C23, 0x0B11, 0x0B21, 0x2A00, 0x8038, 0x8128, 0x8005,
@@ -23,7 +24,7 @@ const GLenum SWITCHES[] = {
     0x0C11, 0x2A01, 0x2A02, 0x8037, 0x809D, 0x809E, 0x809F, 0x80A0, 0x8C36, 0x8E51, 0x8C89, 0x864F, 0x8F9D, 0x8DB9, 0x8642, 0x884F, 0x92E0,
     0x8074, 0x8075, 0x8076, 0x8078, 0x8620, 0x8804, 0x8458, 0x3000, 0x3001, 0x4000, 0x4001, 0x4002,
 };
-/* Of every texture unit: what is bound, and of the fixed-function ones what is switched on. */
+/* State of every texture unit: its bindings, and the switches of the fixed-function units. */
 const GLenum BINDINGS[] = {0x8068, 0x8069, 0x806A, 0x84F6, 0x8514, 0x8919, 0x8C1C, 0x8C1D, 0x8C2C, 0x9104, 0x9105, 0x900A};
 const GLenum UNIT_SWITCHES[] = {0x0DE0, 0x0DE1, 0x806F, 0x8513, 0x0C60, 0x0C61, 0x0C62, 0x0C63};
 
@@ -35,7 +36,7 @@ struct Reader {
         GLdouble at[32];
         std::fill_n(at, 32, -77.0);
         glGetDoublev(what, at);
-        if (glGetError() != GL_NO_ERROR) return; /* not known to this context */
+        if (glGetError() != GL_NO_ERROR) return; /* this context does not know it */
         std::ostringstream text;
         text << std::setprecision(17);
         for (int last = 31, i = 0; i <= last; i++) text << at[i] << ' ';
@@ -58,7 +59,7 @@ std::string hex(const char *kind, GLenum name)
 
 StateCheck::Values look(osg::State &state)
 {
-    while (glGetError() != GL_NO_ERROR) {} /* what came before is not Welkin's */
+    while (glGetError() != GL_NO_ERROR) {} /* clears errors from before Welkin's calls */
     Reader reader;
     for (GLenum name : VALUES) reader.add(hex("value", name), name);
     for (GLenum name : SWITCHES) reader.add_switch(hex("switch", name), name);

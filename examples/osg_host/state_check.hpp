@@ -1,4 +1,4 @@
-/* Compares what OpenGL answers about its state before and after Welkin's part of a frame. */
+/* Compares OpenGL's state before and after Welkin's part of a frame. */
 #ifndef STATE_CHECK_HPP
 #define STATE_CHECK_HPP
 
@@ -6,11 +6,11 @@
 
 #include "welkin_osg.hpp"
 
-/* Attaches the view with one look at the state before its post-draw callback and one after it. */
+/* Attaches the view, and reads the state before and after its post-draw callback. */
 class StateCheck : public osg::Referenced {
 public:
     void attach(welkin_osg::View *weather, osg::Camera *camera);
-    /* Values that were compared, in how many frames, and the first ones that had changed. */
+    /* The number of values compared, the number of frames, and the values that changed. */
     size_t values = 0;
     unsigned int frames = 0;
     std::vector<std::string> changed;

@@ -22,7 +22,7 @@ WeatherOfWindows::WeatherOfWindows(const Options &options, const world_site &sit
             heights_.push_back(float(world_height(site.pad[0] + (east - 0.5 * NODES) * CELL_M, site.pad[1] + (north - 0.5 * NODES) * CELL_M)));
 }
 
-/* The land about the pad, on which rain fills hollows and dries. */
+/* The ground around the pad, on which rain fills hollows and dries. */
 bool WeatherOfWindows::simulate_ground(wk_context *context) const
 {
     wk_ground_grid grid = WK_GROUND_GRID_INIT;
@@ -67,13 +67,14 @@ bool WeatherOfWindows::open(welkin_osg::Weather &weather, osg::GraphicsContext *
     if (!check(wk_weather_from_metar(options_.metar.c_str(), layers, 16, sizeof layers[0], &report, nullptr)) ||
         !check(wk_utc_from_calendar(2026, 6, 21, 0, 0, 0.0, &utc)))
         return false;
-    report.station_altitude_m = site_.pad[2]; /* reports do not carry it; wind counts its height from there */
+    report.station_altitude_m = site_.pad[2]; /* reports do not contain it; wind heights count from it */
     wk_context *context = weather.context();
     if (!check(wk_context_set_clock(context, utc + 3600.0 * options_.hour_utc, 3600.0 * options_.leap_h)) ||
         !check(wk_context_set_weather(context, &report, 0.0, 0.0)) || !(heights_.empty() || simulate_ground(context)))
         return false;
 
-    /* Behind a progress bar rather than in the first frame; with --cache quick from the second start on. */
+    /* Build the sky now with a progress display, not in the first frame; with --cache it is fast from the second start
+     * on. */
     const auto progress = [](void *, double share) -> int32_t {
         std::cerr << "\rsky " << int(100.0 * share) << " %" << (share < 1.0 ? "" : "\n");
         return 0;
@@ -86,7 +87,7 @@ void WeatherOfWindows::close()
     for (auto &of_window : weathers_) {
         osg::GraphicsContext *window = of_window.first.get();
         const bool alive = window->valid() && window->isRealized() && window->makeCurrent();
-        of_window.second->close(); /* of a window that is gone Welkin gives its objects up */
+        of_window.second->close(); /* if the window is gone, Welkin abandons its OpenGL objects */
         if (alive) window->releaseContext();
     }
     weathers_.clear();

@@ -1,4 +1,4 @@
-/* The weather of the host: opened when a window is, told the report and the time, closed before the window. */
+/* The host's weather: opened together with a window, given the report and the time, closed before the window. */
 #ifndef WEATHER_HPP
 #define WEATHER_HPP
 
@@ -8,15 +8,15 @@
 #include "welkin_osg.hpp"
 #include "world.h"
 
-/* One welkin_osg::Weather for each graphics context; to be set as the viewer's realize operation. */
+/* One welkin_osg::Weather for each graphics context. Set it as the viewer's realize operation. */
 class WeatherOfWindows : public osg::Operation {
 public:
-    /* While the world's heights are there. */
+    /* Call while the world's heights are loaded. */
     WeatherOfWindows(const Options &options, const world_site &site);
-    /* Made ahead of the window's realization, so that views can be attached. */
+    /* Created before the window is realized, so that views can be attached. */
     welkin_osg::Weather *of(osg::GraphicsContext *window);
     void operator()(osg::Object *window) override;
-    /* With all threads stopped. */
+    /* Call with all threads stopped. */
     void close();
     bool ok = true;
 
@@ -25,7 +25,7 @@ private:
     bool simulate_ground(wk_context *context) const;
     Options options_;
     world_site site_;
-    std::vector<float> heights_; /* about the pad, for the simulated ground */
+    std::vector<float> heights_; /* around the pad, for the simulated ground */
     std::map<osg::ref_ptr<osg::GraphicsContext>, osg::ref_ptr<welkin_osg::Weather>> weathers_;
 };
 

@@ -1,11 +1,11 @@
 /*
  * Welkin in an OpenSceneGraph 3.6 camera. Copy this header; docs/hosts-openscenegraph.md is its tutorial.
  *
- *   Weather  Welkin in one graphics context: open() and close() it while that context is current.
- *   View     draws the weather into what one camera has drawn: its window, or the textures attached to it.
+ *   Weather  Welkin in one graphics context. Call open() and close() while that context is current.
+ *   View     Draws the weather into what one camera has drawn: its window, or the textures attached to it.
  *
- * All of it runs on the thread that draws and takes the matrices from osg::State: the camera's own are those of another
- * frame where viewers use threads.
+ * Everything here runs on the thread that draws. It takes the matrices from osg::State: with a threaded viewer, the
+ * camera's own matrices belong to another frame.
  */
 #ifndef WELKIN_OSG_HPP
 #define WELKIN_OSG_HPP
@@ -46,7 +46,7 @@ public:
         return check(wk_device_create_opengl(&desc, &device_)) && check(wk_context_create(device_, &place, &context_));
     }
 
-    /* Children before parents, and all of them before the graphics context. */
+    /* Destroys children before parents. Call it before the graphics context is closed. */
     void close()
     {
         for (wk_view *view : views_) check(wk_view_destroy(view));
@@ -54,13 +54,14 @@ public:
         check(wk_context_destroy(context_));
         check(wk_device_destroy(device_));
         context_ = nullptr, device_ = nullptr;
-        /* Where the window went first, Mesa 22 may free the window's buffers twice with the last context that shares them. */
+        /* If the window closed first, Mesa 22 may free its buffers twice when the last context that shares them
+         * closes. */
         if (own_.valid() && host_.valid() && host_->isRealized()) own_->close(), own_ = nullptr;
         else own_.release();
     }
 
     wk_context *context() const { return context_; }
-    std::atomic<bool> pending{false}; /* a simulated ground lags behind the time: who draws on demand draws on until it does not */
+    std::atomic<bool> pending{false}; /* a simulated ground lags: keep drawing */
     wk_view *create_view()
     {
         wk_view *view = nullptr;
@@ -68,7 +69,7 @@ public:
     }
 
 private:
-    /* Welkin's own context in shared mode: a pbuffer that shares objects with the window. */
+    /* Creates Welkin's own context in shared mode: a pbuffer that shares objects with the window. */
     bool open_pbuffer(osg::GraphicsContext *gc)
     {
         osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits(*gc->getTraits());
@@ -89,13 +90,14 @@ class View : public osg::Referenced {
 public:
     explicit View(Weather *weather) : weather(weather) {}
     const osg::ref_ptr<Weather> weather;
-    wk_frame frame = WK_FRAME_INIT;          /* set colour space, clip space and flags; the rest is filled in */
-    osg::ref_ptr<osg::Texture> color, depth; /* attached to the camera; both null: it draws into its window */
+    wk_frame frame = WK_FRAME_INIT;          /* set colour space, clip space and flags; View fills in the rest */
+    osg::ref_ptr<osg::Texture> color, depth; /* attached to the camera; both null: the camera draws into its window */
     wk_opengl_multisample multisample = WK_OPENGL_MULTISAMPLE_EACH;
-    wk_stage_flags before_transparent = 0; /* stages that are drawn between opaque things and the transparent bin */
+    wk_stage_flags before_transparent = 0; /* stages drawn between opaque objects and the transparent bin */
     std::atomic<bool> shown{true};
 
-    /* After the camera's attachments are set. Pre-draw callbacks that are added later find the weather of the frame's time. */
+    /* Call it after setting the camera's attachments. Pre-draw callbacks added afterwards find the weather of the
+     * frame's time. */
     void attach(osg::Camera *camera)
     {
         camera->addCullCallback(new Cull(this));
@@ -103,7 +105,7 @@ public:
         camera->addPostDrawCallback(new Draw(this, &View::finish));
     }
 
-    /* For settings; null before the weather is open and after it is closed. */
+    /* The view for settings; null before the weather is opened and after it is closed. */
     wk_view *get() { return !weather->context() ? nullptr : view_ ? view_ : view_ = weather->create_view(); }
 
 private:
@@ -114,7 +116,8 @@ private:
         void (View::*const step)(osg::RenderInfo &);
     };
 
-    /* Drawn in every frame after the opaque things, even if there are none: only there are osg::State's matrices the camera's. */
+    /* Drawn in every frame after the opaque objects, even if there are none. Only at that point osg::State has the
+     * camera's matrices. */
     struct Mark : osg::Drawable {
         explicit Mark(View *view) : view(view) { setUseDisplayList(false); }
         void drawImplementation(osg::RenderInfo &info) const override { view->take_camera(info); }
@@ -142,7 +145,7 @@ private:
     {
         if (!get()) return;
         const wk_status status = wk_context_update(weather->context(), info.getState()->getFrameStamp()->getSimulationTime());
-        weather->pending = status == WK_PENDING; /* the update of the next frame goes on with the steps that remain */
+        weather->pending = status == WK_PENDING; /* the next frame's update continues with the remaining steps */
         report(status);
     }
     void take_camera(osg::RenderInfo &info)
@@ -170,7 +173,7 @@ private:
             const unsigned int id = info.getContextID();
             osg::Texture::TextureObject *now[2] = {color->getTextureObject(id), depth->getTextureObject(id)};
             if (!now[0] || !now[1]) return;
-            generation_ += now[0] != held_[0] || now[1] != held_[1]; /* OpenGL gives old names to new textures */
+            generation_ += now[0] != held_[0] || now[1] != held_[1]; /* OpenGL may reuse names of deleted textures */
             for (int i = 0; i < 2; i++) held_[i] = now[i];
             target.color.name = now[0]->id(), target.depth.name = now[1]->id();
             target.color.target = target.depth.target = color->getTextureTarget();
@@ -184,13 +187,13 @@ private:
 
     void report(wk_status status)
     {
-        if (status >= WK_OK || said_ == wk_last_error_message()) return; /* once, not once a frame */
+        if (status >= WK_OK || said_ == wk_last_error_message()) return; /* report an error once, not in every frame */
         said_ = wk_last_error_message();
         check(status);
     }
 
     wk_view *view_ = nullptr;
-    osg::ref_ptr<osg::Texture::TextureObject> held_[2]; /* so that another one cannot have the same address */
+    osg::ref_ptr<osg::Texture::TextureObject> held_[2]; /* held so that no new object gets the same address */
     uint64_t generation_ = 0;
     std::string said_;
 };

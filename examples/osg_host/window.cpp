@@ -14,7 +14,7 @@ namespace {
 const char *const PRESENT_VERTEX = R"(#version 130
 void main() { gl_Position = gl_Vertex; })";
 
-/* A floating-point picture is linear after TONE and is encoded here; others hold the display's values already. */
+/* A floating-point picture is linear after TONE, so it is encoded here; others have display values already. */
 const char *const PRESENT_FRAGMENT = R"(
 uniform PICTURE picture;
 uniform bool linear;
@@ -26,7 +26,8 @@ void main() {
     gl_FragColor = vec4(linear ? encoded(clamp(color, 0.0, 1.0)) : color, 1.0);
 })";
 
-/* Near and far stay OSG's own, as it finds them in every frame; depth runs from 1 at the near plane to 0 at the far one. */
+/* Keeps the near and far planes that OSG computes in every frame; depth runs from 1 at the near plane to 0 at the far
+ * plane. */
 struct ReversedDepth : osg::CullSettings::ClampProjectionMatrixCallback {
     explicit ReversedDepth(double near_far_ratio) : ratio(near_far_ratio) {}
     bool clampProjectionMatrixImplementation(osg::Matrixf &, double &, double &) const override { return false; }
@@ -62,7 +63,7 @@ osg::ref_ptr<osg::Texture> make_texture(const Options &o, GLint format, GLenum p
     return texture;
 }
 
-/* Shows the camera's texture in the window after the camera, and so after its post-draw callback. */
+/* Shows the camera's texture in the window after the camera's post-draw callback. */
 osg::ref_ptr<osg::Camera> make_presenter(osg::Texture *picture, bool linear, int samples)
 {
     osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
@@ -111,7 +112,7 @@ osg::ref_ptr<osg::GraphicsContext> open_window(const Options &o, int number)
     traits->windowName = "osg_host";
     traits->depth = 24;
     if (o.window_target && o.msaa != Msaa::None) traits->samples = o.samples;
-    /* OSG answers a context also where the display refuses its visual; such a one is not valid, and asking it for anything crashes. */
+    /* If the display refuses the visual, OSG still returns a context. It is not valid, and using it crashes. */
     const auto create = [&traits] {
         osg::ref_ptr<osg::GraphicsContext> context = osg::GraphicsContext::createGraphicsContext(traits);
         return context && context->valid() ? context : nullptr;
@@ -130,10 +131,10 @@ osg::ref_ptr<osg::GraphicsContext> open_window(const Options &o, int number)
 void set_target(osgViewer::View &view, const Options &o, welkin_osg::View &weather)
 {
     osg::Camera *camera = view.getCamera();
-    camera->setNearFarRatio(2e-6); /* OSG's own ratio puts the near plane at 60 m where the land reaches 120 km away */
+    camera->setNearFarRatio(2e-6); /* OSG's default would put the near plane at 60 m, as the land reaches 120 km */
     weather.frame.clip_space = WK_CLIP_MINUS_ONE_TO_ONE;
     weather.multisample = WK_OPENGL_MULTISAMPLE_EACH;
-    /* OSG resolves its own samples when the camera has been drawn: only then is there a picture to draw the air into. */
+    /* OSG resolves its own samples after the camera has been drawn, so Welkin cannot draw the air before that. */
     if (o.window_target || o.msaa != Msaa::Osg)
         weather.before_transparent = WK_STAGE_PREPARE | WK_STAGE_BACKGROUND | WK_STAGE_SURFACE | WK_STAGE_MEDIUM;
     if (o.window_target) {
@@ -148,7 +149,7 @@ void set_target(osgViewer::View &view, const Options &o, welkin_osg::View &weath
     camera->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
     camera->attach(osg::Camera::COLOR_BUFFER, weather.color.get(), 0, 0, false, samples, samples);
     camera->attach(osg::Camera::DEPTH_BUFFER, weather.depth.get(), 0, 0, false, samples, samples);
-    /* OSG's multisampled depth is 24-bit unless it is told; resolving wants equal formats. */
+    /* OSG's multisampled depth is 24-bit by default, but a resolve needs equal formats. */
     if (samples) camera->getBufferAttachmentMap()[osg::Camera::DEPTH_BUFFER]._internalFormat = weather.depth->getInternalFormat();
     camera->addChild(make_presenter(weather.color.get(), true, o.samples));
     if (o.reversed) {
@@ -166,9 +167,10 @@ void mend_multisampling(osg::GraphicsContext &window)
 {
     osg::State &state = *window.getState();
     auto *gl = state.get<osg::GLExtensions>();
-    /* It looks its function up by another one's name (glTextureStorage2DMultisample), which takes a texture, not a target. */
+    /* OSG looks this function up under another name (glTextureStorage2DMultisample), which takes a texture, not a
+     * target. */
     osg::setGLExtensionFuncPtr(gl->glTexStorage2DMultisample, "glTexStorage2DMultisample");
-    /* It takes any address for support; dispatch libraries (GLVND) have one for every function. */
+    /* OSG takes any address as a sign of support; dispatch libraries (GLVND) return one for every function. */
     if (!osg::isGLExtensionSupported(state.getContextID(), "GL_NV_framebuffer_multisample_coverage"))
         gl->glRenderbufferStorageMultisampleCoverageNV = nullptr;
 }

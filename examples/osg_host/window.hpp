@@ -1,4 +1,4 @@
-/* What a view's camera draws into: its window, or textures that are shown in the window afterwards. */
+/* The target of a view's camera: its window, or textures that are then shown in the window. */
 #ifndef WINDOW_HPP
 #define WINDOW_HPP
 
@@ -10,10 +10,12 @@
 
 osg::ref_ptr<osg::GraphicsContext> open_window(const Options &options, int number);
 
-/* Sets the view's camera up, and the formats in `weather` with it. After setSceneData, which removes the camera's children. */
+/* Sets up the view's camera, and the formats in `weather` to match. Call it after setSceneData, which removes the
+ * camera's children. */
 void set_target(osgViewer::View &view, const Options &options, welkin_osg::View &weather);
 
-/* Two faults of OpenSceneGraph 3.6.5 that keep multisampled targets from being made; with the context current, before the first frame. */
+/* Works around two faults of OpenSceneGraph 3.6.5 that prevent multisampled targets. Call it with the context current,
+ * before the first frame. */
 void mend_multisampling(osg::GraphicsContext &window);
 
 #endif

@@ -1,4 +1,5 @@
-/* The world of ../glfw_host (real terrain, a road, an excavator, posts and a wood) as plain arrays for a C++ program. */
+/* The world of ../glfw_host (measured terrain, a road, an excavator, posts and a wood) as plain arrays for a C++
+ * program. */
 #ifndef WORLD_H
 #define WORLD_H
 
@@ -9,7 +10,7 @@
 extern "C" {
 #endif
 
-/* Floats of a vertex: position, normal, albedo (linear Rec. 709) and metres to the right of the road's centre line. */
+/* Floats per vertex: position, normal, albedo (linear Rec. 709) and metres to the right of the road's centre line. */
 enum { WORLD_FLOATS = 10 };
 
 typedef struct world_mesh {
@@ -21,13 +22,13 @@ typedef struct world_mesh {
 typedef struct world_site {
     double latitude_deg, longitude_deg, altitude_m, azimuth_deg;
     double pad[3]; /* where the excavator stands */
-    double eye[3]; /* on the hillside, from where the posts' distances are measured */
+    double eye[3]; /* on the hillside; the posts' distances are measured from here */
 } world_site;
 
-/* 0 if the heights cannot be read; a line on stderr says why. */
+/* Returns 0 if the heights cannot be read, and prints the reason on stderr. */
 int world_load(const char *heights_png, world_site *site);
 double world_height(double east, double north);
-/* They live until world_free. */
+/* Valid until world_free. */
 world_mesh world_ground(void);
 world_mesh world_objects(void);
 void world_free(void);

@@ -1,4 +1,4 @@
-/* The host's own Vulkan: instance with the validation layer, device, images. */
+/* The host's own Vulkan: instance with the validation layer, device and images. */
 #include "host.h"
 #include "native.h"
 
@@ -75,7 +75,7 @@ void host_open_instance(host *h, bool windowed)
     }
 }
 
-/* The first device with a queue that draws and computes, and presents to the surface if there is one. */
+/* Picks the first device with a queue that draws and computes, and that presents to the surface if there is one. */
 static void choose_device(host *h, VkSurfaceKHR surface)
 {
     VkPhysicalDevice devices[16];
@@ -106,7 +106,7 @@ void host_open_device(host *h, VkSurfaceKHR surface)
                                               .queueFamilyIndex = h->queue_family,
                                               .queueCount = 1,
                                               .pQueuePriorities = &priority};
-    /* Lets Welkin draw into multisampled colour sample by sample. */
+    /* Allows Welkin to draw into multisampled colour per sample. */
     VkPhysicalDeviceFeatures able;
     vkGetPhysicalDeviceFeatures(h->physical_device, &able);
     h->features.sampleRateShading = able.sampleRateShading;
@@ -115,7 +115,7 @@ void host_open_device(host *h, VkSurfaceKHR surface)
                                           .pQueueCreateInfos = &h->queue_info,
                                           .ppEnabledExtensionNames = h->device_extensions,
                                           .pEnabledFeatures = &h->features};
-    /* Welkin gives images back for presenting only where it is told of this one. */
+    /* Welkin returns images in the layout for presenting only if the device has this extension. */
     if (surface) h->device_extensions[h->device_info.enabledExtensionCount++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     VK_CHECK(vkCreateDevice(h->physical_device, &h->device_info, NULL, &h->device));
     vkGetDeviceQueue(h->device, h->queue_family, 0, &h->queue);
@@ -197,7 +197,7 @@ image host_image(host *h, VkFormat format, uint32_t width, uint32_t height, uint
 void host_close_image(host *h, const image *i)
 {
     vkDestroyImageView(h->device, i->view, NULL);
-    if (i->memory) vkDestroyImage(h->device, i->handle, NULL); /* a swapchain's goes with it */
+    if (i->memory) vkDestroyImage(h->device, i->handle, NULL); /* the swapchain destroys its own images */
     vkFreeMemory(h->device, i->memory, NULL);
 }
 

@@ -1,4 +1,4 @@
-/* The host's own Vulkan: instance, device, queue, images. Nothing here knows of Welkin. */
+/* The host's own Vulkan: instance, device, queue, images. This file does not use Welkin. */
 #ifndef VULKAN_HOST_H
 #define VULKAN_HOST_H
 
@@ -10,7 +10,7 @@
 
 #include "sync.h"
 
-/* Ends the program with a sentence if a Vulkan call fails. */
+/* Ends the program with a message if a Vulkan call fails. */
 #define VK_CHECK(call) vk_check((call), #call, __FILE__, __LINE__)
 void vk_check(VkResult result, const char *call, const char *file, int line);
 
@@ -26,7 +26,7 @@ void vk_check(VkResult result, const char *call, const char *file, int line);
 
 typedef struct image {
     VkImage handle;
-    VkDeviceMemory memory; /* VK_NULL_HANDLE for a swapchain's image */
+    VkDeviceMemory memory; /* VK_NULL_HANDLE for a swapchain image */
     VkImageView view;
     VkFormat format;
     VkImageUsageFlags usage;
@@ -36,7 +36,7 @@ typedef struct image {
 enum { MAX_NAMES = 4 };
 
 typedef struct host {
-    /* What instance and device were created with. Welkin is told the very same. */
+    /* How instance and device were created. Welkin gets exactly the same. */
     VkApplicationInfo app;
     const char *instance_extensions[MAX_NAMES], *device_extensions[MAX_NAMES];
     uint32_t instance_extension_count;
@@ -46,16 +46,16 @@ typedef struct host {
 
     VkInstance instance;
     VkDebugUtilsMessengerEXT messenger; /* VK_NULL_HANDLE without the validation layer */
-    int complaints;                     /* of the validation layer */
+    int complaints;                     /* number of messages from the validation layer */
     VkPhysicalDevice physical_device;
     uint32_t queue_family;
     VkDevice device;
     VkQueue queue;
-    lock queue_lock; /* held round each use of the queue, vkQueuePresentKHR and vkDeviceWaitIdle included */
+    lock queue_lock; /* held during each use of the queue, including vkQueuePresentKHR and vkDeviceWaitIdle */
     VkCommandPool pool;
 } host;
 
-/* A window's host needs a surface between the two; others pass `windowed` false and VK_NULL_HANDLE. */
+/* With a window, create its surface between these two calls. Otherwise pass `windowed` false and VK_NULL_HANDLE. */
 void host_open_instance(host *h, bool windowed);
 void host_open_device(host *h, VkSurfaceKHR surface);
 void host_close_device(host *h);
@@ -65,15 +65,17 @@ image host_image(host *h, VkFormat format, uint32_t width, uint32_t height, uint
 VkImageView host_view(host *h, const image *i);
 void host_close_image(host *h, const image *i);
 
-/* One command buffer, begun for one submission. */
+/* Begins a command buffer for one submission. */
 VkCommandBuffer host_begin(host *h);
-/* Submits it; waits for `wait` and signals `signal` where they are not VK_NULL_HANDLE; waits for its end if asked. */
+/* Submits it. Waits for `wait` and signals `signal` unless they are VK_NULL_HANDLE. With `finish`, waits until it is
+ * done. */
 void host_submit(host *h, VkCommandBuffer commands, VkSemaphore wait, VkSemaphore signal, bool finish);
-/* vkDeviceWaitIdle uses every queue of the device, so it wants the lock too. */
+/* Takes the lock, because vkDeviceWaitIdle uses every queue of the device. */
 void host_wait(host *h);
-/* Changes an image's layout, ordered against everything before and after. */
+/* Changes an image's layout, ordered after all earlier commands and before all later ones. */
 void host_transition(VkCommandBuffer commands, const image *i, VkImageLayout from, VkImageLayout to);
-/* Copies an image in TRANSFER_SRC_OPTIMAL to memory after `wait`: width * height * texel_bytes bytes, to be freed. */
+/* Copies an image in TRANSFER_SRC_OPTIMAL to memory after `wait`: width * height * texel_bytes bytes. The caller frees
+ * it. */
 void *host_read(host *h, const image *i, uint32_t texel_bytes, VkSemaphore wait);
 
 #endif

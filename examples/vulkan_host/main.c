@@ -1,11 +1,11 @@
-/* A host that draws with its own Vulkan device. Welkin draws the weather into its images, and the host looks at the
+/* A host that draws with its own Vulkan device. Welkin draws the weather into its images, and the host checks the
  * pixels.
  *
  *     vulkan_host [PICTURE.ppm]                                without a window
  *     vulkan_host --window [--samples N] [--check [PICTURE.ppm]]   in a window, with 1 or 4 samples a pixel
  *
- * host.c has the host's own Vulkan, world.c what it draws, weather.c everything of Welkin's; offscreen.c and window.c
- * hand images over, without and with a swapchain. */
+ * host.c has the host's own Vulkan, world.c what it draws, weather.c everything that uses Welkin. offscreen.c hands
+ * images over without a swapchain, window.c with one. */
 #include "runs.h"
 
 #include "../command_line.h"

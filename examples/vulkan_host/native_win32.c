@@ -1,4 +1,4 @@
-/* The window by Win32. */
+/* The window on Win32. */
 #ifdef _WIN32
 #define WIN32_LEAN_AND_MEAN
 #define VK_USE_PLATFORM_WIN32_KHR
@@ -30,7 +30,7 @@ static LRESULT CALLBACK on_message(HWND hwnd, UINT message, WPARAM w_param, LPAR
     return message == WM_ERASEBKGND ? 1 : DefWindowProcW(hwnd, message, w_param, l_param);
 }
 
-/* A window is larger than what is drawn into by its frame. */
+/* A window is larger than its drawing area by its frame. */
 static RECT with_frame(uint32_t width, uint32_t height)
 {
     RECT r = {0, 0, (LONG)width, (LONG)height};

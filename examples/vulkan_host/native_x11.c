@@ -1,4 +1,4 @@
-/* The window by X11. */
+/* The window on X11. */
 #ifndef _WIN32
 #define VK_USE_PLATFORM_XLIB_KHR
 #endif

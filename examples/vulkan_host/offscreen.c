@@ -1,4 +1,4 @@
-/* A host without a window, in scene luminance: Welkin tone-maps the picture. Semaphores order host and Welkin, as they
+/* A host without a window, in scene luminance; Welkin tone-maps the picture. Semaphores order host and Welkin, as they
  * would on two queues. */
 #include "runs.h"
 #include "weather.h"
@@ -14,13 +14,13 @@ typedef struct target {
     image color, depth, mask;
     VkRenderPass pass;
     VkFramebuffer framebuffer;
-    VkSemaphore drawn, weather; /* host to Welkin, Welkin to host */
+    VkSemaphore drawn, weather; /* signalled by the host for Welkin; by Welkin for the host */
 } target;
 
 static const VkImageLayout ATTACHED = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 static const VkImageLayout DEPTH_ATTACHED = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
 
-/* Colour, mask and depth in one pass; each is stored, and ends in the layout in which Welkin is told to find it. */
+/* Colour, mask and depth in one pass. Each is stored, and ends in the layout that the host states to Welkin. */
 static void open_pass(host *h, target *t)
 {
     VkAttachmentDescription attachments[3];
@@ -39,7 +39,7 @@ static void open_pass(host *h, target *t)
                                           .colorAttachmentCount = 2,
                                           .pColorAttachments = colors,
                                           .pDepthStencilAttachment = &depth};
-    /* The frame before, or Welkin's reading of it, is over before this one is drawn. */
+    /* The previous frame, and Welkin's reads of it, end before this one is drawn. */
     const VkSubpassDependency after = {.srcSubpass = VK_SUBPASS_EXTERNAL,
                                        .srcStageMask = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                                        .dstStageMask = VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT,
@@ -93,7 +93,7 @@ static void close_target(host *h, target *t)
 static void draw_world(host *h, const target *t, const world *w, VkSemaphore signal)
 {
     VkCommandBuffer commands = host_begin(h);
-    const VkClearValue clear[3] = {0}; /* colour, mask, and depth 0: infinitely far, as depth is reversed */
+    const VkClearValue clear[3] = {0}; /* colour, mask, and depth 0: infinitely far away, as depth is reversed */
     const VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
                                          .renderPass = t->pass,
                                          .framebuffer = t->framebuffer,
@@ -115,7 +115,7 @@ static float half_value(uint16_t h)
     return (float)(h & 0x8000 ? -magnitude : magnitude);
 }
 
-/* The picture, after `wait`: RGB, to be freed. */
+/* Reads the picture after `wait`: RGB. The caller frees it. */
 static float *read_picture(host *h, const target *t, VkSemaphore wait)
 {
     uint16_t *halves = host_read(h, &t->color, 8, wait);
@@ -134,7 +134,7 @@ int run_offscreen(const char *picture)
     host_open_device(&h, VK_NULL_HANDLE);
     target t = open_target(&h);
     weather welkin = weather_open(&h);
-    /* Colour comes back ready to be copied. */
+    /* Colour comes back ready for copying. */
     const handover over = {.color = {&t.color, ATTACHED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL},
                            .depth = {&t.depth, DEPTH_ATTACHED, DEPTH_ATTACHED},
                            .mask = {&t.mask, ATTACHED, ATTACHED},
@@ -153,7 +153,7 @@ int run_offscreen(const char *picture)
     free(rgb);
     weather_close(&welkin);
 
-    /* Welkin is gone; everything of the host's is still there and works. */
+    /* Welkin is gone; all of the host's objects are still there and work. */
     draw_world(&h, &t, &w, VK_NULL_HANDLE);
     VkCommandBuffer commands = host_begin(&h);
     host_transition(commands, &t.color, ATTACHED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);

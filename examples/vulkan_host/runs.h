@@ -1,4 +1,4 @@
-/* How the example runs: each draws, looks at its pixels and answers how often the validation layer complained. */
+/* The two ways to run the example. Each draws, checks its pixels and returns the number of validation messages. */
 #ifndef VULKAN_HOST_RUNS_H
 #define VULKAN_HOST_RUNS_H
 
@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 int run_offscreen(const char *picture);
-/* `check` ends after some frames and a resize; else it runs until the window is closed. */
+/* With `check`, ends after some frames and resizes; otherwise runs until the window is closed. */
 int run_window(uint32_t samples, bool check, const char *picture);
 
 #endif

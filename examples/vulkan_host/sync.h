@@ -1,4 +1,4 @@
-/* A lock and a thread: C11's threads.h is missing in MinGW and in older C libraries of Microsoft. */
+/* A lock and a thread: MinGW and older Microsoft C libraries lack C11's threads.h. */
 #ifndef VULKAN_HOST_SYNC_H
 #define VULKAN_HOST_SYNC_H
 

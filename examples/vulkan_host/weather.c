@@ -22,7 +22,7 @@ weather weather_open(host *h)
     desc.device = h->device;
     desc.enabled_device_extensions = h->device_info.ppEnabledExtensionNames;
     desc.device_extension_count = h->device_info.enabledExtensionCount;
-    desc.enabled_features = &h->device_info; /* with the chain behind it */
+    desc.enabled_features = &h->device_info; /* with the chain of structs that follows it */
     desc.queue_family_index = h->queue_family;
     desc.lock_queue = lock_queue;
     desc.unlock_queue = unlock_queue;
@@ -87,11 +87,12 @@ void weather_draw(const weather *w, const handover *over, uint64_t frame_id, dou
     frame.color_space = over->color_space;
     frame.flags = WK_FRAME_DEPTH_REVERSED;
     frame.position_m[2] = EYE_M;
-    /* Looking north: eye x is east, eye y is up, eye z is south. Column by column. */
+    /* Looks north: eye x is east, eye y is up, eye z is south. Column by column. */
     const double view_matrix[16] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
     memcpy(frame.view, view_matrix, sizeof view_matrix);
-    /* Reversed depth: NEAR_M / distance, 0 infinitely far. A viewport of positive height, as this host's, stores clip y = -1
-     * in the first row: then the projection turns y about, and Welkin is told. With a negative height neither is done. */
+    /* Reversed depth: NEAR_M / distance, 0 infinitely far away. A viewport of positive height, as in this host's
+     * window, puts clip y = -1 in the first row. The projection then flips y, and Welkin is told so. A viewport of
+     * negative height needs neither. */
     const double aspect = (double)color.width / color.height, y = over->first_row_at_minus_y ? -FOCAL : FOCAL;
     const double projection[16] = {FOCAL / aspect, 0, 0, 0, 0, y, 0, 0, 0, 0, 0, -1, 0, 0, NEAR_M, 0};
     memcpy(frame.projection, projection, sizeof projection);

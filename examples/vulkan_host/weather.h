@@ -1,11 +1,11 @@
-/* Welkin over the host's device: what it is told once, and for each frame. */
+/* Welkin on the host's device: set up once, then called for each frame. */
 #ifndef VULKAN_HOST_WEATHER_H
 #define VULKAN_HOST_WEATHER_H
 
 #include "host.h"
 #include "welkin.h"
 
-/* Welkin says what is wrong in words. */
+/* Ends the program with Welkin's message if a call fails. */
 #define WK_CHECK(call)                                                                                 \
     do {                                                                                               \
         wk_status status_ = (call);                                                                    \
@@ -21,26 +21,26 @@ typedef struct weather {
     wk_view *view;
 } weather;
 
-/* An image that Welkin takes over in one layout and gives back in another. */
+/* An image that Welkin receives in one layout and returns in another. */
 typedef struct lent {
     const image *image; /* NULL: none */
     VkImageLayout layout, final_layout;
 } lent;
 
-/* What the host hands over for one frame. */
+/* The images and semaphores that the host passes for one frame. */
 typedef struct handover {
     lent color, depth, mask;
     wk_color_space color_space;
-    VkSemaphore wait, signal; /* VK_NULL_HANDLE: none; work on the same queue is in order without */
+    VkSemaphore wait, signal; /* VK_NULL_HANDLE: none; the same queue needs none */
     bool first_row_at_minus_y;
 } handover;
 
 weather weather_open(host *h);
-/* Draws at a time, and submits: when this returns, the work is on the queue. */
+/* Draws the weather of a time and submits it. When this returns, the work is on the queue. */
 void weather_draw(const weather *w, const handover *over, uint64_t frame_id, double time_s);
-/* The host is about to destroy an image, or has just done so. */
+/* Call it when the host is about to destroy an image, or has just destroyed it. */
 void weather_forget(const weather *w, const image *i);
-/* Children first, then the device; the VkDevice comes after all of them. */
+/* Destroys children first, then the device. Destroy the VkDevice after this. */
 void weather_close(weather *w);
 
 #endif

@@ -1,6 +1,6 @@
-/* A windowed engine in small: a swapchain, two frames in flight, a thread that uploads on the same queue, resize. Welkin
- * draws into the swapchain's images, or with several samples into the host's, which the host then resolves. Colours are
- * a display's already. */
+/* A small windowed engine: a swapchain, two frames in flight, a thread that uploads on the same queue, resizing. With
+ * one sample, Welkin draws into the swapchain's images. With several, it draws into the host's image, which the host
+ * then resolves. Colours are display values. */
 #include "runs.h"
 #include "native.h"
 #include "weather.h"
@@ -27,13 +27,13 @@ typedef struct window {
     VkCommandPool pool;
     in_flight frames[IN_FLIGHT];
     uint64_t frame_id;
-    /* Made anew with each size. */
+    /* Created again for each size. */
     VkSwapchainKHR swapchain;
     uint32_t count;
-    image shown[MAX_IMAGES]; /* the swapchain's */
-    image color, depth;      /* colour only with several samples */
+    image shown[MAX_IMAGES]; /* the swapchain's images */
+    image color, depth;      /* colour is used only with several samples */
     VkFramebuffer framebuffers[MAX_IMAGES];
-    VkSemaphore weather[MAX_IMAGES]; /* Welkin, or the resolve after it, to the presentation of this image */
+    VkSemaphore weather[MAX_IMAGES]; /* signalled when the image may be presented: by Welkin or by the resolve */
     world world;
 } window;
 
@@ -42,7 +42,7 @@ static const VkImageLayout DEPTH_READ = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_
 
 /* ---- what lasts as long as the window ---- */
 
-/* An 8-bit format, sRGB-encoding if there is one: then the host's colours are blended linearly. */
+/* Picks an 8-bit format, sRGB-encoding if there is one, so that the host's colours are blended linearly. */
 static VkSurfaceFormatKHR choose_format(host *h, VkSurfaceKHR surface)
 {
     VkSurfaceFormatKHR formats[32];
@@ -63,7 +63,7 @@ static VkAttachmentDescription attachment(const window *w, VkFormat format, VkIm
     return (VkAttachmentDescription){.format = format,
                                      .samples = (VkSampleCountFlagBits)w->samples,
                                      .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                     .storeOp = VK_ATTACHMENT_STORE_OP_STORE, /* of depth as well: Welkin reads it */
+                                     .storeOp = VK_ATTACHMENT_STORE_OP_STORE, /* for depth as well: Welkin reads it */
                                      .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
                                      .finalLayout = layout};
 }
@@ -77,7 +77,7 @@ static void open_pass(host *h, window *w)
                                           .colorAttachmentCount = 1,
                                           .pColorAttachments = &color,
                                           .pDepthStencilAttachment = &depth};
-    /* One depth serves all frames in flight: what read it for the frame before is over before it is cleared. */
+    /* All frames in flight share one depth image, so the reads of the previous frame must end before it is cleared. */
     const VkSubpassDependency after = {.srcSubpass = VK_SUBPASS_EXTERNAL,
                                        .srcStageMask = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                                        .dstStageMask = VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT,
@@ -111,7 +111,7 @@ static void open_frames(host *h, window *w)
     }
 }
 
-/* ---- what goes with the size ---- */
+/* ---- what is created for each size ---- */
 
 static void open_images(host *h, window *w, VkSwapchainKHR old)
 {
@@ -119,7 +119,8 @@ static void open_images(host *h, window *w, VkSwapchainKHR old)
     VK_CHECK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(h->physical_device, w->surface, &can));
     const VkExtent2D size = can.currentExtent;
     const VkImageUsageFlags color = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, copied = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    /* Welkin copies the colour that it draws into: TRANSFER_SRC. A swapchain gives that only where it is asked for. */
+    /* Welkin copies the colour image that it draws into, which needs TRANSFER_SRC. A swapchain has it only on
+     * request. */
     const VkImageUsageFlags usage = color | copied | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     EXPECT((can.supportedUsageFlags & usage) == usage, "draw into an image of your own and blit it to this swapchain");
     uint32_t count = can.minImageCount > 3 ? can.minImageCount : 3;
@@ -169,7 +170,7 @@ static void open_images(host *h, window *w, VkSwapchainKHR old)
     w->world = (world){.width = size.width, .height = size.height, .white = 1.5};
 }
 
-/* Destroys all that `w` had at its size; the swapchain itself last. The GPU has done with it. */
+/* Destroys everything in `w` that depends on the size, the swapchain last. The GPU must have finished with it. */
 static void close_images(host *h, const window *w)
 {
     for (uint32_t i = 0; i < w->count; i++) {
@@ -189,7 +190,8 @@ static void resize(host *h, window *w, const weather *welkin)
     const window old = *w;
     open_images(h, w, old.swapchain);
     close_images(h, &old);
-    /* Before the first frame on new images: they may have the old ones' numbers. The old ones may be gone by then. */
+    /* Tell Welkin before the first frame on new images, because these may have the old ones' handles. The old images
+     * may be destroyed already. */
     for (uint32_t i = 0; i < old.count; i++) weather_forget(welkin, &old.shown[i]);
     weather_forget(welkin, &old.depth);
     if (w->samples > 1) weather_forget(welkin, &old.color);
@@ -224,7 +226,7 @@ static void submit(host *h, VkCommandBuffer commands, VkSemaphore wait, VkSemaph
 static void draw_world(window *w, in_flight *frame, uint32_t at)
 {
     begin(frame->world);
-    const VkClearValue clear[2] = {0}; /* colour, and depth 0: infinitely far, as depth is reversed */
+    const VkClearValue clear[2] = {0}; /* colour, and depth 0: infinitely far away, as depth is reversed */
     const VkRenderPassBeginInfo pass = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
                                         .renderPass = w->pass,
                                         .framebuffer = w->framebuffers[at],
@@ -249,7 +251,8 @@ static void resolve(host *h, window *w, in_flight *frame, uint32_t at, VkImageLa
     submit(h, frame->resolve, VK_NULL_HANDLE, w->weather[at], frame->done);
 }
 
-/* The picture in hand as linear RGB, to be freed; it is in TRANSFER_SRC_OPTIMAL and left ready to be presented. */
+/* Reads the current picture as linear RGB; the caller frees it. The image is in TRANSFER_SRC_OPTIMAL and is left ready
+ * for presenting. */
 static float *read_picture(host *h, window *w, uint32_t at)
 {
     const image *i = &w->shown[at];
@@ -268,10 +271,10 @@ static float *read_picture(host *h, window *w, uint32_t at)
     return rgb;
 }
 
-/* One frame from acquisition to presentation; `rgb`, where it is not NULL, gets the picture. */
+/* Draws one frame, from acquisition to presentation; `rgb` gets the picture unless it is NULL. */
 static void draw(host *h, window *w, const weather *welkin, float **rgb)
 {
-    /* Not every driver says by itself that a swapchain no longer has the window's size. */
+    /* Not every driver reports that the swapchain's size no longer matches the window. */
     native_take_events(&w->native);
     if (w->native.resized) resize(h, w, welkin);
     in_flight *frame = &w->frames[w->frame_id % IN_FLIGHT];
@@ -286,8 +289,8 @@ static void draw(host *h, window *w, const weather *welkin, float **rgb)
     VK_CHECK(vkResetFences(h->device, 1, &frame->done));
     const bool several = w->samples > 1;
     const VkImageLayout end = rgb ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL : VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
-    /* The host's drawing waits for the image; Welkin's needs no semaphore to come after it on the same queue; and what is
-     * last signals that the image may be shown. */
+    /* The host's drawing waits for the image. Welkin's drawing follows on the same queue, so it needs no semaphore. The
+     * last submission signals that the image may be presented. */
     draw_world(w, frame, at);
     submit(h, frame->world, frame->acquired, VK_NULL_HANDLE, several ? VK_NULL_HANDLE : frame->done);
     const handover over = {
@@ -315,7 +318,7 @@ static void draw(host *h, window *w, const weather *welkin, float **rgb)
     else VK_CHECK(result);
 }
 
-/* ---- the rest of an engine: a thread of its own that submits, as one that uploads does ---- */
+/* ---- the rest of an engine: a thread that submits on the same queue, as an uploading thread does ---- */
 
 typedef struct uploader {
     host *host;
@@ -373,7 +376,8 @@ int run_window(uint32_t samples, bool only_check, const char *picture)
         draw(&h, &w, &welkin, NULL);
     }
 
-    /* The end: nobody uses the queue, Welkin goes, then what it drew into, the device, and last the window. */
+    /* Shutdown order: all use of the queue ends; then Welkin, the images it drew into, the device, and last the
+     * window. */
     atomic_store(&u.stop, true);
     thread_join(u.thread);
     EXPECT(u.submissions > 0, "the other thread never got the queue");

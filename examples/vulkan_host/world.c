@@ -6,7 +6,7 @@
 
 static const double BOARD_M[BOARDS] = {100.0, 500.0, 1e3, 2e3, 5e3, 20e3};
 
-/* A matt surface. */
+/* Colour of a matt surface. */
 static VkClearValue matt(const world *w, double r, double g, double b)
 {
     return (VkClearValue){.color = {.float32 = {(float)(r * w->white), (float)(g * w->white), (float)(b * w->white), 1.0f}}};
@@ -23,7 +23,7 @@ static void fill(const world *w, VkCommandBuffer commands, VkRect2D rect, VkClea
     vkCmdClearAttachments(commands, w->masked ? 3 : 2, what, 1, &where);
 }
 
-/* The rectangle in which board `i` is seen. */
+/* Returns the rectangle that board `i` covers in the picture. */
 static VkRect2D board(const world *w, int i)
 {
     const uint32_t pitch = w->width / BOARDS, high = w->height / 9;
@@ -40,7 +40,7 @@ void world_draw(const world *w, VkCommandBuffer commands)
     for (int i = 0; i < BOARDS; i++) {
         fill(w, commands, board(w, i), matt(w, 0.02, 0.02, 0.02), NEAR_M / BOARD_M[i], 0.0f);
     }
-    if (w->masked) { /* the HUD: its pixels stay as they are */
+    if (w->masked) { /* the HUD: Welkin leaves its pixels as they are */
         const VkClearValue color = {.color = {.float32 = {0.25f, 0.5f, 1.0f, 1.0f}}};
         fill(w, commands, (VkRect2D){{0, 0}, {HUD, HUD}}, color, 1.0, 1.0f);
     }
@@ -57,7 +57,7 @@ void world_check(const world *w, const float *rgb)
     }
     const float *top = pixel(w, rgb, w->width / 2, w->height / 36);
     EXPECT(top[2] > top[0], "the sky overhead is blue");
-    /* Air light: the farther a dark board, the more it takes on the brightness of the sky at the horizon. */
+    /* Air light: the farther away a dark board is, the closer its brightness gets to the sky's at the horizon. */
     double nearer = 0.0;
     for (int i = 0; i < BOARDS; i++) {
         const VkRect2D r = board(w, i);
@@ -65,7 +65,7 @@ void world_check(const world *w, const float *rgb)
         const double sky = luminance(pixel(w, rgb, (uint32_t)r.offset.x - w->width / 80, y));
         const double seen = luminance(pixel(w, rgb, x, y));
         printf("board at %6.0f m: %.4f of the sky's %.4f\n", BOARD_M[i], seen / sky, sky);
-        EXPECT(seen > nearer && seen < 1.04 * sky, "board %d", i); /* far enough away it is the sky, to the tables' error in haze */
+        EXPECT(seen > nearer && seen < 1.04 * sky, "board %d", i); /* far away it is sky, within the tables' error */
         nearer = seen;
     }
     for (uint32_t y = 0; w->masked && y < HUD; y++) {

@@ -1,12 +1,12 @@
-/* A host without graphics of its own: a window of X11 or Win32, named to Welkin by its handle, that shows the sky.
+/* A host without graphics of its own: a window of X11 or Win32 that shows the sky. Welkin gets the window's handle.
  *
- *     window_host [--gl]                    until the window is closed; the sun goes round, the left button looks about
- *     window_host [--gl] --check [OUT.ppm]  draws, resizes, hides and shows itself, and looks at the screen's pixels
+ *     window_host [--gl]                    until the window is closed; the sun moves, the left button turns the view
+ *     window_host [--gl] --check [OUT.ppm]  draws, resizes, hides and shows itself, and checks the screen's pixels
  *
- * --gl has Welkin draw with OpenGL instead of the best interface there is.
+ * With --gl, Welkin draws with OpenGL instead of the best interface available.
  *
- * The host owns the window, its events and its size (window.h; window_x11.c and window_win32.c). What happens to the
- * window comes back as a status. */
+ * The host owns the window, its events and its size (window.h; window_x11.c and window_win32.c). Changes of the window
+ * reach it as a status of Welkin's calls. */
 #include "window.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@
 typedef struct app {
     host_window window;
     bool outdated;
-    double azimuth, pitch; /* where the camera looks, rad */
+    double azimuth, pitch; /* view direction, rad */
     wk_device *device;
     wk_surface *surface;
     wk_context *context;
@@ -90,7 +90,7 @@ static void record(app *a)
     frame.position_m[2] = 2.0;
     frame.flags = WK_FRAME_DEPTH_REVERSED;
     look(frame.view, a->azimuth, a->pitch);
-    /* 60 degrees from top to bottom, reversed infinite depth, near plane at 0.1 m. */
+    /* Vertical field of view 60 degrees, reversed infinite depth, near plane at 0.1 m. */
     const double focal = 1.7320508;
     const double across = focal * a->window.height / a->window.width;
     const double projection[16] = {across, 0, 0, 0, 0, focal, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0};
@@ -115,9 +115,9 @@ static bool draw(app *a)
     take_events(a);
     if (a->outdated) configure(a);
     const wk_status got = wk_surface_acquire(a->surface);
-    if (got == WK_PENDING) return false; /* hidden: nothing to draw for */
+    if (got == WK_PENDING) return false; /* hidden: there is nothing to draw to */
     if (got == WK_ERROR_SURFACE_OUTDATED) {
-        a->outdated = true; /* the size is in the events, before the next frame */
+        a->outdated = true; /* the events before the next frame bring the new size */
         return false;
     }
     WK_CHECK(got);
@@ -139,7 +139,7 @@ static void set_sun(app *a, double azimuth_deg, double elevation_deg)
     WK_CHECK(wk_context_set_sun(a->context, &sun));
 }
 
-/* ---- looking at the pixels, as the screen shows them ---- */
+/* ---- checking the pixels that the screen shows ---- */
 
 typedef struct rgb {
     int r, g, b;
@@ -153,7 +153,7 @@ static rgb pixel(const app *a, const unsigned char *pixels, uint32_t x, uint32_t
 
 static bool is_sky(rgb p) { return p.b > p.r && p.b > 40; }
 
-/* Frames until one has come to the screen and the corners show sky: presenting is not synchronous. */
+/* Draws frames until one is on the screen and its corners show sky, because presenting is asynchronous. */
 static unsigned char *draw_until_sky(app *a)
 {
     for (int attempt = 0; attempt < 50; attempt++) {
@@ -183,7 +183,7 @@ static void write_picture(const app *a, const char *path, const unsigned char *p
 
 static void check(app *a, const char *picture)
 {
-    a->pitch = 0.6; /* the horizon lies just below the picture */
+    a->pitch = 0.6; /* the horizon is just below the picture */
     set_sun(a, 200.0, 35.0);
     configure(a);
     unsigned char *pixels = draw_until_sky(a);
@@ -198,7 +198,7 @@ static void check(app *a, const char *picture)
            a->window.height);
 
     window_show(&a->window, false);
-    for (int i = 0; i < 3; i++) draw(a); /* whatever it answers, it answers */
+    for (int i = 0; i < 3; i++) draw(a); /* any result is accepted */
     window_show(&a->window, true);
     a->outdated = true;
     free(draw_until_sky(a));

@@ -1,4 +1,4 @@
-/* The window by Win32. */
+/* The window on Win32. */
 #include "window.h"
 
 #ifdef _WIN32
@@ -14,7 +14,7 @@ static LRESULT CALLBACK on_message(HWND hwnd, UINT message, WPARAM w_param, LPAR
     host_window *w = (host_window *)GetWindowLongPtrW(hwnd, GWLP_USERDATA);
     if (!w) return DefWindowProcW(hwnd, message, w_param, l_param);
     switch (message) {
-    case WM_SIZE: /* of the client area; 0 x 0 where it is minimised */
+    case WM_SIZE: /* size of the client area; 0 x 0 when minimised */
         w->resized |= w->width != LOWORD(l_param) || w->height != HIWORD(l_param);
         w->width = LOWORD(l_param);
         w->height = HIWORD(l_param);
@@ -26,13 +26,13 @@ static LRESULT CALLBACK on_message(HWND hwnd, UINT message, WPARAM w_param, LPAR
             w->drag_y = (double)GET_Y_LPARAM(l_param) / w->height;
         }
         return 0;
-    case WM_ERASEBKGND: return 1; /* Welkin fills it */
+    case WM_ERASEBKGND: return 1; /* Welkin fills the window */
     case WM_CLOSE: w->open = false; return 0;
     default: return DefWindowProcW(hwnd, message, w_param, l_param);
     }
 }
 
-/* Sizes of Welkin are those of the client area, in pixels; a window is larger by its frame. */
+/* Welkin's sizes are those of the client area, in pixels; a window is larger by its frame. */
 static RECT with_frame(uint32_t width, uint32_t height)
 {
     RECT r = {0, 0, (LONG)width, (LONG)height};
@@ -50,7 +50,7 @@ void window_open(host_window *w, uint32_t width, uint32_t height)
                             .hCursor = LoadCursor(NULL, IDC_ARROW),
                             .lpszClassName = L"Welkin host"};
     const RECT r = with_frame(width, height);
-    SetProcessDPIAware(); /* pixels are the screen's, not scaled ones */
+    SetProcessDPIAware(); /* use the screen's pixels, not scaled ones */
     RegisterClassW(&kind);
     window = CreateWindowW(kind.lpszClassName, L"Welkin", WS_OVERLAPPEDWINDOW, 0, 0, r.right - r.left, r.bottom - r.top,
                            NULL, NULL, module, NULL);
@@ -92,14 +92,14 @@ void window_close(host_window *w)
     DestroyWindow(window);
 }
 
-/* Read from the screen: a window that Vulkan presents to has its picture nowhere else. */
+/* Reads the screen: the picture of a window that Vulkan presents to is nowhere else. */
 unsigned char *window_pixels(host_window *w)
 {
     const int width = (int)w->width, height = (int)w->height;
     POINT corner = {0, 0};
     BITMAPINFO info = {.bmiHeader = {.biSize = sizeof info.bmiHeader,
                                      .biWidth = width,
-                                     .biHeight = -height, /* the top row first */
+                                     .biHeight = -height, /* top row first */
                                      .biPlanes = 1,
                                      .biBitCount = 32,
                                      .biCompression = BI_RGB}};

@@ -1,4 +1,4 @@
-/* The window by X11. */
+/* The window on X11. */
 #define _DEFAULT_SOURCE /* usleep */
 #include "window.h"
 

@@ -1,18 +1,19 @@
-//! Rain drawn drop by drop in f64, as a truth that shares nothing with what it judges: no class of sizes, no lattice,
-//! no shell, no cone, no table of Welkin's.
+//! Rain drawn drop by drop in f64. As a reference it shares nothing with the code under test: no size classes, lattice,
+//! shell, cone or table of Welkin's.
 //!
-//! Each drop of the air before a camera has a diameter of its own out of Marshall and Palmer's distribution (1948; N0
-//! set so that what falls is the rate), a place of its own, and falls as Gunn and Kinzer (1949) measured. While the
-//! shutter is open its disc goes along its way; a pixel is hidden for the part of the exposure in which the disc lies
-//! before it, which is the photometric model of Garg and Nayar (2007): (tau / T) (E_drop - E_background), tau = 2 a / v
-//! where a drop of radius a passes with its middle. The sums are exact in the limit of many points: disc and way are
-//! cut into points, each counted in the pixel that it falls on.
+//! Each drop in front of the camera has its own position, and its own diameter from Marshall and Palmer's distribution
+//! (1948; N0 is set so that the flux equals the rain rate). It falls at the speed measured by Gunn and Kinzer (1949).
+//! While the shutter is open, the drop's disc moves along its path. It hides a pixel for the part of the exposure in
+//! which it covers the pixel. This is the photometric model of Garg and Nayar (2007): (tau / T) (E_drop -
+//! E_background), where tau = 2 a / v for a drop of radius a whose centre passes over the pixel. Disc and path are
+//! divided into points, and each point counts for the pixel that it falls on; the sums are exact in the limit of many
+//! points.
 
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-/// Terminal speeds of drops, mm and cm/s (Gunn and Kinzer 1949, table 2).
+/// Terminal speeds of drops: diameter, mm, and speed, cm/s (Gunn and Kinzer 1949, table 2).
 const SPEEDS: [(f64, f64); 36] = [
     (0.0, 0.0),
     (0.078, 18.0),
@@ -52,18 +53,18 @@ const SPEEDS: [(f64, f64); 36] = [
     (5.8, 917.0),
 ];
 
-/// Terminal speed, m/s: straight between the measurements.
+/// Terminal speed, m/s, interpolated linearly between the measurements.
 pub fn speed_m_s(diameter_mm: f64) -> f64 {
     let i = SPEEDS.partition_point(|s| s.0 <= diameter_mm).clamp(1, SPEEDS.len() - 1);
     let ((a, va), (b, vb)) = (SPEEDS[i - 1], SPEEDS[i]);
     0.01 * (va + (vb - va) * ((diameter_mm - a) / (b - a)).min(1.0))
 }
 
-/// Stream of chance: SplitMix64.
+/// Random number generator: SplitMix64.
 pub struct Chance(pub u64);
 
 impl Chance {
-    /// Number in [0, 1), all alike.
+    /// Uniform random number in [0, 1).
     pub fn even(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -72,29 +73,29 @@ impl Chance {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A whole number whose mean is `mean`.
+    /// Random whole number with mean `mean`.
     fn count(&mut self, mean: f64) -> u64 {
         (mean + self.even()) as u64
     }
 }
 
-/// Drops of steady rain a cubic metre: N(D) = n0 exp(-slope D), D in mm.
+/// Drops of steady rain per cubic metre: N(D) = n0 exp(-slope D), D in mm.
 #[derive(Clone, Copy)]
 pub struct Spectrum {
     pub n0: f64,
     pub slope: f64,
 }
 
-/// Diameters of rain, mm.
+/// Range of drop diameters, mm.
 const DIAMETERS_MM: (f64, f64) = (0.1, 6.0);
 
 impl Spectrum {
-    /// Of a rate, mm/h (Marshall and Palmer 1948).
+    /// Spectrum for a rain rate, mm/h (Marshall and Palmer 1948).
     pub fn of(rate_mm_h: f64) -> Self {
         let slope = 4.1 * rate_mm_h.powf(-0.21);
         let n = 4000;
         let step = (DIAMETERS_MM.1 - DIAMETERS_MM.0) / f64::from(n);
-        // mm^3 that land on a square metre in a second are 1e-6 mm a second.
+        // 1 mm^3 per square metre and second is 1e-6 mm/s.
         let falls: f64 = (0..n)
             .map(|i| DIAMETERS_MM.0 + step * (f64::from(i) + 0.5))
             .map(|d| (-slope * d).exp() * PI / 6.0 * d.powi(3) * speed_m_s(d) * step * 3.6e-3)
@@ -102,38 +103,39 @@ impl Spectrum {
         Self { n0: rate_mm_h / falls, slope }
     }
 
-    /// Drops above a diameter, 1/m^3.
+    /// Number of drops larger than a diameter, 1/m^3.
     fn number(&self, from_mm: f64) -> f64 {
         let upto = |d: f64| (-self.slope * d).exp();
         self.n0 / self.slope * (upto(from_mm) - upto(DIAMETERS_MM.1))
     }
 
-    /// The diameter above which, of all above `from_mm`, there is a share `1 - u`.
+    /// Diameter above which a share `1 - u` of all drops larger than `from_mm` lies.
     fn diameter_mm(&self, from_mm: f64, u: f64) -> f64 {
         let upto = |d: f64| (-self.slope * d).exp();
         -(upto(from_mm) + u * (upto(DIAMETERS_MM.1) - upto(from_mm))).ln() / self.slope
     }
 }
 
-/// A camera that looks north (along y) with its picture upright, and the rain before it.
+/// A camera that looks north (along y), upright, and the rain in front of it.
 #[derive(Clone, Copy)]
 pub struct Film {
     pub size: (u32, u32),
     pub fov_rad: f64,
     pub exposure_s: f64,
     pub rate_mm_h: f64,
-    /// Of the air.
+    /// Velocity of the air.
     pub wind_m_s: DVec3,
-    /// Of the camera.
+    /// Velocity of the camera.
     pub camera_m_s: DVec3,
     /// The smallest drops that are drawn, mm.
     pub from_mm: f64,
-    /// Where drops begin, by a fade, and end, m.
+    /// Drops fade in between the distances `near_m` and end at `far_m`, m.
     pub near_m: (f64, f64),
     pub far_m: f64,
 }
 
-/// A drop: where it is when the first picture's exposure is half over, m from the camera, and how it moves before it.
+/// A drop: its position relative to the camera in the middle of the first picture's exposure, m, and its velocity
+/// relative to the camera.
 #[derive(Clone, Copy)]
 pub struct Drop {
     pub position_m: DVec3,
@@ -141,16 +143,16 @@ pub struct Drop {
     pub diameter_m: f64,
 }
 
-/// Depth of a slice in which drops are thrown, m.
+/// Depth of the slices in which drops are placed, m.
 const SLICE_M: f64 = 0.25;
 
 impl Film {
-    /// Pixels from a point to its picture, at one metre.
+    /// Focal length in pixels: the size in pixels of 1 m at a distance of 1 m.
     fn focal(&self) -> f64 {
         0.5 * f64::from(self.size.1) / (0.5 * self.fov_rad).tan()
     }
 
-    /// All drops that can be in pictures which are taken within so many seconds.
+    /// All drops that can appear in pictures taken within this many seconds.
     pub fn drops(&self, seed: u64, lasts_s: f64) -> Vec<Drop> {
         let mut chance = Chance(seed);
         let spectrum = Spectrum::of(self.rate_mm_h);
@@ -176,7 +178,8 @@ impl Film {
         all
     }
 
-    /// The share of each pixel's exposure that drops hide, with the shutter open about `time_s`: one before the other.
+    /// Share of each pixel's exposure that drops hide, with the shutter open around `time_s`. Drops in front of each
+    /// other combine.
     pub fn cover(&self, drops: &[Drop], time_s: f64) -> Vec<f64> {
         let mut sums = vec![0.0f64; (self.size.0 * self.size.1) as usize];
         for drop in drops {
@@ -190,7 +193,7 @@ impl Film {
         middle + DVec2::new(p.x, -p.z) * (self.focal() / p.y)
     }
 
-    /// The share of a drop at a distance that is drawn.
+    /// Share of a drop that is drawn, by distance.
     fn share(&self, distance_m: f64) -> f64 {
         let t = ((distance_m - self.near_m.0) / (self.near_m.1 - self.near_m.0)).clamp(0.0, 1.0);
         if distance_m < self.far_m { t * t * (3.0 - 2.0 * t) } else { 0.0 }
@@ -211,14 +214,14 @@ impl Film {
         }
         let along = (4.0 * (b - a).length()).ceil().clamp(4.0, 4000.0) as u32;
         let points = (16.0 * radius * radius).ceil().clamp(4.0, 600.0) as u32;
-        // A sphere's picture is stretched off the middle.
+        // Away from the picture's centre, a sphere's image is stretched.
         let weight = share * PI * radius * radius * (p.length() / p.y) / f64::from(along * points);
         for j in 0..points {
-            // Evenly over the disc, by the golden angle (Vogel 1979).
+            // Spread evenly over the disc, by the golden angle (Vogel 1979).
             let r = radius * ((f64::from(j) + 0.5) / f64::from(points)).sqrt();
             let turn = 2.399_963_229_728_653 * f64::from(j);
             let off = r * DVec2::from_angle(turn);
-            // Each of the disc's points begins at another part of a step.
+            // Each point of the disc starts at a different part of a step.
             let begin = (0.618_033_988_75 * f64::from(j)).fract();
             for i in 0..along {
                 let at = a + (b - a) * ((f64::from(i) + begin) / f64::from(along)) + off;
@@ -230,9 +233,9 @@ impl Film {
     }
 }
 
-/// Mean radiance that a sphere of water shows along the unit vector `view` of surroundings that send `radiance` from
-/// each direction, by rays through it: Snell's refraction, Fresnel's shares, the ray that passes, the one that is
-/// reflected outside, and one that is reflected inside once.
+/// Mean radiance of a sphere of water seen along the unit vector `view`, in surroundings that send `radiance` from each
+/// direction. Traces rays through the sphere with Snell's refraction and Fresnel's shares: the ray that passes through,
+/// the one reflected outside, and the one reflected once inside.
 pub fn sphere_radiance(view: DVec3, radiance: impl Fn(DVec3) -> f64) -> f64 {
     const WATER: f64 = 1.333;
     let side = view.any_orthonormal_vector();
@@ -246,7 +249,7 @@ pub fn sphere_radiance(view: DVec3, radiance: impl Fn(DVec3) -> f64) -> f64 {
         let (co, ci) = (outside.cos(), inside.cos());
         let (s, p) = ((co - WATER * ci) / (co + WATER * ci), (ci - WATER * co) / (ci + WATER * co));
         let reflected = 0.5 * (s * s + p * p);
-        // How far each ray is turned from `view`, towards the middle where positive.
+        // Angle by which each ray is turned from `view`; positive is towards the centre.
         let ways = [
             (2.0 * outside - PI, reflected),
             (2.0 * (outside - inside), (1.0 - reflected).powi(2)),

@@ -1,4 +1,4 @@
-//! A coarse sky, built in an instant, for tests that ask what is drawn and not how right the sky is.
+//! A coarse sky that is built quickly, for tests that do not depend on an accurate sky.
 
 use welkin::sky::SkySettings;
 

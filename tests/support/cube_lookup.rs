@@ -1,10 +1,10 @@
-//! A host's own shader that looks a cube map up by direction.
+//! A host's own shader that looks up a cube map by direction.
 
 use std::sync::Arc;
 
 use welkin::gpu::{Device, readback};
 
-/// Draws the middles of all texels of a level, the six faces side by side.
+/// Draws the centres of all texels of a level, the six faces side by side.
 const SHADER: &str = "
 @group(0) @binding(0) var cube: texture_cube<f32>;
 @group(0) @binding(1) var nearest: sampler;
@@ -33,7 +33,7 @@ fn look(@builtin(position) at: vec4f) -> @location(0) vec4f {
     return textureSampleLevel(cube, nearest, d, LEVEL);
 }";
 
-/// The texels of a level, `size` rows of the six faces.
+/// Texels of a level: `size` rows of the six faces.
 pub fn faces(device: &Arc<Device>, cube: &wgpu::Texture, size: u32, level: u32) -> Vec<[f32; 4]> {
     let gpu = &device.device;
     let target = crate::textures::texture(device, (6 * size, size), wgpu::TextureFormat::Rgba16Float, 1);

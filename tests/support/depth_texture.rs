@@ -1,4 +1,4 @@
-//! A depth texture of a host's, from depths by rows from the top: what tests and benchmarks give as occluder maps.
+//! A host's depth texture from depths in rows, top row first. Tests and benchmarks use it for occluder maps.
 
 use welkin::gpu::{Device, flat_texture};
 

@@ -1,4 +1,4 @@
-//! OpenGL contexts for the tests, made as a host without a window makes them: EGL on no surface or a pbuffer.
+//! OpenGL contexts for the tests, created as by a host without a window: EGL without a surface or on a pbuffer.
 
 use std::{
     ffi::{CStr, CString, c_char, c_int, c_void},
@@ -15,7 +15,7 @@ unsafe extern "C" {
 
 type Ptr = *const c_void;
 
-/// Which OpenGL a context speaks.
+/// The OpenGL version of a context.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Api {
     Core(i32, i32),
@@ -26,7 +26,7 @@ pub enum Api {
 /// The drawable that comes with a context.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Window {
-    /// No framebuffer 0 at all.
+    /// No default framebuffer.
     None,
     /// A pbuffer of this size and sample count, with depth and stencil.
     Pbuffer(i32, i32, i32),
@@ -55,7 +55,7 @@ const EGL_OPENGL_API: u32 = 0x30A2;
 const EGL_PLATFORM_SURFACELESS_MESA: u32 = 0x31DD;
 const EGL_PLATFORM_DEVICE_EXT: u32 = 0x313F;
 
-/// The EGL device of this number.
+/// The EGL device with this number.
 ///
 /// # Safety
 /// `get_proc` is `eglGetProcAddress`.
@@ -83,7 +83,7 @@ fn egl() -> &'static Egl {
                 symbol(library, c"eglGetPlatformDisplay");
             let initialize: unsafe extern "C" fn(Ptr, *mut i32, *mut i32) -> u32 = symbol(library, c"eglInitialize");
             let get_proc: unsafe extern "C" fn(*const c_char) -> Ptr = symbol(library, c"eglGetProcAddress");
-            // Without a display server: a GPU's driver has its own way, by the number of a device.
+            // Without a display server, a GPU's driver is opened by its device number.
             let display = match std::env::var("WELKIN_EGL_DEVICE") {
                 Ok(number) => {
                     let device = device(get_proc, number.parse().expect("WELKIN_EGL_DEVICE is a number"));
@@ -108,7 +108,7 @@ fn egl() -> &'static Egl {
     })
 }
 
-/// One context with its drawable.
+/// A context with its drawable.
 pub struct Context {
     raw: Ptr,
     surface: Ptr,
@@ -116,9 +116,9 @@ pub struct Context {
     api: Api,
 }
 
-// SAFETY: EGL contexts may be current on any one thread.
+// SAFETY: an EGL context may be current on any one thread.
 unsafe impl Send for Context {}
-// SAFETY: as above; the tests see to the one.
+// SAFETY: as above; the tests make sure that it is only one.
 unsafe impl Sync for Context {}
 
 impl Context {
@@ -140,7 +140,7 @@ impl Context {
             0x3022,
             8,
             0x3021,
-            8, // 8 bits a channel
+            8, // 8 bits per channel
             0x3025,
             depth,
             0x3026,
@@ -183,12 +183,12 @@ impl Context {
         }
     }
 
-    /// Another context of the same kind that shares this one's objects.
+    /// Creates another context of the same kind that shares this one's objects.
     pub fn sharing(&self) -> Self {
         Self::with_config(self.api, self.config, Window::None, self.raw)
     }
 
-    /// Another context of the same kind that shares nothing.
+    /// Creates another context of the same kind that shares nothing.
     pub fn separate(&self) -> Self {
         Self::with_config(self.api, self.config, Window::None, null())
     }
@@ -211,7 +211,7 @@ impl Context {
         assert!(self.make_current());
         // SAFETY: the context is current.
         let gl = unsafe { glow::Context::from_loader_function_cstr(proc_address) };
-        // A driver that falls back to something older would make the tests pass for the wrong reason.
+        // If the driver falls back to an older version, the tests would pass for the wrong reason.
         let (major, minor) = match self.api {
             Api::Core(a, b) | Api::Compatibility(a, b) | Api::Es(a, b) => (a as u32, b as u32),
         };
@@ -220,7 +220,7 @@ impl Context {
     }
 }
 
-/// No context is current on this thread afterwards.
+/// Leaves no context current on this thread.
 pub fn make_none_current() {
     // SAFETY: NULLs release.
     unsafe { (egl().make_current)(egl().display, null(), null(), null()) };
@@ -228,7 +228,7 @@ pub fn make_none_current() {
 
 impl Drop for Context {
     fn drop(&mut self) {
-        // SAFETY: handles are EGL's own and used no more.
+        // SAFETY: the handles are EGL's own and are not used afterwards.
         unsafe {
             if self.is_current() {
                 make_none_current();
@@ -260,7 +260,7 @@ unsafe fn symbol<F: Copy>(library: *mut c_void, name: &CStr) -> F {
     }
 }
 
-/// A function OpenGL has and glow does not.
+/// An OpenGL function that glow lacks.
 ///
 /// # Safety
 /// `F` is the function's pointer type.

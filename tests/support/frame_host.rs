@@ -1,4 +1,4 @@
-//! A small host: targets, a camera on a plain, and pictures to look at.
+//! A small host: targets, a camera on a plain, and reading of pictures.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub fn camera() -> Camera {
     Camera::look_to(DVec3::new(0.0, 0.0, 2500.0), DVec3::Y, DVec3::Z, 1.0, 160.0 / 90.0, 0.1)
 }
 
-/// A coarse sky, built in an instant: these tests ask how frames are composed, not how right the sky is.
+/// A coarse sky that is built quickly: these tests check how frames are composed, not how accurate the sky is.
 pub fn coarse() -> ContextDesc {
     ContextDesc { sky: coarse_sky(), ..ContextDesc::default() }
 }

@@ -1,7 +1,8 @@
-//! Full-screen pipelines of shaders that lab, benchmarks and tests have of their own: those of the library are made by
-//! their file's name.
+//! Full-screen pipelines for the shaders of the lab, benchmarks and tests. The library creates its own pipelines by
+//! file name.
 
-/// Of a module's entry points: of its vertex stage, and of its fragment stage with the values of its constants.
+/// Creates a pipeline from a module's entry points: the vertex stage, and the fragment stage with the values of its
+/// constants.
 pub fn pipeline(
     gpu: &wgpu::Device,
     module: &wgpu::ShaderModule,

@@ -1,8 +1,8 @@
-//! The depth of a plain, as a host hands it over: reversed and infinite, near end 0.1 m, of a view 0.9 rad high.
+//! Depth of a plain as a host provides it: reversed and infinite, near plane at 0.1 m, vertical field of view 0.9 rad.
 
 use welkin::gpu::Device;
 
-/// Writes the depth of level ground 2 m below an eye that looks `pitch_rad` up.
+/// Writes the depth of level ground 2 m below a camera that looks `pitch_rad` up.
 pub fn level_ground(device: &Device, depth: &wgpu::Texture, pitch_rad: f64) {
     let (width, half) = (depth.width(), 0.5 * f64::from(depth.height()));
     let row = |y: u32| {

@@ -1,5 +1,5 @@
-//! What the library's tests, its benchmarks and the lab share: small hosts, textures and pipelines of their own, scenes
-//! through the C functions, and references that take nothing from the library.
+//! Code shared by the library's tests, its benchmarks and the lab: small hosts, their own textures and pipelines,
+//! scenes through the C functions, and references that use nothing of the library.
 
 pub mod brute_rain;
 pub mod c_scene;

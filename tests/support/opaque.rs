@@ -1,15 +1,15 @@
-//! An opaque thing drawn into a host's colour and depth.
+//! An opaque object drawn into a host's colour and depth.
 
-/// A triangle strip whose shader says where it stands and what it looks like.
+/// A triangle strip whose shader sets its position and its colour.
 pub struct Opaque {
     /// WGSL with one vertex and one fragment entry point.
     pub shader: &'static str,
     pub vertices: u32,
-    /// Which depths pass over those that are there; they are written.
+    /// Comparison with the existing depth; passing depths are written.
     pub passes: wgpu::CompareFunction,
 }
 
-/// Records the draw over what `color` and `depth` hold, of any number of samples.
+/// Records the draw over the contents of `color` and `depth`, with any number of samples.
 pub fn draw_opaque(
     device: &wgpu::Device,
     opaque: &Opaque,

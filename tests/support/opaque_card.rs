@@ -1,5 +1,5 @@
-//! An opaque card before the left half of a picture, at depth 0.5: what stands for Welkin's opaque things where a
-//! host's own depth is written. Ordinary depth: less is nearer.
+//! An opaque card in front of the left half of a picture, at depth 0.5. It stands for opaque objects that write the
+//! host's depth. Ordinary depth: less is nearer.
 
 use crate::opaque::{Opaque, draw_opaque};
 

@@ -1,4 +1,4 @@
-//! A host that casts rays: a plain and boxes, with the depth of each pixel known exactly.
+//! A host that casts rays: a plain and boxes, with the exact depth of each pixel.
 
 use std::sync::Arc;
 
@@ -26,9 +26,9 @@ pub struct Host {
     pub color: wgpu::Texture,
     depth: wgpu::Texture,
     pub boxes: Vec<Shelter>,
-    /// Of the ground, through the origin.
+    /// Normal of the ground, which passes through the origin.
     pub normal: DVec3,
-    /// Of the camera.
+    /// Velocity of the camera.
     pub velocity_m_s: DVec3,
     frames: u64,
 }
@@ -99,7 +99,7 @@ impl Host {
         ViewRays::new(&self.camera, &Self::mapping()).unwrap()
     }
 
-    /// Where the ray of `ndc` ends, relative to the camera, and the normal there.
+    /// End of the ray through `ndc`, relative to the camera, and the normal there.
     pub fn cast(&self, ndc: DVec2) -> Option<(DVec3, DVec3)> {
         let ray = self.rays().view_ray(ndc);
         let (eye, d) = (self.camera.position + ray.origin, ray.direction);
@@ -123,7 +123,7 @@ impl Host {
         best.map(|(t, n)| (ray.origin + d * t, n))
     }
 
-    /// Uploads colour and depth: `paint` answers the radiance of a surface point (camera-relative) with a normal.
+    /// Uploads colour and depth. `paint` returns the radiance of a surface point (camera-relative) with its normal.
     pub fn draw(&self, paint: impl Fn(DVec3, DVec3) -> [f64; 3]) {
         let (w, h) = self.size;
         let rays = self.rays();
@@ -145,7 +145,7 @@ impl Host {
         self.upload(&self.depth, bytemuck::cast_slice(&depths), 4);
     }
 
-    /// Uploads a black picture; the depth stays that of the last [`Host::draw`].
+    /// Uploads a black picture; the depth remains that of the last [`Host::draw`].
     pub fn paint_black(&self) {
         self.upload(&self.color, &vec![0; 8 * (self.size.0 * self.size.1) as usize], 8);
     }
@@ -164,7 +164,7 @@ impl Host {
         self.record_again(stages)
     }
 
-    /// Under the number of the last frame: another view's picture of the same moment.
+    /// Records with the last frame's number: a picture of the same moment for another view.
     pub fn record_again(&mut self, stages: Stages) -> welkin::Result<()> {
         let frame = Frame {
             camera_velocity_m_s: self.velocity_m_s,

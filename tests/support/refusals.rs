@@ -1,5 +1,4 @@
-//! The thread's last failed call of the C interface: its message, and whether the field that it names is one of the
-//! header's.
+//! The thread's last failed call of the C interface: its message, and whether the field it names exists in the header.
 
 use std::{
     collections::BTreeSet,
@@ -9,7 +8,7 @@ use std::{
 
 use welkin::capi::{abi, status::*};
 
-/// Names that a host finds in the header: structs, their fields, and the functions' parameters.
+/// Names that a host finds in the header: structs, fields and function parameters.
 pub static PUBLIC: LazyLock<BTreeSet<&'static str>> = LazyLock::new(|| {
     let structs = abi::structs();
     let mut names: BTreeSet<&'static str> = structs.iter().map(|s| s.0).collect();
@@ -38,7 +37,7 @@ pub fn field() -> String {
     text(wk_last_error_field)
 }
 
-/// What is wrong with the field of the calling thread's last failed call, if anything.
+/// The error in the field of the calling thread's last failed call, if any.
 pub fn field_fault() -> Option<String> {
     let (field, message) = (field(), message());
     if field.is_empty() {

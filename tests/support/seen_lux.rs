@@ -1,13 +1,13 @@
-//! Light of the sky on level ground, as a sum over what is seen of it.
+//! Illuminance of level ground by the sky, as a sum over the visible radiance.
 
 use glam::DVec3;
 use welkin::{context::Context, light::luminance};
 
-/// At a place at time 0, lux; from rings about the zenith of so many directions each.
+/// Illuminance at a place at time 0, lux, from `rings` rings around the zenith with `turns` directions each.
 pub fn seen_lux(context: &Context, place: DVec3, (rings, turns): (u32, u32)) -> f64 {
     let directions: Vec<DVec3> = (0..rings * turns)
         .map(|i| {
-            // As many directions in each share of the light on level ground.
+            // Every equal share of the light on level ground gets the same number of directions.
             let up2 = (f64::from(i / turns) + 0.5) / f64::from(rings);
             let (sine, cosine) = (f64::from(i % turns) * std::f64::consts::TAU / f64::from(turns)).sin_cos();
             let level = (1.0 - up2).sqrt();

@@ -1,4 +1,4 @@
-//! A texture for a picture of the tests' own: drawn into, sampled, copied, and filled from the CPU.
+//! A texture for the tests' own pictures: drawn into, sampled, copied, and filled from the CPU.
 
 use welkin::gpu::Device;
 
@@ -9,7 +9,7 @@ pub fn texture(
     samples: u32,
 ) -> wgpu::Texture {
     use wgpu::TextureUsages as U;
-    // Multisampled textures cannot be filled, and not all drivers draw into single floats.
+    // Multisampled textures cannot be filled, and some drivers cannot draw into 32-bit floats.
     let filled = if samples == 1 { U::COPY_DST } else { U::empty() };
     let drawn = if format == wgpu::TextureFormat::R32Float { U::empty() } else { U::RENDER_ATTACHMENT };
     device.device.create_texture(&wgpu::TextureDescriptor {

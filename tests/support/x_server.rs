@@ -5,10 +5,10 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-/// Ended with the value.
+/// The server ends when this value is dropped.
 pub struct Server {
     child: Child,
-    /// What goes into `DISPLAY`.
+    /// Value for `DISPLAY`.
     pub display: String,
 }
 
@@ -17,7 +17,7 @@ impl Server {
         Self::start_with(&[])
     }
 
-    /// With further arguments of the server's.
+    /// Starts the server with additional arguments.
     pub fn start_with(arguments: &[&str]) -> Self {
         let mut child = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"])

@@ -1,5 +1,5 @@
-//! The ways to draw that are charted: the library's candidates, and what older systems did, which the lab builds itself
-//! to show what was gained.
+//! The charted ways to draw: the library's candidates, and those of older systems. The lab builds the latter itself to
+//! show what was gained.
 
 pub use welkin::candidates::Effect;
 use welkin::candidates::Method as LibraryMethod;
@@ -10,33 +10,33 @@ use welkin::{Error, Result};
 use crate::sky::elek::ElekTable;
 use crate::source_lod::SourceLod;
 
-/// What a candidate draws with.
+/// How a candidate draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// The library.
+    /// By the library.
     Library(LibraryMethod),
-    /// A table of single scattering as of 2008, of the sky.
+    /// The sky by a table of single scattering as of 2008.
     Elek(ElekTable),
-    /// Drops that get fewer and larger with distance.
+    /// By drops that get fewer and larger with distance.
     SourceLod(SourceLod),
 }
 
 /// One way to draw an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// What it draws.
+    /// The effect that it draws.
     pub effect: Effect,
     /// Unique within the effect.
     pub name: &'static str,
-    /// With what it is built.
+    /// How it draws.
     pub method: Method,
-    /// What it costs.
+    /// Its cost.
     pub work: Work,
-    /// Whether a host that asks for nothing gets this one.
+    /// Whether it is the default.
     pub is_default: bool,
 }
 
-/// What the library does not draw.
+/// Candidates that the library itself does not have.
 fn of_older_systems(effect: Effect) -> Vec<Candidate> {
     let one = |name, method, work| Candidate { effect, name, method, work, is_default: false };
     let elek = |name, samples| {
@@ -58,7 +58,7 @@ fn of_older_systems(effect: Effect) -> Vec<Candidate> {
     }
 }
 
-/// The library's drops, as many as an older system draws: they cost as much.
+/// The library's drops, in the same number as an older system's, so that they cost the same.
 pub fn as_many_drops(lod: &SourceLod) -> RainSettings {
     RainSettings { model: RainModel::Drops, most_drops: Some(lod.drop_count()), ..RainSettings::default() }
 }
@@ -72,7 +72,7 @@ pub fn candidates(effect: Effect) -> Vec<Candidate> {
     welkin::candidates::candidates(effect).into_iter().map(one).chain(of_older_systems(effect)).collect()
 }
 
-/// The candidate of that name.
+/// The candidate with that name.
 ///
 /// # Errors
 /// [`welkin::Status::InvalidArgument`] with the known names.

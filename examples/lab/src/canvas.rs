@@ -1,4 +1,4 @@
-//! A list of shapes that is written twice: as SVG and as PNG, with the same text metrics.
+//! A list of shapes, written both as SVG and as PNG with the same text metrics.
 
 use std::path::Path;
 use std::sync::Once;
@@ -14,17 +14,17 @@ pub type Rgb = (u8, u8, u8);
 pub const INK: Rgb = (40, 44, 52);
 /// Grid lines.
 pub const GRID: Rgb = (225, 228, 232);
-/// What is of less weight.
+/// Less important shapes.
 pub const FAINT: Rgb = (170, 175, 182);
 
-/// Where a text stands relative to its point.
+/// Position of a text relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// To the right of it.
+    /// To the right of the point.
     Left,
-    /// Over it.
+    /// Centred on the point.
     Center,
-    /// To the left of it.
+    /// To the left of the point.
     Right,
 }
 
@@ -35,13 +35,13 @@ enum Item {
     Text(String, (f64, f64), f64, Rgb, Anchor, bool),
 }
 
-/// The shapes of one figure, in pixels from the upper left.
+/// The shapes of one figure, in pixels from the upper left corner.
 pub struct Canvas {
     size: (u32, u32),
     items: Vec<Item>,
 }
 
-/// Mean width of a letter over its height.
+/// Mean width of a letter divided by its height.
 const LETTER: f64 = 0.56;
 
 impl Canvas {
@@ -55,12 +55,12 @@ impl Canvas {
         self.items.push(Item::Rect(rect, color, true));
     }
 
-    /// Its border.
+    /// The border of a rectangle.
     pub fn frame(&mut self, rect: [f64; 4], color: Rgb) {
         self.items.push(Item::Rect(rect, color, false));
     }
 
-    /// Straight lines through points.
+    /// A polyline through points.
     pub fn line(&mut self, points: &[(f64, f64)], color: Rgb, width: u32) {
         self.items.push(Item::Line(points.to_vec(), color, width));
     }
@@ -70,7 +70,7 @@ impl Canvas {
         self.items.push(Item::Circle(center, radius, color, filled));
     }
 
-    /// A level text, centred in height.
+    /// A horizontal text, centred vertically.
     pub fn text(&mut self, text: &str, at: (f64, f64), size: f64, color: Rgb, anchor: Anchor) {
         self.items.push(Item::Text(text.to_owned(), at, size, color, anchor, false));
     }
@@ -80,7 +80,7 @@ impl Canvas {
         self.items.push(Item::Text(text.to_owned(), at, size, color, Anchor::Center, true));
     }
 
-    /// About how wide a text is.
+    /// Approximate width of a text.
     pub fn width_of(text: &str, size: f64) -> f64 {
         text.chars().count() as f64 * size * LETTER
     }
@@ -93,7 +93,7 @@ impl Canvas {
         static FONT: Once = Once::new();
         FONT.call_once(|| {
             let bytes = dejavu::sans::regular();
-            // Known to be a font; without it the PNG has no text, the SVG has.
+            // The bytes are a valid font. Without a font the PNG would have no text; the SVG has it.
             let _ = plotters::style::register_font("sans-serif", FontStyle::Normal, bytes);
         });
         let fault = |e: String| Error::new(Status::Io, format!("{}: {e}", stem.display()));

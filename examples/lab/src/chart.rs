@@ -1,4 +1,4 @@
-//! `lab chart`: what each candidate costs and how far it is from the truth.
+//! `lab chart`: the cost of each candidate and its error relative to the truth.
 
 use std::sync::Arc;
 
@@ -13,19 +13,19 @@ use crate::store::Table;
 use crate::timing::{Baseline, Ratio};
 use crate::{effect_charts, page, painted_chart, quadrature};
 
-/// What can be charted.
+/// Names of all charts.
 pub const CHARTS: [&str; 8] = ["sky", "fog", "rain", "snow", "stars", "clouds", "painted-clouds", "quadrature"];
-/// Size of the frames that are timed.
+/// Size of the timed frames.
 pub const FRAME: (u32, u32) = (320, 180);
 
-/// Frames over which the building of an air is spread in the cost of one: an air that lasts a minute at 60 Hz.
+/// Frames over which the cost of building an air is spread: an air that lasts one minute at 60 Hz.
 pub const FRAMES_AN_AIR: f64 = 3600.0;
 
-/// Columns that every chart has, first.
+/// The first columns of every chart.
 pub const COLUMNS: [&str; 10] =
     ["name", "family", "default", "cost", "cost_low", "cost_high", "ms", "p95", "median", "worst"];
 
-/// A device, what it is, and its baseline.
+/// A device, its description, and its baseline.
 pub struct Lab {
     pub device: Arc<Device>,
     pub baseline: Baseline,
@@ -33,7 +33,7 @@ pub struct Lab {
 }
 
 impl Lab {
-    /// Opens the device: a software driver where there is one, since its times are sound.
+    /// Opens the device: a software driver if there is one, because its times are reliable.
     pub fn open(options: &Options) -> Result<Self> {
         let software = DeviceOptions { force_software: true, ..Default::default() };
         let device = Device::headless(&software).or_else(|_| Device::headless(&DeviceOptions::default()))?;
@@ -41,7 +41,7 @@ impl Lab {
         Ok(Self { device, baseline, rounds: if options.quick { 3 } else { 15 } })
     }
 
-    /// What a chart's file says of itself; a run continues only one that says the same.
+    /// The note in a chart's file. A run continues a file only if the notes are equal.
     pub fn note(&self, what: &str, options: &Options) -> String {
         let caps = self.device.caps();
         let how = if options.quick { "quick" } else { "full" };
@@ -51,8 +51,8 @@ impl Lab {
     }
 }
 
-/// A hash of the shaders that a chart's numbers come from (FNV-1a over the sources of their folders, in order of path),
-/// so that a chart that is older than they are can be told.
+/// A hash of the shaders that produce a chart's numbers (FNV-1a over the sources in their folders, in order of path).
+/// It reveals a chart that is older than its shaders.
 pub fn shaders(what: &str) -> String {
     let folders: &[&str] = match what {
         "sky" | "quadrature" => &["common", "sky"],
@@ -78,7 +78,7 @@ pub fn shaders(what: &str) -> String {
     format!("{:08x}", hash >> 32)
 }
 
-/// A line of a shader without its comment: a comment makes no chart old.
+/// A line of a shader without its comment, because a changed comment does not make a chart outdated.
 fn code(line: &str) -> &str {
     if line.starts_with("//!include") { line } else { line.split("//").next().unwrap_or_default().trim_end() }
 }
@@ -104,7 +104,7 @@ pub fn today() -> String {
     format!("{year:04}-{month:02}-{:02}", doy - (153 * mp + 2) / 5 + 1)
 }
 
-/// Charts `what` and writes the page anew.
+/// Runs the chart `what` and writes the page again.
 ///
 /// # Errors
 /// Files and the GPU.
@@ -141,7 +141,7 @@ pub fn first_fields(name: &str, family: &str, default: bool, cost: &Ratio, error
     ]
 }
 
-/// The points of a table: cost by the column `cost` with its quarters.
+/// The points of a table, with the cost from the column `cost` and its quartiles.
 pub fn points(table: &Table, cost: &str) -> Vec<Point> {
     let number = |r: &[String], c: &str| table.number(r, c).unwrap_or(f64::NAN);
     let mut out: Vec<Point> = table
@@ -167,7 +167,7 @@ pub fn plot(table: &Table, cost: &str, titles: &Titles<'_>, stem: &std::path::Pa
     scatter(&points(table, cost), titles).save(stem)
 }
 
-/// Lines about the candidates whose cost left its spread or whose error is another.
+/// Lines about the candidates whose cost changed by more than its spread, or whose error changed.
 pub fn moved(new: &Table, old: &Table) -> Vec<String> {
     let mut out = Vec::new();
     for row in &new.rows {

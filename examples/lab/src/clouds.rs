@@ -1,5 +1,5 @@
-//! Thresholds of the clouds' map, found by looking at skies of other seeds than the tests', and the clouds' light
-//! against photons.
+//! Finds the thresholds of the cloud map from skies whose seeds differ from the tests', and compares the clouds' light
+//! with photons.
 
 use welkin::{
     Result,
@@ -11,7 +11,7 @@ use welkin::{
     weather::CloudKind,
 };
 
-/// Seeds over which thresholds are found, and places from which each is looked at.
+/// Seeds from which thresholds are found, and the number of viewpoints for each.
 const SEEDS: std::ops::Range<u64> = 100..106;
 const PLACES: usize = 48;
 
@@ -26,11 +26,11 @@ pub fn print_thresholds() -> Result<()> {
     Ok(())
 }
 
-/// How many rays of a sky are compared, and how many photons follow each: of a quick run, and of a whole one.
+/// Number of rays compared per sky, and of photons per ray: in a quick run, and in a full one.
 const RAYS: [usize; 2] = [20, 100];
 const PHOTONS: [u32; 2] = [500, 4000];
 
-/// Prints how far the clouds' light is from photons that are followed through the same field.
+/// Prints the difference between the clouds' light and that of photons traced through the same field.
 ///
 /// # Errors
 /// As [`Solid::new`].

@@ -1,5 +1,5 @@
-//! Draws and times every way to draw clouds. The truth is a march of every pixel in four times as many steps, through
-//! the same field and light: how far that light is from photons is held by tests (`src/clouds/drawn/probe.rs`).
+//! Draws and times every way to draw clouds. The truth marches every pixel in four times as many steps, through the
+//! same field and light. Tests compare that light with photons (`src/clouds/drawn/probe.rs`).
 
 use std::{sync::Arc, time::Instant};
 
@@ -19,21 +19,21 @@ use crate::timing::target;
 
 /// Size of the pictures whose error is measured.
 pub const SIZE: (u32, u32) = (320, 180);
-/// Steps of the truth ([`CloudSettings::fineness`]).
+/// Fineness of the truth's march ([`CloudSettings::fineness`]).
 const TRUE_FINENESS: f64 = 8.0;
 /// Frames until each pixel has been marched.
 const SETTLED: u32 = 17;
-/// Luminance of the value 1, so that a day lies where half floats are fine, cd/m^2.
+/// Luminance of the value 1, chosen so that daylight lies where half floats are precise, cd/m^2.
 pub const UNIT: f64 = 1e3;
-/// From side to side of a picture's height, rad, and where cameras look.
+/// Vertical field of view, rad, and the pitch of cameras.
 pub const FOV: f64 = 1.0;
 const AZIMUTH_DEG: f64 = 60.0;
-/// Of a camera that turns while it is timed, rad a frame.
+/// Rotation of the turning camera during timing, rad per frame.
 const TURN_RAD: f64 = 2e-3;
-/// Of the pictures.
+/// Format of the pictures.
 pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// A sky on the GPU.
+/// A host with clouds on the GPU.
 pub struct Host {
     device: Arc<Device>,
     context: Context,
@@ -41,12 +41,12 @@ pub struct Host {
     color: wgpu::Texture,
     camera: Camera,
     frame_id: u64,
-    /// Its state at time 0.
+    /// Saved state at time 0.
     start: Vec<u8>,
 }
 
 impl Host {
-    /// Of a scene, for pictures of a size; without clouds where its cover is 0.
+    /// Creates the host of a scene for pictures of a size; without clouds if the scene's cover is 0.
     ///
     /// # Errors
     /// GPU faults.
@@ -57,10 +57,10 @@ impl Host {
         Ok(this)
     }
 
-    /// Under a layer and the sun at a height, seen from the ground.
+    /// Creates a host under a layer and with the sun at a given elevation, with the camera on the ground.
     ///
     /// # Errors
-    /// GPU faults; a layer out of its ranges.
+    /// GPU faults; a layer outside its ranges.
     pub fn under(device: &Arc<Device>, layer: Option<CloudLayer>, sun_deg: f64, size: (u32, u32)) -> Result<Self> {
         let mut context = Context::new(device.clone(), Arc::new(Shared::new(device)?), ContextDesc::default())?;
         context.set_sun(Some(GivenDirection { azimuth_deg: 150.0, elevation_deg: sun_deg }))?;
@@ -78,27 +78,27 @@ impl Host {
         })
     }
 
-    /// Looks from a height over the world's origin, up or down by the pitch.
+    /// Places the camera at a height above the world's origin, with a pitch up or down.
     pub fn look(&mut self, height_m: f64, pitch_deg: f64, fov_rad: f64) {
         self.look_from(DVec3::Z * height_m, pitch_deg, fov_rad);
     }
 
-    /// The same from elsewhere.
+    /// As [`Host::look`], from any position.
     pub fn look_from(&mut self, eye: DVec3, pitch_deg: f64, fov_rad: f64) {
         let aspect = f64::from(self.color.width()) / f64::from(self.color.height());
         self.camera = Camera::look_to(eye, direction(AZIMUTH_DEG, pitch_deg), DVec3::Z, fov_rad, aspect, 0.1);
     }
 
-    /// Lays another layer over it at once.
+    /// Replaces the clouds by another layer at once.
     ///
     /// # Errors
-    /// A layer out of its ranges.
+    /// A layer outside its ranges.
     pub fn lay(&mut self, layer: CloudLayer) -> Result<()> {
         let now = self.context.time_s();
         self.context.set_weather(&Weather { clouds: vec![layer], ..Weather::default() }, now, 0.0)
     }
 
-    /// A frame that goes on from the last one.
+    /// Draws a frame that uses the history of the last one.
     ///
     /// # Errors
     /// GPU faults.
@@ -107,7 +107,7 @@ impl Host {
         self.texels()
     }
 
-    /// Goes to a moment, back too.
+    /// Moves to a time, which may be earlier than the current one.
     ///
     /// # Errors
     /// A state that cannot be loaded.
@@ -118,12 +118,12 @@ impl Host {
         self.context.update(time_s)
     }
 
-    /// From which it is seen.
+    /// The camera.
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// What it is drawn into.
+    /// The texture it is drawn into.
     pub fn target(&self) -> &wgpu::Texture {
         &self.color
     }
@@ -131,17 +131,17 @@ impl Host {
     /// Light at the camera.
     ///
     /// # Errors
-    /// None for a camera of a scene.
+    /// None for a scene's camera.
     pub fn light(&self) -> Result<LightAt> {
         self.context.light_at(self.camera.position, self.context.time_s())
     }
 
-    /// Of the planet, m.
+    /// Radius of the planet, m.
     pub fn radius_m(&self) -> f64 {
         self.context.planet_radius_m()
     }
 
-    /// Draws it by itself.
+    /// Draws a single frame without history.
     ///
     /// # Errors
     /// GPU faults.
@@ -163,7 +163,7 @@ impl Host {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    /// What was drawn last, cd/m^2.
+    /// The last picture drawn, cd/m^2.
     ///
     /// # Errors
     /// GPU faults.
@@ -173,7 +173,7 @@ impl Host {
         Ok(Picture { width: self.color.width(), height: self.color.height(), texels })
     }
 
-    /// Milliseconds of a frame by a method while the camera turns.
+    /// Time of a frame by a method while the camera turns, ms.
     ///
     /// # Errors
     /// GPU faults.
@@ -186,7 +186,7 @@ impl Host {
         self.frame(FrameFlags(0))
     }
 
-    /// The picture by a method, once it has settled, cd/m^2.
+    /// The picture by a method, after it has settled, cd/m^2.
     ///
     /// # Errors
     /// GPU faults.
@@ -196,7 +196,7 @@ impl Host {
         self.texels()
     }
 
-    /// Draws the volume with settings until it has settled.
+    /// Draws the volume with these settings until it has settled.
     ///
     /// # Errors
     /// GPU faults.
@@ -204,7 +204,7 @@ impl Host {
         self.picture(&CloudMethod { model: CloudModel::Volume, settings }).map(|_| ())
     }
 
-    /// The truth.
+    /// Draws the truth.
     ///
     /// # Errors
     /// GPU faults.
@@ -212,7 +212,7 @@ impl Host {
         self.whole(CloudSettings { fineness: TRUE_FINENESS, square_side: 1, shafts: false })
     }
 
-    /// The volume, every pixel marched in one frame.
+    /// Draws the volume with every pixel marched in one frame.
     ///
     /// # Errors
     /// GPU faults.

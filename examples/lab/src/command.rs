@@ -1,4 +1,4 @@
-//! Command line of the lab: commands, options, and the refusal of everything else.
+//! Command line of the lab: commands and options. Everything else is refused.
 
 use std::path::PathBuf;
 
@@ -24,15 +24,15 @@ pub const USAGE: &str =
 options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)
          --help   --version";
 
-/// What was asked for.
+/// The options of a command line.
 pub struct Options {
-    /// Where results go.
+    /// Folder for results.
     pub out: PathBuf,
-    /// Coarser truth and fewer rounds.
+    /// Uses a coarser truth and fewer rounds.
     pub quick: bool,
-    /// Forget what a stopped run left.
+    /// Discards the results of a stopped run.
     pub fresh: bool,
-    /// A scene's name.
+    /// Name of a scene.
     pub scene: Option<String>,
 }
 
@@ -40,7 +40,7 @@ fn usage(what: &str) -> Error {
     Error::new(Status::Parse, format!("{what}\n{USAGE}"))
 }
 
-/// Words and options.
+/// Splits the arguments into words and options.
 fn parse(arguments: &[String]) -> Result<(Vec<String>, Options)> {
     let mut options = Options { out: "docs/lab".into(), quick: false, fresh: false, scene: None };
     let mut words = Vec::new();
@@ -58,7 +58,7 @@ fn parse(arguments: &[String]) -> Result<(Vec<String>, Options)> {
     Ok((words, options))
 }
 
-/// The candidate of that name in whichever effect has it.
+/// Finds the candidate with that name in any effect.
 fn find_candidate(name: &str) -> Result<Candidate> {
     let faults: Vec<String> =
         Effect::NAMES.iter().filter_map(|(_, e)| candidate(*e, name).err().map(|fault| fault.to_string())).collect();
@@ -66,7 +66,7 @@ fn find_candidate(name: &str) -> Result<Candidate> {
     found.ok_or_else(|| usage(&faults.join("\n")))
 }
 
-/// Does what the arguments ask for. False where pictures that were compared differ.
+/// Runs the command of the arguments. Returns false if compared pictures differ.
 ///
 /// # Errors
 /// Unknown commands, effects, candidates, maps, scenes and options; files; the GPU.

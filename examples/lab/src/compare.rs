@@ -1,4 +1,4 @@
-//! `lab compare A B`: two candidates' pictures side by side, their difference amplified, the figures under them.
+//! `lab compare A B`: the pictures of two candidates side by side, their difference amplified, and the figures below.
 
 use image::RgbImage;
 use welkin::candidates::Method as LibraryMethod;
@@ -15,17 +15,17 @@ use crate::{cloudscapes, fog, rain, scenes, sky, snow, stars};
 
 /// Size of a picture of sky or fog.
 const SIZE: (u32, u32) = (128, 72);
-/// How wide pictures are drawn.
+/// Width of a picture in the figure.
 const WIDTH: f64 = 384.0;
 
-/// A picture as it is shown, with what is said of it.
+/// A picture as displayed, with its caption.
 struct Panel {
     title: String,
     image: RgbImage,
     text: String,
 }
 
-/// Draws both and writes `compare-A-B-SCENE`.
+/// Draws both candidates and writes `compare-A-B-SCENE`.
 ///
 /// # Errors
 /// Candidates of different effects, an unknown scene, files, the GPU.
@@ -59,7 +59,7 @@ pub fn run(a: &Candidate, b: &Candidate, options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// A, B and the truth.
+/// The pictures of A, of B and of the truth.
 fn sky_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize, quick: bool) -> Result<[Picture; 3]> {
     let scene = scenes::SKY[scene];
     let truth = sky::truth(&[scene], scene.air, SIZE, quick)?.remove(0);
@@ -100,7 +100,7 @@ fn star_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Pict
     Ok([a, b, host.truth()?.0])
 }
 
-/// Pictures that are compared pixel by pixel.
+/// Panels for pictures that are compared pixel by pixel.
 fn by_pixels(names: [&str; 2], [a, b, truth]: &[Picture; 3]) -> Result<[Panel; 4]> {
     let white = truth.white();
     let between = a.figures(b)?;
@@ -118,8 +118,8 @@ fn by_pixels(names: [&str; 2], [a, b, truth]: &[Picture; 3]) -> Result<[Panel; 4
     ])
 }
 
-/// Rain and snow, of which no two ways put drops in the same places: compared block by block over some moments, as its
-/// chart is. The last moment is shown.
+/// Panels for rain and snow. Different methods put drops in different places, so pictures are compared block by block
+/// over several moments, as in their chart. The last moment is shown.
 fn by_blocks(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Panel; 4]> {
     let snows = pair[0].effect == Effect::Snow;
     let scene = if snows { scenes::snow()[scene] } else { scenes::rain()[scene] };
@@ -158,7 +158,7 @@ fn by_blocks(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Panel; 4
     ])
 }
 
-/// What the difference is multiplied by: its 95th percentile is shown as a third of white.
+/// Amplification of the difference: its 95th percentile is shown as a third of white.
 fn gain(between: &Difference) -> f64 {
     (0.33 / between.p95.max(1e-6)).clamp(1.0, 1e5)
 }
@@ -190,7 +190,7 @@ fn draw(heading: &str, panels: &[Panel; 4]) -> Canvas {
     canvas
 }
 
-/// The relative difference in luminance: red where A is brighter, blue where it is darker.
+/// Amplified relative difference in luminance: red where A is brighter, blue where it is darker.
 fn amplified(a: &Picture, b: &Picture, gain: f64, white: f64) -> Vec<[f64; 3]> {
     let y = welkin::light::luminance;
     let one = |(a, b): (&[f64; 3], &[f64; 3])| two_colours(gain * (y(a) - y(b)) / (y(b).max(0.0) + 0.01 * white));

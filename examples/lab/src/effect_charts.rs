@@ -1,4 +1,4 @@
-//! `lab chart` of each effect: its candidates against the truth in its scenes.
+//! `lab chart` for each effect: its candidates against the truth in the effect's scenes.
 
 use welkin::candidates::Method as LibraryMethod;
 use welkin::plan::{Difference, Price, difference, difference::percentile};
@@ -13,20 +13,20 @@ use crate::store::{Journal, Table};
 use crate::timing::{Ratio, interleaved};
 use crate::{cloudscapes, fog, rain, scenes, sky, snow, stars};
 
-/// What a chart says of a candidate.
+/// Measurements of a candidate for a chart.
 pub struct Measured {
     pub cost: Ratio,
     pub error: Difference,
-    /// Columns that its chart alone has.
+    /// Values of the columns that only this chart has.
     pub more: Vec<String>,
     /// 95th percentile of the error in each scene.
     pub each: Vec<f64>,
-    /// What the work units say.
+    /// Cost predicted from the work units.
     pub units: Vec<f64>,
 }
 
 impl Measured {
-    /// Its row.
+    /// The chart's row for the candidate.
     pub fn row(self, name: &str, family: &str, default: bool) -> Vec<String> {
         let mut row = first_fields(name, family, default, &self.cost, &self.error);
         row.extend(self.more);
@@ -37,7 +37,7 @@ impl Measured {
     }
 }
 
-/// The journal of a chart.
+/// Opens the journal of a chart.
 pub fn open<'a>(
     lab: &Lab,
     options: &Options,
@@ -52,7 +52,7 @@ pub fn open<'a>(
     Journal::open(&options.out, what, &lab.note(what, options), &columns, options.fresh)
 }
 
-/// Measures the candidates of which no earlier run has kept a row.
+/// Measures the candidates for which an earlier run kept no row.
 fn measure(
     journal: &mut Journal,
     effect: Effect,
@@ -68,7 +68,7 @@ fn measure(
     Ok(())
 }
 
-/// Keeps the table, says what moved and draws the chart: the points of all rows but the truth's own.
+/// Saves the table, prints what changed and draws the chart with the points of all rows except the truth's own.
 pub fn end(journal: Journal, titles: &Titles<'_>, stem: &std::path::Path) -> Result<Table> {
     let (mut table, old) = journal.finish()?;
     say_what_moved(&table, old.as_ref());
@@ -77,15 +77,15 @@ pub fn end(journal: Journal, titles: &Titles<'_>, stem: &std::path::Path) -> Res
     Ok(table)
 }
 
-/// The row of the truth against itself, of what no two ways put in the same places.
+/// Row that compares the truth with another truth whose particles are in other places.
 pub const TRUTH_AGAIN: &str = "truth-again";
 
-/// What a frame of 640x360 costs by its work units.
+/// Cost of a 640x360 frame, predicted from the work units.
 fn frame_units(c: &Candidate) -> f64 {
     c.work.frame(640 * 360, true).at(&Price::default())
 }
 
-/// All scenes as one, every picture exposed so that white is 1; and the 95th percentile in each.
+/// Error over all scenes together, with each picture exposed so that white is 1; and the 95th percentile in each scene.
 fn luminance_over_scenes(pairs: &[(Picture, &Picture)]) -> Result<(Difference, Vec<f64>)> {
     let (mut a, mut b, mut each) = (Vec::new(), Vec::new(), Vec::new());
     for (drawn, truth) in pairs {
@@ -99,7 +99,7 @@ fn luminance_over_scenes(pairs: &[(Picture, &Picture)]) -> Result<(Difference, V
     Ok((difference(&a, &b, 1.0)?, each))
 }
 
-/// The same with the mean perceptual difference.
+/// As [`luminance_over_scenes`], plus the mean perceptual difference.
 fn over_scenes(pairs: &[(Picture, &Picture)]) -> Result<(Figures, Vec<f64>)> {
     let (luminance, each) = luminance_over_scenes(pairs)?;
     let mut perceptual = 0.0;
@@ -109,7 +109,7 @@ fn over_scenes(pairs: &[(Picture, &Picture)]) -> Result<(Figures, Vec<f64>)> {
     Ok((Figures { luminance, perceptual }, each))
 }
 
-/// What a candidate is called up to its first number or size.
+/// Family of a candidate: its name up to the first number or size.
 fn family(c: &Candidate) -> &'static str {
     let end = c.name.find('-').unwrap_or(c.name.len());
     match (c.effect, &c.name[..end]) {
@@ -170,7 +170,7 @@ pub fn sky(lab: &Lab, options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// The sky scenes of an air.
+/// The sky scenes with this air.
 pub fn scenes_of(air: scenes::SkyAir) -> Vec<scenes::SkyScene> {
     scenes::SKY.into_iter().filter(|s| s.air == air).collect()
 }
@@ -179,9 +179,9 @@ fn measured_sky(lab: &Lab, c: &Candidate, truths: &[Vec<sky::TrueScene>]) -> Res
     let mut drawn = sky::make(&lab.device, c)?;
     let mut pairs = Vec::new();
     let mut rebuilds = Vec::new();
-    // The clear air last: frames are timed in it.
+    // The clear air comes last, because frames are timed in it.
     for (air, truths) in scenes::SkyAir::ALL.into_iter().zip(truths).rev() {
-        // An air that nobody has built, so that none is shared.
+        // An air that was never built, so that no tables are reused.
         let odd = air.planet().with_air_scaled(1.0 + 1e-5 * rebuilds.len() as f64 + 1e-6);
         let before = lab.baseline.run()?;
         let seconds = drawn.rebuild(&odd)?;
@@ -227,7 +227,7 @@ pub fn fog(lab: &Lab, options: &Options) -> Result<()> {
             pairs.push((bench.make(c, scene, host)?.picture()?, truth));
         }
         let (error, each) = over_scenes(&pairs)?;
-        // Timed in plain fog, and where there are patches, in these: the dearest law.
+        // Timed in plain fog and in patches, whose law costs most.
         let frames = [1, 6].map(|s| (&list[s], fog::host(&list[s], (640, 360))));
         let mut made = Vec::new();
         for (scene, host) in frames {
@@ -297,7 +297,7 @@ fn measure_rain(lab: &Lab, list: &[scenes::RainScene], journal: &mut Journal) ->
         Ok(Measured { cost, error, more: Vec::new(), each, units: vec![frame_units(c)] })
     })?;
     if !journal.has(TRUTH_AGAIN) {
-        // How far all drops are from all drops elsewhere: less cannot be asked.
+        // Difference between all drops and all drops in other places: no method can have a smaller error.
         let again = hosts.iter_mut().map(|h| Ok(h.truth(2)?.0)).collect::<Result<Vec<_>>>()?;
         let (error, each) = over_blocks(&again, &truths, &day);
         let measured = Measured { cost: Ratio::default(), error, more: Vec::new(), each, units: vec![0.0] };
@@ -348,7 +348,7 @@ fn measure_snow(lab: &Lab, list: &[scenes::RainScene], journal: &mut Journal) ->
         Ok(Measured { cost, error, more: Vec::new(), each, units: vec![frame_units(c)] })
     })?;
     if !journal.has(TRUTH_AGAIN) {
-        // How far all flakes are from all flakes elsewhere: less cannot be asked.
+        // Difference between all flakes and all flakes in other places: no method can have a smaller error.
         let again = hosts.iter_mut().map(|h| Ok(snow::truth(h, 2)?.0)).collect::<Result<Vec<_>>>()?;
         let (error, each) = over_blocks(&again, &truths, &day);
         let measured = Measured { cost: Ratio::default(), error, more: Vec::new(), each, units: vec![0.0] };
@@ -357,14 +357,14 @@ fn measure_snow(lab: &Lab, list: &[scenes::RainScene], journal: &mut Journal) ->
     Ok(())
 }
 
-/// The error of blocks over all scenes by day, and in each scene.
+/// Error of blocks over all scenes by day, and in each scene.
 pub fn over_blocks(drawn: &[rain::Blocks], truths: &[(rain::Blocks, f64)], day: &[bool]) -> (Difference, Vec<f64>) {
     let (mut all, mut each) = (Vec::new(), Vec::new());
     for ((blocks, (truth, white)), day) in drawn.iter().zip(truths).zip(day) {
         let mut errors = blocks.errors(truth, *white);
         errors.sort_by(f64::total_cmp);
         each.push(percentile(&errors, 0.95));
-        // Light at night is of another order; it has a column of its own.
+        // Light at night has another order of magnitude, so it has a column of its own.
         all.extend(errors.into_iter().filter(|_| *day));
     }
     all.sort_by(f64::total_cmp);
@@ -434,14 +434,14 @@ pub fn clouds(lab: &Lab, options: &Options) -> Result<()> {
     end(journal, &titles, &options.out.join("clouds")).map(|_| ())
 }
 
-/// How well the work units foretell the times: the factor between both, candidate by candidate.
+/// Prints how well the work units predict the times: the factor between both for each candidate.
 fn calibrate(table: &Table) {
     let find = |name: &str| candidates(Effect::Sky).into_iter().find(|c| c.name == name);
     let pixels = u64::from(FRAME.0 * FRAME.1);
     let mut data = Vec::new();
     for r in &table.rows {
         let Some(c) = find(&r[0]) else { continue };
-        // Ratios to the baseline, which a busy machine moves less than times.
+        // Uses ratios to the baseline, which other load on the machine affects less than times.
         let moving = c.work.frame(pixels, true).plus(c.work.rebuild, 1.0 / FRAMES_AN_AIR);
         for (column, work) in [("cost", moving), ("still", c.work.frame(pixels, false))] {
             if let Some(v) = table.number(r, column) {

@@ -1,4 +1,4 @@
-//! Draws and times every way to make fog, and computes the truth.
+//! Draws and times every way to draw fog, and computes the truth.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub const SIZE: (u32, u32) = (128, 72);
 const FLOAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const HALF: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// What the host drew: colour and depth.
+/// The host's picture: colour and depth.
 pub struct Host {
     pub rays: ViewRays,
     size: (u32, u32),
@@ -31,7 +31,7 @@ pub struct Host {
     depth: Vec<f32>,
 }
 
-/// A plain of the ground's reflectance, masts of 1 m width at eight distances, sky above.
+/// A plain with the ground's reflectance, eight masts of 1 m width at different distances, and sky above.
 pub fn host(scene: &FogScene, size: (u32, u32)) -> Result<Host> {
     let (s, c) = scene.elevation_deg.to_radians().sin_cos();
     let aspect = f64::from(size.0) / f64::from(size.1);
@@ -51,7 +51,7 @@ pub fn host(scene: &FogScene, size: (u32, u32)) -> Result<Host> {
             let mut range = if d.z < 0.0 { -scene.altitude_m / d.z } else { f64::INFINITY };
             let mut texel = if d.z < 0.0 { lit } else { light.sky_irradiance.map(|e| e / std::f64::consts::PI) };
             for i in 0..8 {
-                // Masts stand in a fan, 12 m high, each twice as far as the one before.
+                // Masts are 12 m high and stand in a fan, each twice as far away as the one before.
                 let far = 15.0 * 2f64.powi(i);
                 let left = far * (0.11 * f64::from(i) - 0.44);
                 let t = far / d.y;
@@ -80,12 +80,12 @@ fn viewpoint(scene: &FogScene) -> Viewpoint {
     Viewpoint { planet_radius_m: 6.371e6, ..Viewpoint::flat(scene.altitude_m) }
 }
 
-/// The fog model of a scene under a law.
+/// The fog model of a scene with one fog law.
 pub fn model(scene: &FogScene, law: &Law) -> Result<FogModel> {
     FogModel::new(law, &scene.light(), &viewpoint(scene))
 }
 
-/// The truth: the closed form in f64 at every pixel of the host's depth.
+/// The truth: the closed form in f64 at every pixel, from the host's depth.
 pub fn truth(scene: &FogScene, host: &Host) -> Result<Picture> {
     let model = model(scene, &Law::Layer(scene.layer))?;
     let texel = |i: usize| {
@@ -102,7 +102,7 @@ pub fn truth(scene: &FogScene, host: &Host) -> Result<Picture> {
     Ok(Picture { width: host.size.0, height: host.size.1, texels: (0..host.colour.len()).map(texel).collect() })
 }
 
-/// A scene on the GPU with the ways to put fog into it.
+/// A GPU bench that draws fog into scenes by the different methods.
 pub struct Bench {
     device: Arc<Device>,
     module: wgpu::ShaderModule,
@@ -111,7 +111,7 @@ pub struct Bench {
     wide: bool,
 }
 
-/// A way to draw fog into a scene, ready.
+/// One way to draw fog into a scene, ready to run.
 pub struct FogDraw {
     device: Arc<Device>,
     fill: Option<(wgpu::RenderPipeline, [wgpu::TextureView; 2])>,
@@ -121,7 +121,7 @@ pub struct FogDraw {
 }
 
 impl Bench {
-    /// Shaders and layouts.
+    /// Creates shaders and layouts.
     pub fn new(device: &Arc<Device>) -> Result<Self> {
         let gpu = &device.device;
         let text = [shader::assemble("fog/lookup.wgsl")?, shader::assemble("common/fullscreen.wgsl")?];
@@ -156,7 +156,7 @@ impl Bench {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        // Software OpenGL renders no 32-bit floats.
+        // Software OpenGL cannot render to 32-bit floats.
         let usages = device.adapter.get_texture_format_features(FLOAT).allowed_usages;
         let wide = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
         Ok(Self { device: device.clone(), module, layouts, sampler: linear, wide })
@@ -194,7 +194,7 @@ impl Bench {
         texture.create_view(&Default::default())
     }
 
-    /// A candidate in a scene.
+    /// Prepares a candidate in a scene.
     pub fn make(&self, candidate: &Candidate, scene: &FogScene, host: &Host) -> Result<FogDraw> {
         let Method::Library(LibraryMethod::Fog(method)) = candidate.method else {
             return Err(Error::range("candidate", "one of the fog", candidate.name));
@@ -254,7 +254,7 @@ impl Bench {
 }
 
 impl FogDraw {
-    /// One frame, ms.
+    /// Draws one frame and returns its time, ms.
     pub fn frame(&self) -> Result<f64> {
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         if let Some((pipeline, views)) = &self.fill {
@@ -276,7 +276,7 @@ impl FogDraw {
         timed(&self.device, encoder)
     }
 
-    /// The picture.
+    /// Reads the picture.
     pub fn picture(&self) -> Result<Picture> {
         self.frame()?;
         let texels = readback::rgba(&self.device, &self.target)?;

@@ -1,7 +1,8 @@
-//! Which of several candidates are worth a choice, and how a cost grows.
+//! Finds the candidates worth choosing, and how a cost grows.
 
-/// Indices of those points (cost, error) that no other point beats: none is at most as dear and at most as wrong, and
-/// less of one. In order of cost; equal points are all kept. Points that are not finite are on no front.
+/// Indices of the points (cost, error) on the Pareto front, in order of cost. A point is on the front if no other point
+/// is at most equal in both values and smaller in one. Equal points are all kept. Points that are not finite are left
+/// out.
 pub fn pareto(points: &[[f64; 2]]) -> Vec<usize> {
     let finite = |i: &usize| points[*i].iter().all(|v| v.is_finite());
     let beats = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
@@ -13,8 +14,8 @@ pub fn pareto(points: &[[f64; 2]]) -> Vec<usize> {
     front
 }
 
-/// Exponent p of the best fit of y ~ x^p (least squares of logarithms), and the largest factor by which a point misses
-/// it. `None` for fewer than two different x, or numbers that are not above 0.
+/// Exponent p of the best fit of y ~ x^p (least squares of logarithms), and the largest factor between a point and the
+/// fit. `None` for fewer than two different x, or for numbers that are not above 0.
 pub fn growth(points: &[[f64; 2]]) -> Option<(f64, f64)> {
     if points.len() < 2 || points.iter().flatten().any(|v| !(*v > 0.0 && v.is_finite())) {
         return None;

@@ -1,4 +1,4 @@
-//! Draws every kind of cloud from where it is known from, to be looked at.
+//! Draws every kind of cloud from a typical viewpoint, for visual inspection.
 
 use std::{path::Path, sync::Arc};
 
@@ -18,7 +18,7 @@ const fn scene(name: &'static str, kind: CloudKind, at: [f64; 5]) -> CloudScene 
     CloudScene { name, kind, cover, base_m, height_m, pitch_deg, sun_deg }
 }
 
-/// Cover, base, height of the eye, its pitch and the sun's elevation.
+/// Cover, base, height and pitch of the camera, and the sun's elevation.
 const GENERA: [CloudScene; 18] = [
     scene("cumulus", CloudKind::Cumulus, [0.4, 1000.0, 2.0, 18.0, 45.0]),
     scene("cumulus-far", CloudKind::Cumulus, [0.3, 1000.0, 2.0, 4.0, 35.0]),
@@ -40,7 +40,7 @@ const GENERA: [CloudScene; 18] = [
     scene("nimbostratus", CloudKind::Nimbostratus, [0.9, 600.0, 6000.0, -10.0, 30.0]),
 ];
 
-/// Draws those whose names contain `part` into a folder.
+/// Draws the kinds whose names contain `part` into a folder.
 ///
 /// # Errors
 /// Files; the GPU.

@@ -1,4 +1,4 @@
-//! `lab growth`: how time and bytes grow with what a host can ask for more of.
+//! `lab growth`: how time and memory grow with the amounts that a host can set.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -22,7 +22,7 @@ use crate::store::{Journal, Table};
 use crate::timing::{interleaved, target, timed};
 use crate::{fog, page, rain, scenes, sky, wind_flakes};
 
-/// Exponents above this are named: linear with the fit's own error.
+/// Exponents above this are reported: linear growth plus the fit's own error.
 pub const LINEAR: f64 = 1.1;
 const COLUMNS: [&str; 10] =
     ["key", "what", "against", "amount", "cost", "cost_low", "cost_high", "ms", "bytes", "date"];
@@ -58,14 +58,15 @@ pub fn run(options: &Options) -> Result<()> {
     page::write(&options.out)
 }
 
-/// Series that are being measured.
+/// The series that are being measured.
 pub struct Series<'a> {
     journal: Journal,
     pub lab: &'a Lab,
 }
 
 impl Series<'_> {
-    /// One point, unless an earlier run has it. `make` prepares what is then timed, and answers the bytes it holds.
+    /// Measures one point, unless an earlier run has it. `make` prepares the work to be timed and returns the bytes
+    /// that it holds.
     pub fn point<F: FnMut(usize) -> Result<f64>>(
         &mut self,
         (what, against, amount): (&str, &str, f64),
@@ -156,7 +157,7 @@ fn sky_tables(series: &mut Series<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Views of one context, each recorded with all stages.
+/// Growth with the number of views of one context, each recorded with all stages.
 fn views(series: &mut Series<'_>) -> Result<()> {
     let device = series.lab.device.clone();
     for count in [1u32, 2, 4, 8, 16] {
@@ -194,7 +195,7 @@ impl HostViews {
         );
         let views = (0..count).map(|_| View::new(&context)).collect::<Result<Vec<_>>>()?;
         let mut this = Self { device: device.clone(), context, views, color, depth, next: 0 };
-        // Tables that all of them share come in parts, over many frames.
+        // The shared tables are built in parts, over many frames.
         let mut quiet = 0;
         while quiet < 12 {
             this.frame()?;
@@ -203,7 +204,7 @@ impl HostViews {
         Ok(this)
     }
 
-    /// All views' next frame, ms.
+    /// Draws the next frame of all views and returns its time, ms.
     fn frame(&mut self) -> Result<f64> {
         self.next += 1;
         let start = Instant::now();
@@ -219,7 +220,7 @@ impl HostViews {
     }
 }
 
-/// Cloud layers in the weather: what deriving conditions from it takes, on the CPU.
+/// Growth with the number of cloud layers: the CPU time of deriving conditions from the weather.
 fn clouds(series: &mut Series<'_>) -> Result<()> {
     for count in [1usize, 2, 4, 8, 16] {
         series.point(("conditions", "cloud layers", count as f64), || {
@@ -239,7 +240,7 @@ fn clouds(series: &mut Series<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Drops of rain that are drawn: in a cloudburst, of which there are more than that.
+/// Growth with the number of rain drops drawn, in a cloudburst, which has more drops than that.
 fn drops(series: &mut Series<'_>) -> Result<()> {
     let scene = scenes::RainScene { rate_mm_h: 400.0, ..scenes::rain()[3] };
     for count in [50_000u32, 100_000, 200_000, 400_000, 800_000] {
@@ -253,10 +254,11 @@ fn drops(series: &mut Series<'_>) -> Result<()> {
     Ok(())
 }
 
-/// A series' name, what it grows with, and the exponents with the factor by which they miss, of time and bytes.
+/// Name of a series, the amount it grows with, and the exponents of time and of bytes, each with the largest factor
+/// between a point and the fit.
 pub type Exponents = (String, String, Option<(f64, f64)>, Option<(f64, f64)>);
 
-/// The exponents of a table's series.
+/// The exponents of all series in a table.
 pub fn exponents(table: &Table) -> Vec<Exponents> {
     let mut names: Vec<(String, String)> = Vec::new();
     for r in &table.rows {

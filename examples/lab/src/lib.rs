@@ -1,5 +1,5 @@
-//! Speed charted against accuracy, growth of cost, and maps of where methods fail: the commands of `lab`, and what they
-//! rest on.
+//! The commands of `lab` and their building blocks: charts of speed against accuracy, growth of cost, and maps of where
+//! methods fail.
 
 pub mod candidates;
 pub mod canvas;

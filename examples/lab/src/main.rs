@@ -1,7 +1,8 @@
-//! The lab: speed charted against accuracy, growth of cost, and maps of where methods fail.
+//! The lab: charts of speed against accuracy, growth of cost, and maps of where methods fail.
 //!
-//! `make lab ARGS="chart sky"`. Results are kept row by row: a run that was stopped is continued by the same command.
-//! Wrong arguments: a message on standard error, exit code 2, nothing written; pictures that differ: exit code 1.
+//! `make lab ARGS="chart sky"`. Results are kept row by row, so the same command continues a stopped run. Wrong
+//! arguments print a message on standard error and give exit code 2; nothing is written. Pictures that differ give exit
+//! code 1.
 
 use std::process::ExitCode;
 

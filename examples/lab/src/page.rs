@@ -1,4 +1,4 @@
-//! The page that shows and explains what the lab measured, written from the CSV files beside it.
+//! The page that shows and explains the lab's measurements, written from the CSV files beside it.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -93,7 +93,7 @@ fn sky_section(out: &mut String, t: &Table) {
     let default = t.rows.iter().find(|r| r[2] == "true");
     let source = ["elek-15", "elek-50"].map(|name| t.row(name));
     if let Some(d) = default {
-        // The machine at its calmest: what a unit of cost then takes.
+        // Time per unit of cost while the machine is least busy.
         let unit = |r: &Vec<String>| n(r, "moving_ms") / n(r, "cost");
         let calm = t.rows.iter().map(unit).fold(f64::INFINITY, f64::min);
         let on = front_rows(t, "cost").iter().any(|(front, default, _)| *front && *default);

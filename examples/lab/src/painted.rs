@@ -1,13 +1,14 @@
-//! Clouds as older systems paint them, to be measured against: noise on a plane, a shell or a dome, cut off and made
-//! opaque by an exponential law, under several ways to shade it.
+//! Clouds as older systems paint them, for comparison: noise on a plane, a shell or a dome, with a cutoff and an
+//! exponential law for opacity, and several kinds of shading.
 //!
-//! Forms, laws and shadings are those of Tarantilis (2004): planes with soft edges (III.B.3), a dome cut out of solid
-//! noise (III.B.4); and of a trainer of machinery: light traced towards the sun, a normal from the noise, the average
-//! with a second texture, a slow fade from noise to noise, a sky from a picture. Between them stands what they lack: a
-//! shell about the planet in place of a plane, solid noise on it, a slab's light. All paint over Welkin's own clear
-//! sky, in its light.
+//! Forms, laws and shadings come from two sources. From Tarantilis (2004): planes with soft edges (III.B.3) and a dome
+//! cut out of solid noise (III.B.4). From a training simulator for machinery: light traced towards the sun, a normal
+//! from the noise, the average with a second texture, a slow fade between noises, and a sky from a picture.
+//! Combinations that both lack are added: a shell around the planet instead of a plane, solid noise on it, and the
+//! light of a slab. All of them paint over Welkin's own clear sky, in its light.
 //!
-//! No two ways put clouds in the same places, so pictures are compared as rain's are: blocks over some moments.
+//! Different methods put clouds in different places, so pictures are compared like those of rain: in blocks over
+//! several moments.
 
 use std::sync::Arc;
 
@@ -23,39 +24,39 @@ use crate::rain::Blocks;
 use crate::scenes::CloudScene;
 use crate::timing::timed;
 
-/// Moments over which pictures are compared, and how far apart they are, s: clouds have come and gone.
+/// Number of moments at which pictures are compared, and the time between them, s, in which the clouds have changed.
 const MOMENTS: u64 = 16;
 const APART_S: f64 = 3700.0;
 /// Texels along a side of the solid noise.
 const SOLID: u32 = 128;
-/// How much lower the sun stood when the picture of a sky was taken that stands for all later ones, degrees.
+/// How much lower the sun stood when the sky's picture was taken, which is then used at all later times, degrees.
 const TAKEN_LOWER_DEG: f64 = 15.0;
 
-/// What the noise lies on.
+/// Surface that carries the noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     /// A level plane at the clouds' base.
     Plane,
-    /// The same, bent as the planet is.
+    /// A plane bent like the planet.
     Shell,
-    /// A sphere about the eye through solid noise.
+    /// A sphere around the camera, cut out of solid noise.
     Dome,
-    /// Solid noise where a ray meets the shell.
+    /// Solid noise at the point where a ray meets the shell.
     SolidShell,
 }
 
-/// How it is lit.
+/// Shading of the clouds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shading {
     /// One colour.
     Flat,
-    /// By the noise on the way to the sun.
+    /// By the noise along the path to the sun.
     Traced,
-    /// By a normal from the slope of the noise.
+    /// By a normal from the noise's gradient.
     ByNormal,
     /// By the average with a second texture.
     Averaged,
-    /// As an even slab of the place's depth.
+    /// Like a uniform slab with the local optical depth.
     Slab,
 }
 
@@ -66,13 +67,13 @@ pub enum Paint {
     Noise { form: Form, shading: Shading, cross_fades: bool, curls: bool },
     /// A picture of the sky, taken once.
     Picture,
-    /// None: the library's own.
+    /// None: the library's own clouds.
     Library(CloudMethod),
     /// The truth at other moments.
     TruthAgain,
 }
 
-/// All that are charted.
+/// All charted ways.
 pub fn candidates() -> Vec<(&'static str, Paint)> {
     let noise = |form, shading| Paint::Noise { form, shading, cross_fades: false, curls: false };
     let plane = |cross_fades, curls| Paint::Noise { form: Form::Plane, shading: Shading::Flat, cross_fades, curls };
@@ -95,7 +96,7 @@ pub fn candidates() -> Vec<(&'static str, Paint)> {
     ]
 }
 
-/// What `painted.wgsl` reads.
+/// Uniform block of `painted.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Uniform {
@@ -109,11 +110,11 @@ struct Uniform {
     offset: [f32; 4],
 }
 
-/// Noise that a scene's clouds are cut out of, and what cuts it out.
+/// Noise from which a scene's clouds are cut, and the cutoff.
 struct Cut {
     texture: NoiseTexture,
     cutoff: f64,
-    /// Mean of what is over the cutoff, where anything is.
+    /// Mean height of the noise above the cutoff, where it is above.
     over: f64,
     /// Clouds along a side of the texture.
     frequency: f64,
@@ -134,24 +135,24 @@ fn mean_over(image: &NoiseImage, cutoff: f64) -> f64 {
     sum / f64::from(count.max(1))
 }
 
-/// A scene with what is painted into it.
+/// A scene into which clouds are painted.
 pub struct Easel {
     device: Arc<Device>,
     scene: CloudScene,
-    /// Its sky without clouds, and with.
+    /// The scene's sky without clouds, and with them.
     clear: Host,
     clouded: Host,
     module: wgpu::ShaderModule,
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
-    /// Two textures of a plane, and a solid one.
+    /// Two textures for a plane, and a solid one.
     cuts: [Cut; 3],
-    /// The pipeline of what was timed last.
+    /// The pipeline that was timed last.
     last: Option<(Paint, wgpu::RenderPipeline)>,
 }
 
 impl Easel {
-    /// Of a scene.
+    /// Creates the easel for a scene.
     ///
     /// # Errors
     /// GPU faults.
@@ -224,7 +225,7 @@ impl Easel {
         fullscreen::pipeline(&self.device.device, &self.module, stages, &[&self.layout], &[target])
     }
 
-    /// The block of a moment, for noise of which `cut` is the first.
+    /// The uniform block of a moment; `cut` is the noise of the clouds.
     fn uniform(&self, cut: &Cut, moment: u64) -> Result<Uniform> {
         let (camera, light) = (self.clear.camera(), self.clear.light()?);
         let slab = cover::typical(self.scene.kind, self.scene.cover)?;
@@ -238,7 +239,7 @@ impl Easel {
         let top = if self.scene.height_m > self.scene.base_m { slab.thickness_m } else { 0.0 };
         let height = self.scene.base_m + top - self.scene.height_m;
         let three = |v: [f64; 3], w: f64| [v[0], v[1], v[2], w].map(|v| v as f32);
-        // By the golden ratio and its like: nowhere twice.
+        // By the golden ratio and similar numbers, so that no position repeats.
         let turn = moment as f64;
         let [a, b, c] = [0.618_034, 0.754_878, 0.569_84].map(|step| (step * turn).fract());
         let density = CloudPreset::Broken.cloud().thickness();
@@ -255,7 +256,7 @@ impl Easel {
         })
     }
 
-    /// Paints into the clear sky that was just drawn, ms.
+    /// Paints into the clear sky just drawn, and returns the time, ms.
     fn paint(&self, pipeline: &wgpu::RenderPipeline, cut: &Cut, moment: u64) -> Result<f64> {
         let gpu = &self.device.device;
         let block = self.uniform(cut, moment)?;
@@ -297,7 +298,7 @@ impl Easel {
         self.clouded.truth()
     }
 
-    /// Blocks of the truth over its moments, and the luminance that is shown as white.
+    /// Blocks of the truth over its moments, and the luminance shown as white.
     ///
     /// # Errors
     /// GPU faults.
@@ -311,7 +312,7 @@ impl Easel {
         Ok((blocks, white))
     }
 
-    /// What a way to paint makes of the scene at some moments, cd/m^2.
+    /// Pictures of the scene by one method at several moments, cd/m^2.
     ///
     /// # Errors
     /// GPU faults.
@@ -342,7 +343,7 @@ impl Easel {
         }
     }
 
-    /// Blocks of what a way to paint makes of the scene.
+    /// Blocks of the scene by one method.
     ///
     /// # Errors
     /// GPU faults.
@@ -352,7 +353,7 @@ impl Easel {
         Ok(blocks)
     }
 
-    /// Milliseconds of a frame while the camera turns.
+    /// Time of a frame while the camera turns, ms.
     ///
     /// # Errors
     /// GPU faults.
@@ -369,7 +370,7 @@ impl Easel {
                 self.last = Some((paint, made));
                 Ok(clear + painted)
             }
-            // A look-up a pixel, as the cheapest of the others has, and no air before it.
+            // One texture look-up per pixel, like the cheapest of the others, and no air in front.
             Paint::Picture => self.clear.timed(&deck, round == 0),
             Paint::Library(method) => self.clouded.timed(&method, round == 0),
             Paint::TruthAgain => Err(Error::range("candidate", "one that is timed", "truth-again")),

@@ -1,4 +1,4 @@
-//! `lab chart painted-clouds`: cost of painted clouds, and error of their brightness and contrast, beside those of the
+//! `lab chart painted-clouds`: cost of painted clouds and error of their brightness and contrast, compared with the
 //! library's clouds.
 
 use std::{path::Path, sync::Arc};
@@ -16,10 +16,10 @@ use crate::scenes;
 use crate::store::io;
 use crate::timing::{Ratio, interleaved};
 
-/// What it is called.
+/// Name of the chart.
 const NAME: &str = "painted-clouds";
 
-/// How a way to paint is called among its like.
+/// Family of a painting method.
 fn family(paint: Paint) -> &'static str {
     match paint {
         Paint::Noise { form: Form::Plane, .. } => "plane",
@@ -31,7 +31,7 @@ fn family(paint: Paint) -> &'static str {
     }
 }
 
-/// Draws a PNG of every way to paint in every scene into a folder, to be looked at.
+/// Draws a PNG of every method in every scene into a folder, for visual inspection.
 ///
 /// # Errors
 /// Files and the GPU.

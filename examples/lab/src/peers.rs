@@ -1,9 +1,8 @@
-//! Welkin beside others in one run, and before and after its frames were taken apart: a recorded table, its plot and
-//! its part of the page.
+//! Welkin and other systems in one run, and Welkin before and after its frames were optimised: a recorded table, its
+//! plot and its part of the page.
 //!
-//! Others' systems are no part of this repository, and older versions draw no longer: `peers.csv` keeps what was
-//! measured once. What Welkin takes now is the benchmarks' to say
-//! (`cargo bench --bench speed -- copies falling clouds`).
+//! Other systems are not part of this repository, and older versions cannot run any more, so `peers.csv` keeps what was
+//! measured once. For Welkin's current times run the benchmarks (`cargo bench --bench speed -- copies falling clouds`).
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -13,7 +12,7 @@ use welkin::Result;
 use crate::plot::{Move, Titles, moves, short};
 use crate::store::Table;
 
-/// When, as the table has it, and as the page says it: others, Welkin 0.1 as first measured, Welkin now.
+/// Time of a measurement, in the table and on the page: others, Welkin 0.1 as first measured, Welkin now.
 const WHEN: [(&str, &str); 3] = [("peer", "others"), ("before", "before"), ("now", "now")];
 
 /// Effects of the table, in its order.
@@ -55,7 +54,7 @@ pub fn chart(directory: &Path) -> Result<()> {
     moves(&all, &titles).save(&directory.join("peers"))
 }
 
-/// Its part of the page.
+/// Writes its part of the page.
 pub fn section(out: &mut String, table: &Table) {
     out.push_str(
         "## Beside others, and before\n\n![frames and their error](peers.svg)\n\n\

@@ -1,11 +1,11 @@
-//! Pictures in linear colour: exposure, display, and how far apart two are.
+//! Pictures in linear colour: exposure, display, and the difference between two.
 
 use image::RgbImage;
 use welkin::light::luminance;
 use welkin::plan::{Difference, difference};
 use welkin::{Error, Result};
 
-/// A picture in linear Rec. 709, row by row from above.
+/// A picture in linear Rec. 709, top row first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     pub width: u32,
@@ -13,29 +13,29 @@ pub struct Picture {
     pub texels: Vec<[f64; 3]>,
 }
 
-/// What a picture's error is.
+/// Errors of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Figures {
-    /// In luminance, as Welkin states errors.
+    /// In luminance, as in Welkin's stated errors.
     pub luminance: Difference,
-    /// 1 less the similarity of structure and colour as displayed, 0 to 1.
+    /// 1 minus the similarity of structure and colour as displayed, 0 to 1.
     pub perceptual: f64,
 }
 
 impl Picture {
-    /// Its luminances.
+    /// The luminances of its pixels.
     pub fn luminances(&self) -> Vec<f64> {
         self.texels.iter().map(luminance).collect()
     }
 
-    /// The luminance shown as white: the picture's logarithmic mean lies at 18 % of it.
+    /// The luminance shown as white, such that the picture's logarithmic mean is 18 % of it.
     pub fn white(&self) -> f64 {
         let bright: Vec<f64> = self.luminances().into_iter().filter(|y| *y > 0.0 && y.is_finite()).collect();
         let mean = bright.iter().map(|y| y.ln()).sum::<f64>() / bright.len().max(1) as f64;
         mean.exp().max(1e-12) / 0.18
     }
 
-    /// As displayed: exposed by `white`, a soft shoulder, sRGB.
+    /// The displayed picture: exposed by `white`, with a soft shoulder, in sRGB.
     pub fn display(&self, white: f64) -> RgbImage {
         let byte = |v: f64| {
             let v = if v.is_finite() { 1.0 - (-1.6 * v.max(0.0) / white).exp() } else { 1.0 };
@@ -47,10 +47,10 @@ impl Picture {
         })
     }
 
-    /// How far this is from `truth`, both exposed for the truth.
+    /// The errors of this picture relative to `truth`, with both exposed for the truth.
     ///
     /// # Errors
-    /// Pictures of different size.
+    /// Pictures of different sizes.
     pub fn figures(&self, truth: &Self) -> Result<Figures> {
         let white = truth.white();
         let luminance = difference(&self.luminances(), &truth.luminances(), white)?;

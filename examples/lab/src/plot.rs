@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, FAINT, GRID, INK, Rgb};
 
-/// An axis that is logarithmic.
+/// A logarithmic axis.
 #[derive(Clone, Copy, Debug)]
 pub struct LogAxis {
     /// Value and pixel of both ends.
@@ -10,7 +10,8 @@ pub struct LogAxis {
 }
 
 impl LogAxis {
-    /// From the pixel `a` to `b`, over `values` with a margin; values that are not above 0 are left out.
+    /// An axis from pixel `a` to pixel `b` that covers `values` with a margin; values that are not above 0 are left
+    /// out.
     pub fn over(values: impl Iterator<Item = f64>, a: f64, b: f64) -> Self {
         let (mut lo, mut hi) = (f64::INFINITY, 0.0f64);
         for v in values.filter(|v| *v > 0.0 && v.is_finite()) {
@@ -22,14 +23,14 @@ impl LogAxis {
         Self { ends: [(lo / 1.6, a), (hi * 1.6, b)] }
     }
 
-    /// Pixel of a value; values beyond an end lie on it.
+    /// Pixel of a value; values beyond an end are put on it.
     pub fn at(&self, value: f64) -> f64 {
         let [(lo, a), (hi, b)] = self.ends;
         let t = ((value.max(lo) / lo).ln() / (hi / lo).ln()).clamp(0.0, 1.0);
         a + (b - a) * t
     }
 
-    /// Powers of ten with the marks between them, and whether each carries a number.
+    /// Powers of ten and the ticks between them, and whether each has a number.
     pub fn ticks(&self) -> Vec<(f64, bool)> {
         let [(lo, _), (hi, _)] = self.ends;
         let decades = hi.log10().floor() as i32 - lo.log10().floor() as i32;
@@ -53,7 +54,7 @@ impl LogAxis {
     }
 }
 
-/// A number as short as it can be read.
+/// A number in its shortest readable form.
 pub fn short(v: f64) -> String {
     let a = v.abs();
     if a == 0.0 {
@@ -69,20 +70,20 @@ pub fn short(v: f64) -> String {
     }
 }
 
-/// Space of the plot in the figure.
+/// Margins of the plot in the figure.
 const LEFT: f64 = 78.0;
 const TOP: f64 = 56.0;
 const BOTTOM: f64 = 62.0;
 
-/// What one point of the chart says.
+/// One point of the chart.
 pub struct Point {
     pub name: String,
-    /// Cost, and its quarters.
+    /// Cost, and its quartiles.
     pub cost: f64,
     pub spread: (f64, f64),
     pub error: f64,
     pub family: String,
-    /// Nothing is both cheaper and better.
+    /// On the front: no other point is both cheaper and more accurate.
     pub front: bool,
     pub default: bool,
 }
@@ -125,7 +126,8 @@ fn axes(canvas: &mut Canvas, area: [f64; 4], x: &LogAxis, y: &LogAxis, titles: &
     canvas.upright(titles.y, (18.0, 0.5 * (top + bottom)), 15.0, INK);
 }
 
-/// Places labels beside their points so that none covers another; those that find no place close by are led by a line.
+/// Places labels next to their points so that they do not overlap. A label that finds no place nearby gets a line to
+/// its point.
 fn place_labels(canvas: &mut Canvas, area: [f64; 4], labels: &[(String, (f64, f64), Rgb)], bars: Vec<[f64; 4]>) {
     let size = 13.0;
     let mut taken = bars;
@@ -154,7 +156,7 @@ fn place_labels(canvas: &mut Canvas, area: [f64; 4], labels: &[(String, (f64, f6
     }
 }
 
-/// The chart: every candidate as a point, the front as a line, what is beaten faint, the default in a ring.
+/// The chart: every candidate as a point, the front as a line, candidates off the front faint, the default in a ring.
 pub fn scatter(points: &[Point], titles: &Titles<'_>) -> Canvas {
     let (width, height) = (1200, 760);
     let mut canvas = Canvas::new(width, height);
@@ -181,7 +183,7 @@ pub fn scatter(points: &[Point], titles: &Titles<'_>) -> Canvas {
     }
     canvas.line(&steps, (120, 126, 134), 2);
     let (mut labels, mut bars) = (Vec::new(), Vec::new());
-    // Those of the front last, over the others, but labelled first.
+    // Points on the front are drawn last, on top, but labelled first.
     for wanted in [false, true] {
         for p in shown.iter().filter(|p| p.front == wanted) {
             let c = if p.front { color(p) } else { pale(color(p)) };
@@ -212,7 +214,7 @@ pub struct Move {
     pub at: [Option<[f64; 4]>; 3],
 }
 
-/// The chart of what has moved: hollow before, full now, a square elsewhere.
+/// The chart of changes: an earlier version is hollow, the current one filled, another system a square.
 pub fn moves(all: &[Move], titles: &Titles<'_>) -> Canvas {
     let (width, height) = (1200, 760);
     let mut canvas = Canvas::new(width, height);
@@ -245,7 +247,7 @@ pub fn moves(all: &[Move], titles: &Titles<'_>) -> Canvas {
     canvas
 }
 
-/// A curve of growth.
+/// One growth curve.
 pub struct Line {
     pub name: String,
     pub points: Vec<[f64; 2]>,
@@ -260,7 +262,7 @@ pub fn lines(curves: &[Line], titles: &Titles<'_>) -> Canvas {
     let x = LogAxis::over(all().map(|p| p[0]), area[0], area[2]);
     let y = LogAxis::over(all().map(|p| p[1]), area[3], area[1]);
     axes(&mut canvas, area, &x, &y, titles);
-    // Names stand beside the ends, pushed apart downwards.
+    // Names stand next to the curves' ends, and are shifted down where they overlap.
     let mut ends: Vec<(f64, usize)> =
         curves.iter().enumerate().filter_map(|(i, c)| c.points.last().map(|p| (y.at(p[1]), i))).collect();
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,5 +1,5 @@
-//! `lab chart quadrature`: the rules for the sky's two integrals against each other, in f32 on the GPU, by the
-//! library's own shader functions. Transmittance to space over 64 altitudes and 256 angles; light scattered once from
+//! `lab chart quadrature`: compares rules for the sky's two integrals in f32 on the GPU, using the library's own shader
+//! functions. The integrals are the transmittance to space over 64 altitudes and 256 angles, and single scattering from
 //! four altitudes under four suns.
 
 use std::{path::Path, sync::Arc};
@@ -25,15 +25,15 @@ const RULES: [(&str, u32); 6] =
     [("offset-0.3", 0), ("midpoint", 1), ("trapezoid", 2), ("gauss-4", 3), ("welkin", 4), ("midpoint-stretched", 5)];
 const COUNTS: [u32; 7] = [8, 16, 20, 32, 40, 64, 128];
 
-/// Errors of light scattered once by the sun's zenith angle.
+/// Errors of single scattering by the sun's zenith angle.
 pub const SUN_COLUMNS: [&str; 4] = ["p95_sun_30", "p95_sun_75", "p95_sun_88", "p95_sun_92"];
 
-/// The air that is integrated: the Earth's with a point sun.
+/// The air used: the Earth's, with a point sun.
 fn planet() -> Planet {
     Planet { sun_angular_radius_deg: 0.0, ..Planet::earth() }
 }
 
-/// The passes of the lab.
+/// The lab's own passes.
 struct Rules<'a> {
     device: &'a Device,
     module: wgpu::ShaderModule,
@@ -119,7 +119,7 @@ impl<'a> Rules<'a> {
     }
 }
 
-/// Transmittance to space by direct quadrature, green.
+/// Transmittance to space by direct quadrature, in green.
 fn true_transmittance() -> Vec<f64> {
     let medium = Medium::of(&planet());
     let mut out = Vec::new();
@@ -136,7 +136,7 @@ fn true_transmittance() -> Vec<f64> {
     out
 }
 
-/// Light scattered once, green, each group of altitude and sun divided by its mean.
+/// Single scattering in green, each group of altitude and sun divided by its mean.
 fn true_scattering(means: &mut Vec<f64>) -> Result<Vec<f64>> {
     let planet = planet();
     let medium = Medium::of(&planet);
@@ -162,7 +162,7 @@ fn normal(values: &[f64], means: &[f64]) -> Vec<f64> {
     values.iter().enumerate().map(|(i, v)| v / means[i / (4 * COLUMN_COUNT as usize)]).collect()
 }
 
-/// The 95th percentile under each sun: rows go by altitude, sun, azimuth.
+/// The 95th percentile for each sun. Rows are ordered by altitude, sun, azimuth.
 fn by_sun(drawn: &[f64], truth: &[f64]) -> Result<[f64; 4]> {
     let group = 4 * COLUMN_COUNT as usize;
     let mut out = [0.0; 4];
@@ -173,7 +173,7 @@ fn by_sun(drawn: &[f64], truth: &[f64]) -> Result<[f64; 4]> {
     Ok(out)
 }
 
-/// The error of transmittance to space by the rule of `name` with `n` nodes, as it is drawn now.
+/// The current error of transmittance to space by the rule `name` with `n` nodes.
 ///
 /// # Errors
 /// An unknown rule; the GPU.
@@ -246,7 +246,7 @@ pub fn chart(lab: &Lab, options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// The rows of one integral as a chart.
+/// Draws the rows of one integral as a chart.
 fn one_plot(table: &Table, entry: &str, title: &str, stem: &Path) -> Result<()> {
     let column = table.columns.iter().position(|c| c == "integral");
     let column = column.ok_or_else(|| Error::new(Status::Parse, "quadrature.csv has no column integral".to_owned()))?;

@@ -1,8 +1,8 @@
-//! Draws and times every way to draw rain, and computes the truth: each drop of the air before the camera by itself, in
-//! f64.
+//! Draws and times every way to draw rain, and computes the truth: each drop in front of the camera by itself, in f64.
 //!
-//! No two ways put drops in the same places, so pictures are compared as textures: in blocks of 20 x 20 pixels, over
-//! some moments, the mean luminance and its standard deviation from pixel to pixel and from patch to patch of 4 x 4.
+//! Different methods put drops in different places, so pictures are compared as textures. In blocks of 20 x 20 pixels,
+//! over several moments, the comparison uses the mean luminance and its standard deviation between pixels and between
+//! patches of 4 x 4.
 
 use std::{f64::consts::PI, sync::Arc, time::Instant};
 
@@ -31,24 +31,24 @@ use crate::timing::target;
 
 /// Size of the pictures whose error is measured.
 pub const SIZE: (u32, u32) = (320, 180);
-/// Side of a block, and of a patch in it.
+/// Side of a block, and of a patch in it, pixels.
 const BLOCK: u32 = 20;
 const PATCH: u32 = 4;
-/// Moments over which blocks are compared, s apart.
+/// Number of moments at which blocks are compared, and the time between them, s.
 pub const MOMENTS: usize = 6;
 const FOV: f64 = 0.9;
 pub const EYE: DVec3 = DVec3::new(0.0, 0.0, 12.0);
-/// Where the wall stands that hides the horizon, m ahead.
+/// Distance of the wall that hides the horizon, m ahead.
 const WALL_M: f64 = 60.0;
-/// Up to where the truth has drops.
+/// Distance up to which the truth has drops.
 const FAR_M: f64 = cones::BANDS_M[cones::CONES];
 const NEAREST: (f64, f64) = (0.125, 0.25);
-/// What is smaller shows in no way as drops, mm.
+/// Smaller drops are never visible as drops, mm.
 const DRAWN_FROM_MM: f64 = 0.5;
 const HALF: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// A host under a scene's rain, with one view.
+/// A host with a scene's rain and one view.
 pub struct Host {
     device: Arc<Device>,
     context: Context,
@@ -65,20 +65,20 @@ fn camera(size: (u32, u32)) -> Camera {
     Camera::look_to(EYE, DVec3::Y, DVec3::Z, FOV, f64::from(size.0) / f64::from(size.1), 0.1)
 }
 
-/// Pixels from a point to its picture, at one metre.
+/// Focal length in pixels: the size in pixels of 1 m at a distance of 1 m.
 pub fn focal(size: (u32, u32)) -> f64 {
     0.5 * f64::from(size.1) / (0.5 * FOV).tan()
 }
 
 impl Host {
-    /// Of a scene, at a size.
+    /// Creates the host of a scene for pictures of a size.
     pub fn new(device: &Arc<Device>, scene: &RainScene, size: (u32, u32)) -> Result<Self> {
         let shared = Arc::new(Shared::new(device)?);
-        // The sky is not what is measured here.
+        // Small tables, as the sky is not measured here.
         let sky = SkySettings { orders: 4, suns: 32, altitudes: 14, ..SkySettings::default() };
         let mut context = Context::new(device.clone(), shared, ContextDesc { sky, seed: 5, ..Default::default() })?;
         context.set_sun(Some(GivenDirection { azimuth_deg: scene.sun_azimuth_deg, elevation_deg: scene.sun_deg }))?;
-        // Clear air but for what falls.
+        // Clear air except for the precipitation.
         let (kind, falling) = match scene.snow_c {
             Some(_) => (PrecipitationKind::Snow, snow_extinction_per_m(scene.rate_mm_h)),
             None => (PrecipitationKind::Rain, DropSizes::of_rain(scene.rate_mm_h, 1.0).extinction_per_m()),
@@ -120,7 +120,8 @@ impl Host {
         Ok(this)
     }
 
-    /// A wall up to 3 degrees above the eye, its left half dark and its right one light; sky above.
+    /// Draws a wall up to 3 degrees above the camera's horizon, dark in its left half and light in its right half, with
+    /// sky above.
     fn paint(&mut self) -> Result<()> {
         let scene = self.scene()?;
         let lux = scene.ground.sky_lux;
@@ -148,66 +149,66 @@ impl Host {
         self.device.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
     }
 
-    /// What holds at the camera.
+    /// The library's conditions at the camera.
     pub fn scene(&self) -> Result<Scene> {
         self.context.scene_at(EYE, self.context.time_s())
     }
 
-    /// Draws from now on with these.
+    /// Sets how rain is drawn from now on.
     pub fn set(&mut self, settings: RainSettings) -> Result<()> {
         self.view.set_rain(settings)
     }
 
-    /// Draws snow from now on with these.
+    /// Sets how snow is drawn from now on.
     pub fn set_snow(&mut self, settings: SnowSettings) -> Result<()> {
         self.view.set_snow(settings)
     }
 
-    /// Sets the boxes that keep off what falls.
+    /// Sets boxes that shelter from precipitation.
     pub fn set_shelters(&mut self, boxes: &[Shelter]) -> Result<()> {
         self.context.set_shelters(boxes)
     }
 
-    /// Of the air at the camera.
+    /// Velocity of the air at the camera.
     pub fn wind_m_s(&self) -> DVec3 {
         DVec3::X * self.scene.wind_m_s
     }
 
-    /// Of the camera.
+    /// Velocity of the camera.
     pub fn camera_m_s(&self) -> DVec3 {
         DVec3::Y * self.scene.driving_m_s
     }
 
-    /// Of its pictures.
+    /// Size of its pictures.
     pub fn size(&self) -> (u32, u32) {
         self.size
     }
 
-    /// Solves for the wind in a box of cells about the camera, which what falls is then stepped through.
+    /// Solves for the wind in a box of cells around the camera; precipitation is then integrated through it.
     pub fn solve_wind(&mut self, cells: [u32; 3]) -> Result<()> {
         let desc = WindFieldDesc { floor_center: EYE - DVec3::Z * EYE.z, cells, ..WindFieldDesc::default() };
         self.context.set_wind_field(Some(&desc), self.context.time_s())?;
-        // From then on it is stepped every other second, which the frames that are timed do not reach.
+        // From then on the wind is stepped every other second, which the timed frames do not reach.
         self.at((self.context.time_s() / 2.0).floor() * 2.0 + 2.0)
     }
 
-    /// As [`Host::timed`], a sixtieth of a second on.
+    /// As [`Host::timed`], a sixtieth of a second later.
     pub fn timed_on(&mut self) -> Result<f64> {
         self.at(self.context.time_s() + 1.0 / 60.0)?;
         self.timed()
     }
 
-    /// Goes to a moment.
+    /// Moves to a time.
     pub fn at(&mut self, time_s: f64) -> Result<()> {
         self.context.update(time_s)
     }
 
-    /// Draws a frame without its sky and its wet ground and waits, ms.
+    /// Draws a frame without sky and wet ground until the GPU has finished it, and returns the time, ms.
     pub fn timed(&mut self) -> Result<f64> {
         self.draw(Stages::PREPARE.with(Stages::MEDIUM).with(Stages::PARTICLES))
     }
 
-    /// Draws a whole frame, ms.
+    /// Draws a whole frame and returns its time, ms.
     pub fn frame(&mut self) -> Result<f64> {
         self.draw(Stages::ALL.without(Stages::TONE))
     }
@@ -224,16 +225,16 @@ impl Host {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    /// The luminances of what was drawn last.
+    /// Luminances of the last picture.
     pub fn luminances(&self) -> Result<Vec<f64>> {
         let texels = readback::rgba(&self.device, &self.color)?;
         Ok(texels.iter().map(|t| luminance(&[0, 1, 2].map(|i| f64::from(t[i])))).collect())
     }
 
-    /// Blocks of what a way to draw rain makes of the scene.
+    /// Blocks of the scene by one candidate.
     ///
     /// # Errors
-    /// GPU faults; what is no rain.
+    /// GPU faults; a candidate that is not for rain.
     pub fn drawn_by(&mut self, candidate: &Candidate) -> Result<Blocks> {
         match candidate.method {
             Method::Library(LibraryMethod::Rain(settings)) => self.blocks(settings),
@@ -247,7 +248,7 @@ impl Host {
         self.pictures()
     }
 
-    /// Blocks of pictures at some moments.
+    /// Blocks of pictures at several moments.
     pub fn pictures(&mut self) -> Result<Blocks> {
         let mut blocks = Blocks::new(self.size);
         self.moments(|host, _| {
@@ -258,7 +259,7 @@ impl Host {
         Ok(blocks)
     }
 
-    /// Draws at some moments, the same for every way to draw: curtains of rain go by.
+    /// Draws at several moments, the same for every candidate, so that different rain curtains pass.
     pub fn moments(&mut self, mut draw: impl FnMut(&mut Self, u64) -> Result<()>) -> Result<()> {
         let start = self.context.save()?;
         for i in 0..MOMENTS {
@@ -268,9 +269,10 @@ impl Host {
         self.context.load(&start)
     }
 
-    /// The luminances of what lies behind drops that are to be drawn up to `reach_m`: what they would hide is left out.
+    /// Luminances of the background of drops that are drawn up to `reach_m`, without the haze that stands for these
+    /// drops.
     fn behind(&mut self, reach_m: f64) -> Result<Vec<f64>> {
-        // In a tent that keeps the drops off, what they would hide is left out all the same.
+        // A tent keeps the drops off, and Welkin still leaves out their haze.
         let tent = Shelter {
             center_m: EYE,
             axes: DMat3::IDENTITY,
@@ -285,14 +287,14 @@ impl Host {
         self.context.set_shelters(&[])?;
         self.set(RainSettings { model: RainModel::Veil, ..RainSettings::default() })?;
         self.frame()?;
-        // Pictures are linear in the exponential of what is left out.
+        // Luminance is linear in the exponential of the optical depth left out.
         let hidden = Drops::new(self)?.hidden_per_m;
         let grown = |reach: f64| (hidden * reach).exp_m1();
         let more = grown(reach_m) / grown(lattice::HIDDEN_M);
         Ok(self.luminances()?.iter().zip(&near).map(|(v, n)| v + (n - v) * more).collect())
     }
 
-    /// Blocks of pictures with these layers before what lies behind, and the luminance that is shown as white.
+    /// Blocks of pictures with these layers in front of the background, and the luminance shown as white.
     fn before(&mut self, reach_m: f64, layer: impl Fn(&Drops, u64) -> Vec<[f64; 2]>) -> Result<(Blocks, f64)> {
         let drops = Drops::new(self)?;
         let mut blocks = Blocks::new(self.size);
@@ -308,7 +310,7 @@ impl Host {
         Ok((blocks, logs.exp() / 0.18))
     }
 
-    /// Blocks of the truth, and white; `seed` puts the drops elsewhere.
+    /// Blocks of the truth, and white; another `seed` puts the drops elsewhere.
     pub fn truth(&mut self, seed: u64) -> Result<(Blocks, f64)> {
         let size = self.size;
         self.before(FAR_M, |drops, i| drops.all(size, seed.wrapping_mul(1000) + i))
@@ -321,9 +323,9 @@ impl Host {
     }
 }
 
-/// All drops before a camera.
+/// All drops in front of a camera.
 struct Drops {
-    /// Diameter (m), fall speed (m/s), number a cubic metre.
+    /// Diameter (m), fall speed (m/s), number per cubic metre.
     classes: Vec<(f64, f64, f64)>,
     wind_m_s: DVec3,
     camera_m_s: DVec3,
@@ -357,7 +359,7 @@ impl Drops {
         })
     }
 
-    /// Luminance of a drop at `p` from the eye.
+    /// Luminance of a drop at `p` relative to the camera.
     fn light_of(&self, p: DVec3) -> f64 {
         let d = p.normalize();
         let mut rgb = self.light.radiance(d).to_array();
@@ -373,12 +375,12 @@ impl Drops {
         luminance(&rgb)
     }
 
-    /// How far a drop moves before the camera in half of the exposure.
+    /// Movement of a drop relative to the camera in half of the exposure.
     fn half(&self, speed_m_s: f64) -> DVec3 {
         (self.wind_m_s - DVec3::Z * speed_m_s - self.camera_m_s) * (0.5 * self.exposure_s)
     }
 
-    /// Light and cover at every pixel, of an older system's drops.
+    /// Light and cover at every pixel from an older system's drops.
     fn source(&self, size: (u32, u32), lod: &SourceLod, seed: u64) -> Vec<[f64; 2]> {
         let mut sums = vec![[0.0f64; 2]; (size.0 * size.1) as usize];
         for drop in lod.drops(&self.counted, seed) {
@@ -391,7 +393,7 @@ impl Drops {
         layer(&sums)
     }
 
-    /// Light and cover at every pixel, of all drops: their sizes, speeds and places are none of Welkin's.
+    /// Light and cover at every pixel from all drops. Their sizes, speeds and positions do not come from Welkin.
     fn all(&self, size: (u32, u32), seed: u64) -> Vec<[f64; 2]> {
         let film = Film {
             size,
@@ -417,7 +419,7 @@ impl Drops {
         layer(&sums)
     }
 
-    /// A drop's disc, moved along its way while the shutter is open, spread over the pixels under it.
+    /// Spreads a drop's disc over the pixels it covers, moved along its path while the shutter is open.
     fn deposit(&self, sums: &mut [[f64; 2]], size: (u32, u32), (p, half, diameter): (DVec3, DVec3, f64), share: f64) {
         let f = focal(size);
         let to_pixel =
@@ -427,7 +429,7 @@ impl Drops {
         let across = (b - a).perp().normalize_or_zero() * width;
         let along = (2.0 * (b - a).length()).ceil().clamp(1.0, 2000.0) as u32;
         let beside = (2.0 * width).ceil().clamp(1.0, 64.0) as u32;
-        // A disc that faces the eye is stretched off the middle of the picture.
+        // Away from the picture's centre, a disc that faces the camera is stretched.
         let area = 0.25 * PI * width * width * (p.length() / p.y) * share / f64::from(along * beside);
         let light = self.light_of(p);
         for i in 0..along {
@@ -444,7 +446,7 @@ impl Drops {
     }
 }
 
-/// From sums of light and cover to what is seen of them, one before the other.
+/// Converts sums of light and cover to the visible values, with drops in front of each other.
 pub fn layer(sums: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let seen = |[light, cover]: &[f64; 2]| {
         let hidden = 1.0 - (-cover).exp();
@@ -453,13 +455,13 @@ pub fn layer(sums: &[[f64; 2]]) -> Vec<[f64; 2]> {
     sums.iter().map(seen).collect()
 }
 
-/// Mean and deviations of the blocks of pictures.
+/// Means and deviations of the blocks of pictures.
 pub struct Blocks {
     size: (u32, u32),
-    /// Of each block: mean, deviation from pixel to pixel, from patch to patch; summed over pictures.
+    /// For each block the mean, the deviation between pixels and that between patches, summed over pictures.
     sums: Vec<[f64; 3]>,
     pictures: usize,
-    /// The last picture's luminances.
+    /// Luminances of the last picture.
     pub last: Vec<f64>,
 }
 
@@ -470,13 +472,13 @@ fn deviation(values: &[f64]) -> (f64, f64) {
 }
 
 impl Blocks {
-    /// Of pictures of a size, of which there is none yet.
+    /// Creates empty blocks for pictures of a size.
     pub fn new(size: (u32, u32)) -> Self {
         Self { size, sums: vec![[0.0; 3]; (size.0 / BLOCK * (size.1 / BLOCK)) as usize], pictures: 0, last: Vec::new() }
     }
 
-    /// What does not change from picture to picture (the wall's edge, the sky's gradient) has a part in the deviations
-    /// of both sides alike.
+    /// Adds a picture. Unchanging parts of the pictures (the wall's edge, the sky's gradient) contribute equally to the
+    /// deviations of both sides.
     pub fn add(&mut self, picture: &[f64]) {
         let columns = self.size.0 / BLOCK;
         let at = |x: u32, y: u32| picture[(y * self.size.0 + x) as usize];
@@ -498,7 +500,7 @@ impl Blocks {
         self.last = picture.to_vec();
     }
 
-    /// How much brighter than in `other` each pixel's block is, over that and a hundredth of white.
+    /// For each pixel, how much brighter its block is than in `other`, relative to that plus a hundredth of white.
     pub fn brighter(&self, other: &Self, white: f64) -> Vec<f64> {
         let mean = |b: &Self, i: usize| b.sums[i][0] / b.pictures as f64;
         let one = |i: usize| (mean(self, i) - mean(other, i)) / (mean(other, i).max(0.0) + 0.01 * white);
@@ -506,8 +508,8 @@ impl Blocks {
         (0..self.size.0 * self.size.1).map(|k| one(block(k))).collect()
     }
 
-    /// How far each of these blocks is from the truth's: the worst of the three numbers' differences over the block's
-    /// mean and a hundredth of white.
+    /// Error of each block: the largest difference of its three numbers from the truth, relative to the true mean plus
+    /// a hundredth of white.
     pub fn errors(&self, truth: &Self, white: f64) -> Vec<f64> {
         let value = |b: &Self, i: usize, j: usize| b.sums[i][j] / b.pictures as f64;
         let one = |i: usize| {

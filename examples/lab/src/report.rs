@@ -1,4 +1,4 @@
-//! `lab report`: one HTML page that needs no other file.
+//! `lab report`: one self-contained HTML page.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -16,7 +16,7 @@ const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:1200px;margin:2em a
 /// Writes `report.html` from the page and its figures.
 ///
 /// # Errors
-/// A page that is missing; files.
+/// A missing page; files.
 pub fn run(options: &Options) -> Result<()> {
     let directory = &options.out;
     let page = directory.join("README.md");
@@ -55,14 +55,14 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// A line that is no table's.
+/// Writes a line that is not part of a table.
 fn block(out: &mut String, line: &str, directory: &Path) -> Result<()> {
     let heading = line.bytes().take_while(|b| *b == b'#').count();
     if let Some(rest) = line.strip_prefix("![") {
         let file = rest.split_once("](").map_or("", |(_, f)| f.trim_end_matches(')'));
         let path = directory.join(file);
         let svg = fs::read_to_string(&path).map_err(|e| io(&path, &e))?;
-        // What is before the element itself belongs to a file of its own.
+        // Leaves out the text before the element, which belongs to a separate file.
         out.push_str(svg.find("<svg").map_or("", |at| &svg[at..]));
         out.push('\n');
     } else if heading > 0 {
@@ -75,7 +75,7 @@ fn block(out: &mut String, line: &str, directory: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Escapes a text and turns its marks for code and weight into elements.
+/// Escapes a text and converts its marks for code and emphasis to elements.
 fn inline(text: &str) -> String {
     let safe = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     let mut out = String::new();

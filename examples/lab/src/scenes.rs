@@ -1,4 +1,4 @@
-//! The scenes over which errors are measured.
+//! The scenes in which errors are measured.
 
 use welkin::fog::{FogLayer, FogLight, Patches, Phase, Profile, koschmieder_extinction_per_m};
 use welkin::sky::Planet;
@@ -7,7 +7,7 @@ use welkin::{Error, Result};
 
 use crate::candidates::Effect;
 
-/// Which air a sky scene has.
+/// The air of a sky scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SkyAir {
     /// The Earth's on a clear day.
@@ -29,14 +29,14 @@ impl SkyAir {
     }
 }
 
-/// A camera under a sun. Below the horizon it sees the planet's ground, grey, through the air.
+/// A camera under a sun. Below the horizon it sees the planet's grey ground through the air.
 #[derive(Clone, Copy, Debug)]
 pub struct SkyScene {
     pub name: &'static str,
     pub air: SkyAir,
     pub altitude_m: f64,
     pub sun_zenith_deg: f64,
-    /// The view's azimuth from the sun's, its elevation, and the angle that the picture is wide.
+    /// The view's azimuth relative to the sun's, its elevation, and the horizontal field of view.
     pub azimuth_deg: f64,
     pub elevation_deg: f64,
     pub width_deg: f64,
@@ -54,7 +54,7 @@ const fn sky(
     SkyScene { name, air, altitude_m, sun_zenith_deg, azimuth_deg, elevation_deg, width_deg }
 }
 
-/// From an excavator's seat to orbit, noon to twilight.
+/// Scenes from an excavator's seat to orbit, and from noon to twilight.
 pub const SKY: [SkyScene; 10] = [
     sky("noon", SkyAir::Clear, 3.0, 28.0, 55.0, 12.0, 90.0),
     sky("afternoon-digging", SkyAir::Clear, 3.0, 57.0, -120.0, -12.0, 75.0),
@@ -79,7 +79,8 @@ pub struct FogScene {
 }
 
 impl FogScene {
-    /// Sun ahead and to the right, sky brighter in the blue; sun's irradiance facing it is 1.
+    /// Light with the sun ahead and to the right, and a sky brighter in blue. The sun's irradiance on a surface facing
+    /// it is 1.
     pub fn light(&self) -> FogLight {
         let (s, c) = self.sun_elevation_deg.to_radians().sin_cos();
         let azimuth = 35f64.to_radians();
@@ -119,7 +120,7 @@ pub fn fog() -> Vec<FogScene> {
     ]
 }
 
-/// A camera 12 m above ground before a wall, half dark and half light, with sky above it, under rain.
+/// A camera 12 m above the ground, under rain, looking at a wall that is half dark and half light, with sky above.
 #[derive(Clone, Copy, Debug)]
 pub struct RainScene {
     pub name: &'static str,
@@ -127,15 +128,15 @@ pub struct RainScene {
     pub wind_m_s: f64,
     pub driving_m_s: f64,
     pub sun_deg: f64,
-    /// From north, which is ahead.
+    /// Relative to north, which is ahead.
     pub sun_azimuth_deg: f64,
-    /// Two head lights beside the camera.
+    /// Whether two headlights beside the camera are on.
     pub lamps: bool,
-    /// Snow falls in air of this temperature, C, in place of rain.
+    /// Air temperature, C, if snow falls in place of rain.
     pub snow_c: Option<f64>,
 }
 
-/// From a drizzle's rate to a cloudburst's, from noon to a night with head lights.
+/// Scenes from a drizzle to a cloudburst, from noon to a night with headlights.
 pub fn rain() -> Vec<RainScene> {
     let scene = |name, rate_mm_h, wind_m_s, driving_m_s| RainScene {
         name,
@@ -159,7 +160,7 @@ pub fn rain() -> Vec<RainScene> {
     ]
 }
 
-/// Snow before the same wall: large flakes in hardly any wind, dry snow, a storm, and a camera that drives.
+/// Snow in front of the same wall: large flakes in almost no wind, dry snow, a storm, and a moving camera.
 pub fn snow() -> Vec<RainScene> {
     let scene = |name, rate_mm_h, snow_c, wind_m_s, driving_m_s| RainScene {
         name,
@@ -179,7 +180,7 @@ pub fn snow() -> Vec<RainScene> {
     ]
 }
 
-/// A clear night over 50 degrees north, looked at 40 degrees up to the south.
+/// A clear night at 50 degrees north; the camera looks south, 40 degrees up.
 #[derive(Clone, Copy, Debug)]
 pub struct StarScene {
     pub name: &'static str,
@@ -187,14 +188,14 @@ pub struct StarScene {
     pub moon_deg: f64,
 }
 
-/// From a dark sky to one that hides all but the brightest.
+/// Scenes from a dark sky to one that hides all but the brightest stars.
 pub const STARS: [StarScene; 3] = [
     StarScene { name: "moonless", sun_deg: -40.0, moon_deg: -40.0 },
     StarScene { name: "moonlit", sun_deg: -40.0, moon_deg: 30.0 },
     StarScene { name: "dusk", sun_deg: -9.0, moon_deg: -40.0 },
 ];
 
-/// One layer of cloud, seen by day.
+/// One layer of cloud by day.
 #[derive(Clone, Copy, Debug)]
 pub struct CloudScene {
     pub name: &'static str,
@@ -206,7 +207,7 @@ pub struct CloudScene {
     pub sun_deg: f64,
 }
 
-/// From below, from above, inside, far and thin.
+/// Views from below, from above, from inside, and of distant and thin clouds.
 pub const CLOUDS: [CloudScene; 6] = {
     const fn scene(name: &'static str, kind: CloudKind, at: [f64; 5]) -> CloudScene {
         let [cover, base_m, height_m, pitch_deg, sun_deg] = at;
@@ -222,7 +223,7 @@ pub const CLOUDS: [CloudScene; 6] = {
     ]
 };
 
-/// A scene's index by name.
+/// Finds the index of a scene by its name.
 ///
 /// # Errors
 /// An unknown name, with the known ones.

@@ -1,8 +1,7 @@
-//! Draws and times every way to draw snow, and computes the truth: each flake of the air before the camera by itself,
-//! in f64.
+//! Draws and times every way to draw snow, and computes the truth: each flake in front of the camera by itself, in f64.
 //!
-//! As in rain ([`crate::rain`]), no two ways put flakes in the same places, so pictures are compared as textures, block
-//! by block.
+//! As in rain ([`crate::rain`]), different methods put flakes in different places, so pictures are compared as
+//! textures, block by block.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -20,10 +19,10 @@ use welkin_support::brute_rain::Chance;
 
 use crate::rain::{Blocks, EYE, Host, focal, layer};
 
-/// Up to where the truth has flakes, m: as far as the most of them reach, to the middle of their fading.
+/// Distance up to which the truth has flakes, m: where the most numerous flakes are half faded.
 const FAR_M: f64 = 0.925 * 16.0;
 
-/// All flakes before a camera.
+/// All flakes in front of a camera.
 struct Air {
     flakes: Flakes,
     wind_m_s: DVec3,
@@ -47,13 +46,13 @@ impl Air {
         })
     }
 
-    /// Light and cover at every pixel: flakes as discs as thin as their ice, moved along their way while the shutter is
-    /// open.
+    /// Light and cover at every pixel. Flakes are discs as thin as their ice, moved along their path while the shutter
+    /// is open.
     fn all(&self, size: (u32, u32), exposure_s: f64, seed: u64) -> Vec<[f64; 2]> {
         let mut chance = Chance(seed);
         let mut sums = vec![[0.0f64; 2]; (size.0 * size.1) as usize];
         let f = focal(size);
-        // A pyramid of air as wide as the picture and a little more.
+        // A pyramid of air, slightly wider than the picture.
         let half = [size.0, size.1].map(|n| 0.5 * f64::from(n) / f * 1.1);
         let volume = 4.0 * half[0] * half[1] * FAR_M.powi(3) / 3.0;
         for (row, number) in self.flakes.table.iter().zip(self.flakes.number_per_m3) {
@@ -88,7 +87,7 @@ impl Air {
         for i in 0..along {
             let middle = a + (b - a) * ((f64::from(i) + 0.5) / f64::from(along));
             for j in 0..rings * rings {
-                // Evenly over the disc (Vogel 1979).
+                // Spread evenly over the disc (Vogel 1979).
                 let s = (f64::from(j) + 0.5) / f64::from(rings * rings);
                 let angle = f64::from(j) * PI * (3.0 - 5f64.sqrt());
                 let at = middle + DVec2::from_angle(angle) * (radius * s.sqrt());
@@ -102,17 +101,17 @@ impl Air {
     }
 }
 
-/// Blocks of what settings make of the scene.
+/// Blocks of the scene drawn with these settings.
 pub fn drawn_by(host: &mut Host, settings: SnowSettings) -> Result<Blocks> {
     host.set_snow(settings)?;
     host.pictures()
 }
 
-/// The luminances of what lies behind all flakes: what they would hide is left out.
+/// Luminances of the background of all flakes, without the haze that stands for these flakes.
 fn behind(host: &mut Host) -> Result<Vec<f64>> {
     const FEW: u32 = 20_000;
-    // In a tent that keeps the flakes off, what they would hide is left out all the same. The wall beyond it gets as
-    // wet as without.
+    // A tent keeps the flakes off, and Welkin still leaves out their haze. The wall beyond the tent gets as wet as
+    // without it.
     let tent = Shelter {
         center_m: EYE,
         axes: DMat3::IDENTITY,
@@ -127,14 +126,14 @@ fn behind(host: &mut Host) -> Result<Vec<f64>> {
     host.set_shelters(&[])?;
     host.set_snow(SnowSettings { model: SnowModel::Veil, ..SnowSettings::default() })?;
     host.frame()?;
-    // Pictures are linear in the exponential of what is left out.
+    // Luminance is linear in the exponential of the optical depth left out.
     let few = Air::new(host, FEW)?.flakes;
     let grown = |reach: f64| (few.hidden_per_m * reach).exp_m1();
     let more = grown(FAR_M) / grown(few.hidden_m());
     Ok(host.luminances()?.iter().zip(&near).map(|(v, n)| v + (n - v) * more).collect())
 }
 
-/// Blocks of the truth, and the luminance that is shown as white; `seed` puts the flakes elsewhere.
+/// Blocks of the truth, and the luminance shown as white; another `seed` puts the flakes elsewhere.
 pub fn truth(host: &mut Host, seed: u64) -> Result<(Blocks, f64)> {
     let (size, exposure_s) = (host.size(), SnowSettings::default().shutter_s);
     let air = Air::new(host, u32::MAX)?;

@@ -1,10 +1,10 @@
-//! Level of detail of an older system, to be measured against: drops that get fewer and larger with distance, and
-//! copies of a few about each.
+//! Level of detail of an older system, for comparison: drops get fewer and larger with distance, and a few copies stand
+//! around each.
 //!
-//! Number falls linearly with distance (per metre of distance, to 0 at the container's end), size grows with its
-//! square; copies stand about their seed at places by chance. Neither law knows how much the drops that are left out
-//! hide. The growth is left free by its description: here it is such that all drops together hide what the rain does,
-//! the best that the law can do.
+//! The number falls linearly with distance (per metre of distance, to 0 at the container's end), and the size grows
+//! with the square of the distance. Copies stand at random positions around their seed. Neither law accounts for the
+//! light hidden by the omitted drops. The system's description leaves the growth open. Here it is set so that all drops
+//! together hide as much as the rain does, which is the best the law can do.
 
 use glam::DVec3;
 
@@ -15,15 +15,15 @@ use welkin::rain::{
 
 /// Drops nearer than this are not drawn, m.
 const NEAREST_M: f64 = 0.25;
-/// How far copies stand from their seed, m.
+/// Distance of copies from their seed, m.
 const SPREAD_M: f64 = 0.5;
 
-/// Drops in a ball about the camera.
+/// Drops in a ball around the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SourceLod {
-    /// Drops that are moved.
+    /// Number of simulated drops.
     pub seeds: u32,
-    /// Copies of each, 0 to 6.
+    /// Copies of each drop, 0 to 6.
     pub copies: u32,
     /// Radius of the ball, m.
     pub reach_m: f64,
@@ -36,13 +36,13 @@ impl Default for SourceLod {
 }
 
 impl SourceLod {
-    /// Drops that are drawn.
+    /// Number of drops drawn.
     pub fn drop_count(&self) -> u32 {
         self.seeds * (1 + self.copies)
     }
 
-    /// By how much a drop at the ball's end is larger than one at the camera, so that all together hide what rain of
-    /// `classes` hides over as many metres.
+    /// Relative increase in diameter from a drop at the camera to one at the ball's end. It is chosen so that all drops
+    /// together hide as much as rain of `classes` hides over the same distance.
     pub fn growth(&self, classes: &Classes) -> f64 {
         // Mean over the linear law of (1 + k d^2)^2 / (4 pi (R d)^2), times the discs.
         let (discs, all) = classes.flux.iter().filter(|c| c.1 > 0.0).fold((0.0, 0.0), |(discs, all), c| {
@@ -70,7 +70,7 @@ impl SourceLod {
         (-moments[1] + (moments[1] * moments[1] - 4.0 * moments[2] * c).sqrt()) / (2.0 * moments[2])
     }
 
-    /// The drops about a camera at a moment of no account: their statistics are what is compared. Each hides its own,
+    /// Drops around a camera at an arbitrary moment, because only their statistics are compared. Each hides its own,
     /// larger disc; `share` is 1.
     pub fn drops(&self, classes: &Classes, seed: u64) -> Vec<Drop> {
         let seed = (seed ^ (seed >> 32)) as u32;

@@ -1,8 +1,8 @@
 //! Draws and times every way to draw the night sky, and computes the truth: every star and planet of the catalogue,
 //! however faint, and the glow at every pixel, in f64.
 //!
-//! A star is a few pixels of which most pictures have few, so pictures are compared as light: by the mean luminance of
-//! blocks of 20 x 20 pixels, and by the light of all that stands on the even night.
+//! A star covers only a few pixels, so pictures are compared by their light: by the mean luminance of blocks of 20 x 20
+//! pixels, and by the total light of the stars above the even night.
 
 use std::{sync::Arc, time::Instant};
 
@@ -26,18 +26,18 @@ use crate::timing::target;
 
 /// Size of the pictures whose error is measured.
 pub const SIZE: (u32, u32) = (320, 180);
-/// Side of a block of them, pixels.
+/// Side of a block in them, pixels.
 const BLOCK: u32 = 20;
-/// 2026-01-18 22:00 UTC: Orion in the south over 50 degrees north, at longitude 10.
+/// 2026-01-18 22:00 UTC: Orion is in the south at 50 degrees north, longitude 10.
 const CLOCK: Utc = Utc(1_768_773_600.0);
 const EYE: DVec3 = DVec3::new(0.0, 0.0, 10.0);
-/// Luminance of the value 1, so that a night lies where half floats are fine, cd/m^2.
+/// Luminance of the value 1, chosen so that night lies where half floats are precise, cd/m^2.
 const UNIT: f64 = 1e-5;
-/// Frames until a plan has faded to what was pinned.
+/// Frames until a plan has faded to the pinned rungs.
 const SETTLED: u32 = 40;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// A night on the GPU.
+/// A host with a night sky on the GPU.
 pub struct Host {
     device: Arc<Device>,
     context: Context,
@@ -49,7 +49,7 @@ pub struct Host {
 }
 
 impl Host {
-    /// Of a scene, for pictures of a size.
+    /// Creates the host of a scene for pictures of a size.
     ///
     /// # Errors
     /// GPU faults.
@@ -80,10 +80,10 @@ impl Host {
         Heavens::at(CLOCK, &self.scene()?.place, &StarSettings::default())
     }
 
-    /// Sets the view up for a method.
+    /// Configures the view for a method.
     fn set(&mut self, method: StarMethod) -> Result<()> {
         let without = StarSettings { stars: Some(Vec::new().into()), planets: false, ..StarSettings::default() };
-        // All points come from a pass of the lab's own.
+        // The lab's own pass draws all points.
         let has_points = matches!(method, StarMethod::Visible | StarMethod::Even);
         self.context.set_stars(if has_points { StarSettings::default() } else { without })?;
         let mut wishes = vec![Wish::default(); PARTS.len()];
@@ -93,7 +93,7 @@ impl Host {
         self.view.set_budget(Budget { wishes, ..Budget::default() })
     }
 
-    /// One frame, ms.
+    /// Draws one frame and returns its time, ms.
     fn frame(&mut self, method: StarMethod) -> Result<f64> {
         self.frame_id += 1;
         let start = Instant::now();
@@ -129,7 +129,7 @@ impl Host {
         Ok(())
     }
 
-    /// Milliseconds of a frame by a method, which is set up where it is another than before.
+    /// Time of a frame by a method, ms. Configures the view if the method has changed.
     ///
     /// # Errors
     /// GPU faults.
@@ -160,7 +160,7 @@ impl Host {
         ViewRays::new(&self.camera, &Frame::new(1, self.camera, &self.color, None).depth_mapping)
     }
 
-    /// All stars, in units of so many a cd/m^2.
+    /// All stars, in units of `scale` per cd/m^2.
     fn star_view<'a>(&self, scene: &Scene, heavens: &'a Heavens, rays: &'a ViewRays, scale: f64) -> StarView<'a> {
         let air = &scene.conditions.air;
         StarView {
@@ -178,8 +178,8 @@ impl Host {
         }
     }
 
-    /// The truth, cd/m^2: the even night's picture with the f64 night in the even one's place; and the even night's
-    /// picture.
+    /// The truth, cd/m^2: the even night's picture with its night replaced by the one in f64. Also returns the even
+    /// night's picture.
     ///
     /// # Errors
     /// GPU faults.
@@ -213,7 +213,7 @@ impl Host {
     }
 }
 
-/// Optical depths of a scene's air straight up.
+/// Vertical optical depths of a scene's air.
 fn zenith_depth(scene: &Scene) -> [f64; 3] {
     let planet = &scene.planet;
     let column = |scale: f64| scale * (-scene.place.altitude_m.max(0.0) / scale).exp();
@@ -238,7 +238,7 @@ pub fn blocks(picture: &Picture) -> Picture {
     Picture { width, height, texels: (0..width * height).map(mean).collect() }
 }
 
-/// By how much the light of what stands on the even night is too much or too little, as a share of the truth's.
+/// Relative error of the total light of the stars above the even night.
 pub fn flux_error(drawn: &Picture, truth: &Picture, even: &Picture) -> f64 {
     let light = |p: &Picture| p.texels.iter().zip(&even.texels).map(|(a, b)| luminance(a) - luminance(b)).sum::<f64>();
     (light(drawn) / light(truth) - 1.0).abs()

@@ -1,4 +1,4 @@
-//! Results as CSV, one row appended as soon as it is measured, so that a stopped run loses nothing.
+//! Results as CSV. Each row is appended as soon as it is measured, so that a stopped run loses nothing.
 
 use std::fs;
 use std::io::Write as _;
@@ -9,7 +9,7 @@ use welkin::{Error, Result, Status};
 /// A CSV file: lines that begin with `#`, a header, rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// The first line without its `# `: what was measured, by what, on what.
+    /// The first line without its `# `: the quantity, the program and the machine.
     pub note: String,
     /// Names of the columns.
     pub columns: Vec<String>,
@@ -18,7 +18,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a file; `None` if there is none. A last line that was cut off is left out.
+    /// Reads a file; `None` if there is none. An incomplete last line is ignored.
     ///
     /// # Errors
     /// A file that cannot be read.
@@ -49,7 +49,7 @@ impl Table {
         self.rows.iter().find(|r| r[0] == key).map(Vec::as_slice)
     }
 
-    /// A number of a row by its column's name.
+    /// A number in a row, by the name of its column.
     pub fn number(&self, row: &[String], column: &str) -> Option<f64> {
         let i = self.columns.iter().position(|c| c == column)?;
         row.get(i)?.parse().ok()
@@ -64,7 +64,7 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Continues what an interrupted run with the same note and columns left, or begins anew.
+    /// Continues an interrupted run with the same note and columns, or starts a new file.
     ///
     /// # Errors
     /// Files that cannot be read or written.
@@ -77,7 +77,7 @@ impl Journal {
         let table = old.filter(|t| t.note == note && t.columns == columns);
         let table = table.unwrap_or(Table { note: note.to_owned(), columns, rows: Vec::new() });
         let this = Self { path, part, table };
-        // Written anew, so that a line that was cut off does not stay.
+        // Written again, so that an incomplete line is removed.
         fs::write(&this.part, this.text()).map_err(|e| io(&this.part, &e))?;
         Ok(this)
     }
@@ -88,15 +88,15 @@ impl Journal {
         out
     }
 
-    /// Whether a row whose first field is `key` is there.
+    /// Whether a row with `key` as its first field exists.
     pub fn has(&self, key: &str) -> bool {
         self.table.row(key).is_some()
     }
 
-    /// Appends a row, on disk before this returns.
+    /// Appends a row. It is on disk when this returns.
     ///
     /// # Errors
-    /// A row of another width; a file that cannot be written.
+    /// A row of the wrong width; a file that cannot be written.
     pub fn push(&mut self, row: Vec<String>) -> Result<()> {
         if row.len() != self.table.columns.len() {
             let what = format!("a row of {} fields under {} columns", row.len(), self.table.columns.len());
@@ -108,7 +108,7 @@ impl Journal {
         Ok(())
     }
 
-    /// Puts the finished table in its place; answers it and the one that was there before.
+    /// Moves the finished table to its final name. Returns it and the previous one.
     ///
     /// # Errors
     /// Files that cannot be read or written.
@@ -119,7 +119,7 @@ impl Journal {
     }
 }
 
-/// A file fault as an error.
+/// Converts a file error.
 pub fn io(path: &Path, e: &dyn std::fmt::Display) -> Error {
     Error::new(Status::Io, format!("{}: {e}", path.display()))
 }

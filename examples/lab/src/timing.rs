@@ -1,4 +1,4 @@
-//! Times as ratios to a fixed baseline that is measured in turn with what is timed, so that a busy machine moves both.
+//! Times as ratios to a fixed baseline. Both are measured in turn, so that other load on the machine affects both.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -28,7 +28,7 @@ const BASELINE: &str = "
 }";
 
 impl Baseline {
-    /// Makes it; its first run is not counted.
+    /// Creates it; its first run is not counted.
     pub fn new(device: &Arc<Device>) -> Result<Self> {
         let gpu = &device.device;
         let source = wgpu::ShaderSource::Wgsl(BASELINE.into());
@@ -41,7 +41,7 @@ impl Baseline {
         Ok(this)
     }
 
-    /// Runs it once, ms.
+    /// Runs it once and returns the time, ms.
     pub fn run(&self) -> Result<f64> {
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         welkin::gpu::pass::draw(&mut encoder, "baseline", &self.pipeline, &[], &self.target);
@@ -49,7 +49,7 @@ impl Baseline {
     }
 }
 
-/// Submits and waits, ms.
+/// Submits, waits, and returns the time, ms.
 pub fn timed(device: &Device, encoder: wgpu::CommandEncoder) -> Result<f64> {
     let start = Instant::now();
     device.submit_and_wait(encoder)?;
@@ -70,21 +70,21 @@ pub fn target(device: &Device, (width, height): (u32, u32), format: wgpu::Textur
     )
 }
 
-/// How a time compares with the baseline.
+/// A time relative to the baseline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ratio {
-    /// Middle of the ratios.
+    /// Median of the ratios.
     pub median: f64,
-    /// Quarter of the ratios are below.
+    /// Lower quartile of the ratios.
     pub low: f64,
-    /// Quarter of the ratios are above.
+    /// Upper quartile of the ratios.
     pub high: f64,
-    /// Middle of the times themselves, ms.
+    /// Median of the times themselves, ms.
     pub ms: f64,
 }
 
 impl Ratio {
-    /// Of times and the baseline's times beside them.
+    /// From times and the baseline's times measured beside them.
     pub fn of(pairs: &[(f64, f64)]) -> Self {
         let sorted = |of: &dyn Fn(&(f64, f64)) -> f64| {
             let mut v: Vec<f64> = pairs.iter().map(of).collect();
@@ -97,7 +97,7 @@ impl Ratio {
         Self { median: at(0.5), low: at(0.25), high: at(0.75), ms }
     }
 
-    /// This and a share of another.
+    /// The sum of this and a multiple of another.
     pub fn plus(&self, other: &Self, share: f64) -> Self {
         Self {
             median: self.median + share * other.median,
@@ -107,23 +107,23 @@ impl Ratio {
         }
     }
 
-    /// Whether two measurements differ by more than both spread.
+    /// Whether two measurements differ by more than their spreads.
     pub fn moved(&self, other: &Self) -> bool {
         self.low > other.high || self.high < other.low
     }
 }
 
-/// Work of more than this is not repeated as often, ms.
+/// Work that takes longer than this is repeated fewer times, ms.
 const LONG_MS: f64 = 6000.0;
 
-/// Runs `work` in turn with the baseline: `rounds` times (5 at least, fewer if they are long), after one run that is
-/// not counted. `work` answers its ms.
+/// Runs `work` in turn with the baseline: `rounds` times (at least 5, fewer if they are long), after one run that is
+/// not counted. `work` returns its time in ms.
 pub fn interleaved(baseline: &Baseline, rounds: usize, mut work: impl FnMut(usize) -> Result<f64>) -> Result<Ratio> {
     let first = work(0)?;
     let rounds = rounds.min(((LONG_MS / first.max(1e-3)) as usize).max(5));
     let mut pairs = Vec::with_capacity(rounds);
     for i in 0..rounds {
-        // Before and after, since the machine may turn busy in between.
+        // Baseline before and after, because the machine may become busy in between.
         let before = baseline.run()?;
         let time = work(i + 1)?;
         pairs.push((time, 0.5 * (before + baseline.run()?)));

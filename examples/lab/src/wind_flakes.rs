@@ -1,5 +1,5 @@
-//! Cost of flakes in a solved wind, beside the snow simulator of the sources: by their number and by the cells of the
-//! wind.
+//! Cost of flakes in a solved wind, compared with the snow simulator of the sources: by number of flakes and by number
+//! of wind cells.
 
 use std::{fmt::Write as _, time::Instant};
 
@@ -12,7 +12,7 @@ use welkin::{
 
 use crate::{growth::Series, plot::short, rain, scenes, store::Table};
 
-/// Cells of the wind; the last are the sources'.
+/// Cells of the wind; the last entry is the sources'.
 const GRIDS: [[u32; 3]; 3] = [[64, 64, 16], [128, 64, 32], [128, 128, 32]];
 const NUMBERS: [u32; 3] = [250_000, 1_000_000, 4_000_000];
 const WIND: &str = "wind field";
@@ -26,7 +26,7 @@ fn by([x, y, z]: [u32; 3]) -> String {
     format!("{x} x {y} x {z}")
 }
 
-/// Times frames of large flakes in a light wind, and steps of the wind round a house.
+/// Times frames of large flakes in a light wind, and steps of the wind around a house.
 pub fn measure(series: &mut Series<'_>) -> Result<()> {
     let device = series.lab.device.clone();
     let host = |number| -> Result<rain::Host> {
@@ -72,7 +72,7 @@ fn count(cells: [u32; 3]) -> f64 {
     f64::from(cells.iter().product::<u32>())
 }
 
-/// The table of it, ms on the machine of the chart beside the sources' on theirs.
+/// Writes the table: ms on the chart's machine beside the sources' times on theirs.
 pub fn section(out: &mut String, t: &Table) {
     let ms = |what: &str, against: &str, amount: f64| {
         let found = t.rows.iter().find(|r| r[1] == what && r[2] == against && t.number(r, "amount") == Some(amount))?;

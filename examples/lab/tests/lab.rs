@@ -1,4 +1,5 @@
-//! The lab: what its charts and maps rest on, that a stopped run is continued, and that each failing method fails.
+//! Tests of the lab: the basis of its charts and maps, that a stopped run continues, and that each failing method
+//! fails.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +14,7 @@ use welkin_lab::{
     timing,
 };
 
-/// A directory of its own, removed afterwards.
+/// A temporary directory, removed afterwards.
 struct Scratch(PathBuf);
 
 impl Scratch {
@@ -59,7 +60,7 @@ fn a_stopped_run_is_continued_and_a_line_that_was_cut_is_measured_again() {
     assert!(old.is_none() && !part.exists());
     assert_eq!(Table::read(&dir.0.join("sky.csv")).unwrap().unwrap(), table);
 
-    // Another machine's part is no start.
+    // A partial file of another machine is not continued.
     let mut other = Journal::open(&dir.0, "sky", "sky; full", &columns, false).unwrap();
     other.push(fields(&["a", "9"])).unwrap();
     drop(other);
@@ -106,11 +107,11 @@ fn errors_of_pictures_are_relative_to_the_truth_as_exposed() {
     let same = truth.figures(&truth).unwrap();
     assert!(same.luminance.worst == 0.0 && same.perceptual < 1e-6, "{same:?}");
     let brighter = picture(1.1).figures(&truth).unwrap();
-    // A hundredth of white, which is the mean over 0.18, is added below.
+    // Errors have a hundredth of white, which is the mean over 0.18, added to the denominator.
     let want = 0.1 / (1.0 + 0.01 / 0.18);
     assert!((brighter.luminance.median - want).abs() < 0.002, "{brighter:?}, {want}");
     assert!(brighter.perceptual > 0.001);
-    // Brightness of the whole scene does not count.
+    // The brightness of the whole scene does not matter.
     let scaled = |p: Picture| Picture { texels: p.texels.iter().map(|t| t.map(|v| v * 1e-6)).collect(), ..p };
     let dim = scaled(picture(1.1)).figures(&scaled(truth)).unwrap();
     assert!((dim.luminance.p95 - brighter.luminance.p95).abs() < 1e-9);
@@ -156,7 +157,7 @@ fn the_rule_with_an_offset_loses_its_last_step() {
         let (usual, middle) =
             (error(sky_maps::offset_transmittance, mu, 40), error(sky_maps::midpoint_transmittance, mu, 40));
         assert!(usual > 5.0 * middle && usual > 0.005, "{mu}: {usual} {middle}");
-        // Of first order: half the step, half the error; the midpoint's falls by four.
+        // First order: half the step gives half the error. The midpoint rule's error falls by a factor of four.
         let finer = error(sky_maps::offset_transmittance, mu, 80);
         assert!((1.6..2.4).contains(&(usual / finer)), "{mu}: {usual} {finer}");
     }
@@ -170,7 +171,7 @@ fn differences_of_squares_lose_the_horizon() {
     let ours = f64::from(numbers::horizon_by_product(radius, h)) / exact - 1.0;
     assert!(usual.abs() > 0.01, "{usual}");
     assert!(ours.abs() < 1e-6, "{ours}");
-    // On the wrong side: a ray that just clears the ground from 3 m.
+    // On the wrong side of the horizon: a ray from 3 m that just clears the ground.
     let dip = (2.0f64 * 3.0 / 6_371_000.0).sqrt();
     let wrong = (1..40).filter(|i| {
         let mu = -(dip * (0.9 + 0.005 * f64::from(*i))).sin();
@@ -214,7 +215,7 @@ fn standard_depth_and_far_origins_lose_what_welkin_keeps() {
 fn explicit_drag_swings_then_diverges_and_steps_that_are_solved_do_not() {
     let [explicit, solved, stepped] = [(particles::euler as particles::Step, true), (relax, false), (step, true)]
         .map(|(step, square)| move |diameter, dt| particles::gust_cell(step, square, diameter, dt));
-    // Where drag takes long against the step, all are right.
+    // Where the drag time is long compared with the step, all methods are right.
     assert!(matches!(explicit(5.0, 1e-3), Cell::Error(e) if e < 5e-3), "{:?}", explicit(5.0, 1e-3));
     let small = |c: Cell, most: f64| matches!(c, Cell::Error(e) if e < most);
     for (diameter, dt) in [(0.1, 1e-3), (0.3, 1.0 / 60.0), (0.8, 0.1), (6.0, 1.0), (6.0, 10.0)] {
@@ -234,7 +235,7 @@ fn velocity_times_time_throws_drops_and_the_displacement_does_not() {
     }
 }
 
-/// The maps of rain that are committed: nothing of Welkin's swings or grows, and what is usual does.
+/// In the committed rain maps, no method of Welkin's oscillates or diverges, and the usual one does.
 #[test]
 fn the_committed_maps_of_drops_show_where_the_usual_steps_fail() {
     for (name, panels, worst) in [("drag", 3, 0.1), ("gust", 2, 1e-3)] {
@@ -253,7 +254,7 @@ fn the_committed_maps_of_drops_show_where_the_usual_steps_fail() {
     }
 }
 
-/// The maps of clouds that are committed: every picture is finite, and the cover that is seen is what was asked for.
+/// In the committed cloud maps, every picture is finite, and the visible cover is the cover that was set.
 #[test]
 fn the_committed_maps_of_clouds_have_no_place_that_is_not_finite() {
     for (name, worst_median) in
@@ -272,7 +273,7 @@ fn the_committed_maps_of_clouds_have_no_place_that_is_not_finite() {
     }
 }
 
-/// The chart of painted clouds that is committed: none is near the default, whatever it costs.
+/// In the committed chart of painted clouds, none comes near the default, whatever its cost.
 #[test]
 fn no_painted_cloud_of_the_committed_chart_is_near_the_default() {
     let table = Table::read(&committed("painted-clouds.csv")).unwrap().expect("committed");
@@ -348,14 +349,14 @@ fn a_map_is_written_and_reported() {
     run(&["report", "--out", out]).unwrap();
     let html = std::fs::read_to_string(dir.0.join("report.html")).unwrap();
     assert!(html.contains("<svg") && html.contains("explicit Euler") && !html.contains("src="));
-    // A second run of another map keeps the first.
+    // A second run with another map keeps the first.
     run(&["stability", "over-relaxation", "--quick", "--out", out]).unwrap();
     let table = Table::read(&dir.0.join("stability.csv")).unwrap().unwrap();
     assert!(table.row("drag/0").is_some() && table.row("over-relaxation/1").is_some());
 }
 
-/// Of rain, whose drops are elsewhere in each, the textures are compared: the picture has both, and says what blocks
-/// say.
+/// In rain, drops of different methods are in different places, so textures are compared. The figure has both pictures
+/// and states the differences of blocks.
 #[test]
 fn two_ways_to_draw_rain_are_compared_block_by_block() {
     let dir = Scratch::new("compare");
@@ -370,7 +371,7 @@ fn two_ways_to_draw_rain_are_compared_block_by_block() {
     let mut host = rain::Host::new(&device, &steady, (80, 40)).unwrap();
     let veil = candidate(Effect::Rain, "veil").unwrap();
     let (a, b) = (host.drawn_by(&veil).unwrap(), host.drawn_by(&veil).unwrap());
-    // The same twice: nothing is brighter.
+    // Drawn twice the same way: nothing is brighter.
     assert!(a.brighter(&b, 1.0).iter().all(|d| d.abs() < 1e-9) && a.last == b.last);
     let of_last = |share: f64| {
         let mut blocks = rain::Blocks::new((80, 40));
@@ -381,13 +382,13 @@ fn two_ways_to_draw_rain_are_compared_block_by_block() {
     assert!(d.len() == 3200 && d.iter().all(|d| (d + 0.5).abs() < 1e-6), "{:?}", &d[..4]);
 }
 
-/// What is committed was charted with today's candidates, and shows what it must.
+/// The committed charts contain today's candidates and show the expected results.
 #[test]
 fn the_committed_charts_are_complete_and_their_defaults_lie_on_the_front() {
     let read = |name: &str| Table::read(&committed(name)).unwrap().unwrap_or_else(|| panic!("{name} is not committed"));
     for (name, effect) in Effect::NAMES {
         let mut table = read(&format!("{name}.csv"));
-        // The truth against itself is no way to draw.
+        // The comparison of the truth with itself is not a way to draw.
         table.rows.retain(|r| r[0] != "truth-again");
         let charted: Vec<&str> = table.rows.iter().map(|r| r[0].as_str()).collect();
         let offered = candidates(effect);
@@ -395,7 +396,7 @@ fn the_committed_charts_are_complete_and_their_defaults_lie_on_the_front() {
         assert_eq!(charted.len(), offered.len(), "{name}: {charted:?}");
         let points = chart::points(&table, "cost");
         if effect == Effect::Rain {
-            // Drops alone are too few and too strong far off, by however many.
+            // Drops alone are too few and too strong in the distance, whatever their number.
             let error = |name: &str| points.iter().find(|p| p.name == name).unwrap().error;
             assert!(["drops-400k", "veil"].iter().all(|n| error("drops-and-cones") < 0.8 * error(n)));
             assert!(error("drops-and-cones") < error("cones"));
@@ -411,7 +412,7 @@ fn the_committed_charts_are_complete_and_their_defaults_lie_on_the_front() {
     for (family, least) in [("directional", 4), ("isotropic", 4), ("table3d", 4), ("march", 4), ("elek", 2)] {
         assert!(settings(family) >= least, "{family}: {}", settings(family));
     }
-    // The rules of public code, at no more than the cost of the one that is taken.
+    // The rules of public code, at no more than the cost of the rule that Welkin uses.
     let rules = read("quadrature.csv");
     let number = |row: &[String], column: &str| rules.number(row, column).unwrap();
     for taken in rules.rows.iter().filter(|r| r[2] == "true") {
@@ -424,18 +425,19 @@ fn the_committed_charts_are_complete_and_their_defaults_lie_on_the_front() {
     }
 }
 
-/// A file of the committed lab.
+/// Path of a file of the committed lab.
 fn committed(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/lab").join(name)
 }
 
-/// An error that a committed chart states.
+/// An error from a committed chart.
 fn charted(chart: &str, row: &str, column: &str) -> f64 {
     let table = Table::read(&committed(chart)).unwrap().unwrap();
     table.number(table.row(row).unwrap(), column).unwrap()
 }
 
-/// One row of the sky's chart, measured anew against a coarser truth, which is good to a part of its error.
+/// Measures one row of the sky's chart again, against a coarser truth that is accurate to a fraction of the row's
+/// error.
 #[test]
 fn the_committed_sky_chart_says_what_is_drawn_today() {
     let device = welkin::gpu::Device::headless(&Default::default()).unwrap();
@@ -464,7 +466,7 @@ fn the_committed_quadrature_chart_says_what_is_drawn_today() {
     }
 }
 
-/// The maps that need no GPU, made anew.
+/// Computes the maps that need no GPU again.
 #[test]
 fn the_committed_maps_say_what_is_computed_today() {
     let table = Table::read(&committed("stability.csv")).unwrap().unwrap();
@@ -492,7 +494,7 @@ fn the_committed_maps_say_what_is_computed_today() {
     }
 }
 
-/// One row of the rain's chart, measured anew as it was.
+/// Measures one row of the rain's chart again, in the same way.
 #[test]
 fn the_committed_rain_chart_says_what_is_drawn_today() {
     let device = welkin::gpu::Device::headless(&Default::default()).unwrap();
@@ -533,7 +535,7 @@ fn what_stands_beside_others_is_what_the_charts_say() {
     assert!(page.contains("| sky and air | 13.6 to 14.6 (9 %) | 44 to 50 (1.1 %) | 11.4 to 11.8 (1.1 %) |"), "{page}");
 }
 
-/// Fog's chart end to end on the software driver, the cheapest chart.
+/// Runs the chart of fog, the cheapest one, from start to end on the software driver.
 #[test]
 fn no_fog_of_the_chart_is_better_than_the_default() {
     let dir = Scratch::new("fog");
@@ -542,13 +544,13 @@ fn no_fog_of_the_chart_is_better_than_the_default() {
     let error = |name: &str| table.number(table.row(name).unwrap(), "p95").unwrap();
     assert!(error("exact") < 1e-4 && error("exact") < error("froxels-64"));
     assert!(error("froxels-64") < error("froxels-16") && error("froxels-16") < error("exponential"));
-    // The committed chart says what today's shaders draw: errors depend on no machine.
+    // The committed chart must match today's shaders, because errors do not depend on the machine.
     let committed = Table::read(&committed("fog.csv")).unwrap().unwrap();
     for row in &table.rows {
         let (now, then) = (error(&row[0]), committed.number(committed.row(&row[0]).unwrap(), "p95").unwrap());
         assert!((now - then).abs() < 0.05 * then + 1e-6, "fog: {} errs by {now}, the chart says {then}", row[0]);
     }
-    // Nothing is better; what costs less is another matter on a busy machine.
+    // No candidate is more accurate; which one is cheaper depends on how busy the machine is.
     let points = chart::points(&table, "cost");
     let default = points.iter().find(|p| p.default).unwrap();
     assert!(points.iter().all(|p| p.error >= default.error));

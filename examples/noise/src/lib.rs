@@ -1,4 +1,4 @@
-//! Textures of noise from a command line: the noise is the library's own.
+//! Creates noise textures from a command line, with the library's own noise.
 
 use std::path::Path;
 
@@ -6,14 +6,14 @@ use welkin::gpu::{Device, DeviceOptions};
 use welkin::noise::{CloudFunction, CloudPreset, NoiseImage, NoiseKind, NoiseSettings, NoiseTexture};
 use welkin::{Error, Result, Status};
 
-/// Every option.
+/// Usage text with every option.
 pub const USAGE: &str = "usage: noise FILE.dds|FILE.ktx2|FILE.png.. [--kind gradient|cellular|both]\n       \
                      [--size WIDTHxHEIGHT[xDEPTH]] [--frequency CELLS[,CELLS[,CELLS]]] [--octaves N] [--amplitude A]\n       \
                      [--persistence P] [--seed N] [--preset overcast|broken|few] [--from FILE] [--gpu]\n       \
                      [--cutoff C | --cover SHARE] [--density D] [--slice Z] [--tiles N]\n       \
                      noise --help | --version";
 
-/// Edge of a preview, pixels.
+/// Longest side of a preview, pixels.
 const LONGEST_PREVIEW: u64 = 16384;
 
 /// Options that take a value.
@@ -34,7 +34,7 @@ const OPTIONS: [&str; 14] = [
     "--tiles",
 ];
 
-/// What the command line says.
+/// The options of a command line.
 struct Job {
     files: Vec<String>,
     size: [u32; 3],
@@ -56,7 +56,7 @@ fn number<T: std::str::FromStr>(name: &str, text: &str) -> Result<T> {
     text.parse().map_err(|_| usage(format_args!("{name} cannot be `{text}`")))
 }
 
-/// Up to three numbers with a mark between them; the last one stands for those that are left out, or `rest` does.
+/// Parses up to three numbers separated by `mark`. Missing numbers are `rest`, or repeat the last one.
 fn three(name: &str, text: &str, mark: char, rest: Option<u32>) -> Result<[u32; 3]> {
     let given = text.split(mark).map(|n| number(name, n)).collect::<Result<Vec<u32>>>()?;
     let last = rest.or(given.last().copied());
@@ -144,7 +144,7 @@ impl Job {
         NoiseImage::generate(self.size, &self.noise)
     }
 
-    /// What cuts clouds out of the noise, if any are asked for.
+    /// The function that cuts clouds out of the noise, if requested.
     fn cloud(&self, noise: &NoiseImage) -> Result<Option<CloudFunction>> {
         let cutoff = match (self.cover, self.cutoff) {
             (Some(cover), _) => noise.cutoff_for_cover(cover)?,
@@ -154,7 +154,7 @@ impl Job {
         CloudFunction::from_density(cutoff, self.density.unwrap_or(0.96)).map(Some)
     }
 
-    /// Writes the files, and answers what is in them.
+    /// Writes the files and returns a description of their contents.
     fn run(&self) -> Result<String> {
         let noise = self.noise()?;
         let cloud = self.cloud(&noise)?;
@@ -162,7 +162,7 @@ impl Job {
             Some(cloud) => noise.opacities(cloud)?,
             None => noise.clone(),
         };
-        // All of them before the first is written.
+        // Computes all contents before writing the first file.
         let contents =
             self.files.iter().map(|f| self.content(f, &image, cloud.is_some())).collect::<Result<Vec<_>>>()?;
         for (file, content) in self.files.iter().zip(contents) {
@@ -188,7 +188,7 @@ impl Job {
         }
     }
 
-    /// Tiles of a slice side by side: grey, or white clouds before a blue sky.
+    /// Tiles of a slice side by side: grey, or white clouds on a blue sky.
     fn preview(&self, image: &NoiseImage, is_cloud: bool) -> Result<Vec<u8>> {
         let slices = image.size()[2];
         let slice = image.preview(self.slice);
@@ -212,10 +212,10 @@ impl Job {
     }
 }
 
-/// Does what a command line says, without its first word, and answers what is in the files.
+/// Runs a command line without its first word, and returns a description of the files.
 ///
 /// # Errors
-/// What is wrong with the words; files; the GPU.
+/// Wrong arguments; files; the GPU.
 pub fn run(words: impl Iterator<Item = String>) -> Result<String> {
     Job::parse(words)?.run()
 }

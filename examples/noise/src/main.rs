@@ -1,14 +1,14 @@
-//! Makes textures of noise: parameters in, a preview and files for a host or for Welkin out. The noise is the library's
-//! own.
+//! Creates noise textures: takes parameters and writes a preview, and files for a host or for Welkin. The noise is the
+//! library's own.
 //!
 //! ```text
 //! noise FILE.. [--kind gradient|cellular|both] [--size WIDTHxHEIGHT[xDEPTH]] [--frequency CELLS[,CELLS[,CELLS]]]
 //!       [--octaves N] [--amplitude A] [--persistence P] [--seed N] [--preset overcast|broken|few] [--from FILE] [--gpu]
 //!       [--cutoff C | --cover SHARE] [--density D] [--slice Z] [--tiles N]
 //! ```
-//! Each FILE ends in .dds, .ktx2 (with mip levels) or .png (a look at one slice, N x N tiles of it). With a cutoff or a
-//! cover and a density the texels are opacities of clouds, and previews show them white on blue. Wrong input: exit code
-//! 2, nothing written.
+//! Each FILE ends in .dds, .ktx2 (with mip levels) or .png (a preview of one slice, repeated N x N times). With a
+//! density and either a cutoff or a cover, the texels are opacities of clouds, and previews show them white on blue.
+//! Wrong input gives exit code 2, and nothing is written.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! The tool on the command line makes what the library makes.
+//! The command-line tool must create the same noise as the library.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
-/// Runs the tool with the words of a line; those that begin with a dot are files.
+/// Runs the tool with the words of a line. Words that begin with a dot are files.
 fn run(line: &str) -> welkin::Result<String> {
     let file = |word: &str| path(&format!("noise_tool{word}")).display().to_string();
     let words = line.split_whitespace().map(|w| if w.starts_with('.') { file(w) } else { w.to_string() });
@@ -36,7 +36,7 @@ fn files_and_previews_hold_the_library_s_noise() {
     for (x, y, pixel) in picture.enumerate_pixels() {
         assert_eq!(pixel.0[0], slice[(y % 16 * 32 + x % 32) as usize], "{x} {y}");
     }
-    // Clouds cut out of a file.
+    // Clouds cut out of an existing file.
     let said = run(".clouds.dds --from .a.ktx2 --cover 0.3 --density 0.95").unwrap();
     assert!(said.contains("cover 0.3") || said.contains("cover 0.29"), "{said}");
     let clouds = NoiseImage::load(path("noise_tool.clouds.dds")).unwrap();

@@ -1,10 +1,10 @@
-//! Questions to an OpenGL driver about the sky's first tables: the steps of `on_gpu`.
+//! The steps of `on_gpu`: each tests an OpenGL driver on the sky's first tables.
 #![cfg(target_os = "linux")]
 
 mod raw;
 mod sky;
 
-/// Result of a step: the driver answers as it must, answers otherwise, or there is nothing to ask.
+/// Result of a step: the driver is right, the driver is wrong, or there is nothing to test.
 #[derive(Debug, PartialEq)]
 pub enum Found {
     Right(String),
@@ -12,13 +12,13 @@ pub enum Found {
     Nothing(String),
 }
 
-/// Answer of what may fail in any way.
+/// Result of work that may fail in any way.
 pub type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Name of a step, what it asks, and its function.
+/// Name of a step, its question, and its function.
 pub type Step = (&'static str, &'static str, fn() -> Fallible<Found>);
 
-/// Every step.
+/// All steps.
 pub const STEPS: &[Step] = &[
     ("vulkan", "which Vulkan driver there is, and a texel of the sky's first table by it", sky::vulkan),
     ("opengl", "which OpenGL driver there is, and a texel cleared by it", sky::opengl),
@@ -38,10 +38,10 @@ pub const STEPS: &[Step] = &[
     ("welkin-own", "a device of Welkin's own on OpenGL, and its whole sky", sky::welkin_own),
 ];
 
-/// Runs the step of this name and returns what it prints with the program's status; `None` for an unknown name.
+/// Runs the step with this name. Returns the text to print and the exit status; `None` for an unknown name.
 pub fn answer(name: &str) -> Option<(String, u8)> {
     let (_, _, step) = STEPS.iter().find(|(step, ..)| *step == name)?;
-    // The tests' hosts panic where there is no context to be had.
+    // The tests' hosts panic if no context can be created.
     std::panic::set_hook(Box::new(|_| ()));
     let found = std::panic::catch_unwind(step).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().cloned();

@@ -1,6 +1,6 @@
-//! Steps of `scripts/on-gpu`: each asks an OpenGL driver one question about the sky's first tables, in a process of its
-//! own, because an answer may be a GPU that hangs. Prints `RESULT ok ..`, `RESULT wrong ..` or `RESULT none ..`, or
-//! nothing where the driver does not finish.
+//! Steps of `scripts/on-gpu`. Each tests one behaviour of an OpenGL driver on the sky's first tables, in a process of
+//! its own, because the GPU may hang. Prints `RESULT ok ..`, `RESULT wrong ..` or `RESULT none ..`, or nothing if the
+//! driver does not finish.
 //!
 //! `on_gpu --help` lists the steps.
 

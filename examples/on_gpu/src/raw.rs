@@ -1,5 +1,5 @@
-//! One texel by loops in GLSL by hand, without wgpu: whether the driver's compiler ends a loop depends on its form,
-//! perhaps.
+//! Draws one texel with loops in handwritten GLSL, without wgpu. The loop's form may decide whether the driver's
+//! compiled code ends.
 
 use glow::HasContext;
 
@@ -26,7 +26,7 @@ const PLAIN: &str = "void main() {
     color = vec4(sum / 255.0, 0.0, 0.0, 1.0);
 }";
 
-/// As naga writes `for`: an endless loop with the step at its head, and a break.
+/// A `for` loop as naga writes it: an endless loop with the step at its start, and a break.
 const WRITTEN: &str = "void main() {
     float sum = 0.0;
     uint m = 0u;
@@ -61,7 +61,7 @@ const WRITTEN: &str = "void main() {
     color = vec4(sum / 255.0, 0.0, 0.0, 1.0);
 }";
 
-/// Bounds of the loops, and what the sum comes to: 2 x 4 rows of weight 2, 5 columns of 1.
+/// Bounds of the loops, and the expected sum: 2 x 4 rows of weight 2, 5 columns of 1.
 const BOUNDS: (u32, u32) = (4, 5);
 const SUM: u8 = 80;
 

@@ -1,4 +1,5 @@
-//! The sky's first table and its blocks, drawn through wgpu in one OpenGL context: piece by piece, the safest first.
+//! The sky's first table and its uniform blocks, drawn through wgpu in one OpenGL context, step by step, the safest
+//! first.
 
 use std::{
     cell::Cell,
@@ -21,9 +22,9 @@ use wgpu::{
 
 use crate::{Fallible, Found};
 
-/// After so long a driver does not finish.
+/// Time after which a driver counts as hanging.
 const LIMIT: Duration = Duration::from_secs(8);
-/// How large the first table is here: sun angles and altitudes.
+/// Size of the first table: sun angles and altitudes.
 const SIZE: (u32, u32) = (64, 32);
 /// Directions of the quadrature: zenith and azimuth.
 const RULE: (u32, u32) = (8, 16);
@@ -34,25 +35,25 @@ struct Gpu {
     name: String,
 }
 
-/// How blocks get their bytes.
+/// How uniform blocks get their contents.
 #[derive(Clone, Copy, PartialEq)]
 enum Upload {
-    /// Made with contents.
+    /// At creation.
     Contents,
-    /// Written by the queue.
+    /// Written through the queue.
     Written,
 }
 
 type GetStringI = unsafe extern "system" fn(u32, u32) -> *const u8;
 
-/// Where the loops of the first table have their bounds from.
+/// Source of the loop bounds in the first table's shader.
 #[derive(Clone, Copy, PartialEq)]
 enum Bounds {
-    /// From a block, capped, as Welkin has them.
+    /// From a uniform block, with a cap, as in Welkin.
     Capped,
-    /// From a block as they are.
+    /// From a uniform block, without a cap.
     Uncapped,
-    /// Written out.
+    /// Constants in the source.
     Constants,
 }
 
@@ -60,7 +61,7 @@ thread_local! {
     static GET_STRING_I: Cell<Option<GetStringI>> = const { Cell::new(None) };
 }
 
-/// Hides that buffers can stay mapped, upon which wgpu writes them by `glBufferSubData`.
+/// Hides the extension for persistent mapping; wgpu then writes buffers by `glBufferSubData`.
 unsafe extern "system" fn without_storage(name: u32, index: u32) -> *const u8 {
     let Some(real) = GET_STRING_I.get() else { return c"".as_ptr().cast() };
     // SAFETY: the driver's own function; its answer is a NUL-terminated string or NULL.
@@ -73,7 +74,7 @@ unsafe extern "system" fn without_storage(name: u32, index: u32) -> *const u8 {
 }
 
 impl Gpu {
-    /// wgpu round one context of ours.
+    /// Creates wgpu on a context made here.
     fn in_context(no_storage: bool) -> Fallible<Self> {
         let context = egl::Context::new(egl::Api::Compatibility(4, 5), egl::Window::None);
         let _ = context.functions();
@@ -99,7 +100,7 @@ impl Gpu {
         Self::of(instance, &adapter)
     }
 
-    /// wgpu's own device.
+    /// Creates wgpu's own device.
     fn own(backends: wgpu::Backends) -> Fallible<Self> {
         let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
         desc.backends = backends;
@@ -118,12 +119,12 @@ impl Gpu {
         let (device, queue) = pollster::block_on(
             adapter.request_device(&wgpu::DeviceDescriptor { required_limits: adapter.limits(), ..Default::default() }),
         )?;
-        // wgpu waits without a limit for a GPU before it lets go of it.
+        // Leaked, because on drop wgpu waits for the GPU without a time limit.
         std::mem::forget((instance, adapter.clone(), device.clone(), queue.clone()));
         Ok(Self { device, queue, name })
     }
 
-    /// Waits for what was submitted; ends the process where it does not finish.
+    /// Waits for the submitted work; ends the process if it does not finish.
     fn wait(&self) -> Fallible<()> {
         let begun = Instant::now();
         loop {
@@ -187,7 +188,7 @@ impl Blocks {
         Self { contents, buffers }
     }
 
-    /// The first word that is not as it was written.
+    /// Compares the words; reports the first that differs from what was written.
     fn compare(&self, got: &[u8]) -> Found {
         let mut at = 0;
         for (name, contents) in NAMES.iter().zip(&self.contents) {
@@ -203,7 +204,7 @@ impl Blocks {
     }
 }
 
-/// Draws out all blocks, 16 bytes a texel, without a loop.
+/// Draws the contents of all blocks, 16 bytes per texel, without a loop.
 const OUT: &str = "
 @group(0) @binding(0) var<uniform> air: array<vec4u, 9>;
 @group(0) @binding(1) var<uniform> dims: array<vec4u, 5>;
@@ -218,7 +219,7 @@ const OUT: &str = "
 }
 ";
 
-/// Draws an entry point into so much of a target, and reads the target.
+/// Draws an entry point into part of a target, and reads the target.
 fn drawn(
     gpu: &Gpu,
     blocks: &Blocks,
@@ -314,7 +315,7 @@ fn blocks_out(gpu: &Gpu, upload: Upload) -> Fallible<Found> {
     Ok(blocks.compare(&got))
 }
 
-/// Draws so much of the first table; its first texel must be that of a sum of weights, near 1.
+/// Draws part of the first table. Its first texel must be a sum of weights, near 1.
 fn norm_of(gpu: &Gpu, upload: Upload, part: (u32, u32), bounds: Bounds) -> Fallible<Found> {
     let blocks = Blocks::new(gpu, upload);
     let mut text = shader::assemble("sky/build.wgsl")?;
@@ -428,7 +429,7 @@ pub fn norm_uncapped() -> Fallible<Found> {
     norm_of(&Gpu::in_context(false)?, Upload::Contents, ONE, Bounds::Uncapped)
 }
 
-/// With all of Welkin's defence: the device is refused by name, or draws.
+/// With all of Welkin's safeguards: the device is either refused with a message, or draws.
 pub fn welkin_own() -> Fallible<Found> {
     let device = match Device::headless(&DeviceOptions { backends: wgpu::Backends::GL, ..Default::default() }) {
         Ok(device) => device,

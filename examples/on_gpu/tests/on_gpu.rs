@@ -1,6 +1,6 @@
-//! `scripts/on-gpu` as it runs on a machine with a GPU: without a network, a display and a compiler, from a folder of
-//! programs. Here the driver is a software driver, which answers every step right; what the script decides where one
-//! does not is asked with programs that only say so.
+//! `scripts/on-gpu` as on a machine with a GPU: without network, display and compiler, from a folder of programs. The
+//! driver here is a software driver, which passes every step. The script's decisions for a driver that fails are tested
+//! with programs that only print such results.
 #![cfg(target_os = "linux")]
 
 use std::{
@@ -10,7 +10,7 @@ use std::{
     process::Command,
 };
 
-/// A folder of programs, each a shell script.
+/// Creates a folder of programs, each a shell script.
 fn pack(name: &str, on_gpu: &str, gl_host: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("on_gpu").join(name);
     fs::create_dir_all(folder.join("bin")).expect("the target directory is writable");
@@ -25,7 +25,7 @@ fn pack(name: &str, on_gpu: &str, gl_host: &str) -> PathBuf {
     folder
 }
 
-/// Runs the script without a network where the machine lets it; what its page says.
+/// Runs the script, without a network where the machine allows that, and returns its page.
 fn run(folder: &Path) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/on-gpu");
     let out = folder.join("out");
@@ -40,7 +40,7 @@ fn run(folder: &Path) -> String {
     fs::read_to_string(out.join("on-gpu.txt")).expect("the page")
 }
 
-/// The script's step, in a process of its own.
+/// Runs a step of the script in a process of its own.
 #[test]
 fn one_step() {
     let Ok(step) = std::env::var("WELKIN_ON_GPU_STEP") else { return };
@@ -51,7 +51,7 @@ fn one_step() {
 #[test]
 fn a_software_driver_answers_every_step_right() {
     let itself = std::env::current_exe().expect("this test");
-    // The whole sky is the other tests' matter, which a busy machine draws for minutes.
+    // The whole sky is left to other tests, because it takes minutes on a busy machine.
     let on_gpu = format!(
         "[ \"$1\" != welkin-own ] || {{ echo RESULT ok not asked here; exit; }}\nWELKIN_ON_GPU_STEP=\"$1\" exec '{}' \
          --exact one_step --nocapture --test-threads 2",

@@ -8,8 +8,8 @@ use welkin::{Error, Result, Status, gpu::Device, weather::CloudKind};
 
 use crate::csv::Table;
 
-/// Needs the columns `tau,g,mu0,albedo` in this order, and answers with `R,T`: the shares of the incident flux that a
-/// slab reflects and lets through, direct and diffuse together.
+/// Needs the columns `tau,g,mu0,albedo` in this order. Answers with `R,T`: the shares of the incident flux that a slab
+/// reflects and transmits, direct and diffuse together.
 ///
 /// # Errors
 /// [`Status::Parse`] with line and column; GPU faults.
@@ -37,13 +37,13 @@ pub fn slabs(device: &Device, text: &str) -> Result<String> {
     Ok(out)
 }
 
-/// Places from which a seed's sky is looked at.
+/// Number of viewpoints for each seed's sky.
 const PLACES: usize = 64;
 
-/// `mean,spread` of the cover that a genus is seen to have over seeds, where `cover` of the sky is asked for.
+/// Answers with `mean,spread` over seeds of the visible cover of a genus, when its cover is set to `cover`.
 ///
 /// # Errors
-/// [`Status::Parse`] for a genus that there is not.
+/// [`Status::Parse`] for an unknown genus.
 pub fn cover(genus: &str, cover: f64, seeds: u64) -> Result<String> {
     let known = || CloudKind::ALL.iter().filter(|k| **k != CloudKind::Unknown);
     let kind = known().find(|k| k.name() == genus).ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! Command line of the probe: questions, their options, and the refusal of everything else.
+//! Command line of the probe: questions and their options. Everything else is refused.
 
 use std::io::Read as _;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use welkin::{Error, Result, Status};
 
 use crate::{clouds, flow, fog, lightning, rain, sky, snow};
 
-/// Every question and option.
+/// Usage text with every question and option.
 pub const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model NAME] < rays.csv\n       \
                      probe fog --visibility METRES < distances.csv\n       \
                      probe rain-speed < diameters.csv\n       \
@@ -111,7 +111,7 @@ fn lightning(rest: impl Iterator<Item = String>) -> Result<String> {
 }
 
 impl Options {
-    /// A number; what it may be is the question's to say.
+    /// A number. The question checks its range.
     fn any_number(&self, name: &str) -> Result<f64> {
         let text = self.given(name)?;
         text.parse().map_err(|_| usage(&format!("{name} must be a number, not {text:?}")))
@@ -141,10 +141,10 @@ fn wind(rest: impl Iterator<Item = String>) -> Result<String> {
     flow::wind(&text, &read_input()?)
 }
 
-/// Answers the question of a command line, without its first word, about what stands on standard input.
+/// Runs the question of a command line, without its first word, on the text from standard input.
 ///
 /// # Errors
-/// Unknown questions and options; what stands in the input, by line and column; files; the GPU.
+/// Unknown questions and options; errors in the input, by line and column; files; the GPU.
 pub fn run(mut arguments: impl Iterator<Item = String>) -> Result<String> {
     let what = arguments.next().ok_or_else(|| usage("no question"))?;
     match what.as_str() {

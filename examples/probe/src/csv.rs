@@ -1,5 +1,5 @@
-//! Questions as CSV with a header, among other columns and in any order; each line comes back with its answer behind
-//! it. Blank lines are left out.
+//! Questions as CSV with a header. Other columns are allowed, in any order. Each line is returned with its answer
+//! appended. Blank lines are left out.
 
 use std::fmt::Display;
 
@@ -12,7 +12,7 @@ pub struct Column {
     low: f64,
     high: f64,
     unit: &'static str,
-    /// What counts where there is no such column.
+    /// Value if the column is missing.
     default: Option<f64>,
 }
 
@@ -22,7 +22,7 @@ impl Column {
         Self { name, low, high, unit, default: None }
     }
 
-    /// The same column, which need not be there.
+    /// As this column, but optional.
     pub const fn or(self, default: f64) -> Self {
         Self { default: Some(default), ..self }
     }
@@ -36,44 +36,44 @@ impl Column {
     }
 }
 
-/// A text of questions.
+/// The text with all questions.
 pub struct Table<'a> {
     header: &'a str,
     header_line: usize,
     names: Vec<&'a str>,
-    /// Its lines of questions, in order.
+    /// The rows with questions, in order.
     pub rows: Vec<Row<'a>>,
 }
 
-/// A question.
+/// One question.
 pub struct Row<'a> {
-    /// Its line as it stands.
+    /// The original line.
     pub line: &'a str,
     number: usize,
 }
 
-/// What stands in a column of a row.
+/// The value of a column in a row.
 pub struct Field<'a> {
-    /// With the blanks about it.
+    /// The text, with the blanks around it.
     pub text: &'a str,
     line: usize,
     column: usize,
 }
 
-/// A fault at a line and column, both counted from 0 here and from 1 in the sentence; columns are characters.
+/// An error at a line and column. Both count from 0 here and from 1 in the message; columns are characters.
 fn fault(line: usize, column: usize, what: impl Display) -> Error {
     Error::new(Status::Parse, format!("line {}, column {}: {what}", line + 1, column + 1))
 }
 
 impl Field<'_> {
-    /// Something is wrong with it.
+    /// An error in this field.
     pub fn fault(&self, what: impl Display) -> Error {
         fault(self.line, self.column, what)
     }
 }
 
 impl<'a> Row<'a> {
-    /// Something is wrong with it as a whole.
+    /// An error in this row as a whole.
     pub fn fault(&self, what: impl Display) -> Error {
         fault(self.number, 0, what)
     }
@@ -91,7 +91,7 @@ impl<'a> Row<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Finds the lines of a text, whose header should have the columns `wanted`.
+    /// Reads the rows of a text; `wanted` lists the columns that its header should have.
     ///
     /// # Errors
     /// [`Status::Parse`] for a text without a header.
@@ -103,10 +103,10 @@ impl<'a> Table<'a> {
         Ok(Self { header, header_line, names, rows: lines.map(|(number, line)| Row { line, number }).collect() })
     }
 
-    /// Where a column stands.
+    /// Position of a column.
     ///
     /// # Errors
-    /// [`Status::Parse`] if there is none of that name.
+    /// [`Status::Parse`] if no column has that name.
     pub fn place(&self, name: &str) -> Result<usize> {
         let found = self.names.iter().position(|n| *n == name);
         found.ok_or_else(|| fault(self.header_line, 0, format!("no column {name} among {:?}", self.names)))
@@ -115,7 +115,7 @@ impl<'a> Table<'a> {
     /// The fields of a row, as many as the header has.
     ///
     /// # Errors
-    /// [`Status::Parse`] for more or fewer.
+    /// [`Status::Parse`] if the row has more or fewer fields.
     pub fn fields(&self, row: &Row<'a>) -> Result<Vec<Field<'a>>> {
         let (fields, wanted) = (row.fields(), self.names.len());
         if fields.len() == wanted {
@@ -128,7 +128,7 @@ impl<'a> Table<'a> {
     /// The numbers of each row, in the order of `columns`; 0 beyond them.
     ///
     /// # Errors
-    /// [`Status::Parse`] for a column that is not there, and for what is no number in its range.
+    /// [`Status::Parse`] for a missing column, and for a value that is not a number in its range.
     pub fn numbers<const N: usize>(&self, columns: &[Column]) -> Result<Vec<[f64; N]>> {
         let place = |c: &Column| match (self.place(c.name), c.default) {
             (Err(_), Some(_)) => Ok(None),
@@ -149,7 +149,7 @@ impl<'a> Table<'a> {
         self.rows.iter().map(of_row).collect()
     }
 
-    /// The text with the columns `added`, which hold the answers, one a row.
+    /// The text with the columns `added`, which hold the answers, one per row.
     pub fn answered(&self, added: &str, answers: impl IntoIterator<Item = String>) -> String {
         let mut out = format!("{},{added}\n", self.header);
         for (row, answer) in self.rows.iter().zip(answers) {

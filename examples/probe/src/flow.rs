@@ -1,4 +1,4 @@
-//! `probe cavity`, `probe taylor-green`: flows whose answers others have published; `probe wind`: the wind in a scene.
+//! `probe cavity`, `probe taylor-green`: flows with published results; `probe wind`: the wind in a scene.
 
 use std::fmt::Write as _;
 
@@ -16,11 +16,11 @@ use crate::{
     scene::Scene,
 };
 
-/// A steady field changes by no more than this share of its largest speed while the wind crosses it.
+/// A field counts as steady if it changes by at most this share of its largest speed while the wind crosses it.
 const REST: f64 = 2e-3;
-/// After so many crossings it is not waited for any longer.
+/// Maximum number of crossings to wait for a steady field.
 const MOST_CROSSINGS: u32 = 60;
-/// Latest time that can be asked for, s.
+/// Latest time that a question may have, s.
 const LATEST_S: f64 = 86_400.0;
 
 /// The flow in the [`cavity`]: `y,u`, m and m/s, from the floor to the lid on the vertical centre line.
@@ -46,12 +46,12 @@ pub fn taylor_green(n: u32, cfl: f64, scheme: Scheme) -> Result<String> {
     Ok(format!("kinetic_energy_kept\n{}\n", probe::taylor_green(n, cfl, scheme)?))
 }
 
-/// Needs columns `x,y,z` (m, in the scene's axes east, north, up) and `t` (s after the wind began to flow round the
-/// obstacles), and answers with the wind there: `u,v,w`, m/s. In a steady scene all times are alike.
+/// Needs columns `x,y,z` (m, in the scene's axes east, north, up) and `t` (s after the wind began to flow around the
+/// obstacles). Answers with the wind there: `u,v,w`, m/s. In a steady scene the wind is the same at all times.
 ///
 /// # Errors
-/// [`Status::Parse`] with line and column for text that is no scene or no questions; [`Status::InvalidArgument`] for a
-/// scene outside its ranges; [`Status::Unsupported`] where a steady field does not rest.
+/// [`Status::Parse`] with line and column for a faulty scene or faulty questions; [`Status::InvalidArgument`] for a
+/// scene outside its ranges; [`Status::Unsupported`] if a steady field does not settle.
 pub fn wind(scene: &str, text: &str) -> Result<String> {
     let scene = Scene::parse(scene)?;
     let mut field = scene.field()?;

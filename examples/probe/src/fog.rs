@@ -1,14 +1,14 @@
-//! `probe fog`: the drawn fog over distances.
+//! `probe fog`: the drawn fog by distance.
 
 use welkin::{Error, Result, error::check_range, fog::probe, gpu::Device};
 
 use crate::csv::Table;
 
-/// Needs a column `distance_m` (\[0, 1e9\] m), and answers with `contrast` and `transmittance` over it in fog of
-/// visibility `visibility_m` (\[1, 1e6\] m).
+/// Needs a column `distance_m` (\[0, 1e9\] m). Answers with the `contrast` and `transmittance` over that distance in
+/// fog of visibility `visibility_m` (\[1, 1e6\] m).
 ///
 /// # Errors
-/// [`welkin::Status::Parse`] with line and column, and nothing is drawn then; [`welkin::Status::InvalidArgument`]; GPU
+/// [`welkin::Status::Parse`] with line and column, before anything is drawn; [`welkin::Status::InvalidArgument`]; GPU
 /// faults.
 pub fn distances(device: &Device, visibility_m: f64, text: &str) -> Result<String> {
     let table = Table::read(text, "distance_m")?;

@@ -1,4 +1,4 @@
-//! Questions to the drawn models, from tables in CSV to tables in CSV: the commands of `probe`.
+//! The commands of `probe`: questions to the drawn models, read from CSV tables and answered as CSV tables.
 
 pub mod clouds;
 pub mod command;

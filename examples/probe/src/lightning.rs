@@ -3,10 +3,10 @@
 use glam::DVec2;
 use welkin::{Result, error::check_range, lightning::schedule::Storm};
 
-/// A storm's flashes over some hours from time 0, a line each.
+/// The flashes of a storm over a number of hours from time 0, one per line.
 ///
 /// # Errors
-/// [`welkin::Status::InvalidArgument`] naming the parameter.
+/// [`welkin::Status::InvalidArgument`], with the name of the parameter.
 pub fn flashes(per_minute: f64, hours: f64) -> Result<String> {
     check_range("hours", hours, 0.0, 1000.0, "h")?;
     let storm = Storm { seed: 0, per_minute, middle_m: DVec2::ZERO, radius_m: 3000.0 };

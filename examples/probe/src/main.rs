@@ -1,4 +1,5 @@
-//! Asks the drawn model from a script: CSV with a header on standard input, each line back with the answer's columns.
+//! Queries the drawn models from a script. Reads CSV with a header on standard input, and prints each line with the
+//! answer's columns appended.
 //!
 //! ```text
 //! probe sky|aerial|irradiance --planet FILE [--model table3d|isotropic|directional|brute-force]
@@ -14,7 +15,7 @@
 //! probe taylor-green --n N --cfl C [--scheme semi-lagrangian|maccormack|reflection]
 //! probe wind --scene FILE
 //! ```
-//! Wrong input: line and column on standard error, exit code 2, nothing on standard output.
+//! Wrong input: prints line and column on standard error and nothing on standard output, with exit code 2.
 
 use std::io::Write as _;
 use std::process::ExitCode;

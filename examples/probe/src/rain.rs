@@ -1,4 +1,4 @@
-//! `probe rain-speed`, `probe rain`, `probe ice`: what falls, by its sizes.
+//! `probe rain-speed`, `probe rain`, `probe ice`: precipitation by particle size.
 
 use welkin::{
     Result,
@@ -11,11 +11,11 @@ use welkin::{
 
 use crate::csv::{Column, Table};
 
-/// Rates of what falls.
+/// Range of precipitation rates, mm/h.
 const RATES: [f64; 2] = [0.0, 500.0];
 
-/// Needs a column `diameter_mm` (\[0, 20\]), may have `altitude_m` (\[-1000, 11 000\], else 0), and answers with the
-/// terminal speed of a drop, `speed_m_s`.
+/// Needs a column `diameter_mm` (\[0, 20\]); `altitude_m` (\[-1000, 11 000\]) is optional, 0 by default. Answers with
+/// the terminal speed of a drop, `speed_m_s`.
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input.
@@ -28,7 +28,7 @@ pub fn speeds(text: &str) -> Result<String> {
     Ok(table.answered("speed_m_s", answers))
 }
 
-/// Needs a column `rate_mm_h` (\[0, 500\]) and answers with what steady rain of that rate at sea level is:
+/// Needs a column `rate_mm_h` (\[0, 500\]). Answers with the properties of steady rain of that rate at sea level:
 /// `number_per_m3,liquid_g_m3,rate_closed_mm_h,extinction_per_km,median_volume_diameter_mm`.
 ///
 /// # Errors
@@ -46,8 +46,8 @@ pub fn rates(text: &str) -> Result<String> {
     Ok(table.answered(added, answers))
 }
 
-/// Needs a column `hail_mm_h`, may have `pellets_mm_h` (\[0, 500\] each), and answers with what such ice is at sea
-/// level: `number_per_m3,ice_g_m3,rate_closed_mm_h,extinction_per_km,mean_diameter_mm`.
+/// Needs a column `hail_mm_h`; `pellets_mm_h` is optional (\[0, 500\] each). Answers with the properties of such ice at
+/// sea level: `number_per_m3,ice_g_m3,rate_closed_mm_h,extinction_per_km,mean_diameter_mm`.
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input.

@@ -4,11 +4,11 @@
 //! cells = [64, 48, 24]        # east, north, up
 //! cell_m = [4.0, 4.0, 2.0]
 //! corner_m = [0.0, 0.0, 0.0]  # the lowest corner of the field
-//! steady = false              # true: the mean wind, led on with an eddy viscosity until it rests; times do not matter
+//! steady = false              # true: the mean wind, simulated with an eddy viscosity until steady; times are ignored
 //! scheme = "reflection"
-//! cfl = 2.0                   # cells that the fastest air passes in a step
+//! cfl = 2.0                   # cells that the fastest air crosses in a step
 //!
-//! [wind]                      # at 10 m above the ground, logarithmic over it
+//! [wind]                      # at 10 m above the ground; logarithmic profile
 //! speed_m_s = 8.0
 //! from_deg = 270.0
 //! roughness_m = 0.03
@@ -33,7 +33,7 @@ use welkin::{
     flow::{FlowBox, FlowField, FlowObstacles, FlowSettings, Heights, Scheme},
 };
 
-/// A scene file.
+/// The parsed scene file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -79,8 +79,8 @@ struct SceneBox {
 }
 
 impl SceneWind {
-    /// How the mean wind is mixed by its whirls, 10 m above the ground: kappa u* z (Prandtl 1925), u* = kappa U / ln(z
-    /// / z0). What is solved for with it is a mean, and rests.
+    /// Eddy viscosity of the mean wind, 10 m above the ground: kappa u* z (Prandtl 1925), u* = kappa U / ln(z / z0).
+    /// The solution with it is a mean wind, which becomes steady.
     fn eddy_viscosity_m2_s(&self) -> f64 {
         let friction_velocity_m_s = 0.4 * self.speed_m_s / libm::log(10.0 / self.roughness_m);
         0.4 * friction_velocity_m_s * 10.0
@@ -109,7 +109,7 @@ impl Terrain {
         Ok(())
     }
 
-    /// Linear between the nearest four heights; outside as at the edge.
+    /// Height by bilinear interpolation; outside the terrain, the height at its edge.
     fn height_m(&self, place: DVec2) -> f64 {
         let at = (place - DVec2::from(self.corner_m)) / self.cell_m;
         let along = |v: f64, count: usize| {
@@ -126,7 +126,7 @@ impl Terrain {
 
 impl Scene {
     /// # Errors
-    /// [`Status::Parse`] with line and column; [`Status::InvalidArgument`] for what is outside its range.
+    /// [`Status::Parse`] with line and column; [`Status::InvalidArgument`] for values outside their ranges.
     pub fn parse(text: &str) -> Result<Self> {
         let parse = |e: toml::de::Error| Error::new(Status::Parse, toml_fault(text, &e));
         let scene: Self = toml::from_str(text).map_err(parse)?;
@@ -144,13 +144,13 @@ impl Scene {
         Ok(scene)
     }
 
-    /// The ground above the field's lowest corner.
+    /// Height of the ground above the field's lowest corner.
     fn ground_m(&self, place: DVec2) -> f64 {
         let corner = DVec3::from(self.corner_m);
         self.terrain.as_ref().map_or(0.0, |t| t.height_m(place + corner.truncate()) - corner.z)
     }
 
-    /// The air of the scene, in which the wind has begun to blow.
+    /// Creates the scene's air at the moment when the wind begins to blow.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`].

@@ -15,7 +15,7 @@ const COLUMNS: [Column; 5] = [
     Column::new("distance_m", [0.0, 1e9], "m"),
 ];
 
-/// Columns that a question reads; the others may be empty or absent.
+/// Columns that a question reads; other columns may be empty or missing.
 fn needed(question: Question) -> &'static [Column] {
     match question {
         Question::Irradiance => &COLUMNS[..2],
@@ -24,14 +24,14 @@ fn needed(question: Question) -> &'static [Column] {
     }
 }
 
-/// Needs columns `altitude_m,sun_zenith_deg`, for the sky also `view_zenith_deg,azimuth_deg` (of the view, relative to
-/// the sun's), for aerial also `distance_m`. Answers `L1,L2,L3,T1,T2,T3`: see [`Question`].
+/// Needs columns `altitude_m,sun_zenith_deg`; for the sky also `view_zenith_deg,azimuth_deg` (of the view, relative to
+/// the sun's); for aerial also `distance_m`. Answers `L1,L2,L3,T1,T2,T3`: see [`Question`].
 ///
 /// # Errors
-/// [`welkin::Status::Parse`] with line and column for wrong input, before anything is asked; GPU faults.
+/// [`welkin::Status::Parse`] with line and column for wrong input, before any question is answered; GPU faults.
 pub fn rays(probe: &mut Probe, question: Question, text: &str) -> Result<String> {
     let table = Table::read(text, "altitude_m,sun_zenith_deg,..")?;
-    // Lines under one altitude and sun share an observer's tables.
+    // Rows with the same altitude and sun share an observer's tables.
     let mut groups: BTreeMap<[u64; 2], Vec<(usize, Ray)>> = BTreeMap::new();
     let numbers = table.numbers(needed(question))?;
     for (i, [altitude, sun, view, azimuth, distance]) in numbers.into_iter().enumerate() {

@@ -1,10 +1,10 @@
-//! `probe snow-speed`: how fast flakes fall.
+//! `probe snow-speed`: the fall speed of flakes.
 
 use welkin::{Result, snow::flakes::FlakeKind};
 
 use crate::csv::{Column, Table};
 
-/// Needs columns `diameter_mm` (\[0, 100\]) and `kind` (a name of [`FlakeKind::NAMES`]) and answers with the terminal
+/// Needs columns `diameter_mm` (\[0, 100\]) and `kind` (a name of [`FlakeKind::NAMES`]). Answers with the terminal
 /// speed at sea level, `speed_m_s`.
 ///
 /// # Errors

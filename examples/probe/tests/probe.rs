@@ -1,4 +1,4 @@
-//! The probe's questions: what their answers say, and that wrong input is named by line and column.
+//! Tests of the probe's answers, and that errors in the input are reported by line and column.
 
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ fn rates_close_and_no_rain_is_nothing() {
     for (rate, closed) in [0.1, 1.0, 25.0, 150.0, 0.0].iter().zip(column(&out, "rate_closed_mm_h")) {
         assert!((closed - rate).abs() <= 1e-3 * rate, "{rate}: {closed}");
     }
-    // The raw distribution's 0.365 R^0.63 is 18 % above at 1 mm/h.
+    // The original distribution's 0.365 R^0.63 is 18 % higher at 1 mm/h.
     assert!((column(&out, "extinction_per_km")[1] * 1.18 / 0.365 - 1.0).abs() < 0.03);
     assert_eq!(out.lines().last(), Some("0,0.0,0.0,0.0,0.0,0.0"));
 }
@@ -176,7 +176,7 @@ fn the_wind_in_a_scene_goes_round_its_box() {
     for scene in [SCENE.to_string(), format!("steady = true\n{SCENE}")] {
         let [lee, before, above, front, inside] = wind_at(&scene, places)[..] else { panic!("five answers") };
         println!("lee {lee:.2} before {before:.2} above {above:.2} front {front:.2} inside {inside:.2}");
-        // 10 m above the ground of 12 m stands the wind of the scene, before anything has reached it.
+        // At 10 m above the ground of 12 m, the wind is the scene's until effects of the obstacles arrive.
         assert!((before.x - 8.0).abs() < 0.4 && before.y.abs() < 0.3, "{before}");
         assert!(above.x > 8.8, "{above}");
         assert!(lee.x < 3.5 && front.x < 5.0, "{lee} {front}");

@@ -1,4 +1,4 @@
-//! Conventions of the tools' command lines, and the files that they write.
+//! Conventions for the tools' command lines and for the files that they write.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use welkin::{Error, Result, Status};
 
-/// Text for standard output if `--help`, `-h` or `--version` is among the arguments; the program then ends with status
+/// Text for standard output if the arguments contain `--help`, `-h` or `--version`; the program then ends with status
 /// 0.
 pub fn answered(name: &str, usage: &str, mut arguments: impl Iterator<Item = String>) -> Option<String> {
     arguments.find_map(|word| match word.as_str() {
@@ -17,7 +17,7 @@ pub fn answered(name: &str, usage: &str, mut arguments: impl Iterator<Item = Str
     })
 }
 
-/// Does work that may be long, and says on standard error every few seconds that it goes on.
+/// Runs work that may take long, and prints a progress message on standard error every few seconds.
 pub fn at_work<T>(name: &str, what: &str, work: impl FnOnce() -> T) -> T {
     let began = Instant::now();
     let (ended, wait) = mpsc::channel::<()>();
@@ -33,8 +33,8 @@ pub fn at_work<T>(name: &str, what: &str, work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// Writes a file under another name beside it, then gives it its own: a program that is ended meanwhile leaves what was
-/// there.
+/// Writes a file under a temporary name beside it, then renames it. If the program is ended meanwhile, the previous
+/// file remains.
 ///
 /// # Errors
 /// [`Status::Io`] with the file's name.
@@ -49,7 +49,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     })
 }
 
-/// Writes an RGB picture as PNG, whole or not at all.
+/// Writes an RGB picture as PNG, completely or not at all.
 ///
 /// # Errors
 /// [`Status::Io`] with the file's name.

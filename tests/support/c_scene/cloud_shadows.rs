@@ -1,15 +1,14 @@
-//! Broken clouds through the C functions for the tests of every kind of host, and what the map of their shadows must
-//! hold.
+//! Broken clouds set through the C functions, for the tests of every kind of host, and checks of their shadow map.
 
 use welkin::capi::{cloud_shadow::*, clouds::*, frame::*, report::*, timeline::*, view::*, weather::*};
 
 use super::{Scene, init, ok};
 
-/// Places along a side of the square that is looked at, and metres between them.
+/// Points along a side of the tested square, and their spacing in metres.
 pub const SIDE: u32 = 24;
 pub const APART_M: f64 = 400.0;
 
-/// Scattered clouds in the sun.
+/// Sets scattered clouds in sunlight.
 pub fn scatter(scene: &Scene) {
     let sun = wk_given_direction { azimuth_deg: 120.0, elevation_deg: 40.0, ..init("wk_given_direction") };
     let mut weather = init("wk_weather");
@@ -24,7 +23,7 @@ pub fn scatter(scene: &Scene) {
     }
 }
 
-/// The map of the view.
+/// The view's shadow map.
 pub fn shadows(scene: &Scene) -> wk_cloud_shadows {
     let mut map = init("wk_cloud_shadows");
     // SAFETY: live pointers.
@@ -32,7 +31,7 @@ pub fn shadows(scene: &Scene) -> wk_cloud_shadows {
     map
 }
 
-/// The map after a first frame, whole, of which nothing is drawn.
+/// The complete map after a first frame, which draws nothing.
 pub fn whole(scene: &Scene, size: (u32, u32)) -> wk_cloud_shadows {
     let first = shadows(scene);
     assert_eq!(first.told, 0.0, "no frame yet");
@@ -44,13 +43,13 @@ pub fn whole(scene: &Scene, size: (u32, u32)) -> wk_cloud_shadows {
     map
 }
 
-/// The place `i` of the square, rows to the north.
+/// Point `i` of the square; rows go north.
 pub fn place(i: u32) -> [f64; 3] {
     let at = |p: u32| (f64::from(p) - 0.5 * f64::from(SIDE - 1)) * APART_M;
     [at(i % SIDE), at(i / SIDE), 0.0]
 }
 
-/// Fails unless these are the shares of the places, in their order.
+/// Asserts that these are the sun shares at the points, in order.
 #[track_caller]
 pub fn assert_shares(scene: &Scene, shares: &[f64]) {
     assert_eq!(shares.len(), (SIDE * SIDE) as usize);

@@ -1,4 +1,4 @@
-//! A terrain through the C functions for the tests of every kind of host, and what its texture must hold.
+//! A terrain set through the C functions, for the tests of every kind of host, and checks of its texture.
 
 use welkin::capi::{
     area::*, device::*, ground::*, ground_grid::*, ground_texture::*, rain::*, status::*, timeline::*, weather::*,
@@ -10,13 +10,13 @@ use super::{Scene, init, message, ok};
 pub const CELL_M: f64 = 2.0;
 pub const ORIGIN: [f64; 3] = [-6.0, 30.0, 0.5];
 
-/// A view of a context whose ground is simulated.
+/// Creates a view of a context with simulated ground.
 pub fn scene(device: *mut wk_device) -> Scene {
     let simulation = wk_simulation_desc { ground_model: WK_GROUND_SIMULATED, ..init("wk_simulation_desc") };
     Scene::with(device, (&raw const simulation).cast())
 }
 
-/// A terrain that slopes to the south-east, with a pit of 0.2 m, two nodes wide, at its north-western end.
+/// Sets a terrain that slopes to the south-east, with a pit of 0.2 m, two nodes wide, at its north-western end.
 pub fn set_grid(scene: &Scene, nodes: [u32; 2]) {
     let height = |i: u32| {
         let (x, y) = (i % nodes[0], i / nodes[0]);
@@ -36,8 +36,7 @@ pub fn set_grid(scene: &Scene, nodes: [u32; 2]) {
     ok(unsafe { wk_context_set_ground_grid(scene.context, &grid) });
 }
 
-/// Weather with rain of this rate from one time to another, more of it round the south-western corner; a roof in the
-/// east.
+/// Sets rain at this rate between two times, with more of it around the south-western corner, and a roof in the east.
 pub fn rain(scene: &Scene, rate_mm_h: f64, from_s: f64, to_s: f64) {
     let weather = wk_weather {
         precipitation_kind: if rate_mm_h > 0.0 { WK_PRECIPITATION_RAIN } else { WK_PRECIPITATION_NONE },
@@ -65,7 +64,7 @@ pub fn rain(scene: &Scene, rate_mm_h: f64, from_s: f64, to_s: f64) {
     }
 }
 
-/// The terrain's texture now.
+/// The terrain's current texture.
 pub fn texture(scene: &Scene) -> wk_ground_texture {
     let mut texture = init("wk_ground_texture");
     // SAFETY: live pointers.
@@ -73,7 +72,7 @@ pub fn texture(scene: &Scene) -> wk_ground_texture {
     texture
 }
 
-/// What there is no texture of is refused, and nothing written.
+/// Asserts that a missing texture is refused and nothing is written.
 pub fn assert_none(scene: &Scene) {
     let mut texture = wk_ground_texture { generation: 77, ..init("wk_ground_texture") };
     // SAFETY: live pointers.
@@ -82,7 +81,7 @@ pub fn assert_none(scene: &Scene) {
     assert_eq!((texture.texture, texture.generation), (0, 77));
 }
 
-/// The terrain's cells as the texture has them, and their revision.
+/// The terrain's cells as they are in the texture, and their revision.
 pub fn cells(scene: &Scene, count: usize) -> (Vec<[f32; 4]>, u64) {
     let mut cells = vec![wk_ground_cell { film_mm: 0.0, soaked: 0.0, standing_mm: 0.0, ice: 0.0 }; count];
     let (size, mut revision) = (size_of::<wk_ground_cell>() as u32, 0);
@@ -91,8 +90,8 @@ pub fn cells(scene: &Scene, count: usize) -> (Vec<[f32; 4]>, u64) {
     (cells.iter().map(|c| [c.film_mm, c.soaked, c.standing_mm, c.ice]).collect(), revision)
 }
 
-/// Fails unless the texels are the cells, in their order, to a half float's precision; where no water stands they may
-/// be negative.
+/// Asserts that the texels equal the cells, in order, to a half float's precision. Texels without standing water may be
+/// negative.
 #[track_caller]
 pub fn assert_cells(texels: &[[f32; 4]], cells: &[[f32; 4]]) {
     assert_eq!(texels.len(), cells.len());

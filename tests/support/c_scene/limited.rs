@@ -1,4 +1,4 @@
-//! A process that may run out of memory: the limit is on the whole process, so each such test runs in one of its own.
+//! Tests with limited memory. The limit applies to a whole process, so each such test runs in a process of its own.
 
 use std::process::Command;
 
@@ -18,7 +18,7 @@ unsafe extern "C" {
     fn setrlimit(resource: i32, limit: *const Limit) -> i32;
 }
 
-/// Leaves this process so much address space beyond what it has; `None` lifts the limit.
+/// Limits the address space to what this process has now plus `bytes`; `None` lifts the limit.
 pub fn leave(bytes: Option<u64>) {
     const RLIMIT_AS: i32 = 9;
     let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
@@ -30,7 +30,7 @@ pub fn leave(bytes: Option<u64>) {
 
 const CHILD: &str = "WELKIN_TEST_OF_MEMORY";
 
-/// Runs the test `name` again in a process that may run out of memory; whether this is that process.
+/// Runs the test `name` again in a process of its own, where memory may be limited. Returns true in that process.
 pub fn in_a_process(name: &str) -> bool {
     if std::env::var_os(CHILD).is_some() {
         return true;
@@ -42,8 +42,8 @@ pub fn in_a_process(name: &str) -> bool {
     false
 }
 
-/// Whether the device's memory is the process's, which the limit is on. A card has its own, and no test should fill
-/// that.
+/// Whether the device uses the process's memory, to which the limit applies. A graphics card has its own memory, which
+/// no test should fill.
 pub fn is_limited(device: *mut wk_device) -> bool {
     let mut caps = init::<wk_caps>("wk_caps");
     // SAFETY: live pointers.

@@ -1,4 +1,4 @@
-//! A device that is lost under a host: what every call then answers, and that all of it can be destroyed.
+//! Loss of a device in use: how every call then responds, and that all objects can still be destroyed.
 
 use std::ptr::{null, null_mut};
 
@@ -9,7 +9,8 @@ use welkin::capi::{
 
 use super::{Scene, init, message, ok};
 
-/// Loses the device as a driver's reset would, and asks of everything that reaches it; a host's of its `shaders` too.
+/// Loses the device as a driver reset would, and checks every call that uses it; if `shaders`, also the veil for the
+/// host's shaders.
 pub fn lose_and_ask(device: *mut wk_device, scene: &Scene, frame: &wk_frame, shaders: bool) {
     abi::lose_in_next_call();
     // SAFETY: live handles, locals with the sizes given.
@@ -40,8 +41,8 @@ pub fn lose_and_ask(device: *mut wk_device, scene: &Scene, frame: &wk_frame, sha
     save_and_go_on(scene);
 }
 
-/// What the header promises of a lost device: weather, time, queries and state go on, and another device's context
-/// takes the state.
+/// Checks the header's promise for a lost device: weather, time, queries and state continue to work, and a context on
+/// another device can load the state.
 fn save_and_go_on(scene: &Scene) {
     let (mut before, mut after, mut size) = (0, 0, 0);
     let mut conditions = init::<wk_conditions>("wk_conditions");

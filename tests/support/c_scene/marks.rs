@@ -1,13 +1,13 @@
-//! What a host may say of each pixel: what it is made of, and its normal.
+//! Optional data of a host about each pixel: its surface class and its normal.
 
 use welkin::capi::{device::*, frame::*, ground::*, texture::*, view::*};
 
 use super::own::{Own, Size, different, wet_scene};
 
-/// The wet scene without rain in the air, which needs neither.
+/// Stages of the wet scene without falling rain, which uses neither.
 pub const STAGES: wk_stage_flags = WK_STAGE_ALL & !WK_STAGE_PARTICLES;
 
-/// From the left: soil, paving, a building, nothing said.
+/// Classes from the left: soil, paving, a building, none.
 pub fn classes(size: Size) -> Vec<u8> {
     let class = |x: u32| match 4 * x / size.0 {
         0 => WK_SURFACE_CLASS_SOIL,
@@ -18,7 +18,7 @@ pub fn classes(size: Size) -> Vec<u8> {
     (0..size.0 * size.1).map(|i| class(i % size.0) as u8).collect()
 }
 
-/// Waves along both axes of the host's world, and none in the lowest rows.
+/// Normals of waves along both axes of the host's world; none in the lowest rows.
 pub fn normals(size: Size) -> Vec<[f32; 4]> {
     let normal = |i: u32| {
         let (x, y) = (i % size.0, i / size.0);
@@ -36,13 +36,13 @@ pub fn half_normals(size: Size) -> Vec<[u16; 4]> {
     normals(size).iter().map(|n| n.map(|v| half::f16::from_f32(v).to_bits())).collect()
 }
 
-/// (n + 1) / 2 in 10 bits a channel, red in the lowest.
+/// (n + 1) / 2 in 10 bits per channel, red in the lowest bits.
 pub fn packed_normals(size: Size) -> Vec<u32> {
     let ten = |v: f32| (511.5 * (v + 1.0)).round() as u32;
     normals(size).iter().map(|n| ten(n[0]) | ten(n[1]) << 10 | ten(n[2]) << 20).collect()
 }
 
-/// The wet scene on an own device: plain, with classes, with normals, with both. All four differ.
+/// The wet scene on Welkin's own device: plain, with classes, with normals, with both. All four differ.
 pub fn own_pictures(size: Size) -> [Vec<[u8; 4]>; 4] {
     let mut own = Own::new(WK_BACKEND_VULKAN);
     let scene = wet_scene(own.device);

@@ -1,11 +1,12 @@
-//! One small scene through the C functions, for the tests of every kind of host: the same context, camera and picture.
+//! One small scene set through the C functions, for the tests of every kind of host: the same context, camera and
+//! picture.
 
 // Handles are live, and the library recognises those that are not.
 #![allow(clippy::not_unsafe_ptr_arg_deref)]
 
 pub mod cloud_shadows;
 pub mod ground;
-// The limit on a process's memory is Linux's.
+// The memory limit uses a Linux call.
 #[cfg(target_os = "linux")]
 pub mod limited;
 pub mod loss;
@@ -19,19 +20,19 @@ use std::ptr::{null, null_mut};
 use crate::refusals;
 use welkin::capi::{abi, context::*, device::*, frame::*, sky::*, status::*, texture::*, timeline::*, view::*};
 
-/// The thread's last message, whose field is held against the header.
+/// The thread's last message; also checks its field against the header.
 pub fn message() -> String {
     assert_eq!(refusals::field_fault(), None);
     refusals::message()
 }
 
-/// Fails with the message unless the call succeeded.
+/// Panics with the message unless the call succeeded.
 #[track_caller]
 pub fn ok(status: wk_status) {
     assert_eq!(status, WK_OK, "{}", message());
 }
 
-/// Every field at its default.
+/// A struct with every field at its default.
 pub fn init<T>(name: &str) -> T {
     let mut bytes = vec![0_u64; size_of::<T>().div_ceil(8)];
     ok(abi::init(name, &mut bytes, size_of::<T>() as u32));
@@ -50,10 +51,10 @@ impl Scene {
         Self::with(device, null())
     }
 
-    /// `next` of the context's description, after the sky's.
+    /// `next` is appended to the context's description, after the sky's settings.
     pub fn with(device: *mut wk_device, next: *const c_void) -> Self {
         let mut scene = Self { context: null_mut(), view: null_mut() };
-        // Small tables: what is tested here is the way in and out, not the sky.
+        // Small tables, because the tests are about the interface and not the sky.
         let sky = wk_sky_settings {
             model: WK_SKY_ISOTROPIC,
             suns: 16,
@@ -84,13 +85,14 @@ impl Scene {
     }
 }
 
-/// Looks north from 2 m above ground, 1 rad high, reversed infinite depth; the picture is sRGB-encoded.
+/// A camera 2 m above the ground, looking north, with a field of view 1 rad high and reversed infinite depth. The
+/// picture is sRGB-encoded.
 pub fn frame_of(frame_id: u64, size: (u32, u32)) -> wk_frame {
     let focal = 1.0 / f64::tan(0.5);
     let aspect = f64::from(size.0) / f64::from(size.1);
     let mut projection = [0.0; 16];
     (projection[0], projection[5], projection[11], projection[14]) = (focal / aspect, focal, -1.0, 0.1);
-    // East is the picture's right, up its up, north away from the eye.
+    // East is right in the picture, up is up, and north points away from the camera.
     let view = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     wk_frame {
         frame_id,
@@ -103,7 +105,7 @@ pub fn frame_of(frame_id: u64, size: (u32, u32)) -> wk_frame {
     }
 }
 
-/// The scene over blue 0.5 with one depth everywhere, on a Vulkan device of Welkin's own; rows from the top.
+/// The scene over blue 0.5 with the same depth everywhere, on a Vulkan device of Welkin's own; top row first.
 pub fn own_picture(size: (u32, u32), depth: f32, frame_id: u64) -> Vec<[u8; 4]> {
     let desc = wk_device_desc { backends: WK_BACKEND_VULKAN, ..init("wk_device_desc") };
     let pixels = (size.0 * size.1) as usize;
@@ -132,7 +134,7 @@ pub fn own_picture(size: (u32, u32), depth: f32, frame_id: u64) -> Vec<[u8; 4]> 
     picture
 }
 
-/// Fails where two pictures differ by more than `most` steps of 255.
+/// Asserts that two pictures differ by at most `most` steps of 1/255.
 #[track_caller]
 pub fn assert_same(got: &[[u8; 4]], wanted: &[[u8; 4]], most: u8) {
     assert_eq!(got.len(), wanted.len());

@@ -23,7 +23,7 @@ impl Own {
         own
     }
 
-    /// An image filled with `texels`, rows from the top.
+    /// Creates an image filled with `texels`, top row first.
     pub fn image<T: bytemuck::Pod>(&mut self, format: wk_format, size: Size, texels: &[T]) -> *mut wk_texture {
         let desc = wk_texture_desc { width: size.0, height: size.1, format, ..init("wk_texture_desc") };
         let (mut image, row) = (null_mut(), size.0 * size_of::<T>() as u32);
@@ -37,7 +37,7 @@ impl Own {
         image
     }
 
-    /// The texels of an image, rows from the top.
+    /// Reads the texels of an image, top row first.
     pub fn read<T: bytemuck::Pod>(&self, image: *const wk_texture, size: Size) -> Vec<T> {
         let mut texels = vec![T::zeroed(); (size.0 * size.1) as usize];
         let row = size.0 * size_of::<T>() as u32;
@@ -46,7 +46,7 @@ impl Own {
         texels
     }
 
-    /// The wet scene on grey ground as `view` draws it; `change` may add images to the target.
+    /// Draws the wet scene on grey ground with `view`; `change` may add images to the target.
     pub fn wet_picture(
         &mut self,
         view: *mut wk_view,
@@ -65,7 +65,7 @@ impl Own {
         self.read(color, size)
     }
 
-    /// The device and its images go; what else was made on it has gone before.
+    /// Destroys the device and its images; destroy all other objects on it before.
     pub fn destroy(self) {
         // SAFETY: live handles.
         unsafe {
@@ -75,7 +75,7 @@ impl Own {
     }
 }
 
-/// A view of a context with rain, fog and wet paved ground.
+/// Creates a view of a context with rain, fog and wet paved ground.
 pub fn wet_scene(device: *mut wk_device) -> Scene {
     let scene = Scene::new(device);
     let weather = wk_weather {
@@ -93,13 +93,13 @@ pub fn wet_scene(device: *mut wk_device) -> Scene {
     scene
 }
 
-/// The frame of [`frame_of`] without any history.
+/// The frame of [`frame_of`] without history.
 pub fn still_frame(frame_id: u64, size: Size) -> wk_frame {
     let frame = frame_of(frame_id, size);
     wk_frame { flags: frame.flags | WK_FRAME_NO_HISTORY, ..frame }
 }
 
-/// How far below the horizon a row is, as the tangent of the angle; rows from the top.
+/// Tangent of a row's angle below the horizon; top row first.
 fn fall(row: u32, size: Size) -> f64 {
     (2.0 * (f64::from(row) + 0.5) / f64::from(size.1) - 1.0) * f64::tan(0.5)
 }
@@ -108,7 +108,7 @@ fn of_rows<T: Copy>(size: Size, texel: impl Fn(u32) -> T) -> Vec<T> {
     (0..size.1).flat_map(|row| std::iter::repeat_n(texel(row), size.0 as usize)).collect()
 }
 
-/// Depths of level ground 2 m below the camera of [`frame_of`], and of the sky above it.
+/// Depths of level ground 2 m below the camera of [`frame_of`], with sky above it.
 pub fn ground_depths(size: Size) -> Vec<f32> {
     of_rows(size, |row| (0.1 * fall(row, size).max(0.0) / 2.0) as f32)
 }
@@ -118,7 +118,7 @@ pub fn grey_ground(size: Size) -> Vec<[u8; 4]> {
     of_rows(size, |row| if fall(row, size) > 0.0 { [110, 110, 110, 255] } else { [0, 0, 0, 255] })
 }
 
-/// How many pixels differ by more than `most` steps of 255.
+/// Number of pixels that differ by more than `most` steps of 1/255.
 pub fn different(a: &[[u8; 4]], b: &[[u8; 4]], most: u8) -> usize {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > most)).count()

@@ -1,22 +1,23 @@
-//! A thing of glass in fog and in rain: what a host's own shader makes of it with the frame's veil, and what Welkin
-//! itself draws before an opaque thing at the same place.
+//! A glass object in fog and in rain. Compares what a host's own shader draws of it with the frame's veil to what
+//! Welkin draws in front of an opaque object at the same place.
 
 use welkin::capi::{device::*, frame::*, status::*, timeline::*, veil::*, view::*, weather::*, weather_kinds::*};
 
 use super::{Scene, frame_of, init, ok, own::Size};
 
-/// Of the thing: of 1000 cd/m^2 in linear units, or as a display shows it.
+/// Colour of the object, in units of 1000 cd/m^2 or as a display value.
 pub const COLOR: [f32; 3] = [0.1, 0.3, 0.6];
-/// How much of itself the thing shows.
+/// Opacity of the object.
 pub const ALPHA: f32 = 0.5;
 pub const STAGES: wk_stage_flags = WK_STAGE_PREPARE | WK_STAGE_BACKGROUND | WK_STAGE_MEDIUM;
-/// Rain, and what the frame's numbers mean. In the sRGB curve's numbers glass cannot be blended right.
+/// Whether it rains, and the frame's colour space. sRGB-encoded values are left out, as they cannot blend glass
+/// correctly.
 pub const CASES: [(bool, wk_color_space); 3] =
     [(false, WK_COLOR_SCENE_LINEAR), (true, WK_COLOR_SCENE_LINEAR), (false, WK_COLOR_DISPLAY_LINEAR)];
-/// How far before the camera the thing stands, m.
+/// Distances of the object from the camera, m.
 pub const FAR_M: [f64; 4] = [12.0, 60.0, 250.0, 1500.0];
 
-/// A view in fog or in rain, with the sun aside, and its veil asked for.
+/// Creates a view in fog or in rain, with the sun to the side, and asks for its veil.
 pub fn scene(device: *mut wk_device, rain: bool) -> Scene {
     let scene = Scene::new(device);
     let sun = wk_given_direction { azimuth_deg: 110.0, elevation_deg: 35.0, ..init("wk_given_direction") };
@@ -56,24 +57,24 @@ pub fn snippet(language: wk_shading_language) -> &'static str {
     }
 }
 
-/// A frame in these units, its target aside.
+/// A frame in this colour space, without its target.
 pub fn frame(id: u64, size: Size, color_space: wk_color_space) -> wk_frame {
     let frame = frame_of(id, size);
     wk_frame { color_space, cd_m2_per_unit: 1000.0, flags: frame.flags | WK_FRAME_NO_HISTORY, ..frame }
 }
 
-/// The depth of a thing that stands `far_m` before the camera.
+/// Depth of an object `far_m` in front of the camera.
 pub fn depth(far_m: f64) -> f32 {
     (0.1 / far_m) as f32
 }
 
-/// What turns a pixel's place in the picture into its ray, per metre before the camera: (1 / p0, 1 / p5).
+/// Factors from a pixel's position to its ray, per metre in front of the camera: (1 / p0, 1 / p5).
 pub fn slopes(size: Size) -> [f32; 2] {
     let p = frame_of(0, size).projection;
     [(1.0 / p[0]) as f32, (1.0 / p[5]) as f32]
 }
 
-/// Fails unless the host's glass before `behind` is half of that and half of the `opaque` thing.
+/// Asserts that the host's glass in front of `behind` is half `behind` and half the `opaque` object.
 pub fn assert_mixed(got: &[[f32; 4]], behind: &[[f32; 4]], opaque: &[[f32; 4]], what: &str) {
     let (mut worst, mut sum) = (0.0_f32, 0.0);
     for ((g, b), o) in got.iter().zip(behind).zip(opaque) {

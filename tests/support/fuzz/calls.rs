@@ -1,4 +1,4 @@
-//! One line a function of the header: a call with random parameters on the objects of a small world.
+//! One entry per function of the header: a call with random parameters on the objects of a small world.
 
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
@@ -19,10 +19,10 @@ use super::{
     texts,
 };
 
-/// How an answer looks to the host.
+/// The result of a call as the host sees it.
 pub struct Answer {
     pub status: wk_status,
-    /// What a successful call wrote and should not have: numbers that are not finite.
+    /// Errors in the output of a successful call: numbers that are not finite.
     pub faults: Vec<String>,
 }
 
@@ -32,7 +32,7 @@ impl From<wk_status> for Answer {
     }
 }
 
-/// Classes of the header, holes, and now and then one beyond them.
+/// Surface classes of the header, with holes, and occasionally one beyond them.
 static CLASSES: [u8; 1024] = {
     let mut classes = [0; 1024];
     let mut i = 0;
@@ -44,7 +44,7 @@ static CLASSES: [u8; 1024] = {
     classes
 };
 
-/// Cells of a tile of 32 x 32, mostly of one that may be there and within it.
+/// Cells of a 32 x 32 tile. Mostly the tile may exist and the cells lie within it.
 fn terrain_cells(d: &mut Dice) -> Struct {
     let mut cells = Struct::random(d, "wk_terrain_cells", 10);
     if !d.one_in(10) {
@@ -66,7 +66,7 @@ fn terrain_cells(d: &mut Dice) -> Struct {
     cells
 }
 
-/// A context, mostly one with a tile (0, 0) of flat ground: random calls alone seldom meet a tile that stands.
+/// A context that mostly has a tile (0, 0) of flat ground, because random calls alone rarely reach an existing tile.
 fn tiled(d: &mut Dice, contexts: &[*mut wk_context]) -> *mut wk_context {
     let context = handle(d, contexts);
     if !d.one_in(3) && contexts.contains(&context) {
@@ -85,13 +85,13 @@ fn tiled(d: &mut Dice, contexts: &[*mut wk_context]) -> *mut wk_context {
 impl Answer {
     fn of(status: wk_status, out: &Struct) -> Self {
         let faults = if status == WK_OK { out.not_finite() } else { vec![] };
-        // Nothing stops light in empty space: the header says so.
+        // In empty space the visibility is infinite, as the header states.
         let faults = faults.into_iter().filter(|f| *f != "visibility_m");
         Self { status, faults: faults.map(|f| format!("{f} is not finite")).collect() }
     }
 }
 
-/// Live and dead objects, and the time the host has come to.
+/// Live and dead objects, and the host's current time.
 pub struct World {
     devices: Vec<*mut wk_device>,
     contexts: Vec<*mut wk_context>,
@@ -101,16 +101,16 @@ pub struct World {
     plan: Vec<u8>,
     time_s: f64,
     frame: u64,
-    /// Whether the objects go with this world.
+    /// Whether the objects are destroyed with this world.
     owner: bool,
-    /// Whether the first device does not.
+    /// Whether the first device survives this world.
     keeps_device: bool,
 }
 
-// SAFETY: handles are numbers; that calls from several threads are answered is what is tested.
+// SAFETY: handles are numbers; calls from several threads are the subject of the test.
 unsafe impl Send for World {}
 
-/// A random element, now and then none or a number that is none.
+/// A random element; occasionally NULL or an invalid handle.
 fn handle<T>(dice: &mut Dice, live: &[*mut T]) -> *mut T {
     if live.is_empty() || dice.one_in(60) {
         return dice.pick(&[null_mut(), 0x55 as *mut T, usize::MAX as *mut T]);
@@ -118,18 +118,18 @@ fn handle<T>(dice: &mut Dice, live: &[*mut T]) -> *mut T {
     dice.pick(live)
 }
 
-/// Room for most answers of a list.
+/// A buffer large enough for most returned lists.
 fn room<T: Copy>(zero: T) -> Vec<T> {
     vec![zero; 64]
 }
 
-/// The sizes that a caller gives for its elements, seldom wrong.
+/// The element size that a caller passes, rarely wrong.
 fn size_of_element<T>(dice: &mut Dice) -> u32 {
     if dice.one_in(30) { dice.pick(&[0, 4, 8]) } else { size_of::<T>() as u32 }
 }
 
 impl World {
-    /// New objects on a device of the backend that needs no GPU.
+    /// Creates objects on a device of the backend that needs no GPU.
     pub fn on_noop() -> Self {
         let (mut device, mut desc) = (null_mut(), Struct::plain("wk_device_desc"));
         desc.set("backends", WK_BACKEND_NOOP);
@@ -138,7 +138,7 @@ impl World {
         Self::on(device)
     }
 
-    /// New objects on the device of another world, which stays there.
+    /// Creates objects on another world's device, which stays alive.
     pub fn beside(&self) -> Self {
         let mut new = Self::on(self.devices[0]);
         new.keeps_device = true;
@@ -150,7 +150,7 @@ impl World {
         let mut size = Struct::plain("wk_texture_desc");
         size.set("width", 16_u32);
         size.set("height", 8_u32);
-        // A context in which all has a state: calls that need one would seldom find it by chance.
+        // A context in which every effect has state: random calls would rarely create one.
         let (mut simulated, mut simulation) = (Struct::plain("wk_context_desc"), Struct::plain("wk_simulation_desc"));
         simulation.set("lying_snow_model", WK_LYING_SNOW_SIMULATED);
         simulated.set_struct("next", simulation);
@@ -178,7 +178,7 @@ impl World {
         }
     }
 
-    /// The first context, in which all has a state.
+    /// The first context, in which every effect has state.
     pub fn context(&self) -> *mut wk_context {
         self.contexts[0]
     }
@@ -188,7 +188,7 @@ impl World {
         self.views[0]
     }
 
-    /// The same objects in the hands of another thread.
+    /// Another `World` with the same objects, for use by another thread.
     pub fn shared(&self) -> Self {
         Self {
             devices: self.devices.clone(),
@@ -204,7 +204,7 @@ impl World {
         }
     }
 
-    /// Takes over what another thread made.
+    /// Adopts objects that another thread created.
     pub fn adopt(&mut self, other: &Self) {
         self.devices.extend(&other.devices);
         self.contexts.extend(&other.contexts);
@@ -212,7 +212,7 @@ impl World {
         self.textures.extend(&other.textures);
     }
 
-    /// Loses the first device, and says what its status is.
+    /// Loses the first device and returns its status.
     pub fn lose(&self) -> wk_status {
         abi::lose_in_next_call();
         // SAFETY: a live handle.
@@ -248,12 +248,12 @@ impl Drop for World {
     }
 }
 
-/// A place, mostly near the origin.
+/// A position, mostly near the origin.
 fn position(dice: &mut Dice) -> [f64; 3] {
     std::array::from_fn(|_| if dice.one_in(6) { dice.float() } else { 200.0 * dice.unit() - 100.0 })
 }
 
-/// A direction, mostly of no unit length: a new air's first answer takes a second.
+/// A direction, mostly not of unit length, because the first answer for a new air takes a second.
 fn direction(dice: &mut Dice) -> [f64; 3] {
     if dice.one_in(4) {
         return dice.pick(&[[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, 0.8, -0.6]]);
@@ -276,14 +276,14 @@ fn set_list(dice: &mut Dice, name: &str, call: impl FnOnce(*mut c_void, u32, u32
     call(if dice.one_in(30) { null_mut() } else { list.ptr() }, count, stride).into()
 }
 
-/// Calls a query with a place for one struct.
+/// Calls a query with room for one struct.
 fn get(name: &str, call: impl FnOnce(*mut c_void) -> wk_status) -> Answer {
     let mut out = Struct::plain(name);
     let status = call(out.ptr());
     Answer::of(status, &out)
 }
 
-/// A create whose object is kept, or must not have been written.
+/// Checks a create call: on success, keeps the object; otherwise the out-parameter must not have been written.
 fn made<T>(
     status: wk_status,
     out: *mut T,
@@ -303,7 +303,7 @@ fn made<T>(
     Answer { status, faults }
 }
 
-/// Destroys any object, which stays in the list as a dead handle if it is not the first.
+/// Destroys any object but the first. It may stay in the list as a dead handle.
 fn destroy<T>(dice: &mut Dice, live: &mut Vec<*mut T>, call: impl FnOnce(*mut T) -> wk_status) -> Answer {
     if live.len() < 2 {
         return WK_OK.into();
@@ -350,8 +350,8 @@ fn frame(dice: &mut Dice, world: &mut World) -> Struct {
     frame
 }
 
-/// One line a function of the header but for initialisers, and for hosts' devices and windows, whose tests are their
-/// own.
+/// One entry per function of the header, except initialisers and functions for hosts' devices and windows, which have
+/// tests of their own.
 pub const CALLS: &[(&str, Call)] = &[
     ("wk_version", |_, _| {
         let (mut a, mut b, mut c) = (0, 0, 0);
@@ -360,7 +360,7 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_device_create", |d, w| {
         let mut out = null_mut();
         let mut desc = Struct::random(d, "wk_device_desc", 20);
-        // Other backends are other tests': here no driver is asked.
+        // Only the backend without a driver: other tests cover the others.
         desc.set("backends", WK_BACKEND_NOOP);
         let status = unsafe { wk_device_create(desc.ptr().cast(), &mut out) };
         made(status, out, &mut w.devices, 2, |x| _ = unsafe { wk_device_destroy(x) })
@@ -413,7 +413,7 @@ pub const CALLS: &[(&str, Call)] = &[
         unsafe extern "C" fn stop(_: *mut c_void, _: f64) -> i32 {
             0
         }
-        // A whole build takes seconds of a processor; each begins and is stopped.
+        // A complete build takes seconds of processor time, so each build is started and stopped.
         unsafe { wk_context_build_sky(handle(d, &w.contexts), Some(stop), null_mut()) }.into()
     }),
     ("wk_context_set_weather", |d, w| {
@@ -553,7 +553,8 @@ pub const CALLS: &[(&str, Call)] = &[
             "heights_m",
             (0..400).map(|_| if d.one_in(300) { d.float() as f32 } else { d.unit() as f32 }).collect(),
         );
-        // Classes of the header and one beyond it, by cells that may be fewer or more than there are heights.
+        // Classes of the header and one beyond it, for a number of cells that may be smaller or larger than the number
+        // of heights.
         let classes: Vec<u8> = (0..400).map(|i| if d.one_in(2000) { 7 } else { i as u8 % 7 }).collect();
         if d.one_in(2) {
             grid.set("surface_classes", classes.as_ptr());
@@ -858,7 +859,7 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_surface_create", |d, w| {
         let (device, mut out) = (handle(d, &w.devices), null_mut());
         let mut window = Struct::random(d, "wk_window", 4);
-        // An address that is no window would be the host's own mistake.
+        // An address that is not a window would be the host's own error.
         window.set("display", 0_u64);
         window.set("handle", 0_u64);
         unsafe { wk_surface_create(device, window.ptr().cast(), &mut out) }.into()
@@ -971,7 +972,7 @@ pub const CALLS: &[(&str, Call)] = &[
     }),
 ];
 
-/// Functions that have no line: they answer no status of a call, or need a host of their own.
+/// Functions without an entry: they return no status of a call, or need a host of their own.
 pub const ELSEWHERE: &[&str] = &[
     "wk_status_name",
     "wk_last_error_message",

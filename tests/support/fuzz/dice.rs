@@ -1,10 +1,10 @@
 //! Seeded random numbers, and values that a careless or hostile host might pass.
 
-/// The same sequence for the same seed, on every machine (Steele, Lea and Flood 2014, SplitMix64); or what bytes say,
-/// two a throw, so that a fuzzer that changes a byte changes one throw.
+/// Random numbers that are the same for the same seed on every machine (SplitMix64; Steele, Lea and Flood 2014). With
+/// bytes as input, each throw uses two of them, so that a fuzzer that changes a byte changes one throw.
 pub struct Dice {
     state: u64,
-    /// Bytes still to be thrown, the last of them first.
+    /// Bytes still to be used, in reverse order.
     told: Vec<u8>,
 }
 
@@ -13,12 +13,12 @@ impl Dice {
         Self { state: seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bd1_e995, told: vec![] }
     }
 
-    /// Throws what `bytes` say, then a sequence of its own.
+    /// Throws from `bytes` first, then a sequence of its own.
     pub fn of_bytes(bytes: &[u8]) -> Self {
         Self { told: bytes.iter().rev().copied().collect(), ..Self::new(0) }
     }
 
-    /// Whether all bytes are thrown.
+    /// Whether all bytes are used.
     pub fn is_spent(&self) -> bool {
         self.told.is_empty()
     }
@@ -34,7 +34,7 @@ impl Dice {
         z ^ (z >> 31)
     }
 
-    /// A whole number below `n`.
+    /// A random whole number below `n`.
     pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n.max(1) as u64) as usize
     }
@@ -53,7 +53,7 @@ impl Dice {
         from[self.below(from.len())]
     }
 
-    /// A number as hosts pass them: mostly modest, of any magnitude at times, seldom no number at all.
+    /// A number as hosts pass it: mostly moderate, sometimes of any magnitude, rarely not a number.
     pub fn float(&mut self) -> f64 {
         match self.below(40) {
             0 => self.pick(&[f64::NAN, f64::INFINITY, f64::NEG_INFINITY]),
@@ -69,7 +69,7 @@ impl Dice {
         }
     }
 
-    /// A constant, a set of flags or a small count, seldom a large one.
+    /// A constant, a set of flags or a small count; rarely a large number.
     pub fn whole(&mut self) -> u64 {
         match self.below(10) {
             0 => 1 << self.below(64),

@@ -1,12 +1,12 @@
-//! What every answer of the C interface must be like, whatever was asked.
+//! Rules that every answer of the C interface must obey, whatever the call.
 
 use crate::refusals::{PUBLIC, field_fault, message};
 use welkin::capi::status::*;
 
-/// What holds for every answer.
+/// Checks an answer against the rules.
 pub struct Judge;
 
-/// Words of the inside, which say nothing to a host.
+/// Words of the implementation, which mean nothing to a host.
 const INTERNAL: &[&str] = &[
     "wgpu::",
     "Validation",
@@ -26,7 +26,7 @@ const INTERNAL: &[&str] = &[
 ];
 
 impl Judge {
-    /// What is wrong with an answer of `function`, if anything.
+    /// The error in an answer of `function`, if any.
     pub fn fault(&self, function: &str, status: wk_status) -> Option<String> {
         if status >= 0 {
             return None;

@@ -1,5 +1,5 @@
-//! What fuzzing is made of: calls of the whole C interface at random, damaged texts, and what judges the answers. The
-//! tests play it by their own dice, the fuzzers of `fuzz/` by inputs that reach new code.
+//! Building blocks of fuzzing: random calls of the whole C interface, damaged texts, and checks of the answers. The
+//! tests drive it with seeded random numbers, the fuzzers of `fuzz/` with inputs that reach new code.
 
 pub mod calls;
 pub mod dice;

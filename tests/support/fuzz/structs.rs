@@ -6,12 +6,12 @@ use welkin::capi::{abi, status::*};
 
 use super::dice::Dice;
 
-/// The most elements of a list that a call is given.
+/// Maximum number of elements in a list passed to a call.
 pub const MOST: u32 = 5;
-/// Bytes from element to element that lists have room for.
+/// Maximum stride for which lists have room, in bytes.
 const ROOM: usize = 4096;
 
-/// A struct of the header, or a list of them, in memory of its own; what it points to lives as long.
+/// A struct of the header, or a list of them, in memory of its own; the data it points to lives as long.
 pub struct Struct {
     words: Vec<u64>,
     name: &'static str,
@@ -21,19 +21,19 @@ pub struct Struct {
     numbers: Vec<f32>,
 }
 
-/// Its name as the library spells it, and its size.
+/// The struct's name as in the library, and its size.
 fn known(name: &str) -> (&'static str, usize) {
     let found = abi::structs().into_iter().find(|s| s.0 == name).unwrap_or_else(|| panic!("no struct {name}"));
     (found.0, found.1)
 }
 
 impl Struct {
-    /// One struct at its defaults; zeros where it has none.
+    /// One struct with its defaults, or zeros if it has none.
     pub fn plain(name: &str) -> Self {
         Self::list(name, 1)
     }
 
-    /// A list of structs at their defaults.
+    /// A list of structs with their defaults.
     pub fn list(name: &str, count: u32) -> Self {
         let (name, size) = known(name);
         let stride = size.next_multiple_of(8);
@@ -48,14 +48,14 @@ impl Struct {
         made
     }
 
-    /// One struct of which each field is changed at random with a chance of one in `rarity`.
+    /// One struct, with each field changed at random with a probability of one in `rarity`.
     pub fn random(dice: &mut Dice, name: &str, rarity: usize) -> Self {
         let mut made = Self::plain(name);
         made.change(dice, 0, rarity);
         made
     }
 
-    /// A list of up to [`MOST`] such structs, and how many.
+    /// A list of up to [`MOST`] such structs, and their number.
     pub fn random_list(dice: &mut Dice, name: &str, rarity: usize) -> (Self, u32) {
         let count = dice.below(MOST as usize + 1) as u32;
         let mut made = Self::list(name, MOST);
@@ -80,7 +80,7 @@ impl Struct {
             }
         }
         for (_, field, offset, bytes, count) in abi::integers().into_iter().filter(|f| f.0 == name) {
-            // Counts and strides belong to the lists that stand behind them, images of other devices to their hosts.
+            // Counts and strides belong to their lists; images of other devices belong to their hosts.
             let own = field.ends_with("_count") || field.ends_with("_stride") || field == "opengl";
             for i in 0..count {
                 if !own && dice.one_in(rarity * count) {
@@ -142,17 +142,17 @@ impl Struct {
         self.words.as_mut_ptr().cast()
     }
 
-    /// From element to element.
+    /// Bytes from one element to the next.
     pub fn stride(&self) -> u32 {
         self.stride as u32
     }
 
-    /// The size of one element.
+    /// Size of one element.
     pub fn size(&self) -> u32 {
         known(self.name).1 as u32
     }
 
-    /// The floats of the struct that are not finite, by name.
+    /// Names of the struct's floats that are not finite.
     pub fn not_finite(&self) -> Vec<&'static str> {
         let bytes: &[u8] = bytemuck::cast_slice(&self.words);
         let mut found = vec![];

@@ -1,5 +1,6 @@
-//! What coverage-guided fuzzers run (`make fuzz`), and the tests replay on `fuzz/corpus`: one function a kind of input.
-//! Each panics where Welkin does, where a refusal is unfit for a host, and where what was read does not hold together.
+//! Targets of the coverage-guided fuzzers (`make fuzz`), which the tests replay on `fuzz/corpus`: one function per kind
+//! of input. Each panics if Welkin panics, if an error message is unfit for a host, or if the parsed data is
+//! inconsistent.
 
 use std::{ffi::CString, ptr::null_mut};
 
@@ -18,24 +19,24 @@ use super::{
     structs::Struct,
 };
 
-/// Calls of a sequence at most, so that a long input is no slower than a short one.
+/// Maximum number of calls in a sequence, so that a long input is not slower than a short one.
 const MOST_CALLS: usize = 60;
-/// Bytes of the longest message of a refusal.
+/// Maximum length of an error message, bytes.
 const MOST_MESSAGE: usize = 300;
 
 thread_local! {
-    /// Objects for inputs that replace all that was before.
+    /// Objects for inputs that replace all earlier state.
     static WORLD: World = World::on_noop();
 }
 
-/// Panics where a refusal is unfit for a host.
+/// Panics if an error is unfit for a host.
 fn fit(error: &Error) {
     let text = error.to_string();
     assert!(!text.is_empty() && text.len() < MOST_MESSAGE, "{} bytes: {text}", text.len());
     assert!(!matches!(error.status, Status::Internal | Status::Poisoned), "{text}");
 }
 
-/// Panics where an answer of the C interface is wrong.
+/// Panics if an answer of the C interface is wrong.
 fn judged(function: &str, status: i32) -> bool {
     if let Some(fault) = Judge.fault(function, status) {
         panic!("{function}: {fault}");
@@ -43,7 +44,7 @@ fn judged(function: &str, status: i32) -> bool {
     status == WK_OK
 }
 
-/// A weather report: what is read is a weather that a context takes, and the conditions of it are finite.
+/// A weather report: a context must accept the parsed weather, and its conditions must be finite.
 pub fn metar(data: &[u8]) {
     let Ok(text) = CString::new(data) else { return };
     let (mut layers, mut weather, mut metar) =
@@ -71,7 +72,7 @@ pub fn metar(data: &[u8]) {
     assert!(conditions.not_finite().iter().all(|f| *f == "visibility_m"), "{:?}", conditions.not_finite());
 }
 
-/// A planet file: what is read is written and read again as itself.
+/// A planet file: the parsed planet, written and parsed again, must be the same.
 pub fn planet(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     match Planet::from_toml(text) {
@@ -84,12 +85,12 @@ pub fn planet(data: &[u8]) {
     }
 }
 
-/// FNV-1a, 64 bits (Fowler, Noll and Vo 1991), as states seal themselves with.
+/// FNV-1a, 64 bits (Fowler, Noll and Vo 1991): the checksum of saved states.
 fn fnv(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
-/// A state whose sums fit again, that of the timeline in it too: without them a fuzzer would reach nothing behind.
+/// A state with corrected checksums, also that of its timeline. Otherwise a fuzzer would never get past the checksum.
 fn sealed(text: &str) -> String {
     let Some((_, body)) = text.split_once('\n') else { return text.to_owned() };
     let timeline = body.split_once("# timeline ").and_then(|(before, rest)| {
@@ -100,7 +101,7 @@ fn sealed(text: &str) -> String {
     format!("welkin state 2 {:016x}\n{body}", fnv(&body))
 }
 
-/// A saved state with sums that fit: one that is loaded is saved and loaded as itself.
+/// A saved state with valid checksums: after loading, it must save and load as the same state.
 pub fn state(data: &[u8]) {
     let context = WORLD.with(World::context);
     let data = &std::str::from_utf8(data).map_or_else(|_| data.to_vec(), |text| sealed(text).into_bytes());
@@ -116,7 +117,7 @@ pub fn state(data: &[u8]) {
     assert_eq!(hash(context), before, "a state that was loaded is another");
 }
 
-/// The hash of a context's state.
+/// Hash of a context's state.
 fn hash(context: *mut wk_context) -> u64 {
     let mut hash = 0;
     // SAFETY: a live handle.
@@ -136,7 +137,7 @@ fn saved(context: *mut wk_context) -> Vec<u8> {
     }
 }
 
-/// States that were saved in the middle of things.
+/// States saved in the middle of changes.
 pub fn states() -> Vec<Vec<u8>> {
     let changing = |f: &str| f.starts_with("wk_context_set") || f == "wk_context_update";
     let state = |seed| {
@@ -149,7 +150,7 @@ pub fn states() -> Vec<Vec<u8>> {
     (0..6).map(state).collect()
 }
 
-/// A plan as it is saved.
+/// Bytes of a saved plan.
 pub fn saved_plan() -> Vec<u8> {
     let (world, mut size) = (World::on_noop(), 0);
     let mut bytes = vec![0_u8; 1 << 16];
@@ -160,7 +161,7 @@ pub fn saved_plan() -> Vec<u8> {
     bytes
 }
 
-/// A body of a cache's file that [`cache`] takes.
+/// A body of a cache file that [`cache`] accepts.
 pub fn tables() -> Vec<u8> {
     sky::body_of_tables()
 }
@@ -172,12 +173,12 @@ pub fn plan(data: &[u8]) {
     judged("wk_view_load_plan", unsafe { wk_view_load_plan(view, data.as_ptr().cast(), data.len()) });
 }
 
-/// The tables in a cache's file, with the key and the sum that make them worth reading.
+/// The tables in a cache file, with a valid key and checksum.
 pub fn cache(data: &[u8]) {
     let _ = sky::takes_tables(data);
 }
 
-/// A file of noise: levels have the bytes that their sizes say.
+/// A noise file: each level must have as many bytes as its size requires.
 pub fn noise(data: &[u8]) {
     match NoiseImage::from_bytes(data) {
         Err(e) => fit(&e),
@@ -190,10 +191,10 @@ pub fn noise(data: &[u8]) {
     }
 }
 
-/// Calls of the whole header with arguments out of the data.
+/// Calls of the whole header, with arguments taken from the data.
 pub fn calls(data: &[u8]) {
     let mut dice = Dice::of_bytes(data);
-    // A device of its own would make its noise and its shaders anew for each input: most of the time.
+    // With a new device for each input, most of the time would go into building noise and shaders.
     let mut world = WORLD.with(World::beside);
     for _ in 0..MOST_CALLS {
         if dice.is_spent() {

@@ -1,4 +1,4 @@
-//! Texts and saved bytes as faulty programs, old files and hands produce them.
+//! Texts and saved bytes as produced by faulty programs, old files and manual edits.
 
 use super::dice::Dice;
 
@@ -6,7 +6,7 @@ const PLANET: &str = include_str!("../../../examples/data/planet_golden.toml");
 const REPORTS: &str = include_str!("../../../examples/data/metar.txt");
 const REAL_REPORTS: &str = include_str!("../../weather/data/reports.csv");
 
-/// Changes some bytes, cuts, doubles or lengthens; now and then leaves all as it is.
+/// Changes, cuts, duplicates or appends bytes; occasionally leaves everything as it is.
 pub fn damage(dice: &mut Dice, bytes: &mut Vec<u8>) {
     for _ in 0..dice.below(4) {
         if bytes.is_empty() {
@@ -28,7 +28,7 @@ pub fn damage(dice: &mut Dice, bytes: &mut Vec<u8>) {
     }
 }
 
-/// `text` after some damage, as UTF-8 without zeros.
+/// `text` with some damage, as UTF-8 without zero bytes.
 fn damaged(dice: &mut Dice, text: &str) -> String {
     let mut bytes = text.as_bytes().to_vec();
     damage(dice, &mut bytes);
@@ -40,7 +40,7 @@ pub fn planet(dice: &mut Dice) -> String {
     if dice.one_in(2) {
         return damaged(dice, PLANET);
     }
-    // Another number in the place of one that stands there.
+    // Replaces a number by another one.
     let lines: Vec<&str> = PLANET.lines().collect();
     let line = dice.below(lines.len());
     let changed = match lines[line].split_once(" = ") {
@@ -53,7 +53,7 @@ pub fn planet(dice: &mut Dice) -> String {
     lines.iter().enumerate().map(|(i, l)| if i == line { format!("{changed}\n") } else { format!("{l}\n") }).collect()
 }
 
-/// A weather report with groups exchanged, doubled or damaged.
+/// A weather report with groups swapped, duplicated or damaged.
 pub fn metar(dice: &mut Dice) -> String {
     let real = REAL_REPORTS.lines().skip(1).filter_map(|l| l.split(',').next());
     let written = REPORTS.lines().filter(|l| !l.starts_with('#') && !l.is_empty());

@@ -1,4 +1,5 @@
-//! Draws a scene as a host does: its own picture and depth into its images, then Welkin's stages, then what is shown.
+//! Draws a scene like a host: its own picture and depth into its images, then Welkin's stages, then the displayed
+//! picture.
 
 use std::sync::Arc;
 
@@ -19,7 +20,8 @@ use super::{
     world::{Hit, albedo, illuminance},
 };
 
-/// Writes a picture and its depth into images of any format of one sample; of a finer picture every second texel.
+/// Writes a picture and its depth into single-sampled images of any format; takes every second texel of a finer
+/// picture.
 const COPY: &str = "
 @group(0) @binding(0) var source: texture_2d<f32>;
 @vertex fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -29,7 +31,7 @@ fn place(at: vec4f) -> vec2i { return vec2i(at.xy) * i32(textureDimensions(sourc
 @fragment fn color(@builtin(position) at: vec4f) -> @location(0) vec4f { return textureLoad(source, place(at), 0); }
 @fragment fn depth(@builtin(position) at: vec4f) -> @builtin(frag_depth) f32 { return textureLoad(source, place(at), 0).x; }
 ";
-/// The same into images of several samples, each of another texel.
+/// Writes a picture and its depth into multisampled images, with a different texel per sample.
 const COPY_SAMPLES: &str = "
 @group(0) @binding(0) var source: texture_2d<f32>;
 @vertex fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -46,11 +48,11 @@ fn place(at: vec4f, i: u32) -> vec2i { return 2 * vec2i(at.xy) + vec2i(i32(i & 1
 
 type Rig = (Arc<Device>, Arc<Shared>);
 
-/// The devices that scenes are drawn on, made when the first scene needs them.
+/// The devices for drawing scenes, created when a scene first needs them.
 #[derive(Default)]
 pub struct Devices {
     usual: Option<Rig>,
-    /// Tried, and what came of it.
+    /// `None` until tried, then the result.
     tier_0: Option<Option<Rig>>,
 }
 
@@ -71,10 +73,10 @@ impl Devices {
         Ok(self.usual.clone())
     }
 
-    /// The scene as a display shows it; none where this machine has no device for it.
+    /// The scene as a display shows it; `None` if this machine has no device for it.
     ///
     /// # Errors
-    /// The GPU's, and values that Welkin refuses.
+    /// GPU faults, and values that Welkin refuses.
     pub fn draw(&mut self, scene: &Scene) -> Result<Option<RgbImage>> {
         let Some((device, shared)) = self.of(scene)? else { return Ok(None) };
         let mut context = context(scene, &device, &shared)?;
@@ -89,7 +91,7 @@ impl Devices {
         for frame in 0..=scene.frames_before {
             context.update(scene.time_s - f64::from(scene.frames_before - frame) * scene.frame_s)?;
             for channel in &mut channels {
-                // Water runs down a windscreen in any frame; the picture is wanted of the last.
+                // Water runs down a windscreen in every frame, but only the last picture is wanted.
                 let running = scene.windscreen.is_some() && frame < scene.frames_before;
                 let calls = if running { &[Stages::PREPARE] } else { &scene.calls[..] };
                 channel.record(scene, &context, u64::from(frame) + 1, calls)?;
@@ -124,7 +126,7 @@ fn context(scene: &Scene, device: &Arc<Device>, shared: &Arc<Shared>) -> Result<
     Ok(context)
 }
 
-/// One camera's images and view.
+/// Images and view of one camera.
 struct Channel {
     device: Arc<Device>,
     view: View,
@@ -134,14 +136,14 @@ struct Channel {
     mask: Option<wgpu::Texture>,
     classes: Option<wgpu::Texture>,
     normals: Option<wgpu::Texture>,
-    /// The host's picture and depth, as uploaded: of twice the size for several samples.
+    /// The host's picture and depth as uploaded, at twice the size for multisampling.
     drawn: [wgpu::Texture; 2],
 }
 
 fn texture(device: &Device, size: (u32, u32), format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     use wgpu::TextureUsages as U;
     let mut usage = U::TEXTURE_BINDING;
-    // Not all drivers draw into single floats; depth is only uploaded in them.
+    // Some drivers cannot draw into 32-bit floats; depth in that format is only uploaded.
     if format != wgpu::TextureFormat::R32Float {
         usage |= U::RENDER_ATTACHMENT | U::COPY_SRC;
     }
@@ -160,7 +162,7 @@ fn texture(device: &Device, size: (u32, u32), format: wgpu::TextureFormat, sampl
     })
 }
 
-/// A texture of these texels, row by row.
+/// Creates a texture from these texels, row by row.
 pub fn uploaded(device: &Device, size: (u32, u32), format: wgpu::TextureFormat, bytes: &[u8]) -> wgpu::Texture {
     let made = texture(device, size, format, 1);
     let row = bytes.len() as u32 / size.1;
@@ -169,7 +171,7 @@ pub fn uploaded(device: &Device, size: (u32, u32), format: wgpu::TextureFormat, 
     made
 }
 
-/// Luminance of the value 1 in a scene-linear picture, cd/m^2: day, dusk, night.
+/// Luminance of the value 1 in a scene-linear picture, cd/m^2: for day, dusk or night.
 fn unit(scene: &Scene) -> f64 {
     match scene.sun[1] {
         e if e > 0.0 => 1000.0,
@@ -178,7 +180,7 @@ fn unit(scene: &Scene) -> f64 {
     }
 }
 
-/// What the host draws of a hit, in its own colour space.
+/// The host's colour of a hit, in its own colour space.
 fn paint(scene: &Scene, hit: &Hit) -> [f64; 3] {
     let night = scene.sun[1] < -6.0;
     let [azimuth, elevation] = if night { scene.moon.unwrap_or([0.0, 20.0]) } else { scene.sun };
@@ -194,7 +196,8 @@ fn paint(scene: &Scene, hit: &Hit) -> [f64; 3] {
     })
 }
 
-/// What the rays of a camera meet, row by row as the textures hold them: of a picture `fine` times as large either way.
+/// The hits of a camera's rays, row by row in the textures' order, for a picture `fine` times as large in each
+/// direction.
 fn hits(scene: &Scene, camera: &Camera, fine: u32) -> Result<Vec<(DVec2, Option<Hit>)>> {
     let rays = ViewRays::new(camera, &scene.depth.mapping())?;
     let origin = scene.origin();
@@ -319,7 +322,7 @@ impl Channel {
         pass.draw(0..3, 0..1);
     }
 
-    /// Draws the host's picture anew and records the calls of a frame over it.
+    /// Draws the host's picture again and records the calls of a frame over it.
     fn record(&mut self, scene: &Scene, context: &Context, frame_id: u64, calls: &[Stages]) -> Result<()> {
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         self.copy(&mut encoder, &self.drawn[0], &self.color);
@@ -347,7 +350,7 @@ impl Channel {
         Ok(())
     }
 
-    /// What a display shows of the colour: resolved, the right way up, encoded.
+    /// The colour as displayed: resolved, the right way up, encoded.
     fn shown(&self, scene: &Scene) -> Result<RgbImage> {
         let single = if scene.samples[0] > 1 {
             let to = texture(&self.device, SIZE, scene.target.format(), 1);
@@ -373,7 +376,7 @@ impl Channel {
     }
 }
 
-/// A pass into an image: what it holds stays, except for depth.
+/// Begins a pass into an image that keeps its contents, except for depth.
 fn pass_into<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     view: &wgpu::TextureView,
@@ -399,7 +402,7 @@ fn pass_into<'e>(
     })
 }
 
-/// Unit normals as halves, turned; zeros where there is none.
+/// Rotated unit normals as half floats; zeros where there is no hit.
 fn normal_texels(turn: DMat3, met: &[(DVec2, Option<Hit>)]) -> Vec<[u16; 4]> {
     let of = |h: &Option<Hit>| {
         let n = turn * h.map_or(DVec3::ZERO, |h| h.normal);

@@ -1,4 +1,4 @@
-//! The scenes: every kind of weather, light, image, depth, camera and call that a picture can depend on.
+//! The scenes: every kind of weather, light, image, depth, camera and call that affects a picture.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ use super::{
     world::{World, hill_grid, shelters},
 };
 
-/// What a light is called, azimuth and elevation of the sun, and of the moon.
+/// Name of a lighting, azimuth and elevation of the sun, and of the moon.
 type Lights = (&'static str, [f64; 2], Option<[f64; 2]>);
 
 const LIGHTS: [Lights; 4] = [
@@ -37,10 +37,10 @@ const LIGHTS: [Lights; 4] = [
     ("dark", [300.0, -30.0], None),
 ];
 
-/// Of a night with lamps.
+/// Exposure for a night with lamps.
 const LIT: Option<Exposure> = Some(Exposure::Ev100(3.0));
 
-/// All scenes, each under a name of its own.
+/// All scenes, each with a unique name.
 ///
 /// # Errors
 /// Presets and reports that Welkin does not know.
@@ -70,7 +70,7 @@ fn reports() -> Result<Vec<Scene>> {
     .collect()
 }
 
-/// Rain on wet ground below broken cloud, by day: every stage has something to draw.
+/// Rain on wet ground below broken cloud by day, so that every stage has something to draw.
 fn rain_by_day(name: &str) -> Result<Scene> {
     Ok(Scene { classes: true, ..Scene::preset(name, "rain")? })
 }
@@ -326,7 +326,7 @@ fn roofs(_: &Arc<Device>, context: &mut Context) -> Result<()> {
     context.set_shelters(&shelters())
 }
 
-/// The yard's boxes as two maps: from above, and along a slant.
+/// Sets the yard's boxes as two maps: from above, and along a slant.
 fn maps(device: &Arc<Device>, context: &mut Context) -> Result<()> {
     let size = (128, 128);
     let mut taken = Vec::new();
@@ -460,7 +460,7 @@ fn ground() -> Result<Vec<Scene>> {
     Ok(all)
 }
 
-/// Several views, devices without compute, and plans that are pinned.
+/// Scenes with several views, on devices without compute, and with pinned plans.
 fn channels() -> Result<Vec<Scene>> {
     let mut all = vec![
         Scene { second_view: true, ..rain_by_day("two-views")? },

@@ -1,8 +1,8 @@
-//! Pictures of many scenes, kept to see that a change of the program changes none of them.
+//! Pictures of many scenes, kept to check that a change of the code leaves them all unchanged.
 //!
-//! `lab scenes DIR` draws every scene of [`list`] by the public API and writes a PNG each; `lab scenes OLD NEW`
-//! compares two such folders. Both need the same machine and driver: another driver rounds in another way. No plan
-//! chooses by measured time here, so that two runs give the same bytes.
+//! `lab scenes DIR` draws every scene of [`list`] through the public API and writes a PNG for each. `lab scenes OLD
+//! NEW` compares two such folders. Both folders must come from the same machine and driver, because drivers round
+//! differently. No plan uses measured times here, so two runs give the same bytes.
 
 mod host;
 mod list;
@@ -20,10 +20,10 @@ fn fault(what: &Path, e: impl std::fmt::Display) -> Error {
     Error::new(Status::Io, format!("{}: {e}", what.display()))
 }
 
-/// Draws every scene whose name contains `part`, and writes each to `dir`.
+/// Draws every scene whose name contains `part` and writes it to `dir`.
 ///
 /// # Errors
-/// No scene of that name, files, the GPU.
+/// No scene with that name; files; the GPU.
 pub fn draw(dir: &Path, part: Option<&str>) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(|e| fault(dir, e))?;
     let mut devices = Devices::default();
@@ -45,12 +45,12 @@ pub fn draw(dir: &Path, part: Option<&str>) -> Result<()> {
     if drawn == 0 { Err(Error::range("--scene", "part of a scene's name", part.unwrap_or_default())) } else { Ok(()) }
 }
 
-/// How two pictures of one size differ, in steps of 8 bits.
+/// Difference between two pictures of the same size, in 8-bit steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Apart {
-    /// Pixels with any channel that differs at all.
+    /// Pixels in which any channel differs.
     any: usize,
-    /// Pixels with any channel more than one step apart.
+    /// Pixels in which any channel differs by more than one step.
     seen: usize,
     largest: u8,
 }
@@ -76,8 +76,8 @@ fn open(path: &Path) -> Result<RgbImage> {
     Ok(image::open(path).map_err(|e| fault(path, e))?.to_rgb8())
 }
 
-/// Compares two folders and prints each scene that differs. Answers whether all are alike: in both folders, of one
-/// size, and no pixel more than one step apart.
+/// Compares two folders and prints each scene that differs. Returns whether all are equal: present in both folders, of
+/// the same size, and with no pixel more than one step apart.
 ///
 /// # Errors
 /// Files that cannot be read, folders without pictures.

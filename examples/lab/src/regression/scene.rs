@@ -1,4 +1,4 @@
-//! A scene by its values: weather, lights, camera, images and the calls that draw it.
+//! The description of a scene: weather, lights, camera, images and the calls that draw it.
 
 use std::sync::Arc;
 
@@ -20,16 +20,16 @@ use welkin_support::coarse_sky::coarse_sky;
 
 use super::world::World;
 
-/// Pixels of every picture.
+/// Size of every picture, pixels.
 pub const SIZE: (u32, u32) = (240, 135);
 
-/// How the host maps distance to depth.
+/// The host's mapping from distance to depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depth {
-    /// Perspective, near 1, infinity 0.
+    /// Perspective: near is 1, infinity is 0.
     #[default]
     Reversed,
-    /// Perspective, near 0, 40 km 1.
+    /// Perspective: near is 0, 40 km is 1.
     Standard,
     /// As [`Depth::Standard`] with clip z from -1 to 1.
     OpenGl,
@@ -52,7 +52,7 @@ impl Depth {
         DepthMapping { kind, reversed: self == Self::Reversed, clip }
     }
 
-    /// With `fov` the height of the picture as an angle, rad.
+    /// The projection matrix; `fov` is the vertical field of view, rad.
     fn projection(self, reversed: DMat4, fov: f64) -> DMat4 {
         let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
         let focal = 1.0 / (0.5 * fov).tan();
@@ -73,13 +73,13 @@ impl Depth {
     }
 }
 
-/// What the host draws into.
+/// Format of the host's colour image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Target {
-    /// Scene-linear halves.
+    /// Scene-linear half floats.
     #[default]
     SceneLinear,
-    /// Display-linear halves.
+    /// Display-linear half floats.
     DisplayLinear,
     /// Display-encoded bytes that the hardware encodes.
     SrgbView,
@@ -105,7 +105,7 @@ impl Target {
     }
 }
 
-/// Normals that the host hands over.
+/// Normals that the host provides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Normals {
     #[default]
@@ -114,21 +114,21 @@ pub enum Normals {
     Eye,
 }
 
-/// What a scene does to its context beside weather and lights.
+/// Changes of the context other than weather and lights.
 pub type Dress = fn(&Arc<Device>, &mut Context) -> Result<()>;
 
-/// A picture's scene. Lengths in m, times in s, angles in degrees.
+/// The scene of one picture. Lengths are in m, times in s, angles in degrees.
 #[derive(Clone)]
 pub struct Scene {
     pub name: String,
-    /// Weathers with the time each begins and how long it takes to come.
+    /// Weathers, each with its start time and the duration of its change.
     pub weather: Vec<(Weather, f64, f64)>,
     /// Azimuth and elevation.
     pub sun: [f64; 2],
     pub moon: Option<[f64; 2]>,
     pub world: World,
     pub frame: WorldFrame,
-    /// East, north and up of the world's origin.
+    /// Camera position east, north and up of the world's origin.
     pub eye: DVec3,
     pub azimuth: f64,
     pub elevation: f64,
@@ -136,7 +136,7 @@ pub struct Scene {
     pub velocity_m_s: DVec3,
     pub depth: Depth,
     pub depth_format: wgpu::TextureFormat,
-    /// Of colour and of depth.
+    /// Samples of colour and of depth.
     pub samples: [u32; 2],
     pub target: Target,
     pub bottom_left: bool,
@@ -145,10 +145,10 @@ pub struct Scene {
     pub normals: Normals,
     /// The calls of each frame.
     pub calls: Vec<Stages>,
-    /// Frames before the last one, and from one to the next.
+    /// Number of frames before the last one, and the time between frames.
     pub frames_before: u32,
     pub frame_s: f64,
-    /// Of the last frame.
+    /// Time of the last frame.
     pub time_s: f64,
     pub flags: FrameFlags,
     pub rain: RainSettings,
@@ -159,11 +159,11 @@ pub struct Scene {
     pub law: Option<Law>,
     pub dress: Dress,
     pub windscreen: Option<fn(f64) -> Windscreen>,
-    /// The rung of each part of `frame::PARTS`, in place of a plan.
+    /// The rung of each part of `frame::PARTS`, instead of a plan.
     pub pinned: Option<[usize; 4]>,
-    /// A second view of the context, 50 degrees to the right, below the first one's picture.
+    /// Adds a second view of the context, 50 degrees to the right, below the picture of the first.
     pub second_view: bool,
-    /// On OpenGL without compute shaders.
+    /// Draws with OpenGL without compute shaders.
     pub tier_0: bool,
 }
 
@@ -209,15 +209,15 @@ impl Scene {
         }
     }
 
-    /// Of a preset.
+    /// A scene with a weather preset.
     ///
     /// # Errors
-    /// A name that is no preset's.
+    /// A name that is not a preset's.
     pub fn preset(name: &str, preset: &str) -> Result<Self> {
         Ok(Self::new(name, Weather::preset(preset)?))
     }
 
-    /// The camera of the first view, or turned to the right by `turn` degrees.
+    /// The camera of the first view, turned to the right by `turn` degrees.
     pub fn camera(&self, turn: f64) -> Camera {
         let origin = self.origin();
         let to_world = self.frame.frame_at(origin).world_to_enu.transpose();
@@ -230,7 +230,7 @@ impl Scene {
         Camera { projection: self.depth.projection(camera.projection, fov), ..camera }
     }
 
-    /// The host's coordinates of the place that `eye` counts from.
+    /// The point from which `eye` is measured, in the host's coordinates.
     pub fn origin(&self) -> DVec3 {
         if self.frame.kind == welkin::scene::WorldKind::Ecef { self.frame.origin.to_ecef() } else { DVec3::ZERO }
     }

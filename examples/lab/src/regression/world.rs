@@ -1,4 +1,4 @@
-//! World that the host of a scene shows: a yard or hills, met by the ray of each pixel, and their light.
+//! The world in a scene's host: a yard or hills, found by a ray for each pixel, and their light.
 
 use glam::{DMat3, DVec2, DVec3};
 use welkin::{
@@ -6,7 +6,7 @@ use welkin::{
     rain::{Planes, Shelter},
 };
 
-/// What stands round the camera.
+/// The surroundings of the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum World {
     /// A plain with a road and boxes.
@@ -18,7 +18,7 @@ pub enum World {
     Nothing,
 }
 
-/// Where a ray ends, east, north and up of the world's origin, with the normal there and what lies there.
+/// End of a ray, east, north and up of the world's origin, with the normal and the material there.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
     pub at: DVec3,
@@ -26,7 +26,7 @@ pub struct Hit {
     pub class: SurfaceClass,
 }
 
-/// Boxes of the yard: centre and half size, m. The first is a roof on nothing.
+/// Boxes of the yard: centre and half size, m. The first is a roof without supports.
 const BOXES: [([f64; 3], [f64; 3]); 5] = [
     ([-3.5, 9.0, 3.2], [2.5, 3.0, 0.15]),
     ([6.0, 16.0, 1.5], [1.5, 1.5, 1.5]),
@@ -37,7 +37,7 @@ const BOXES: [([f64; 3], [f64; 3]); 5] = [
 const NODES: u32 = 65;
 const CELL_M: f64 = 25.0;
 
-/// The yard's boxes as what keeps rain off.
+/// The yard's boxes as shelters from rain.
 pub fn shelters() -> Vec<Shelter> {
     let shelter = |(center, half): ([f64; 3], [f64; 3])| Shelter {
         center_m: DVec3::from(center),
@@ -67,7 +67,7 @@ fn hill_class(at: DVec2) -> SurfaceClass {
     }
 }
 
-/// The hills as a host gives them for the water on them.
+/// The hills as the grid that a host provides for water on the ground.
 pub fn hill_grid() -> GroundGrid {
     let corner = DVec2::new(-0.5 * f64::from(NODES - 1) * CELL_M, -200.0);
     let nodes = || (0..NODES * NODES).map(|i| corner + DVec2::new(f64::from(i % NODES), f64::from(i / NODES)) * CELL_M);
@@ -134,7 +134,7 @@ fn yard(eye: DVec3, d: DVec3) -> Option<Hit> {
 }
 
 impl World {
-    /// What a ray meets from `eye` along the unit vector `d`, both east, north, up.
+    /// Casts a ray from `eye` along the unit vector `d`, both east, north, up.
     pub fn cast(self, eye: DVec3, d: DVec3) -> Option<Hit> {
         match self {
             Self::Yard => yard(eye, d),
@@ -144,7 +144,7 @@ impl World {
     }
 }
 
-/// Share of light that a hit reflects, linear Rec. 709: the material with a pattern of metres.
+/// Albedo of a hit, linear Rec. 709: its material with a pattern at a scale of metres.
 pub fn albedo(hit: &Hit) -> [f64; 3] {
     let base = match hit.class {
         SurfaceClass::Paved => [0.11, 0.11, 0.11],
@@ -158,8 +158,8 @@ pub fn albedo(hit: &Hit) -> [f64; 3] {
     base.map(|a| a * spot)
 }
 
-/// Illuminance of a surface in a host's own plain terms, lux: sun on the slope and an even sky, or a night's; `deck` is
-/// the largest cover of a layer of cloud.
+/// Illuminance of a surface from the host's own simple model, lux: the sun on the slope and a uniform sky, or the
+/// night's. `deck` is the largest cover of any cloud layer.
 pub fn illuminance(normal: DVec3, to_light: DVec3, night: bool, deck: f64) -> f64 {
     let open = 0.5 + 0.5 * normal.z;
     let clear = 1.0 - 0.9 * deck.powi(2);

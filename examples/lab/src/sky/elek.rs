@@ -1,11 +1,12 @@
-//! Elek's table of 2008 as its description says: light scattered once over (altitude, view zenith angle, sun zenith
-//! angle) on equal axes in half floats, integrals by the trapezoid rule with equal steps, the phase functions put on
-//! per pixel.
+//! Elek's table of 2008 as described: single scattering over (altitude, view zenith angle, sun zenith angle), on
+//! uniform axes in half floats. Integrals use the trapezoid rule with equal steps; phase functions are applied per
+//! pixel.
 //!
-//! Mended is only what cannot be computed as printed: haze takes the planet's coefficient (the printed one has no
-//! unit), its phase function peaks towards the sun, a point whose sun is hidden by the planet gets none. Kept is what
-//! is the method's own: the azimuth is always the sun's, the phase function of gas imitates multiple scattering, haze
-//! is one channel and each medium is dimmed by itself alone, there is no ozone, and the axes are equal.
+//! Only what cannot be computed as printed is corrected: haze uses the planet's coefficient (the printed one has no
+//! unit), its phase function peaks towards the sun, and a point whose sun is hidden by the planet gets no light. The
+//! method's own features are kept: the azimuth is always the sun's, the phase function of gas imitates multiple
+//! scattering, haze has one channel and each medium is attenuated only by itself, there is no ozone, and the axes are
+//! uniform.
 
 use std::sync::Arc;
 
@@ -24,19 +25,18 @@ use crate::timing::{target, timed};
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const WIDTH: u32 = 256;
 
-/// A table of light scattered once over (altitude, view zenith angle, sun zenith angle) as of Elek 2008, with equal
-/// axes, half floats, equal steps and the trapezoid rule, and with his phase function that imitates multiple
-/// scattering.
+/// A table of single scattering over (altitude, view zenith angle, sun zenith angle) as in Elek 2008, with uniform
+/// axes, half floats, equal steps, the trapezoid rule, and his phase function that imitates multiple scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElekTable {
-    /// Texels along each axis; 128 and 256 were delivered.
+    /// Texels along each axis; the original came with 128 and 256.
     pub side: u32,
-    /// Equal steps of every integral: 15 was called acceptable, 50 enough.
+    /// Equal steps of every integral. The author calls 15 acceptable and 50 sufficient.
     pub samples: u32,
 }
 
 impl ElekTable {
-    /// What it costs: a march to the sun at every step of every texel's march.
+    /// The cost: a march to the sun at every step of every texel's march.
     pub fn work(&self) -> Work {
         let texels = f64::from(self.side).powi(3);
         let flat = f64::from(self.side).powi(2);
@@ -44,7 +44,7 @@ impl ElekTable {
         Work {
             rebuild: Units { samples: texels * n * (n + 1.0) + flat * n, texels: 0.0, bytes: 8.0 * (texels + flat) },
             view: Units::default(),
-            // One of the 3-D table; two of the optical depth where the ray meets the ground.
+            // One look-up in the 3-D table; two of the optical depth where the ray meets the ground.
             pixel: Units { samples: 1.0, texels: 2.0, bytes: 8.0 },
             shared_bytes: (8.0 * (texels + flat)) as u64,
             view_bytes: 0,
@@ -70,7 +70,7 @@ struct Uniform {
     unused: u32,
 }
 
-/// The table with its passes.
+/// The table with its render passes.
 pub struct Elek {
     device: Arc<Device>,
     table: ElekTable,
@@ -89,7 +89,7 @@ pub struct Elek {
 }
 
 impl Elek {
-    /// Makes the textures and passes; [`SkyDraw::rebuild`] fills them.
+    /// Creates the textures and passes; [`SkyDraw::rebuild`] fills them.
     pub fn new(device: &Arc<Device>, table: ElekTable) -> Result<Self> {
         let gpu = &device.device;
         let source = wgpu::ShaderSource::Wgsl(include_str!("elek.wgsl").into());

@@ -1,4 +1,4 @@
-//! Draws and times every way to make a sky, and computes the truth.
+//! Draws and times every way to draw a sky, and computes the truth.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,10 +21,10 @@ pub mod elek;
 
 /// Size of the pictures whose error is measured.
 pub const SIZE: (u32, u32) = (64, 36);
-/// Reflectance of the ground in them.
+/// Reflectance of the ground in these pictures.
 const GROUND: f64 = 0.2;
 
-/// A ray of a scene's picture, with the distance to the ground where it meets it.
+/// A ray of a scene's picture, with the distance to the ground if the ray meets it.
 #[derive(Clone, Copy, Debug)]
 pub struct Pixel {
     pub direction: [f64; 3],
@@ -37,10 +37,10 @@ impl Pixel {
     }
 }
 
-/// Air between the eye and the end of a pixel's ray: its light, and what it lets through.
+/// The air along a pixel's ray: its radiance and its transmittance.
 pub type Veil = ([f64; 3], [f64; 3]);
 
-/// The rays of a scene, the sun over the x axis.
+/// The rays of a scene, with the sun above the x axis.
 pub fn pixels(scene: &SkyScene, size: (u32, u32)) -> Vec<Pixel> {
     let planet = scene.air.planet();
     let (sin_e, cos_e) = scene.elevation_deg.to_radians().sin_cos();
@@ -73,7 +73,7 @@ fn to_ground(planet: &Planet, altitude_m: f64, mu: f64) -> Option<f64> {
     (mu < 0.0 && b * b > c).then(|| c / (root - b))
 }
 
-/// The picture of veils over a ground lit by `ground` (radiance per wavelength).
+/// Combines the veils with a ground of radiance `ground` (per wavelength) to a picture.
 pub fn compose(scene: &SkyScene, pixels: &[Pixel], veils: &[Veil], ground: [f64; 3], size: (u32, u32)) -> Picture {
     let planet = scene.air.planet();
     let colors = Conversion::per_channel();
@@ -85,14 +85,14 @@ pub fn compose(scene: &SkyScene, pixels: &[Pixel], veils: &[Veil], ground: [f64;
     Picture { width: size.0, height: size.1, texels: pixels.iter().zip(veils).map(texel).collect() }
 }
 
-/// What is true of a scene.
+/// The truth of a scene.
 pub struct TrueScene {
     pub picture: Picture,
     /// Radiance of the ground: the host's own colour, the same for all methods.
     pub ground: [f64; 3],
 }
 
-/// The truth of all scenes of an air, from `out/lab` where it was computed before.
+/// Computes the truth of all scenes with this air, or reads it from `out/lab` if it was computed before.
 pub fn truth(scenes: &[SkyScene], air: SkyAir, size: (u32, u32), quick: bool) -> Result<Vec<TrueScene>> {
     let planet = air.planet();
     let resolution = if quick { Resolution::QUICK } else { Resolution::FINE };
@@ -175,20 +175,20 @@ fn keep(path: &Path, numbers: &[f64]) -> Result<()> {
     welkin_command_line::write_whole(path, &bytes)
 }
 
-/// A way to draw a sky, ready.
+/// One way to draw a sky, ready to run.
 pub trait SkyDraw {
-    /// Builds what depends on the planet, s.
+    /// Builds everything that depends on the planet; returns the time, s.
     fn rebuild(&mut self, planet: &Planet) -> Result<f64>;
-    /// The air in every pixel.
+    /// The air at every pixel.
     fn veils(&mut self, scene: &SkyScene, pixels: &[Pixel]) -> Result<Vec<Veil>>;
-    /// One frame, ms; `step` counts frames. `follows`: sun and altitude move with it.
+    /// Draws one frame and returns its time, ms. `step` counts frames; with `follows`, sun and altitude change with it.
     fn frame(&mut self, size: (u32, u32), step: usize, follows: bool) -> Result<f64>;
 }
 
-/// Makes a candidate ready.
+/// Prepares a candidate.
 ///
 /// # Errors
-/// GPU faults; what is no sky.
+/// GPU faults; a candidate that is not for the sky.
 pub fn make(device: &Arc<Device>, candidate: &Candidate) -> Result<Box<dyn SkyDraw>> {
     match candidate.method {
         Method::Library(LibraryMethod::Sky(settings)) => Ok(Box::new(Library::new(device, &settings)?)),
@@ -197,7 +197,7 @@ pub fn make(device: &Arc<Device>, candidate: &Candidate) -> Result<Box<dyn SkyDr
     }
 }
 
-/// What the library draws.
+/// The library's sky.
 pub struct Library {
     device: Arc<Device>,
     probe: Probe,
@@ -233,12 +233,12 @@ impl Library {
     }
 }
 
-/// Builds a planet's tables, s.
+/// Builds a planet's tables; returns the time, s.
 ///
 /// # Errors
 /// GPU faults.
 pub fn build(device: &Device, tables: &mut SkyTables, planet: &Planet) -> Result<f64> {
-    // The tables are shared and may be submitted before our own encoder is.
+    // The tables are shared, and may be submitted before this function's own encoder.
     let start = std::time::Instant::now();
     let mut encoder = device.device.create_command_encoder(&Default::default());
     tables.update(&mut encoder, planet, 1.0)?;
@@ -246,7 +246,7 @@ pub fn build(device: &Device, tables: &mut SkyTables, planet: &Planet) -> Result
     Ok(start.elapsed().as_secs_f64())
 }
 
-/// The picture's camera: one uniform.
+/// Layout of the picture's camera: one uniform.
 pub fn camera_layout(device: &Device) -> wgpu::BindGroupLayout {
     device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("lab camera"),
@@ -263,7 +263,7 @@ pub fn camera_layout(device: &Device) -> wgpu::BindGroupLayout {
     })
 }
 
-/// Looks along the x axis, 90 degrees wide, 16 to 9.
+/// A camera that looks along the x axis, 90 degrees wide, 16:9.
 pub fn camera_group(device: &Device, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
     let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("lab camera"),
@@ -279,13 +279,13 @@ pub fn camera_group(device: &Device, layout: &wgpu::BindGroupLayout) -> wgpu::Bi
     })
 }
 
-/// Where the sun and the observer of frame `step` are.
+/// Sun and observer of frame `step`.
 pub fn moving(planet: &Planet, step: usize, follows: bool) -> Observer {
     let i = if follows { step as f64 } else { 0.0 };
     Observer::under_sun(planet, 500.0 + 10.0 * i, 1.2 + 0.004 * i)
 }
 
-/// A target of `size` in `slot`, made when there is none.
+/// A target of `size` in `slot`, created if there is none.
 pub fn sized(slot: &mut Option<wgpu::Texture>, device: &Device, size: (u32, u32)) -> wgpu::TextureView {
     let fits = slot.take().filter(|t| (t.width(), t.height()) == size);
     let texture = fits.unwrap_or_else(|| target(device, size, wgpu::TextureFormat::Rgba16Float));

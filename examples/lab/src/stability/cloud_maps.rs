@@ -1,4 +1,4 @@
-//! Maps of clouds: steps of a march, thin and deep layers, a camera that climbs through a base, and cover.
+//! Maps of clouds: march steps, thin and deep layers, a camera that climbs through a cloud base, and cover.
 
 use std::sync::Arc;
 
@@ -19,15 +19,15 @@ use crate::cloudscapes::{FOV, Host};
 use crate::command::Options;
 use crate::picture::Picture;
 
-/// Size of the pictures, and of those that look along one height.
+/// Size of the pictures, and of those with a narrow field of view.
 const SIZE: (u32, u32) = (160, 90);
 const NARROW: (u32, u32) = (256, 8);
-/// Of the latter, from side to side of their height, rad; and where they look from, m apart.
+/// Vertical field of view of the narrow pictures, rad; and the distance between their viewpoints, m.
 const NARROW_FOV: f64 = 0.03;
 const PLACES_M: [f64; 4] = [0.0, 3100.0, 7300.0, 12_700.0];
-/// The finest march that a view can be set to, every pixel of it.
+/// The finest march a view can be set to, in every pixel.
 const FINEST: CloudSettings = CloudSettings { fineness: 32.0, square_side: 1, shafts: false };
-/// The default, every pixel in one frame.
+/// The default, with every pixel marched in one frame.
 const DEFAULT: CloudSettings = CloudSettings { fineness: 2.0, square_side: 1, shafts: false };
 /// Most steps through a layer at a fineness of 1.
 const STEPS: f64 = 96.0;
@@ -35,7 +35,7 @@ const STEPS: f64 = 96.0;
 const BASE_M: f64 = 1000.0;
 const SUN_DEG: f64 = 40.0;
 
-/// The 95th percentile of the difference between two pictures, or what is wrong with the first.
+/// The 95th percentile of the difference between two pictures, or the fault of the first.
 fn apart(drawn: &Picture, truth: &Picture) -> Result<Cell> {
     let is_sound = |p: &Picture| p.texels.iter().flatten().all(|v| v.is_finite() && *v >= 0.0);
     if !is_sound(drawn) {
@@ -44,25 +44,25 @@ fn apart(drawn: &Picture, truth: &Picture) -> Result<Cell> {
     Ok(Cell::of(drawn.figures(truth)?.luminance.p95))
 }
 
-/// Their mean difference over pixels.
+/// The mean difference over pixels.
 fn mean_apart(drawn: &Picture, truth: &Picture) -> f64 {
     let white = truth.white();
     let pairs = drawn.luminances().into_iter().zip(truth.luminances());
     pairs.map(|(a, b)| (a - b).abs() / (b + 0.01 * white)).sum::<f64>() / truth.texels.len() as f64
 }
 
-/// How many rays an elevation is judged by; they begin at the base of the layer.
+/// Number of rays per elevation; they begin at the base of the layer.
 const RAYS: usize = 512;
-/// How far a ray is followed at most, m.
+/// Maximum length of a ray, m.
 const FARTHEST_M: f64 = 60e3;
 
-/// How far the share of light that gets through is off in so many even steps, in the mean of rays.
+/// Mean error over rays of the transmitted light with this many equal steps.
 fn even_steps(field: &Field<'_>, elevation_deg: f64, steps: usize) -> f64 {
     let (sine, cosine) = elevation_deg.to_radians().sin_cos();
     let s = &field.shape;
     let length = (s.thickness_m / sine).min(FARTHEST_M);
     let through = |ray: usize, steps: usize| {
-        // Places that are no multiple of the map's side apart.
+        // Start points whose distances are no multiple of the map's side.
         let from = DVec3::new(713.0, 421.0, 0.0) * ray as f64 + DVec3::Z * s.base_m;
         let at = |k: usize| from + DVec3::new(cosine, 0.0, sine) * (length * (k as f64 + 0.5) / steps as f64);
         let sum: f64 = (0..steps).map(|k| field.extinction_per_m(at(k))).sum();
@@ -71,7 +71,7 @@ fn even_steps(field: &Field<'_>, elevation_deg: f64, steps: usize) -> f64 {
     (0..RAYS).map(|ray| (through(ray, steps) - through(ray, 4096)).abs()).sum::<f64>() / RAYS as f64
 }
 
-/// Steps and the height at which one looks.
+/// March steps against viewing height.
 ///
 /// # Errors
 /// GPU faults.
@@ -101,7 +101,7 @@ pub fn steps(lab: &Lab, _options: &Options) -> Result<Map> {
     Ok(Map { title: "Marching through broken cumulus, mean error", x, y, panels, tolerance: 0.1 })
 }
 
-/// Layers thin and deep, seen level.
+/// Thin and deep layers, viewed horizontally.
 ///
 /// # Errors
 /// GPU faults.
@@ -132,7 +132,7 @@ pub fn layers(lab: &Lab, _options: &Options) -> Result<Map> {
     Ok(Map { title: "Layers seen level, error in luminance at 95 %", x, y, panels, tolerance: 0.3 })
 }
 
-/// Frames a second of a climb, and how many frames before the base it begins.
+/// Frames per second of a climb, and number of frames before the base at which it begins.
 const HZ: f64 = 60.0;
 const BEFORE: i32 = 24;
 
@@ -149,7 +149,7 @@ pub fn bases(lab: &Lab, _options: &Options) -> Result<Map> {
         let (mut moving, mut by_itself) = (host(&lab.device)?, host(&lab.device)?);
         let mut cells = vec![Cell::Nothing; x.values.len() * y.values.len()];
         for (i, speed) in x.values.iter().enumerate() {
-            // Half a frame's way off the base, so that none lies in its plane.
+            // Half a frame's movement off the base, so that no frame lies in its plane.
             let height = |frame: i32| (BASE_M + (f64::from(frame) + 0.5) * speed / HZ).max(2.0);
             moving.look(height(-BEFORE), 0.0, FOV);
             moving.settle(CloudSettings::default())?;
@@ -168,13 +168,13 @@ pub fn bases(lab: &Lab, _options: &Options) -> Result<Map> {
     Ok(Map { title: "A climb through a base at 60 Hz, error in luminance at 95 %", x, y, panels, tolerance: 0.5 })
 }
 
-/// Seed of the sky whose cover is looked at, and from how many places.
+/// Seed of the sky whose cover is measured, and number of viewpoints.
 const SEED: u64 = 7;
 const PLACES: usize = 40;
-/// Cover up to which the normal distribution has a quantile.
+/// Highest cover for which the normal distribution has a quantile.
 const CLOSED: f64 = 1.0 - 1e-9;
 
-/// Cover asked for and seen.
+/// Cover that is set against cover that is visible.
 ///
 /// # Errors
 /// GPU faults.

@@ -1,4 +1,4 @@
-//! `lab stability`: maps of where methods fail, Welkin's beside the usual ones that do.
+//! `lab stability`: maps of where methods fail, with Welkin's methods beside common ones that fail.
 
 pub mod cloud_maps;
 pub mod numbers;
@@ -17,29 +17,29 @@ use crate::page;
 use crate::plot::short;
 use crate::store::{Journal, Table};
 
-/// What came out at one place of a map.
+/// Result at one point of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell {
     /// An error, 0 or above.
     Error(f64),
-    /// It grew without end.
+    /// The value grew without bound.
     Diverged,
-    /// NaN or infinity, or less than nothing where that cannot be.
+    /// NaN or infinity, or a negative value where that is impossible.
     NotFinite,
-    /// It jumped or swung where it must go evenly.
+    /// The value jumped or oscillated where it must change smoothly.
     Jumps,
     /// The library refuses these numbers.
     Refused,
-    /// The right one of two answers, which has no error to measure.
+    /// The right one of two answers; there is no error to measure.
     Right,
-    /// The wrong one.
+    /// The wrong one of two answers.
     Wrong,
     /// There is nothing to measure here.
     Nothing,
 }
 
 impl Cell {
-    /// An error, or not finite.
+    /// An error, or `NotFinite`.
     pub fn of(error: f64) -> Self {
         if error.is_finite() { Self::Error(error.abs()) } else { Self::NotFinite }
     }
@@ -71,7 +71,7 @@ impl Cell {
     }
 }
 
-/// Errors from 1e-7 (dark blue) to 1 (yellow), by tens.
+/// Colour of errors from 1e-7 (dark blue) to 1 (yellow), on a logarithmic scale.
 fn heat(error: f64) -> Rgb {
     const STOPS: [Rgb; 8] = [
         (48, 18, 90),
@@ -91,20 +91,20 @@ fn heat(error: f64) -> Rgb {
     (mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
-/// The places along one side of a map.
+/// The points along one side of a map.
 pub struct Axis {
     pub label: &'static str,
     pub values: Vec<f64>,
 }
 
 impl Axis {
-    /// `n` values from `lo` to `hi` in equal ratios.
+    /// `n` values from `lo` to `hi` with equal ratios.
     pub fn ratios(label: &'static str, lo: f64, hi: f64, n: usize) -> Self {
         let value = |i: usize| lo * (hi / lo).powf(i as f64 / (n - 1) as f64);
         Self { label, values: (0..n).map(value).collect() }
     }
 
-    /// `n` values from `lo` to `hi` in equal steps.
+    /// `n` values from `lo` to `hi` with equal steps.
     pub fn steps(label: &'static str, lo: f64, hi: f64, n: usize) -> Self {
         Self { label, values: (0..n).map(|i| lo + (hi - lo) * i as f64 / (n - 1) as f64).collect() }
     }
@@ -115,16 +115,16 @@ impl Axis {
     }
 }
 
-/// One method over all places, row by row of y.
+/// One method at all points, row by row of y.
 pub struct Panel {
     pub title: String,
     pub cells: Vec<Cell>,
-    /// Whether it is Welkin's, whose region of accepted numbers is outlined.
+    /// Whether the method is Welkin's; then the region of accepted numbers is outlined.
     pub ours: bool,
 }
 
 impl Panel {
-    /// Evaluates a method everywhere.
+    /// Evaluates a method at all points.
     pub fn of(title: &str, ours: bool, x: &Axis, y: &Axis, mut f: impl FnMut(f64, f64) -> Cell) -> Self {
         let mut cells = Vec::new();
         y.values.iter().for_each(|y| x.values.iter().for_each(|x| cells.push(f(*x, *y))));
@@ -132,13 +132,13 @@ impl Panel {
     }
 }
 
-/// A map: methods side by side over the same two numbers.
+/// A map: methods side by side over the same two quantities.
 pub struct Map {
     pub title: &'static str,
     pub x: Axis,
     pub y: Axis,
     pub panels: Vec<Panel>,
-    /// Errors above this, where the library accepts the numbers, are a border that is named.
+    /// Larger errors are reported as a border if the library accepts the numbers.
     pub tolerance: f64,
 }
 
@@ -170,7 +170,7 @@ const MAPS: [(&str, Make); 19] = [
 const COLUMNS: [&str; 12] =
     ["key", "map", "panel", "ours", "cells", "refused", "not_finite", "diverged", "jumps", "median", "worst", "date"];
 
-/// Draws the maps named, all if none is.
+/// Draws the named maps, or all if none is named.
 ///
 /// # Errors
 /// An unknown name, before anything is written; files; the GPU.
@@ -182,7 +182,7 @@ pub fn run(names: &[&str], options: &Options) -> Result<()> {
     let lab = Lab::open(options)?;
     let mut journal =
         Journal::open(&options.out, "stability", &lab.note("stability", options), &COLUMNS, options.fresh)?;
-    // A run of some maps keeps what is known of the others.
+    // A run of some maps keeps the results of the others.
     let old = Table::read(&options.out.join("stability.csv"))?;
     for (name, make) in MAPS {
         if journal.has(&format!("{name}/0")) {
@@ -206,7 +206,7 @@ pub fn run(names: &[&str], options: &Options) -> Result<()> {
     page::write(&options.out)
 }
 
-/// A panel's row of the table.
+/// A panel's row in the table.
 pub fn summary(name: &str, index: usize, panel: &Panel) -> Vec<String> {
     let count = |kind: &str| panel.cells.iter().filter(|c| c.kind() == kind).count().to_string();
     let mut errors: Vec<f64> =
@@ -229,7 +229,7 @@ pub fn summary(name: &str, index: usize, panel: &Panel) -> Vec<String> {
     ]
 }
 
-/// Lines about places that the library accepts and where it is wrong all the same.
+/// Lines about points that the library accepts although its result is wrong.
 pub fn borders(name: &str, map: &Map) -> Vec<String> {
     let mut out = Vec::new();
     for panel in map.panels.iter().filter(|p| p.ours) {
@@ -333,7 +333,7 @@ fn panel_into(canvas: &mut Canvas, map: &Map, panel: &Panel, left: f64) {
     }
 }
 
-/// Lines between places that are accepted and those that are not, and along the map's edge.
+/// Draws lines between accepted and refused points, and along the map's edge.
 fn outline(canvas: &mut Canvas, panel: &Panel, nx: usize, ny: usize, at: &dyn Fn(usize, usize) -> (f64, f64)) {
     let accepted = |i: i64, j: i64| {
         let inside = i >= 0 && j >= 0 && i < nx as i64 && j < ny as i64;
@@ -352,7 +352,7 @@ fn outline(canvas: &mut Canvas, panel: &Panel, nx: usize, ny: usize, at: &dyn Fn
     }
 }
 
-/// What each map shows, for the page: by name.
+/// Description of each map for the page, by name.
 const SAYS: [(&str, &str); 19] = [
     (
         "quadrature",
@@ -429,7 +429,7 @@ const SAYS: [(&str, &str); 19] = [
     ),
 ];
 
-/// The maps' part of the page.
+/// Writes the maps' part of the page.
 ///
 /// # Errors
 /// Files.

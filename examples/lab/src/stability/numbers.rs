@@ -1,4 +1,4 @@
-//! Maps of what f32 loses: lengths near a planet, the forward peak, depth, far origins, fog over distance.
+//! Maps of precision lost in f32: lengths near a planet, the forward peak, depth, distant origins, fog over distance.
 
 use glam::{DVec2, DVec3};
 use welkin::Result;
@@ -9,18 +9,18 @@ use super::{Axis, Cell, Map, Panel};
 use crate::chart::Lab;
 use crate::command::Options;
 
-/// Distance to the horizon by r^2 - R^2, as much code has it.
+/// Distance to the horizon from r^2 - R^2, as in much code.
 pub fn horizon_by_squares(radius: f32, altitude: f32) -> f32 {
     let r = radius + altitude;
     (r * r - radius * radius).sqrt()
 }
 
-/// The same without a difference of large numbers.
+/// Distance to the horizon without a difference of large numbers.
 pub fn horizon_by_product(radius: f32, altitude: f32) -> f32 {
     (altitude * (2.0 * radius + altitude)).sqrt()
 }
 
-/// Distance to the horizon over heights and planets.
+/// Distance to the horizon by height and planet.
 pub fn horizon_distance() -> Map {
     let x = Axis::ratios("height, m", 1e-2, 1e7, 46);
     let y = Axis::ratios("planet's radius, m", 1e4, 1e8, 25);
@@ -42,13 +42,13 @@ pub fn peak_usual(g: f32, cos: f32) -> f32 {
     (1.0 - g * g) / (d * d.sqrt())
 }
 
-/// The same from 1 - cos, as fog and sky have it.
+/// Henyey and Greenstein's function from 1 - cos, as Welkin's fog and sky use it.
 pub fn peak_from_versine(g: f32, versine: f32) -> f32 {
     let d = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;
     (1.0 - g) * (1.0 + g) / (d * d.sqrt())
 }
 
-/// The forward peak over asymmetry and angle.
+/// The forward peak by asymmetry and angle.
 pub fn phase() -> Map {
     let x = Axis::ratios("1 - g", 1e-6, 0.5, 40);
     let y = Axis::ratios("angle off the sun, rad", 1e-5, 3.0, 40);
@@ -76,7 +76,7 @@ pub fn phase() -> Map {
                 return Cell::Refused;
             }
             let g = g_of(x);
-            // Two unit vectors of f32 that enclose the angle.
+            // Two unit vectors in f32 that enclose the angle.
             let (s, c) = (a.sin() as f32, a.cos() as f32);
             let versine = 0.5 * (s * s + (c - 1.0) * (c - 1.0));
             error(peak_from_versine(g, versine), g, a)
@@ -85,14 +85,14 @@ pub fn phase() -> Map {
     Map { title: "Forward peak of Henyey and Greenstein in f32", x, y, panels, tolerance: 0.05 }
 }
 
-/// The relative step of a depth buffer over distance and near plane.
+/// Relative step of a depth buffer by distance and near plane.
 pub fn depth() -> Result<Map> {
     let x = Axis::ratios("distance, m", 1.0, 1e6, 49);
     let y = Axis::ratios("near plane, m", 1e-2, 10.0, 25);
     let step = |near: f64, reversed: bool, distance: f64| -> Result<f64> {
         let mut camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 1.0, 1.6, near);
         if !reversed {
-            // Depth 1 - near/w in place of near/w.
+            // Depth 1 - near/w instead of near/w.
             camera.projection.z_axis.z = -1.0;
             camera.projection.w_axis.z = -near;
         }
@@ -113,7 +113,7 @@ pub fn depth() -> Result<Map> {
     Ok(Map { title, x, y, panels, tolerance: 1e-4 })
 }
 
-/// How far a point is misplaced by a far origin.
+/// Displacement of a point by a distant origin.
 pub fn origin() -> Result<Map> {
     let x = Axis::ratios("world's origin away, m", 1.0, 1e9, 37);
     let y = Axis::ratios("distance of the point, m", 0.1, 1e4, 26);
@@ -129,7 +129,7 @@ pub fn origin() -> Result<Map> {
         let camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 1.0, 1.6, 0.01);
         let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..Default::default() });
         let Ok(rays) = rays else { return Cell::Refused };
-        // The host's point in its own depth buffer, and back: what Welkin sees of the world.
+        // Writes the host's point to its depth buffer and reads it back, as Welkin does.
         let point = camera.position + direction * distance;
         let local = point - camera.position;
         let view = camera.view.transform_vector3(local);
@@ -146,7 +146,7 @@ pub fn origin() -> Result<Map> {
     Ok(Map { title: "A far origin: misplacement of a point over its distance", x, y, panels, tolerance: 1e-4 })
 }
 
-/// Contrast over distance in fog, as drawn.
+/// Contrast by distance in fog, as drawn.
 pub fn fog_distance(lab: &Lab, _options: &Options) -> Result<Map> {
     let x = Axis::ratios("distance, m", 0.5, 1e6, 43);
     let y = Axis::ratios("visibility, m", 1.0, 1e5, 26);

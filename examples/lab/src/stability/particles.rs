@@ -1,4 +1,4 @@
-//! Maps of steps in time and sweeps in space: drops in the wind, pressure, and weather that changes.
+//! Maps of time steps and solver sweeps: drops in the wind, pressure, and changing weather.
 
 use glam::{DVec2, DVec3};
 use welkin::Result;
@@ -11,31 +11,31 @@ use welkin::wind::Drift;
 
 use super::{Axis, Cell, Map, Panel};
 
-/// A drop that falls through still air, and from one moment on through this, m/s.
+/// Wind that suddenly meets a drop falling through still air, m/s.
 const GUST: DVec3 = DVec3::new(20.0, 0.0, 0.0);
-/// Steps after which the ways are compared.
+/// Number of steps after which the paths are compared.
 const STEPS: usize = 60;
 
-/// One step of a drop: velocity and way from velocity, air's velocity, terminal speed, and length.
+/// One step of a drop: returns velocity and path from velocity, air velocity, terminal speed and step length.
 pub type Step = fn(DVec3, DVec3, f64, f64) -> (DVec3, DVec3);
 
-/// Drag by the square, as an acceleration: what falls at `terminal` is at rest in the air.
+/// Quadratic drag as an acceleration; a drop at `terminal` speed is in equilibrium.
 fn by_square(v: DVec3, air: DVec3, terminal: f64) -> DVec3 {
     let against = v - air;
     -DVec3::Z * GRAVITY_M_S2 - against * (against.length() * GRAVITY_M_S2 / (terminal * terminal))
 }
 
-/// Drag that is linear, likewise.
+/// Linear drag as an acceleration; a drop at `terminal` speed is in equilibrium.
 fn linear(v: DVec3, air: DVec3, terminal: f64) -> DVec3 {
     -DVec3::Z * GRAVITY_M_S2 - (v - air) * (GRAVITY_M_S2 / terminal)
 }
 
-/// The usual step: everything by what it is at its beginning.
+/// The usual step (explicit Euler): all terms from the values at its start.
 pub fn euler(v: DVec3, air: DVec3, terminal: f64, dt: f64) -> (DVec3, DVec3) {
     (v + by_square(v, air, terminal) * dt, v * dt)
 }
 
-/// The way of a drop in the gust after `time`: of fourth order in steps of a hundredth of what drag takes.
+/// Path of a drop in the gust after `time`, by a fourth-order method with steps of a hundredth of the drag time.
 fn true_way(pull: fn(DVec3, DVec3, f64) -> DVec3, terminal: f64, time: f64) -> DVec3 {
     let settled = GUST - DVec3::Z * terminal;
     let (mut v, mut way, mut left) = (-DVec3::Z * terminal, DVec3::ZERO, time);
@@ -53,8 +53,8 @@ fn true_way(pull: fn(DVec3, DVec3, f64) -> DVec3, terminal: f64, time: f64) -> D
     way + settled * left
 }
 
-/// What a way of stepping does to a drop of `diameter_mm` in the gust: it swings if the drop is ever blown faster than
-/// the wind is that blows it.
+/// Result of a stepping method for a drop of `diameter_mm` in the gust. The drop oscillates if it ever moves faster
+/// than the wind that drives it.
 pub fn gust_cell(step: Step, square: bool, diameter_mm: f64, dt: f64) -> Cell {
     let terminal = terminal_speed_m_s(diameter_mm);
     let (mut v, mut way, mut swings) = (-DVec3::Z * terminal, DVec3::ZERO, false);
@@ -70,7 +70,7 @@ pub fn gust_cell(step: Step, square: bool, diameter_mm: f64, dt: f64) -> Cell {
     if swings { Cell::Jumps } else { Cell::of((way - truth).length() / truth.length()) }
 }
 
-/// Drag over step and drop.
+/// Drag by step and drop size.
 pub fn drag() -> Map {
     let x = Axis::ratios("time step, s", 1e-3, 10.0, 41);
     let y = Axis::ratios("diameter, mm", 0.1, 6.0, 26);
@@ -91,9 +91,9 @@ pub fn drag() -> Map {
     }
 }
 
-/// How far places of drops are off that of air carried by a gust in one frame of 1/60 s, over that way; the gust raises
-/// the wind from 3 m/s by `by` within half a second, and the frame is amid of it. `place` answers from the velocity's
-/// and the displacement's values at a time (m/s, m, s).
+/// Relative error in the movement of drops that a gust carries, in one frame of 1/60 s. The gust raises the wind from 3
+/// m/s by `by` within half a second, and the frame lies in the middle of it. `place` returns a position from the
+/// velocity and the displacement at a time (m/s, m, s).
 pub fn thrown_cell(late: f64, by: f64, place: fn(DVec2, DVec2, f64) -> DVec2) -> Result<Cell> {
     let of = |speed: f64| derive(&Weather { wind: Wind::of(speed, 270.0), ..Weather::default() });
     let mut timeline = Timeline::new(of(3.0)?);
@@ -108,16 +108,16 @@ pub fn thrown_cell(late: f64, by: f64, place: fn(DVec2, DVec2, f64) -> DVec2) ->
     let way = (0..=n).map(|i| velocity(i) * (weight(i) * dt / f64::from(3 * n))).sum::<DVec2>();
     let [a, b] = [from, from + dt].map(|t| place(at(t).velocity_m_s(), at(t).drift.displacement_m, t));
     let off = (b - a - way).length() / way.length();
-    // Farther than the wind blows in that time.
+    // More than the wind blows in that time.
     Ok(if off > 1.0 { Cell::Jumps } else { Cell::of(off) })
 }
 
-/// Places by velocity times time.
+/// Position as velocity times time.
 pub fn by_time(velocity: DVec2, _: DVec2, t: f64) -> DVec2 {
     velocity * t
 }
 
-/// Places by the displacement, to the 2^-32 of a cell's side that drops are drawn by.
+/// Position from the displacement, rounded to the 2^-32 of a cell's side with which drops are drawn.
 pub fn by_displacement(_: DVec2, displacement: DVec2, t: f64) -> DVec2 {
     let moment = Moment::new(0, displacement.extend(0.0), t);
     let cells = displacement / side_m(0);
@@ -125,7 +125,7 @@ pub fn by_displacement(_: DVec2, displacement: DVec2, t: f64) -> DVec2 {
     (cells.floor() + drawn) * side_m(0)
 }
 
-/// A gust over when it comes and how strong it is.
+/// A gust by its start time and its strength.
 pub fn gust() -> Result<Map> {
     let x = Axis::ratios("when it comes, s", 1.0, 1e9, 37);
     let y = Axis::ratios("rise of the wind, m/s", 0.1, 80.0, 26);
@@ -139,7 +139,8 @@ pub fn gust() -> Result<Map> {
     Ok(Map { title: "A gust: what it moves drops in one frame, off the wind's own way", x, y, panels, tolerance: 1e-3 })
 }
 
-/// Residual over the first one after sweeps of successive over-relaxation on the unit square with a point source.
+/// Residual relative to the first one after sweeps of successive over-relaxation on the unit square with a point
+/// source.
 pub fn sor_residual(n: usize, factor: f64, sweeps: usize) -> f64 {
     let side = n + 2;
     let mut p = vec![0.0f64; side * side];
@@ -164,7 +165,7 @@ pub fn sor_residual(n: usize, factor: f64, sweeps: usize) -> f64 {
     residual
 }
 
-/// Over-relaxation over factor and size.
+/// Over-relaxation by factor and size.
 pub fn over_relaxation() -> Map {
     let x = Axis::steps("relaxation factor", 0.9, 2.1, 49);
     let y = Axis::list("cells along a side", &[8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0]);
@@ -178,7 +179,7 @@ pub fn over_relaxation() -> Map {
     Map { title: "Residual after 400 sweeps of successive over-relaxation", x, y, panels, tolerance: 1.0 }
 }
 
-/// Kinetic energy that still whirls lose in a turn, over the length of a step and the size of the grid.
+/// Kinetic energy that steady vortices lose in one turn, by step length and grid size.
 pub fn whirls() -> Map {
     let x = Axis::list("cells that the air passes in a step", &[0.25, 0.5, 1.0, 2.0, 4.0, 8.0]);
     let y = Axis::list("cells along a side", &[16.0, 24.0, 32.0, 48.0, 64.0]);
@@ -197,14 +198,14 @@ pub fn whirls() -> Map {
     Map { title: "Kinetic energy that whirls without friction lose in 2 pi seconds", x, y, panels, tolerance: 0.25 }
 }
 
-/// Visibility after a change of weather, over the step with which it is followed and the change's duration.
+/// Visibility after a change of weather, by time step and duration of the change.
 pub fn time_steps() -> Result<Map> {
     let x = Axis::ratios("time step, s", 1e-2, 1e4, 25);
     let y = Axis::ratios("duration of the change, s", 1.0, 1e4, 17);
     let from = derive(&Weather::default())?;
     let to = derive(&Weather { visibility_m: 800.0, ..Weather::default() })?;
     let visibility = |c: &welkin::weather::Conditions| c.visibility_m();
-    // Half of the change has passed.
+    // Evaluated when half of the change has passed.
     let usual = |dt: f64, duration: f64| {
         let (a, b) = (visibility(&from).recip(), visibility(&to).recip());
         let end = 0.5 * duration;

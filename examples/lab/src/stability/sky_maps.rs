@@ -1,5 +1,5 @@
-//! Maps of the sky: transmittance by rule, radiance about the horizon and through twilight, odd media, stored
-//! radiances.
+//! Maps of the sky: transmittance by integration rule, radiance near the horizon and through twilight, unusual media,
+//! stored radiances.
 
 use half::f16;
 use welkin::Result;
@@ -13,8 +13,8 @@ use super::{Axis, Cell, Map, Panel};
 use crate::chart::Lab;
 use crate::command::Options;
 
-/// Transmittance to space by the rule of much public code: samples at 0.3 of a step, steps counted from the last
-/// sample.
+/// Transmittance to space by the rule of much public code: samples at 0.3 of a step, with step lengths counted from the
+/// last sample.
 pub fn offset_transmittance(medium: &Medium, altitude_m: f64, mu: f64, n: u32) -> f64 {
     by_rule(
         medium,
@@ -28,7 +28,7 @@ pub fn offset_transmittance(medium: &Medium, altitude_m: f64, mu: f64, n: u32) -
     )
 }
 
-/// The same by midpoints of equal steps.
+/// Transmittance to space by midpoints of equal steps.
 pub fn midpoint_transmittance(medium: &Medium, altitude_m: f64, mu: f64, n: u32) -> f64 {
     by_rule(medium, altitude_m, mu, |i| ((f64::from(i) + 0.5) / f64::from(n), 1.0 / f64::from(n)), n)
 }
@@ -45,7 +45,7 @@ fn by_rule(medium: &Medium, altitude_m: f64, mu: f64, node: impl Fn(u32) -> (f64
     medium.transmittance(&columns)[1]
 }
 
-/// Transmittance over altitude and angle above the horizon.
+/// Transmittance by altitude and angle above the horizon.
 pub fn quadrature(lab: &Lab, _options: &Options) -> Result<Map> {
     let x = Axis::ratios("angle above the horizon, deg", 0.01, 90.0, 40);
     let y = Axis::ratios("altitude, m", 1.0, 6e4, 26);
@@ -93,15 +93,15 @@ fn settings(model: SkyModel, quick: bool) -> SkySettings {
     }
 }
 
-/// Whether r^2 (mu^2 - 1) + R^2 in f32 knows that a ray meets the ground.
+/// Whether r^2 (mu^2 - 1) + R^2 in f32 detects that a ray meets the ground.
 pub fn naive_ground(radius: f32, altitude: f32, mu: f32) -> bool {
     let r = radius + altitude;
     mu < 0.0 && r * r * (mu * mu - 1.0) + radius * radius >= 0.0
 }
 
-/// Radiance about the horizon at all heights.
+/// Radiance near the horizon at all heights.
 pub fn horizon(lab: &Lab, options: &Options) -> Result<Map> {
-    // Crowded about the horizon, which is between two places.
+    // Angles are dense near the horizon, which lies between two points.
     let mut angles: Vec<f64> = (0..if options.quick { 6 } else { 14 }).map(|i| 2.0 * 0.5f64.powi(i)).collect();
     angles.sort_by(f64::total_cmp);
     let below: Vec<f64> = angles.iter().rev().map(|a| -a).collect();
@@ -140,7 +140,7 @@ pub fn horizon(lab: &Lab, options: &Options) -> Result<Map> {
     Ok(Map { title: "Radiance about the horizon, sun at 60 degrees", x, y, panels, tolerance: 0.1 })
 }
 
-/// Errors of a row of green radiances, with a floor of a hundredth of what exposes the row, at least 1e-9 of the sun.
+/// Errors of a row of green radiances. The floor is a hundredth of the row's exposure level, at least 1e-9 of the sun.
 fn row_cells(drawn: &[Answer], truth: &[f64]) -> Vec<Cell> {
     let mean = truth.iter().sum::<f64>() / truth.len() as f64;
     let white = (mean / 0.18).max(1e-7);
@@ -151,13 +151,13 @@ fn row_cells(drawn: &[Answer], truth: &[f64]) -> Vec<Cell> {
     drawn.iter().zip(truth).map(cell).collect()
 }
 
-/// Suns and views of the twilight maps.
+/// Sun and view angles of the twilight maps.
 fn twilight_axes(quick: bool) -> (Axis, Axis) {
     let x = Axis::steps("sun's zenith angle, deg", 80.0, 110.0, if quick { 16 } else { 61 });
     (x, Axis::steps("view's zenith angle, deg", 0.0, 88.0, if quick { 6 } else { 12 }))
 }
 
-/// Green radiance per unit irradiance, by sun and then view.
+/// Green radiance per unit irradiance, ordered by sun, then view.
 fn twilight_truth(x: &Axis, y: &Axis) -> Result<Vec<f64>> {
     let planet = Planet::earth();
     let reference = solve(&planet)?;
@@ -170,7 +170,7 @@ fn twilight_truth(x: &Axis, y: &Axis) -> Result<Vec<f64>> {
     Ok(truth)
 }
 
-/// Radiance while the sun sets.
+/// Radiance during sunset.
 pub fn twilight(lab: &Lab, options: &Options) -> Result<Map> {
     let (x, y) = twilight_axes(options.quick);
     let truth = twilight_truth(&x, &y)?;
@@ -208,7 +208,7 @@ pub fn twilight(lab: &Lab, options: &Options) -> Result<Map> {
     })
 }
 
-/// What storing a radiance loses.
+/// Precision lost by storing a radiance.
 pub fn half_floats(_lab: &Lab, options: &Options) -> Result<Map> {
     let (x, y) = twilight_axes(options.quick);
     let truth = twilight_truth(&x, &y)?;
@@ -228,7 +228,7 @@ pub fn half_floats(_lab: &Lab, options: &Options) -> Result<Map> {
     Ok(Map { title: "A stored radiance through twilight, relative error", x, y, panels, tolerance: 0.01 })
 }
 
-/// A march in f32 as much public code has it: source times (1 - T)/sigma, and all orders as 1/(1 - f).
+/// A march in f32 as in much public code: source times (1 - T)/sigma, and all orders as 1/(1 - f).
 pub fn usual_march(factor: f32, scale_m: f32) -> f32 {
     let (n, top, beta) = (40, 60_000.0f32, 1.149e-5f32);
     let ds = 2.0 * top / n as f32;
@@ -245,8 +245,8 @@ pub fn usual_march(factor: f32, scale_m: f32) -> f32 {
     light / (1.0 - again)
 }
 
-/// The integrals of [`usual_march`] in f64 with steps a hundred times finer, each solved without cancellation: what the
-/// method would answer if its arithmetic did not err. Nothing where no light is, and where its series has no sum.
+/// The integrals of [`usual_march`] in f64 with steps a hundred times finer, each solved without cancellation: the
+/// method's result without rounding errors. `None` where there is no light, and where its series diverges.
 fn usual_march_truth(factor: f64, scale_m: f64) -> Option<f64> {
     let (n, top, beta) = (4000, 60_000.0, 1.149e-5);
     let dh = top / f64::from(n);
@@ -264,7 +264,7 @@ fn usual_march_truth(factor: f64, scale_m: f64) -> Option<f64> {
     (light > 0.0 && again < 1.0 && sum.is_finite()).then_some(sum)
 }
 
-/// Odd media: how much air, and how high it reaches.
+/// Unusual media, by amount of air and scale height.
 pub fn media(lab: &Lab, options: &Options) -> Result<Map> {
     let (factors, scales): (&[f64], &[f64]) = if options.quick {
         (&[0.0, 1.0, 1e4], &[0.0, 0.01, 8e3])
