@@ -31,7 +31,7 @@ int main(void)
     wk_texture_desc texture = WK_TEXTURE_DESC_INIT;
     wk_own_target target = WK_OWN_TARGET_INIT;
     wk_frame frame = WK_FRAME_INIT;
-    /* Looks north: east is the picture's right, up its up. One radian wide, infinite reversed depth. */
+    /* Looks north: in the picture east is right and up is up. One radian wide, infinite reversed depth. */
     const double view_matrix[16] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
     const double projection[16] = {1.83, 0, 0, 0, 0, 3.25, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0};
     int i;
@@ -51,7 +51,7 @@ int main(void)
     frame.position_m[2] = 2.0;
     target.color = color;
     frame.target = &target;
-    /* One picture alone: all of it is drawn in this frame. Leave WK_FRAME_NO_HISTORY out where frames follow each other. */
+    /* A single picture, whole in this frame. Leave WK_FRAME_NO_HISTORY out where frames follow each other. */
     frame.flags = WK_FRAME_DEPTH_REVERSED | WK_FRAME_NO_HISTORY;
     check(wk_view_record(view, &frame, WK_STAGE_ALL));
     check(wk_texture_read(color, pixels, sizeof pixels, WIDTH * 4));
