@@ -1,7 +1,8 @@
-// Look of water by the class of the ground. The table is in src/ground/class.rs.
+// Look of water on the ground: the class of a surface, and how water shows on that class. src/ground/class.rs has the
+// table.
 //!include "ground/normal.wgsl"
 
-// Look of vegetation (src/ground/class.rs).
+// Look of water on vegetation, as in src/ground/class.rs.
 const PLANTS: SurfaceLook = SurfaceLook(0.15, 0.0, 0.6, 50.0, 0.4, 0.0, 0.0, 1.0);
 
 fn mix_looks(a: SurfaceLook, b: SurfaceLook, share: f32) -> SurfaceLook {
@@ -32,8 +33,8 @@ fn look_of(number: u32, unspecified: SurfaceLook) -> SurfaceLook {
     return ground.looks[number];
 }
 
-// Returns the look of a surface: by the host's image, else by its terrain, else the context's default, in which green
-// parts count as plants.
+// Returns the look of a surface. Its class comes from the host's image of classes, else from the host's terrain, else
+// from the context's default. Under this default, green parts of the picture count as plants.
 fn surface_look(surface: HostSurface, here: TerrainPoint, albedo: vec3f) -> SurfaceLook {
     var look = mix_looks(ground.looks[0], PLANTS, plants(albedo));
     if TERRAIN {

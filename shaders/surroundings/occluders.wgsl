@@ -1,9 +1,9 @@
 // Surfaces in the host's occluder maps, taken from any direction, and the test whether a path crosses one of them. Each
-// texel holds the range of distances that its surface spans, each cell of 8 and of 64 texels the range of all texels in
-// it (surroundings/occluder_map.wgsl). The path is traced from cell to cell and descends only into cells whose range it
-// meets: a path before or behind all surfaces of a cell crosses none of them. A map does not contain what its surfaces
-// hide, so a path may pass behind an edge. It is best taken along the drops' own direction, in which nothing is hidden
-// that matters.
+// texel holds the range of distances that its surface spans, each cell of 8 x 8 and of 64 x 64 texels the range of all
+// texels in it (surroundings/occluder_map.wgsl). The path is traced from cell to cell and descends only into cells
+// whose range it meets: a path before or behind all surfaces of a cell crosses none of them. A map does not contain
+// what its surfaces hide, so a path may pass behind an edge. A map that is taken along the drops' own direction hides
+// nothing that matters.
 
 // Whether there are any maps.
 override MAPS: bool = false;
@@ -13,8 +13,8 @@ const MAX_MAPS: u32 = 4u;
 const MAP_STEPS: u32 = 192u;
 
 struct Occluder {
-    // Rows from camera-relative east, north, up to w times the position in the table of ranges, to w, and to the
-    // distance from the map's camera, m.
+    // Rows of a transform of (east, north, up, 1), relative to the camera, m. x and y give w times the column and the
+    // row in the table of ranges, w gives w, and distance gives the distance from the plane of the map's camera, m.
     x: vec4f,
     y: vec4f,
     w: vec4f,
@@ -28,7 +28,8 @@ struct Occluder {
 struct Occluders {
     count: u32,
     pad: u32,
-    // x: column at which the cells of 64 texels begin in the table; y: row at which all cells begin.
+    // y: row of the table at which the cells of both sizes begin, below the texels; x: column at which the cells of
+    // 64 x 64 texels begin.
     cells: vec2u,
     maps: array<Occluder, MAX_MAPS>,
 }
@@ -37,7 +38,7 @@ struct Occluders {
 // Bits of floats, because not all drivers can render to 32-bit floats.
 @group(2) @binding(2) var map_ranges: texture_2d<u32>;
 
-// Returns the range of distances of a cell. `level` 0: a texel; 1: a cell of 8 texels; 2: of 64.
+// Returns the range of distances of a cell. `level` 0: a texel; 1: a cell of 8 x 8 texels; 2: of 64 x 64.
 fn range_of(level: u32, cell: vec2f) -> vec2f {
     let row = select(0u, occluders.cells.y, level > 0u);
     let column = select(0u, occluders.cells.x, level > 1u);
@@ -49,7 +50,7 @@ fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
     let map = occluders.maps[i];
     let back = map.velocity.xyz - velocity;
     let at = vec4f(p, 1.0);
-    // Along the path all four components are a + s b.
+    // The values of the map's four rows at s seconds before p are a + s b.
     let a = vec4f(dot(map.x, at), dot(map.y, at), dot(map.w, at), dot(map.distance, at));
     let b = vec4f(dot(map.x.xyz, back), dot(map.y.xyz, back), dot(map.w.xyz, back), dot(map.distance.xyz, back));
     let sides = vec4f(a.xy - map.part.xy * a.z, map.part.zw * a.z - a.xy);
@@ -82,8 +83,8 @@ fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
         let distance = a.w + vec2f(s, next) * b.w;
         let range = range_of(level, cell);
         if level == 0u && s == 0.0 && a.w <= range.y {
-            // A path that starts on a surface must first leave it: by as much as the range of the surface's own texel
-            // spans.
+            // A path that starts on a surface must first get clear of it: the test begins before the near end of the
+            // texel's range, by the length of this range.
             s = max((a.w - 2.0 * range.x + range.y) * apart, 1e-6);
         } else if min(distance.x, distance.y) <= range.y && max(distance.x, distance.y) >= range.x {
             if level == 0u {
@@ -95,7 +96,7 @@ fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
             if next >= end {
                 break;
             }
-            // Continue with larger cells where one of them ends.
+            // Go up one level where the path enters another cell of that level.
             let beside = cell + select(vec2f(sign(onward.x), 0.0), vec2f(0.0, sign(onward.y)), until.y < until.x);
             level = select(level, min(level + 1u, 2u), any(floor(beside / 8.0) != floor(cell / 8.0)));
             s = next;

@@ -4,15 +4,16 @@
 //! checks of plain parameters, handles and the objects behind them, the cell of a device, and the guard that keeps
 //! panics inside. It has no `wk_*` call. The files beside it are the upper floor: the `wk_*` calls with their structs,
 //! the code that several of them share (`host`, `weather_convert`), and `abi`, the tests' view of the interface. Each
-//! file may use the lower floor, and other files of the upper floor as long as no cycle of files results. Only
-//! generated code depends on the upper floor from below: `boundary::layout` includes the tables that `build.rs` writes
-//! from all structs.
+//! file may use the lower floor, and other files of the upper floor as long as no cycle of files results. The lower
+//! floor uses the upper one only in generated code: `boundary::layout` includes the tables that `build.rs` writes from
+//! all structs.
 //!
-//! Each `pub mod` below is one section of `include/welkin.h`, in this order; its `//!` text is the section's article.
-//! `build.rs` writes the header from them (cbindgen does the declarations). Where a section's file re-exports a whole
-//! file, as `pub use super::opengl_structs::*`, the items of that file come first in the section. This lets the type of
-//! a handle stand beside its object in `boundary::objects`, and lets `host` use the structs of sections whose calls use
-//! `host`.
+//! Each `pub mod` below except `abi` is one section of `include/welkin.h`, in this order; its `//!` text is the
+//! section's article. `build.rs` writes the header from them (cbindgen does the declarations). Where a section's file
+//! re-exports a whole file, as `pub use super::opengl_structs::*`, the items of that file come first in the section.
+//! Two kinds of items need this. The type of a handle stands beside its object in `boundary::objects`. Structs that
+//! `host` uses stand in files of their own, because the calls of the same section use `host`: one file for both would
+//! make a cycle.
 #![allow(non_camel_case_types, reason = "the names are C's")]
 #![allow(clippy::missing_safety_doc, reason = "the safety rules are the header's: see `manual`")]
 

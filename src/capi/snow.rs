@@ -3,7 +3,7 @@
 //! WK_STAGE_PARTICLES draws falling snow wherever the weather has it. Rate, kind and temperature give the sizes and
 //! speeds of the flakes; seed and time alone give their places, so all channels of a simulator draw the same flakes.
 //! The wind carries them; the host's depth hides them; shelters and occluder maps keep them off; sky, ground, sun and
-//! lamps light them. Beyond the distance of the flakes, snow is extinction in the air.
+//! lamps light them. Farther away than flakes reach (wk_snow.most_flakes), snow is extinction in the air.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -43,9 +43,9 @@ pub struct wk_snow {
     /// Exposure time of a picture, s: flakes that move farther than their own size in this time become streaks. Range
     /// [1e-4, 0.1], default 1/250, at which flakes in a light wind show their shapes.
     pub shutter_s: f64,
-    /// Largest number of flakes to draw. The more, the farther they reach, up to 16 m. If there are too many, each
-    /// drawn flake stands for several. Range [1000, 8 000 000], or 0, the default: 1 000 000, and 60 000 on a software
-    /// driver.
+    /// Largest number of flakes to draw. A larger number lets flakes reach farther from the camera, up to 16 m. If more
+    /// flakes fall than may be drawn, a drawn flake stands for several. Range [1000, 8 000 000], or 0, the default:
+    /// 1 000 000, and 60 000 on a software driver.
     pub most_flakes: u32,
     /// A WK_SNOW_MODEL_ constant; 0, the default, lets Welkin choose.
     pub model: wk_snow_model,

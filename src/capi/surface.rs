@@ -6,7 +6,7 @@
 //!
 //!   wk_device_create_for_window, wk_surface_create, wk_surface_configure
 //!   each frame: wk_surface_acquire, wk_view_record (wk_own_target.surface), wk_surface_present
-//!   on WK_ERROR_SURFACE_OUTDATED: wk_surface_configure with the window's present size, next frame
+//!   on WK_ERROR_SURFACE_OUTDATED: wk_surface_configure with the window's current size, then the next frame
 //!   on WK_PENDING: the window shows nothing now; skip the frame
 
 use std::{
@@ -82,11 +82,12 @@ impl wk_window {
     };
 }
 
-/// Encoding of the values drawn to a surface; give the frame the matching color_space.
+/// Encoding of the values drawn to a surface; give the frame a color_space that fits it.
 pub type wk_surface_encoding = u32;
-/// Display-linear: the hardware encodes to sRGB (WK_COLOR_DISPLAY_LINEAR, or TONE from WK_COLOR_SCENE_LINEAR).
+/// Display-linear values, which the hardware encodes to sRGB. WK_COLOR_DISPLAY_LINEAR fits, and WK_COLOR_SCENE_LINEAR
+/// with WK_STAGE_TONE.
 pub const WK_SURFACE_DISPLAY_LINEAR: wk_surface_encoding = 0;
-/// Encoded already (WK_COLOR_DISPLAY_SRGB, or TONE from WK_COLOR_SCENE_LINEAR).
+/// Values encoded to sRGB already. WK_COLOR_DISPLAY_SRGB fits, and WK_COLOR_SCENE_LINEAR with WK_STAGE_TONE.
 pub const WK_SURFACE_DISPLAY_SRGB: wk_surface_encoding = 1;
 
 /// When images reach the screen.
@@ -147,7 +148,7 @@ unsafe fn native(p: *const wk_window) -> Result<NativeWindow> {
     })
 }
 
-/// Renames the handles of a window in an error as the header does.
+/// Renames a window's handles in an error to the names of the header's fields.
 fn in_window(e: Error) -> Error {
     e.map_field(|name| match name {
         "display" | "connection" | "hinstance" => "window.display".into(),
@@ -175,7 +176,7 @@ pub unsafe extern "C" fn wk_device_create_for_window(
         unsafe { layout::check_chain(&"desc", desc.next, &[])? };
         // SAFETY: the caller's promise about `window`.
         let window = unsafe { native(window)? };
-        // SAFETY: as above; its connection outlives the device by the header's words.
+        // SAFETY: as above; the header demands that its connection outlives the device.
         let gpu = unsafe { device_for_window(&window, &device::options(&desc)) }.map_err(in_window)?;
         let handle = device::issue(gpu, Host::Own)?;
         // SAFETY: `place` was checked and is the caller's.
@@ -200,7 +201,7 @@ pub unsafe extern "C" fn wk_surface_create(
         // SAFETY: the caller's promise about `window`.
         let window = unsafe { native(window)? };
         object.cell.drain();
-        // SAFETY: the window outlives the surface by the header's words.
+        // SAFETY: the header demands that the window outlives the surface.
         let surface = unsafe { Surface::new(object.cell.gpu(), &window) }.map_err(in_window)?;
         let surface = SurfaceObject::new(object.cell.clone(), surface);
         let handle = handles::insert::<_, DeviceObject>(Arc::new(surface), Some(device))?;
@@ -222,11 +223,12 @@ pub unsafe extern "C" fn wk_surface_destroy(surface: *mut wk_surface) -> wk_stat
     })
 }
 
-/// Configures a surface, the first time or after its window changed. An acquired image is returned undrawn. With a
-/// width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the surface is
-/// configured with an area.
+/// Configures a surface, the first time or after its window changed. An image that was acquired and not yet presented
+/// is discarded. With a width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the
+/// surface is configured with an area.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if it is gone.
+/// Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if the window
+/// is gone.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_surface_configure(surface: *mut wk_surface, config: *const wk_surface_config) -> wk_status {
     guard("wk_surface_configure", |call| {
@@ -252,7 +254,7 @@ pub unsafe extern "C" fn wk_surface_configure(surface: *mut wk_surface, config: 
 /// Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
 /// Thread: exclusive.
 /// Returns WK_PENDING if the window shows nothing now: skip this frame.
-/// Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while it is minimised.
+/// Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while the window is minimised.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_surface_acquire(surface: *mut wk_surface) -> wk_status {
     guard("wk_surface_acquire", |call| {

@@ -1,15 +1,15 @@
 //! Terrain in tiles
 //!
-//! The host's terrain as a lattice of equal cells, level and aligned to true north at its origin, cut into square tiles
-//! with keys. Each cell has a height and a class of surface, or is a hole. Tiles can be added and removed, and
-//! rectangles of their cells changed. The time of a change grows with the rectangle, so a bucket may dig in every
-//! frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell has its own water, and
-//! hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has
-//! either tiles or one wk_ground_grid.
+//! The host's terrain as a lattice of equal cells, cut into square tiles with keys. The lattice is horizontal and
+//! aligned to true north at its origin. Each cell has a height and a class of surface, or is a hole. Tiles can be added
+//! and removed, and rectangles of their cells changed. The time of a change grows with the rectangle, so an excavator's
+//! bucket may dig in every frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell
+//! has its own water, and hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level
+//! ground. A context has either tiles or one wk_ground_grid.
 //!
 //! Heights belong to the host: wk_context_save saves only the water of the tiles, and wk_context_load requires that the
 //! same tiles have been set before. wk_context_set_terrain and the functions of tiles may be called between updates at
-//! any time; while steps remain (WK_PENDING) they take effect after these.
+//! any time; while an update has steps left (WK_PENDING), a change takes effect after the last of them.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -49,7 +49,7 @@ pub struct wk_terrain {
     /// Position of the south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin. Heights
     /// of cells count from its height. Default 0, 0, 0.
     pub origin_m: [f64; 3],
-    /// Distance between cells, m. Range [0.01, 10 000], default 1. Puddles need several cells.
+    /// Distance between cells, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear.
     pub cell_m: f64,
     /// Number of cells along each side of a tile: a power of two from 32 to 1024. Default 256. The tiles of a terrain
     /// may have 16 777 216 cells together.
@@ -91,25 +91,25 @@ pub struct wk_terrain_cells {
     /// Heights above the terrain's origin, m, within 1e5. Copied by the call. NULL with a count of 0 leaves the heights
     /// unchanged; a new tile needs them. The height of a hole is not read and may be anything, also NaN.
     pub heights_m: *const f32,
-    /// Length of heights_m: at least the rectangle's extent with its stride.
+    /// Length of heights_m: at least (rows - 1) x stride + columns of the rectangle.
     pub height_count: u32,
-    /// Distance between the beginnings of neighbouring rows in heights_m, numbers. Default 0: rows follow without a
-    /// gap.
+    /// Number of elements of heights_m from the beginning of a row to that of the next. Default 0: the columns of the
+    /// rectangle, so that rows follow without a gap.
     pub height_stride: u32,
     /// Class of each cell: a wk_surface_class, 0 to use the context's default, or WK_TERRAIN_HOLE. Copied by the call.
     /// NULL with a count of 0 leaves the classes unchanged; in a new tile they are then 0.
     pub surface_classes: *const u8,
-    /// Length of surface_classes: at least the rectangle's extent with its stride.
+    /// Length of surface_classes: at least (rows - 1) x stride + columns of the rectangle.
     pub surface_class_count: u32,
-    /// Distance between the beginnings of neighbouring rows in surface_classes, numbers. Default 0: rows follow without
-    /// a gap.
+    /// Number of elements of surface_classes from the beginning of a row to that of the next. Default 0: the columns of
+    /// the rectangle, so that rows follow without a gap.
     pub surface_class_stride: u32,
     /// 1 if no_data_m is used; 0, the default, if every number in heights_m is a height.
     pub has_no_data: u32,
     /// Number in heights_m for cells without data, such as -9999, -32768, or your source's own; NaN then also means no
-    /// data. These cells become holes. A hole becomes ground again when surface_classes gives it a class. The number
-    /// must not be a height in use: neither that of a cell to which surface_classes gives a class other than 0, nor
-    /// that of a cell with ground in the same tile outside the rectangle. Default 0.
+    /// data. These cells become holes. A hole becomes ground again when surface_classes gives it a class. The call
+    /// fails if the number is also a real height: in a cell to which surface_classes gives a class other than 0, or in
+    /// a cell with ground in the same tile outside the rectangle. Default 0.
     pub no_data_m: f32,
 }
 
@@ -132,7 +132,7 @@ impl wk_terrain_cells {
     };
 }
 
-/// Terrain at a queried place; plain values of a list.
+/// Terrain at a queried place. An element of a list, without struct_size.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_terrain_point {
@@ -309,7 +309,7 @@ pub unsafe extern "C" fn wk_context_get_terrain_revision(
     })
 }
 
-/// Gets the terrain's tiles under or above places of the host's world, at most wk_caps.max_batch of them.
+/// Gets the terrain straight below or above places of the host's world, at most wk_caps.max_batch of them.
 /// `position_size` and `point_size` are the bytes from one element to the next: 24 or more, and
 /// sizeof(wk_terrain_point) of your header. Thread: concurrent.
 #[unsafe(no_mangle)]

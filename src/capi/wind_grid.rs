@@ -75,7 +75,8 @@ impl wk_wind_grid {
     };
 }
 
-/// Sets a wind that varies in space and replaces the one set before; NULL removes it. Unchanged after an error.
+/// Sets the grid of a wind that varies in space, in place of the grid set before; NULL removes the grid. Unchanged
+/// after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

@@ -1,4 +1,5 @@
-//! Clouds of a context: the model that draws them, and the noise that says where they grow, for the host's questions.
+//! Clouds of a context: the model that draws them, and the noise that they are cut out of, which answers the host's
+//! questions about clouds.
 
 use std::sync::{Arc, OnceLock};
 
@@ -40,9 +41,9 @@ impl HeldClouds {
         Ok(Self { model, ..Self::default() })
     }
 
-    /// Returns the share of the direct light of the brighter of sun and moon that clouds let through to a scene's
-    /// place. A volume is evaluated along the ray to the light; a deck answers the mean over all places. `eye` is the
-    /// place in the host's world.
+    /// Returns the share of the direct light that clouds let through to a scene's place. The light is that of the sun
+    /// or the moon, whichever is brighter. For a volume the share is that along the ray to the light, for a deck the
+    /// mean over all places. `eye` is the place in the host's world.
     ///
     /// # Errors
     /// As [`super::field::Solid::new`], and for a time outside the weather.
@@ -77,8 +78,8 @@ impl HeldClouds {
         Ok(self.grown.get_or_init(|| grown))
     }
 
-    /// Returns the clouds around a scene's place where the model draws them as a volume. `eye` is the place in the
-    /// host's world.
+    /// Returns the clouds around a scene's place; `None` without clouds, or if the model draws no volume. `eye` is the
+    /// place in the host's world, `radius_m` the radius of the planet.
     ///
     /// # Errors
     /// As [`HeldClouds::sun_share`].

@@ -1,10 +1,10 @@
 //! Texture of the water on the host's terrain, which the surface pass reads and which the host can sample in its own
 //! materials.
 //!
-//! There is one texel per node, beginning with the south-west one, rows running north. Texels are half floats, which
+//! There is one texel per node: rows from south to north, each row from west to east. Texels are half floats, which
 //! every graphics API can filter. Film, soaked share and standing water are exact to 1/2048 of their value, which is
-//! 0.06 mm at 100 mm. Standing water is signed: between a node under water and one above it, the shore lies where the
-//! water's level meets the ground.
+//! 0.05 mm at 100 mm. Standing water is negative at a node above the water's level. Interpolated between a node under
+//! water and one above it, it is 0 where the water's level meets the ground, which is the shore.
 
 use glam::DVec4;
 
@@ -55,7 +55,7 @@ pub(crate) fn uv_from_world(drawn: &DrawnTerrain) -> [DVec4; 2] {
 #[derive(Clone, Debug)]
 pub(crate) struct Filled {
     pub water: wgpu::Texture,
-    /// Surface, with an equal number of rows of snow below it.
+    /// Rows of the surface, followed by as many rows of the snow.
     surface: wgpu::Texture,
     /// Views for drawing: of the water and of the surface.
     pub views: [wgpu::TextureView; 2],
@@ -75,7 +75,7 @@ pub(crate) struct Filled {
 #[derive(Default)]
 pub(crate) struct TerrainTextures {
     filled: Option<Filled>,
-    /// Whether the water was written since it was last handed over to the host.
+    /// Whether the water or the host's snow was written since they were last handed over to the host.
     pub written: bool,
     texels: Vec<[u16; 4]>,
     surface: Vec<[f32; 4]>,

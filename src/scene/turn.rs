@@ -21,7 +21,7 @@ pub(crate) fn turn_z(angle: f64) -> DMat3 {
     DMat3::from_cols(DVec3::new(c, s, 0.0), DVec3::new(-s, c, 0.0), DVec3::Z)
 }
 
-/// Returns the angle between two directions, as [`turn_x`].
+/// Returns the angle between two directions, with the same bits on every machine.
 pub(crate) fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::acos((a.dot(b) / (a.length_squared() * b.length_squared()).sqrt()).clamp(-1.0, 1.0))
 }

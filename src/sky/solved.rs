@@ -48,8 +48,8 @@ const STEPS_PER_DEG: f64 = 2.0;
 /// Smallest light whose logarithm is taken.
 const LEAST: f64 = 1e-30;
 
-/// Options for queries. Solving takes a quarter to a third of the time with [`Options::default`]; for 95 % of
-/// directions the luminance is within 2 % of that solution's. Few altitudes and ray points suffice. Fewer sun angles
+/// Options for queries. Solving takes a quarter to a third of the time that [`Options::default`] takes, and for 95 % of
+/// directions the luminance is within 2 % of the default's. Few altitudes and ray points suffice. Fewer sun angles
 /// would cause errors in twilight, and fewer zeniths and azimuths in haze.
 const QUERY: Options = Options {
     orders: Orders::Converged { tolerance: 0.1, limit: 7 },
@@ -61,12 +61,12 @@ const QUERY: Options = Options {
         panel_points: 2,
         haze_directions: (25, 13),
     },
-    // The same number as in the tests that compare the drawn sky with the reference.
+    // Equal to the number in the tests that compare the drawn sky with the reference.
     disc_strips: 3,
     threads: 1,
 };
 
-/// Sky of one air, per unit of a lamp's irradiance above the air.
+/// Sky of one air under a lamp (the sun or the moon) whose irradiance above the air is 1.
 pub(crate) struct SolvedSky {
     reference: Reference,
     /// Logarithms of the light on level ground, by step of the sun's zenith angle; computed when first needed.

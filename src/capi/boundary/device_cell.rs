@@ -100,7 +100,7 @@ impl DeviceCell {
     }
 
     /// Drops GPU objects. If the host's context can no longer be entered, it abandons them: they ended with the
-    /// context, and a driver need not survive a call without one.
+    /// context, and a driver may crash at a call without one.
     fn release<T>(&self, objects: T) {
         match self.gpu.enter_to_release() {
             Ok(entered) => {
@@ -119,7 +119,8 @@ impl DeviceCell {
         std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Releases the objects that wait for the host's context, before a call that enters the context by itself.
+    /// Releases the objects that wait for the host's context, before code that enters the context by
+    /// [`Device::enter`] instead of [`DeviceCell::enter`].
     pub(in crate::capi) fn drain(&self) {
         let waits = !self.retired.lock().unwrap_or_else(PoisonError::into_inner).is_empty();
         if waits && let Ok(_entered) = self.gpu.enter_to_release() {

@@ -1,4 +1,5 @@
-//! Uniforms of a frame's clouds (`shaders/clouds/block.wgsl`, `picture.wgsl`).
+//! Uniforms of a frame's clouds. Their fields are described in `shaders/clouds/`: `block.wgsl`, `picture.wgsl` and
+//! `shadow_map.wgsl`.
 
 use std::sync::Arc;
 
@@ -44,7 +45,7 @@ pub(crate) struct LayerUniform {
     pub filled: [f32; 4],
 }
 
-/// A cell over a rain area.
+/// A cell of cloud over a rain area.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct AreaUniform {
@@ -174,7 +175,7 @@ impl CloudLayers {
         }
     }
 
-    /// Adds the local cover to the layers' uniforms.
+    /// Adds the cover that varies with the place, by the host's cover map and over rain areas, to the layers' uniforms.
     fn place_uniforms(&self, layers: &mut [LayerUniform; MAX_CLOUD_LAYERS]) {
         if !self.is_placed() {
             return;

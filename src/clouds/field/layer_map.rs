@@ -1,5 +1,5 @@
-//! A layer of cloud under a host's map of cover ([`CloudMap`]): how each cell of the map is cut out of the field
-//! ([`super::placed`]).
+//! Layer of cloud that follows a host's cover map ([`CloudMap`]): the threshold, dome and extinction with which the
+//! clouds of each cell of the map are cut out of the field ([`super::placed`]).
 
 use std::{
     f64::consts::{PI, SQRT_2},
@@ -12,10 +12,10 @@ use half::f16;
 use super::cover_threshold::CoverThreshold;
 use crate::weather::{CloudMap, CloudSlab, MAX_CLOUD_LAYERS};
 
-/// Steps of the map's values for which thresholds are computed.
+/// Number of intervals of the map's values, 0 to 1; thresholds are computed at their ends and interpolated between.
 const STEPS: usize = 64;
 
-/// A layer under a map, cell by cell.
+/// A layer that follows a map, cell by cell.
 #[derive(Debug)]
 pub struct LayerMap {
     slab: CloudSlab,
@@ -82,12 +82,13 @@ fn steepest(texels: &[[f32; 4]], map: &CloudMap) -> f64 {
         let [east, north] = [east, north].map(|n| n.map_or(0.0, |n| f64::from(n[0] - t[0])));
         DVec2::new(east, north).length()
     };
-    // Along a cell's diagonal the changes of both axes add up.
+    // Between cells, the steepest change east and the steepest change north can belong to different corners.
     texels.iter().enumerate().map(change).fold(0.0, f64::max) * SQRT_2 / map.cell_m
 }
 
 /// Returns for each cell the distance within which the map stays the same, m. It is two cells less than the distance to
-/// the next cell that differs, so that it also holds between the middles of cells.
+/// the nearest cell with another value, because values are interpolated between the centres of cells: one cell for the
+/// place from which the distance counts, one for the place at its end.
 fn steady_m(map: &CloudMap) -> Vec<f64> {
     let [columns, rows] = map.cells.map(|n| n as usize);
     let most = (columns + rows) as u32;

@@ -1,14 +1,17 @@
-//! Light of a lamp or a flash, inside a cloud or outside, that a place in the cloud scatters. Twin of
-//! `shaders/clouds/lit_lamps.wgsl`.
+//! Light from a lamp or a flash that a place in a cloud scatters; the source shines inside that cloud or outside it.
+//! Twin of `shaders/clouds/lit_lamps.wgsl`.
 //!
 //! # Model
-//! A place stands in a box of cloud, as it does for the sun ([`super::Sources`]).
+//! A place stands in a box of cloud, as it does for the sun ([`super::Sources`]). Distances are scaled optical depths,
+//! and g' is the asymmetry of the phase function after this scaling ([`super::transport`]).
 //! * A source inside the cloud gives light that is scattered once, with the true phase function, and diffuse light. In
-//!   cloud without faces its mean radiance at a scaled distance d from a source of intensity I would be 3 (1 - g') I /
-//!   (4 pi d) (diffusion; Ishimaru 1978, chapter 9). In front of each face, 0.71 / (1 - g') away, is a plane in which
-//!   it is 0; an image source of opposite sign gives that. With p and s the depths of place and source behind that
-//!   plane, and r = d / sqrt(d^2 + 4 p s), the nearest face leaves 1 - r of the light, the opposite face 1 - r^2, and
-//!   the faces across 1 - r^3. The gradient is the flux: by it more light goes one way than the other.
+//!   a cloud without bounds, the diffuse light's mean radiance at a distance d from a source of intensity I would be
+//!   3 (1 - g') I / (4 pi d) (diffusion; Ishimaru 1978, chapter 9). At a face of the box, diffuse light falls off as if
+//!   it reached 0 on a plane 0.71 / (1 - g') outside; an image source of opposite sign beyond this plane makes it 0
+//!   there. Let p and s be the depths of place and source behind a face's plane, and r = d / sqrt(d^2 + 4 p s) the
+//!   ratio of the distances to source and image. Of the light, the face nearest to the place leaves the share 1 - r,
+//!   the face opposite that one 1 - r^2, and each of the other four 1 - r^3. Flux follows the gradient of the diffuse
+//!   light, and the place scatters more light along the flux than against it.
 //! * A source outside lights the face towards it as a sky of the same irradiance would ([`super::transport`]).
 //!
 //! The share of the path that lies in cloud decides between the two. A flash in a cloud always counts as inside, even
@@ -29,17 +32,20 @@ use super::{
 
 use crate::numerics::smooth;
 
-/// Extrapolation length of the diffusion approximation, over 1 / (1 - g') (Milne's problem).
+/// Extrapolation length of the diffusion approximation, in units of 1 / (1 - g') (Milne's problem): distance outside a
+/// face at which diffuse light would be 0.
 const DARK_AT: f64 = 0.71;
-/// Powers of the ratio of distances by which the other faces take light: the one opposite the nearest face, and those
-/// across. The sum of all images has the same gradient at the nearest face.
+/// Powers of r (see the model) for the face opposite the nearest one, and for the other four. With them, the product of
+/// all shares has about the gradient that the sum of all images has at the nearest face.
 const FARTHER: [i32; 2] = [2, 3];
-/// Depth from which light returns through the face that it fell on, over 1 / (1 - g').
+/// Depth from which light returns through the face that it fell on, in units of 1 / (1 - g').
 const RETURNS_FROM: f64 = 0.5;
-/// Shares of the path to a source that lie in cloud, between which the source goes over from outside to inside.
+/// Shares of the path to a source that lie in cloud: up to the first the source counts as outside, from the second on
+/// as inside, and between them the two are mixed.
 const INSIDE: [f64; 2] = [0.5, 1.0];
 
-/// A source as seen from a place. Distances are scaled depths of the cloud around the place.
+/// A source as seen from a place. A distance is given as the scaled depth that it would have if all of it lay in cloud
+/// as dense as that around the place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shine {
     /// Unit vector to the source.
@@ -54,9 +60,9 @@ pub struct Shine {
     pub is_buried: bool,
 }
 
-/// Returns the distance from a source over that from its image behind a face, and the growth of that ratio along
-/// `direction`. `place` and `source` are the distances of the two from the plane where the light is 0. `grows` is the
-/// growth of `place` along the direction.
+/// Returns the ratio of a place's distance from a source to its distance from the source's image beyond a face, and the
+/// derivative of this ratio along `direction`. `place` and `source` are the depths of place and source behind the plane
+/// where the light is 0. `grows` is the derivative of `place` along the direction.
 fn mirrored(shine: &Shine, direction: DVec3, [place, grows]: [f64; 2], source: f64) -> (f64, f64) {
     let d = shine.distance;
     let square = d * d + 4.0 * place * source;
@@ -65,9 +71,10 @@ fn mirrored(shine: &Shine, direction: DVec3, [place, grows]: [f64; 2], source: f
     (d / image, (toward - 2.0 * d * source * grows / square) / image)
 }
 
-/// Returns the light that a place at these depths scatters into `direction` (in which the light goes), 1/sr, for a
-/// source of intensity 1 per unit of scaled depth squared. `to_eye` is the scaled depth of cloud between place and eye,
-/// and `sky` is [`super::transport::Transport::under_sky`].
+/// Returns the light that a place at these depths scatters into `direction` (the way the light travels), per steradian
+/// and unit of scaled depth. The source has intensity 1 with distances in scaled depths: at a distance d its irradiance
+/// is 1 / d^2. `to_eye` is the scaled depth of cloud between place and eye, and `sky` is
+/// [`super::transport::Transport::under_sky`].
 pub fn scattered(
     scattering: &Scattering,
     sky: &Table,
@@ -93,7 +100,8 @@ fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, directio
     let once = albedo * phase * (-shine.between).exp() / (d * d);
     let dark = DARK_AT / turning;
     let level = shine.toward.truncate().length() * d;
-    // Little is known of the sides: the eye looks at the nearer one, and the source lies beyond it in the same cloud.
+    // `depths` does not say on which side eye and source are. Assumed: the eye looks at the nearer side (left), and the
+    // source lies beyond the place, deeper in the same cloud.
     let out = direction.truncate().length();
     let half = 0.5 * (depths.left + depths.right).max(d);
     // Depths of place and source at each face, and the growth of the first along the direction.
@@ -110,7 +118,8 @@ fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, directio
     let nearest = (0..3).min_by(|i, j| faces[*i].0.total_cmp(&faces[*j].0)).unwrap_or(0);
     for (i, (place, source, grows_by)) in faces.into_iter().enumerate() {
         let power = if i == nearest { 1 } else { FARTHER[usize::from(i != nearest ^ 1)] };
-        // A cloud is round: where one face is near, the others are farther away.
+        // A cloud is round: where one face is near, the others are farther away, so that the place counts as no less
+        // deep behind them than the source.
         let place = if i == nearest { place } else { place.max(source) };
         let (ratio, falling) = mirrored(shine, direction, [place + dark, grows_by], source.max(0.0) + dark);
         let left = 1.0 - ratio.powi(power);
@@ -201,8 +210,8 @@ pub(crate) mod tests {
             Shine { toward, distance: distance * scale, between: between * scale, within, is_buried: false }
         }
 
-        /// Computes the model's light that leaves a face around a place of it, lm per unit of area, without the light
-        /// that comes straight from the source.
+        /// Computes the model's light that leaves a part of a face, lm per unit of area, without the light that comes
+        /// straight from the source. `face_place` maps two numbers from 0 to 1 evenly to the places of the part.
         fn modelled(
             &self,
             transport: &Transport,
@@ -236,7 +245,7 @@ pub(crate) mod tests {
             PI * sum
         }
 
-        /// Computes the light that leaves a whole face, as [`Self::modelled`] does around a place of it.
+        /// Computes the light that leaves a whole face, by [`Self::modelled`].
         fn modelled_face(&self, transport: &Transport, face: usize) -> f64 {
             let (axis, high) = (face / 2, face % 2 == 1);
             let on = |[u, v]: [f64; 2]| {

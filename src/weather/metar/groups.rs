@@ -54,8 +54,8 @@ fn speed(text: &str) -> Option<f64> {
     if (2..=3).contains(&figures.len()) { digits(figures).map(f64::from) } else { None }
 }
 
-/// Reads a wind: `24009KT`, `18018G31KT`, `VRB02KT`, `02003MPS`, `24109G120KT`, `P99KT` speeds. The outer `None` is
-/// "not a wind", the inner one a missing wind (`/////KT`). Any number of zeros alone is calm.
+/// Reads a wind: `24009KT`, `18018G31KT`, `VRB02KT`, `02003MPS`, `24109G120KT`, `270P99KT`. The outer `None` is "not a
+/// wind", the inner one a missing wind (`/////KT`). Figures that are all zeros, however many, mean calm.
 pub(super) fn wind(text: &str) -> Option<Reading<WindGroup>> {
     let (figures, unit) = [("KT", KNOT_M_S), ("MPS", 1.0), ("KMH", 1.0 / 3.6), ("KPH", 1.0 / 3.6)]
         .iter()
@@ -233,7 +233,7 @@ pub(super) fn cloud(text: &str) -> Option<CloudGroup> {
     Some(if missing { CloudGroup::Missing } else { CloudGroup::Layer { amount, base_m, kind } })
 }
 
-/// Accepted temperatures of a report, C: those of a `Weather`.
+/// Range of temperatures accepted in a report, C: the range of `Weather::temperature_c`.
 const CELSIUS: RangeInclusive<f64> = -90.0..=60.0;
 
 /// Reads a temperature: two digits, with M (or a minus) for below zero, or missing.
@@ -245,7 +245,7 @@ fn celsius(text: &str) -> Option<Reading<f64>> {
     if figures.len() != 2 {
         return None;
     }
-    // Minus zero means a reading between 0 and -0.5; a plain 0 keeps comparisons simple.
+    // M00 means a reading between 0 and -0.5. Adding 0.0 turns its -0.0 into 0.0.
     let t = f64::from(digits(figures)?) * sign + 0.0;
     CELSIUS.contains(&t).then_some(Some(t))
 }
