@@ -402,15 +402,15 @@ WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_leve
  * ====================================================================================================
  * [device] Devices
  *
- * A wk_device is one native queue or OpenGL context, with everything that its contexts share: pipelines, tables,
- * caches. Create one here (below), from the host's OpenGL context, from the host's Vulkan device, or, in Rust, from
- * the host's wgpu device. All later calls are the same for all four.
+ * A wk_device is one native queue or OpenGL context, with everything that the wk_contexts on it share: pipelines,
+ * tables, caches. Create one here (an own device, which Welkin makes itself), from the host's OpenGL context, from the
+ * host's Vulkan device, or, in Rust, from the host's wgpu device. All later calls are the same for all four.
  *
- * Create one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
- * (driver reset, unplugged), every call that needs it answers WK_ERROR_DEVICE_LOST: calls that create, build or draw,
- * calls that read or write GPU resources, and wk_context_get_ambient. A context's weather, time, settings, state and
- * other queries need no GPU and go on working. To recover, save the state with wk_context_save, destroy the views, the
- * contexts and the device, create them again, and load the state.
+ * Create one device per native queue or OpenGL context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is
+ * lost (driver reset, unplugged), every call that needs it answers WK_ERROR_DEVICE_LOST: calls that create, build or
+ * draw, calls that read or write GPU resources, and wk_context_get_ambient. A wk_context's weather, time, settings,
+ * state and other queries need no GPU and go on working. To recover, save the state with wk_context_save, destroy the
+ * views, the contexts and the device, create them again, and load the state.
  * ====================================================================================================
  */
 
@@ -476,7 +476,7 @@ typedef struct wk_caps {
     wk_backend_flags backend;
     /**
      * Tier of features: 0 without compute shaders (OpenGL 3.3 to 4.2, OpenGL on macOS), 1 with them. On tier 0
-     * features that need tier 1 answer WK_ERROR_UNSUPPORTED by name.
+     * features that need tier 1 answer WK_ERROR_UNSUPPORTED, with a message that names the feature.
      */
     uint32_t tier;
     /** 1 for a software driver, which draws on the CPU, else 0. */
@@ -512,7 +512,7 @@ typedef struct wk_caps {
  * Creates an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out_device` is a new
  * handle, which you destroy with `wk_device_destroy`; else it stays untouched. Thread: any. Errors:
  * WK_ERROR_NO_ADAPTER if no driver fits the request, or if an OpenGL driver draws a few known test texels wrong or
- * does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT by name.
+ * does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT naming the field.
  */
 WK_API wk_status wk_device_create(const wk_device_desc *desc, wk_device **out_device);
 
@@ -665,7 +665,7 @@ wk_status wk_texture_desc_init(wk_texture_desc *out,
  *
  *   wk_device_create_for_window, wk_surface_create, wk_surface_configure
  *   each frame: wk_surface_acquire, wk_view_record (wk_own_target.surface), wk_surface_present
- *   on WK_ERROR_SURFACE_OUTDATED: wk_surface_configure with the window's present size, next frame
+ *   on WK_ERROR_SURFACE_OUTDATED: wk_surface_configure with the window's current size, then the next frame
  *   on WK_PENDING: the window shows nothing now; skip the frame
  * ====================================================================================================
  */
@@ -722,12 +722,15 @@ typedef struct wk_window {
     /* id */ UINT64_C(0) \
 }
 
-/** Encoding of the values drawn to a surface; give the frame the matching color_space. */
+/** Encoding of the values drawn to a surface; give the frame a color_space that fits it. */
 typedef uint32_t wk_surface_encoding;
 
-/** Display-linear: the hardware encodes to sRGB (WK_COLOR_DISPLAY_LINEAR, or TONE from WK_COLOR_SCENE_LINEAR). */
+/**
+ * Display-linear values, which the hardware encodes to sRGB. WK_COLOR_DISPLAY_LINEAR fits, and WK_COLOR_SCENE_LINEAR
+ * with WK_STAGE_TONE.
+ */
 #define WK_SURFACE_DISPLAY_LINEAR 0
-/** Encoded already (WK_COLOR_DISPLAY_SRGB, or TONE from WK_COLOR_SCENE_LINEAR). */
+/** Values encoded to sRGB already. WK_COLOR_DISPLAY_SRGB fits, and WK_COLOR_SCENE_LINEAR with WK_STAGE_TONE. */
 #define WK_SURFACE_DISPLAY_SRGB 1
 
 /** When images reach the screen. */
@@ -793,19 +796,22 @@ wk_status wk_surface_create(wk_device *device,
 WK_API wk_status wk_surface_destroy(wk_surface *surface);
 
 /**
- * Configures a surface, the first time or after its window changed. An acquired image is returned undrawn. With a
- * width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the surface is
- * configured with an area.
+ * Configures a surface, the first time or after its window changed. An image that was acquired and not yet presented
+ * is discarded. With a width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the
+ * surface is configured with an area.
  * Thread: exclusive.
- * Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if it is gone.
+ * Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if the window
+ * is gone.
  */
-WK_API wk_status wk_surface_configure(wk_surface *surface, const wk_surface_config *config);
+WK_API
+wk_status wk_surface_configure(wk_surface *surface,
+                               const wk_surface_config *config);
 
 /**
  * Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
  * Thread: exclusive.
  * Returns WK_PENDING if the window shows nothing now: skip this frame.
- * Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while it is minimised.
+ * Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while the window is minimised.
  */
 WK_API wk_status wk_surface_acquire(wk_surface *surface);
 
@@ -4826,7 +4832,7 @@ wk_status wk_shelter_shape_init(wk_shelter_shape *out,
  * WK_STAGE_PARTICLES draws falling snow wherever the weather has it. Rate, kind and temperature give the sizes and
  * speeds of the flakes; seed and time alone give their places, so all channels of a simulator draw the same flakes.
  * The wind carries them; the host's depth hides them; shelters and occluder maps keep them off; sky, ground, sun and
- * lamps light them. Beyond the distance of the flakes, snow is extinction in the air.
+ * lamps light them. Farther away than flakes reach (wk_snow.most_flakes), snow is extinction in the air.
  * ====================================================================================================
  */
 
@@ -4857,9 +4863,9 @@ typedef struct wk_snow {
      */
     double shutter_s;
     /**
-     * Largest number of flakes to draw. The more, the farther they reach, up to 16 m. If there are too many, each
-     * drawn flake stands for several. Range [1000, 8 000 000], or 0, the default: 1 000 000, and 60 000 on a software
-     * driver.
+     * Largest number of flakes to draw. A larger number lets flakes reach farther from the camera, up to 16 m. If more
+     * flakes fall than may be drawn, a drawn flake stands for several. Range [1000, 8 000 000], or 0, the default:
+     * 1 000 000, and 60 000 on a software driver.
      */
     uint32_t most_flakes;
     /** A WK_SNOW_MODEL_ constant; 0, the default, lets Welkin choose. */
@@ -5093,7 +5099,8 @@ typedef struct wk_wind_grid {
 }
 
 /**
- * Sets a wind that varies in space and replaces the one set before; NULL removes it. Unchanged after an error.
+ * Sets the grid of a wind that varies in space, in place of the grid set before; NULL removes the grid. Unchanged
+ * after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -6815,16 +6822,16 @@ WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
  * ====================================================================================================
  * [terrain] Terrain in tiles
  *
- * The host's terrain as a lattice of equal cells, level and aligned to true north at its origin, cut into square tiles
- * with keys. Each cell has a height and a class of surface, or is a hole. Tiles can be added and removed, and
- * rectangles of their cells changed. The time of a change grows with the rectangle, so a bucket may dig in every
- * frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell has its own water, and
- * hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has
- * either tiles or one wk_ground_grid.
+ * The host's terrain as a lattice of equal cells, cut into square tiles with keys. The lattice is horizontal and
+ * aligned to true north at its origin. Each cell has a height and a class of surface, or is a hole. Tiles can be added
+ * and removed, and rectangles of their cells changed. The time of a change grows with the rectangle, so an excavator's
+ * bucket may dig in every frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell
+ * has its own water, and hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level
+ * ground. A context has either tiles or one wk_ground_grid.
  *
  * Heights belong to the host: wk_context_save saves only the water of the tiles, and wk_context_load requires that the
  * same tiles have been set before. wk_context_set_terrain and the functions of tiles may be called between updates at
- * any time; while steps remain (WK_PENDING) they take effect after these.
+ * any time; while an update has steps left (WK_PENDING), a change takes effect after the last of them.
  * ====================================================================================================
  */
 
@@ -6844,7 +6851,7 @@ typedef struct wk_terrain {
      * of cells count from its height. Default 0, 0, 0.
      */
     double origin_m[3];
-    /** Distance between cells, m. Range [0.01, 10 000], default 1. Puddles need several cells. */
+    /** Distance between cells, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear. */
     double cell_m;
     /**
      * Number of cells along each side of a tile: a power of two from 32 to 1024. Default 256. The tiles of a terrain
@@ -6891,11 +6898,11 @@ typedef struct wk_terrain_cells {
      * unchanged; a new tile needs them. The height of a hole is not read and may be anything, also NaN.
      */
     const float *heights_m;
-    /** Length of heights_m: at least the rectangle's extent with its stride. */
+    /** Length of heights_m: at least (rows - 1) x stride + columns of the rectangle. */
     uint32_t height_count;
     /**
-     * Distance between the beginnings of neighbouring rows in heights_m, numbers. Default 0: rows follow without a
-     * gap.
+     * Number of elements of heights_m from the beginning of a row to that of the next. Default 0: the columns of the
+     * rectangle, so that rows follow without a gap.
      */
     uint32_t height_stride;
     /**
@@ -6903,20 +6910,20 @@ typedef struct wk_terrain_cells {
      * NULL with a count of 0 leaves the classes unchanged; in a new tile they are then 0.
      */
     const uint8_t *surface_classes;
-    /** Length of surface_classes: at least the rectangle's extent with its stride. */
+    /** Length of surface_classes: at least (rows - 1) x stride + columns of the rectangle. */
     uint32_t surface_class_count;
     /**
-     * Distance between the beginnings of neighbouring rows in surface_classes, numbers. Default 0: rows follow without
-     * a gap.
+     * Number of elements of surface_classes from the beginning of a row to that of the next. Default 0: the columns of
+     * the rectangle, so that rows follow without a gap.
      */
     uint32_t surface_class_stride;
     /** 1 if no_data_m is used; 0, the default, if every number in heights_m is a height. */
     uint32_t has_no_data;
     /**
      * Number in heights_m for cells without data, such as -9999, -32768, or your source's own; NaN then also means no
-     * data. These cells become holes. A hole becomes ground again when surface_classes gives it a class. The number
-     * must not be a height in use: neither that of a cell to which surface_classes gives a class other than 0, nor
-     * that of a cell with ground in the same tile outside the rectangle. Default 0.
+     * data. These cells become holes. A hole becomes ground again when surface_classes gives it a class. The call
+     * fails if the number is also a real height: in a cell to which surface_classes gives a class other than 0, or in
+     * a cell with ground in the same tile outside the rectangle. Default 0.
      */
     float no_data_m;
 } wk_terrain_cells;
@@ -6939,7 +6946,7 @@ typedef struct wk_terrain_cells {
     /* no_data_m */ 0.0f \
 }
 
-/** Terrain at a queried place; plain values of a list. */
+/** Terrain at a queried place. An element of a list, without struct_size. */
 typedef struct wk_terrain_point {
     /**
      * Height of the ground above the terrain's origin, m, interpolated linearly between cells; 0 where there is none.
@@ -6996,7 +7003,7 @@ WK_API wk_status wk_context_remove_terrain_tile(wk_context *context, int32_t til
 WK_API wk_status wk_context_get_terrain_revision(const wk_context *context, uint64_t *out_revision);
 
 /**
- * Gets the terrain's tiles under or above places of the host's world, at most wk_caps.max_batch of them.
+ * Gets the terrain straight below or above places of the host's world, at most wk_caps.max_batch of them.
  * `position_size` and `point_size` are the bytes from one element to the next: 24 or more, and
  * sizeof(wk_terrain_point) of your header. Thread: concurrent.
  */
