@@ -1,10 +1,10 @@
 //! Water on the host's grid terrain: film and pores of every cell of a [`GroundGrid`] by the laws of [`super::water`],
 //! and run-off that collects in the hollows of the terrain.
 //!
-//! What a cell sheds in a step reaches its hollow by the end of the step ([`super::basins`]). A full hollow spills into
-//! the next, and water that reaches the grid's border leaves. Nothing flows in from outside. Standing water loses
-//! Penman's evaporation to the air and a leakage to the ground below, and takes all rain that falls on it. The balance
-//! is: rain = change of film, pores and standing water + evaporated + leaked + drained.
+//! Water that a cell sheds in a step reaches its hollow by the end of the step ([`super::basins`]). A full hollow
+//! spills into the next, and water that reaches the grid's border leaves. Nothing flows in from outside. Standing water
+//! loses Penman's evaporation to the air and a leakage to the ground below, and takes all rain that falls on it. The
+//! balance is: rain = change of film, pores and standing water + evaporated + leaked + drained.
 
 use half::f16;
 

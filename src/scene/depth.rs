@@ -15,7 +15,7 @@
 //! The remaining error is the host's own depth resolution ([`ViewRays::resolution_m`]). With a near plane of 0.1 m, a
 //! standard f32 buffer cannot tell 10 km from 10.06 km; a reversed one resolves 0.9 mm there.
 //!
-//! The same functions run on the GPU, with the same names and order of parameters: `shaders/common/depth.wgsl`.
+//! Functions of the same names and order of parameters run on the GPU: `shaders/common/depth.wgsl`.
 
 use glam::{DMat3, DVec2, DVec3, DVec4};
 

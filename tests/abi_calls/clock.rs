@@ -106,7 +106,7 @@ fn sun_and_moon_go_on_over_midnight_the_leap_day_and_the_years_end() {
     }
 }
 
-/// What a timeline tells and what the ground gets of light, second by second over a seam of the calendar: no jump, and
+/// Answers of a timeline and the light on the ground, second by second over a seam of the calendar: no jump, and
 /// what the weather itself does is the same as at any other hour.
 #[test]
 fn the_timeline_and_the_light_go_on_over_the_calendars_seams() {

@@ -105,7 +105,7 @@ fn a_puddle_mirrors_the_clouds_that_stand_over_it() {
     agree("mirrored", &mirrored, &seen);
 }
 
-/// What is seen in texels of 1.5 degrees holds the light of pictures and follows their clouds, but for the edges of
+/// The view in texels of 1.5 degrees holds the light of pictures and follows their clouds, but for the edges of
 /// these.
 fn agree(name: &str, shown: &[f64], drawn: &[f64]) {
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;

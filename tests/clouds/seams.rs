@@ -53,7 +53,7 @@ fn fly(report: &str, speed_m_s: f64, from_m: f64, to_m: f64, every: usize) -> Ve
     seen
 }
 
-/// What is seen on the way up is what stands there, frame by frame: nothing jumps, and nothing trails behind. With
+/// A picture on the way up shows what stands there, frame by frame: nothing jumps, and nothing trails behind. With
 /// WELKIN_ACCEPT all the way from below a layer to above it, and more slowly.
 #[test]
 fn a_climb_through_layers_shows_no_jump() {

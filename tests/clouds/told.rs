@@ -177,8 +177,8 @@ fn a_climb_through_a_deck_changes_light_and_exposure_steadily() {
     }
 }
 
-/// What is lit by the sun above the clouds stays lit by it, however much of it they take: a high moon by day, whose few
-/// lux come through where a low sun's do not, is not what gives light.
+/// Places that the sun lights above the clouds stay lit by it, however much of it they take: a high moon by day, whose
+/// few lux come through where a low sun's do not, is not what gives light.
 #[test]
 fn by_day_clouds_are_not_lit_by_the_moon() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);

@@ -156,14 +156,8 @@ fn sky_section(out: &mut String, t: &Table) {
         "\nWhere the sun and the observer's altitude stay, the observer's tables stay too and a frame is cheaper:\n\n",
     );
     out.push_str("![cost of a further frame against error](sky-still.svg)\n\n");
-    let scenes: Vec<&String> = t.columns.iter().filter(|c| c.starts_with("p95_")).collect();
     out.push_str("Error by scene, 95th percentile, per cent:\n\n| sky |");
-    scenes.iter().for_each(|s| {
-        let _ = write!(out, " {} |", s.trim_start_matches("p95_"));
-    });
-    out.push_str("\n|---|");
-    out.push_str(&"---|".repeat(scenes.len()));
-    out.push('\n');
+    let scenes = end_heading(out, t, 1);
     for r in &t.rows {
         let _ = write!(out, "| `{}` |", r[0]);
         scenes.iter().for_each(|s| {
@@ -248,16 +242,10 @@ const RAIN_SAYS: &str = "\n`drops-and-cones` is the default: single drops to 1.9
 fn rain_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);
     out.push_str("## Which rain\n\n![cost of rain against error](rain.svg)\n\n");
-    let scenes: Vec<&String> = t.columns.iter().filter(|c| c.starts_with("p95_")).collect();
     out.push_str(
         "Costs of fog and rain alone; error by scene, 95th percentile, per cent:\n\n| rain | cost | all by day |",
     );
-    scenes.iter().for_each(|s| {
-        let _ = write!(out, " {} |", s.trim_start_matches("p95_"));
-    });
-    out.push_str("\n|---|---|---|");
-    out.push_str(&"---|".repeat(scenes.len()));
-    out.push('\n');
+    let scenes = end_heading(out, t, 3);
     for r in &t.rows {
         let cost = if n(r, "cost") > 0.0 {
             format!("{} ({} to {})", short(n(r, "cost")), short(n(r, "cost_low")), short(n(r, "cost_high")))
@@ -286,14 +274,8 @@ const SNOW_SAYS: &str = "\nThe truth is every flake of the air within 14.8 m by 
 fn by_scene(out: &mut String, t: &Table, (title, name, what): (&str, &str, &str), says: &str) {
     let n = |r: &[String], c: &str| number(t, r, c);
     let _ = write!(out, "## {title}\n\n![cost of {name} against error]({name}.svg)\n\n");
-    let scenes: Vec<&String> = t.columns.iter().filter(|c| c.starts_with("p95_")).collect();
     let _ = write!(out, "Error of {what} by scene, 95th percentile, per cent:\n\n| {name} | cost | all |");
-    scenes.iter().for_each(|s| {
-        let _ = write!(out, " {} |", s.trim_start_matches("p95_"));
-    });
-    out.push_str("\n|---|---|---|");
-    out.push_str(&"---|".repeat(scenes.len()));
-    out.push('\n');
+    let scenes = end_heading(out, t, 3);
     for r in &t.rows {
         let mark = if r[2] == "true" { " (default)" } else { "" };
         let cost = format!("{} ({} to {})", short(n(r, "cost")), short(n(r, "cost_low")), short(n(r, "cost_high")));
@@ -318,17 +300,23 @@ const PAINTED_SAYS: &str = "\nWhat older systems paint, over Welkin's own clear 
     places, so blocks are compared as in rain, over sixteen moments. `truth-again` is the \
     truth at other moments: what has its clouds elsewhere cannot be nearer; Welkin's ways have them where the truth has.\n\n";
 
-fn star_section(out: &mut String, t: &Table) {
-    let n = |r: &[String], c: &str| number(t, r, c);
-    out.push_str("## Which stars\n\n![cost of stars against error](stars.svg)\n\n");
+/// Ends the heading of a table, of `other` columns so far, with a column for each scene. Returns the scenes' columns.
+fn end_heading<'t>(out: &mut String, t: &'t Table, other: usize) -> Vec<&'t String> {
     let scenes: Vec<&String> = t.columns.iter().filter(|c| c.starts_with("p95_")).collect();
-    out.push_str("Error of blocks by scene, 95th percentile, per cent:\n\n| night | cost | light | all |");
     scenes.iter().for_each(|s| {
         let _ = write!(out, " {} |", s.trim_start_matches("p95_"));
     });
-    out.push_str("\n|---|---|---|---|");
-    out.push_str(&"---|".repeat(scenes.len()));
+    out.push_str("\n|");
+    out.push_str(&"---|".repeat(other + scenes.len()));
     out.push('\n');
+    scenes
+}
+
+fn star_section(out: &mut String, t: &Table) {
+    let n = |r: &[String], c: &str| number(t, r, c);
+    out.push_str("## Which stars\n\n![cost of stars against error](stars.svg)\n\n");
+    out.push_str("Error of blocks by scene, 95th percentile, per cent:\n\n| night | cost | light | all |");
+    let scenes = end_heading(out, t, 4);
     for r in &t.rows {
         let mark = if r[2] == "true" { " (default)" } else { "" };
         let cost = format!("{} ({} to {})", short(n(r, "cost")), short(n(r, "cost_low")), short(n(r, "cost_high")));
