@@ -74,11 +74,16 @@ fn nanoseconds(device: &Device, context: &mut Context, groups: &mut [Vec<Channel
     spent.iter_mut().map(|spent| median(spent)).collect()
 }
 
+/// Returns whether this run is the long one, on a machine with nothing else to do, which the narrow bounds are for.
+fn is_quiet() -> bool {
+    std::env::var_os("WELKIN_ACCEPT").is_some()
+}
+
 #[test]
 fn a_pixel_costs_no_more_in_a_larger_picture() {
     let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
     let all = [(320, 180), (640, 360), (1280, 720), (1920, 1080)];
-    let sizes = if std::env::var_os("WELKIN_ACCEPT").is_some() { &all[..] } else { &all[..2] };
+    let sizes = if is_quiet() { &all[..] } else { &all[..2] };
     for weather in ["clear", "fog", "rain", "snow", "broken"] {
         let mut context = world(&device, weather);
         let mut groups: Vec<_> = sizes.iter().map(|size| vec![Channel::new(&device, &context, *size, 0.0)]).collect();
@@ -87,7 +92,7 @@ fn a_pixel_costs_no_more_in_a_larger_picture() {
             times.iter().zip(sizes).map(|(ns, (width, height))| ns / f64::from(width * height)).collect();
         println!("{weather}: {a_pixel:.1?} ns a pixel at {sizes:?}");
         for (larger, smaller) in a_pixel[1..].iter().zip(&a_pixel) {
-            assert!(larger <= &(1.04 * smaller), "{weather}: {a_pixel:?}");
+            assert!(*larger <= if is_quiet() { 1.04 } else { 1.15 } * smaller, "{weather}: {a_pixel:?}");
         }
     }
 }
@@ -104,6 +109,6 @@ fn several_views_of_a_world_cost_no_more_than_as_often_one() {
         let alone: f64 = times[..4].iter().sum();
         println!("{weather}, the sun by {sun_step_deg}: four views take {:.3} of four alone", times[4] / alone);
         // Three runs of these took 0.98 to 1.00.
-        assert!(times[4] <= 1.05 * alone, "{weather}: {times:?}");
+        assert!(times[4] <= if is_quiet() { 1.05 } else { 1.15 } * alone, "{weather}: {times:?}");
     }
 }

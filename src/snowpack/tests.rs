@@ -390,9 +390,13 @@ fn quiet_tiles_hold_and_cost_nothing() {
     let still = acts(&weather(-6.0, 15.0, 1.0), &Falling::NONE, 0.0);
     lead(&mut field, &still, DVec2::new(15.0, 3.0), 20);
     assert!(field.patches.iter().all(|p| p.is_bare() && p.columns.capacity() == 0 && p.revision == 0));
-    let begun = std::time::Instant::now();
-    lead(&mut field, &still, DVec2::new(15.0, 3.0), 1000);
-    let microseconds = begun.elapsed().as_secs_f64() * 1e3;
+    // The least of some batches: whatever else the machine does is not theirs.
+    let batch = |_| {
+        let begun = std::time::Instant::now();
+        lead(&mut field, &still, DVec2::new(15.0, 3.0), 100);
+        begun.elapsed().as_secs_f64() * 1e4
+    };
+    let microseconds = (0..10).map(batch).fold(f64::INFINITY, f64::min);
     println!("a step over 64 bare tiles: {microseconds:.2} us");
     assert!(microseconds < 50.0, "{microseconds} us");
     // One snowy tile leaves those beside and behind it alone.
