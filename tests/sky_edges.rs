@@ -211,6 +211,95 @@ fn a_changing_air_is_followed_by_parts_and_nothing_is_drawn_without_need() {
     assert!(largest < (after - before).abs() / 12.0, "{values:?}");
 }
 
+/// A camera that climbs by 5 cm a frame: its tables are drawn every 24 frames at most, and what it sees in between is
+/// the sky from its own altitude.
+#[test]
+fn a_climbing_observer_keeps_its_tables_and_sees_the_sky_of_its_altitude() {
+    let device = device();
+    let planet = golden_planet();
+    let mut tables = SkyTables::new(&device, &coarse(SkyModel::Directional)).unwrap();
+    let mut encoder = device.device.create_command_encoder(&Default::default());
+    tables.update(&mut encoder, &planet, 1.0).unwrap();
+    device.submit_and_wait(encoder).unwrap();
+    let mut volume = SkyVolume::new(&tables).unwrap();
+    let under = |altitude_m: f64, sun_deg: f64, exact: bool| Observer {
+        exact,
+        ..Observer::under_sun(&planet, altitude_m, f64::to_radians(sun_deg))
+    };
+    for from_m in [0.5, 10.0] {
+        let mut drawn = 0;
+        for i in 0..120 {
+            let mut encoder = device.device.create_command_encoder(&Default::default());
+            let observer = under(from_m + 0.05 * f64::from(i), 60.0, false);
+            drawn += u32::from(volume.prepare(&mut encoder, &tables, &observer).unwrap());
+            device.submit_and_wait(encoder).unwrap();
+        }
+        assert!((4..=6).contains(&drawn), "6 m of climb from {from_m} m: {drawn} times");
+    }
+    let probe = || Probe::new(&device, &coarse(SkyModel::Directional), &planet).unwrap();
+    let (mut kept, mut exact) = (probe(), probe());
+    let mut rays = Vec::new();
+    for zenith_deg in [5.0, 60.0, 88.0, 89.9, 90.3, 95.0, 140.0] {
+        for azimuth_deg in [0.0, 70.0, 180.0] {
+            rays.push(Ray::at(f64::to_radians(zenith_deg), f64::to_radians(azimuth_deg), 3000.0));
+        }
+    }
+    let mut worst = 0.0f32;
+    for sun_deg in [30.0, 80.0, 90.5] {
+        for from_m in [0.5, 2.0, 10.0, 400.0] {
+            for question in [Question::Sky, Question::Aerial] {
+                kept.ask(question, &under(from_m, sun_deg, true), &rays).unwrap();
+                let higher_m = from_m + 1.19;
+                let seen = kept.ask(question, &under(higher_m, sun_deg, false), &rays).unwrap();
+                let there = exact.ask(question, &under(higher_m, sun_deg, true), &rays).unwrap();
+                for ((seen, there), ray) in seen.iter().zip(&there).zip(&rays) {
+                    assert_eq!(seen.transmittance, there.transmittance, "{ray:?}");
+                    for (a, b) in seen.radiance.iter().zip(there.radiance) {
+                        let off = (a / b.max(1e-9) - 1.0).abs();
+                        assert!(off < 2e-3, "{off} from {from_m} m under {sun_deg}, {question:?}: {ray:?}");
+                        worst = worst.max(off);
+                    }
+                }
+            }
+        }
+    }
+    println!("kept tables are off by {worst:.1e} at most, 1.19 m above where they were drawn");
+}
+
+/// A sun that moves in every frame while the camera climbs: tables are drawn ahead in slices and mixed, and show the sky
+/// of each frame's own sun.
+#[test]
+fn a_moving_sun_is_followed_by_slices_and_seen_where_it_stands() {
+    let device = device();
+    let planet = golden_planet();
+    let probe = || Probe::new(&device, &coarse(SkyModel::Directional), &planet).unwrap();
+    let (mut kept, mut exact) = (probe(), probe());
+    let mut rays = Vec::new();
+    for zenith_deg in [5.0, 60.0, 88.0, 95.0] {
+        for azimuth_deg in [10.0, 90.0, 175.0] {
+            rays.push(Ray::at(f64::to_radians(zenith_deg), f64::to_radians(azimuth_deg), 3000.0));
+        }
+    }
+    for (from_deg, step_deg) in [(40.0, 0.05), (70.0, 0.05), (83.0, 0.05), (88.0, 0.004), (93.0, -0.004)] {
+        let mut worst = 0.0f32;
+        for i in 0..96 {
+            let (sun_deg, altitude_m) = (from_deg + step_deg * f64::from(i), 10.0 + 0.05 * f64::from(i));
+            let seen_by = |exact| Observer { exact, ..Observer::under_sun(&planet, altitude_m, sun_deg.to_radians()) };
+            let question = if i % 2 == 0 { Question::Sky } else { Question::Aerial };
+            let seen = kept.ask(question, &seen_by(false), &rays).unwrap();
+            if i % 5 == 0 {
+                let there = exact.ask(question, &seen_by(true), &rays).unwrap();
+                for (seen, there) in seen.iter().zip(&there) {
+                    let off = |c: usize| (seen.radiance[c] / there.radiance[c].max(1e-9) - 1.0).abs();
+                    worst = (0..3).map(off).fold(worst, f32::max);
+                }
+            }
+        }
+        println!("sun from {from_deg} degrees by {step_deg} a frame: off by {worst:.1e} at most");
+        assert!(worst < 4e-3, "{worst} from {from_deg} by {step_deg}");
+    }
+}
+
 /// Frames until the whole tables are shown.
 fn run(
     tables: &mut SkyTables,

@@ -54,12 +54,14 @@
 //! There is no `held.rs`: the tables follow from planet, place and lights, so that there is no state to advance or to
 //! save.
 
+mod ahead;
 mod cache;
 #[cfg(not(feature = "lab"))]
 pub(crate) mod candidates;
 #[cfg(feature = "lab")]
 #[doc(hidden)]
 pub mod candidates;
+mod course;
 mod disc;
 mod followed;
 mod kit;
@@ -67,6 +69,7 @@ mod level;
 pub mod light;
 pub mod observer;
 mod observer_passes;
+mod observer_tables;
 mod passes;
 pub mod probe;
 mod recipe;

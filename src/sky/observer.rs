@@ -140,8 +140,9 @@ pub struct Observer {
     pub lamps: [Option<Lamp>; 2],
     /// Strength of refraction for the discs, as a share of the standard one, `[0, 1]`.
     pub refraction: f64,
-    /// Whether the tables follow every change of altitude and sun, however small. Otherwise they are kept while the
-    /// altitude changes by less than 0.2 % and a lamp by less than 2e-5 rad, which nobody sees.
+    /// Whether the tables follow every change of altitude and sun, however small. Otherwise they are kept while a lamp
+    /// moves by less than 2e-5 rad, and the altitude by less than 0.2 % or than a thousandth of the air's smallest scale
+    /// height (1.2 m in clear air). Kept tables are off by at most 0.2 %.
     pub exact: bool,
 }
 

@@ -1,65 +1,23 @@
 //! Tables of one observer, for each lamp: the sky by direction, and the air in front of things.
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use bytemuck::{Zeroable as _, bytes_of};
 
+use super::ahead::{Ahead, WayTables};
+use super::course::{Bounds, ObserverPlace};
 use super::disc::DiscDepth;
 use super::kit::Kit;
 use super::observer::Observer;
 use super::observer_passes::view_layout;
-use super::passes::{bind, table_texture, tex, uniform_buffer};
+use super::observer_tables::{Apart, LAMPS, LAYERS, Layered};
+use super::passes::{bind, tex, uniform_buffer};
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
 use super::tables::SkyTables;
-use super::uniforms::{DimsUniform, EdgesUniform, LampUniform, ObserverUniform, ViewUniform};
+use super::uniforms::{AirUniform, DimsUniform, EdgesUniform, LampUniform, ObserverUniform, ViewUniform};
 use crate::error::Result;
-use crate::gpu::bind::as_layers;
-use crate::gpu::{Device, Layer};
-
-/// Layers for each lamp: complete light, and light scattered once by haze without its phase function.
-const LAYERS: u32 = 2;
-const LAMPS: usize = 2;
-
-/// Table of an observer's air with the sky beside or below it: an array texture that passes draw layer by layer.
-struct Layered {
-    texture: wgpu::Texture,
-    whole: wgpu::TextureView,
-    layers: Vec<wgpu::TextureView>,
-}
-
-impl Layered {
-    fn new(device: &Device, settings: &SkySettings) -> Self {
-        let texture = table_texture(device, "sky of an observer", settings.observer_size(), LAYERS * LAMPS as u32);
-        let layer = |index| Layer { texture: &texture, index }.attached_view();
-        let layers = (0..LAYERS * LAMPS as u32).map(layer).collect();
-        let whole = as_layers(&texture);
-        Self { texture, whole, layers }
-    }
-
-    /// Copies the layers of a lamp to textures of the same size.
-    fn copy(&self, encoder: &mut wgpu::CommandEncoder, lamp: usize, copies: &Apart) {
-        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..self.texture.size() };
-        for z in LAYERS * lamp as u32..LAYERS * (lamp as u32 + 1) {
-            let origin = wgpu::Origin3d { z, ..wgpu::Origin3d::ZERO };
-            let source = wgpu::TexelCopyTextureInfo { origin, ..self.texture.as_image_copy() };
-            encoder.copy_texture_to_texture(source, copies.layers[z as usize].texture().as_image_copy(), size);
-        }
-    }
-}
-
-/// Layers as in [`Layered`], but each in its own texture, for passes to read. On OpenGL a view of a single layer of an
-/// array reads as nothing.
-struct Apart {
-    layers: Vec<wgpu::TextureView>,
-}
-
-impl Apart {
-    fn new(device: &Device, settings: &SkySettings) -> Self {
-        let layer = |_| table_texture(device, "fading sky of an observer", settings.observer_size(), 1);
-        Self { layers: (0..LAYERS * LAMPS as u32).map(layer).map(|t| t.create_view(&Default::default())).collect() }
-    }
-}
+use crate::gpu::Device;
 
 /// Inputs for which a lamp's tables were drawn.
 #[derive(Clone, Copy, PartialEq)]
@@ -95,6 +53,33 @@ impl Fade {
 /// tables.
 const SUN_STEP: (f64, f64) = (2e-5, 2e-4);
 
+/// Smallest scale height of the gas and the haze that are there, m; 0 without any.
+fn least_scale_height_m(air: &AirUniform) -> f64 {
+    let media = [(air.rayleigh_scattering, air.rayleigh_scale_height_m), (air.mie_extinction, air.mie_scale_height_m)];
+    let there = media.iter().filter(|(per_m, _)| per_m.iter().any(|v| *v > 0.0));
+    let least_m = there.map(|(_, height_m)| f64::from(*height_m)).fold(f64::INFINITY, f64::min);
+    if least_m.is_finite() { least_m } else { 0.0 }
+}
+
+/// Change of altitude after which the tables follow it, m: 0.2 %, or a thousandth of the smallest scale height of the
+/// air, over which its light changes by as much. Directions are looked up from the observer's own altitude meanwhile,
+/// so the horizon follows at once.
+fn altitude_step_m(air: &AirUniform, altitude_m: f64) -> f64 {
+    (2e-3 * altitude_m.abs() + 1e-2).max(1e-3 * least_scale_height_m(air))
+}
+
+/// Bounds for following an observer. Light is mixed over a twentieth of a scale height, and over a part of a lamp's way
+/// that is short where its light changes fast: near the horizon and below it.
+fn bounds(air: &AirUniform, place: &ObserverPlace) -> Bounds {
+    let of_lamp = |mu_s: Option<f64>| 6e-4 + 0.3 * mu_s.unwrap_or(0.0).max(0.0).powi(2);
+    let [sun, moon] = place.mu_s.map(of_lamp);
+    let altitude_m = 0.05 * least_scale_height_m(air) + 0.02 * place.altitude_m.abs();
+    Bounds {
+        near: [altitude_step_m(air, place.altitude_m), SUN_STEP.0, SUN_STEP.0],
+        far: [altitude_m.max(1e-2), sun, moon],
+    }
+}
+
 /// Tables of an observer, and the bind group with which shaders look them up (`shaders/sky/lookup.wgsl`, group 1).
 ///
 /// One thread at a time. Call [`SkyVolume::prepare`] once a submission, because it writes uniforms through the queue.
@@ -112,6 +97,7 @@ pub struct SkyVolume {
     drawn: [Option<DrawnFor>; LAMPS],
     /// Fade, created when tables fade in for the first time.
     fade: Option<Box<Fade>>,
+    ahead: Ahead,
     written: ViewUniform,
     discs: u32,
     disc_depths: [Option<DiscDepth>; LAMPS],
@@ -145,6 +131,7 @@ impl SkyVolume {
             light,
             drawn: [None; LAMPS],
             fade: None,
+            ahead: Ahead::default(),
             written,
             discs: 0,
             disc_depths: [None; LAMPS],
@@ -209,7 +196,7 @@ impl SkyVolume {
             Some(shown) => self.update_lamps(encoder, tables, &shown, observer, mu_s)?,
             None => false,
         };
-        let altitude_m = self.drawn[0].map_or(observer.altitude_m, |d| d.altitude_m).max(0.0);
+        let altitude_m = observer.altitude_m.max(0.0);
         let dims = DimsUniform::of(&self.kit.settings);
         let mut view = ViewUniform {
             air,
@@ -250,20 +237,24 @@ impl SkyVolume {
         mu_s: [Option<f64>; LAMPS],
     ) -> Result<bool> {
         let altitude_m = observer.altitude_m;
+        let altitude_step_m = altitude_step_m(&tables.air(), altitude_m);
         let serves = |drawn: &Option<DrawnFor>, mu_s: f64| {
             let step = if tables.is_busy() { SUN_STEP.1 } else { SUN_STEP.0 };
             drawn.filter(|d| match observer.exact {
                 true => d.altitude_m == altitude_m && d.mu_s == mu_s,
-                false => {
-                    (d.altitude_m - altitude_m).abs() <= 2e-3 * altitude_m.abs() + 1e-2 && (d.mu_s - mu_s).abs() <= step
-                }
+                false => (d.altitude_m - altitude_m).abs() <= altitude_step_m && (d.mu_s - mu_s).abs() <= step,
             })
         };
         let lamps = || mu_s.iter().enumerate().filter_map(|(i, mu_s)| mu_s.map(|mu_s| (i, mu_s)));
         let fading = tables.fading();
+        let mut drawn = false;
+        if observer.exact || fading.is_some() || tables.is_busy() || self.kit.settings.model == SkyModel::BruteForce {
+            self.ahead.stop();
+        } else {
+            drawn = self.follow(encoder, tables, shown, &ObserverPlace { altitude_m, mu_s })?;
+        }
         // If one lamp's tables are out of date all are drawn, because they share the altitude.
         let moved = lamps().any(|(i, mu_s)| serves(&self.drawn[i], mu_s).is_none());
-        let mut drawn = false;
         for (i, mu_s) in lamps() {
             let now = DrawnFor { set: shown.id, over: None, altitude_m, mu_s };
             let kept = self.drawn[i].filter(|_| !moved);
@@ -282,7 +273,7 @@ impl SkyVolume {
                 }
                 Some(d) if d.set == shown.id && (d.over.is_none() || d.over.map(|o| o.0) == over.map(|o| o.0)) => {}
                 _ => {
-                    self.write_observer(tables, i, &now);
+                    write_observer(tables, &self.observers[i], &now);
                     self.march(encoder, shown, i, false)?;
                     self.drawn[i] = Some(now);
                     drawn = true;
@@ -290,7 +281,7 @@ impl SkyVolume {
             }
             let (Some((next, share)), Some(d)) = (fading, self.drawn[i]) else { continue };
             if !self.is_ready(i, &d, next) {
-                self.write_observer(tables, i, &d);
+                write_observer(tables, &self.observers[i], &d);
                 self.march(encoder, next, i, true)?;
                 drawn = true;
             }
@@ -312,22 +303,82 @@ impl SkyVolume {
         self.fade.as_ref().is_some_and(|f| f.drawn[i] == Some(wanted))
     }
 
-    fn write_observer(&self, tables: &SkyTables, i: usize, drawn_for: &DrawnFor) {
-        let edges = EdgesUniform::of(&tables.air(), drawn_for.altitude_m);
-        let (altitude, mu_s) = (drawn_for.altitude_m.max(0.0) as f32, drawn_for.mu_s as f32);
-        for (is_air, buffer) in (0..).zip(&self.observers[i]) {
-            let uniform = ObserverUniform { altitude, mu_s, is_air, unused: 0, edges };
-            self.device.queue.write_buffer(buffer, 0, bytes_of(&uniform));
-        }
-    }
-
     /// Mixes the tables that fade in, with their share, into lamp `i`'s tables.
     fn lay_over(&self, encoder: &mut wgpu::CommandEncoder, i: usize, share: f32) {
         let Some(fade) = &self.fade else { return };
         let [first, next] = &fade.groups;
-        for k in LAYERS as usize * i..LAYERS as usize * (i + 1) {
+        for k in layers_of(i) {
             self.kit.fades.between(encoder, &self.tables.layers[k], [&first[k], &next[k]], share);
         }
+    }
+
+    /// Follows an observer that moves: draws a slice of the tables ahead of it, and mixes those at its place if the
+    /// present ones do not serve it. Returns whether anything was drawn.
+    fn follow(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        tables: &SkyTables,
+        shown: &TableSet,
+        place: &ObserverPlace,
+    ) -> Result<bool> {
+        if self.ahead.set != Some(shown.id) {
+            self.ahead.stop();
+            self.ahead.set = Some(shown.id);
+        }
+        let bounds = bounds(&tables.air(), place);
+        let now = self.drawn_at(place, shown);
+        let step = self.ahead.course.follow(*place, now, &bounds, self.kit.settings.observer_size().1);
+        if let Some((coming, rows)) = &step.slice {
+            self.draw_slice(encoder, tables, shown, (coming, rows))?;
+        }
+        let drawn = step.slice.is_some();
+        let Some(way) = &mut self.ahead.tables else { return Ok(drawn) };
+        if step.turns {
+            way.turn();
+        }
+        let lamps = || place.mu_s.iter().enumerate().filter_map(|(i, mu_s)| mu_s.map(|mu_s| (i, mu_s)));
+        if step.copies {
+            lamps().for_each(|(i, _)| self.tables.copy(encoder, i, way.first()));
+        }
+        let Some(share) = step.share.filter(|_| !now.is_some_and(|now| now.is_near(place, &bounds))) else {
+            return Ok(drawn);
+        };
+        for (i, mu_s) in lamps() {
+            for k in layers_of(i) {
+                self.kit.fades.between(encoder, &self.tables.layers[k], way.pair(k), share);
+            }
+            self.drawn[i] = Some(DrawnFor { set: shown.id, over: None, altitude_m: place.altitude_m, mu_s });
+        }
+        Ok(true)
+    }
+
+    /// Place of the present tables, if those of all lamps of `place` are there and none is fading.
+    fn drawn_at(&self, place: &ObserverPlace, shown: &TableSet) -> Option<ObserverPlace> {
+        let mut found = None::<ObserverPlace>;
+        for (i, _) in place.mu_s.iter().enumerate().filter(|(_, mu_s)| mu_s.is_some()) {
+            let d = self.drawn[i].filter(|d| d.set == shown.id && d.over.is_none())?;
+            let there = found.get_or_insert(ObserverPlace { altitude_m: d.altitude_m, mu_s: [None; LAMPS] });
+            there.mu_s[i] = Some(d.mu_s);
+        }
+        found
+    }
+
+    /// Draws rows of the tables of a place ahead.
+    fn draw_slice(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        tables: &SkyTables,
+        shown: &TableSet,
+        (place, rows): (&ObserverPlace, &Range<u32>),
+    ) -> Result<()> {
+        let way = self.ahead.tables.get_or_insert_with(|| Box::new(WayTables::new(&self.device, &self.kit)));
+        for (i, mu_s) in place.mu_s.iter().enumerate().filter_map(|(i, mu_s)| mu_s.map(|mu_s| (i, mu_s))) {
+            let drawn_for = DrawnFor { set: shown.id, over: None, altitude_m: place.altitude_m, mu_s };
+            write_observer(tables, &way.observers[i], &drawn_for);
+            let layers = &way.coming().layers[layers_of(i)];
+            draw_observer(&self.kit, encoder, shown, layers, &way.observer_groups[i], Some(rows))?;
+        }
+        Ok(())
     }
 
     /// Draws lamp `i`'s tables from a planet's tables: for look-ups, or with `is_next` for a fade.
@@ -335,7 +386,6 @@ impl SkyVolume {
         if self.kit.settings.model == SkyModel::BruteForce {
             return Ok(());
         }
-        let passes = self.kit.observer_passes()?;
         let layers = if is_next {
             let fade = self.fade.get_or_insert_with(|| Box::new(Fade::new(&self.device, &self.kit)));
             fade.drawn[i] = self.drawn[i].map(|d| DrawnFor { set: set.id, over: None, ..d });
@@ -343,32 +393,61 @@ impl SkyVolume {
         } else {
             &self.tables.layers
         };
-        let layer = |k: usize| {
-            Some(wgpu::RenderPassColorAttachment {
-                view: &layers[LAYERS as usize * i + k],
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })
-        };
-        let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("sky of an observer"),
-            color_attachments: &[layer(0), layer(1)],
-            ..Default::default()
-        });
-        let s = &self.kit.settings;
-        let places = [(s.sky_corner(), s.sky_size()), ((0, 0), s.air_size())];
-        let drawn = [&passes.sky, &passes.air].into_iter().zip(&self.observer_groups[i]);
-        for ((pipeline, group), (corner, size)) in drawn.zip(places) {
-            let [x, y, width, height] = [corner.0, corner.1, size.0, size.1].map(|v| v as f32);
-            recorded.set_pipeline(pipeline);
-            recorded.set_bind_group(0, &set.observer_group, &[]);
-            recorded.set_bind_group(1, group, &[]);
-            recorded.set_viewport(x, y, width, height, 0.0, 1.0);
-            recorded.draw(0..3, 0..1);
-        }
-        Ok(())
+        draw_observer(&self.kit, encoder, set, &layers[layers_of(i)], &self.observer_groups[i], None)
     }
+}
+
+/// Indices of the layers of lamp `i`.
+fn layers_of(i: usize) -> Range<usize> {
+    LAYERS as usize * i..LAYERS as usize * (i + 1)
+}
+
+/// Writes the blocks of the passes that draw a lamp's tables, of the sky and of the air.
+fn write_observer(tables: &SkyTables, blocks: &[wgpu::Buffer; 2], drawn_for: &DrawnFor) {
+    let edges = EdgesUniform::of(&tables.air(), drawn_for.altitude_m);
+    let (altitude, mu_s) = (drawn_for.altitude_m.max(0.0) as f32, drawn_for.mu_s as f32);
+    for (is_air, buffer) in (0..).zip(blocks) {
+        let uniform = ObserverUniform { altitude, mu_s, is_air, unused: 0, edges };
+        tables.device.queue.write_buffer(buffer, 0, bytes_of(&uniform));
+    }
+}
+
+/// Draws a lamp's tables into two layers, whole or `rows` of them, which follow each other from the first on.
+fn draw_observer(
+    kit: &Kit,
+    encoder: &mut wgpu::CommandEncoder,
+    set: &TableSet,
+    layers: &[wgpu::TextureView],
+    groups: &[wgpu::BindGroup; 2],
+    rows: Option<&Range<u32>>,
+) -> Result<()> {
+    let (passes, s) = (kit.observer_passes()?, &kit.settings);
+    let load = match rows {
+        Some(rows) if rows.start > 0 => wgpu::LoadOp::Load,
+        _ => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+    };
+    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+    let layer = |k: usize| {
+        Some(wgpu::RenderPassColorAttachment { view: &layers[k], depth_slice: None, resolve_target: None, ops })
+    };
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("sky of an observer"),
+        color_attachments: &[layer(0), layer(1)],
+        ..Default::default()
+    });
+    if let Some(rows) = rows {
+        pass.set_scissor_rect(0, rows.start, s.observer_size().0, rows.len() as u32);
+    }
+    let places = [(s.sky_corner(), s.sky_size()), ((0, 0), s.air_size())];
+    for ((pipeline, group), (corner, size)) in [&passes.sky, &passes.air].into_iter().zip(groups).zip(places) {
+        let [x, y, width, height] = [corner.0, corner.1, size.0, size.1].map(|v| v as f32);
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &set.observer_group, &[]);
+        pass.set_bind_group(1, group, &[]);
+        pass.set_viewport(x, y, width, height, 0.0, 1.0);
+        pass.draw(0..3, 0..1);
+    }
+    Ok(())
 }
 
 /// Creates the bind group for look-ups: the observer's sky and air, and the planet's light.

@@ -1,0 +1,71 @@
+//! Tables of the places ahead of an observer that moves steadily: drawn in slices, and mixed for where it is.
+
+use bytemuck::{Zeroable as _, bytes_of};
+
+use super::course::Course;
+use super::kit::Kit;
+use super::observer_tables::{Apart, LAMPS};
+use super::passes::{bind, uniform_buffer};
+use super::uniforms::ObserverUniform;
+use crate::gpu::Device;
+
+/// Tables at three places on the way of an observer: the pair between which it is, and the place that comes next.
+pub(super) struct WayTables {
+    tables: [Apart; 3],
+    /// Bind groups that read each layer of each table.
+    groups: [Vec<wgpu::BindGroup>; 3],
+    /// Bind groups for the passes of the place that comes next, for each lamp: of the sky, and of the air.
+    pub observer_groups: [[wgpu::BindGroup; 2]; LAMPS],
+    pub observers: [[wgpu::Buffer; 2]; LAMPS],
+    first: usize,
+}
+
+impl WayTables {
+    pub fn new(device: &Device, kit: &Kit) -> Self {
+        let tables = [(); 3].map(|()| Apart::new(device, &kit.settings));
+        let read = |t: &Apart| t.layers.iter().map(|l| kit.fades.group(device, l)).collect();
+        let groups = tables.each_ref().map(read);
+        let zero = bytes_of(&ObserverUniform::zeroed()).to_vec();
+        let observers = [(); LAMPS].map(|()| [(); 2].map(|()| uniform_buffer(device, "sky observer ahead", &zero)));
+        let group = |b: &wgpu::Buffer| bind(device, &kit.observer_layouts.observer, &[b.as_entire_binding()]);
+        let observer_groups = observers.each_ref().map(|of_lamp| of_lamp.each_ref().map(group));
+        Self { tables, groups, observer_groups, observers, first: 0 }
+    }
+
+    /// Tables of the pair's first place.
+    pub fn first(&self) -> &Apart {
+        &self.tables[self.first]
+    }
+
+    /// Tables of the place that comes next.
+    pub fn coming(&self) -> &Apart {
+        &self.tables[(self.first + 2) % 3]
+    }
+
+    /// Bind groups of a layer of both tables of the pair.
+    pub fn pair(&self, layer: usize) -> [&wgpu::BindGroup; 2] {
+        [&self.groups[self.first][layer], &self.groups[(self.first + 1) % 3][layer]]
+    }
+
+    /// Makes the tables of the place that comes next the pair's second.
+    pub fn turn(&mut self) {
+        self.first = (self.first + 1) % 3;
+    }
+}
+
+/// Course of an observer, and the tables on its way.
+#[derive(Default)]
+pub(super) struct Ahead {
+    pub course: Course,
+    /// Id of the planet's tables from which those on the way are drawn.
+    pub set: Option<u64>,
+    /// Created when the observer moves for the first time.
+    pub tables: Option<Box<WayTables>>,
+}
+
+impl Ahead {
+    /// Forgets the course. The textures stay for the next one.
+    pub fn stop(&mut self) {
+        (self.course, self.set) = (Course::default(), None);
+    }
+}
