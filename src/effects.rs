@@ -38,7 +38,9 @@ use crate::{
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
     snow::{self, FlakeContrast, SnowSettings, SnowView},
     snowpack::{HeldSnow, LoadedSnow, LyingSnowModel},
-    stage::{Composition, DrawContext, DrawnEffect, FrameContext, MergedFrame, Outputs, Recording, ordered},
+    stage::{
+        Composition, DrawContext, DrawnEffect, FrameContext, MergedFrame, NO_OUTPUTS, Outputs, Recording, ordered,
+    },
     stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
 };
@@ -348,8 +350,9 @@ impl Effects {
         for place in order {
             let effect = &mut effects[place];
             let exchange = effect.composes();
+            let taken = (!exchange.needs.is_empty()).then(|| given.only(exchange.needs));
             // Merged by reference: copying ten contributions would cost a microsecond.
-            let mut outcome = effect.compose(context, &given.only(exchange.needs));
+            let mut outcome = effect.compose(context, taken.as_ref().unwrap_or(&NO_OUTPUTS));
             let Ok(added) = &mut outcome else { return outcome.map(|_| ()) };
             given.take_layers(added, exchange.gives);
             composition.merge(added);

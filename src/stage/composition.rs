@@ -299,16 +299,20 @@ impl Composition {
     /// Merges the contribution of one effect; its textures and blocks are moved out.
     pub fn merge(&mut self, contribution: &mut Contribution<'_>) {
         for c in &contribution.constants[..contribution.count] {
-            for (pipeline, value) in [(&mut self.whole, c.whole), (&mut self.least, c.least)] {
-                let constant = (c.name, value);
-                match c.scope {
-                    Scope::Between => pipeline.between.push(constant),
-                    Scope::BetweenAndVeil => {
-                        pipeline.between.push(constant);
-                        pipeline.of_veil.push(constant);
-                    }
-                    Scope::Composition => pipeline.composed.push(constant),
+            let (whole, least) = ((c.name, c.whole), (c.name, c.least));
+            match c.scope {
+                Scope::Composition => {
+                    self.whole.composed.push(whole);
+                    self.least.composed.push(least);
                 }
+                Scope::Between | Scope::BetweenAndVeil => {
+                    self.whole.between.push(whole);
+                    self.least.between.push(least);
+                }
+            }
+            if c.scope == Scope::BetweenAndVeil {
+                self.whole.of_veil.push(whole);
+                self.least.of_veil.push(least);
             }
         }
         let [whole, least] = contribution.traits;
@@ -321,9 +325,13 @@ impl Composition {
             self.blocks[place as usize] = Some(block);
         }
         for (place, texture) in self.textures.iter_mut().zip(&mut contribution.textures) {
-            *place = texture.take().or(place.take());
+            if texture.is_some() {
+                *place = texture.take();
+            }
         }
-        self.tables = contribution.tables.take().or(self.tables.take());
+        if contribution.tables.is_some() {
+            self.tables = contribution.tables.take();
+        }
         self.needs_panorama |= contribution.needs_panorama;
         self.near = match (self.near, contribution.near) {
             (Some(all), Some(near)) => Some(all.with(near)),

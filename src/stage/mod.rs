@@ -26,7 +26,7 @@ pub use diagnostic::Diagnostic;
 pub(crate) use effect::{DrawnEffect, LensPicture, PutPart};
 pub use frame::{ColorSpace, DepthAccess, Frame, FrameFlags, ImageLayers};
 pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
-pub(crate) use outputs::{Exchange, Output, Outputs, ordered};
+pub(crate) use outputs::{Exchange, NO_OUTPUTS, Output, Outputs, ordered};
 pub(crate) use recording::Recording;
 pub use recording::{CostItem, Costs, RainReport, Report, SnowReport};
 pub use stages::Stages;

@@ -31,17 +31,17 @@ pub(crate) struct Outputs {
     pub before: Option<wgpu::TextureView>,
 }
 
+/// No outputs, for effects that need none.
+pub(crate) static NO_OUTPUTS: Outputs = Outputs { fog_depth: 0.0, stars: None, before: None };
+
 impl Outputs {
     /// Returns only the outputs that an effect `needs`, so that it sees no others.
     pub fn only(&self, needs: &[Output]) -> Self {
-        if needs.is_empty() {
-            return Self::default();
-        }
         let has = |output| needs.contains(&output);
         Self {
             fog_depth: if has(Output::FogDepth) { self.fog_depth } else { 0.0 },
-            stars: self.stars.clone().filter(|_| has(Output::Stars)),
-            before: self.before.clone().filter(|_| has(Output::Rain) || has(Output::Snow)),
+            stars: if has(Output::Stars) { self.stars.clone() } else { None },
+            before: if has(Output::Rain) || has(Output::Snow) { self.before.clone() } else { None },
         }
     }
 
