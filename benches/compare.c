@@ -1,6 +1,6 @@
 /* Draws as many frames as it is asked for with one build of the library. scripts/compare-speed runs two of these
  * programs in turn, each with its own header and library. Each line on stdin asks for some frames of a turning camera;
- * the answer is their processor time in ms per frame. */
+ * the answer is their processor time in ms per frame. A fourth argument, gl, asks for OpenGL. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <math.h>
@@ -51,6 +51,7 @@ static void look(wk_frame *frame, double degrees, double aspect)
 
 int main(int argc, char **argv)
 {
+    wk_device_desc desc = WK_DEVICE_DESC_INIT;
     wk_device *device = NULL;
     wk_context *context = NULL;
     wk_view *view = NULL;
@@ -61,8 +62,8 @@ int main(int argc, char **argv)
     wk_own_target target = WK_OWN_TARGET_INIT;
     wk_frame frame = WK_FRAME_INIT;
     char line[16];
-    if (argc != 4) {
-        fprintf(stderr, "usage: compare WIDTH HEIGHT REPORT\n");
+    if (argc != 4 && (argc != 5 || strcmp(argv[4], "gl") != 0)) {
+        fprintf(stderr, "usage: compare WIDTH HEIGHT REPORT [gl]\n");
         return 1;
     }
     texture.width = (uint32_t)atoi(argv[1]);
@@ -70,7 +71,8 @@ int main(int argc, char **argv)
     const size_t bytes = (size_t)texture.width * texture.height * 4;
     unsigned char *pixels = malloc(bytes);
     if (pixels == NULL) return 1;
-    check(wk_device_create(NULL, &device));
+    if (argc == 5) desc.backends = WK_BACKEND_GL;
+    check(wk_device_create(&desc, &device));
     check(wk_context_create(device, NULL, &context));
     check(wk_view_create(context, NULL, &view));
     check(wk_weather_from_metar(argv[3], layers, LAYERS, sizeof layers[0], &weather, NULL));

@@ -1,5 +1,5 @@
-//! Cost of a frame on a software driver, in copies. A copy is a full-screen pass of the same size that loads one texel
-//! per pixel. Pictures have 640x360 pixels; set another size by `SIZE="1280x720"`.
+//! Cost of a frame on a software driver, in copies ([`Copying`]). Pictures have 640x360 pixels; set another size by
+//! `SIZE="1280x720"`.
 //!
 //! The measured time is the processor time of all threads of the process, so that other load on the machine affects
 //! neither side.
@@ -10,10 +10,7 @@ use glam::{DMat4, DVec2, DVec3};
 use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, FrameFlags, Shared, Stages, View},
-    gpu::{
-        Device, DeviceOptions,
-        pass::{FullscreenDesc, draw, fullscreen},
-    },
+    gpu::{Device, DeviceOptions},
     ground::SurfaceClass,
     scene::Camera,
     weather::{Fog, FogKind, Surface, SurfaceState, Weather},
@@ -21,14 +18,13 @@ use welkin::{
 };
 use welkin_support::{level_ground::level_ground, processor::processor_ns, textures::texture};
 
+pub use crate::copying::Copying;
 pub use welkin_support::processor::median;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// Default size of pictures.
 pub const SIZE: (u32, u32) = (640, 360);
-/// Copies per submission, enough to make the submission's own cost negligible.
-const COPIES: u32 = 16;
 /// Elevation of the sun.
 const HIGH_SUN_DEG: f64 = 60.0;
 /// Rounds over all scenes; the median of each scene counts.
@@ -40,64 +36,6 @@ pub const SETTLED: u32 = 12;
 pub fn quantile(of: &mut [f64], share: f64) -> f64 {
     of.sort_by(f64::total_cmp);
     of[((of.len() - 1) as f64 * share) as usize]
-}
-
-/// The unit of cost: a pass that loads a texel and writes it.
-pub struct Copying {
-    pipeline: wgpu::RenderPipeline,
-    group: wgpu::BindGroup,
-    target: wgpu::TextureView,
-}
-
-impl Copying {
-    pub fn new(device: &Device, size: (u32, u32)) -> Fallible<Self> {
-        let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: None,
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
-            }],
-        });
-        let format = wgpu::TextureFormat::Rgba16Float;
-        let desc = FullscreenDesc {
-            shader: "surface/copy.wgsl",
-            entry: "copy_texels",
-            layouts: &[&layout],
-            targets: &[format.into()],
-            constants: &[],
-            samples: 1,
-        };
-        let pipeline = fullscreen(device, &desc)?;
-        let [from, to] = [(); 2].map(|()| texture(device, size, format, 1).create_view(&Default::default()));
-        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&from) }],
-        });
-        Ok(Self { pipeline, group, target: to })
-    }
-
-    /// Records one copy.
-    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
-        draw(encoder, "copy", &self.pipeline, &[&self.group], &self.target);
-    }
-
-    /// Nanoseconds of one copy.
-    fn ns(&self, device: &Device) -> Fallible<f64> {
-        let before = processor_ns();
-        let mut encoder = device.device.create_command_encoder(&Default::default());
-        for _ in 0..COPIES {
-            self.copy(&mut encoder);
-        }
-        device.submit_and_wait(encoder)?;
-        Ok((processor_ns() - before) as f64 / f64::from(COPIES))
-    }
 }
 
 /// Parses a size such as `1280x720`.

@@ -1,9 +1,10 @@
 //! Benchmarks that print ratios measured within one run: `make bench`. `cargo bench -- record` runs only the named ones
-//! (clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, sky,
-//! wind).
+//! (clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, run,
+//! sky, wind).
 
 mod clouds;
 mod copies;
+mod copying;
 mod environment;
 mod falling;
 mod first;
@@ -16,6 +17,7 @@ mod parts;
 mod radiance;
 mod rain;
 mod record;
+mod run;
 mod sky;
 mod wind;
 
@@ -48,6 +50,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("rain") {
         rain::run()?;
+    }
+    if wanted("run") {
+        run::run()?;
     }
     if wanted("radiance") {
         radiance::run()?;

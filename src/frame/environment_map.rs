@@ -198,7 +198,7 @@ impl Filter {
         };
         let bytes = apart(blocks.map(block));
         let buffer = bind::block(gpu, "environment filter", bytes.len());
-        device.queue.write_buffer(&buffer, 0, &bytes);
+        device.write_buffer(&buffer, 0, &bytes);
         let sampler = gpu.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("environment"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -326,7 +326,7 @@ impl EnvironmentMap {
         };
         let block = |face| FaceUniform::new(face, &scene.world_to_enu, 1.0 / self.cd_m2_per_unit);
         for face in 0..FACES as usize {
-            context.device.queue.write_buffer(&self.blocks, (face * STEP) as u64, bytemuck::bytes_of(&block(face)));
+            context.device.write_buffer(&self.blocks, (face * STEP) as u64, bytemuck::bytes_of(&block(face)));
         }
         faces
     }

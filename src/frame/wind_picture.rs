@@ -59,7 +59,7 @@ impl WindPicture {
             pad: [0; 2],
         };
         let block = bind::block(&device.device, "wind picture", size_of::<WindUniform>());
-        device.queue.write_buffer(&block, 0, bytemuck::bytes_of(&uniform));
+        device.write_buffer(&block, 0, bytemuck::bytes_of(&uniform));
         Ok(device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("wind picture"),
             layout: &self.layout,

@@ -257,7 +257,7 @@ impl PaneLattice {
         if self.due.is_empty() {
             return Ok(0);
         }
-        device.queue.write_buffer(&self.steps, 0, &self.slots);
+        device.write_buffer(&self.steps, 0, &self.slots);
         let mut passes = 0;
         let (mut gather, mut declare, mut settle) = (&kit.gather, &kit.declare, &kit.settle);
         if let Some((reach, mapped)) = maps {
@@ -396,7 +396,7 @@ impl LensPass {
         &LensDraw { uniform, variant, target }: &LensDraw<'_>,
         lattice: Option<&PaneLattice>,
     ) -> Result<u32> {
-        device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
+        device.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
         let first = &kit.shrink[usize::from(variant.encoded)];
         pass::draw(encoder, "smaller", first, &[&self.shrinks[0]], &self.smaller[0]);
         pass::draw(encoder, "smallest", &kit.shrink[2], &[&self.shrinks[1]], &self.smaller[1]);

@@ -95,7 +95,7 @@ impl MapReach {
         target: &wgpu::TextureView,
     ) {
         self.surroundings.update(device, &mapped.told);
-        device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&mapped.pane));
+        device.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&mapped.pane));
         let groups = [&self.groups[0], &self.groups[1], self.surroundings.bind_group()];
         pass::draw(encoder, "glass below maps", &kit.reach, &groups, target);
     }

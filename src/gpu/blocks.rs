@@ -99,11 +99,11 @@ impl Blocks {
     }
 
     /// Uploads what was written since the last upload. Must be called before every submission that reads the blocks.
-    pub fn upload(&self, queue: &wgpu::Queue) {
+    pub fn upload(&self, device: &Device) {
         self.with(|pages| {
             for page in pages.iter_mut().filter(|page| !page.changed.is_empty()) {
                 let changed = std::mem::take(&mut page.changed);
-                queue.write_buffer(&page.buffer, changed.start as u64, &page.staged[changed]);
+                device.write_buffer(&page.buffer, changed.start as u64, &page.staged[changed]);
             }
         });
     }
@@ -216,7 +216,7 @@ mod tests {
         assert_eq!(changed(), a.at.start + 3 * CHUNK..a.at.start + 4 * CHUNK);
         b.write_at(4, &[2; 4]);
         assert_eq!(changed(), b.at.start + 4..a.at.start + 4 * CHUNK);
-        blocks.upload(&device.queue);
+        blocks.upload(&device);
         a.write(&bytes);
         b.write_at(4, &[2; 4]);
         assert_eq!(changed(), 0..0, "nothing has changed");

@@ -8,6 +8,7 @@ use std::{
     },
 };
 
+use super::counts::{DeviceWork, WorkTotals};
 use crate::error::{Error, Result, Status};
 
 /// Capabilities of a device, which the host may query before it creates anything.
@@ -182,6 +183,8 @@ pub struct Device {
     faults: Arc<Faults>,
     submission: Mutex<()>,
     submissions: AtomicU64,
+    /// Work beyond drawing, for the benchmarks.
+    pub(crate) counts: WorkTotals,
     /// Window images that are acquired but not yet presented or given back.
     of_windows: Mutex<Vec<wgpu::Texture>>,
     binding: Option<Arc<dyn HostBinding>>,
@@ -232,6 +235,7 @@ impl Device {
             faults,
             submission,
             submissions: AtomicU64::new(0),
+            counts: WorkTotals::default(),
             of_windows: Mutex::default(),
             binding,
             _exit: exit,
@@ -410,6 +414,32 @@ impl Device {
     /// Number of submissions to this device so far.
     pub fn submissions(&self) -> u64 {
         self.submissions.load(Ordering::Relaxed)
+    }
+
+    /// Writes bytes into a buffer before the next submission.
+    pub(crate) fn write_buffer(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
+        self.counts.add(DeviceWork::UploadBytes, bytes.len() as u64);
+        self.queue.write_buffer(buffer, offset, bytes);
+    }
+
+    /// Writes texels into a texture before the next submission.
+    pub(crate) fn write_texture(
+        &self,
+        texels: wgpu::TexelCopyTextureInfo<'_>,
+        bytes: &[u8],
+        layout: wgpu::TexelCopyBufferLayout,
+        size: wgpu::Extent3d,
+    ) {
+        self.counts.add(DeviceWork::UploadBytes, bytes.len() as u64);
+        self.queue.write_texture(texels, bytes, layout, size);
+    }
+
+    /// Returns what the device has done beyond drawing since it was created, each with its name: pipelines created and
+    /// the calling threads' time for them, bytes uploaded, answers of gauges, readbacks, and tables computed.
+    #[cfg(any(test, feature = "lab"))]
+    #[doc(hidden)]
+    pub fn work(&self) -> Vec<(&'static str, u64)> {
+        self.counts.totals()
     }
 
     /// Takes the lock for submitting; it is held until the returned guard is dropped.

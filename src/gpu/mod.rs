@@ -7,6 +7,7 @@
 // For Apple hosts wgpu builds its OpenGL backend only on another library (ANGLE); the backend there is Metal.
 pub(crate) mod bind;
 pub(crate) mod blocks;
+pub(crate) mod counts;
 #[cfg(not(any(target_os = "macos", target_os = "ios")))]
 pub mod gl;
 pub mod pass;

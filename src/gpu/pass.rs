@@ -4,7 +4,12 @@
 //! Tables, sky, fog and composition use full-screen passes only, so they also run on tier 0. The vertex stage of these
 //! is `common/fullscreen.wgsl`.
 
-use super::device::{Device, Shader};
+use std::time::Instant;
+
+use super::{
+    counts::DeviceWork,
+    device::{Device, Shader},
+};
 use crate::error::Result;
 
 /// Pipelines of a pass, each created when it is first needed and found by its key.
@@ -28,6 +33,12 @@ impl<K: PartialEq, P> Made<K, P> {
         }
         Ok(())
     }
+}
+
+/// Counts a pipeline whose creation began at `begun`, and logs its time.
+fn count(device: &Device, (shader, entry): (&str, &str), begun: Instant) {
+    device.counts.add_timed([DeviceWork::Pipelines, DeviceWork::PipelineTime], begun);
+    log::debug!("pipeline {entry} of {shader}: {:.1} ms", begun.elapsed().as_secs_f64() * 1e3);
 }
 
 /// Description of a full-screen pipeline.
@@ -64,6 +75,7 @@ pub(crate) fn fullscreen_at(
     desc: &FullscreenDesc<'_>,
     tested: Option<(f64, wgpu::DepthStencilState)>,
 ) -> Result<wgpu::RenderPipeline> {
+    let begun = Instant::now();
     let Shader { module, overrides } = device.shader_and_overrides(desc.shader)?;
     // A variant lacks the constants of the parts that it leaves out. In a whole shader a missing constant is a fault.
     let is_whole = !desc.shader.contains(':');
@@ -79,7 +91,7 @@ pub(crate) fn fullscreen_at(
     let at = tested.as_ref().map(|(depth, _)| ("FULLSCREEN_DEPTH", *depth));
     let vertex_constants = at.as_slice();
     let targets: Vec<_> = desc.targets.iter().cloned().map(|t| Some(compiled_once(device, t))).collect();
-    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    let pipeline = device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(desc.entry),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
@@ -99,7 +111,9 @@ pub(crate) fn fullscreen_at(
         }),
         multiview_mask: None,
         cache: None,
-    }))
+    });
+    count(device, (desc.shader, desc.entry), begun);
+    Ok(pipeline)
 }
 
 /// Returns the state for a test against a depth attachment, which may also write it.
@@ -155,6 +169,7 @@ pub struct QuadsDesc<'a> {
 /// # Errors
 /// The errors of [`fullscreen`].
 pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> Result<wgpu::RenderPipeline> {
+    let begun = Instant::now();
     let counting = desc.counts.then(|| device.shader("common/count.wgsl")).transpose()?;
     let fragment = counting.as_ref().map_or(desc.fragment, |module| (module, "count", &[]));
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -163,7 +178,7 @@ pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> Result<wgpu::RenderPipeli
         immediate_size: 0,
     });
     let options = |constants| wgpu::PipelineCompilationOptions { constants, ..Default::default() };
-    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    let pipeline = device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(desc.label),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
@@ -187,7 +202,9 @@ pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> Result<wgpu::RenderPipeli
         }),
         multiview_mask: None,
         cache: None,
-    }))
+    });
+    count(device, (desc.label, desc.vertex.1), begun);
+    Ok(pipeline)
 }
 
 /// Description of a mesh pipeline: triangles from a vertex buffer, which replace what the target holds.
@@ -211,13 +228,14 @@ pub(crate) struct MeshDesc<'a> {
 /// # Errors
 /// The errors of [`fullscreen`].
 pub(crate) fn mesh(device: &Device, desc: &MeshDesc<'_>) -> Result<wgpu::RenderPipeline> {
+    let begun = Instant::now();
     let module = device.shader(desc.shader)?;
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(desc.shader),
         bind_group_layouts: desc.layouts,
         immediate_size: 0,
     });
-    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    let pipeline = device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(desc.shader),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
@@ -237,7 +255,9 @@ pub(crate) fn mesh(device: &Device, desc: &MeshDesc<'_>) -> Result<wgpu::RenderP
         }),
         multiview_mask: None,
         cache: None,
-    }))
+    });
+    count(device, (desc.shader, desc.fragment), begun);
+    Ok(pipeline)
 }
 
 /// Description of a compute pipeline.
@@ -257,20 +277,23 @@ pub(crate) struct ComputeDesc<'a> {
 /// # Errors
 /// The errors of [`fullscreen`].
 pub(crate) fn compute(device: &Device, desc: &ComputeDesc<'_>) -> Result<wgpu::ComputePipeline> {
+    let begun = Instant::now();
     let module = device.shader(desc.shader)?;
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(desc.entry),
         bind_group_layouts: desc.layouts,
         immediate_size: 0,
     });
-    Ok(device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+    let pipeline = device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(desc.entry),
         layout: Some(&layout),
         module: &module,
         entry_point: Some(desc.entry),
         compilation_options: wgpu::PipelineCompilationOptions { constants: desc.constants, ..Default::default() },
         cache: None,
-    }))
+    });
+    count(device, (desc.shader, desc.entry), begun);
+    Ok(pipeline)
 }
 
 /// Draws a full-screen triangle with `pipeline` into `target`, without clearing it.

@@ -3,7 +3,7 @@
 
 use half::f16;
 
-use super::device::Device;
+use super::{counts::DeviceWork, device::Device};
 use crate::error::{Error, Result, Status};
 
 /// Returns the bytes of one texel, for the formats that can be read back.
@@ -65,6 +65,7 @@ fn copied(device: &Device, source: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::E
         size,
     );
     device.submit(encoder);
+    device.counts.add(DeviceWork::Readbacks, 1);
     let (done, answer) = std::sync::mpsc::channel();
     buffer.map_async(wgpu::MapMode::Read, .., move |r| {
         let _ = done.send(r);

@@ -194,7 +194,7 @@ fn write_at(
 ) {
     let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * size.width), rows_per_image: None };
     let to = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
-    device.queue.write_texture(to, bytes, rows, size);
+    device.write_texture(to, bytes, rows, size);
 }
 
 #[cfg(test)]

@@ -206,7 +206,7 @@ impl TerrainWindow {
             let rows =
                 wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * extent[0]), rows_per_image: None };
             let size = wgpu::Extent3d { width: extent[0], height: extent[1], depth_or_array_layers: 1 };
-            device.queue.write_texture(to, bytes, rows, size);
+            device.write_texture(to, bytes, rows, size);
         };
         if !self.surface.is_empty() {
             write(&textures[1], bytemuck::cast_slice(&self.surface), 16);

@@ -88,7 +88,7 @@ impl ChannelPass {
         let Some((tables_layout, tables)) = merged.composition.tables() else { return Ok(()) };
         let device = recording.device;
         self.block.write(bytemuck::bytes_of(block));
-        device.queue.write_buffer(&self.parts, 0, bytemuck::cast_slice(parts));
+        device.write_buffer(&self.parts, 0, bytemuck::cast_slice(parts));
         let kind = (depth.is_some_and(Layer::is_multisampled), depth.is_some());
         self.bind(device, merged, depth, kind.0);
         let pipeline = self.pipeline(device, tables_layout, kind, merged.composition.least().between.all())?;

@@ -121,7 +121,7 @@ impl NoiseTexture {
         let texture = texture(device, image.size(), wgpu::TextureFormat::R8Unorm, levels)?;
         for (level, bytes) in (0..).zip(image.levels()) {
             let size = image.size_of_level(level);
-            device.queue.write_texture(
+            device.write_texture(
                 wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
                 bytes,
                 wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size[0]), rows_per_image: Some(size[1]) },
@@ -365,7 +365,7 @@ fn blocks<B: Pod>(device: &Device, all: impl Iterator<Item = B>) -> wgpu::Buffer
         bytes.resize(bytes.len().next_multiple_of(STEP), 0);
     }
     let buffer = bind::block(&device.device, "noise", bytes.len());
-    device.queue.write_buffer(&buffer, 0, &bytes);
+    device.write_buffer(&buffer, 0, &bytes);
     buffer
 }
 

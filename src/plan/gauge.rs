@@ -13,7 +13,9 @@ use std::sync::{
 use crate::{
     error::Result,
     gpu::{
-        Device, flat_texture,
+        Device,
+        counts::DeviceWork,
+        flat_texture,
         pass::{self, FullscreenDesc},
     },
 };
@@ -125,6 +127,7 @@ impl Gauge {
             },
             self.target.size(),
         );
+        device.counts.add(DeviceWork::Gauges, 1);
         self.state.store(RECORDED, Ordering::Release);
         Ok(())
     }
@@ -144,7 +147,7 @@ impl Gauge {
         }
         let _ = device.device.poll(wgpu::PollType::Poll);
         match self.state.load(Ordering::Acquire) {
-            READY => {}
+            READY => device.counts.add(DeviceWork::Gauges, 1),
             FAILED => {
                 self.state.store(IDLE, Ordering::Release);
                 return None;

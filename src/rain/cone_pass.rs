@@ -210,7 +210,7 @@ fn upload(device: &Device) -> (wgpu::TextureView, u64) {
     for (mip_level, texels) in levels.iter().enumerate() {
         let side = SIDE >> mip_level;
         let bits: Vec<u16> = texels.iter().flatten().map(|v| v.to_bits()).collect();
-        device.queue.write_texture(
+        device.write_texture(
             wgpu::TexelCopyTextureInfo { mip_level: mip_level as u32, ..made.as_image_copy() },
             bytemuck::cast_slice(&bits),
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * side), rows_per_image: None },

@@ -170,7 +170,7 @@ impl RainLayer {
         depth: Option<Layer<'_>>,
     ) -> Result<()> {
         let device = recording.device;
-        self.write(&device.queue, drawn);
+        self.write(device, drawn);
         let read = DepthRead::of(depth, drawn.rays);
         self.bind(device, depth, read.multi);
         self.texture.view(device, color.size());
@@ -285,13 +285,13 @@ impl RainLayer {
         draw(&mut pass, self);
     }
 
-    fn write(&self, queue: &wgpu::Queue, drawn: &LayerDraw<'_>) {
+    fn write(&self, device: &Device, drawn: &LayerDraw<'_>) {
         self.block.write(bytemuck::bytes_of(drawn.rain));
         self.block.write_at(SPLASHES.start, bytemuck::bytes_of(drawn.splash));
         if let Some(local) = drawn.local {
             let (columns, counts) = bytemuck::bytes_of(local).split_at(COLUMNS_BYTES);
-            queue.write_buffer(&self.local, 0, columns);
-            queue.write_buffer(&self.local, LOCAL.start as u64, counts);
+            device.write_buffer(&self.local, 0, columns);
+            device.write_buffer(&self.local, LOCAL.start as u64, counts);
         }
     }
 

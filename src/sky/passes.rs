@@ -12,6 +12,7 @@ use super::uniforms::{DimsUniform, JobUniform};
 use crate::error::Result;
 use crate::gpu::Device;
 use crate::gpu::bind::{self, Slot};
+use crate::gpu::counts::DeviceWork;
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
 
 /// Format of every table.
@@ -50,6 +51,7 @@ pub(crate) fn table_texture(device: &Device, label: &str, size: (u32, u32), laye
 
 /// Creates a uniform buffer with contents.
 pub(crate) fn uniform_buffer(device: &Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
+    device.counts.add(DeviceWork::UploadBytes, contents.len() as u64);
     device.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some(label),
         contents,

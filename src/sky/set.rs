@@ -49,7 +49,7 @@ impl TableSet {
                 bytes_per_row: Some(texture.width() * 8),
                 rows_per_image: None,
             };
-            device.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
+            device.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
         }
     }
 

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::{Disc, FollowedSky, Lamp, Observer, SkyModel, SkySettings, SkyVolume, candidates};
 use crate::{
     error::{Error, Result, Status},
+    gpu::counts::DeviceWork,
     moment::{Light, Scene},
     plan::Price,
     stage::{
@@ -85,6 +86,9 @@ impl DrawnEffect for SkyView {
         )?;
         recording.ends(CostItem::SkyView, drawn)?;
         recording.tables_rebuilt += u32::from(work) + u32::from(drawn);
+        let counts = &recording.device.counts;
+        counts.add(DeviceWork::SkyTables, u64::from(work));
+        counts.add(DeviceWork::ObserverTables, u64::from(drawn));
         Ok(())
     }
 

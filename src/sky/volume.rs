@@ -221,7 +221,7 @@ impl SkyVolume {
         }
         self.discs = discs().count() as u32;
         if view != self.written {
-            self.device.queue.write_buffer(&self.view, 0, bytes_of(&view));
+            self.device.write_buffer(&self.view, 0, bytes_of(&view));
             self.written = view;
         }
         Ok(drawn)
@@ -408,7 +408,7 @@ fn write_observer(tables: &SkyTables, blocks: &[wgpu::Buffer; 2], drawn_for: &Dr
     let (altitude, mu_s) = (drawn_for.altitude_m.max(0.0) as f32, drawn_for.mu_s as f32);
     for (is_air, buffer) in (0..).zip(blocks) {
         let uniform = ObserverUniform { altitude, mu_s, is_air, unused: 0, edges };
-        tables.device.queue.write_buffer(buffer, 0, bytes_of(&uniform));
+        tables.device.write_buffer(buffer, 0, bytes_of(&uniform));
     }
 }
 

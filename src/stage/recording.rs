@@ -214,7 +214,7 @@ impl<'a> Recording<'a> {
 
     /// Uploads the present content of the blocks, for what has been recorded so far.
     pub fn upload(&mut self) {
-        self.blocks.upload(&self.device.queue);
+        self.blocks.upload(self.device);
     }
 
     /// Submits what has been recorded so far.
@@ -231,7 +231,7 @@ impl<'a> Recording<'a> {
         if ran {
             let next = self.device.device.create_command_encoder(&Default::default());
             let encoder = std::mem::replace(self.encoder, next);
-            self.blocks.upload(&self.device.queue);
+            self.blocks.upload(self.device);
             self.device.submit_and_wait(encoder)?;
             watch.costs.add(item, ms_since(watch.last));
         }

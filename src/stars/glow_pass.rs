@@ -177,7 +177,7 @@ impl GlowPass {
         let is_stale = self.sun.is_none_or(|s| s.angle_between(sun) > STALE_RAD);
         if is_stale {
             self.sun = Some(sun);
-            device.queue.write_buffer(&self.corners, 0, bytemuck::cast_slice(&corners(sun)));
+            device.write_buffer(&self.corners, 0, bytemuck::cast_slice(&corners(sun)));
         }
         let column = |i: usize| view.heavens.to_world.col(i).as_vec3().extend(0.0).to_array();
         let units = |light: [f64; 3], factor: f64| light.map(|v| (v * view.scale * factor) as f32);
@@ -202,9 +202,9 @@ impl GlowPass {
             return is_stale;
         }
         self.written = Some(block);
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
+        device.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
         self.triangles.find(view);
-        device.queue.write_buffer(&self.indices, 0, bytemuck::cast_slice(&self.triangles.shown));
+        device.write_buffer(&self.indices, 0, bytemuck::cast_slice(&self.triangles.shown));
         true
     }
 

@@ -112,8 +112,8 @@ impl StarPass {
         let block = view.uniform();
         self.has_changed = self.written != Some(block) || loaded.shown != loaded.written;
         if self.has_changed {
-            device.queue.write_buffer(&loaded.buffer, 0, bytemuck::cast_slice(&loaded.shown));
-            device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
+            device.write_buffer(&loaded.buffer, 0, bytemuck::cast_slice(&loaded.shown));
+            device.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
             loaded.written.clone_from(&loaded.shown);
             self.written = Some(block);
         }

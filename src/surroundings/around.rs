@@ -133,7 +133,7 @@ impl SurroundingsBlock {
         self.sheltered = false;
         if present != HasSurroundings::default() || self.holds_any {
             let end = self.stage(host);
-            device.queue.write_buffer(&self.buffer, 0, &self.staged[..end]);
+            device.write_buffer(&self.buffer, 0, &self.staged[..end]);
         }
         self.holds_any = present != HasSurroundings::default();
         let ranges = host.maps.and_then(|m| m.ranges());

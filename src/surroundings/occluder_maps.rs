@@ -221,7 +221,7 @@ impl OccluderMaps {
                 pad: [0.0; 3],
             };
             let at = i as u64 * BLOCK;
-            device.queue.write_buffer(&self.blocks, at, bytemuck::bytes_of(&block));
+            device.write_buffer(&self.blocks, at, bytemuck::bytes_of(&block));
             let depth = Layer { texture: map.depth, index: 0 }.view();
             let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("occluder map"),

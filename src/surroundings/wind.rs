@@ -91,7 +91,7 @@ impl WindTexture {
                 rows_per_image: Some(nodes[1]),
             };
             let texels = bytemuck::cast_slice(&state.texels);
-            device.queue.write_texture(texture.texture.as_image_copy(), texels, rows, extent(nodes));
+            device.write_texture(texture.texture.as_image_copy(), texels, rows, extent(nodes));
         }
         let shown = texture.shown.clone();
         state.texture = Some(texture);

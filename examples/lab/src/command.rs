@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use welkin::{Error, Result, Status};
 
 use crate::candidates::{Candidate, Effect, candidate};
-use crate::{chart, clouds, compare, genera, growth, page, painted_chart, peers, regression, report, stability};
+use crate::{chart, clouds, compare, day, genera, growth, page, painted_chart, peers, regression, report, stability};
 
 /// Every command and option.
 pub const USAGE: &str =
     "usage: lab chart [sky|fog|rain|snow|stars|clouds|painted-clouds|quadrature]   cost against error, with plots
        lab growth                         how cost and bytes grow
        lab stability [MAP ..]             where methods fail
+       lab run FILE                       the frames of a scripted day, which a benchmark writes to FILE
        lab peers                          the recorded figures of others and of before, beside Welkin's
        lab compare A B [--scene NAME]     two candidates' pictures side by side
        lab report                         everything on one HTML page
@@ -84,6 +85,8 @@ pub fn run(arguments: &[String]) -> Result<bool> {
         ["chart", other] => Err(usage(&format!("unknown effect `{other}`, one of {}", chart::CHARTS.join(", ")))),
         ["growth"] => growth::run(&options),
         ["peers"] => peers::chart(&options.out).and_then(|()| page::write(&options.out)),
+        ["run", file] => day::run(file.as_ref(), &options),
+        ["run", ..] => Err(usage("run needs the file of a run's frames")),
         ["stability", maps @ ..] => stability::run(maps, &options),
         ["compare", a, b] => compare::run(&find_candidate(a)?, &find_candidate(b)?, &options),
         ["compare", ..] => Err(usage("compare needs two candidates")),

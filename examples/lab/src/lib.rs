@@ -8,6 +8,7 @@ pub mod clouds;
 pub mod cloudscapes;
 pub mod command;
 pub mod compare;
+pub mod day;
 pub mod effect_charts;
 pub mod fog;
 pub mod front;

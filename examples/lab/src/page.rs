@@ -6,6 +6,7 @@ use std::path::Path;
 use welkin::Result;
 
 use crate::chart::points;
+use crate::day;
 use crate::peers;
 use crate::plot::short;
 use crate::stability;
@@ -19,7 +20,7 @@ pub fn write(directory: &Path) -> Result<()> {
     let read = |name: &str| Table::read(&directory.join(format!("{name}.csv")));
     let (sky, fog, quadrature, growth) = (read("sky")?, read("fog")?, read("quadrature")?, read("growth")?);
     let (rain, snow, stars, clouds) = (read("rain")?, read("snow")?, read("stars")?, read("clouds")?);
-    let (painted, others) = (read("painted-clouds")?, read("peers")?);
+    let (painted, others, played) = (read("painted-clouds")?, read("peers")?, read("run")?);
     let mut out = String::from(
         "# The lab: speed against accuracy, and where methods fail\n\n\
          Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page. \
@@ -29,6 +30,9 @@ pub fn write(directory: &Path) -> Result<()> {
     );
     if let Some(table) = &others {
         peers::section(&mut out, table);
+    }
+    if let Some(table) = &played {
+        day::section(&mut out, table)?;
     }
     if let Some(table) = &sky {
         sky_section(&mut out, table);

@@ -1,6 +1,6 @@
 //! Look-up tables of clouds for shaders: the map, the solid noise, and light that is scattered more than once.
 
-use std::sync::Arc;
+use std::{sync::Arc, time::Instant};
 
 use half::f16;
 
@@ -17,13 +17,16 @@ use crate::{
         },
     },
     error::Result,
-    gpu::{Device, bind},
+    gpu::{Device, bind, counts::DeviceWork},
     noise::NoiseTexture,
 };
 
 /// Formats of the tables of light and of hosts' maps (`FORMAT`), and of the map's sheets (`SHEET`).
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
+
+/// Counts of the work on these tables, and of its time.
+const COUNTED: [DeviceWork; 2] = [DeviceWork::CloudTables, DeviceWork::CloudTableTime];
 
 fn texture(
     device: &Device,
@@ -54,7 +57,7 @@ fn write_halves(
 ) {
     let halves: Vec<u16> = numbers.map(|v| f16::from_f32(v).to_bits()).collect();
     let texel = 2 * u32::from(texture.format().components());
-    device.queue.write_texture(
+    device.write_texture(
         wgpu::TexelCopyTextureInfo { mip_level, origin: wgpu::Origin3d { x, y, z: 0 }, ..texture.as_image_copy() },
         bytemuck::cast_slice(&halves),
         wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * width), rows_per_image: Some(height) },
@@ -124,6 +127,7 @@ impl LightTables {
         if self.under.is_some_and(|c| (c - cosine).abs() < SUN_MOVED) {
             return;
         }
+        let begun = Instant::now();
         let across = DEPTHS as u32;
         for (i, medium) in self.media.iter().enumerate() {
             let put = |column: u32, table: &Table| {
@@ -137,6 +141,7 @@ impl LightTables {
             }
         }
         self.under = Some(cosine);
+        device.counts.add_timed(COUNTED, begun);
     }
 }
 
@@ -155,9 +160,10 @@ pub(crate) struct CloudTables {
 
 impl CloudTables {
     pub fn new(device: &Arc<Device>, seed: u64) -> Result<Self> {
+        let begun = Instant::now();
         let liquid_um = 20.0;
         let media = media(liquid_um);
-        Ok(Self {
+        let tables = Self {
             map: sheets(device, &Map::new(seed)),
             solid: NoiseTexture::new(device, [SOLID_SIZE; 3], &[solid_settings(seed)])?,
             repeating: sampler(device, wgpu::AddressMode::Repeat),
@@ -166,7 +172,9 @@ impl CloudTables {
             light: LightTables::new(device, media),
             placed: placed(device, "no maps of layers of cloud", (1, 1)),
             in_placed: Vec::new(),
-        })
+        };
+        device.counts.add_timed(COUNTED, begun);
+        Ok(tables)
     }
 
     /// Draws the solid noise if it is missing, and updates the tables for the sun and for droplets of this diameter.
@@ -174,8 +182,10 @@ impl CloudTables {
         // All of the noise at once: clouds whose edges fray later would jump.
         self.solid.step(encoder, u32::MAX);
         if liquid_um != self.liquid_um {
+            let begun = Instant::now();
             self.liquid_um = liquid_um;
             self.light.replace(0, droplets(liquid_um));
+            device.counts.add_timed(COUNTED, begun);
         }
         self.light.update(device, cosine);
     }

@@ -74,7 +74,7 @@ impl Bench {
         let dark = DropLight { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };
         let block = RainUniform::new(SEED, &self.classes, &dark, &shot, &air);
         self.block.write(bytemuck::bytes_of(&block));
-        self.blocks.upload(&self.device.queue);
+        self.blocks.upload(&self.device);
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         let layout = surroundings::layout(&self.device.device);
         let lattice =

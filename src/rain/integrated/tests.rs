@@ -86,7 +86,7 @@ impl Bench {
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         let own = self.block.range(0, self.block.bytes());
         self.pass.step(&self.device, &mut encoder, own, &stepped).unwrap();
-        self.blocks.upload(&self.device.queue);
+        self.blocks.upload(&self.device);
         self.device.submit_and_wait(encoder).unwrap();
     }
 

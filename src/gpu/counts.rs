@@ -1,0 +1,109 @@
+//! Work of a device beyond drawing, counted for the benchmarks: pipelines, uploads, readbacks, tables.
+
+use std::{
+    sync::atomic::{AtomicU64, Ordering},
+    time::Instant,
+};
+
+/// Kind of work that is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DeviceWork {
+    /// Pipelines created.
+    Pipelines,
+    /// Time of the calling threads in creating them, µs. A driver may compile more when it first draws with them.
+    PipelineTime,
+    /// Bytes written to buffers and textures.
+    UploadBytes,
+    /// Gauges drawn, and answers of gauges taken.
+    Gauges,
+    /// Waits for the GPU to read something back.
+    Readbacks,
+    /// Parts of the sky's tables that were built, refined or faded.
+    SkyTables,
+    /// Tables of the sky as an observer sees it.
+    ObserverTables,
+    /// Tables of the light in clouds, and the noise that clouds are cut out of.
+    CloudTables,
+    /// Time of the calling threads in computing these, µs.
+    CloudTableTime,
+}
+
+/// Totals since a device was created. Any thread.
+#[derive(Default)]
+pub(crate) struct WorkTotals([AtomicU64; WorkTotals::NAMES.len()]);
+
+impl WorkTotals {
+    /// Names of the totals, in the order of [`DeviceWork`].
+    pub const NAMES: [&'static str; 9] = [
+        "pipelines",
+        "pipelines, us",
+        "uploaded bytes",
+        "gauges",
+        "readbacks",
+        "sky tables",
+        "observer's tables",
+        "cloud tables",
+        "cloud tables, us",
+    ];
+
+    /// Adds to a total.
+    pub fn add(&self, what: DeviceWork, amount: u64) {
+        self.0[what as usize].fetch_add(amount, Ordering::Relaxed);
+    }
+
+    /// Adds one to a total, and the time since `begun` to another.
+    pub fn add_timed(&self, [what, time]: [DeviceWork; 2], begun: Instant) {
+        self.add(what, 1);
+        self.add(time, begun.elapsed().as_micros() as u64);
+    }
+
+    /// Returns the totals with their names.
+    #[cfg(any(test, feature = "lab"))]
+    pub fn totals(&self) -> Vec<(&'static str, u64)> {
+        Self::NAMES.iter().zip(&self.0).map(|(name, total)| (*name, total.load(Ordering::Relaxed))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{Device, DeviceOptions, bind, flat_texture, pass, readback};
+
+    #[test]
+    fn totals_name_what_they_count() {
+        let counts = WorkTotals::default();
+        counts.add(DeviceWork::UploadBytes, 7);
+        counts.add_timed([DeviceWork::CloudTables, DeviceWork::CloudTableTime], Instant::now());
+        let total = |name| counts.totals().into_iter().find(|(known, _)| *known == name).expect("a name").1;
+        assert_eq!((total("uploaded bytes"), total("cloud tables"), total("pipelines")), (7, 1, 0));
+    }
+
+    #[test]
+    fn a_device_counts_pipelines_uploads_and_readbacks() {
+        let options = DeviceOptions { backends: wgpu::Backends::NOOP, ..DeviceOptions::default() };
+        let device = Device::headless(&options).expect("the noop backend");
+        let before = device.work();
+        let buffer = bind::block(&device.device, "counted", 64);
+        device.write_buffer(&buffer, 0, &[0; 48]);
+        let usage = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC;
+        let texture = flat_texture(&device.device, "counted", (4, 2), wgpu::TextureFormat::R32Float, usage);
+        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16), rows_per_image: None };
+        device.write_texture(texture.as_image_copy(), &[0; 32], rows, texture.size());
+        readback::bytes(&device, &texture, 0).expect("a readable format");
+        let layout = bind::layout(&device.device, "copy", wgpu::ShaderStages::FRAGMENT, &[(0, bind::Slot::Texels)]);
+        let desc = pass::FullscreenDesc {
+            shader: "surface/copy.wgsl",
+            entry: "copy_texels",
+            layouts: &[&layout],
+            targets: &[wgpu::TextureFormat::Rgba16Float.into()],
+            constants: &[],
+            samples: 1,
+        };
+        pass::fullscreen(&device, &desc).expect("a shader of this crate");
+        let more = |name| {
+            let total = |work: &[(&str, u64)]| work.iter().find(|(known, _)| *known == name).expect("a name").1;
+            total(&device.work()) - total(&before)
+        };
+        assert_eq!(["uploaded bytes", "readbacks", "pipelines"].map(more), [80, 1, 1]);
+    }
+}
