@@ -25,18 +25,22 @@ use std::{
 pub use super::boundary::objects::view::*;
 use super::{
     boundary::{
+        call::Call,
         guard, handles,
-        input::{Room, out},
+        input::{self, List, Named, Room, out},
         layout::{self, init_struct, struct_size},
         numbers::*,
         objects::{ContextObject, wk_context},
     },
     frame::{WK_FRAME_MEASURE, wk_frame},
     host,
+    weather::wk_weather,
+    weather_convert::{from_c, overrides},
 };
 use crate::{
-    error::Status,
-    frame::{CostItem, Stages, View},
+    error::{Result, Status},
+    frame::{CostItem, MOST_CALLS, MOST_FRAMES, Stages, View, time_limit},
+    weather::{Conditions, derive_with},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_view.rs"));
@@ -286,6 +290,120 @@ pub unsafe extern "C" fn wk_view_record(
         }
         Ok(Status::Ok)
     })
+}
+
+/// Draws weathers that may come, into small images of Welkin's own, so that no frame waits for a shader once they come.
+/// Each weather is drawn while the one before it (the context's own before the first) changes to it, once it lasts, and
+/// under several heights of the sun. Call it behind a loading screen, before the view's first frame: the next frame
+/// begins as a view's first one does. The context is as before afterwards.
+///
+/// `frame` is one like those to come: with their settings, and with images of their formats, samples and usages. These
+/// are neither drawn into nor waited for. `calls` are the stages of the calls of one frame in order, 1 to 7; NULL with
+/// `call_count` 0 means one call with WK_STAGE_ALL. `weathers` are 0 to 64, `weather_stride` bytes apart, each perhaps
+/// with a wk_weather_overrides in its chain. One call draws for about `most_s`, [0, 3600] s, and at least one moment of
+/// a weather. It returns WK_PENDING, which is no error, while moments remain: call it again with the same weathers.
+/// Others begin anew.
+/// Thread: exclusive on the view and on its context.
+/// Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming `weathers[i]`, `calls[i]` or the field of `frame`;
+/// WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING; WK_ERROR_DEVICE_LOST. After an error the context is
+/// as before, and the same call goes on with the moment that failed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_prepare(
+    view: *mut wk_view,
+    frame: *const wk_frame,
+    calls: *const wk_stage_flags,
+    call_count: u32,
+    weathers: *const wk_weather,
+    weather_count: u32,
+    weather_stride: u32,
+    most_s: f64,
+) -> wk_status {
+    guard("wk_view_prepare", |call| {
+        let begun = Instant::now();
+        let object = call.get::<ViewObject>("view", view)?;
+        // SAFETY: the caller's promise about `frame`.
+        let c = unsafe { layout::read(&"frame", frame)? };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&"frame", c.next, &[])? };
+        // SAFETY: the caller promises `call_count` numbers.
+        let calls = unsafe { stages_of_calls(calls, call_count)? };
+        // SAFETY: the caller promises `weather_count` structs at this stride.
+        let weathers = unsafe { rehearsed_weathers(weathers, weather_count, weather_stride)? };
+        let most = time_limit(most_s)?;
+        object.cell.check_not_lost()?;
+        object.cell.drain();
+        let rehearsal = object.lock().begin_rehearsal(&object.context.read(), &calls, weathers)?;
+        loop {
+            let Some(moment) = object.lock().next_moment(&rehearsal) else { return Ok(Status::Ok) };
+            let entered = rehearsal.enter(&mut object.context.write(), moment);
+            // SAFETY: as above.
+            let drawn = entered.and_then(|()| unsafe { rehearse(call, &object, &c, &calls) });
+            object.lock().end_moment(&drawn);
+            rehearsal.leave(&mut object.context.write())?;
+            drawn.map_err(|e| e.renamed("frame.camera.position", "frame.position_m"))?;
+            if begun.elapsed() >= most {
+                let rest = object.lock().next_moment(&rehearsal);
+                return Ok(if rest.is_some() { Status::Pending } else { Status::Ok });
+            }
+        }
+    })
+}
+
+/// Draws the context's moment in frames of a rehearsal, until none creates a pipeline.
+///
+/// # Safety
+/// As `host::record`.
+unsafe fn rehearse(call: &mut Call, object: &ViewObject, c: &wk_frame, calls: &[Stages]) -> Result<()> {
+    for _ in 0..MOST_FRAMES {
+        let before = object.lock().begin_rehearsed_frame();
+        // SAFETY: the caller's promise.
+        let drawn = calls.iter().try_for_each(|stages| unsafe { host::record(call, object, c, *stages) });
+        if !object.lock().end_rehearsed_frame(before) || drawn.is_err() {
+            return drawn;
+        }
+    }
+    Ok(())
+}
+
+/// Reads the stages of the calls of a frame; one call with all of them where there is no list.
+///
+/// # Safety
+/// `calls` is NULL or points to `count` numbers.
+unsafe fn stages_of_calls(calls: *const wk_stage_flags, count: u32) -> Result<Vec<Stages>> {
+    // SAFETY: the caller's promise.
+    let given = unsafe { input::slice("calls", calls, Named("call_count", count as usize), MOST_CALLS)? };
+    let one = |(i, stages): (usize, &wk_stage_flags)| {
+        layout::WK_STAGE_FLAGS.check(&format_args!("calls[{i}]"), u64::from(*stages))?;
+        Stages::from_bits(*stages).map_err(|e| e.renamed("stages", &format!("calls[{i}]")))
+    };
+    if given.is_empty() { Ok(vec![Stages::ALL]) } else { given.iter().enumerate().map(one).collect() }
+}
+
+/// Most weathers of a rehearsal.
+const MOST_WEATHERS: usize = 64;
+
+/// Reads the weathers of a rehearsal.
+///
+/// # Safety
+/// `weathers` is NULL or points to `count` structs, `stride` bytes apart, with readable cloud layers.
+unsafe fn rehearsed_weathers(weathers: *const wk_weather, count: u32, stride: u32) -> Result<Vec<Conditions>> {
+    let list = List {
+        name: "weathers",
+        count: Named("weather_count", count as usize),
+        stride: Named("weather_stride", stride as usize),
+        limit: MOST_WEATHERS,
+    };
+    let mut found = Vec::new();
+    let mut take = |i: usize, _: wk_weather| {
+        let (name, place) = (format!("weathers[{i}]"), weathers.wrapping_byte_add(i * stride as usize));
+        // SAFETY: the list has this element, which `each_with` has checked; the caller's promise about its layers.
+        let (given, overrides) = unsafe { (from_c(&name, place)?, overrides(&name, place)?) };
+        found.push(derive_with(&given, &overrides).map_err(|e| e.within(&name))?);
+        Ok(())
+    };
+    // SAFETY: the caller's promise.
+    unsafe { input::each_with(&list, weathers, &[WK_STRUCT_TYPE_WEATHER_OVERRIDES], &mut take)? };
+    Ok(found)
 }
 
 /// Gets costs and contents of the view's last frame.

@@ -4,6 +4,7 @@
 //! It advances the world (`src/world`) and the list of effects (`src/effects.rs`) through time, and saves and loads
 //! them. It names no single effect: the queries and settings of single effects are in `src/front`.
 
+mod rehearsal;
 mod shared_world;
 mod state;
 mod update;
@@ -12,5 +13,6 @@ mod wind;
 pub use crate::effects::ContextDesc;
 pub use crate::moment::{GroundLight, Light, Scene};
 pub use crate::world::GivenDirection;
+pub(crate) use rehearsal::Rehearsal;
 pub use shared_world::{Context, LightAt};
 pub(crate) use update::UPDATE_TIME;

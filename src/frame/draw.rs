@@ -109,6 +109,10 @@ impl View {
         let (frame, now) = (frame_context.frame, frame_context.now);
         let mut context =
             DrawContext { device: frame_context.device, frame, now, target, stages, plan: PlannedShares::whole(PARTS) };
+        // A rehearsal draws everything, and teaches the plan nothing.
+        if self.rehearses() {
+            return context;
+        }
         if self.history.planned_for != Some(frame.frame_id) {
             self.history.planned_for = Some(frame.frame_id);
             self.planner.rebuild = self.effects.rebuild_work();
@@ -185,7 +189,7 @@ impl View {
             Err(PipelineNotReady::Coming(draws)) => draws.record(recording.encoder, held, &groups, target),
             Err(PipelineNotReady::Failed(error)) => return Err(error),
         };
-        if !composition.stages().has(Stages::MEDIUM) {
+        if !composition.stages().has(Stages::MEDIUM) || self.rehearses() {
             return Ok(());
         }
         let here = situation(context.frame, &context.now.scene);

@@ -19,6 +19,7 @@ mod opaque_step;
 mod picture;
 mod pixels;
 mod planned;
+mod rehearsal;
 mod unit;
 mod view;
 mod wind_picture;
@@ -32,4 +33,5 @@ pub use crate::stage::{
 pub use environment::Environment;
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
 pub use light::FrameLight;
+pub(crate) use rehearsal::{MOST_CALLS, MOST_FRAMES, time_limit};
 pub use view::View;

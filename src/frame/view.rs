@@ -9,6 +9,7 @@ use super::{
     froxels::{FrameTextures, Froxels},
     history::FrameHistory,
     opaque_step::OpaqueStep,
+    rehearsal::RehearsedView,
 };
 use crate::{
     context::Context,
@@ -32,6 +33,7 @@ pub struct View {
     pub(super) planner: Planner<UnseenChanges>,
     pub(super) cache: DrawCache,
     pub(super) history: FrameHistory,
+    pub(super) rehearsal: RehearsedView,
 }
 
 impl View {
@@ -47,7 +49,8 @@ impl View {
         let planner = Planner::new(PARTS, effects.rebuild_work());
         device.check_made()?;
         drop(_entered);
-        Ok(Self { device, effects, planner, cache, history: FrameHistory::default() })
+        let (history, rehearsal) = (FrameHistory::default(), RehearsedView::default());
+        Ok(Self { device, effects, planner, cache, history, rehearsal })
     }
 
     /// Returns the report on the last frame: its cost and its contents.
@@ -85,6 +88,13 @@ impl View {
     /// [`crate::Status::WrongOrder`] if a stage comes twice or late; [`crate::Status::DeviceLost`]. After an error this
     /// call has drawn nothing.
     pub fn record(&mut self, context: &Context, frame: &Frame<'_>, stages: Stages) -> Result<()> {
+        match self.rehearses() {
+            true => self.record_rehearsed(frame, |view, own| view.record_frame(context, own, stages)),
+            false => self.record_frame(context, frame, stages),
+        }
+    }
+
+    fn record_frame(&mut self, context: &Context, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let device = self.device.clone();
         self.check_call(frame, stages)?;
         self.check_images(frame, stages)?;
@@ -236,6 +246,7 @@ impl View {
             held: HeldEffects(&context.held.all()),
             asked,
             table_share: if frame.is_pure() { 1.0 } else { self.planner.share_of_tables() },
+            keeps_tables: self.rehearses(),
         };
         self.effects.gather(&frame_context)?;
         let there = self.effects.all().iter().fold(Stages::PREPARE.with(Stages::TONE), |s, e| s.with(e.stages()));

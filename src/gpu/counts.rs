@@ -57,6 +57,11 @@ impl WorkTotals {
         self.add(time, begun.elapsed().as_micros() as u64);
     }
 
+    /// Returns one total.
+    pub fn total(&self, what: DeviceWork) -> u64 {
+        self.0[what as usize].load(Ordering::Relaxed)
+    }
+
     /// Returns the totals with their names.
     #[cfg(any(test, feature = "lab"))]
     pub fn totals(&self) -> Vec<(&'static str, u64)> {

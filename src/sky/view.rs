@@ -71,13 +71,10 @@ impl DrawnEffect for SkyView {
             self.volume = SkyVolume::new(&tables)?;
             self.rebuild_work = rebuild_work(self.volume.settings());
         }
-        let work = tables.build_toward(
-            recording.device,
-            recording.encoder,
-            &context.now.scene.planet,
-            context.frame.frame_id,
-            context.table_share,
-        )?;
+        let keeps = context.keeps_tables && tables.planet().is_some();
+        let planet = &context.now.scene.planet;
+        let (frame_id, share) = (context.frame.frame_id, context.table_share);
+        let work = !keeps && tables.build_toward(recording.device, recording.encoder, planet, frame_id, share)?;
         recording.ends(CostItem::SkyTables, work)?;
         let drawn = self.volume.prepare(
             recording.encoder,

@@ -30,6 +30,8 @@ pub(crate) struct FrameContext<'a> {
     pub asked: Stages,
     /// Work on tables in this frame, as a share of the work of building them all.
     pub table_share: f32,
+    /// Whether tables over the planet that are there are drawn with, even if they are those of another weather.
+    pub keeps_tables: bool,
 }
 
 /// The host's picture that a call draws into.

@@ -6,4 +6,5 @@ mod even;
 mod longest;
 mod moment;
 mod opaque;
+mod prepared;
 pub mod textures;

@@ -206,6 +206,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_view_create", "context", false, |h| unsafe { wk_view_create(h.cast(), null(), null_mut()) }),
         case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),
         case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),
+        case("wk_view_prepare", "view", false, |h| unsafe {
+            wk_view_prepare(h.cast(), null(), null(), 0, null(), 0, 0, 0.0)
+        }),
         case("wk_view_get_environment", "view", false, |h| unsafe { wk_view_get_environment(h.cast(), null_mut()) }),
         case("wk_view_get_cloud_shadows", "view", false, |h| unsafe {
             wk_view_get_cloud_shadows(h.cast(), null_mut())

@@ -13,6 +13,7 @@ mod handles;
 mod limits;
 mod plan;
 mod planets;
+mod prepare;
 mod queries;
 mod shelters;
 mod sky;

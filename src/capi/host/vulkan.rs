@@ -162,6 +162,10 @@ pub(in crate::capi) unsafe fn record(
     let gpu = object.cell.gpu();
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
     let mut view = object.lock();
+    if view.rehearses() {
+        // Nothing of the host's is drawn into or waited for.
+        return view.record(&object.context.read(), &frame, stages).map_err(in_frame);
+    }
     let recorded = view.recorded_of(frame.frame_id);
     view.record_into(&object.context.read(), &frame, stages, &mut encoder).map_err(in_frame)?;
     let read = sampled(object, &mut view, stages)?;

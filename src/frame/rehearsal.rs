@@ -1,0 +1,211 @@
+//! Rehearsal of a view: it draws weathers to come into images of its own, so that their pipelines are compiled and their
+//! first tables made before they are needed.
+
+use std::time::{Duration, Instant};
+
+use super::{history::FrameHistory, view::View};
+use crate::{
+    context::{Context, Rehearsal},
+    error::{Error, Result, Status, check_range},
+    gpu::counts::DeviceWork,
+    stage::{Frame, ImageLayers, Stages},
+    weather::{Conditions, Weather, derive},
+};
+
+/// Side of the rehearsed pictures, pixels: the smallest that is drawn as larger ones are.
+const SIDE: u32 = 64;
+/// Most frames of one moment.
+pub(crate) const MOST_FRAMES: u32 = 12;
+/// Longest time of one call, s.
+const MOST_S: f64 = 3600.0;
+/// Most calls of one frame: one for each stage.
+pub(crate) const MOST_CALLS: usize = 7;
+
+/// State of a view's rehearsal.
+#[derive(Default)]
+pub(super) struct RehearsedView {
+    /// Whether the view draws into its own images now.
+    is_on: bool,
+    /// Number of frames drawn so far.
+    frames: u64,
+    /// Weathers that are rehearsed, and the number of moments drawn.
+    weathers: Vec<Conditions>,
+    done: usize,
+    /// Images in place of the host's: colour, depth, mask, surface classes, normals.
+    images: [Option<wgpu::Texture>; 5],
+}
+
+impl RehearsedView {
+    /// Creates the images in place of those of `frame`, with their formats, numbers of samples and usages.
+    fn hold(&mut self, device: &wgpu::Device, frame: &Frame<'_>) {
+        let given = [frame.color, frame.depth, frame.mask, frame.surface_classes, frame.normals];
+        for (own, given) in self.images.iter_mut().zip(given) {
+            let fits = |own: &wgpu::Texture, given: &wgpu::Texture| {
+                (own.format(), own.sample_count(), own.usage()) == (given.format(), given.sample_count(), given.usage())
+            };
+            let holds = match (&own, given) {
+                (Some(own), Some(given)) => fits(own, given),
+                (None, None) => true,
+                _ => false,
+            };
+            if !holds {
+                *own = given.map(|given| {
+                    device.create_texture(&wgpu::TextureDescriptor {
+                        label: Some("rehearsal"),
+                        size: wgpu::Extent3d {
+                            width: given.width().min(SIDE),
+                            height: given.height().min(SIDE),
+                            depth_or_array_layers: 1,
+                        },
+                        mip_level_count: 1,
+                        sample_count: given.sample_count(),
+                        dimension: wgpu::TextureDimension::D2,
+                        format: given.format(),
+                        usage: given.usage(),
+                        view_formats: &[],
+                    })
+                });
+            }
+        }
+    }
+
+    /// The images, and the number of the rehearsed frame, in place of the host's.
+    fn images(&self) -> ([Option<wgpu::Texture>; 5], u64) {
+        (self.images.clone(), u64::MAX / 2 + self.frames)
+    }
+}
+
+impl View {
+    /// Whether the view draws a rehearsal.
+    pub(crate) fn rehearses(&self) -> bool {
+        self.rehearsal.is_on
+    }
+
+    /// Calls `record` with the images of the rehearsal in place of the host's.
+    pub(super) fn record_rehearsed(
+        &mut self,
+        frame: &Frame<'_>,
+        record: impl FnOnce(&mut Self, &Frame<'_>) -> Result<()>,
+    ) -> Result<()> {
+        self.rehearsal.hold(&self.device.device, frame);
+        let ([color, depth, mask, classes, normals], frame_id) = self.rehearsal.images();
+        let own = Frame {
+            frame_id,
+            color: color.as_ref(),
+            depth: depth.as_ref(),
+            mask: mask.as_ref(),
+            surface_classes: classes.as_ref(),
+            normals: normals.as_ref(),
+            layers: ImageLayers::default(),
+            ..*frame
+        };
+        record(self, &own)
+    }
+
+    /// Draws weathers that may come, into small images of its own, so that no frame waits for a shader once they come:
+    /// their pipelines are compiled, and the first of their tables are made. Each weather is drawn while the one before
+    /// it changes to it, once it lasts, and under several heights of the sun. `frame` is one like those to come: with
+    /// the formats, samples and usages of their images, which are not drawn into, and their settings. `calls` are the
+    /// stages of the calls of one frame, in order, at most seven. Call it before the first frame or behind a loading
+    /// screen: the next frame begins as a view's first one does. The context is as before afterwards.
+    ///
+    /// One call draws for about `most`, at least one moment of a weather. [`Status::Pending`] says that moments remain:
+    /// call it again with the same weathers. Other weathers begin anew.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming `weathers[i]` and the field, `calls` or the field of `frame`;
+    /// [`Status::WrongOrder`] while [`Context::update_within`] has steps to do; the errors of [`View::record`].
+    pub fn prepare(
+        &mut self,
+        context: &mut Context,
+        frame: &Frame<'_>,
+        calls: &[Stages],
+        weathers: &[Weather],
+        most: Duration,
+    ) -> Result<Status> {
+        let begun = Instant::now();
+        let one = |(i, weather): (usize, &Weather)| derive(weather).map_err(|e| e.within(&format!("weathers[{i}]")));
+        let weathers = weathers.iter().enumerate().map(one).collect::<Result<_>>()?;
+        let rehearsal = self.begin_rehearsal(context, calls, weathers)?;
+        while let Some(moment) = self.next_moment(&rehearsal) {
+            let entered = rehearsal.enter(context, moment);
+            let drawn = entered.and_then(|()| {
+                for _ in 0..MOST_FRAMES {
+                    let before = self.begin_rehearsed_frame();
+                    let drawn = calls.iter().try_for_each(|stages| self.record(context, frame, *stages));
+                    if !self.end_rehearsed_frame(before) || drawn.is_err() {
+                        return drawn;
+                    }
+                }
+                Ok(())
+            });
+            self.end_moment(&drawn);
+            rehearsal.leave(context)?;
+            drawn?;
+            if begun.elapsed() >= most {
+                return Ok(if self.next_moment(&rehearsal).is_some() { Status::Pending } else { Status::Ok });
+            }
+        }
+        Ok(Status::Ok)
+    }
+
+    /// Checks the calls of a rehearsal's frames; begins it anew if the weathers are others than in the last call.
+    pub(crate) fn begin_rehearsal(
+        &mut self,
+        context: &Context,
+        calls: &[Stages],
+        weathers: Vec<Conditions>,
+    ) -> Result<Rehearsal> {
+        if calls.is_empty() || calls.len() > MOST_CALLS {
+            return Err(Error::range("calls", &format!("1 to {MOST_CALLS}"), calls.len()));
+        }
+        calls.iter().try_for_each(|stages| Stages::from_bits(stages.0).map(|_| ())).map_err(|e| e.within("calls"))?;
+        let rehearsal = Rehearsal::new(context, weathers)?;
+        if self.rehearsal.weathers != rehearsal.weathers() {
+            (self.rehearsal.weathers, self.rehearsal.done) = (rehearsal.weathers().to_vec(), 0);
+        }
+        Ok(rehearsal)
+    }
+
+    /// Next moment to draw. After the last there is none, and the next rehearsal begins anew.
+    pub(crate) fn next_moment(&mut self, rehearsal: &Rehearsal) -> Option<usize> {
+        let done = self.rehearsal.done;
+        if done < rehearsal.moments() {
+            return Some(done);
+        }
+        self.rehearsal = RehearsedView { frames: self.rehearsal.frames, ..RehearsedView::default() };
+        None
+    }
+
+    /// Begins a frame of a rehearsal: the calls that follow draw into its own images. Returns the number of pipelines
+    /// that the device has created.
+    pub(crate) fn begin_rehearsed_frame(&mut self) -> u64 {
+        self.rehearsal.is_on = true;
+        self.device.counts.total(DeviceWork::Pipelines)
+    }
+
+    /// Ends a frame of a rehearsal. Returns whether it created pipelines, so that another frame is due: on a GPU each
+    /// creates one large pipeline.
+    pub(crate) fn end_rehearsed_frame(&mut self, pipelines_before: u64) -> bool {
+        self.rehearsal.is_on = false;
+        self.rehearsal.frames += 1;
+        self.device.counts.total(DeviceWork::Pipelines) > pipelines_before
+    }
+
+    /// Ends a moment of a rehearsal: the view is as before its first frame.
+    pub(crate) fn end_moment(&mut self, drawn: &Result<()>) {
+        self.history = FrameHistory::default();
+        self.cache.forget_images();
+        self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
+        self.rehearsal.done += usize::from(drawn.is_ok());
+    }
+}
+
+/// Converts the time limit of a call, s, [0, 3600].
+///
+/// # Errors
+/// [`Status::InvalidArgument`] naming `most_s`.
+pub(crate) fn time_limit(most_s: f64) -> Result<Duration> {
+    check_range("most_s", most_s, 0.0, MOST_S, "s")?;
+    Ok(Duration::from_secs_f64(most_s))
+}
