@@ -36,13 +36,14 @@
  *
  * STRUCTS
  *
- * Structs begin with struct_size, struct_type and next. Start from WK_X_INIT (or wk_x_init, which writes the same
- * bytes) and change fields. Later versions append fields for which zero means "as before". A library therefore accepts
- * structs of older headers, whose missing fields get their defaults, and structs of newer headers if the fields that
- * it does not know are zero. `next` points to extension structs where a call names them; an unknown one is refused.
- * Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An optional field has a bit in
- * `has`. Lists are (pointer, count, stride): stride is the size of an element in your header. Reals are doubles and
- * must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
+ * Structs begin with struct_size, struct_type and next. Only elements of arrays that calls read or fill in bulk, such
+ * as wk_flash, have no such head: the call takes their sizeof. Start from WK_X_INIT (or wk_x_init, which writes the
+ * same bytes) and change fields. Later versions append fields for which zero means "as before". A library therefore
+ * accepts structs of older headers, whose missing fields get their defaults, and structs of newer headers if the
+ * fields that it does not know are zero. `next` points to extension structs where a call names them; an unknown one is
+ * refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An optional field has
+ * a bit in `has`. Lists are (pointer, count, stride): stride is the size of an element in your header. Reals are
+ * doubles and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
  *
  * THREADS
  *
@@ -54,10 +55,11 @@
  *
  * UNITS AND COORDINATES
  *
- * Units are SI. A field's name ends in its unit, except for metres, seconds and radians. Angles that people usually
- * state in degrees are in degrees (_deg). Azimuths are clockwise from true north; wind direction is where the wind
- * comes from. Positions are in the host's world, in double precision, however far from its origin. See Contexts for
- * world frames and Frames for matrices, depth and clip space. Colours are linear Rec. 709 unless they say otherwise.
+ * Units are SI. A field's name ends in its unit (_m, _s, _mm_h). Angles that people usually state in degrees are in
+ * degrees (_deg); angles without a unit in their names are in radians. Azimuths are clockwise from true north; wind
+ * direction is where the wind comes from. Positions are in the host's world, in double precision, however far from its
+ * origin. See Contexts for world frames and Frames for matrices, depth and clip space. Colours are linear Rec. 709
+ * unless they say otherwise.
  *
  * DETERMINISM
  *
@@ -733,7 +735,7 @@ typedef uint32_t wk_surface_encoding;
 /** Values encoded to sRGB already. WK_COLOR_DISPLAY_SRGB fits, and WK_COLOR_SCENE_LINEAR with WK_STAGE_TONE. */
 #define WK_SURFACE_DISPLAY_SRGB 1
 
-/** When images reach the screen. */
+/** Time at which images reach the screen. */
 typedef uint32_t wk_pacing;
 
 /** With the screen's refresh; acquire waits for it. */
@@ -1694,7 +1696,7 @@ typedef struct wk_weather {
     wk_weather_has_flags has;
     /**
      * Meteorological optical range at the station, m: the distance at which 550 nm light falls to 5 % (the reported
-     * visibility). It is the total of air, haze, fog, rain and snow together. Range [1, 1e6], default 40000.
+     * visibility). It includes air, haze, fog, rain and snow. Range [1, 1e6], default 40000.
      */
     double visibility_m;
     /**
@@ -1886,14 +1888,14 @@ typedef struct wk_weather_overrides {
     const void *next;
     /** Flags of the fields that are set; the laws give the others. Default 0. */
     wk_override_flags set;
+    /** Must be 0. */
+    uint32_t reserved0;
     /**
      * Aerosol extinction at 550 nm and station height, 1/m, in place of the share that visibility gives. Range [0,
      * 10].
      */
-    uint32_t reserved0;
-    /** Extinction inside the ground layer, 1/m, in place of the rest that visibility gives. Range [0, 10]. */
     double aerosol_extinction_per_m;
-    /** Extinction inside the ground layer, 1/m, in place of the rest of the visibility's. Range [0, 10]. */
+    /** Extinction inside the ground layer, 1/m, in place of the rest that visibility gives. Range [0, 10]. */
     double fog_extinction_per_m;
     /** Extinction of precipitation, 1/m, in place of what the drop and flake spectra give. Range [0, 10]. */
     double precipitation_extinction_per_m;
@@ -2568,9 +2570,9 @@ wk_status wk_context_set_weather(wk_context *context,
  * (WK_GROUND_SIMULATED) takes one step for every 10 s. One call computes steps for at most 50 ms, and at least one
  * step. If steps remain, as after a leap of hours, the call returns WK_PENDING: call it again with the same time, in a
  * loop or once a frame, until it returns WK_OK. Until then, water on the ground is drawn and queried as of
- * wk_context_get_state_time, settings take effect only after the remaining steps, and a later time counts only when
- * these are done. The state therefore does not depend on the number of calls. A leap of more than a day starts the
- * ground a day before its end, as wet as the weather reports it then.
+ * wk_context_get_state_time, and settings and later times take effect only after the remaining steps. The state
+ * therefore does not depend on the number of calls. A leap of more than a day starts the ground a day before its end,
+ * as wet as the weather reports it then.
  * Thread: exclusive. Returns WK_PENDING, which is no error, while steps remain.
  * Errors: WK_ERROR_WRONG_ORDER if `time_s` is before the present.
  */
@@ -2634,8 +2636,8 @@ wk_status wk_context_set_exposure(wk_context *context,
  * lamps, rain areas, wind grid, the terrain with its water, and the world, place, seed and ground model that it
  * belongs to. For the tiles of a wk_terrain it has only the water. Not included: how the state is drawn (sky settings,
  * views, plans), and the images of wk_context_set_occluder_maps, because each channel may have its own. `*out_size`
- * gets the bytes needed, even if `capacity` is too small (then nothing else is written and the call fails) or `buffer`
- * is NULL with `capacity` 0 (then it succeeds).
+ * gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call fails; with
+ * `buffer` NULL and `capacity` 0 it succeeds.
  * Thread: concurrent.
  * Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
  */
@@ -2651,8 +2653,8 @@ wk_status wk_context_save(const wk_context *context,
  * geoid_height_m in place of the last two), seed and ground_model. A state of an earlier version without planet and
  * tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before
  * the call, set them as they were when the state was saved. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that
- * are no saved state, are truncated, differ from the saved ones in even one byte, or have another format, which the
- * message names (this version reads format 2; save states of format 1 again, because they did not record their place);
+ * are no saved state, that were truncated or changed, or that have another format, which the message names (this
+ * version reads format 2; save states of format 1 again, because they did not record their place);
  * WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
  */
 WK_API
@@ -2831,9 +2833,9 @@ typedef struct wk_conditions {
     double station_pressure_hpa;
     /** Station above mean sea level, m. */
     double station_altitude_m;
-    /** Air density at sea level over that at 15 C and 1013.25 hPa. */
+    /** Air density at sea level, divided by that at 15 C and 1013.25 hPa. */
     double rayleigh_density_ratio;
-    /** Scale height of the air: density falls by 1/e over it, m. */
+    /** Scale height of the air, m: over it the density falls to 1/e. */
     double rayleigh_scale_height_m;
     /** Extinction by air, at 550 nm and station height, 1/m. */
     double rayleigh_extinction_per_m;
@@ -2845,7 +2847,7 @@ typedef struct wk_conditions {
     double aerosol_single_scattering_albedo;
     /** Mean cosine of the particles' phase function. */
     double aerosol_asymmetry;
-    /** Scale height of the particles: density falls by 1/e over it, m. */
+    /** Scale height of the particles, m: over it the density falls to 1/e. */
     double aerosol_scale_height_m;
     /** Extinction inside the layer at the ground, at 550 nm, 1/m; 0 if there is none. */
     double fog_extinction_per_m;
@@ -2858,7 +2860,8 @@ typedef struct wk_conditions {
     /** Fraction of the ground that the layer covers. */
     double fog_coverage;
     /**
-     * Fraction of the sky that all layers together hide. During a change it stays between the values at both ends.
+     * Fraction of the sky that all layers together hide. While the weather changes, it stays between the values before
+     * and after.
      */
     double cloud_cover;
     /** Rain, mm/h. */
@@ -2981,7 +2984,7 @@ typedef struct wk_conditions {
     /* ice_crystals_mm_h */ 0.0 \
 }
 
-/** Horizontally uniform layer of cloud; plain values of a list. */
+/** Horizontally uniform layer of cloud. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_cloud_slab {
     /** Fraction of the sky covered. */
     double cover;
@@ -3008,8 +3011,8 @@ typedef struct wk_cloud_slab {
  * precipitation_extinction_per_m, extinction_per_m and visibility_m include that precipitation. All other fields are
  * the weather's: the same everywhere, at the station's height unless they say otherwise.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
- * before the end of the last change that was over at the last update.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten. It has
+ * forgotten every time before the end of the last change of weather that was over at the last update.
  */
 WK_API
 wk_status wk_context_get_conditions(const wk_context *context,
@@ -3107,8 +3110,8 @@ typedef struct wk_celestial {
 }
 
 /**
- * Light that arrives at a place, after air, clouds and fog; plain values of a list. Light that fog has scattered
- * forward once counts as direct light of the sun or the moon.
+ * Light that arrives at a place, after air, clouds and fog. Light that fog has scattered forward once counts as direct
+ * light of the sun or the moon. Element of an array, without struct_size; calls take its sizeof instead.
  */
 typedef struct wk_ground_light {
     /** Direct sun on a surface facing it, lux a channel. */
@@ -3121,7 +3124,7 @@ typedef struct wk_ground_light {
     double total_lux;
 } wk_ground_light;
 
-/** Two points of the host's world, m; plain values of a list. */
+/** Two points of the host's world, m. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_segment {
     /** Position of the observer. */
     double from_m[3];
@@ -3129,7 +3132,10 @@ typedef struct wk_segment {
     double to_m[3];
 } wk_segment;
 
-/** Transmittance and visibility between two points; plain values of a list. */
+/**
+ * Transmittance and visibility between two points. Element of an array, without struct_size; calls take its sizeof
+ * instead.
+ */
 typedef struct wk_between {
     /** Transmittance, per channel (wavelengths of the planet; 620, 550 and 450 nm for the Earth). */
     double transmittance[3];
@@ -3206,8 +3212,9 @@ wk_status wk_context_get_moon_at(const wk_context *context,
 
 /**
  * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
- * a place count, by their mean effect over all places at its height. `position_size` and `light_size` are the bytes
- * from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header. Thread: concurrent.
+ * a place count, by their mean effect over all places at its height. `position_size` and `light_size` are the
+ * distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_ground_light) of your header for
+ * lights. Thread: concurrent.
  */
 WK_API
 wk_status wk_context_get_light(const wk_context *context,
@@ -3317,13 +3324,14 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
  * drew.
  *
  * The double-precision reference of the sky computes the answers on the calling thread, without the device. The first
- * query in a new air solves the reference, which takes a second or two; other threads that query meanwhile wait.
- * Weather in transition is a new air at every time. The solutions of the last four airs are kept for all contexts of a
- * device. docs/reflections.md has the cost of a direction and the difference from pictures.
+ * query in a new state of the air solves the reference, which takes a second or two; other threads that query
+ * meanwhile wait. While the weather changes, the air has a new state at every time. The solutions of the last four
+ * states are kept for all contexts of a device. docs/reflections.md has the cost of a direction and the difference
+ * from pictures.
  * ====================================================================================================
  */
 
-/** The sky's light from one direction; plain values of a list. */
+/** The sky's light from one direction. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_sky_radiance {
     /** Radiance, cd/m^2, three channels of linear Rec. 709, none below 0. */
     double radiance_cd_m2[3];
@@ -3331,9 +3339,10 @@ typedef struct wk_sky_radiance {
 
 /**
  * Gets the sky's radiance at a place in several directions now, at most wk_caps.max_batch of them. A direction is a
- * vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the bytes
- * from one element to the next: 24 or more, and sizeof(wk_sky_radiance) of your header. Thread: concurrent. Errors:
- * WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
+ * vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the
+ * distances from one element to the next, bytes: 24 or more for directions, sizeof(wk_sky_radiance) of your header for
+ * radiances. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction;
+ * nothing is written then.
  */
 WK_API
 wk_status wk_context_get_sky_radiance(const wk_context *context,
@@ -3387,7 +3396,7 @@ typedef struct wk_wind {
      * continuous through all changes of the weather, and is equal to the last bit on every channel.
      */
     double displacement_m[3];
-    /** Standard deviation of the wind speed along the mean wind, by gusts, m/s. */
+    /** Standard deviation of the wind speed along the mean wind, due to gusts, m/s. */
     double gust_deviation_m_s;
 } wk_wind;
 
@@ -3468,7 +3477,10 @@ typedef struct wk_rainfall {
     /* stones_per_m2_s */ 0.0 \
 }
 
-/** A surface that rain lands on, or an opening that it falls through; plain values of a list. */
+/**
+ * A surface that rain lands on, or an opening that it falls through. Element of an array, without struct_size; calls
+ * take its sizeof instead.
+ */
 typedef struct wk_rain_surface {
     /** Position in the host's world, m. */
     double position_m[3];
@@ -3480,7 +3492,7 @@ typedef struct wk_rain_surface {
     double area_m2;
 } wk_rain_surface;
 
-/** Rain on a surface; plain values of a list. */
+/** Rain on a surface. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_rain_on {
     /** Water, mm/h, which is litres per square metre and hour. */
     double rate_mm_h;
@@ -3646,7 +3658,7 @@ typedef uint32_t wk_diagnostic;
 /** The picture itself. */
 #define WK_DIAGNOSTIC_NONE 0
 /**
- * Distance along the ray, on a scale by decades: black for 1 m or less, white for 100 km or more, and for the sky.
+ * Distance along the ray, on a logarithmic scale: black for 1 m or less, white for 100 km or more, and for the sky.
  * Stage MEDIUM.
  */
 #define WK_DIAGNOSTIC_DISTANCE 1
@@ -3658,9 +3670,8 @@ typedef uint32_t wk_diagnostic;
 /** Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE. */
 #define WK_DIAGNOSTIC_WETNESS 3
 /**
- * Error due to the air, fog and clear sky that the plan leaves out: the relative change of luminance over a hundredth
- * of white, on a scale by decades. Black is 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage
- * MEDIUM.
+ * Error due to the air, fog and clear sky that the plan leaves out, |Y' - Y| / (Y + 0.01 white) (see wk_budget), on a
+ * logarithmic scale: black 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage MEDIUM.
  */
 #define WK_DIAGNOSTIC_PLAN_ERROR 4
 /**
@@ -3993,9 +4004,9 @@ typedef struct wk_report {
     double predicted_error;
     /** Upper end of the 95 % confidence interval of that percentile over all pixels. */
     double predicted_error_bound;
-    /** Error of the last gauged picture: the bound that was predicted for the parts left out ... */
+    /** Error bound that was predicted for the last gauged picture. */
     double checked_error_bound;
-    /** ... and the error that was measured. */
+    /** Error that the gauge then measured in that picture. */
     double checked_error;
     /** Number of drops and stones around the camera; those in the picture were drawn. */
     uint32_t drops;
@@ -4069,7 +4080,7 @@ typedef uint32_t wk_effect;
 /** Water on the windscreen: its steps (after the sky's tables) and the lens. */
 #define WK_EFFECT_WINDSCREEN 10
 
-/** Cost of one effect in a frame; plain values of a list. */
+/** Cost of one effect in a frame. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_effect_cost {
     /** Effect whose cost this is. */
     wk_effect effect;
@@ -4116,9 +4127,9 @@ WK_API wk_status wk_view_get_report(wk_view *view, wk_report *out_report);
 
 /**
  * Gets the cost of each effect of the view's last frame, in the order in which they run. `*out_count` gets their
- * number (0 if the frame was not measured, WK_FRAME_MEASURE), even if `capacity` is too small (then nothing else is
- * written and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later
- * versions may have more effects.
+ * number in any case; it is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small, nothing
+ * else is written and the call fails; with capacity 0 it succeeds. `cost_size` is sizeof(wk_effect_cost) of your
+ * header. Later versions may have more effects.
  * Thread: exclusive on the view.
  */
 WK_API
@@ -4350,7 +4361,7 @@ typedef uint32_t wk_part;
  */
 #define WK_PART_SNOW 6
 
-/** Wish of a host for one part. */
+/** A host's wish for one part. */
 typedef struct wk_part_wish {
     /** sizeof(wk_part_wish) of your header. */
     uint32_t struct_size;
@@ -4407,7 +4418,7 @@ typedef struct wk_budget {
     uint32_t reserved;
     /** Wishes for single parts, at most one for each part. */
     const wk_part_wish *wishes;
-    /** Optional: largest error by leaving parts out. Range (0, 1]; 0.01 is not visible. */
+    /** Optional: largest error that leaving parts out may cause. Range (0, 1]; an error of 0.01 is not visible. */
     double tolerance;
     /**
      * Optional: longest time that the weather may take in a frame, ms; wins over the tolerance. Range (0, 1000]. The
@@ -4430,7 +4441,7 @@ typedef struct wk_budget {
     /* milliseconds */ 0.0 \
 }
 
-/** Limit of a budget that could not be kept, by the estimates. */
+/** Limit of a budget that the picture exceeds, by the estimates. */
 typedef uint32_t wk_gave_way;
 
 /** Nothing had to give way. */
@@ -4444,8 +4455,8 @@ typedef uint32_t wk_gave_way;
 #define WK_GAVE_WAY_TIME 2
 
 /**
- * Plan of a view's last frame: the errors by what it left out, and its cost. Errors are estimates from the gauged
- * pixels.
+ * Plan of a view's last frame: the errors due to the parts that it left out, and its cost. Errors are estimates from
+ * the gauged pixels.
  */
 typedef struct wk_plan {
     /** sizeof(wk_plan) of your header. */
@@ -4487,7 +4498,7 @@ typedef struct wk_plan {
     /* milliseconds */ 0.0 \
 }
 
-/** Why a part is drawn as it is. */
+/** Reason for the rung at which a part is drawn. */
 typedef uint32_t wk_plan_reason;
 
 /** No tolerance was given: everything is drawn. */
@@ -4594,8 +4605,8 @@ WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part part, wk_part_plan
 
 /**
  * Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
- * settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing
- * else is written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
+ * settings of the sky. UTF-8 text. `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing
+ * else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet, which is so for some
  * frames after each jump of camera, sun or weather.
@@ -4605,8 +4616,8 @@ WK_API wk_status wk_view_save_plan(wk_view *view, void *buffer, size_t capacity,
 /**
  * Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
  * budget stays; wk_view_set_budget removes the pins. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes
- * that are no such plan or of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT naming
- * the setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
+ * that are no saved plan or one of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT
+ * naming the setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
  */
 WK_API wk_status wk_view_load_plan(wk_view *view, const void *plan, size_t size);
 
@@ -4706,10 +4717,10 @@ typedef struct wk_rain {
     /** A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose. */
     wk_rain_model model;
     /**
-     * Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain above 1, a
-     * streak, stone or splash hides as much as that many of them in a row. This departs from physics, for displays on
-     * which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water and queries do not
-     * depend on it. Set the same value on all channels of a simulator.
+     * Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain of g, a
+     * streak, stone or splash hides as much of the background as g of them one behind another. This departs from
+     * physics, for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility,
+     * water and queries do not depend on it. Set the same value on all channels of a simulator.
      */
     double contrast_gain;
 } wk_rain;
@@ -4739,7 +4750,7 @@ typedef struct wk_shelter {
     double axes[9];
     /** Half its size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1. */
     double half_size_m[3];
-    /** Its velocity, m/s, at most 2000 in all. Default 0, 0, 0. */
+    /** Its velocity, m/s; its length is at most 2000. Default 0, 0, 0. */
     double velocity_m_s[3];
 } wk_shelter;
 
@@ -4901,11 +4912,11 @@ WK_API wk_status wk_snow_init(wk_snow *out, uint32_t struct_size);
  *
  * Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
  * area's rain replaces the weather's rain and drizzle; the change is smooth over the rim inside the region's border.
- * Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside, the drops at each
- * place follow the rain rate there. From outside, the rain is a shaft with falling curtains; it leans because the
- * drops fall behind their cloud. All queries of rain and visibility include the areas, and so does the ground's
- * wetness by the weather of the moment. Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud above it.
- * wk_context_save keeps the areas.
+ * Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside an area, each place has
+ * as many drops as its own rain rate gives. From outside, an area is a shaft with falling curtains; it leans because
+ * the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so does the
+ * ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud
+ * above it. wk_context_save keeps the areas.
  * ====================================================================================================
  */
 
@@ -4983,8 +4994,8 @@ typedef struct wk_rain_area {
     /** Velocity to the east and north with WK_AREA_MOTION_OWN, m/s, each within [-200, 200]. Default 0, 0. */
     double velocity_m_s[2];
     /**
-     * Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10]. With WK_AREA_MOTION_WITH_WIND a time
-     * that the timeline still knows, or 0, from which the wind's displacement counts. Default 0.
+     * Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10], default 0. With
+     * WK_AREA_MOTION_WITH_WIND it must be 0 or a time that the timeline still knows.
      */
     double at_s;
     /** Motion of the area. Default WK_AREA_MOTION_WITH_WIND. */
@@ -5284,10 +5295,10 @@ wk_status wk_wind_field_report_init(wk_wind_field_report *out,
  * For shelter that boxes cannot describe, give up to four depth images of your world, of standing or moving objects,
  * from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
  *
- * A map does not show what is hidden behind its surfaces. Render it along wk_rainfall.fall_velocity_m_s: then what is
- * hidden does not matter for half of the rain, and little for the rest. Where objects stand below others (a pier below
- * a deck), add maps along slower drops: the same wind with fall speeds of 3.4 and 2.1 m/s. The edges of mapped
- * surfaces are exact to two texels.
+ * A map does not show what is hidden behind its surfaces. Render it along wk_rainfall.fall_velocity_m_s, the path of
+ * the median drop. Then the hidden parts do not matter for half of the rain, and matter little for the other half.
+ * Where objects stand below others (a pier below a deck), add maps along slower drops: the same wind with fall speeds
+ * of 3.4 and 2.1 m/s. The edges of mapped surfaces are exact to two texels.
  *
  * Welkin copies a map during the call. The copy includes work that you submitted to the queue (or, with OpenGL,
  * issued) before the call. Afterwards the image is yours again.
@@ -5322,8 +5333,8 @@ typedef struct wk_occluder_map {
     /** Simulation time at which the objects stood as the map shows them, s. Default 0. */
     double time_s;
     /**
-     * Velocity of the objects in the map, m/s, at most 2000 in all. With it, the map of a moving truck need not be
-     * rendered in every frame. Default 0, 0, 0.
+     * Velocity of the objects in the map, m/s; its length is at most 2000. With it, the map of a moving truck need not
+     * be rendered in every frame. Default 0, 0, 0.
      */
     double velocity_m_s[3];
     /** The image on one of Welkin's own devices. Default NULL. */
@@ -5537,10 +5548,10 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
  */
 
 /**
- * Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. Give a
- * layer cover 1, and the map is its cover. The map is level, aligned to true north and fixed to the ground. Clouds
- * drift through it with their wind, and grow and dissolve as the map says. Values are linear between the middles of
- * cells; beyond the outermost middles they stay constant.
+ * Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. For a
+ * layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
+ * Clouds drift through it with their wind, and grow and dissolve as the map says. Values are interpolated linearly
+ * between the centres of cells, and constant beyond the outermost centres.
  */
 typedef struct wk_cloud_map {
     /** sizeof(wk_cloud_map) of your header. */
@@ -5550,7 +5561,7 @@ typedef struct wk_cloud_map {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Middle of the south-western cell: metres east and north of the world's origin. Range [-1e7, 1e7], default 0, 0.
+     * Centre of the south-western cell: metres east and north of the world's origin. Range [-1e7, 1e7], default 0, 0.
      */
     double first_m[2];
     /** Side of a cell, m. Range [100, 50 000], default 1000. */
@@ -5626,9 +5637,9 @@ typedef uint32_t wk_cloud_model;
  */
 #define WK_CLOUD_MODEL_DECK 0
 /**
- * Layers of a volume that one can fly through, lit by the sun or moon, the sky and the ground. A closed layer seen
- * from below is drawn as a deck. Each frame computes a sixteenth of the pixels, in turn by wk_frame.frame_id: count it
- * up by one.
+ * Volumes that the camera can fly through, lit by the sun or moon, the sky and the ground. A closed layer seen from
+ * below is drawn as a deck. Each frame computes one of every sixteen pixels; wk_frame.frame_id selects which, so
+ * increase it by one in every frame.
  */
 #define WK_CLOUD_MODEL_VOLUME 1
 
@@ -5638,8 +5649,8 @@ typedef uint32_t wk_clouds_flags;
 /**
  * Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in the clouds'
  * shadows. Drawn with WK_STAGE_SURFACE, up to 10 km away, where the host gives depth and does not read the shadow map
- * itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without it the air has the mean brightness over
- * places.
+ * itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without it the air has its mean brightness
+ * everywhere.
  */
 #define WK_CLOUDS_SHAFTS 1
 
@@ -5654,8 +5665,8 @@ typedef struct wk_clouds {
     /** Relative number of steps a ray takes: twice the value, twice as many steps. Range [0.125, 32], default 2. */
     double fineness;
     /**
-     * Side of a square of pixels, of which each frame computes one and takes the others from earlier frames: 1, 2 or
-     * 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
+     * Side of a square block of pixels: each frame computes one pixel of a block and takes the others from earlier
+     * frames. 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
      */
     uint32_t square_side;
     /** WK_CLOUDS_* flags. Default 0. */
@@ -5682,8 +5693,8 @@ wk_status wk_context_set_cloud_model(wk_context *context,
 
 /**
  * Gets the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to a
- * place, in [0, 1]: low in the shadow of a cloud, high between two. wk_ground_light.sun_lux times this over
- * wk_celestial.direct_share is the sun's light at that very place. With WK_CLOUD_MODEL_DECK it is the mean,
+ * place, in [0, 1]: low in the shadow of a cloud, high between two. With this share s, the direct sunlight at the very
+ * place is sun_lux s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the mean,
  * wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some tenths
  * of a second.
  * Thread: concurrent.
@@ -5930,7 +5941,9 @@ typedef struct wk_flash_trigger {
     /* strokes */ 0 \
 }
 
-/** A flash as seen and heard from a place; plain values of a list. */
+/**
+ * A flash as seen and heard from a place. Element of an array, without struct_size; calls take its sizeof instead.
+ */
 typedef struct wk_flash {
     /** Number that identifies the flash within the context. */
     uint64_t id;
@@ -5946,11 +5959,11 @@ typedef struct wk_flash {
     double position_m[3];
     /** Distance to the nearest point of its channel, m. */
     double distance_m;
-    /** Direction to position_m. */
+    /** Unit vector towards position_m, (east, north, up) at the queried place. */
     double direction[3];
     /**
-     * Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, which is 331.3 m/s
-     * plus 0.606 m/s for each degree Celsius.
+     * Time from the flash to the beginning of its thunder, s: distance_m / (331.3 + 0.606 t), with the air's
+     * temperature t in degrees Celsius.
      */
     double thunder_delay_s;
 } wk_flash;
@@ -5967,7 +5980,10 @@ typedef struct wk_flash_light {
     double facing_lux[3];
     /** Illuminance on level ground, lux. */
     double level_lux;
-    /** Direction to the middle of the light; straight up where there is no light. */
+    /**
+     * Unit vector towards the middle of the light, (east, north, up) at the place; straight up where there is no
+     * light.
+     */
     double direction[3];
 } wk_flash_light;
 
@@ -5997,12 +6013,12 @@ WK_API wk_status wk_context_set_lightning(wk_context *context, const wk_lightnin
 WK_API wk_status wk_context_trigger_flash(wk_context *context, const wk_flash_trigger *flash);
 
 /**
- * Gets the flashes that begin from `from_s` on until `until_s`, at most 3600 s later, within `most_distance_m` of a
- * place of the host's world (horizontal distance; at most 50000 m), in order of time, past or future. `*out_count`
- * gets their number even if `capacity` is too small (then nothing else is written and the call fails) or 0 (then it
- * succeeds). `flash_size` is sizeof(wk_flash) of your header. For times whose weather the timeline has dropped, the
- * earliest weather that it still has applies. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the
- * parameter.
+ * Gets the flashes that begin between `from_s` and `until_s`, past or future, in order of time. The times are at most
+ * 3600 s apart. Flashes count within the horizontal distance `most_distance_m`, at most 50000 m, of a place of the
+ * host's world. `*out_count` gets their number in any case. If `capacity` is too small, nothing else is written and
+ * the call fails; with capacity 0 it succeeds. `flash_size` is sizeof(wk_flash) of your header. For times whose
+ * weather the timeline has dropped, the earliest weather that it still has applies. Thread: concurrent. Errors:
+ * WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
 WK_API
 wk_status wk_context_get_flashes(const wk_context *context,
@@ -6280,9 +6296,9 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  *
  * The stage SURFACE reads the host's depth and draws water onto the host's picture. Wet ground is darker and mirrors
  * the sky, paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in
- * the display spaces Welkin takes the shown colour as the ground's own. Ground without a wk_surface_class is natural
- * and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky. Of the host's objects,
- * only shelters and occluder maps appear in them, as dark shapes.
+ * the display spaces Welkin takes the displayed colour for the ground's albedo. Ground without a wk_surface_class is
+ * natural and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky. Of the host's
+ * objects, only shelters and occluder maps appear in them, as dark shapes.
  *
  * Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
  * wk_context_desc.next it is instead a state that fills, drains and dries over time, and that wk_context_save keeps.
@@ -6465,8 +6481,8 @@ WK_API wk_status wk_ground_init(wk_ground *out, uint32_t struct_size);
 
 /**
  * Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square
- * cell around it; water is linear between nodes. Outside the grid lies the world's ground, into which the picture
- * blends over two cells.
+ * cell around it; water is interpolated linearly between nodes. Outside the grid lies the world's ground, into which
+ * the picture blends over two cells.
  */
 typedef struct wk_ground_grid {
     /** sizeof(wk_ground_grid) of your header. */
@@ -6480,9 +6496,9 @@ typedef struct wk_ground_grid {
      * its height. Default 0, 0, 0.
      */
     double origin_m[3];
-    /** Distance between nodes, m. Range [0.01, 10 000], default 1. Puddles need several cells. */
+    /** Distance between nodes, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear. */
     double cell_m;
-    /** Number of nodes east and north. Range 2 to 512, default 2, 2. */
+    /** Number of nodes east and north. Range [2, 512] each, default 2, 2. */
     uint32_t nodes[2];
     /**
      * Heights above the origin, m, within 1e5. Nodes run from west to east, rows from south to north. Copied by the
@@ -6521,8 +6537,8 @@ typedef struct wk_ground_grid {
 }
 
 /**
- * Water of a cell of the host's terrain; plain values of a list. A packed list can be uploaded as a texture of four
- * floats per texel.
+ * Water of a cell of the host's terrain. Element of an array, without struct_size; calls take its sizeof instead. A
+ * packed array can be uploaded as a texture of four floats per texel.
  */
 typedef struct wk_ground_cell {
     /** Film: water between and on the grains, mm; 0 under standing water. */
@@ -6651,10 +6667,11 @@ wk_status wk_context_get_ground_texture(wk_context *context,
 
 /**
  * Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
- * The textures cover a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at
- * a time. `uv_from_world` is its present placement; where no tile has ground there is neither water nor snow. Call it
- * after each wk_context_update; with several cameras, call it before you draw each one. It costs nothing if nothing
- * has changed; after a move the whole window is uploaded. Both textures stay the same as long as the context lives.
+ * The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays in its
+ * middle quarter. `uv_from_world` is its present placement; where no tile has ground there is neither water nor snow.
+ * Call it after each wk_context_update; with several cameras, call it before you draw each one. It costs nothing if
+ * nothing has changed; after a move the whole window is uploaded. Both textures stay the same as long as the context
+ * lives.
  * Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile
  * reaches into the window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
@@ -6707,7 +6724,7 @@ typedef uint32_t wk_snow_friction;
 /** Above 650 kg/m^3: frozen hard. */
 #define WK_SNOW_FRICTION_ICE 4
 
-/** Snow at a place; plain values of a list. */
+/** Snow at a place. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_lying_snow {
     /** Depth, m. */
     double depth_m;
@@ -6767,8 +6784,8 @@ typedef struct wk_snow_strip {
 /**
  * Gets the snow at places of the host's world, at most wk_caps.max_batch of them, as of wk_context_get_state_time. On
  * the host's terrain and up to 3 m above it, the answer is interpolated between the terrain's cells; elsewhere it is
- * that of level, open ground. `position_size` and `snow_size` are the bytes from one element to the next: 24 or more,
- * and sizeof(wk_lying_snow) of your header.
+ * that of level, open ground. `position_size` and `snow_size` are the distances from one element to the next, bytes:
+ * 24 or more for positions, sizeof(wk_lying_snow) of your header for snow.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
  */
@@ -6946,7 +6963,7 @@ typedef struct wk_terrain_cells {
     /* no_data_m */ 0.0f \
 }
 
-/** Terrain at a queried place. An element of a list, without struct_size. */
+/** Terrain at a queried place. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_terrain_point {
     /**
      * Height of the ground above the terrain's origin, m, interpolated linearly between cells; 0 where there is none.
@@ -7004,8 +7021,8 @@ WK_API wk_status wk_context_get_terrain_revision(const wk_context *context, uint
 
 /**
  * Gets the terrain straight below or above places of the host's world, at most wk_caps.max_batch of them.
- * `position_size` and `point_size` are the bytes from one element to the next: 24 or more, and
- * sizeof(wk_terrain_point) of your header. Thread: concurrent.
+ * `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
+ * sizeof(wk_terrain_point) of your header for points. Thread: concurrent.
  */
 WK_API
 wk_status wk_context_get_terrain_points(const wk_context *context,

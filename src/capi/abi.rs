@@ -1,5 +1,5 @@
-//! Data for the tests of the binary interface, which compare it with C's view and with the committed lists. Not part of
-//! the API.
+//! Tables of the C interface for its tests: they compare these tables with a C compiler's and with the committed lists.
+//! Not part of the API.
 
 use super::boundary::{
     call,
@@ -14,10 +14,10 @@ pub fn functions() -> &'static [&'static str] {
     FUNCTIONS
 }
 
-/// Name, offset and size of a field.
+/// Name of a field, its offset and its size, bytes.
 pub type Span = (&'static str, usize, usize);
 
-/// Returns every struct of the header: name, size, alignment, and its fields' names, offsets and sizes.
+/// Returns every struct of the header: name, size and alignment, bytes, and its fields.
 pub fn structs() -> Vec<(&'static str, usize, usize, Vec<Span>)> {
     let fields =
         |s: &'static layout::StructInfo| s.fields.iter().map(|f| (f.name, f.offset, f.count * f.kind.size())).collect();
@@ -36,7 +36,7 @@ pub fn init(name: &str, bytes: &mut [u64], struct_size: u32) -> i32 {
     unsafe { layout::init_by_name(name, bytes.as_mut_ptr().cast(), struct_size) }
 }
 
-/// Returns every float of every struct: struct, field, offset, whether it is 8 bytes wide, and element count.
+/// Returns every float of every struct: struct, field, offset in bytes, whether it is 8 bytes wide, and element count.
 pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
     let mut found = Vec::new();
     for s in STRUCTS {
@@ -70,8 +70,8 @@ pub fn log_in_next_call() {
     call::inject(call::Injected::Message);
 }
 
-/// Returns every enumeration and every reserved field of every struct: struct, field, offset, whether it is 8 bytes
-/// wide.
+/// Returns every enumeration and every reserved field of every struct: struct, field, offset in bytes, whether it is 8
+/// bytes wide.
 pub fn constants() -> Vec<(&'static str, &'static str, usize, bool)> {
     let mut found = Vec::new();
     for s in STRUCTS {
@@ -86,8 +86,8 @@ pub fn constants() -> Vec<(&'static str, &'static str, usize, bool)> {
     found
 }
 
-/// Returns every integer of every struct except sizes, types and pointers: struct, field, offset, bytes of one element,
-/// element count.
+/// Returns every integer of every struct except sizes, types and pointers: struct, field, offset in bytes, bytes of one
+/// element, element count.
 pub fn integers() -> Vec<(&'static str, &'static str, usize, usize, usize)> {
     let mut found = Vec::new();
     for s in STRUCTS {

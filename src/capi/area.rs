@@ -2,11 +2,11 @@
 //!
 //! Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
 //! area's rain replaces the weather's rain and drizzle; the change is smooth over the rim inside the region's border.
-//! Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside, the drops at each
-//! place follow the rain rate there. From outside, the rain is a shaft with falling curtains; it leans because the
-//! drops fall behind their cloud. All queries of rain and visibility include the areas, and so does the ground's
-//! wetness by the weather of the moment. Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud above it.
-//! wk_context_save keeps the areas.
+//! Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside an area, each place has
+//! as many drops as its own rain rate gives. From outside, an area is a shaft with falling curtains; it leans because
+//! the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so does the
+//! ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud
+//! above it. wk_context_save keeps the areas.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -86,8 +86,8 @@ pub struct wk_rain_area {
     pub top_m: f64,
     /// Velocity to the east and north with WK_AREA_MOTION_OWN, m/s, each within [-200, 200]. Default 0, 0.
     pub velocity_m_s: [f64; 2],
-    /// Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10]. With WK_AREA_MOTION_WITH_WIND a time
-    /// that the timeline still knows, or 0, from which the wind's displacement counts. Default 0.
+    /// Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10], default 0. With
+    /// WK_AREA_MOTION_WITH_WIND it must be 0 or a time that the timeline still knows.
     pub at_s: f64,
     /// Motion of the area. Default WK_AREA_MOTION_WITH_WIND.
     pub motion: wk_area_motion,

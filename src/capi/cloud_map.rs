@@ -19,10 +19,10 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_cloud_map.rs"));
 
-/// Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. Give a
-/// layer cover 1, and the map is its cover. The map is level, aligned to true north and fixed to the ground. Clouds
-/// drift through it with their wind, and grow and dissolve as the map says. Values are linear between the middles of
-/// cells; beyond the outermost middles they stay constant.
+/// Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. For a
+/// layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
+/// Clouds drift through it with their wind, and grow and dissolve as the map says. Values are interpolated linearly
+/// between the centres of cells, and constant beyond the outermost centres.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_map {
@@ -32,7 +32,7 @@ pub struct wk_cloud_map {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Middle of the south-western cell: metres east and north of the world's origin. Range [-1e7, 1e7], default 0, 0.
+    /// Centre of the south-western cell: metres east and north of the world's origin. Range [-1e7, 1e7], default 0, 0.
     pub first_m: [f64; 2],
     /// Side of a cell, m. Range [100, 50 000], default 1000.
     pub cell_m: f64,

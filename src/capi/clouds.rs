@@ -32,9 +32,9 @@ pub type wk_cloud_model = u32;
 /// A grey deck where more than half of the sky is covered; broken clouds only dim the light. It costs no more than a
 /// clear sky.
 pub const WK_CLOUD_MODEL_DECK: wk_cloud_model = 0;
-/// Layers of a volume that one can fly through, lit by the sun or moon, the sky and the ground. A closed layer seen
-/// from below is drawn as a deck. Each frame computes a sixteenth of the pixels, in turn by wk_frame.frame_id: count it
-/// up by one.
+/// Volumes that the camera can fly through, lit by the sun or moon, the sky and the ground. A closed layer seen from
+/// below is drawn as a deck. Each frame computes one of every sixteen pixels; wk_frame.frame_id selects which, so
+/// increase it by one in every frame.
 pub const WK_CLOUD_MODEL_VOLUME: wk_cloud_model = 1;
 
 /// Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS).
@@ -54,8 +54,8 @@ pub unsafe extern "C" fn wk_context_set_cloud_model(
 }
 
 /// Gets the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to a
-/// place, in [0, 1]: low in the shadow of a cloud, high between two. wk_ground_light.sun_lux times this over
-/// wk_celestial.direct_share is the sun's light at that very place. With WK_CLOUD_MODEL_DECK it is the mean,
+/// place, in [0, 1]: low in the shadow of a cloud, high between two. With this share s, the direct sunlight at the very
+/// place is sun_lux s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the mean,
 /// wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some tenths
 /// of a second.
 /// Thread: concurrent.
@@ -84,8 +84,8 @@ pub unsafe extern "C" fn wk_context_get_sun_share(
 pub type wk_clouds_flags = u32;
 /// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in the clouds'
 /// shadows. Drawn with WK_STAGE_SURFACE, up to 10 km away, where the host gives depth and does not read the shadow map
-/// itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without it the air has the mean brightness over
-/// places.
+/// itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without it the air has its mean brightness
+/// everywhere.
 pub const WK_CLOUDS_SHAFTS: wk_clouds_flags = 1;
 
 /// Quality of clouds that a view draws as a volume.
@@ -100,8 +100,8 @@ pub struct wk_clouds {
     pub next: *const c_void,
     /// Relative number of steps a ray takes: twice the value, twice as many steps. Range [0.125, 32], default 2.
     pub fineness: f64,
-    /// Side of a square of pixels, of which each frame computes one and takes the others from earlier frames: 1, 2 or
-    /// 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
+    /// Side of a square block of pixels: each frame computes one pixel of a block and takes the others from earlier
+    /// frames. 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
     pub square_side: u32,
     /// WK_CLOUDS_* flags. Default 0.
     pub flags: wk_clouds_flags,

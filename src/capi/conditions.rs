@@ -50,9 +50,9 @@ pub struct wk_conditions {
     pub station_pressure_hpa: f64,
     /// Station above mean sea level, m.
     pub station_altitude_m: f64,
-    /// Air density at sea level over that at 15 C and 1013.25 hPa.
+    /// Air density at sea level, divided by that at 15 C and 1013.25 hPa.
     pub rayleigh_density_ratio: f64,
-    /// Scale height of the air: density falls by 1/e over it, m.
+    /// Scale height of the air, m: over it the density falls to 1/e.
     pub rayleigh_scale_height_m: f64,
     /// Extinction by air, at 550 nm and station height, 1/m.
     pub rayleigh_extinction_per_m: f64,
@@ -64,7 +64,7 @@ pub struct wk_conditions {
     pub aerosol_single_scattering_albedo: f64,
     /// Mean cosine of the particles' phase function.
     pub aerosol_asymmetry: f64,
-    /// Scale height of the particles: density falls by 1/e over it, m.
+    /// Scale height of the particles, m: over it the density falls to 1/e.
     pub aerosol_scale_height_m: f64,
     /// Extinction inside the layer at the ground, at 550 nm, 1/m; 0 if there is none.
     pub fog_extinction_per_m: f64,
@@ -76,7 +76,8 @@ pub struct wk_conditions {
     pub fog_softness_m: f64,
     /// Fraction of the ground that the layer covers.
     pub fog_coverage: f64,
-    /// Fraction of the sky that all layers together hide. During a change it stays between the values at both ends.
+    /// Fraction of the sky that all layers together hide. While the weather changes, it stays between the values before
+    /// and after.
     pub cloud_cover: f64,
     /// Rain, mm/h.
     pub rain_mm_h: f64,
@@ -257,7 +258,7 @@ impl wk_conditions {
     }
 }
 
-/// Horizontally uniform layer of cloud; plain values of a list.
+/// Horizontally uniform layer of cloud. Element of an array, without struct_size; calls take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_slab {
@@ -300,8 +301,8 @@ impl wk_cloud_slab {
 /// precipitation_extinction_per_m, extinction_per_m and visibility_m include that precipitation. All other fields are
 /// the weather's: the same everywhere, at the station's height unless they say otherwise.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
-/// before the end of the last change that was over at the last update.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten. It has
+/// forgotten every time before the end of the last change of weather that was over at the last update.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_conditions(
     context: *const wk_context,

@@ -73,7 +73,7 @@ pub const WK_DEPTH_ACCESS_READ_WRITE: wk_depth_access = 1;
 pub type wk_diagnostic = u32;
 /// The picture itself.
 pub const WK_DIAGNOSTIC_NONE: wk_diagnostic = 0;
-/// Distance along the ray, on a scale by decades: black for 1 m or less, white for 100 km or more, and for the sky.
+/// Distance along the ray, on a logarithmic scale: black for 1 m or less, white for 100 km or more, and for the sky.
 /// Stage MEDIUM.
 pub const WK_DIAGNOSTIC_DISTANCE: wk_diagnostic = 1;
 /// Optical depth of air, fog and precipitation between the eye and the visible surface: black 0, 1 a step, white 5 or
@@ -81,9 +81,8 @@ pub const WK_DIAGNOSTIC_DISTANCE: wk_diagnostic = 1;
 pub const WK_DIAGNOSTIC_OPTICAL_DEPTH: wk_diagnostic = 2;
 /// Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE.
 pub const WK_DIAGNOSTIC_WETNESS: wk_diagnostic = 3;
-/// Error due to the air, fog and clear sky that the plan leaves out: the relative change of luminance over a hundredth
-/// of white, on a scale by decades. Black is 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage
-/// MEDIUM.
+/// Error due to the air, fog and clear sky that the plan leaves out, |Y' - Y| / (Y + 0.01 white) (see wk_budget), on a
+/// logarithmic scale: black 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage MEDIUM.
 pub const WK_DIAGNOSTIC_PLAN_ERROR: wk_diagnostic = 4;
 /// Number of times that drops, flakes or stones were drawn over a pixel: black 0, 4 a step, white 20 or more. Stage
 /// PARTICLES.

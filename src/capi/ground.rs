@@ -2,9 +2,9 @@
 //!
 //! The stage SURFACE reads the host's depth and draws water onto the host's picture. Wet ground is darker and mirrors
 //! the sky, paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in
-//! the display spaces Welkin takes the shown colour as the ground's own. Ground without a wk_surface_class is natural
-//! and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky. Of the host's objects,
-//! only shelters and occluder maps appear in them, as dark shapes.
+//! the display spaces Welkin takes the displayed colour for the ground's albedo. Ground without a wk_surface_class is
+//! natural and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky. Of the host's
+//! objects, only shelters and occluder maps appear in them, as dark shapes.
 //!
 //! Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
 //! wk_context_desc.next it is instead a state that fills, drains and dries over time, and that wk_context_save keeps.

@@ -26,8 +26,8 @@ use crate::{
 include!(concat!(env!("OUT_DIR"), "/init_ground_grid.rs"));
 
 /// Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square
-/// cell around it; water is linear between nodes. Outside the grid lies the world's ground, into which the picture
-/// blends over two cells.
+/// cell around it; water is interpolated linearly between nodes. Outside the grid lies the world's ground, into which
+/// the picture blends over two cells.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_grid {
@@ -40,9 +40,9 @@ pub struct wk_ground_grid {
     /// Position of the south-western node in the host's world, m, within 1e12 m of the origin; the heights count from
     /// its height. Default 0, 0, 0.
     pub origin_m: [f64; 3],
-    /// Distance between nodes, m. Range [0.01, 10 000], default 1. Puddles need several cells.
+    /// Distance between nodes, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear.
     pub cell_m: f64,
-    /// Number of nodes east and north. Range 2 to 512, default 2, 2.
+    /// Number of nodes east and north. Range [2, 512] each, default 2, 2.
     pub nodes: [u32; 2],
     /// Heights above the origin, m, within 1e5. Nodes run from west to east, rows from south to north. Copied by the
     /// call.
@@ -77,8 +77,8 @@ impl wk_ground_grid {
     };
 }
 
-/// Water of a cell of the host's terrain; plain values of a list. A packed list can be uploaded as a texture of four
-/// floats per texel.
+/// Water of a cell of the host's terrain. Element of an array, without struct_size; calls take its sizeof instead. A
+/// packed array can be uploaded as a texture of four floats per texel.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_cell {

@@ -108,10 +108,11 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
 }
 
 /// Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
-/// The textures cover a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at
-/// a time. `uv_from_world` is its present placement; where no tile has ground there is neither water nor snow. Call it
-/// after each wk_context_update; with several cameras, call it before you draw each one. It costs nothing if nothing
-/// has changed; after a move the whole window is uploaded. Both textures stay the same as long as the context lives.
+/// The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays in its
+/// middle quarter. `uv_from_world` is its present placement; where no tile has ground there is neither water nor snow.
+/// Call it after each wk_context_update; with several cameras, call it before you draw each one. It costs nothing if
+/// nothing has changed; after a move the whole window is uploaded. Both textures stay the same as long as the context
+/// lives.
 /// Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile
 /// reaches into the window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]

@@ -135,7 +135,7 @@ impl wk_flash_trigger {
     };
 }
 
-/// A flash as seen and heard from a place; plain values of a list.
+/// A flash as seen and heard from a place. Element of an array, without struct_size; calls take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_flash {
@@ -153,10 +153,10 @@ pub struct wk_flash {
     pub position_m: [f64; 3],
     /// Distance to the nearest point of its channel, m.
     pub distance_m: f64,
-    /// Direction to position_m.
+    /// Unit vector towards position_m, (east, north, up) at the queried place.
     pub direction: [f64; 3],
-    /// Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, which is 331.3 m/s
-    /// plus 0.606 m/s for each degree Celsius.
+    /// Time from the flash to the beginning of its thunder, s: distance_m / (331.3 + 0.606 t), with the air's
+    /// temperature t in degrees Celsius.
     pub thunder_delay_s: f64,
 }
 
@@ -193,7 +193,8 @@ pub struct wk_flash_light {
     pub facing_lux: [f64; 3],
     /// Illuminance on level ground, lux.
     pub level_lux: f64,
-    /// Direction to the middle of the light; straight up where there is no light.
+    /// Unit vector towards the middle of the light, (east, north, up) at the place; straight up where there is no
+    /// light.
     pub direction: [f64; 3],
 }
 
@@ -289,12 +290,12 @@ pub unsafe extern "C" fn wk_context_trigger_flash(
     })
 }
 
-/// Gets the flashes that begin from `from_s` on until `until_s`, at most 3600 s later, within `most_distance_m` of a
-/// place of the host's world (horizontal distance; at most 50000 m), in order of time, past or future. `*out_count`
-/// gets their number even if `capacity` is too small (then nothing else is written and the call fails) or 0 (then it
-/// succeeds). `flash_size` is sizeof(wk_flash) of your header. For times whose weather the timeline has dropped, the
-/// earliest weather that it still has applies. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the
-/// parameter.
+/// Gets the flashes that begin between `from_s` and `until_s`, past or future, in order of time. The times are at most
+/// 3600 s apart. Flashes count within the horizontal distance `most_distance_m`, at most 50000 m, of a place of the
+/// host's world. `*out_count` gets their number in any case. If `capacity` is too small, nothing else is written and
+/// the call fails; with capacity 0 it succeeds. `flash_size` is sizeof(wk_flash) of your header. For times whose
+/// weather the timeline has dropped, the earliest weather that it still has applies. Thread: concurrent. Errors:
+/// WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_flashes(
     context: *const wk_context,

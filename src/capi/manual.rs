@@ -37,13 +37,14 @@
 //!
 //! STRUCTS
 //!
-//! Structs begin with struct_size, struct_type and next. Start from WK_X_INIT (or wk_x_init, which writes the same
-//! bytes) and change fields. Later versions append fields for which zero means "as before". A library therefore accepts
-//! structs of older headers, whose missing fields get their defaults, and structs of newer headers if the fields that
-//! it does not know are zero. `next` points to extension structs where a call names them; an unknown one is refused.
-//! Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An optional field has a bit in
-//! `has`. Lists are (pointer, count, stride): stride is the size of an element in your header. Reals are doubles and
-//! must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
+//! Structs begin with struct_size, struct_type and next. Only elements of arrays that calls read or fill in bulk, such
+//! as wk_flash, have no such head: the call takes their sizeof. Start from WK_X_INIT (or wk_x_init, which writes the
+//! same bytes) and change fields. Later versions append fields for which zero means "as before". A library therefore
+//! accepts structs of older headers, whose missing fields get their defaults, and structs of newer headers if the
+//! fields that it does not know are zero. `next` points to extension structs where a call names them; an unknown one is
+//! refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An optional field has
+//! a bit in `has`. Lists are (pointer, count, stride): stride is the size of an element in your header. Reals are
+//! doubles and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
 //!
 //! THREADS
 //!
@@ -55,10 +56,11 @@
 //!
 //! UNITS AND COORDINATES
 //!
-//! Units are SI. A field's name ends in its unit, except for metres, seconds and radians. Angles that people usually
-//! state in degrees are in degrees (_deg). Azimuths are clockwise from true north; wind direction is where the wind
-//! comes from. Positions are in the host's world, in double precision, however far from its origin. See Contexts for
-//! world frames and Frames for matrices, depth and clip space. Colours are linear Rec. 709 unless they say otherwise.
+//! Units are SI. A field's name ends in its unit (_m, _s, _mm_h). Angles that people usually state in degrees are in
+//! degrees (_deg); angles without a unit in their names are in radians. Azimuths are clockwise from true north; wind
+//! direction is where the wind comes from. Positions are in the host's world, in double precision, however far from its
+//! origin. See Contexts for world frames and Frames for matrices, depth and clip space. Colours are linear Rec. 709
+//! unless they say otherwise.
 //!
 //! DETERMINISM
 //!

@@ -38,8 +38,8 @@ pub struct wk_occluder_map {
     pub clip_space: wk_clip_space,
     /// Simulation time at which the objects stood as the map shows them, s. Default 0.
     pub time_s: f64,
-    /// Velocity of the objects in the map, m/s, at most 2000 in all. With it, the map of a moving truck need not be
-    /// rendered in every frame. Default 0, 0, 0.
+    /// Velocity of the objects in the map, m/s; its length is at most 2000. With it, the map of a moving truck need not
+    /// be rendered in every frame. Default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
     /// The image on one of Welkin's own devices. Default NULL.
     pub texture: *const wk_texture,

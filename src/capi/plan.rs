@@ -73,7 +73,7 @@ pub const WK_BUDGET_HAS_TOLERANCE: wk_budget_has_flags = 1;
 /// milliseconds
 pub const WK_BUDGET_HAS_MILLISECONDS: wk_budget_has_flags = 2;
 
-/// Why a part is drawn as it is.
+/// Reason for the rung at which a part is drawn.
 pub type wk_plan_reason = u32;
 /// No tolerance was given: everything is drawn.
 pub const WK_PLAN_REASON_EVERYTHING_ASKED: wk_plan_reason = 0;
@@ -90,7 +90,7 @@ pub const WK_PLAN_REASON_PINNED: wk_plan_reason = 5;
 /// The budget of time allows no more of the part.
 pub const WK_PLAN_REASON_OUT_OF_TIME: wk_plan_reason = 6;
 
-/// Limit of a budget that could not be kept, by the estimates.
+/// Limit of a budget that the picture exceeds, by the estimates.
 pub type wk_gave_way = u32;
 /// Nothing had to give way.
 pub const WK_GAVE_WAY_NOTHING: wk_gave_way = 0;
@@ -100,7 +100,7 @@ pub const WK_GAVE_WAY_TOLERANCE: wk_gave_way = 1;
 /// budget.
 pub const WK_GAVE_WAY_TIME: wk_gave_way = 2;
 
-/// Wish of a host for one part.
+/// A host's wish for one part.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_part_wish {
@@ -158,7 +158,7 @@ pub struct wk_budget {
     pub reserved: u32,
     /// Wishes for single parts, at most one for each part.
     pub wishes: *const wk_part_wish,
-    /// Optional: largest error by leaving parts out. Range (0, 1]; 0.01 is not visible.
+    /// Optional: largest error that leaving parts out may cause. Range (0, 1]; an error of 0.01 is not visible.
     pub tolerance: f64,
     /// Optional: longest time that the weather may take in a frame, ms; wins over the tolerance. Range (0, 1000]. The
     /// plan knows times only from wk_view_report_time.
@@ -180,8 +180,8 @@ impl wk_budget {
     };
 }
 
-/// Plan of a view's last frame: the errors by what it left out, and its cost. Errors are estimates from the gauged
-/// pixels.
+/// Plan of a view's last frame: the errors due to the parts that it left out, and its cost. Errors are estimates from
+/// the gauged pixels.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_plan {
@@ -396,8 +396,8 @@ pub unsafe extern "C" fn wk_view_get_part_plan(
 }
 
 /// Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
-/// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing
-/// else is written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
+/// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing
+/// else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet, which is so for some
 /// frames after each jump of camera, sun or weather.
@@ -419,8 +419,8 @@ pub unsafe extern "C" fn wk_view_save_plan(
 
 /// Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
 /// budget stays; wk_view_set_budget removes the pins. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes
-/// that are no such plan or of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT naming
-/// the setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
+/// that are no saved plan or one of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT
+/// naming the setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_void, size: usize) -> wk_status {
     guard("wk_view_load_plan", |call| {

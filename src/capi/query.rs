@@ -100,8 +100,8 @@ impl wk_celestial {
     }
 }
 
-/// Light that arrives at a place, after air, clouds and fog; plain values of a list. Light that fog has scattered
-/// forward once counts as direct light of the sun or the moon.
+/// Light that arrives at a place, after air, clouds and fog. Light that fog has scattered forward once counts as direct
+/// light of the sun or the moon. Element of an array, without struct_size; calls take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_light {
@@ -121,7 +121,7 @@ impl wk_ground_light {
     }
 }
 
-/// Two points of the host's world, m; plain values of a list.
+/// Two points of the host's world, m. Element of an array, without struct_size; calls take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_segment {
@@ -131,7 +131,8 @@ pub struct wk_segment {
     pub to_m: [f64; 3],
 }
 
-/// Transmittance and visibility between two points; plain values of a list.
+/// Transmittance and visibility between two points. Element of an array, without struct_size; calls take its sizeof
+/// instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_between {
@@ -261,8 +262,9 @@ pub(super) fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64>
 }
 
 /// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
-/// a place count, by their mean effect over all places at its height. `position_size` and `light_size` are the bytes
-/// from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header. Thread: concurrent.
+/// a place count, by their mean effect over all places at its height. `position_size` and `light_size` are the
+/// distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_ground_light) of your header for
+/// lights. Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(
     context: *const wk_context,

@@ -7,9 +7,10 @@
 //! drew.
 //!
 //! The double-precision reference of the sky computes the answers on the calling thread, without the device. The first
-//! query in a new air solves the reference, which takes a second or two; other threads that query meanwhile wait.
-//! Weather in transition is a new air at every time. The solutions of the last four airs are kept for all contexts of a
-//! device. docs/reflections.md has the cost of a direction and the difference from pictures.
+//! query in a new state of the air solves the reference, which takes a second or two; other threads that query
+//! meanwhile wait. While the weather changes, the air has a new state at every time. The solutions of the last four
+//! states are kept for all contexts of a device. docs/reflections.md has the cost of a direction and the difference
+//! from pictures.
 
 use glam::DVec3;
 
@@ -24,7 +25,7 @@ use super::{
 };
 use crate::error::{Error, Status};
 
-/// The sky's light from one direction; plain values of a list.
+/// The sky's light from one direction. Element of an array, without struct_size; calls take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_sky_radiance {
@@ -33,9 +34,10 @@ pub struct wk_sky_radiance {
 }
 
 /// Gets the sky's radiance at a place in several directions now, at most wk_caps.max_batch of them. A direction is a
-/// vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the bytes
-/// from one element to the next: 24 or more, and sizeof(wk_sky_radiance) of your header. Thread: concurrent. Errors:
-/// WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
+/// vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the
+/// distances from one element to the next, bytes: 24 or more for directions, sizeof(wk_sky_radiance) of your header for
+/// radiances. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction;
+/// nothing is written then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_sky_radiance(
     context: *const wk_context,

@@ -71,10 +71,10 @@ pub struct wk_rain {
     pub most_drops: u32,
     /// A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose.
     pub model: wk_rain_model,
-    /// Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain above 1, a
-    /// streak, stone or splash hides as much as that many of them in a row. This departs from physics, for displays on
-    /// which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water and queries do not
-    /// depend on it. Set the same value on all channels of a simulator.
+    /// Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain of g, a
+    /// streak, stone or splash hides as much of the background as g of them one behind another. This departs from
+    /// physics, for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility,
+    /// water and queries do not depend on it. Set the same value on all channels of a simulator.
     pub contrast_gain: f64,
 }
 
@@ -106,7 +106,7 @@ pub struct wk_shelter {
     pub axes: [f64; 9],
     /// Half its size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1.
     pub half_size_m: [f64; 3],
-    /// Its velocity, m/s, at most 2000 in all. Default 0, 0, 0.
+    /// Its velocity, m/s; its length is at most 2000. Default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
 }
 

@@ -38,7 +38,7 @@ pub const WK_SNOW_FRICTION_SLUSH: wk_snow_friction = 3;
 /// Above 650 kg/m^3: frozen hard.
 pub const WK_SNOW_FRICTION_ICE: wk_snow_friction = 4;
 
-/// Snow at a place; plain values of a list.
+/// Snow at a place. Element of an array, without struct_size; calls take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_lying_snow {
@@ -131,8 +131,8 @@ unsafe fn strip_of(strip: *const wk_snow_strip) -> Result<SnowStrip> {
 
 /// Gets the snow at places of the host's world, at most wk_caps.max_batch of them, as of wk_context_get_state_time. On
 /// the host's terrain and up to 3 m above it, the answer is interpolated between the terrain's cells; elsewhere it is
-/// that of level, open ground. `position_size` and `snow_size` are the bytes from one element to the next: 24 or more,
-/// and sizeof(wk_lying_snow) of your header.
+/// that of level, open ground. `position_size` and `snow_size` are the distances from one element to the next, bytes:
+/// 24 or more for positions, sizeof(wk_lying_snow) of your header for snow.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
 #[unsafe(no_mangle)]

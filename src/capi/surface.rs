@@ -90,7 +90,7 @@ pub const WK_SURFACE_DISPLAY_LINEAR: wk_surface_encoding = 0;
 /// Values encoded to sRGB already. WK_COLOR_DISPLAY_SRGB fits, and WK_COLOR_SCENE_LINEAR with WK_STAGE_TONE.
 pub const WK_SURFACE_DISPLAY_SRGB: wk_surface_encoding = 1;
 
-/// When images reach the screen.
+/// Time at which images reach the screen.
 pub type wk_pacing = u32;
 /// With the screen's refresh; acquire waits for it.
 pub const WK_PACING_REFRESH: wk_pacing = 0;

@@ -132,7 +132,7 @@ impl wk_terrain_cells {
     };
 }
 
-/// Terrain at a queried place. An element of a list, without struct_size.
+/// Terrain at a queried place. Element of an array, without struct_size; calls take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_terrain_point {
@@ -310,8 +310,8 @@ pub unsafe extern "C" fn wk_context_get_terrain_revision(
 }
 
 /// Gets the terrain straight below or above places of the host's world, at most wk_caps.max_batch of them.
-/// `position_size` and `point_size` are the bytes from one element to the next: 24 or more, and
-/// sizeof(wk_terrain_point) of your header. Thread: concurrent.
+/// `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
+/// sizeof(wk_terrain_point) of your header for points. Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_points(
     context: *const wk_context,

@@ -82,9 +82,9 @@ pub unsafe extern "C" fn wk_context_set_weather(
 /// (WK_GROUND_SIMULATED) takes one step for every 10 s. One call computes steps for at most 50 ms, and at least one
 /// step. If steps remain, as after a leap of hours, the call returns WK_PENDING: call it again with the same time, in a
 /// loop or once a frame, until it returns WK_OK. Until then, water on the ground is drawn and queried as of
-/// wk_context_get_state_time, settings take effect only after the remaining steps, and a later time counts only when
-/// these are done. The state therefore does not depend on the number of calls. A leap of more than a day starts the
-/// ground a day before its end, as wet as the weather reports it then.
+/// wk_context_get_state_time, and settings and later times take effect only after the remaining steps. The state
+/// therefore does not depend on the number of calls. A leap of more than a day starts the ground a day before its end,
+/// as wet as the weather reports it then.
 /// Thread: exclusive. Returns WK_PENDING, which is no error, while steps remain.
 /// Errors: WK_ERROR_WRONG_ORDER if `time_s` is before the present.
 #[unsafe(no_mangle)]
@@ -217,8 +217,8 @@ pub unsafe extern "C" fn wk_context_set_exposure(
 /// lamps, rain areas, wind grid, the terrain with its water, and the world, place, seed and ground model that it
 /// belongs to. For the tiles of a wk_terrain it has only the water. Not included: how the state is drawn (sky settings,
 /// views, plans), and the images of wk_context_set_occluder_maps, because each channel may have its own. `*out_size`
-/// gets the bytes needed, even if `capacity` is too small (then nothing else is written and the call fails) or `buffer`
-/// is NULL with `capacity` 0 (then it succeeds).
+/// gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call fails; with
+/// `buffer` NULL and `capacity` 0 it succeeds.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
 #[unsafe(no_mangle)]
@@ -242,8 +242,8 @@ pub unsafe extern "C" fn wk_context_save(
 /// geoid_height_m in place of the last two), seed and ground_model. A state of an earlier version without planet and
 /// tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before
 /// the call, set them as they were when the state was saved. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that
-/// are no saved state, are truncated, differ from the saved ones in even one byte, or have another format, which the
-/// message names (this version reads format 2; save states of format 1 again, because they did not record their place);
+/// are no saved state, that were truncated or changed, or that have another format, which the message names (this
+/// version reads format 2; save states of format 1 again, because they did not record their place);
 /// WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const c_void, size: usize) -> wk_status {

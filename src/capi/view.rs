@@ -133,9 +133,9 @@ pub struct wk_report {
     pub predicted_error: f64,
     /// Upper end of the 95 % confidence interval of that percentile over all pixels.
     pub predicted_error_bound: f64,
-    /// Error of the last gauged picture: the bound that was predicted for the parts left out ...
+    /// Error bound that was predicted for the last gauged picture.
     pub checked_error_bound: f64,
-    /// ... and the error that was measured.
+    /// Error that the gauge then measured in that picture.
     pub checked_error: f64,
     /// Number of drops and stones around the camera; those in the picture were drawn.
     pub drops: u32,
@@ -207,7 +207,7 @@ pub const WK_EFFECT_SURFACE: wk_effect = 9;
 /// Water on the windscreen: its steps (after the sky's tables) and the lens.
 pub const WK_EFFECT_WINDSCREEN: wk_effect = 10;
 
-/// Cost of one effect in a frame; plain values of a list.
+/// Cost of one effect in a frame. Element of an array, without struct_size; calls take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_effect_cost {
@@ -453,9 +453,9 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
 }
 
 /// Gets the cost of each effect of the view's last frame, in the order in which they run. `*out_count` gets their
-/// number (0 if the frame was not measured, WK_FRAME_MEASURE), even if `capacity` is too small (then nothing else is
-/// written and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later
-/// versions may have more effects.
+/// number in any case; it is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small, nothing
+/// else is written and the call fails; with capacity 0 it succeeds. `cost_size` is sizeof(wk_effect_cost) of your
+/// header. Later versions may have more effects.
 /// Thread: exclusive on the view.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_costs(

@@ -149,7 +149,7 @@ pub struct wk_weather {
     pub has: wk_weather_has_flags,
 
     /// Meteorological optical range at the station, m: the distance at which 550 nm light falls to 5 % (the reported
-    /// visibility). It is the total of air, haze, fog, rain and snow together. Range [1, 1e6], default 40000.
+    /// visibility). It includes air, haze, fog, rain and snow. Range [1, 1e6], default 40000.
     pub visibility_m: f64,
     /// Optional: vertical visibility into an obscured sky, m. Range [0, 10000]; else the sky is not obscured. With fog
     /// it sets the fog's depth.
@@ -335,12 +335,12 @@ pub struct wk_weather_overrides {
     pub next: *const c_void,
     /// Flags of the fields that are set; the laws give the others. Default 0.
     pub set: wk_override_flags,
+    /// Must be 0.
+    pub reserved0: u32,
     /// Aerosol extinction at 550 nm and station height, 1/m, in place of the share that visibility gives. Range [0,
     /// 10].
-    pub reserved0: u32,
-    /// Extinction inside the ground layer, 1/m, in place of the rest that visibility gives. Range [0, 10].
     pub aerosol_extinction_per_m: f64,
-    /// Extinction inside the ground layer, 1/m, in place of the rest of the visibility's. Range [0, 10].
+    /// Extinction inside the ground layer, 1/m, in place of the rest that visibility gives. Range [0, 10].
     pub fog_extinction_per_m: f64,
     /// Extinction of precipitation, 1/m, in place of what the drop and flake spectra give. Range [0, 10].
     pub precipitation_extinction_per_m: f64,

@@ -40,7 +40,7 @@ pub struct wk_wind {
     /// objects that the air carries by differences of this displacement, never by velocity times time: it stays
     /// continuous through all changes of the weather, and is equal to the last bit on every channel.
     pub displacement_m: [f64; 3],
-    /// Standard deviation of the wind speed along the mean wind, by gusts, m/s.
+    /// Standard deviation of the wind speed along the mean wind, due to gusts, m/s.
     pub gust_deviation_m_s: f64,
 }
 
@@ -138,7 +138,8 @@ impl wk_rainfall {
     }
 }
 
-/// A surface that rain lands on, or an opening that it falls through; plain values of a list.
+/// A surface that rain lands on, or an opening that it falls through. Element of an array, without struct_size; calls
+/// take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain_surface {
@@ -152,7 +153,7 @@ pub struct wk_rain_surface {
     pub area_m2: f64,
 }
 
-/// Rain on a surface; plain values of a list.
+/// Rain on a surface. Element of an array, without struct_size; calls take its sizeof instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain_on {

@@ -1,4 +1,4 @@
-//! Checks of plain parameters: numbers, enumerations, texts, buffers, lists.
+//! Checks of parameters that are no tagged structs: numbers, enumerations, texts, buffers, lists.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -65,7 +65,7 @@ pub(in crate::capi) unsafe fn optional_text<'a>(param: &str, p: *const c_char) -
     if p.is_null() { Ok(None) } else { unsafe { text(param, p) }.map(Some) }
 }
 
-/// Returns a contiguous list of plain values.
+/// Returns a caller's contiguous array.
 ///
 /// # Safety
 /// `p` is NULL or points to `count` values that live as long as `'a`.
@@ -87,7 +87,7 @@ pub(in crate::capi) unsafe fn slice<'a, T: Copy>(
     Ok(unsafe { std::slice::from_raw_parts(p, count) })
 }
 
-/// Returns a contiguous list for answers, as [`slice`] does for values.
+/// Returns a caller's contiguous array for answers, checked as [`slice`] does.
 ///
 /// # Safety
 /// `p` is NULL or points to `count` values that only this call touches while `'a` lasts.
@@ -138,7 +138,7 @@ pub(in crate::capi) unsafe fn answer_bytes(
     Ok(())
 }
 
-/// A number with its name in the header.
+/// Name of a parameter in the header, and its value.
 #[derive(Clone, Copy)]
 pub(in crate::capi) struct Named<'a>(pub(in crate::capi) &'a str, pub(in crate::capi) usize);
 
@@ -168,22 +168,22 @@ impl<'a> List<'a> {
     }
 }
 
-/// Parameters of a caller's list of plain values: its first element, their number, and the distance from one to the
-/// next, bytes.
+/// Parameters of a caller's array of structs without struct_size: its first element, the number of elements, and the
+/// distance from one to the next, bytes.
 pub(in crate::capi) struct ListParameters<T> {
     pub(in crate::capi) first: *const T,
     pub(in crate::capi) count: u32,
     pub(in crate::capi) size: u32,
 }
 
-/// A caller's list of plain values, `size` bytes apart.
+/// A caller's array to read, of structs without struct_size that lie `size` bytes apart.
 pub(in crate::capi) struct Places<T> {
     first: *const T,
     size: usize,
 }
 
 impl<T: Copy> Places<T> {
-    /// Checks the parameters of a list.
+    /// Checks the parameters of the array.
     ///
     /// # Errors
     /// If there are more elements than `limit`, the pointer is NULL or misaligned, or the size does not fit.
@@ -209,7 +209,7 @@ impl<T: Copy> Places<T> {
     }
 }
 
-/// A caller's buffer for plain values, `size` bytes apart.
+/// A caller's array to fill, of structs without struct_size that lie `size` bytes apart.
 pub(in crate::capi) struct Room<T> {
     first: *mut T,
     capacity: usize,
@@ -217,7 +217,7 @@ pub(in crate::capi) struct Room<T> {
 }
 
 impl<T: Copy> Room<T> {
-    /// Checks the parameters of a buffer.
+    /// Checks the parameters of the array.
     ///
     /// # Errors
     /// If the pointer is NULL or misaligned, or the size does not fit.
@@ -250,8 +250,8 @@ impl<T: Copy> Room<T> {
     }
 }
 
-/// Checks the size of a list's plain values. Within a major version they never change, and a later version appends to
-/// them.
+/// Checks the caller's size of an array element. Within a major version a later version only appends fields, so a
+/// larger size is accepted.
 fn check_element_size<T>(name: &str, size: u32) -> Result<()> {
     let (least, align) = (size_of::<T>(), align_of::<T>());
     if (size as usize) >= least && (size as usize).is_multiple_of(align) {

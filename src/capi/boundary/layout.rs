@@ -1,5 +1,5 @@
-//! Reading and writing of the header's structs. It handles the sizes of other versions and extension chains, and checks
-//! every number under its name in the header.
+//! Reading and writing of the header's structs, with the sizes of other versions and with extension chains. Every
+//! number is checked under its name in the header.
 //!
 //! `build.rs` writes the tables from the struct definitions themselves, so every new field is checked from the start:
 //! floats must be finite, enumerations known, reserved fields zero.
@@ -43,7 +43,7 @@ pub(crate) struct StructInfo {
     pub name: &'static str,
     pub size: usize,
     pub align: usize,
-    /// Whether there is a `WK_X_INIT`; plain values of lists have none.
+    /// Whether there is a `WK_X_INIT`; structs without struct_size, which are elements of arrays, have none.
     pub has_init: bool,
     pub fields: &'static [LayoutField],
 }
@@ -90,7 +90,7 @@ mod table {
 }
 pub(crate) use table::*;
 
-/// Returns `sizeof` in the type of the structs' first field.
+/// Returns `sizeof` as a `u32`, the type of `struct_size`.
 pub(crate) const fn struct_size<T>() -> u32 {
     size_of::<T>() as u32
 }

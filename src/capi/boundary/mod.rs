@@ -2,7 +2,7 @@
 //!
 //! A call runs inside [`guard`], which stops panics and keeps the thread's last error (`call`). It finds its objects by
 //! their handles (`handles`, `objects`). Each object holds the cell of its device (`device_cell`), which knows the
-//! device's owner (`owner`). The call checks plain parameters (`input`) and reads and writes structs of any version
+//! device's owner (`owner`). The call checks its parameters (`input`), and reads and writes structs of any version
 //! (`layout`). `numbers` has the statuses and struct types, and `log_sink` has the host's log callback.
 
 pub(in crate::capi) mod call;
