@@ -7,6 +7,7 @@ use crate::{
 };
 
 impl View {
+    /// Checks that the stages come in order and each at most once in the frame.
     fn check_order(&self, frame_id: u64, stages: Stages) -> Result<()> {
         if frame_id != self.history.report.frame_id || self.history.recorded == Stages(0) {
             return Ok(());

@@ -172,7 +172,7 @@ impl View {
         let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
         let target = self.cache.target.of(context.target.color, Layer::view);
         let groups = [group, tables, self.cache.surroundings.bind_group()];
-        // A GPU skips by branches what is not drawn; another pipeline for that would cost it a hitch.
+        // A GPU skips by branches what is not drawn; to compile another pipeline for that would delay a frame.
         let splits = self.device.caps().software;
         let constants = if splits { composition.least() } else { composition.whole() };
         let has_grid = self.cache.even.is_some();

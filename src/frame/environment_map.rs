@@ -78,6 +78,7 @@ fn apart(blocks: impl Iterator<Item = FaceUniform>) -> Vec<u8> {
 struct EnvironmentInputs {
     /// Logarithms of quantities that change by factors; altitude in km; cover of a closed layer.
     sizes: [f64; 6],
+    /// Unit vector towards the brighter one of sun and moon.
     to_lamp: DVec3,
     world_to_enu: DMat3,
 }
@@ -101,6 +102,7 @@ impl EnvironmentInputs {
         }
     }
 
+    /// Whether light or weather have jumped since `earlier`.
     fn leaps_from(&self, earlier: &Self) -> bool {
         let turned = (0..3).any(|i| (self.world_to_enu.col(i) - earlier.world_to_enu.col(i)).length() > LEAP_RAD);
         self.sizes.iter().zip(earlier.sizes).any(|(now, earlier)| (now - earlier).abs() > LEAP)

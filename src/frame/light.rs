@@ -74,7 +74,9 @@ impl Frame<'_> {
 /// Settings that convert illuminance to the host's values.
 struct Numbers {
     space: ColorSpace,
+    /// Luminance of the value 1 in a scene-linear picture, cd/m^2.
     unit: f64,
+    /// Display units per cd/m^2.
     exposure: f64,
     curve: ToneCurve,
 }

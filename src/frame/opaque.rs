@@ -29,7 +29,8 @@ impl View {
         }
     }
 
-    /// Checks that written depth is no copy: where the host submits, Welkin cannot copy it back between submissions.
+    /// Checks that the depth to be written is the host's own texture, not a copy of it. Where the host submits, Welkin
+    /// cannot copy the depth back between submissions.
     pub(super) fn check_depth_is_one(&self, frame: &Frame<'_>) -> Result<()> {
         let written = frame.depth.filter(|_| frame.depth_access == DepthAccess::ReadWrite);
         if written.is_some_and(|depth| self.device.attached_depth(depth).is_copied) {

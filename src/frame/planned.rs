@@ -38,8 +38,8 @@ pub(super) fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
 }
 
 impl View {
-    /// Sets how wrong the view's pictures may be. After a few frames, what they do not need is left out. After an error
-    /// the budget is unchanged. Default: everything is drawn.
+    /// Sets the limits for the view's pictures: their error and their time. After a few frames the view leaves out the
+    /// parts that its pictures do not need. After an error the budget is unchanged. Default: everything is drawn.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`], which names the field and its range.
@@ -50,8 +50,8 @@ impl View {
         device.check()
     }
 
-    /// Reports the time that the weather took in the last frame, ms, measured in whatever way the host's budget is
-    /// meant (its GPU timer, or a call that waits). Under a budget of time the plan follows these reports.
+    /// Reports the time that the weather took in the last frame, ms, measured as the host means its budget (by its GPU
+    /// timer, or by a call that waits). Under a budget of time the plan follows these reports.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] outside of (0, 1e5] ms; the view is then unchanged.

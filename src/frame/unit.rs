@@ -1,9 +1,9 @@
 //! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible. Example: a scene is lit without units and its
 //! white is 1; at 1 cd/m^2 a unit it is black in daylight, and nothing else would say why.
 //!
-//! In formats that end at 1 the largest value is known. Of float formats a few rows of the host's picture are read back
-//! without waiting, in a view's third frame and in every 1024th frame after it. An implausible unit is logged as a
-//! warning, and again only after it was plausible in between.
+//! In formats whose values end at 1 the largest value is known. From float formats a few rows of the host's picture are
+//! read back without waiting, in a view's third frame and in every 1024th frame after it. An implausible unit is logged
+//! as a warning, and again only after it was plausible in between.
 
 use std::sync::{
     Arc,
@@ -20,10 +20,11 @@ const ROWS: u32 = 8;
 /// First frame of a view that is checked, and number of frames between two checks.
 const FIRST: u64 = 3;
 const EVERY: u64 = 1024;
-/// Least ratio of white in the weather's light to the brightest pixel for which the unit must be wrong. A room with its
-/// lamps off has less.
+/// Ratio of two luminances from which on the unit is taken for wrong: that of white in the weather's light, divided by
+/// that of the picture's brightest pixels. In a room with its lamps off the ratio is smaller.
 const DARKER: f64 = 2000.0;
-/// Least ratio of the brightest pixel to white in the weather's light for which the unit must be wrong by day.
+/// Ratio from which on the unit is taken for wrong by day: the luminance of the picture's brightest pixels, divided by
+/// that of white in the weather's light. It is day if that white has at least `DAY_CD_M2`.
 const BRIGHTER: f64 = 2000.0;
 const DAY_CD_M2: f64 = 100.0;
 
@@ -37,9 +38,12 @@ const READY: u32 = 3;
 struct WatchedPicture {
     format: wgpu::TextureFormat,
     width: u32,
+    /// Bytes from one row of the readback to the next.
     pitch: u32,
     rows: u32,
+    /// The host's `cd_m2_per_unit`.
     unit: f64,
+    /// Luminance of white on level ground, cd/m^2.
     white: f64,
     /// Whether the sky may already be in the picture.
     with_background: bool,

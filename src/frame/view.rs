@@ -183,8 +183,8 @@ impl View {
         device.check_made()
     }
 
-    /// Adds to the costs the time that a measured call that began at `start` took beyond its recording, for taking over
-    /// and handing back the host's context and images.
+    /// Charges the time since `start`, less that of the measured call itself, to [`CostItem::HandOver`]: it went into
+    /// taking over and returning the host's context and images.
     pub(crate) fn add_hand_over(&mut self, start: Instant) {
         if let (Some(costs), Some(inside)) = (&mut self.history.report.costs, self.history.last_call) {
             let ms = (start.elapsed().saturating_sub(inside)).as_secs_f64() * 1e3;

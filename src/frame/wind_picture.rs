@@ -20,8 +20,11 @@ const PERIOD_M: f64 = 65_536.0;
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct WindUniform {
     map: WindMap,
+    /// Weather's wind, m/s (east, north, up).
     weathers: [f32; 3],
+    /// 1 if there is a wind that varies in space, else 0.
     varies: u32,
+    /// Position of the camera east and north of a fixed point, m, modulo [`PERIOD_M`].
     eye: [f32; 2],
     pad: [u32; 2],
 }

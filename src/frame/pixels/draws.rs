@@ -39,6 +39,7 @@ pub(in crate::frame) struct Draws {
     pixels: Kinds,
 }
 
+/// Pipelines for the pixels of a picture.
 enum Kinds {
     /// One draw of all pixels.
     One(wgpu::RenderPipeline),

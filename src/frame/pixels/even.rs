@@ -3,9 +3,9 @@
 //! Sky, air and fog change slowly from pixel to pixel, except at edges. A small pass draws what they add to every
 //! fourth pixel of every fourth row. A second pass finds the cells of this grid in which linear interpolation is within
 //! a thousandth of the curve through the texels and their neighbours. A pixel in such a cell is interpolated from the
-//! cell's four texels if what it shows is as far away as what they show. All other pixels are drawn in full: edges,
-//! thin objects, the edge of fog, the surroundings of the sun's disc. The grid has no clouds; each pixel lays its own
-//! clouds over the interpolated value.
+//! cell's four texels if its surface is as far away as theirs. All other pixels are drawn in full: edges, thin objects,
+//! the edge of fog, the surroundings of the sun's disc. The grid has no clouds; each pixel lays its own clouds over the
+//! interpolated value.
 
 use super::{pixel_kind::Pixels, variant::Variant};
 use crate::{
@@ -76,10 +76,14 @@ impl EvenLayouts {
 
 /// Coarse grid of a view.
 pub(in crate::frame) struct CoarseWeather {
+    /// Size of the picture, pixels.
     picture: [u32; 2],
+    /// Size of the grid, texels.
     size: [u32; 2],
+    /// Light with range, and transmittance, at each texel of the grid.
     weather: [wgpu::TextureView; 2],
     cells: wgpu::TextureView,
+    /// Bind group of the pass that finds the cells.
     of_weather: wgpu::BindGroup,
     pub group: wgpu::BindGroup,
 }
