@@ -18,10 +18,10 @@ pub struct Wish {
 /// Limits for a view's pictures: the time that one may take, and how wrong it may be.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Budget {
-    /// Largest error by what is left out, (0, 1]. The error of a pixel is |Y' - Y| / (Y + 0.01 white) after exposure,
-    /// where Y is the luminance with everything drawn and Y' that of the planned picture. The 95th percentile over
-    /// pixels must be at most this, and the worst pixel at most ten times this. 0.01 is not seen. Default `None`:
-    /// everything is drawn, unless `milliseconds` says otherwise.
+    /// Largest error that leaving parts out may cause, (0, 1]. The error of a pixel is |Y' - Y| / (Y + 0.01 white)
+    /// after exposure, where Y is the luminance with everything drawn and Y' that of the planned picture. The 95th
+    /// percentile over pixels must be at most this, and the worst pixel at most ten times this. An error of 0.01 is not
+    /// visible. Default `None`: everything is drawn, unless `milliseconds` says otherwise.
     pub tolerance: Option<f64>,
     /// Longest time that the weather may take in a frame, ms, (0, 1000]. It wins over the tolerance. The times that the
     /// host reports by [`View::report_time`](crate::frame::View::report_time) decide how many parts are left out.

@@ -1,5 +1,6 @@
-//! Choice of the steps to take in a gauged picture: those with the least work within the tolerance or, if that picture
-//! takes too long, those whose loss matters least.
+//! Choice of the steps to take in a gauged picture. A step leads from one rung of a part down to the next, so each step
+//! taken saves work. The choice is the set of steps with the least work within the tolerance or, if that picture takes
+//! too long, the set whose loss matters least.
 
 use super::{
     estimate::{Estimate, Estimator},
@@ -15,11 +16,13 @@ const CERTAINTY: f64 = 0.9;
 /// Demands on a picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Asked {
+    /// Largest error, (0, 1].
     pub tolerance: Option<f64>,
+    /// Longest time of the weather in a frame, ms.
     pub milliseconds: Option<f64>,
     /// Importance of each part.
     pub importance: [f64; MOST_PARTS],
-    /// Steps of the pinned parts, about which nothing is chosen: all of them, and those that are taken.
+    /// Steps of the pinned parts, which the choice leaves as they are: all of them, and those that are taken.
     pub pinned: (Set, Set),
 }
 

@@ -37,7 +37,8 @@ const KEPT: usize = 8;
 
 /// Findings of the gauge about a picture, and the estimates from them. Its buffers are reused between calls.
 pub(super) struct Estimator {
-    /// Change of luminance at each pixel by each step, taken together with the steps above it.
+    /// Relative change (Y' - Y) / (Y + 0.01 white) at each pixel due to each step, taken together with the steps above
+    /// it.
     changes: Vec<[f32; MOST_STEPS]>,
     scratch: Vec<f32>,
     kept: [(Set, Estimate); KEPT],

@@ -38,20 +38,20 @@ const FAILED: u32 = 4;
 /// Names and values of `override` constants.
 type OverrideValues = Vec<(&'static str, f64)>;
 
-/// Most channels, each of which has the change by one part.
+/// Most channels; each holds the change due to one part.
 pub const CHANNELS: usize = 5;
 
 /// Result of the gauge at one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GaugeSample {
-    /// Relative change of luminance without the part of each channel.
+    /// Relative change of luminance without the part of each channel, (Y' - Y) / (Y + 0.01 white).
     pub composed: [f32; CHANNELS],
     /// Kind of the pixel: 1 where the host drew something, -1 where it did not, 0 where the host keeps the pixel for
     /// itself.
     pub kind: f32,
     /// Luminance with everything but drops, 1 = white.
     pub luminance: f32,
-    /// Mean optical depth of what drops hide.
+    /// Optical depth of the drops and flakes that are drawn one by one, up to the pixel's surface.
     pub hidden: f32,
 }
 

@@ -29,7 +29,9 @@ pub enum GaveWay {
 /// two parts that are drawn together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct WorkAmount {
+    /// Number of pixels.
     pub pixels: f64,
+    /// Work that each step saves, in pixels without any parts.
     pub steps: [f64; MOST_STEPS],
     /// First steps of both parts, and their extra work, which has the cost ratio of the first one.
     pub together: ([usize; 2], f64),
@@ -50,6 +52,7 @@ impl WorkAmount {
         self.weighed(&[1.0; MOST_STEPS])
     }
 
+    /// Returns the whole work, with that of each step multiplied by its ratio.
     fn weighed(&self, ratios: &[f64; MOST_STEPS]) -> f64 {
         let steps = self.steps.iter().zip(ratios).map(|(w, r)| w * r).sum::<f64>();
         self.pixels + ratios[self.together.0[0]] * self.together.1 + steps
@@ -60,7 +63,8 @@ impl WorkAmount {
 const LATE: u32 = 4;
 /// Number of reports that are kept.
 const SEEN: usize = 5;
-/// Largest ratio of a part's cost here to the constants' cost; its inverse is the smallest.
+/// Largest ratio of a part's cost on this machine to the cost that the constants give; its inverse is the smallest
+/// ratio.
 const MOST_RATIO: f64 = 8.0;
 /// Cost of the changed parts, as a share of the rest of the picture, at which a correction counts half. Smaller parts
 /// drown in noise and count less.

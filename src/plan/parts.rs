@@ -1,8 +1,9 @@
 //! Parts of the weather that a picture can draw in less detail, and the steps of detail.
 //!
 //! A part is drawn at one of its rungs. The first rung is all of the part. The last is nothing, or the cheapest
-//! stand-in. Each room registers its own parts ([`crate::frame::PARTS`] lists them). Budgets, plans, the C API and
-//! saved plans follow from that list and grow with it.
+//! stand-in. A step leads from one rung down to the next: taking it saves work and changes the picture. Each room
+//! registers its own parts ([`crate::frame::PARTS`] lists them). Budgets, plans, the C API and saved plans follow from
+//! that list and grow with it.
 
 /// Largest number of parts in a list.
 pub const MOST_PARTS: usize = 16;
@@ -20,21 +21,21 @@ pub struct Part {
     pub rungs: &'static [&'static str],
     /// Importance to viewers, [0, 1], unless a budget sets another.
     pub importance: f64,
-    /// Way in which the gauge finds the change by leaving the part out.
+    /// Way in which the gauge finds the change due to leaving the part out.
     pub worth: Worth,
 }
 
-/// Way in which the gauge finds the change of a picture by leaving a part out.
+/// Way in which the gauge finds the change of a picture due to leaving a part out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worth {
     /// The gauge composes the picture without the part, in this channel. Parts that share a channel each count with the
-    /// change by all of them together.
+    /// change due to all of them together.
     Composed(usize),
-    /// A closed form gives the change by each rung (`plan::Unseen`). For the last rung the gauge adds the change by the
-    /// part's stand-in, in this channel.
+    /// A closed form gives the change due to each rung (`plan::Unseen`). For the last rung the gauge adds the change
+    /// due to the part's stand-in, in this channel.
     Unseen(usize),
-    /// The gauge estimates the change in this channel, whether the part is drawn now or not. The estimate has the error
-    /// of the whole picture, but not its place in the picture.
+    /// The gauge estimates the change in this channel, whether the part is drawn now or not. The estimates of all
+    /// pixels together have the right size, but they do not say which pixels change.
     Estimated(usize),
 }
 

@@ -30,8 +30,8 @@ pub struct PartPlan {
     pub reason: Reason,
     /// Error of the picture with only this part at each rung, as last gauged; that of the first rung is 0.
     pub worth: [Estimate; MOST_RUNGS],
-    /// Work of all of this part beside everything else in this picture, whether it is drawn or not, in units of a pixel
-    /// without any parts.
+    /// Work that the whole part adds, or would add, to this picture with everything else, in units of a pixel without
+    /// any parts.
     pub work: f64,
     /// Steps that the part has gone down; a fraction during a fade.
     depth: f32,
@@ -118,6 +118,7 @@ pub(crate) struct PartNow {
 /// Presence of each part in a frame, and its cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Presence {
+    /// Number of pixels of the picture.
     pub pixels: u64,
     pub parts: [PartNow; MOST_PARTS],
     /// Two parts that cost extra work if both are drawn, and that work.
@@ -138,16 +139,20 @@ impl Presence {
 
 /// Source of changes that the gauge cannot see, in closed form.
 pub(crate) trait Unseen {
-    /// Returns the changes by the first steps of a part at pixel number `pixel` of the gauge, at `ndc`. `picture` is
-    /// the luminance there, and the optical depth of what drops hide.
+    /// Returns the relative changes due to the first steps of a part at pixel number `pixel` of the gauge, at `ndc`.
+    /// `picture` is the exposed luminance there (1 = white), and the optical depth of the drops and flakes drawn one by
+    /// one.
     fn change(&self, part: &Part, pixel: usize, ndc: DVec2, picture: [f64; 2]) -> [f32; MOST_RUNGS - 1];
 }
 
 /// Situation in which a picture was gauged. A picture in a very different situation needs another gauge.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Situation {
+    /// Position of the camera in the host's world, m.
     pub position: DVec3,
+    /// Unit vector along the camera's axis.
     pub forward: DVec3,
+    /// Unit vector towards the sun.
     pub sun: DVec3,
     pub conditions: Conditions,
 }
@@ -184,8 +189,8 @@ struct Gauging<U> {
 /// Shares of a build of the sky's tables (default settings) that one frame does: the least one, because finer strips
 /// are not cut, and the usual one where there is time.
 const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
-/// Work on the tables, as a share of the picture's own work, that replaces the usual share where it is more. No frame
-/// then takes half as long again.
+/// Work on the tables in a frame, as a share of the picture's own work; it applies where it is more than the usual
+/// share of a build. No frame then takes more than 1.5 times as long.
 const SLICE: f64 = 0.3;
 
 /// Largest change of a pixel in one frame while a part fades. `FADE_FRAMES` has the fewest and the most frames of a
@@ -207,8 +212,11 @@ pub(crate) struct Planner<U> {
     gauging: Option<Gauging<U>>,
     /// Situation of the gauge on which the present choice is based.
     planned: Option<Situation>,
+    /// Situation of the last frame.
     last: Option<Situation>,
+    /// Steps that the present choice takes.
     left_out: Set,
+    /// Number of frames since the last gauge.
     frames: u32,
     plan: Plan,
     prediction: Prediction,
@@ -450,6 +458,7 @@ impl<U: Unseen> Planner<U> {
 }
 
 impl PartPlan {
+    /// Sets the drawn share from the steps that the part has gone down.
     fn show(&mut self) {
         self.share = 1.0 - self.depth / (self.part.rungs.len() - 1) as f32;
     }

@@ -74,6 +74,7 @@ pub(crate) fn read(bytes: &[u8], parts: &[Part], sky: &PlanSettings<'_>) -> Resu
     Ok(rungs)
 }
 
+/// Reads the rung of a part by its name.
 fn rung_of(drawn: &Table, part: &Part) -> Result<usize> {
     let found = drawn.get(part.name);
     let rung = found.and_then(Value::as_str).and_then(|name| part.rungs.iter().position(|r| *r == name));
@@ -93,10 +94,12 @@ fn unread(why: &dyn std::fmt::Display) -> Error {
     Error::new(Status::Parse, why.to_string()).within("plan")
 }
 
+/// Returns a value as the end of a message, at most 40 characters of it.
 fn shown(value: Option<&Value>) -> String {
     value.map_or("nothing".into(), |v| v.to_string().chars().take(40).collect())
 }
 
+/// Refuses fields other than the `known` ones.
 fn only(table: &Table, path: &str, known: &[&str]) -> Result<()> {
     let unknown = table.keys().find(|k| !known.contains(&k.as_str()));
     unknown.map_or(Ok(()), |k| {
@@ -105,6 +108,7 @@ fn only(table: &Table, path: &str, known: &[&str]) -> Result<()> {
     })
 }
 
+/// Returns the table `name`.
 fn table<'a>(whole: &'a Table, name: &str) -> Result<&'a Table> {
     let found = whole.get(name);
     found
@@ -112,6 +116,7 @@ fn table<'a>(whole: &'a Table, name: &str) -> Result<&'a Table> {
         .ok_or_else(|| fault(&format!(".{name}"), format_args!("must be a table, got {}", shown(found))))
 }
 
+/// Returns the text `name` of the table of the sky's settings.
 fn text_of<'a>(table: &'a Table, name: &str) -> Result<&'a str> {
     let found = table.get(name);
     found

@@ -17,14 +17,14 @@ const TRIALS: usize = 3;
 const FRONT: usize = 3;
 /// Strain above which other parts are not expected to compensate.
 const MOST_STRAIN: f64 = 3.0;
-/// Added to a strain, so that a set without strain is not infinitely good.
+/// Amount added to each strain, so that a set without strain is not infinitely good.
 const LEAST_STRAIN: f64 = 0.1;
 
-/// Free steps, on top of the pinned ones.
+/// Steps that the search may take, beside those of the pinned parts.
 #[derive(Clone, Copy)]
 pub(super) struct Free<'a> {
     pub ladder: &'a Ladder,
-    /// Steps that may be taken, always all those of a part.
+    /// Steps that may be taken: for each part all of its steps, or none.
     pub steps: Set,
     /// Steps of pinned parts that are taken.
     pub pinned: Set,
@@ -36,6 +36,7 @@ impl Free<'_> {
         (0..self.ladder.parts.len()).filter(|p| self.steps & self.ladder.whole(*p) != 0)
     }
 
+    /// Returns the number of different sets.
     fn sets(&self) -> usize {
         self.parts().map(|p| self.ladder.steps(p).len() + 1).product()
     }
@@ -59,6 +60,7 @@ impl Free<'_> {
         (rung < self.ladder.steps(part).len()).then(|| self.ladder.with(set, part, rung + 1))
     }
 
+    /// Returns the set with every step that may be taken.
     fn all(&self) -> Set {
         self.pinned | self.steps
     }

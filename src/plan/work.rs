@@ -3,7 +3,7 @@
 /// A way to draw an effect, as its room lists it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Listed<M> {
-    /// Unique within the effect, lower case with hyphens.
+    /// Name of the method, unique within the effect, in lower case with hyphens.
     pub name: &'static str,
     /// Parameters with which the method is built.
     pub method: M,
