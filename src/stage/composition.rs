@@ -69,12 +69,14 @@ impl PartialEq for Constants {
 pub(crate) enum Texture {
     /// Layer in front of the picture: exposed colour, and cover.
     Before = 0,
-    /// Cover that lies on the ground, one value for each cell of the host's terrain.
+    /// Water on the host's terrain, one texel for each cell (`shaders/ground/terrain.wgsl`).
     OnGround = 1,
-    /// Heights and classes of the host's terrain.
+    /// Slopes, heights, classes and snow of the host's terrain, one texel for each cell
+    /// (`shaders/ground/binding.wgsl`).
     Terrain = 2,
-    /// Layers of the sky. The last layer stands behind the sky's own light: radiance over [`FrameUniform::behind`]. Two
-    /// layers of clouds may come first: exposed light with transmittance, and distance (`shaders/between/hung.wgsl`).
+    /// Layers of the sky (`shaders/between/hung.wgsl`). The last one stands behind the sky's own light; its texels
+    /// times [`FrameUniform::behind`]`[0]` are radiances, cd/m^2. Two layers of clouds may come before it: exposed
+    /// light with transmittance, and distances.
     Behind = 3,
 }
 
@@ -366,7 +368,7 @@ impl Composition {
         self.stages = self.stages.without(stage);
     }
 
-    /// Sets how many draws of the same kind the planner counts.
+    /// Sets the number of times that the gauge composes a pixel.
     pub fn set_compositions(&mut self, count: u32) {
         self.block.compositions = count;
     }

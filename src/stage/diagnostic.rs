@@ -14,8 +14,8 @@ pub enum Diagnostic {
     /// The normal picture.
     #[default]
     None = 0,
-    /// Distance along the ray to what the host drew, m, by decades: black is 1 m or less; white is 100 km or more, and
-    /// the sky. Stage MEDIUM.
+    /// Distance along the ray to what the host drew, on a logarithmic scale: black is 1 m or less; white is 100 km or
+    /// more, and the sky. Stage MEDIUM.
     Distance = 1,
     /// Optical depth, for luminance, of air, fog and precipitation between the eye and the surface that the pixel
     /// shows: black is 0, a step is 1, white is 5 or more. The columns of rain areas are left out. Stage MEDIUM.
@@ -23,8 +23,8 @@ pub enum Diagnostic {
     /// Share of a surface under a water film, standing water or clear ice: black is 0, a step is 0.2, white is 1. Stage
     /// SURFACE.
     Wetness = 3,
-    /// Error of what the plan leaves out of air, fog and clear sky: change of luminance relative to a hundredth of
-    /// white, by decades: black is 1e-4 or less, white is 10 or more. Drops and stars are not counted. Stage MEDIUM.
+    /// Error due to what the plan leaves out of air, fog and clear sky, |Y' - Y| / (Y + 0.01 white), on a logarithmic
+    /// scale: black is 1e-4 or less, white is 10 or more. Drops and stars are not counted. Stage MEDIUM.
     PlanError = 4,
     /// Number of times that precipitation was drawn over a pixel: black is never, a step is 4 times, white is 20 times
     /// or more. Stage PARTICLES.

@@ -3,10 +3,10 @@
 use super::composition::{Contribution, Texture};
 use crate::error::{Error, Result, Status};
 
-/// Output that one effect gives and others take. One effect gives each.
+/// Output that exactly one effect gives and others take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Output {
-    /// Light of lightning flashes, in the moment.
+    /// Light of lightning flashes. It is part of the moment ([`crate::moment::SceneMoment::flash`]).
     Flashes,
     /// Optical depth of fog from the camera straight up.
     FogDepth,

@@ -1,8 +1,8 @@
 //! Report of a frame, and the cost of each effect where the host asks for it
 //! ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
 //!
-//! A cost is the wall time around a submission of one effect that the CPU waits for. It holds on every driver
-//! (timestamps of software drivers do not), at the price of a wait. It includes the CPU's part and the driver's own
+//! A cost is the wall time around a submission of one effect that the CPU waits for. It is right on every driver
+//! (timestamps of software drivers are not), at the price of a wait. It includes the CPU's part and the driver's own
 //! hand-over, some tens of microseconds an effect on a GPU. Frames that are not measured submit once and wait for
 //! nothing.
 
@@ -173,8 +173,11 @@ fn ms_since(start: Instant) -> f64 {
 /// Times of a measured call: its arrival, the start of its own work, and the end of its last effect; and the costs of
 /// the frame's earlier calls.
 struct Watch {
+    /// Arrival of the call.
     came: Instant,
+    /// Start of the call's own work.
     start: Instant,
+    /// End of the last item.
     last: Instant,
     costs: Costs,
 }
@@ -224,8 +227,8 @@ impl<'a> Recording<'a> {
         self.device.submit(std::mem::replace(self.encoder, next));
     }
 
-    /// Charges what was recorded since the last item to `item`. In a measured call it is submitted and waited for. If
-    /// the item did not run (`ran` is false), its time is charged to no item.
+    /// Ends the work for `item`: its cost is the time since the last call of this function. A measured call submits the
+    /// work and waits for it. If the item did not run (`ran` is false), its time is charged to no item.
     pub fn ends(&mut self, item: CostItem, ran: bool) -> Result<()> {
         let Some(watch) = &mut self.watch else { return Ok(()) };
         if ran {

@@ -58,8 +58,8 @@ pub(crate) struct FrameUniform {
     pub flash_haze: f32,
     pub flash_scattering: f32,
     pub flashes: [FlashUniform; MAX_FLASH_LAMPS],
-    /// Share of direct light in all light on level ground, a channel, divided by the mean share that clouds let
-    /// through; then that mean share.
+    /// For each channel: share of direct light in all light on level ground, divided by the mean share that clouds let
+    /// through. The fourth value is that mean share.
     pub cloud_shadow: [f32; 4],
     /// Size of the picture, pixels.
     pub picture: [f32; 2],
@@ -74,19 +74,24 @@ pub(crate) struct FrameUniform {
     /// Factor, a power of two, that scales light so that white is about 1.
     pub even_scale: f32,
     pub pad: f32,
-    /// Tables, over the angle, of what bows add to the phase function of drops, 1/sr a channel: in the low air, and in
-    /// the columns under rain areas.
+    /// Light that bows add to the phase function of drops, 1/sr per channel, tabulated over the scattering angle: for
+    /// drops in the low air, and for those in the columns under rain areas.
     pub bows: [BowTable; 2],
 }
 
 /// Light of lightning flashes in a frame's block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FlashBlock {
+    /// Colour of the light, normalised to luminance 1.
     pub color: [f32; 3],
     pub count: u32,
+    /// Height of the lit face of the clouds above the camera, m.
     pub plane: f32,
+    /// Cover of these clouds, 0 to 1.
     pub cover: f32,
+    /// Extinction of the haze in front of the clouds, 1/m.
     pub haze: f32,
+    /// Scattering coefficient of the air, 1/m.
     pub scattering: f32,
     pub sources: [FlashUniform; MAX_FLASH_LAMPS],
 }
@@ -103,8 +108,8 @@ pub(crate) enum FrameBlock<'a> {
     /// Share drawn as a volume; mean light with cover, and height above the camera, where the plan gauges; cloud
     /// shadows where they are cast.
     Clouds { drawn: f32, mean: Option<([f32; 4], f32)>, shadow: Option<[f32; 4]> },
-    /// Extinction that the drawn drops account for, 1/m, and the distance up to which they do, m; and the drawn share
-    /// of it.
+    /// `hidden`: extinction that the drawn drops replace, 1/m, and the distance up to which they do, m. `share`: drawn
+    /// share of the drops.
     Rain { hidden: [f32; 2], share: f32 },
     /// Values for flakes, as `Rain` has them for drops.
     Snow { hidden: [f32; 2], share: f32 },
@@ -114,7 +119,7 @@ pub(crate) enum FrameBlock<'a> {
     Bows(&'a [BowTable; 2]),
 }
 
-/// Table, over the angle, of what a bow adds to the phase function.
+/// Light that a bow adds to the phase function, 1/sr per channel, tabulated over the scattering angle.
 pub(crate) type BowTable = [[f32; 4]; BOW_ENTRIES];
 
 impl FrameUniform {
@@ -157,7 +162,7 @@ impl FrameUniform {
     }
 }
 
-/// Number of entries of a table of bows.
+/// Number of scattering angles in a table of bows.
 pub(crate) const BOW_ENTRIES: usize = 160;
 
 /// Whether a format stores light as floats, not as a display's integer steps.
@@ -166,9 +171,9 @@ pub(crate) fn is_float(format: wgpu::TextureFormat) -> bool {
     matches!(format, F::Rgba16Float | F::Rgba32Float | F::Rg11b10Ufloat)
 }
 
-/// Scale of light in the coarse grid. It follows from the luminance that eyes adapt to, so that it does not depend on
-/// how the host of a scene-linear picture exposes it; or from a display's exposure where that shows darker things. It
-/// is rounded down to a power of two, so that a change of scale causes no rounding.
+/// Returns the scale of light in the coarse grid, 1/(cd/m^2): the exposure for the luminance to which eyes adapt, or
+/// the display's exposure if that is larger (it then shows darker things). A scene-linear host's own exposure has no
+/// influence. The scale is rounded down to a power of two, so that a change of scale causes no rounding.
 fn even_scale(adaptation_cd_m2: f64, display_exposure: f64) -> f32 {
     let eyes = Exposure::Auto { compensation_ev: 0.0 }.factor(adaptation_cd_m2);
     eyes.max(display_exposure).log2().floor().clamp(-100.0, 100.0).exp2() as f32
