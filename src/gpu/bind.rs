@@ -114,8 +114,9 @@ pub(crate) fn no_layers(device: &wgpu::Device) -> wgpu::TextureView {
     }))
 }
 
-/// Creates a view of all layers of a texture. In wgpu's OpenGL backend a view of a single layer of an array reads as
-/// empty; a texture with one layer counts as no array, and one with a multiple of six layers as a cube map array.
+/// Creates a view of all layers of a texture, as an array. wgpu's OpenGL backend needs care: a view of a single layer
+/// of an array reads as empty, a texture with one layer is no array, and one whose number of layers is a multiple of
+/// six becomes an array of cube maps.
 pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),

@@ -48,9 +48,9 @@ impl Page {
         Self { buffer, staged: vec![0; bytes], changed: 0..0, taken: Vec::new() }
     }
 
-    /// Takes the last free range of this many bytes that begins at a multiple of `step`. The first block taken, which
-    /// every frame writes, thus lies at the end of the page; the tables at that block's own end rarely change, so no
-    /// write has to span them.
+    /// Takes the last free range of this many bytes that begins at a multiple of `step`. The first block taken
+    /// therefore lies at the end of the page. It is the frame's own block: each frame writes its beginning, and its
+    /// tables at the end rarely change. The changed range of a page thus ends before these tables.
     fn take(&mut self, bytes: usize, step: usize) -> Option<Range<usize>> {
         let ends = std::iter::once(self.staged.len()).chain(self.taken.iter().map(|taken| taken.start));
         let starts = ends.map(|end| end.checked_sub(bytes).map(|start| start - start % step));

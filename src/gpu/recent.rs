@@ -1,7 +1,8 @@
 //! Least-recently-used cache of objects that are created when first needed.
 //!
-//! Hosts' formats and weathers' parts give pipelines many variants. When the cache is full, a new object replaces the
-//! least recently used one, so that memory stays bounded however long a session changes between variants.
+//! Pipelines have many variants: one for each combination of the host's formats and the weather's parts. When the cache
+//! is full, a new object replaces the least recently used one, so that memory stays bounded however long a session
+//! changes between variants.
 
 /// Values found by their keys; at most `MOST` of them.
 pub(crate) struct LruCache<K, V, const MOST: usize> {

@@ -11,8 +11,7 @@ fn a_noop_device_exists_everywhere() {
     assert_eq!(device.caps().backend, wgpu::Backend::Noop);
 }
 
-/// Submits a draw of so many texels along a side that goes round a long loop in each; answers how long the wait for it
-/// lasted, s.
+/// Submits a draw of `side` x `side` texels, each with a long loop; returns the time until the GPU has finished, s.
 fn busy(device: &Device, side: u32) -> Result<f64> {
     let text = "@vertex fn v(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
             return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
@@ -56,12 +55,12 @@ fn busy(device: &Device, side: u32) -> Result<f64> {
     Ok(begun.elapsed().as_secs_f64())
 }
 
-/// wgpu's OpenGL backend waits for 2.1 s at most.
+/// A wait must last until the GPU has finished, although wgpu's OpenGL backend itself waits for 2.1 s at most.
 #[test]
 fn a_wait_lasts_as_long_as_the_work() {
     let options = DeviceOptions { backends: wgpu::Backends::GL, ..Default::default() };
     let device = Device::headless(&options).unwrap();
-    // A GPU that is busy for so long counts as hung; a driver of software does not.
+    // A GPU that is busy for so long would count as hung; a software driver does not.
     assert!(device.caps().software, "tests run on software drivers");
     // The first draw compiles.
     let mut side = 32;

@@ -1,4 +1,4 @@
-//! Host's conditional rendering and active queries, in the context in which Welkin draws.
+//! Checks for the host's conditional rendering and active queries, in the context in which Welkin draws.
 //!
 //! Both affect what Welkin draws. Under conditional rendering whose query counted nothing, no draw is made, so tables
 //! that are drawn once would stay empty. An active query counts Welkin's samples. Neither can be suspended and resumed.

@@ -52,6 +52,7 @@ const UNASKED: &[&str] = &[
 /// uses `glBufferSubData`.
 pub(super) const STORAGE: [&str; 2] = ["GL_ARB_buffer_storage", "GL_EXT_buffer_storage"];
 
+/// Extension that says that float formats are renderable and filterable.
 const FLOATS: &str = "GL_ARB_color_buffer_float";
 
 /// Answers of the two functions on this thread.

@@ -47,6 +47,7 @@ pub(super) struct Inner {
     pub(super) backend: Backend,
     /// Framebuffer and its two textures, for reading state and probing.
     pub(super) probe: (u32, [u32; 2]),
+    /// Framebuffer for queries, whose attachments are changed.
     pub(super) scratch: u32,
     pub(super) tier0: bool,
     pub(super) targets: Vec<Entry>,

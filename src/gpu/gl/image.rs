@@ -73,11 +73,13 @@ pub(super) fn facts(ask: Ask<'_>, image: GlImage, side: TargetSide, size: (u32, 
     }
 }
 
+/// Returns the error for a name without an object.
 fn dead(side: TargetSide, kind: &str, name: u32) -> Error {
     let accepted = format!("the name of a {kind} of the host's context or its share group");
     Error::range(side.parameter(), &accepted, name)
 }
 
+/// Queries a texture.
 fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: TargetSide, size: (u32, u32)) -> Result<Facts> {
     let Ask { api, info, scratch, .. } = ask;
     let multisample = target == TEXTURE_2D_MULTISAMPLE;
@@ -131,6 +133,7 @@ fn attached_bits(api: &Api, name: u32, target: u32, side: TargetSide, scratch: u
     bits
 }
 
+/// Queries the bits of a framebuffer's attachment.
 fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: TargetSide) -> Bits {
     let get = |pname| {
         let mut value = 0;
@@ -180,6 +183,7 @@ fn stencil_bits(api: &Api, framebuffer: u32, depth_attachment: u32) -> i32 {
     found[1]
 }
 
+/// Returns the sized format with these bits.
 fn sized(bits: Bits, side: TargetSide) -> Result<u32> {
     let found = if side == TargetSide::Depth { bits.depth() } else { bits.color() };
     found.ok_or_else(|| {
@@ -191,6 +195,7 @@ fn sized(bits: Bits, side: TargetSide) -> Result<u32> {
     })
 }
 
+/// Queries a renderbuffer.
 fn renderbuffer_facts(api: &Api, name: u32, side: TargetSide) -> Result<Facts> {
     if api.IsRenderbuffer(name) == 0 {
         return Err(dead(side, "renderbuffer", name));
@@ -216,6 +221,7 @@ fn renderbuffer_facts(api: &Api, name: u32, side: TargetSide) -> Result<Facts> {
     Ok(facts)
 }
 
+/// Queries the image that a framebuffer draws to.
 fn framebuffer_facts(ask: Ask<'_>, name: u32, side: TargetSide, size: (u32, u32)) -> Result<Facts> {
     let Ask { api, info, .. } = ask;
     api.BindFramebuffer(FRAMEBUFFER, name);

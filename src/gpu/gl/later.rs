@@ -9,7 +9,9 @@ use super::check::GlInfo;
 
 /// Functions that joined ES 3.2 together, and the extensions that have them, each with its suffix.
 struct Later {
+    /// ES 3.2 names of the functions.
     functions: &'static [&'static str],
+    /// Extensions with these functions, each with the suffix of its names.
     extensions: &'static [(&'static str, &'static str)],
 }
 

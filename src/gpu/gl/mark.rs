@@ -15,7 +15,9 @@ use super::{api::Api, names::*};
 
 const ATTRIBUTE: u32 = 15;
 
+/// Number of the next mark.
 static NEXT: AtomicUsize = AtomicUsize::new(0x5745_4C4B);
+/// Vertex array and number of each live mark.
 static LIVE: Mutex<Vec<(u32, usize)>> = Mutex::new(Vec::new());
 
 /// Mark in one context.

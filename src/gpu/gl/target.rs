@@ -119,6 +119,7 @@ pub(super) struct Copied {
 pub(super) struct Entry {
     pub(super) desc: GlTargetDesc,
     pub(super) target: Arc<GlTarget>,
+    /// Number of the use, for dropping the least recently used target.
     pub(super) used: u64,
     pub(super) parts: Vec<TargetImage>,
     pub(super) made: TargetObjects,

@@ -16,6 +16,7 @@ const LINES: usize = 4;
 pub(super) struct WindowSize {
     program: u32,
     queries: [u32; LINES],
+    /// Size of the pending query, pixels.
     asked: Option<(u32, u32)>,
 }
 

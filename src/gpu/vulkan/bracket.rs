@@ -12,6 +12,7 @@ const MAX_BRACKETS: usize = 64;
 /// One image of a hand-over, with everything that its barriers depend on.
 type Lent = (HostImage, ImageRole);
 
+/// Recorded command buffers of one hand-over: to run before the commands, and after them.
 struct Bracket {
     lent: Vec<Lent>,
     buffers: [vk::CommandBuffer; 2],

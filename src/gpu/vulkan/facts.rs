@@ -268,7 +268,8 @@ impl EnabledFeatures {
         }
     }
 
-    /// Does so for the single-feature structures of Vulkan 1.1 to 1.3, and for those that Welkin never uses.
+    /// Removes features as [`Self::narrow`] does, from the single-feature structures of Vulkan 1.1 to 1.3, and from
+    /// those that Welkin never uses.
     ///
     /// # Safety
     /// The requirements of [`Self::narrow`].

@@ -17,6 +17,7 @@ pub struct VulkanHost {
     pub device: Arc<Device>,
     pub(super) record: Arc<HostRecord>,
     pub(super) raw: ash::Device,
+    /// Whether wgpu has released its last object on the host's device.
     pub(super) released: Arc<AtomicBool>,
     pub(super) images: Mutex<Imports>,
     /// Brackets, locked during a submission: semaphores and barriers belong to the next submission, so staging them and

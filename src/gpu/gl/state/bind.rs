@@ -8,6 +8,7 @@ const SLOTS: u32 = 16;
 /// Largest number of storage images that it binds.
 const IMAGES: u32 = 8;
 
+/// Part of a buffer that is bound to an indexed slot, bytes.
 #[derive(Clone, Copy, Default)]
 struct BufferRange {
     buffer: u32,
@@ -15,6 +16,7 @@ struct BufferRange {
     size: i64,
 }
 
+/// Texture level that is bound to an image unit.
 #[derive(Clone, Copy, Default)]
 struct Image {
     texture: u32,

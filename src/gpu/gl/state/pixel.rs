@@ -19,6 +19,7 @@ const EVERYWHERE: &[(u32, i32)] = &[
     (PACK_SKIP_ROWS, 0),
     (PACK_SKIP_PIXELS, 0),
 ];
+/// Pixel store parameters of desktop OpenGL.
 const DESKTOP: &[(u32, i32)] = &[
     (UNPACK_SWAP_BYTES, 0),
     (UNPACK_LSB_FIRST, 0),
@@ -27,6 +28,7 @@ const DESKTOP: &[(u32, i32)] = &[
     (PACK_IMAGE_HEIGHT, 0),
     (PACK_SKIP_IMAGES, 0),
 ];
+/// Pixel store parameters for compressed blocks (OpenGL 4.2).
 const COMPRESSED: &[(u32, i32)] = &[
     (UNPACK_COMPRESSED_BLOCK_WIDTH, 0),
     (UNPACK_COMPRESSED_BLOCK_HEIGHT, 0),
@@ -53,6 +55,7 @@ const TRANSFER: &[(u32, f32)] = &[
     (DEPTH_BIAS, 0.0),
 ];
 
+/// Saved pixel store and transfer parameters: name, value that wgpu assumes, the host's value.
 #[derive(Default)]
 pub(super) struct PixelState {
     store: Vec<(u32, i32, i32)>,
