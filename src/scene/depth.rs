@@ -1,12 +1,18 @@
 //! Depth conventions: conversion of a host's depth samples and projection to rays in the world and metres along them.
 //!
-//! A depth buffer holds the ratio of two linear forms of the eye-space point p = (x, y, z, 1), d = (r_z . p) / (r_w .
-//! p), with r_z and r_w rows of the host's projection (r_z halved with r_w where clip space runs from -1 to 1). A
-//! pixel's ray solves (r_x - x r_w) . p = (r_y - y r_w) . p = 0, which leaves one unknown, the distance. [`ViewRays`]
-//! does this algebra in f64 once a frame. A pixel then costs three multiply-adds and one division in f32, without
-//! cancellation:
+//! A depth buffer holds the ratio of two linear forms of the eye-space point p = (x, y, z, 1). With the rows r_x, r_y,
+//! r_z and r_w of the host's projection:
 //!
-//! * the depth is first turned so that 0 is far (e = d or 1 - d; the latter is exact in f32 for d >= 1/2), and the
+//! ```text
+//! d = (r_z . p) / (r_w . p)                                clip space from 0 to 1
+//! d = ((r_z + r_w) / 2 . p) / (r_w . p)                    clip space from -1 to 1
+//! (r_x - x r_w) . p = (r_y - y r_w) . p = 0                the ray of the pixel at (x, y) in normalised coordinates
+//! ```
+//!
+//! The ray and d leave one unknown, the distance. [`ViewRays`] does this algebra in f64 once a frame. A pixel then
+//! costs three multiply-adds and one division in f32, without cancellation:
+//!
+//! * the depth is first turned so that 0 is far: e = d or e = 1 - d. The latter is exact in f32 for d >= 1/2. The
 //!   constants 1/far and 1/near - 1/far are formed in f64, never as a difference on the GPU;
 //! * the ray's direction is an affine function of the pixel (its three coefficients come rotated to world axes), not
 //!   the difference of two unprojected points;
@@ -124,17 +130,17 @@ const KIND_LOGARITHMIC: u32 = 2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRays {
     kind: u32,
-    /// Coefficients of e = turn.x + turn.y * depth, which is 0 at the far end (for logarithmic depth at the near one).
+    /// Coefficients of `e = turn.x + turn.y depth`. e is 0 at the far end, or at the near end for logarithmic depth.
     turn: DVec2,
     /// Ray origin and (unnormalised) direction at the picture's centre, and their change per unit of ndc x and y.
     origin: [DVec3; 3],
     direction: [DVec3; 3],
-    /// Perspective: w = scale / (e - pole . (1, x, y)); parallel: t = (e - pole . (1, x, y)) * scale.
+    /// Perspective: `w = scale / (e - pole . (1, x, y))`. Parallel rays: `t = (e - pole . (1, x, y)) scale`, m.
     pole: DVec3,
     scale: f64,
     /// Plane distance per unit of w.
     plane_scale: f64,
-    /// Logarithmic depth: ln(c far + 1), and below it 1/c.
+    /// Constants of logarithmic depth: `ln(c far + 1)`, and in `inverse_c` 1/c, m.
     log_far: f64,
     inverse_c: f64,
 }
@@ -172,6 +178,7 @@ impl ViewRays {
         Ok(rays.turned(camera.rotation().transpose()))
     }
 
+    /// Computes rays that meet in a point, from the rows of the projection.
     fn central(x: DVec4, y: DVec4, depth: DVec4, w: DVec4, mapping: &DepthMapping) -> Result<Self> {
         let [x3, y3, w3] = [x.truncate(), y.truncate(), w.truncate()];
         let det = x3.cross(y3).dot(w3);
@@ -221,6 +228,7 @@ impl ViewRays {
         Ok(rays)
     }
 
+    /// Computes parallel rays, from the rows of the projection divided by w.
     fn parallel(x: DVec4, y: DVec4, depth: DVec4, reversed: bool) -> Result<Self> {
         let [x3, y3, z3] = [x.truncate(), y.truncate(), depth.truncate()];
         let turn = if reversed { DVec2::new(0.0, 1.0) } else { DVec2::new(1.0, -1.0) };
@@ -290,8 +298,8 @@ impl ViewRays {
         (self.view_depth(depth, ndc) * self.view_ray(ndc).slant).min(RANGE_SKY_M)
     }
 
-    /// Returns the distance of that surface from the camera's plane, m (N-51 of the compatibility laws);
-    /// [`RANGE_SKY_M`] without one.
+    /// Returns the distance of that surface from the camera's plane, m, as the fog laws of older simulators may measure
+    /// it; [`RANGE_SKY_M`] without one.
     pub fn view_plane(&self, depth: f64, ndc: DVec2) -> f64 {
         (self.view_depth(depth, ndc) * self.plane_scale).min(RANGE_SKY_M)
     }
