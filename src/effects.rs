@@ -95,9 +95,9 @@ pub(crate) const COUPLINGS: Couplings =
 /// Simulation state of the effects of a context, shared by all its views.
 pub(crate) struct Held {
     pub sky: Arc<Mutex<FollowedSky>>,
-    /// Advanced before the others, which may ask for the wind.
+    /// Solved wind; it is advanced before the others, which may query the wind.
     pub flow: HeldFlow,
-    /// Advanced before the ground, which takes its meltwater.
+    /// Lying snow; it is advanced before the ground, which takes its meltwater.
     pub snowpack: HeldSnow,
     pub fog: HeldFog,
     pub ground: HeldGround,

@@ -280,8 +280,8 @@ impl Context {
         self.world.over().check_time(time_s)
     }
 
-    /// Returns the moment at a camera at `eye`; `name` is the host's name for this position in errors. `kept` is the
-    /// scene of an earlier call, which is reused if nothing has changed since.
+    /// Returns the moment at a camera at `eye`, a position that an error calls `name`. `kept` is the scene of an
+    /// earlier call, which is reused if nothing has changed since.
     ///
     /// # Errors
     /// As [`Context::scene_at`].

@@ -24,6 +24,7 @@ fn checksum(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, fold)
 }
 
+/// Returns a saved state: the first line with the checksum of `body`, then `body`.
 fn sealed(body: &str) -> String {
     format!("{MAGIC}{FORMAT} {:016x}\n{body}", checksum(body))
 }

@@ -11,6 +11,7 @@ use crate::{
 };
 
 impl Context {
+    /// Returns the weather's wind at a time that the timeline knows.
     fn blowing(&self, time_s: f64) -> Result<Blowing> {
         self.check_time(time_s)?;
         Ok(self.world.over().wind.at(time_s))

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::scene::Scene;
 
-/// Light on the things that fall around a camera, in cd/m^2 and lux, or in these times an exposure.
+/// Light on the things that fall around a camera, in cd/m^2 and lux; after [`LightAround::exposed`], in these units
+/// times the exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightAround {
     /// Mean radiance of the sky.

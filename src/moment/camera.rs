@@ -45,18 +45,22 @@ pub(crate) struct SceneMoment<'a> {
     pub lamps: &'a [HostLight],
     /// The wind that varies in space: a host's grid, or a solved field.
     pub wind_volume: Option<&'a WindVolume>,
+    /// Texture of that wind for shaders.
     pub wind_texture: &'a WindTexture,
-    /// Detour that this wind gives the patches of the weather's low layer; `None` where no patches show it.
+    /// Detour of the patches of the weather's low layer in this wind (`src/wind/detour.rs`); `None` where there are no
+    /// patches.
     pub detour: Option<Detour>,
+    /// Wind that carries the air, computed at its first use.
     pub carried: OnceCell<Carrying<'a>>,
     /// Light of lightning flashes in this frame, once it is known.
     pub flash: OnceCell<FlashLight>,
 }
 
-/// Light of lightning flashes, as the lamps that it comes from.
+/// Light of lightning flashes, as a list of lamps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FlashLight {
     pub lamps: [FlashLamp; MAX_FLASH_LAMPS],
+    /// Number of `lamps` that shine.
     pub count: usize,
 }
 

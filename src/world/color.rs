@@ -8,9 +8,10 @@ use crate::{
     },
 };
 
-/// Returns the linear Rec. 709 colours, lux, of the part of unscattered sunlight at each of the planet's wavelengths.
-/// The colour of a light transfer at these wavelengths is their sum weighted by the transfer ([`Conversion::fitted`]).
-/// Where two wavelengths are too close to tell colours apart, each wavelength is one channel.
+/// Returns, for each of the planet's wavelengths, the linear Rec. 709 colour, lux, of the sunlight above the air that
+/// this wavelength stands for. With a transfer factor for each wavelength, the colour of the transferred light is the
+/// sum of these colours times their factors ([`Conversion::fitted`]). Where two wavelengths are too close to tell
+/// colours apart, each wavelength is one channel.
 ///
 /// Adapted (von Kries) so that unscattered sunlight is white, as for daylight film and eyes; on a D65 display it would
 /// look yellow.
@@ -21,7 +22,7 @@ pub(super) fn color_columns(planet: &Planet) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|k| [0, 1, 2].map(|c| conversion.matrix[c][k] / white[c] * lux))
 }
 
-/// Returns the colour of a transfer at the planet's wavelengths.
+/// Returns the colour of light, given as factors of sunlight at the planet's wavelengths.
 pub(crate) fn color_of(columns: &[[f64; 3]; 3], spectrum: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (0..3).map(|k| columns[k][i] * spectrum[k]).sum())
 }

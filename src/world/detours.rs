@@ -1,4 +1,5 @@
-//! Detours that a world keeps: the last map that was asked for, and its inputs.
+//! Cache of the last map of detours and its inputs. Detours say by how much air that flows around obstacles lags behind
+//! the wind's displacement (`src/wind/detour.rs`).
 
 use std::sync::{Arc, Mutex};
 
@@ -6,16 +7,19 @@ use glam::DVec2;
 
 use crate::wind::DetourMap;
 
-/// Inputs from which detours follow.
+/// Inputs from which a map of detours follows; equal inputs give equal maps.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct DetourInputs {
+    /// Revision of the wind that varies in space.
     pub volume: u64,
+    /// Hash or revision of the host's terrain; 0 without one.
     pub terrain: u64,
-    /// Weather's wind at two heights above ground, m/s.
+    /// Weather's wind (east, north) at 2 m and 20 m above ground, m/s.
     pub weathers_m_s: [DVec2; 2],
+    /// Distance that a patch drifts during its life, m.
     pub life_m: f64,
 }
 
-/// The last detours that were asked for, with their inputs.
+/// The last map of detours, `None` where nothing lags, with its inputs.
 #[derive(Default)]
 pub(super) struct KeptDetours(pub Mutex<Option<(DetourInputs, Option<Arc<DetourMap>>)>>);

@@ -5,12 +5,14 @@ use std::time::Instant;
 use super::state::World;
 use crate::error::{Error, Result, Status};
 
-/// Target and time limit of an update: the simulation time to which states are advanced, the present at the latest;
-/// when the update began, and how long it may take.
+/// Target and time limit of an update.
 #[derive(Clone, Copy)]
 pub(crate) struct Within {
+    /// Simulation time to which states are advanced, s; the present at the latest.
     pub until_s: f64,
+    /// Time at which the update began.
     pub begun: Instant,
+    /// Longest time that the update may take.
     pub most: std::time::Duration,
 }
 

@@ -11,6 +11,7 @@ use crate::{almanac::sun::Utc, error::Result, moment::Scene, planet::Planet, wea
 /// A scene with the weather at its place, and the inputs from which they follow.
 #[derive(Clone, Copy)]
 pub(crate) struct KeptScene {
+    /// Inputs from which the scene follows.
     from: SceneInputs,
     pub scene: Scene,
     /// The weather at the camera, with the precipitation of its region.
@@ -41,6 +42,7 @@ struct SceneInputs {
 }
 
 impl World {
+    /// Returns the present inputs of the scene at `eye`.
     fn scene_inputs(&self, eye: DVec3) -> SceneInputs {
         SceneInputs {
             eye,

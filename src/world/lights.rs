@@ -107,6 +107,7 @@ impl World {
         Ok([sun, moon])
     }
 
+    /// Returns the sun over a place, with what the clouds leave of its light.
     fn sun_over(
         &self,
         almanac: &SunPosition,
@@ -133,6 +134,7 @@ impl World {
         (sun, clouds)
     }
 
+    /// Returns the moon over a place, with what the clouds leave of its light.
     fn moon_over(
         &self,
         mut almanac: MoonPosition,

@@ -34,6 +34,7 @@ impl World {
         Ok(())
     }
 
+    /// Checks a region's fields and its own time.
     fn check_region(&self, area: &RainArea) -> Result<()> {
         area.validate()?;
         self.frame.place_at("rain_area.center_m", DVec3::from(area.center_m))?;

@@ -30,10 +30,11 @@ pub(crate) struct SavedWorld {
     sun: Option<[f64; 2]>,
     moon: Option<[f64; 2]>,
     timeline: String,
-    /// Drift of the air at the end of the last forgotten change: time, path, east, north.
+    /// Drift of the air at the end of the last forgotten change: time, s; length of its path, m; displacement east and
+    /// north, m.
     drifted: [f64; 4],
-    /// Drifts of the cloud layers at that time, by their slots: way (east, north) in distances from cloud to cloud, and
-    /// lives. Empty at time 0.
+    /// Drifts of the cloud layers at that time, by their slots: way east and north, in units of the distance between
+    /// clouds, and number of lives of clouds since time 0. Empty at time 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     layers_drifted: Vec<[f64; 3]>,
     created: toml::Table,
@@ -88,6 +89,7 @@ fn layers_drifted_from(saved: &[[f64; 3]], time_s: f64) -> Result<LayerDrifts> {
     Ok(drifts)
 }
 
+/// Returns the drifts of the cloud layers as numbers; none at time 0.
 fn saved_layers(drifts: &LayerDrifts) -> Vec<[f64; 3]> {
     if *drifts == LayerDrifts::ZERO {
         return Vec::new();
@@ -200,7 +202,7 @@ impl World {
         })
     }
 
-    /// Reads a saved world that fits this one, which was `created` so.
+    /// Reads a saved world, if it fits this one, whose description fixed the values of `created`.
     ///
     /// # Errors
     /// [`Status::Parse`] or [`Status::InvalidArgument`], naming what does not fit.

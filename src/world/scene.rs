@@ -38,16 +38,19 @@ const TWILIGHT_LN_LUX: [(f64, f64); 6] =
 /// Colour of twilight in linear Rec. 709 of luminance 1: about 11 000 K (Lee & Hernandez-Andres 2003).
 const TWILIGHT_COLOR: [f64; 3] = [0.83, 1.0, 1.5];
 
+/// Combines two triples channel by channel.
 fn map(a: [f64; 3], b: [f64; 3], f: impl Fn(f64, f64) -> f64) -> [f64; 3] {
     [0, 1, 2].map(|i| f(a[i], b[i]))
 }
 
 /// Vertical optical depths per wavelength.
 struct ZenithDepths {
+    /// Depths of gas by scattering.
     gas: [f64; 3],
     /// Depths of haze by scattering; `soot` has those by absorption.
     haze: [f64; 3],
     soot: [f64; 3],
+    /// Depths of ozone by absorption.
     ozone: [f64; 3],
 }
 
@@ -74,12 +77,12 @@ impl ZenithDepths {
     }
 }
 
-/// Albedo of the grey ground to which the eye adapts, and the one that snow-covered ground counts with. Snow of albedo
-/// 0.8 then appears two stops above grey, as photographers place it (Adams 1981, The Negative: zone VII).
+/// Albedo of the grey ground to which the eye adapts, and the albedo that replaces it on snow-covered ground. Snow of
+/// albedo 0.8 then appears two stops above grey, as photographers place it (Adams 1981, The Negative: zone VII).
 const GROUND_KEY: f64 = 0.18;
 const SNOW_KEY: f64 = 0.2;
-/// Largest path of scattered light through absorbing haze, in vertical thicknesses: scattering takes the light of a low
-/// sun off its slant path. Fitted to sums over skies.
+/// Longest path of scattered light through absorbing haze, in vertical thicknesses: light of a low sun leaves its slant
+/// path when it is scattered. Fitted to sums of radiance over computed skies.
 const LONGEST_WAY: f64 = 4.0;
 /// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
 const LUX_PER_W_M2: f64 = 110.0;
@@ -90,7 +93,7 @@ pub(crate) fn zenith_depth(planet: &Planet, altitude_m: f64) -> [f64; 3] {
     map(depths.grey(), depths.ozone, |s, o| s + o)
 }
 
-/// Returns how far night has come under a sun, from 0 by day to 1.
+/// Returns the share of night in twilight: 0 by day, 1 at night.
 pub(crate) fn night_share(sun: &Light) -> f64 {
     let elevation = libm::asin(sun.direction.z.clamp(-1.0, 1.0)).to_degrees();
     1.0 - smoothstep(NIGHT_BEGINS_DEG.1, NIGHT_BEGINS_DEG.0, elevation)
@@ -279,6 +282,7 @@ impl World {
         Ok((scene.ground.total_lux / LUX_PER_W_M2).round())
     }
 
+    /// Returns the place on the map of a position, m east and north of the world's origin, in its local frame.
     fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {
         let p = &local.place;
         let o = &self.frame.origin;

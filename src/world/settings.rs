@@ -30,6 +30,7 @@ impl GivenDirection {
         check_range(&format!("{name}.elevation_deg"), self.elevation_deg, -90.0, 90.0, "deg")
     }
 
+    /// Returns the unit vector (east, north, up) of the direction.
     pub(crate) fn unit(&self) -> DVec3 {
         direction(self.azimuth_deg, self.elevation_deg)
     }

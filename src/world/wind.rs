@@ -39,7 +39,7 @@ impl World {
     /// Returns the detours around a camera at `eye`: how far the air lags behind the wind's displacement. `None` where
     /// no patches of the weather's low layer show them.
     pub fn detour(&self, eye: DVec3, c: &Conditions, time_s: f64) -> Option<Detour> {
-        // Where a law of the host's replaces the low layer, its patches are the host's.
+        // A fog law of the host replaces the weather's low layer, and with it the patches.
         if self.set.undimmed || !c.fog.is_patchy() {
             return None;
         }
