@@ -160,6 +160,7 @@ impl Context {
         self.held.fog.law.as_ref()
     }
 
+    /// Locks the sky's tables of the context.
     pub(crate) fn sky(&self) -> Result<MutexGuard<'_, FollowedSky>> {
         self.held
             .sky
@@ -217,6 +218,7 @@ impl Context {
         Ok(*self.sky()?.settings())
     }
 
+    /// Returns the table of a planet's sky light, built at its first use.
     fn light_table(&self, planet: &crate::sky::Planet) -> Result<std::sync::Arc<LightTable>> {
         let device = self.device().clone();
         let _entered = device.enter()?;

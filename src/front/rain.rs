@@ -50,8 +50,8 @@ impl Context {
         rain_on(&self.world, surface, time_s)
     }
 
-    /// Returns the optical depth at 550 nm that the areas add between a place and another one `offset` metres away
-    /// (east, north, up of the first), on the mean over their pattern. Negative where they thin the weather's rain.
+    /// Returns the optical depth at 550 nm that the areas add between a place and another one `offset` metres away,
+    /// (east, north, up) of the first: the mean over their curtains. It is negative where they thin the weather's rain.
     pub(super) fn areas_depth(&self, position: DVec3, offset: DVec3, time_s: f64, c: &Conditions) -> Result<f64> {
         let (over, world) = (self.world.over(), &self.world);
         if over.regions.is_empty() {

@@ -20,7 +20,7 @@ use crate::{
 
 /// Distance, m, below which the light of fog has no air in front of it.
 const NEAR_FOG_M: f64 = 50.0;
-/// Ratio for level ground under an overcast sky: its irradiance over pi times the zenith's luminance (Moon and
+/// Ratio E / (pi L) of an overcast sky: E is the illuminance of level ground, L the luminance of the zenith (Moon and
 /// Spencer 1942).
 const UNDER_DECK: f64 = 7.0 / 9.0;
 
@@ -91,6 +91,7 @@ impl DirectionLight<'_> {
         Ok(self.solved.get_or_init(|| solved))
     }
 
+    /// Returns the ray through the clear air in a direction, lit by a lamp.
     fn line(&self, direction: DVec3, lamp: &Light) -> Sightline {
         let altitude_m = self.scene.place.altitude_m.clamp(-1e4, 1e8);
         Sightline { altitude_m, direction, to_lamp: lamp.direction }
@@ -139,8 +140,8 @@ impl DirectionLight<'_> {
         Ok((clear + night).lerp(above, deck_share))
     }
 
-    /// Returns the luminance of the ground and of the air in front of it, over that of a closed deck's zenith:
-    /// `ground_under_deck`.
+    /// Returns the luminance of the ground with the air in front of it, divided by that of a closed deck's zenith:
+    /// `ground_under_deck` of the shaders.
     fn ground_under_deck(&self, d: DVec3) -> Result<DVec3> {
         let Some(lamp) = self.lamps().next() else { return Ok(DVec3::ZERO) };
         let along = self.clear()?.whole(&self.line(d, lamp))?;

@@ -53,6 +53,7 @@ impl Context {
         self.change_snow(|held, world| held.press(world, strip))
     }
 
+    /// Changes the lying snow, and publishes it to the world.
     fn change_snow<T>(
         &mut self,
         act: impl FnOnce(&mut crate::snowpack::HeldSnow, &crate::world::World) -> Result<T>,
@@ -82,6 +83,7 @@ impl Context {
         led
     }
 
+    /// Checks that no steps of an update remain.
     fn check_led(&self) -> Result<()> {
         let wanted = "this comes after an update has done all of its steps";
         if self.is_behind() { Err(Error::new(Status::WrongOrder, wanted)) } else { Ok(()) }

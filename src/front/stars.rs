@@ -26,9 +26,9 @@ impl Context {
     }
 
     /// Returns the catalogue magnitude of the faintest star that the naked eye sees straight up from `position` at
-    /// simulation time `time_s`. It is [`limiting_magnitude`] against the sky's mean luminance, by which pictures leave
-    /// out stars too, less the extinction by air, fog and clouds at 550 nm. Negative infinity if no light comes
-    /// through.
+    /// simulation time `time_s`. It is [`limiting_magnitude`] for the sky's mean luminance, less the extinction by air,
+    /// fog and clouds at 550 nm, in magnitudes. Pictures leave out stars by the same function. Negative infinity if no
+    /// light comes through.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid; for times as [`Context::conditions_at`].
