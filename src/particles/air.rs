@@ -7,8 +7,11 @@ use crate::{error::Result, moment::SceneMoment};
 /// Air in which drawn things fall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MovingAir {
+    /// Displacement of the air by the wind since time 0, m (east, north, up).
     pub displacement_m: DVec3,
+    /// Velocity of the air, m/s (east, north, up).
     pub velocity_m_s: DVec3,
+    /// Simulation time, s.
     pub time_s: f64,
     /// Extinction of everything except what falls, 1/m.
     pub extinction_per_m: f64,

@@ -41,7 +41,8 @@ const MOST_S: f64 = 10.0;
 const STEP_S: f64 = 1.0 / 60.0;
 /// Largest number of steps in a frame.
 const MOST_STEPS: f64 = 8.0;
-/// Offset in the block of the camera's places, which are bound by themselves.
+/// Byte offset, in the step's block, of the camera's place in each shell. Passes that only read the states bind this
+/// part alone.
 const EYES: usize = 512;
 /// Factor by which a buffer that has to grow exceeds the requested size.
 const GROWTH: f64 = 1.5;
@@ -77,7 +78,7 @@ pub(crate) struct Stepped<'a> {
     /// Position of the camera, m: east, north, up of a point fixed to the world.
     pub position_m: DVec3,
     pub time_s: f64,
-    /// Current velocity of the air, m/s, and its displacement since an earlier time (s), m.
+    /// Current velocity of the air, m/s. `carried` returns its displacement since an earlier time (s), m.
     pub air_m_s: DVec3,
     pub carried: &'a dyn Fn(f64) -> DVec3,
     /// Whether all particles start anew, because nothing of earlier frames may show.
@@ -86,9 +87,8 @@ pub(crate) struct Stepped<'a> {
     pub wind: (WindView, Option<WindMap>),
 }
 
-/// Whether things that fall within `reach_m` of the camera are stepped: where the wind varies in space there, and
-/// afterwards as long as the picture has a history, so that nothing jumps. `was` says whether they were stepped in the
-/// frame before.
+/// Whether things that fall within `reach_m` of the camera are stepped. They are where the wind varies in space there.
+/// Once stepped (`was`), they stay so as long as the picture has a history (not `is_pure`), so that nothing jumps.
 pub(crate) fn is_due(now: &SceneMoment<'_>, device: &Device, reach_m: f64, was: bool, is_pure: bool) -> bool {
     let varies = || now.wind_volume.is_some_and(|volume| volume.distance_m(now.eye) <= reach_m);
     device.caps().tier > 0 && ((was && !is_pure) || varies())
@@ -155,10 +155,12 @@ impl Rooms {
         std::array::from_fn(|s| self.0[..s].iter().sum())
     }
 
+    /// Returns the capacity of all shells together.
     fn all(&self) -> u64 {
         self.0.iter().map(|n| u64::from(*n)).sum()
     }
 
+    /// Returns the counts, limited to the capacities.
     fn within(&self, counts: [u32; SHELLS]) -> [u32; SHELLS] {
         std::array::from_fn(|s| counts[s].min(self.0[s]))
     }

@@ -159,7 +159,8 @@ pub(crate) struct StreakContrast {
     y_sign: f64,
     /// Direction of the things' motion relative to the camera.
     axis: DVec3,
-    /// Standard deviation of the covered share, by the sine of the angle from the axis.
+    /// Standard deviation of the share of a pixel that things cover, tabulated over the sine of the angle between line
+    /// of sight and axis.
     deviations: [f64; ANGLES],
     tone: Tone,
     /// Whether there are lamps, which may make things arbitrarily bright.
@@ -167,9 +168,9 @@ pub(crate) struct StreakContrast {
 }
 
 impl StreakContrast {
-    /// Creates the contrast of things that move with a velocity in front of a camera. `variance` returns the variance
-    /// from pixel to pixel of the share that they cover, for their motion across the line of sight during the exposure,
-    /// m.
+    /// Creates the contrast of things that move with a velocity in front of a camera. `variance` takes their motion
+    /// across the line of sight during the exposure, m, and returns the variance from pixel to pixel of the share of a
+    /// pixel that they cover.
     pub fn new(
         shot: &StreakCamera<'_>,
         velocity_m_s: DVec3,
@@ -183,9 +184,10 @@ impl StreakContrast {
         Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, tone, lamps }
     }
 
-    /// Returns two numbers for pixel number `i`: its change by things whose radiance in a direction is `radiance`,
-    /// relative to the pixel's luminance plus a hundredth of white, and their contrast with it. The changes of many
-    /// pixels together have the distribution of those in pictures.
+    /// Returns two numbers for pixel number `i` of exposed luminance `picture` (1 = white): its relative change (Y' -
+    /// Y) / (Y + 0.01) due to things of radiance L = `radiance`(direction), and their contrast (L - Y) / (Y + 0.01),
+    /// both in exposed luminance. The change is a sample from the distribution that the pixels of a picture have, so
+    /// only many pixels together mean anything.
     pub fn at(&self, i: usize, ndc: DVec2, picture: f64, radiance: impl Fn(DVec3) -> DVec3) -> [f64; 2] {
         let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
         let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;
