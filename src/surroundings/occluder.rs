@@ -55,8 +55,11 @@ pub(crate) struct Occluder {
     origin_m: DVec3,
     /// Rays and depth of the map, relative to `origin_m`.
     pub rays: ViewRays,
+    /// 1 if row 0 of the texture is the map's top, -1 if it is the bottom.
     pub y_sign: f64,
+    /// Simulation time at which the content was right, s.
     time_s: f64,
+    /// Velocity of the content in the host's world, m/s.
     velocity_m_s: DVec3,
 }
 

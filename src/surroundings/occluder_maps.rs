@@ -79,7 +79,7 @@ fn pipeline(
     )
 }
 
-/// Returns the origins of maps of these sizes in a table, two beside each other and two below, and the table's size,
+/// Returns the origins of up to four maps of these sizes in a table of two columns and two rows, and the table's size,
 /// texels.
 fn placed(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, [u32; 2]) {
     let up = |v: u32| v.next_multiple_of(64);
@@ -113,6 +113,7 @@ impl OccluderTable {
         [self.size[0] / 8, self.size[1]]
     }
 
+    /// Copies the texels and the cells into the table.
     fn gather(&self, encoder: &mut wgpu::CommandEncoder) {
         let [x, y] = self.cells_at();
         for (from, at) in [(&self.fine, [0, 0]), (&self.cells[0], [0, y]), (&self.cells[1], [x, y])] {
@@ -201,6 +202,7 @@ impl OccluderMaps {
         Ok(())
     }
 
+    /// Computes the ranges of a map's texels.
     fn draw_texels(
         &self,
         device: &Device,
@@ -238,6 +240,7 @@ impl OccluderMaps {
         }
     }
 
+    /// Computes the ranges of the cells of 8 and of 64 texels.
     fn draw_cells(
         &self,
         device: &Device,

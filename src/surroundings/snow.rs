@@ -10,6 +10,7 @@ const SLOTS: usize = 1500;
 /// Snow at a place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SnowHere {
+    /// Depth, m.
     pub depth_m: f64,
     /// Density, kg/m^3; 0 without snow.
     pub density_kg_m3: f64,
@@ -55,6 +56,7 @@ pub(crate) struct LyingSnow {
     pub revision: u64,
     /// Whether any of these cells has snow.
     pub has_cells: bool,
+    /// Meltwater of each time slot, by the slot's number.
     melt: VecDeque<(i64, Meltwater)>,
 }
 

@@ -160,9 +160,9 @@ pub struct TerrainCells<'a> {
     /// tile.
     pub classes: Rows<'a, Option<SurfaceClass>>,
     /// Value that stands among the heights for cells without data, such as -9999, -32768, or that of the host's source.
-    /// These cells become holes, and so do cells whose height is NaN. The value must be finite and no height in use:
-    /// neither of a cell for which `classes` has a class other than unspecified, nor of a cell with ground in the same
-    /// tile outside the rectangle. Default `None`: every number is a height.
+    /// These cells become holes, and so do cells whose height is NaN. The value must be finite, and it must not be a
+    /// height in use: neither in a cell to which `classes` gives a class other than unspecified, nor in a cell with
+    /// ground in the same tile outside the rectangle. Default `None`: every number is a height.
     pub no_data_m: Option<f32>,
 }
 
