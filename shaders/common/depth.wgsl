@@ -1,7 +1,7 @@
 // Converts a depth sample and a pixel to a ray and a distance along it. src/scene/depth.rs has the f64 reference and
 // the derivation. It also computes the constants, in f64.
 
-// Range of a pixel in which nothing was drawn.
+// Range of a pixel in which nothing was drawn, m.
 const RANGE_SKY: f32 = 1e12;
 
 // Kinds of depth that a pipeline must read, one bit each: 1 perspective, 2 parallel rays, 4 logarithmic. It serves
@@ -90,8 +90,8 @@ fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return clamp(w, 0.0, RANGE_SKY);
 }
 
-// Depth of an object as view_depth counts it, from its clip w and its distance from the eye, moved `nearer` metres
-// towards the eye; and metres along its ray per unit of that depth.
+// x: depth of an object, as view_depth counts it, from its clip w and its distance from the eye, m; the object is moved
+// `nearer` metres towards the eye. y: metres along its ray per unit of that depth.
 fn depth_of(u: DepthUniform, clip_w: f32, distance: f32, nearer: f32) -> vec2f {
     let slant = distance / max(clip_w, 0.05 * distance);
     let parallel = (DEPTH_KINDS & 2u) != 0u && u.kind == 1u;

@@ -49,7 +49,7 @@ fn facing_of(u: DepthUniform, depth: f32, around: vec4f, ndc: vec2f, pixel: vec2
     }
     let n = across / area;
     let away = dot(n, ray.direction);
-    // The error of the host's depth over the distance to the neighbours is the angular error of the normal.
+    // Angular error of the normal: the error of the host's depth, divided by the distance to the neighbours.
     let off = abs(view_depth(u, depth + grain.x + grain.y * abs(depth), ndc) - here.depth) * ray.slant;
     let tilt = off * abs(away) / min(length(edge_x), length(edge_y));
     return Facing(select(n, -n, away > 0.0), 1.0 - smoothstep(0.1, 0.4, tilt), min(tilt, UNKNOWN_FACING));

@@ -5,11 +5,14 @@ const LEAST_PIXELS: f32 = 1.2;
 // Greatest length of a streak to either side, as a share of its distance.
 const LONGEST: f32 = 0.8;
 
-// xyz: half of the drawn path of an object that moves by `half` to either side of a position at distance `d`; w: factor
-// for its cover. A streak that comes near the eye is cut to the part of the exposure in which it moves `LONGEST` times
-// `d` to either side; in that part it hides as much as in the whole exposure. With c the drawn half length over d,
-// positions from d (1 - c) to d (1 + c) along a ray are darkened by the objects at d. That is atanh(c) / c times the
-// true amount, whatever the camera's direction. The factor is the inverse of this.
+// Drawn path and cover of an object that moves by `half`, m, to either side of a position at distance `d`, m. xyz: half
+// of the drawn path, m. w: factor for the cover.
+//   c = min(|half| / d, LONGEST)
+//   xyz = c d half / |half|
+//   w = c / atanh(c)
+// A streak near the eye is cut to the part of the exposure in which it moves LONGEST d to either side; in that part it
+// hides as much as in the whole exposure. Objects at distance d darken the positions from d (1 - c) to d (1 + c) along
+// a ray. That is atanh(c) / c times the true amount, whatever the camera's direction; w undoes it.
 fn part_drawn(half: vec3f, d: f32) -> vec4f {
     let whole = length(half) / d;
     let c = min(whole, LONGEST);
@@ -18,9 +21,9 @@ fn part_drawn(half: vec3f, d: f32) -> vec4f {
     return vec4f(half * (c / max(whole, 1e-9)), 1.0 - c2 * (0.33333333 + c2 * (0.08888889 + 0.085 * c2)));
 }
 
-// Time for which a disc of radius 1 that moves from -reach to reach along y covers a point, divided by the longest such
-// time of any point: the photometric model of Garg and Nayar (2007). Their tau / T is 1 / reach on the path of the
-// disc's middle.
+// Time for which a disc covers the point `at`, divided by the longest such time of any point (Garg and Nayar 2007,
+// photometric model). The disc has radius 1 and moves from -reach to reach along y. On the path of its centre, for
+// reach >= 1, the share of the exposure is tau / T = 1 / reach.
 fn passing(at: vec2f, reach: f32) -> f32 {
     let chord = sqrt(max(1.0 - at.x * at.x, 0.0));
     let passed = min(reach, at.y + chord) - max(-reach, at.y - chord);

@@ -14,8 +14,8 @@ override PARTICLES: bool = false;
 // Whether clouds cast shadows on what the host drew.
 override CLOUD_SHADOWS: bool = false;
 
-// Factor for the light on what the host drew, by the shadow of clouds. The host has lit it by the mean over positions;
-// this is the light at the position over that mean.
+// Factor for the light on what the host drew, in the shadows of clouds: the light at the position, divided by the mean
+// over positions with which the host has lit it.
 fn under_clouds(hung: Hung, range: f32) -> vec3f {
     if !CLOUD_SHADOWS || range >= RANGE_SKY {
         return vec3f(1.0);

@@ -7,7 +7,7 @@
 
 // Quantity to draw, numbered as in src/stage/diagnostic.rs.
 override DIAGNOSTIC: u32 = 1u;
-// Whether the frame lacks what the quantity is about.
+// Whether the frame has nothing of the quantity.
 override ABSENT: bool = false;
 
 const DISTANCE: u32 = 1u;
@@ -31,7 +31,8 @@ fn optical_depth(ray: ViewRay, seen: Seen) -> f32 {
     return -log(max(dot(through, vec3f(0.2126, 0.7152, 0.0722)), 1e-9));
 }
 
-// Relative change of luminance, over luminance plus 0.01 white, by what the plan leaves out of air, fog and clear sky.
+// Error due to what the plan leaves out of air, fog and clear sky: |Y' - Y| / (Y + 0.01), in exposed luminance (1 =
+// white).
 fn plan_error(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
     let hung = hung_in(seen.pixel, seen.range);
     drawn = vec4f(1.0, 1.0, 1.0, frame.drawn.w);

@@ -6,7 +6,7 @@
 
 @group(0) @binding(0) var even_weather: texture_2d_array<f32>;
 
-// Limits of the error: MOST_ERROR times the sum of the light and LEAST_LIGHT (1/200 of white); MOST_ERROR of
+// Limits of the error: MOST_ERROR (light + LEAST_LIGHT) for light, where LEAST_LIGHT is 1/200 of white; MOST_ERROR for
 // transmittance.
 const LEAST_LIGHT: f32 = 0.005 * EVEN_WHITE;
 const MOST_ERROR: f32 = 1e-3;
@@ -32,8 +32,8 @@ fn row(at: vec2i, along: vec2i) -> Row {
     let b = texel(at);
     let c = texel(at + along);
     let d = texel(at + 2 * along);
-    // The error of a line between the middle two texels is 1/8 of the second difference. The greater of two second
-    // differences counts, because at a step in the light they have opposite signs and would cancel each other.
+    // Error of linear interpolation between the middle two texels: |a - 2 b + c| / 8 or |b - 2 c + d| / 8, whichever is
+    // greater. At a step in the light the two second differences have opposite signs and would cancel each other.
     let bent = max(abs(a[0].rgb - 2.0 * b[0].rgb + c[0].rgb), abs(b[0].rgb - 2.0 * c[0].rgb + d[0].rgb)) / 8.0;
     let dimmed = max(abs(a[1].rgb - 2.0 * b[1].rgb + c[1].rgb), abs(b[1].rgb - 2.0 * c[1].rgb + d[1].rgb)) / 8.0;
     // If the ranges of the two texels differ, a pixel between them may have any range between theirs, and the weather

@@ -6,7 +6,7 @@
 
 const FROXEL_TILE: vec2f = vec2f(32.0, 18.0);
 const FROXEL_TILES: vec2f = vec2f(8.0, 4.0);
-// Distance of slice s of 32: NEAR (FAR/NEAR + 1)^(s/31) - NEAR, m.
+// Distance of slice s of 32, m: NEAR ((FAR / NEAR + 1)^(s / 31) - 1), with FAR = 1e5 m.
 const FROXEL_NEAR: f32 = 20.0;
 const FROXEL_LOG: f32 = 8.5173932; // ln(1e5/20 + 1)
 

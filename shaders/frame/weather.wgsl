@@ -17,9 +17,9 @@ const CLOUD_STRAIGHT: f32 = 1.8;
 // way.
 override DISCS: bool = true;
 
-// Planet's own ground, as far as it lies under a cloud deck. The deck lights it like an overcast sky, with an
-// illuminance of 7 pi / 9 times its zenith luminance (Moon and Spencer 1942). The deck also lights the air in front
-// (air_on).
+// Radiance of the planet's own ground under a cloud deck, with the air in front of it, cd/m^2. The deck lights it like
+// an overcast sky: E = 7 pi / 9 L, with E the illuminance of level ground and L the zenith luminance (Moon and Spencer
+// 1942). The deck also lights the air in front (air_on).
 fn ground_under_deck(path: SkyPath) -> vec3f {
     let transmittance = exp(-path.depth);
     let ground = sky_view.air.ground_albedo * (7.0 / 9.0) * f32(path.ray.grounded);

@@ -20,7 +20,8 @@ struct WindPicture {
 const WIND_OVER: f32 = 2.0;
 // Wind speed for one step of the scale, m/s.
 const WIND_OF_STEP: f32 = 4.0;
-// Side of an arrow's square divided by its distance; the side is rounded to a power of two in metres.
+// Side of the square around an arrow, divided by the square's distance. The side is rounded to a power of two in
+// metres.
 const ARROW_SQUARE: f32 = 0.06;
 // Position on the scale below which the picture is dark (black, blue), so that arrows are white.
 const DARK_SHARE: f32 = 0.3;

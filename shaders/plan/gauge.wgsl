@@ -3,8 +3,9 @@
 // - relative changes of luminance without air, without fog, without clear sky, and with a veil in place of drops;
 // - kind of the pixel: 1 where the host drew something, -1 where it drew nothing, 0 under the mask;
 // - exposed luminance;
-// - optical depth of what drops hide;
-// - relative change with a deck in place of clouds as a volume, whose cover is known here but not their places.
+// - optical depth of the drops and flakes that are drawn one by one;
+// - relative change with a deck in place of clouds drawn as a volume. The cover of these clouds is known here, but not
+//   their places.
 //!include "frame/composite.wgsl"
 //!include "frame/exposed.wgsl"
 
@@ -63,7 +64,7 @@ fn gauged(p: Looked) -> vec4u {
         behind_share = frame.behind.y * drawn.z;
         shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane, hung_for(k, ray, p.hung)));
     }
-    // The error measure of the whole library: the change of luminance relative to luminance plus a hundredth of white.
+    // Error measure of the whole library, (Y' - Y) / (Y + 0.01) in exposed luminance (1 = white).
     let less = vec4f(shown[1], shown[2], shown[3], select(shown[0], shown[4], frame.compositions > 4u));
     let change = clamp((less - shown[0]) / (shown[0] + 0.01) * (1.0 - p.mask), vec4f(-6e4), vec4f(6e4));
     // The real clouds are not sampled here, because they may not be drawn now. Instead, as many pixels as clouds cover,

@@ -7,7 +7,8 @@
 
 float welkin_cloud_shadow(sampler2D map, vec2 uv, vec2 camera_uv, float height, vec3 even) {
     vec2 away = abs(uv - camera_uv);
-    // Far from the camera and inside clouds, the mean share is used.
+    // Weight of the map against the mean share. It falls to 0 between 0.4 and 0.46 periods of the map from the camera,
+    // and over the highest 100 m below top_m.
     float far = max(away.x, away.y);
     float told = even.y * clamp((0.46 - far) / 0.06, 0.0, 1.0) * clamp((even.z - height) / 100.0, 0.0, 1.0);
     return mix(even.x, textureLod(map, uv, 0.0).r, told);

@@ -9,7 +9,8 @@ fn welkin_cloud_shadow(
     map: texture_2d<f32>, repeating: sampler, uv: vec2f, camera_uv: vec2f, height: f32, even: vec3f,
 ) -> f32 {
     let away = abs(uv - camera_uv);
-    // Far from the camera and inside clouds, the mean share is used.
+    // Weight of the map against the mean share. It falls to 0 between 0.4 and 0.46 periods of the map from the camera,
+    // and over the highest 100 m below top_m.
     let far = max(away.x, away.y);
     let told = even.y * clamp((0.46 - far) / 0.06, 0.0, 1.0) * clamp((even.z - height) / 100.0, 0.0, 1.0);
     return mix(even.x, textureSampleLevel(map, repeating, uv, 0.0).r, told);

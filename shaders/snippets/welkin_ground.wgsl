@@ -17,9 +17,10 @@ struct WelkinGround {
     standing: f32,
 }
 
-// Values of one node: how soaked it is, share under a film, level of standing water above the ground in mm, share under
-// ice. Soaked pores are a wetness of 0.3, the film is the rest: 0.15 mm of water cover 1 - 1/e of the grains of
-// asphalt.
+// Values of one node: how soaked it is (0 to 1), share under a film, level of standing water above the ground in mm,
+// share under ice. The first two follow from the node's wetness:
+//   wetness = 0.3 soaked + 0.7 (1 - exp(-film_mm / 0.15)), or 1 under standing water
+// A film of 0.15 mm covers 1 - 1/e of the grains of asphalt.
 fn welkin_ground_node(texel: vec4f) -> vec4f {
     let wetness = select(0.3 * texel.y + 0.7 * (1.0 - exp(texel.x / -0.15)), 1.0, texel.z > 0.0);
     return vec4f(smoothstep(0.0, 0.3, wetness), smoothstep(0.3, 1.0, wetness), texel.zw);
@@ -45,8 +46,10 @@ fn welkin_ground(ground: texture_2d<f32>, uv: vec2f) -> WelkinGround {
 }
 
 // Albedo of a wet surface. Light that has entered the water is reflected at its surface from below and falls on the
-// ground again (Angstrom 1925; Lekner & Dorf 1988, eq. 1 to 3). Fresnel's law over the half space reflects 0.0664 from
-// above and 0.4746 from below.
+// ground again (Angstrom 1925; Lekner and Dorf 1988, eq. 1 to 3). For soaked ground of dry albedo a:
+//   wet albedo = a (1 - 0.0664) (1 - 0.4746) / (1 - 0.4746 a)
+// A water surface reflects 0.0664 of diffuse light from above and 0.4746 of diffuse light from below (Fresnel's law,
+// integrated over the half space).
 fn welkin_wet_albedo(albedo: vec3f, water: WelkinGround) -> vec3f {
     let below = (1.0 - 0.0664) * (1.0 - 0.4746) / (1.0 - 0.4746 * clamp(albedo, vec3f(0.0), vec3f(1.0)));
     return albedo * mix(vec3f(1.0), below, water.soaked);
@@ -76,8 +79,9 @@ fn welkin_snow_node(texel: vec4f) -> vec4f {
     return vec4f(texel.x, vec3f(1.0, texel.zw) * step(1e-7, texel.x));
 }
 
-// Snow on the same grid, from wk_ground_texture.snow_texture. 2.5 cm of snow cover 0.76 of level ground; wet snow is
-// darker by 0.15.
+// Snow on the same grid, from wk_ground_texture.snow_texture.
+//   cover = tanh(depth / 0.025 m)
+//   albedo = albedo of dry snow (1 - 0.15 wetness)
 fn welkin_snow(ground: texture_2d<f32>, uv: vec2f) -> WelkinSnow {
     let place = uv * vec2f(textureDimensions(ground)) - 0.5;
     let last = vec2f(textureDimensions(ground)) - 1.0;

@@ -1,6 +1,6 @@
-// The wind that varies in space, as src/surroundings/wind.rs uploads it: one texel per node, with velocity times share,
-// and the share of the weather's wind that it replaces. Sample the texture at `wind_place` with its sampler (linear,
-// clamped), and pass the result to `wind_at`.
+// The wind that varies in space, as src/surroundings/wind.rs uploads it, one texel per node. w: share of the weather's
+// wind that it replaces. xyz: its velocity times this share, m/s. Sample the texture at `wind_place` with its sampler
+// (linear, clamped), and pass the result to `wind_at`, which returns xyz + (1 - w) weathers.
 
 struct WindMap {
     // Scale and offset from camera-relative metres to texture coordinates.
