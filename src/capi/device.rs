@@ -218,6 +218,7 @@ pub unsafe extern "C" fn wk_device_get_caps(device: *const wk_device, out_caps: 
     })
 }
 
+/// Returns the C flag of a graphics interface.
 fn backend_flag(backend: wgpu::Backend) -> wk_backend_flags {
     match backend {
         wgpu::Backend::Vulkan => WK_BACKEND_VULKAN,

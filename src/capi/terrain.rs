@@ -232,6 +232,7 @@ impl CellLists<'_> {
     }
 }
 
+/// Renames the lists in an error to the header's fields.
 fn named(e: Error) -> Error {
     e.renamed("terrain_cells.heights_m.len", "terrain_cells.height_count")
         .renamed("terrain_cells.heights_m_stride", "terrain_cells.height_stride")

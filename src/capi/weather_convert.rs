@@ -103,6 +103,7 @@ fn flat_name(param: &str, e: Error) -> Error {
     e.map_field(flat).within(param)
 }
 
+/// Converts all fields except the cloud layers.
 fn fields(c: &wk_weather) -> Result<Weather> {
     let some = |bit: wk_weather_has_flags, value: f64| (c.has & bit != 0).then_some(value);
     let has = |bit: wk_weather_has_flags| c.has & bit != 0;
@@ -173,6 +174,7 @@ fn fields(c: &wk_weather) -> Result<Weather> {
     })
 }
 
+/// Converts a cloud layer.
 fn cloud(c: &wk_cloud_layer) -> Result<CloudLayer> {
     let some = |bit: wk_cloud_layer_has_flags, value: f64| (c.has & bit != 0).then_some(value);
     Ok(CloudLayer {
@@ -319,6 +321,7 @@ impl WeatherOut {
     }
 }
 
+/// Returns the C struct of a cloud layer.
 fn cloud_to_c(layer: &CloudLayer) -> wk_cloud_layer {
     let mut has = HasBits(0_u32);
     let mut c = wk_cloud_layer {

@@ -9,6 +9,7 @@ pub(super) struct Bound {
     pub mask: Option<KeptLayer>,
     pub surface_classes: Option<KeptLayer>,
     pub normals: Option<KeptLayer>,
+    /// Present textures of the effects.
     pub own: Own,
     /// Previous textures of the effects and their bind group, for effects that draw into two textures by turns.
     pub before: Option<(Own, wgpu::BindGroup)>,

@@ -37,14 +37,18 @@ pub(super) struct DrawCache {
     /// Copy of the host's picture that shaders read. `target` is the picture that is drawn into.
     pub copy: Option<wgpu::Texture>,
     pub target: KeptView,
+    /// Textures that the bind group refers to, and the group.
     pub bound: Option<(Bound, wgpu::BindGroup)>,
     /// Draws of the last calls, with their pipelines.
     pub draws: LruCache<DrawKey, Draws, MOST_DRAWS>,
+    /// Depth attachment with the kinds of pixels.
     pub kinds: Option<KindAttachment>,
+    /// Coarse grid of the weather.
     pub even: Option<CoarseWeather>,
     pub opaque: Option<OpaqueStep>,
     /// Textures of the veil, once the host has asked for them.
     pub froxels: Option<Froxels>,
+    /// Cube map, once the host has asked for it.
     pub environment: Option<Box<EnvironmentMap>>,
 }
 

@@ -126,6 +126,7 @@ pub(super) struct EnvironmentMap {
     pub texture: wgpu::Texture,
     /// Views by face, then by level.
     levels: Vec<wgpu::TextureView>,
+    /// Views of the unfiltered map by face, then by level.
     source_levels: Vec<wgpu::TextureView>,
     layout: wgpu::BindGroupLayout,
     blocks: wgpu::Buffer,
@@ -134,9 +135,13 @@ pub(super) struct EnvironmentMap {
     filter: Filter,
     /// Light and weather when the last face was drawn; `None` makes the next frame draw all faces.
     drawn: Option<EnvironmentInputs>,
+    /// Face that the next frame draws.
     next: u32,
+    /// Frame that drew its faces last.
     pub frame_id: Option<u64>,
+    /// Factor from texels to cd/m^2.
     pub cd_m2_per_unit: f64,
+    /// Factor from texels to units of the host's colour.
     pub light_scale: f64,
 }
 

@@ -41,7 +41,7 @@ impl View {
         Ok(())
     }
 
-    /// Draws what the effects have that is opaque. If the host's depth is read-only, counts these effects instead.
+    /// Draws the opaque parts of the effects. If the host's depth is read-only, counts these effects instead.
     pub(super) fn draw_opaque<'a>(
         &mut self,
         frame_context: &FrameContext<'a>,

@@ -52,10 +52,12 @@ struct WatchedPicture {
 /// Check of one view's luminance unit.
 #[derive(Default)]
 pub(super) struct LuminanceUnitCheck {
+    /// Number of frames so far.
     frames: u64,
     has_warned: bool,
     buffer: Option<wgpu::Buffer>,
     state: Arc<AtomicU32>,
+    /// Picture whose readback is pending.
     looked: Option<WatchedPicture>,
 }
 

@@ -150,9 +150,12 @@ impl Drop for Entered<'_> {
     }
 }
 
+/// Faults that wgpu has reported, and the state of the native device.
 #[derive(Default)]
 struct Faults {
+    /// First fault since the last check.
     first: Mutex<Option<Error>>,
+    /// Whether the native device is lost.
     lost: AtomicBool,
     /// Whether the GPU does not finish its work: see [`Device::give_up`].
     hung: AtomicBool,
@@ -181,12 +184,15 @@ pub struct Device {
     shaders: Mutex<HashMap<String, Shader>>,
     caps: Caps,
     faults: Arc<Faults>,
+    /// Lock that lets one thread submit at a time.
     submission: Mutex<()>,
+    /// Number of submissions so far.
     submissions: AtomicU64,
     /// Work beyond drawing, for the benchmarks.
     pub(crate) counts: WorkTotals,
     /// Window images that are acquired but not yet presented or given back.
     of_windows: Mutex<Vec<wgpu::Texture>>,
+    /// Hooks of the host that owns the device; `None` for an own device.
     binding: Option<Arc<dyn HostBinding>>,
     _exit: Option<Exit>,
 }

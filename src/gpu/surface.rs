@@ -266,7 +266,9 @@ pub struct Surface {
     window: NativeWindow,
     options: Option<SurfaceOptions>,
     format: Option<wgpu::TextureFormat>,
+    /// Whether the surface is configured for the window as it is now.
     ready: bool,
+    /// Whether the surface must be created again.
     lost: bool,
 }
 

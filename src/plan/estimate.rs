@@ -40,7 +40,9 @@ pub(super) struct Estimator {
     /// Relative change (Y' - Y) / (Y + 0.01 white) at each pixel due to each step, taken together with the steps above
     /// it.
     changes: Vec<[f32; MOST_STEPS]>,
+    /// Errors of the pixels in one estimate.
     scratch: Vec<f32>,
+    /// Cached estimates; `next` counts them.
     kept: [(Set, Estimate); KEPT],
     next: usize,
 }

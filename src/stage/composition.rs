@@ -156,6 +156,7 @@ enum Scope {
 /// the parts that show now.
 #[derive(Clone, Copy)]
 struct ScopedConstant {
+    /// Shaders that the constant is for.
     scope: Scope,
     name: &'static str,
     whole: f64,

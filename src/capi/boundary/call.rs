@@ -13,17 +13,20 @@ use super::{device_cell::DeviceCell, handles, numbers::wk_status};
 use crate::error::{Error, Result, Status};
 
 thread_local! {
+    /// Last failure of this thread.
     static LAST: RefCell<Last> = RefCell::default();
     /// Number of boundary calls that this thread is in. A panic inside one becomes a message of Welkin's; the standard
     /// hook does not print it.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
     /// Fault to inject, see [`inject`].
     static INJECTED: Cell<Injected> = const { Cell::new(Injected::Nothing) };
+    /// File and line of the panic in this thread's present call.
     static PANIC_PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
 /// One call from C: access to objects, and the device that a panic would poison.
 pub(in crate::capi) struct Call {
+    /// Device that a panic poisons.
     device: Option<Arc<DeviceCell>>,
 }
 
@@ -128,6 +131,7 @@ fn remember(function: &str, error: &Error) -> wk_status {
     status
 }
 
+/// Returns the error for a panic.
 fn panic_error(payload: Box<dyn Any + Send>) -> Error {
     let text = payload.downcast_ref::<&str>().map(|s| (*s).to_owned());
     let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".into());

@@ -21,15 +21,19 @@ pub(in crate::capi) trait HandleObject: Any + Send + Sync {
     fn device(&self) -> Option<&Arc<DeviceCell>>;
 }
 
+/// Place for one object in the table.
 struct HandleSlot {
     generation: u32,
     kind: u8,
     name: &'static str,
+    /// Number of live objects whose parent this is.
     children: u32,
+    /// Slot of the parent.
     parent: Option<usize>,
     object: Option<Arc<dyn Any + Send + Sync>>,
 }
 
+/// All slots, and the indices of the free ones.
 #[derive(Default)]
 struct HandleTable {
     slots: Vec<HandleSlot>,
@@ -45,10 +49,12 @@ const GENERATION_BITS: u32 = if usize::BITS == 64 { 31 } else { 12 };
 const GENERATION_SHIFT: u32 = 1 + SLOT_BITS;
 const KIND_SHIFT: u32 = GENERATION_SHIFT + GENERATION_BITS;
 
+/// Returns the handle of a kind, a generation and a slot.
 fn encode(kind: u8, generation: u32, slot: usize) -> usize {
     (usize::from(kind) << KIND_SHIFT) | ((generation as usize) << GENERATION_SHIFT) | (slot << 1) | 1
 }
 
+/// Returns a number with this many lowest bits set.
 fn mask(bits: u32) -> usize {
     (1 << bits) - 1
 }

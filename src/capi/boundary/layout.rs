@@ -30,6 +30,7 @@ pub(crate) enum FieldKind {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LayoutField {
     pub name: &'static str,
+    /// Offset in the struct, bytes.
     pub offset: usize,
     pub kind: FieldKind,
     pub count: usize,
@@ -54,6 +55,7 @@ pub(crate) struct EnumInfo {
     #[allow(dead_code, reason = "for those who debug, and the tests")]
     pub name: &'static str,
     pub flags: bool,
+    /// Whether the type has 8 bytes, not 4.
     pub wide: bool,
     pub values: &'static [(&'static str, u64)],
 }

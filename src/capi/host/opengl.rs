@@ -70,6 +70,7 @@ pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_
     host.check().inspect_err(|_| view.take_back(before))
 }
 
+/// Sets the occluder maps of a context from images of an OpenGL host.
 pub(in crate::capi) fn set_occluder_maps<'a>(
     host: &GlHost,
     object: &ContextObject,
@@ -124,6 +125,7 @@ fn description(c: &wk_opengl_target, write_depth: bool) -> Result<Option<GlTarge
     }))
 }
 
+/// Converts an image; `None` for none.
 fn image(c: &wk_opengl_image) -> Option<GlImage> {
     match c.kind {
         WK_OPENGL_TEXTURE => Some(GlImage::Texture { name: c.name, target: c.target }),

@@ -70,6 +70,7 @@ fn check_format(param: &str, texture: &Option<Arc<TextureObject>>, accepted: &[w
     Err(Error::about(Status::Unsupported, param, rest))
 }
 
+/// Sets the occluder maps of a context from textures of an own device.
 pub(in crate::capi) fn set_occluder_maps<'a>(
     call: &mut Call,
     object: &ContextObject,

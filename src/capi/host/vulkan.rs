@@ -85,6 +85,7 @@ unsafe fn names<'a>(param: &str, p: *const *const c_char, count: Named) -> Resul
     list.iter().enumerate().map(name).collect()
 }
 
+/// Waits until the GPU no longer uses a VkImage, and forgets it.
 pub(in crate::capi) fn forget_image(cell: &DeviceCell, image: u64) -> Result<()> {
     match &*cell.host() {
         Host::Vulkan(host) => host.forget_image(vk::Image::from_raw(image)),
@@ -300,6 +301,7 @@ unsafe fn import(
     Ok(Some(Imported { image, role, texture }))
 }
 
+/// Returns the list of the semaphores to wait for.
 fn waits_of(target: &wk_vulkan_target) -> List<'static> {
     List {
         name: "frame.target.wait_semaphores",
@@ -309,6 +311,7 @@ fn waits_of(target: &wk_vulkan_target) -> List<'static> {
     }
 }
 
+/// Returns the list of the semaphores to signal.
 fn signals_of(target: &wk_vulkan_target) -> List<'static> {
     List {
         name: "frame.target.signal_semaphores",

@@ -76,9 +76,11 @@ pub(in crate::frame) struct Composite {
     pipelines: LruCache<Variant, wgpu::RenderPipeline, MOST_PIPELINES>,
     evens: LruCache<Variant, wgpu::RenderPipeline, MOST_EVEN>,
     kinds: LruCache<KindsPipeline, wgpu::RenderPipeline, MOST_KINDS>,
+    /// Placeholder for a texture that the host does not give.
     none: wgpu::TextureView,
     /// Placeholder for an array texture.
     no_layers: wgpu::TextureView,
+    /// Whether multisampled targets can be composed sample by sample.
     reads_samples: bool,
     wind: WindPicture,
     pub even: EvenLayouts,

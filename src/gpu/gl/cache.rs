@@ -98,6 +98,7 @@ impl Inner {
         if new { window.check(&self.api, true) } else { Ok(()) }
     }
 
+    /// Returns the inputs of queries about images, for the context in which Welkin draws.
     fn ask<'a>(&'a self, info: &'a GlInfo) -> Ask<'a> {
         let encodes = match &self.sharing {
             Sharing::HostContext { state, .. } => info.is_es() || state.was_on(FRAMEBUFFER_SRGB),
@@ -116,6 +117,7 @@ impl Inner {
         }
     }
 
+    /// Begins the use of target number `i`; drops it if that fails.
     fn begin_target(&mut self, i: usize) -> Result<Arc<GlTarget>> {
         let entry = &mut self.targets[i];
         if let Err(e) = entry.begin(&self.api) {
@@ -126,6 +128,7 @@ impl Inner {
         Ok(entry.target.clone())
     }
 
+    /// Ends the use of target number `i`, and deletes Welkin's objects for it.
     fn drop_target(&mut self, i: usize) {
         let mut entry = self.targets.swap_remove(i);
         self.end_of(&entry);

@@ -10,7 +10,9 @@ use std::{
 /// calls.
 #[derive(Default)]
 pub(super) struct Gate {
+    /// Thread that holds the lock, and its depth.
     state: Mutex<(Option<ThreadId>, u32)>,
+    /// Signalled when the lock is released.
     freed: Condvar,
 }
 

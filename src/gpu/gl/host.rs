@@ -55,9 +55,11 @@ pub(super) struct Inner {
     pub(super) window: Option<WindowSize>,
     /// Ids of the targets in use since the last enter.
     pub(super) active: Vec<u64>,
+    /// Number of the next target or use.
     pub(super) next_id: u64,
     /// Error that occurred where none could be returned, for the next call that can.
     pub(super) fault: Option<Error>,
+    /// Whether the device is gone.
     pub(super) closed: bool,
 }
 

@@ -7,7 +7,7 @@
 //! shared between contexts, so targets are textures and renderbuffers.
 //!
 //! [`GlMode::HostContext`]: Welkin draws in the host's own context. It saves the host's state, sets the state that wgpu
-//! assumes, and restores the host's state at the end (see the `state` room). Any framebuffer can be a target, the
+//! assumes, and restores the host's state at the end (`src/gpu/gl/state`). Any framebuffer can be a target, the
 //! window's too: the picture is copied in and out.
 //!
 //! # What is upside down

@@ -131,6 +131,7 @@ fn function_or_null(address: *const c_void) -> *const c_void {
     if matches!(address as isize, -1..=3) { std::ptr::null() } else { address }
 }
 
+/// Returns the error for a context that has a device already.
 fn already_wrapped() -> Error {
     Error::new(Status::AlreadyWrapped, "this OpenGL context belongs to another device already: destroy that one first")
 }
@@ -164,6 +165,7 @@ fn make_probe(api: &Api) -> (u32, [u32; 2]) {
 /// Test that Welkin's context is not the host's own, and shares its objects.
 struct Proof {
     texture: u32,
+    /// Blend colour of the host.
     color_was: [f32; 4],
 }
 
@@ -203,6 +205,7 @@ impl Proof {
     }
 }
 
+/// wgpu's objects on the host's context.
 struct Opened {
     instance: wgpu::Instance,
     adapter: wgpu::Adapter,

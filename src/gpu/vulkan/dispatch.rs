@@ -83,6 +83,7 @@ pub(super) fn unregister(queue: vk::Queue) {
 
 /// Runs `f` while `record` answers the capability queries of this thread.
 pub(super) fn while_adopting<R>(record: &Arc<HostRecord>, f: impl FnOnce() -> R) -> R {
+    /// Guard that ends the adoption, after a panic too.
     struct Reset;
     impl Drop for Reset {
         fn drop(&mut self) {
@@ -106,6 +107,7 @@ pub(super) fn with_bracket<R>(queue: vk::Queue, bracket: [vk::CommandBuffer; 2],
     BRACKET.take().is_none()
 }
 
+/// Returns the host that `matches`: the one that this thread is adopting, or else an adopted one.
 fn find(matches: impl Fn(&HostRecord) -> bool) -> Option<Arc<HostRecord>> {
     let adopting = ADOPTING.with_borrow(|a| a.as_ref().filter(|h| matches(h)).map(Arc::clone));
     adopting.or_else(|| {

@@ -33,6 +33,7 @@ struct IndexedBuffers {
     binding: u32,
     start: u32,
     size: u32,
+    /// Buffer bound to the target itself, beside its slots.
     generic: u32,
     slots: Vec<BufferRange>,
 }
@@ -70,6 +71,7 @@ impl IndexedBuffers {
     }
 }
 
+/// Saved bindings of the host's context.
 #[derive(Default)]
 pub(super) struct Bindings {
     /// (target, binding query, saved name)
@@ -81,11 +83,13 @@ pub(super) struct Bindings {
     bound: Vec<u32>,
     samplers: Vec<u32>,
     images: Vec<Image>,
+    /// Whether transform feedback can be paused here; `feedback_running` says whether it ran unpaused.
     feedback: bool,
     feedback_running: bool,
     active_unit: u32,
     program: u32,
     vertex_array: u32,
+    /// Framebuffers that the host draws to and reads from.
     draw: u32,
     read: u32,
     renderbuffer: u32,

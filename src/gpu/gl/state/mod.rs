@@ -7,8 +7,8 @@
 //! sample coverage, no colour clamping. `normalise` sets that. *wgpu state that would affect the host*: everything that
 //! wgpu sets. One list serves both: the union is saved.
 //!
-//! Conditional rendering and active queries are not in the list, because they cannot be suspended; the `counting` room
-//! refuses them.
+//! Conditional rendering and active queries are not in the list, because they cannot be suspended;
+//! `src/gpu/gl/counting.rs` refuses them.
 
 mod bind;
 mod pixel;
@@ -22,8 +22,11 @@ use super::{
 
 /// One `glEnable` switch, and its value in a fresh context.
 struct Toggle {
+    /// Name of the switch.
     cap: u32,
+    /// Value in a fresh context.
     fresh: bool,
+    /// Value that the host had set.
     was: bool,
 }
 
@@ -83,8 +86,8 @@ impl HostState {
         self.pixels.restore(api);
         let raised = api.take_error();
         raise(api, self.pending_error, self.bindings.read_framebuffer());
-        // One of the switches is debug output: the host's debug callback gets no messages about what came before this
-        // loop.
+        // The switches come last, because one of them is debug output: the host's debug callback then gets no messages
+        // about the calls before this loop.
         for t in &self.toggles {
             api.set_enabled(t.cap, t.was);
         }

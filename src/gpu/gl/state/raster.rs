@@ -9,6 +9,7 @@ use super::super::{
 /// Viewport with its scissor and depth range.
 #[derive(Clone, Copy, Default)]
 struct GlViewport {
+    /// Left, lower edge, width and height, pixels.
     rect: [f32; 4],
     scissor: [i32; 4],
     scissor_test: bool,
@@ -34,8 +35,10 @@ struct Stencil {
     ops: [u32; 3],
 }
 
+/// Queries of a colour buffer's four factors; below, of its two equations.
 const FUNC_NAMES: [u32; 4] = [BLEND_SRC_RGB, BLEND_DST_RGB, BLEND_SRC_ALPHA, BLEND_DST_ALPHA];
 const EQUATION_NAMES: [u32; 2] = [BLEND_EQUATION_RGB, BLEND_EQUATION_ALPHA];
+/// Queries of the front face's stencil state, in the order of the fields; below, of the back face's.
 const FRONT_NAMES: [u32; 7] = [
     STENCIL_FUNC,
     STENCIL_REF,
@@ -55,6 +58,7 @@ const BACK_NAMES: [u32; 7] = [
     STENCIL_BACK_PASS_DEPTH_PASS,
 ];
 
+/// Saved rasteriser and blending state.
 #[derive(Default)]
 pub(super) struct Raster {
     views: Vec<GlViewport>,
@@ -84,6 +88,7 @@ pub(super) struct Raster {
     clamp: [u32; 3],
 }
 
+/// Targets of colour clamping.
 const CLAMPS: [u32; 3] = [CLAMP_READ_COLOR, CLAMP_VERTEX_COLOR, CLAMP_FRAGMENT_COLOR];
 
 impl Raster {
