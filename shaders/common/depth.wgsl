@@ -8,6 +8,7 @@ const RANGE_SKY: f32 = 1e12;
 // software drivers, which execute the code of all kinds in the shader.
 override DEPTH_KINDS: u32 = 7u;
 
+// Rays of a camera and the inverse of its depth buffer's mapping (ViewRays in src/scene/depth.rs).
 struct DepthUniform {
     // Ray origin at the picture's centre and its change per unit of ndc, in camera-relative world axes, m.
     origin: vec3f,
@@ -42,6 +43,7 @@ struct ViewRay {
     slant: f32,
 }
 
+// Origin of a pixel's ray, camera-relative, m.
 fn view_origin(u: DepthUniform, ndc: vec2f) -> vec3f {
     if (DEPTH_KINDS & 2u) == 0u {
         return u.origin;
@@ -54,6 +56,7 @@ fn view_step(u: DepthUniform, ndc: vec2f) -> vec3f {
     return u.direction + ndc.x * u.direction_dx + ndc.y * u.direction_dy;
 }
 
+// Ray of a pixel.
 fn view_ray(u: DepthUniform, ndc: vec2f) -> ViewRay {
     let step = view_step(u, ndc);
     let slant = length(step);

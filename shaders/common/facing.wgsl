@@ -1,6 +1,7 @@
 // Normal of a surface, from the depths of a pixel and its four neighbours.
 //!include "common/depth.wgsl"
 
+// Normal of a surface, and how far it can be trusted.
 struct Facing {
     // Normal on the side of the camera.
     normal: vec3f,
@@ -19,6 +20,7 @@ struct Beside {
     ndc: vec2f,
 }
 
+// Neighbour of a pixel, from its depth sample and position.
 fn beside(u: DepthUniform, depth: f32, ndc: vec2f) -> Beside {
     // Beyond the picture's edge nothing is known.
     return Beside(select(view_depth(u, depth, ndc), RANGE_SKY, any(abs(ndc) > vec2f(1.0))), ndc);

@@ -12,6 +12,7 @@ fn capped(v: vec3f, most: f32) -> vec3f {
     return min(v, vec3f(most));
 }
 
+// Limits `v` to 0 and more.
 fn not_negative(v: vec3f) -> vec3f {
     return max(v, vec3f(0.0));
 }

@@ -38,11 +38,13 @@ struct KnownJob {
 // Written by the queue into a part of a buffer, like the blocks of a view.
 @group(0) @binding(4) var<uniform> written: array<vec4u, 5>;
 
+// Index of the first texel for each block.
 const COUNTS_FROM: u32 = 9u;
 const RULE_FROM: u32 = 14u;
 const JOB_FROM: u32 = 38u;
 const WRITTEN_FROM: u32 = 39u;
 
+// Returns vector `i` of the counts.
 fn known_counts(i: u32) -> vec4u {
     switch i {
         case 0u: { return vec4u(counts.a, counts.b, counts.c, counts.d); }

@@ -2,6 +2,7 @@
 //!include "common/frame.wgsl"
 //!include "common/tone.wgsl"
 
+// Mask in the red channel: 1 keeps the host's pixel.
 @group(0) @binding(1) var opaque_mask: texture_2d<f32>;
 
 // Whether the mask (cab, HUD) keeps the host's pixel. Depth cannot be blended, so a mask value between 0 and 1 is

@@ -16,20 +16,23 @@ fn tone_exponential(x: Display) -> Display {
     return 1.0 - exp(-x);
 }
 
-// Hable's filmic curve (Hable 2010, white point 11.2) for each channel.
+// Shoulder and toe of the filmic curve (Hable 2010) for each channel.
 fn hable(x: Display) -> Display {
     return (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.0666666667;
 }
 
+// Filmic curve for each channel: hable(2 x) / hable(11.2).
 fn tone_filmic(x: Display) -> Display {
     return hable(min(x, vec3f(1e4)) * 2.0) / hable(vec3f(11.2));
 }
 
+// Whether `curve` is the curve that is `asked` for, of those that the pipeline can draw.
 fn is_curve(curve: u32, asked: u32) -> bool {
     let bit = 1u << asked;
     return CURVES == bit || ((CURVES & bit) != 0u && curve == asked);
 }
 
+// Display value of exposed light by a tone curve.
 fn tone_curve(curve: u32, x: Display) -> Display {
     if is_curve(curve, TONE_EXPONENTIAL) {
         return tone_exponential(x);
@@ -40,12 +43,13 @@ fn tone_curve(curve: u32, x: Display) -> Display {
     return x;
 }
 
-// IEC 61966-2-1.
+// Encodes linear values by the sRGB curve (IEC 61966-2-1).
 fn srgb_encode(x: Display) -> vec3f {
     let c = clamp(x, vec3f(0.0), vec3f(1.0));
     return select(1.055 * pow(c, vec3f(1.0 / 2.4)) - 0.055, 12.92 * c, c <= vec3f(0.0031308));
 }
 
+// Inverse of srgb_encode.
 fn srgb_decode(v: vec3f) -> Display {
     let c = clamp(v, vec3f(0.0), vec3f(1.0));
     return select(pow((c + 0.055) / 1.055, vec3f(2.4)), c / 12.92, c <= vec3f(0.04045));

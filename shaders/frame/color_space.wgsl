@@ -12,6 +12,7 @@ override COLOR_SPACES: u32 = 7u;
 override ENCODES: bool = true;
 override DITHERS: bool = true;
 
+// Whether the host's colour has this space.
 fn is_space(space: u32) -> bool {
     let bit = 1u << space;
     return COLOR_SPACES == bit || ((COLOR_SPACES & bit) != 0u && frame.color_space == space);

@@ -8,6 +8,7 @@
 //!include "between/shaft_light.wgsl"
 //!include "frame/weather_seen.wgsl"
 
+// Whether the stages TONE and PARTICLES are drawn.
 override TONE: bool = true;
 override PARTICLES: bool = false;
 
@@ -32,6 +33,7 @@ fn display(luminance: vec3f) -> vec3f {
 // Layer of drops in front of everything (rain/drops.wgsl); the exposure is already applied to it.
 @group(0) @binding(5) var drops: texture_2d<f32>;
 
+// Lays the layer of drops and flakes over the veil.
 fn with_drops(veil: Veil, pixel: vec2i) -> Veil {
     let layer = textureLoad(drops, pixel, 0);
     // Blended half floats may round to more than 1.
@@ -39,6 +41,7 @@ fn with_drops(veil: Veil, pixel: vec2i) -> Veil {
     return Veil(veil.light * clear + layer.rgb / frame.exposure, veil.transmittance * clear);
 }
 
+// Colour of a pixel with the weather, for the host's target; `host` is its colour without.
 fn compose(host: vec4f, seen: Seen) -> vec4f {
     drawn = frame.drawn;
     behind_share = frame.behind_drawn;
@@ -56,6 +59,7 @@ fn compose(host: vec4f, seen: Seen) -> vec4f {
     return vec4f(mix(written(host.rgb, veil, vec2u(seen.pixel)), host.rgb, seen.mask), host.a);
 }
 
+// Value for the host's target: the host's colour behind a veil, after tone curve, encoding and dither.
 fn written(host: vec3f, veil: Veil, pixel: vec2u) -> vec3f {
     // The tone curve applies to all light of a scene-linear host, and only to the weather's light of a display host.
     let behind = linear_host(host) * veil.transmittance;

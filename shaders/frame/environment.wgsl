@@ -3,6 +3,7 @@
 //!include "common/guarded.wgsl"
 //!include "frame/composite.wgsl"
 
+// One face of the cube map.
 struct EnvironmentFace {
     // The face's middle, and the vectors from there to its right and lower edges (`right`, `down`); axes are east,
     // north, up.

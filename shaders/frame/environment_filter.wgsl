@@ -4,6 +4,7 @@
 // 13).
 //!include "common/fullscreen.wgsl"
 
+// One face of a level, and how it is filtered.
 struct FilterFace {
     // As in EnvironmentFace, but in the cube's own axes.
     forward: vec3f,

@@ -11,6 +11,7 @@
 const LEAST_LIGHT: f32 = 0.005 * EVEN_WHITE;
 const MOST_ERROR: f32 = 1e-3;
 
+// Findings about four texels in a row.
 struct Row {
     // Error of linear interpolation between the middle two texels, divided by the limit.
     bend: f32,
@@ -20,6 +21,7 @@ struct Row {
     disc: f32,
 }
 
+// Both layers of a texel of the grid, or of the nearest one at its edge.
 fn texel(at: vec2i) -> array<vec4f, 2> {
     let last = vec2i(textureDimensions(even_weather)) - 1;
     let p = clamp(at, vec2i(0), last);

@@ -2,6 +2,7 @@
 //!include "frame/even.wgsl"
 //!include "frame/composite_view.wgsl"
 
+// Texel of the grid in both layers.
 struct EvenTexel {
     // Light times EVEN_WHITE * frame.even_scale; alpha is log2 of the range, m.
     @location(0) light: vec4f,

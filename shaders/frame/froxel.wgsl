@@ -4,22 +4,26 @@
 //!include "common/tone.wgsl"
 //!include "between/veil.wgsl"
 
+// Texels of one distance slice, and numbers of slices side by side and one above the other.
 const FROXEL_TILE: vec2f = vec2f(32.0, 18.0);
 const FROXEL_TILES: vec2f = vec2f(8.0, 4.0);
 // Distance of slice s of 32, m: NEAR ((FAR / NEAR + 1)^(s / 31) - 1), with FAR = 1e5 m.
 const FROXEL_NEAR: f32 = 20.0;
 const FROXEL_LOG: f32 = 8.5173932; // ln(1e5/20 + 1)
 
+// Texel of both textures.
 struct Froxel {
     @location(0) light: vec4f,
     @location(1) through: vec4f,
 }
 
+// Position that a texel stands for; distance along the ray, m.
 struct FroxelPlace {
     ndc: vec2f,
     distance: f32,
 }
 
+// Position of a texel.
 fn froxel_place(position: vec2f) -> FroxelPlace {
     let texel = floor(position);
     let tile = floor(texel / FROXEL_TILE);
@@ -45,6 +49,7 @@ fn froxel_veil(at: FroxelPlace) -> Veil {
     return veil_between(ray, at.distance, at.distance / ray.slant * frame.depth.plane_scale, hung);
 }
 
+// Texel with the values of a veil.
 fn froxel_of(veil: Veil) -> Froxel {
     // Exposed light fits half floats, whose maximum is 65504; scene-linear hosts undo the exposure by light_scale.
     var light = veil.light * frame.exposure;

@@ -5,6 +5,7 @@
 @group(0) @binding(2) var host_depth: HostDepth;
 @group(0) @binding(3) var host_mask: texture_2d<f32>;
 
+// Whether the host gives depth, and whether it gives a mask.
 override HAS_DEPTH: bool = true;
 override HAS_MASK: bool = false;
 

@@ -8,15 +8,18 @@
 
 override HAS_DEPTH: bool = true;
 
+// Depths of the kinds: sky above the level of the eye, below it, and pixels on which the host drew.
 const KIND_ABOVE: f32 = 0.0;
 const KIND_BELOW: f32 = 0.5;
 const KIND_DRAWN: f32 = 1.0;
 
+// Kind of a pixel, and its range, m.
 struct Kind {
     kind: f32,
     range: f32,
 }
 
+// Kind of a pixel by its depth sample and ray.
 fn kind_of(in: FullscreenVarying) -> Kind {
     let ndc = frame_ndc(in.uv);
     let far = select(KIND_BELOW, KIND_ABOVE, view_ray(frame.depth, ndc).direction.z >= 0.0);

@@ -3,15 +3,18 @@
 //!include "frame/host_picture.wgsl"
 //!include "ground/surface.wgsl"
 
+// Whether the stage SURFACE is drawn.
 override SURFACE: bool = true;
 
 // Host's data on the surface in a pixel, if it gives them: the surface class in red, and the normal.
 @group(0) @binding(9) var host_classes: texture_2d<f32>;
 @group(0) @binding(10) var host_normals: texture_2d<f32>;
 
+// Whether the host gives surface classes, and whether it gives normals.
 override HAS_CLASSES: bool = false;
 override HAS_NORMALS: bool = false;
 
+// Host's data on the surface in a pixel, with the normal that follows from depth.
 fn host_surface(seen: Seen) -> HostSurface {
     let facing = surface_facing(ground, frame.depth, seen.depth, depth_around(seen.pixel, seen.sample), seen.ndc);
     var surface = HostSurface(facing, 0u, vec4f(0.0));
@@ -36,6 +39,7 @@ fn depth_around(pixel: vec2i, sample: i32) -> vec4f {
     );
 }
 
+// Lays water and snow on the surface in a pixel behind the veil.
 fn on_surface(veil: Veil, host: vec3f, ray: ViewRay, seen: Seen) -> Veil {
     if !SURFACE || !HAS_DEPTH || seen.range >= RANGE_SKY {
         return veil;

@@ -4,6 +4,7 @@
 //!include "between/veil.wgsl"
 //!include "sky/disc.wgsl"
 
+// Whether the stages BACKGROUND and MEDIUM are drawn.
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
 

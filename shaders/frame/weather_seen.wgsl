@@ -3,6 +3,7 @@
 //!include "frame/weather.wgsl"
 //!include "frame/host_picture.wgsl"
 
+// Weather in front of the surface in a pixel, or the sky.
 fn weather_seen(ray: ViewRay, seen: Seen, hung: Hung) -> Veil {
     return weather_over(ray, seen.range, seen.plane, hung);
 }

@@ -41,6 +41,7 @@ WelkinGround welkin_ground_at(sampler2D ground, vec2 place) {
     return WelkinGround(water.x, water.y, smoothstep(0.2, 2.0, water.z), water.w, water.z);
 }
 
+// Water at a position of the texture.
 WelkinGround welkin_ground(sampler2D ground, vec2 uv) {
     return welkin_ground_at(ground, uv * vec2(textureSize(ground, 0)) - 0.5);
 }

@@ -41,6 +41,7 @@ fn welkin_ground_at(ground: texture_2d<f32>, place: vec2f) -> WelkinGround {
     return WelkinGround(water.x, water.y, smoothstep(0.2, 2.0, water.z), water.w, water.z);
 }
 
+// Water at a position of the texture.
 fn welkin_ground(ground: texture_2d<f32>, uv: vec2f) -> WelkinGround {
     return welkin_ground_at(ground, uv * vec2f(textureDimensions(ground)) - 0.5);
 }

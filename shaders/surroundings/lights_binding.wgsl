@@ -4,6 +4,7 @@
 // Whether there are any lamps. Shaders that run in every pixel read it to leave the loop out.
 override LAMPS: bool = false;
 
+// Number of lamps, and the lamps.
 struct Lights {
     count: u32,
     lamps: array<HostLight, MAX_LIGHTS>,

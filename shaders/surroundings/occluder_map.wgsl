@@ -8,6 +8,7 @@ const STEEPEST: f32 = 12.0;
 // Range of a texel without a surface, which no path crosses.
 const NOTHING: vec2f = vec2f(1e12, -1e12);
 
+// Map as the host gives it: how its depth gives distances, and its part of the table.
 struct MapUniform {
     depth: DepthUniform,
     // Origin of the map in the table, and its size, texels.

@@ -12,6 +12,7 @@ const MAX_MAPS: u32 = 4u;
 // Maximum number of cells tested per path. A longer path counts as free.
 const MAP_STEPS: u32 = 192u;
 
+// One map.
 struct Occluder {
     // Rows of a transform of (east, north, up, 1), relative to the camera, m. x and y give w times the column and the
     // row in the table of ranges, w gives w, and distance gives the distance from the plane of the map's camera, m.
@@ -25,6 +26,7 @@ struct Occluder {
     part: vec4f,
 }
 
+// All maps.
 struct Occluders {
     count: u32,
     pad: u32,

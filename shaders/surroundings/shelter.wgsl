@@ -8,6 +8,7 @@ override SHELTER: bool = false;
 const MAX_SHELTERS: u32 = 32u;
 const MAX_CUTS: u32 = 512u;
 
+// One box.
 struct Shelter {
     // Rows of the matrix from camera-relative east, north, up (m) to the box's own space, where it spans -1 to 1.
     rows: array<vec4f, 3>,
@@ -17,6 +18,7 @@ struct Shelter {
     cuts: vec4u,
 }
 
+// All boxes.
 struct Shelters {
     // Number of boxes that may shelter drops near the camera. These come first in the list.
     near: u32,

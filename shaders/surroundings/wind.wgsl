@@ -2,6 +2,7 @@
 // wind that it replaces. xyz: its velocity times this share, m/s. Sample the texture at `wind_place` with its sampler
 // (linear, clamped), and pass the result to `wind_at`, which returns xyz + (1 - w) weathers.
 
+// Mapping from camera-relative positions to the texture.
 struct WindMap {
     // Scale and offset from camera-relative metres to texture coordinates.
     scale: vec3f,

@@ -26,7 +26,9 @@ const MOST_FAULT: usize = 200;
 #[serde(deny_unknown_fields)]
 pub(crate) struct SavedWorld {
     time_s: f64,
+    /// Unix time at simulation time 0, s.
     utc_at_zero: f64,
+    /// Azimuth and elevation of the sun and of the moon, degrees, if the host has set them.
     sun: Option<[f64; 2]>,
     moon: Option<[f64; 2]>,
     timeline: String,
@@ -37,6 +39,7 @@ pub(crate) struct SavedWorld {
     /// clouds, and number of lives of clouds since time 0. Empty at time 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     layers_drifted: Vec<[f64; 3]>,
+    /// Values that the context's description fixed.
     created: toml::Table,
     settings: SavedSettings,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -125,14 +128,14 @@ impl World {
             set: _,
             maps: _,
             lights: _,
-            // The solved wind follows from what solves for it; the others are caches of its readers.
+            // The effect that solves the wind saves it; the other two are caches.
             solved_wind: _,
             wind_texture: _,
             detours: _,
             time_s: _,
             ephemeris: _,
             couplings: _,
-            // The effects to which the host gives these save them.
+            // The effects of the night sky and the snow save these.
             night: _,
             snow: _,
             surroundings_revision: _,
@@ -155,8 +158,8 @@ impl World {
         table
     }
 
-    /// Returns the values that descriptions fixed before they became settings. Older states are compared by them; newer
-    /// states restore them.
+    /// Returns the values that a context's description fixed once and that are settings now. A state that has them
+    /// among its fixed values is older: they are then compared, not restored.
     fn fixed_before(&self) -> [(&'static str, toml::Value); 2] {
         let planet = format!("hash {:016x}", self.set.planet.hash());
         [("planet_toml", planet.into()), ("tone_curve", format!("{:?}", self.tone).into())]
