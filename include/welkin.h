@@ -124,7 +124,7 @@
  * Wind, shelter and lamps
  *   [wind_grid]       Wind that varies in space
  *   [wind_field]      Wind round terrain and buildings
- *   [occluder]        Maps of what keeps rain off
+ *   [occluder]        Maps of objects that keep rain off
  *   [light]           Lamps
  *
  * Stars, clouds and lightning
@@ -2740,7 +2740,7 @@ typedef struct wk_fog_law {
     /** Density of exponential and exponential squared fog, 1/m. Range [0, 10], default 0.003. */
     double density_per_m;
     /**
-     * Optional: radiance into which the picture fades, cd/m^2 a channel. Range [0, 1e12]. Without it Welkin uses the
+     * Optional: radiance into which the picture fades, cd/m^2 per channel. Range [0, 1e12]. Without it Welkin uses the
      * radiance of deep fog under the present light.
      */
     double color[3];
@@ -3071,7 +3071,7 @@ typedef struct wk_celestial {
     double apparent[3];
     /** For the moon: direction in the disc's plane towards the middle of the lit limb. */
     double bright_limb[3];
-    /** Illuminance above the air on a surface facing it, lux a channel. */
+    /** Illuminance above the air on a surface facing it, lux per channel. */
     double illuminance_lux[3];
     /** Azimuth, degrees clockwise from true north, [0, 360). */
     double azimuth_deg;
@@ -3114,13 +3114,13 @@ typedef struct wk_celestial {
  * light of the sun or the moon. Element of an array, without struct_size; calls take its sizeof instead.
  */
 typedef struct wk_ground_light {
-    /** Direct sun on a surface facing it, lux a channel. */
+    /** Direct sunlight on a surface facing the sun, lux per channel. */
     double sun_lux[3];
-    /** Direct moon on a surface facing it, lux a channel. */
+    /** Direct moonlight on a surface facing the moon, lux per channel. */
     double moon_lux[3];
-    /** Sky, clouds and fog on level ground, lux a channel. */
+    /** Light of sky, clouds and fog on level ground, lux per channel. */
     double sky_lux[3];
-    /** Everything on level ground, luminance-weighted, lux. */
+    /** All light on level ground, luminance-weighted, lux. */
     double total_lux;
 } wk_ground_light;
 
@@ -5290,7 +5290,7 @@ wk_status wk_wind_field_report_init(wk_wind_field_report *out,
 
 /*
  * ====================================================================================================
- * [occluder] Maps of what keeps rain off
+ * [occluder] Maps of objects that keep rain off
  *
  * For shelter that boxes cannot describe, give up to four depth images of your world, of standing or moving objects,
  * from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
@@ -5412,7 +5412,7 @@ typedef struct wk_light {
     /** Direction of the beam, in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0. */
     double direction[3];
     /**
-     * Luminous intensity in the middle of the beam, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000
+     * Luminous intensity in the middle of the beam, cd per channel of linear Rec. 709. Range [0, 1e9], default 1000
      * each. A low beam has about 10 000 cd, a work light 2000 to 5000 cd.
      */
     double intensity_cd[3];
@@ -5976,7 +5976,7 @@ typedef struct wk_flash_light {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Illuminance on surfaces that face the sources, summed over all sources, lux a channel. */
+    /** Illuminance on surfaces that face the sources, summed over all sources, lux per channel. */
     double facing_lux[3];
     /** Illuminance on level ground, lux. */
     double level_lux;

@@ -61,7 +61,8 @@ struct FrameUniform {
     compositions: u32,
     // Drawn share of the layer behind the sky times that of the clear sky.
     behind_drawn: f32,
-    // Luminance of the layer behind the sky, cd/m^2 per unit, and the share of the night floor that the layer replaces.
+    // Luminance of the value 1 in the layer behind the sky, cd/m^2, and the share of the night floor that the layer
+    // replaces.
     behind: vec2f,
     // Colour of the light of flashes, of luminance 1, and the number of sources.
     flash_color: vec3f,

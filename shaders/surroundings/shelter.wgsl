@@ -31,8 +31,8 @@ struct Shelters {
 
 @group(2) @binding(0) var<uniform> shelters: Shelters;
 
-// Time, s, that a drop which came to `p` with `velocity` has spent inside box `i`, or inside what its planes leave of
-// it. Negative if the drop has not been inside: the further away it passed, the lower.
+// Time, s, that a drop which came to `p` with `velocity` has spent inside the shape of box `i`, cut by its planes. It
+// is negative if the drop has not been inside: the further away it passed, the lower.
 fn time_within(i: u32, p: vec3f, velocity: vec3f) -> f32 {
     return time_nearby(i, p, velocity, 0.0);
 }

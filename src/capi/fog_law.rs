@@ -69,7 +69,7 @@ pub struct wk_fog_law {
     pub end_m: f64,
     /// Density of exponential and exponential squared fog, 1/m. Range [0, 10], default 0.003.
     pub density_per_m: f64,
-    /// Optional: radiance into which the picture fades, cd/m^2 a channel. Range [0, 1e12]. Without it Welkin uses the
+    /// Optional: radiance into which the picture fades, cd/m^2 per channel. Range [0, 1e12]. Without it Welkin uses the
     /// radiance of deep fog under the present light.
     pub color: [f64; 3],
     /// Elevation above the horizon up to which sky pixels fade, rad. The fade is full at the horizon and ends at this

@@ -35,7 +35,7 @@ pub struct wk_light {
     pub position_m: [f64; 3],
     /// Direction of the beam, in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0.
     pub direction: [f64; 3],
-    /// Luminous intensity in the middle of the beam, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000
+    /// Luminous intensity in the middle of the beam, cd per channel of linear Rec. 709. Range [0, 1e9], default 1000
     /// each. A low beam has about 10 000 cd, a work light 2000 to 5000 cd.
     pub intensity_cd: [f64; 3],
     /// Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10.

@@ -189,7 +189,7 @@ pub struct wk_flash_light {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Illuminance on surfaces that face the sources, summed over all sources, lux a channel.
+    /// Illuminance on surfaces that face the sources, summed over all sources, lux per channel.
     pub facing_lux: [f64; 3],
     /// Illuminance on level ground, lux.
     pub level_lux: f64,

@@ -1,4 +1,4 @@
-//! Maps of what keeps rain off
+//! Maps of objects that keep rain off
 //!
 //! For shelter that boxes cannot describe, give up to four depth images of your world, of standing or moving objects,
 //! from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.

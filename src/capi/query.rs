@@ -44,7 +44,7 @@ pub struct wk_celestial {
     pub apparent: [f64; 3],
     /// For the moon: direction in the disc's plane towards the middle of the lit limb.
     pub bright_limb: [f64; 3],
-    /// Illuminance above the air on a surface facing it, lux a channel.
+    /// Illuminance above the air on a surface facing it, lux per channel.
     pub illuminance_lux: [f64; 3],
     /// Azimuth, degrees clockwise from true north, [0, 360).
     pub azimuth_deg: f64,
@@ -105,13 +105,13 @@ impl wk_celestial {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_light {
-    /// Direct sun on a surface facing it, lux a channel.
+    /// Direct sunlight on a surface facing the sun, lux per channel.
     pub sun_lux: [f64; 3],
-    /// Direct moon on a surface facing it, lux a channel.
+    /// Direct moonlight on a surface facing the moon, lux per channel.
     pub moon_lux: [f64; 3],
-    /// Sky, clouds and fog on level ground, lux a channel.
+    /// Light of sky, clouds and fog on level ground, lux per channel.
     pub sky_lux: [f64; 3],
-    /// Everything on level ground, luminance-weighted, lux.
+    /// All light on level ground, luminance-weighted, lux.
     pub total_lux: f64,
 }
 

@@ -1,5 +1,5 @@
 //! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible. Example: a scene is lit without units and its
-//! white is 1; at 1 cd/m^2 a unit it is black in daylight, and nothing else would say why.
+//! white is 1; with 1 cd/m^2 per unit it is black in daylight, and nothing else would say why.
 //!
 //! In formats whose values end at 1 the largest value is known. From float formats a few rows of the host's picture are
 //! read back without waiting, in a view's third frame and in every 1024th frame after it. An implausible unit is logged

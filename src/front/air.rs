@@ -105,7 +105,7 @@ impl Context {
     }
 
     /// Returns the sky's light on surfaces of any slope at `position` and simulation time `time_s`: nine spherical
-    /// harmonics of radiance, cd/m^2 a channel, in (east, north, up) of the place. The lower half is the lit ground.
+    /// harmonics of radiance, cd/m^2 per channel, in (east, north, up) of the place. The lower half is the lit ground.
     /// Clouds dim and whiten the sky.
     ///
     /// The query reads the sky's tables: it builds them first if no frame did, and waits for the GPU once after every

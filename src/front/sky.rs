@@ -26,7 +26,7 @@ const UNDER_DECK: f64 = 7.0 / 9.0;
 
 impl Context {
     /// Returns the radiance of the sky at `position` towards `directions`, unit vectors (east, north, up) there, at
-    /// simulation time `time_s`: cd/m^2 a channel of linear Rec. 709, as a picture shows it where the host drew
+    /// simulation time `time_s`: cd/m^2 per channel of linear Rec. 709, as a picture shows it where the host drew
     /// nothing. It includes clear air, clouds, fog, precipitation in the weather's fog layer, the night's glow and,
     /// below the horizon, the planet's ground. It leaves out the discs of the sun and the moon, stars and planets, rain
     /// areas, and the host's objects.

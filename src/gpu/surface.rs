@@ -509,7 +509,7 @@ fn outdated(why: &str) -> Error {
     Error::new(Status::SurfaceOutdated, message)
 }
 
-/// Chooses the window's format for an encoding: 8 bits a channel, in the order that the window prefers.
+/// Chooses the window's format for an encoding: 8 bits per channel, in the order that the window prefers.
 fn choose_format(offered: &[wgpu::TextureFormat], encoding: SurfaceEncoding) -> Result<wgpu::TextureFormat> {
     let wanted = match encoding {
         SurfaceEncoding::DisplayLinear => [wgpu::TextureFormat::Bgra8UnormSrgb, wgpu::TextureFormat::Rgba8UnormSrgb],

@@ -13,12 +13,12 @@ pub(crate) struct MovingAir {
     pub velocity_m_s: DVec3,
     /// Simulation time, s.
     pub time_s: f64,
-    /// Extinction of everything except what falls, 1/m.
+    /// Extinction of everything except precipitation, 1/m.
     pub extinction_per_m: f64,
 }
 
 impl MovingAir {
-    /// Returns the air of a moment, with the wind that carries what falls.
+    /// Returns the air of a moment, with the wind that carries precipitation.
     ///
     /// # Errors
     /// As [`SceneMoment::carrying`].

@@ -1,4 +1,4 @@
-//! Drawing of what falls near the camera, shared by rain and snow: the streak camera and the layer in front of the
+//! Drawing of precipitation near the camera, shared by rain and snow: the streak camera and the layer in front of the
 //! picture ([`streak`]), the air in which things fall ([`air`]), the list of things in the picture ([`listing`]), and
 //! particles stepped through a wind that varies in space ([`stepping`]).
 //!

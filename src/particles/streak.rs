@@ -1,5 +1,5 @@
-//! Parts that effects share to draw what falls near the camera: the camera, the layer in front of the picture, and the
-//! contrast.
+//! Parts that effects share to draw precipitation near the camera: the camera, the layer in front of the picture, and
+//! the contrast.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -30,7 +30,7 @@ pub(crate) struct StreakCamera<'a> {
     /// Velocity of the camera, m/s (east, north, up).
     pub velocity_m_s: DVec3,
     pub exposure_s: f64,
-    /// Contrast gain: factor by which what falls stands out more than in nature.
+    /// Contrast of precipitation relative to nature, 1 or more.
     pub gain: f64,
 }
 
@@ -78,8 +78,8 @@ impl DepthRead {
     }
 }
 
-/// Layer of what falls near the camera, composited as one more veil in front of the picture: premultiplied, one sample
-/// a pixel. All effects of a view that draw into it share it: clones are the same layer.
+/// Layer of precipitation near the camera, composited as one more veil in front of the picture: premultiplied, one
+/// sample per pixel. All effects of a view that draw into it share it: clones are the same layer.
 #[derive(Clone, Default)]
 pub(crate) struct FallingTexture(Arc<Mutex<Option<(wgpu::Texture, wgpu::TextureView)>>>);
 

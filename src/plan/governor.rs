@@ -76,7 +76,7 @@ pub(super) struct Governor {
     /// Recent times for a unit of work, ms.
     recent: [f64; SEEN],
     reports: usize,
-    /// Ratios of the work that steps save on this machine to what the constants say.
+    /// Ratios of the work that steps save on this machine to the work that the constants give.
     ratios: [f64; MOST_STEPS],
     /// Steps taken at the last report, and the number of reports since they changed.
     absent: Set,

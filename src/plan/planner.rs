@@ -102,7 +102,7 @@ pub struct Prediction {
     pub milliseconds: Option<f64>,
     /// Error of what this frame leaves out, parts that still fade not counted; `None` before the first gauge.
     pub error: Option<Estimate>,
-    /// Check on the newest gauged picture: the predicted bound for the error of what it left out, and the error found.
+    /// Predicted error bound and measured error of the newest gauged picture.
     pub checked: Option<[f64; 2]>,
 }
 

@@ -389,8 +389,8 @@ impl Composition {
         &self.whole
     }
 
-    /// Constants of the pipeline that leaves out the parts of which nothing is drawn now. That is cheaper than a branch
-    /// on a software driver, which executes both sides.
+    /// Constants of the pipeline that leaves out the parts whose drawn share is 0 now. That is cheaper than a branch on
+    /// a software driver, which executes both sides.
     pub fn least(&self) -> &Pipeline {
         &self.least
     }

@@ -8,7 +8,7 @@ use super::stages::Stages;
 /// The call that has the number's stage draws it; other calls of the frame draw nothing. The colours are display
 /// colours: linear in float and sRGB formats and where the host's colour is display-linear, otherwise encoded by the
 /// sRGB curve. In multisampled images the first sample of a pixel stands for all. Masked pixels keep the host's colour.
-/// If the frame has nothing of what the picture shows, all is black.
+/// If the frame contains nothing of the number, all is black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Diagnostic {
     /// The normal picture.

@@ -41,7 +41,7 @@ pub(crate) trait DrawnEffect {
         Exchange::NONE
     }
 
-    /// Finds what of the effect is visible from the camera, and writes its outputs.
+    /// Finds which parts of the effect are visible from the camera, and writes its outputs.
     fn gather(&mut self, _context: &FrameContext<'_>, _given: &mut Outputs) -> Result<()> {
         Ok(())
     }

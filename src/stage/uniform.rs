@@ -46,7 +46,8 @@ pub(crate) struct FrameUniform {
     pub compositions: u32,
     /// Drawn share of the layer behind the sky times that of the clear sky.
     pub behind_drawn: f32,
-    /// Luminance of the layer behind the sky, cd/m^2 a unit, and the share of the night floor that the layer replaces.
+    /// Luminance of the value 1 in the layer behind the sky, cd/m^2, and the share of the night floor that the layer
+    /// replaces.
     pub behind: [f32; 2],
     /// Colour of the light of flashes, normalised to luminance 1, and the number of its sources.
     pub flash_color: [f32; 3],

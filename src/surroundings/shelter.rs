@@ -180,8 +180,8 @@ impl Shelter {
     }
 }
 
-/// Returns the share of the way from `a` to `b` (host's world) at which it meets the box, or what planes leave of it;
-/// `None` if it does not.
+/// Returns the share of the way from `a` to `b` (host's world) at which it meets the shelter's shape; `None` if it does
+/// not.
 pub(crate) fn met_at(shelter: &Shelter, a: DVec3, b: DVec3) -> Option<f64> {
     let own = |v: DVec3| shelter.axes.transpose() * v;
     let (o, d) = (own(a - shelter.center_m), own(b - a));
@@ -201,7 +201,7 @@ pub(crate) fn met_at(shelter: &Shelter, a: DVec3, b: DVec3) -> Option<f64> {
     (near <= far).then_some(near)
 }
 
-/// Whether a drop that came to `p` with `velocity` (host's world) met the box, or what planes leave of it.
+/// Whether a drop that came to `p` with `velocity` (host's world) met the shelter's shape on its way.
 pub fn sheltered(shelter: &Shelter, p: DVec3, velocity: DVec3) -> bool {
     let own = |v: DVec3| shelter.axes.transpose() * v / shelter.half_size_m;
     let (o, d) = (own(p - shelter.center_m), own(shelter.velocity_m_s - velocity));

@@ -1,4 +1,4 @@
-//! Lying snow as other effects read it: those that draw on it, take its meltwater, or are lit by it.
+//! Lying snow in the form that other effects read: to draw it, to take its meltwater, and to count its light.
 
 use std::collections::{BTreeMap, VecDeque};
 

@@ -1,4 +1,4 @@
-//! Description of a host's terrain and its cells, with the checks that refuse what is not valid.
+//! Description of a host's terrain and of its cells, and the checks of both.
 
 use std::cmp::Ordering;
 
