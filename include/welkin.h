@@ -1674,7 +1674,7 @@ typedef uint64_t wk_weather_has_flags;
 /** lofted_top_m */
 #define WK_WEATHER_HAS_LOFTED_TOP 524288
 
-/** How precipitation falls. */
+/** Properties of precipitation. */
 typedef uint32_t wk_precipitation_flags;
 
 /** From convective cloud (SH): fewer and larger drops, sharp onset and end. */
@@ -1743,7 +1743,7 @@ typedef struct wk_weather {
     double fog_visibility_inside_m;
     /** Kind of precipitation. Default WK_PRECIPITATION_NONE. */
     wk_precipitation_kind precipitation_kind;
-    /** How precipitation falls. Default 0. */
+    /** Properties of the precipitation. Default 0. */
     wk_precipitation_flags precipitation_flags;
     /** Precipitation rate, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls. */
     double precipitation_rate_mm_h;
@@ -2226,7 +2226,7 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
 /** Weather, time and place. Child of a wk_device, parent of views. */
 typedef struct wk_context wk_context;
 
-/** How the host's world is placed on the planet. */
+/** Placement of the host's world on the planet. */
 typedef uint32_t wk_world_kind;
 
 /** A plane: up is the same everywhere. Altitude is the up coordinate plus the origin's altitude. */
@@ -3069,7 +3069,7 @@ typedef struct wk_celestial {
     double direction[3];
     /** Direction to the body as it appears, lifted by refraction. */
     double apparent[3];
-    /** For the moon: direction in the disc's plane towards the middle of the lit limb. */
+    /** Direction in the disc's plane towards the middle of the lit limb, for the moon. */
     double bright_limb[3];
     /** Illuminance above the air on a surface facing it, lux per channel. */
     double illuminance_lux[3];
@@ -3225,7 +3225,7 @@ wk_status wk_context_get_light(const wk_context *context,
                                uint32_t light_size);
 
 /**
- * As wk_context_get_light, at a simulation time.
+ * Gets the light as wk_context_get_light does, at a simulation time.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -3252,7 +3252,7 @@ wk_status wk_context_get_between(const wk_context *context,
                                  uint32_t between_size);
 
 /**
- * As wk_context_get_between, at a simulation time.
+ * Gets transmittance and visibility as wk_context_get_between does, at a simulation time.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -3291,9 +3291,9 @@ wk_status wk_context_get_ambient(wk_context *context,
                                  wk_ambient *out_ambient);
 
 /**
- * As wk_context_get_ambient, at a simulation time. The clear sky's distribution is that of the air in the present
- * tables; its brightness, clouds and fog are those of `time_s`. Thread: as wk_view_record. Errors: as
- * wk_context_get_ambient and wk_context_get_conditions.
+ * Gets the sky's light as wk_context_get_ambient does, at a simulation time. The clear sky's distribution is that of
+ * the air in the present tables; its brightness, clouds and fog are those of `time_s`. Thread: as wk_view_record.
+ * Errors: as wk_context_get_ambient and wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_ambient_at(wk_context *context,
@@ -3354,7 +3354,7 @@ wk_status wk_context_get_sky_radiance(const wk_context *context,
                                       uint32_t radiance_size);
 
 /**
- * As wk_context_get_sky_radiance, at a simulation time.
+ * Gets the sky's radiance as wk_context_get_sky_radiance does, at a simulation time.
  * Thread: concurrent.
  * Errors: as wk_context_get_sky_radiance and wk_context_get_conditions.
  */
@@ -4524,7 +4524,7 @@ typedef struct wk_part_plan {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Why the part is drawn as it is. */
+    /** Reason for the rung. */
     wk_plan_reason reason;
     /** Rung at which the part is drawn once fading is over; 0, all of it, if the weather does not have the part. */
     uint32_t rung;
@@ -4675,7 +4675,7 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
 /** wk_rain.contrast_gain for trainers: on an 8-bit display rain by day is then as visible as in a film. */
 #define WK_RAIN_GAIN_TRAINER 4.0
 
-/** How a view draws rain. The rain that falls does not depend on it. */
+/** Way in which a view draws rain. The rain that falls does not depend on it. */
 typedef uint32_t wk_rain_model;
 
 /**
@@ -4696,7 +4696,7 @@ typedef uint32_t wk_rain_model;
 /** Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1). */
 #define WK_RAIN_MODEL_INTEGRATED 4
 
-/** How a view draws rain, hail and splashes. The precipitation itself does not depend on it. */
+/** Settings for drawing rain, hail and splashes in a view. The precipitation itself does not depend on them. */
 typedef struct wk_rain {
     /** sizeof(wk_rain) of your header. */
     uint32_t struct_size;
@@ -4847,7 +4847,7 @@ wk_status wk_shelter_shape_init(wk_shelter_shape *out,
  * ====================================================================================================
  */
 
-/** How a view draws falling snow. The snow that falls does not depend on it. */
+/** Way in which a view draws falling snow. The snow that falls does not depend on it. */
 typedef uint32_t wk_snow_model;
 
 /**
@@ -4860,7 +4860,7 @@ typedef uint32_t wk_snow_model;
 /** Flakes, whatever a budget says. */
 #define WK_SNOW_MODEL_FLAKES 2
 
-/** How a view draws falling snow. The snow that falls does not depend on it. */
+/** Settings for drawing falling snow in a view. The snow that falls does not depend on them. */
 typedef struct wk_snow {
     /** sizeof(wk_snow) of your header. */
     uint32_t struct_size;
@@ -5472,7 +5472,7 @@ typedef uint32_t wk_stars_flags;
 /** No planets. */
 #define WK_STARS_NO_PLANETS 4
 
-/** How the night sky is drawn. */
+/** Settings of the night sky. */
 typedef struct wk_stars {
     /** sizeof(wk_stars) of your header. */
     uint32_t struct_size;
@@ -5628,7 +5628,7 @@ WK_API wk_status wk_cloud_map_init(wk_cloud_map *out, uint32_t struct_size);
  * ====================================================================================================
  */
 
-/** How clouds are drawn. */
+/** Way to draw clouds. */
 typedef uint32_t wk_cloud_model;
 
 /**
@@ -5818,10 +5818,10 @@ wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
  * [lightning] Lightning
  *
  * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes three times a minute in each square of 20
- * km, or as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the
- * storm cells: all channels see the same flashes, and any time can be shown again. Views draw the lightning channels,
- * the glow of clouds and air, and the light of flashes on rain and wet ground. The host queries flashes to play
- * thunder, and their light to light its own scene:
+ * km by 20 km. The host may set another rate, and the places of the storm cells. Every flash is a function of the
+ * context's seed, the time, the rate and the storm cells: all channels see the same flashes, and any time can be shown
+ * again. Views draw the lightning channels, the glow of clouds and air, and the light of flashes on rain and wet
+ * ground. The host queries flashes to play thunder, and their light to light its own scene:
  *
  * wk_flash flashes[16];
  * uint32_t count = 0;
@@ -5840,14 +5840,15 @@ typedef uint32_t wk_lightning_flags;
 /** flashes_per_minute: the host's rate replaces the weather's. */
 #define WK_LIGHTNING_RATE 1
 
-/** How flashes flicker in a picture. */
+/** Flicker of flashes in a picture. */
 typedef uint32_t wk_flicker;
 
-/** As in nature: many changes of luminance a second. */
+/** Flicker as in nature: many changes of luminance a second. */
 #define WK_FLICKER_AS_IN_NATURE 0
 /**
- * At most three changes of luminance a second, for viewers whom flicker may harm: each drawn flash rises once and
- * fades, and the next one comes a second later at the earliest. Queries of flashes and of their light do not change.
+ * Limited flicker, for viewers whom flicker may harm: at most three changes of luminance a second. Each drawn flash
+ * rises once and fades, and the next one comes a second later at the earliest. Queries of flashes and of their light
+ * do not change.
  */
 #define WK_FLICKER_LIMITED 1
 
@@ -5864,8 +5865,8 @@ typedef struct wk_lightning {
     /** Default WK_FLICKER_AS_IN_NATURE. */
     wk_flicker flicker;
     /**
-     * With WK_LIGHTNING_RATE: flashes a minute in each square of 20 km, whatever the weather. Range [0, 60],
-     * default 0.
+     * Flashes a minute in each square of 20 km by 20 km, whatever the weather; used with WK_LIGHTNING_RATE. Range [0,
+     * 60], default 0.
      */
     double flashes_per_minute;
     /** Number of storm cells in `cells`, at most 16; they replace the weather's. Default 0. */

@@ -27,7 +27,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_clouds.rs"));
 
-/// How clouds are drawn.
+/// Way to draw clouds.
 pub type wk_cloud_model = u32;
 /// A grey deck where more than half of the sky is covered; broken clouds only dim the light. It costs no more than a
 /// clear sky.

@@ -44,7 +44,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_context.rs"));
 
-/// How the host's world is placed on the planet.
+/// Placement of the host's world on the planet.
 pub type wk_world_kind = u32;
 /// A plane: up is the same everywhere. Altitude is the up coordinate plus the origin's altitude.
 pub const WK_WORLD_FLAT: wk_world_kind = 0;

@@ -1,10 +1,10 @@
 //! Lightning
 //!
 //! A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes three times a minute in each square of 20
-//! km, or as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the
-//! storm cells: all channels see the same flashes, and any time can be shown again. Views draw the lightning channels,
-//! the glow of clouds and air, and the light of flashes on rain and wet ground. The host queries flashes to play
-//! thunder, and their light to light its own scene:
+//! km by 20 km. The host may set another rate, and the places of the storm cells. Every flash is a function of the
+//! context's seed, the time, the rate and the storm cells: all channels see the same flashes, and any time can be shown
+//! again. Views draw the lightning channels, the glow of clouds and air, and the light of flashes on rain and wet
+//! ground. The host queries flashes to play thunder, and their light to light its own scene:
 //!
 //! ```c
 //! wk_flash flashes[16];
@@ -40,12 +40,13 @@ pub type wk_lightning_flags = u32;
 /// flashes_per_minute: the host's rate replaces the weather's.
 pub const WK_LIGHTNING_RATE: wk_lightning_flags = 1;
 
-/// How flashes flicker in a picture.
+/// Flicker of flashes in a picture.
 pub type wk_flicker = u32;
-/// As in nature: many changes of luminance a second.
+/// Flicker as in nature: many changes of luminance a second.
 pub const WK_FLICKER_AS_IN_NATURE: wk_flicker = 0;
-/// At most three changes of luminance a second, for viewers whom flicker may harm: each drawn flash rises once and
-/// fades, and the next one comes a second later at the earliest. Queries of flashes and of their light do not change.
+/// Limited flicker, for viewers whom flicker may harm: at most three changes of luminance a second. Each drawn flash
+/// rises once and fades, and the next one comes a second later at the earliest. Queries of flashes and of their light
+/// do not change.
 pub const WK_FLICKER_LIMITED: wk_flicker = 1;
 
 /// Place where a flash ends.
@@ -69,8 +70,8 @@ pub struct wk_lightning {
     pub flags: wk_lightning_flags,
     /// Default WK_FLICKER_AS_IN_NATURE.
     pub flicker: wk_flicker,
-    /// With WK_LIGHTNING_RATE: flashes a minute in each square of 20 km, whatever the weather. Range [0, 60],
-    /// default 0.
+    /// Flashes a minute in each square of 20 km by 20 km, whatever the weather; used with WK_LIGHTNING_RATE. Range [0,
+    /// 60], default 0.
     pub flashes_per_minute: f64,
     /// Number of storm cells in `cells`, at most 16; they replace the weather's. Default 0.
     pub cell_count: u32,

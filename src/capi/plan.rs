@@ -235,7 +235,7 @@ pub struct wk_part_plan {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Why the part is drawn as it is.
+    /// Reason for the rung.
     pub reason: wk_plan_reason,
     /// Rung at which the part is drawn once fading is over; 0, all of it, if the weather does not have the part.
     pub rung: u32,

@@ -42,7 +42,7 @@ pub struct wk_celestial {
     pub direction: [f64; 3],
     /// Direction to the body as it appears, lifted by refraction.
     pub apparent: [f64; 3],
-    /// For the moon: direction in the disc's plane towards the middle of the lit limb.
+    /// Direction in the disc's plane towards the middle of the lit limb, for the moon.
     pub bright_limb: [f64; 3],
     /// Illuminance above the air on a surface facing it, lux per channel.
     pub illuminance_lux: [f64; 3],
@@ -279,7 +279,7 @@ pub unsafe extern "C" fn wk_context_get_light(
     unsafe { light("wk_context_get_light", context, places, None, (lights, light_size)) }
 }
 
-/// As wk_context_get_light, at a simulation time.
+/// Gets the light as wk_context_get_light does, at a simulation time.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -346,7 +346,7 @@ pub unsafe extern "C" fn wk_context_get_between(
     unsafe { way("wk_context_get_between", context, pairs, None, (between, between_size)) }
 }
 
-/// As wk_context_get_between, at a simulation time.
+/// Gets transmittance and visibility as wk_context_get_between does, at a simulation time.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -441,9 +441,9 @@ pub unsafe extern "C" fn wk_context_get_ambient(
     unsafe { ambient("wk_context_get_ambient", context, position_m, None, out_ambient) }
 }
 
-/// As wk_context_get_ambient, at a simulation time. The clear sky's distribution is that of the air in the present
-/// tables; its brightness, clouds and fog are those of `time_s`. Thread: as wk_view_record. Errors: as
-/// wk_context_get_ambient and wk_context_get_conditions.
+/// Gets the sky's light as wk_context_get_ambient does, at a simulation time. The clear sky's distribution is that of
+/// the air in the present tables; its brightness, clouds and fog are those of `time_s`. Thread: as wk_view_record.
+/// Errors: as wk_context_get_ambient and wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ambient_at(
     context: *mut wk_context,

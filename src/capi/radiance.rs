@@ -54,7 +54,7 @@ pub unsafe extern "C" fn wk_context_get_sky_radiance(
     unsafe { radiance("wk_context_get_sky_radiance", point, list, (radiances, radiance_size)) }
 }
 
-/// As wk_context_get_sky_radiance, at a simulation time.
+/// Gets the sky's radiance as wk_context_get_sky_radiance does, at a simulation time.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_sky_radiance and wk_context_get_conditions.
 #[unsafe(no_mangle)]

@@ -28,7 +28,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
 
-/// How a view draws rain. The rain that falls does not depend on it.
+/// Way in which a view draws rain. The rain that falls does not depend on it.
 pub type wk_rain_model = u32;
 /// Welkin chooses: single drops to 1.9 m and cones to 14.8 m. With a wk_budget it draws less where the picture does not
 /// need it or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
@@ -53,7 +53,7 @@ pub const WK_RAIN_SHUTTER_CAMERA_500_S: f64 = 0.002;
 /// wk_rain.contrast_gain for trainers: on an 8-bit display rain by day is then as visible as in a film.
 pub const WK_RAIN_GAIN_TRAINER: f64 = 4.0;
 
-/// How a view draws rain, hail and splashes. The precipitation itself does not depend on it.
+/// Settings for drawing rain, hail and splashes in a view. The precipitation itself does not depend on them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain {

@@ -20,7 +20,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_snow.rs"));
 
-/// How a view draws falling snow. The snow that falls does not depend on it.
+/// Way in which a view draws falling snow. The snow that falls does not depend on it.
 pub type wk_snow_model = u32;
 /// Flakes near the camera. With a wk_budget there are none where the picture does not need them or the time does not
 /// allow them (WK_PART_SNOW).
@@ -30,7 +30,7 @@ pub const WK_SNOW_MODEL_VEIL: wk_snow_model = 1;
 /// Flakes, whatever a budget says.
 pub const WK_SNOW_MODEL_FLAKES: wk_snow_model = 2;
 
-/// How a view draws falling snow. The snow that falls does not depend on it.
+/// Settings for drawing falling snow in a view. The snow that falls does not depend on them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_snow {

@@ -31,7 +31,7 @@ pub const WK_STARS_TURNED: wk_stars_flags = 2;
 /// No planets.
 pub const WK_STARS_NO_PLANETS: wk_stars_flags = 4;
 
-/// How the night sky is drawn.
+/// Settings of the night sky.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_stars {

@@ -71,7 +71,7 @@ pub const WK_CLOUD_LAYER_HAS_DROPLET_RADIUS: wk_cloud_layer_has_flags = 4;
 /// wind_m_s and wind_from_deg
 pub const WK_CLOUD_LAYER_HAS_WIND: wk_cloud_layer_has_flags = 8;
 
-/// How precipitation falls.
+/// Properties of precipitation.
 pub type wk_precipitation_flags = u32;
 /// From convective cloud (SH): fewer and larger drops, sharp onset and end.
 pub const WK_PRECIPITATION_SHOWERS: wk_precipitation_flags = 1;
@@ -191,7 +191,7 @@ pub struct wk_weather {
 
     /// Kind of precipitation. Default WK_PRECIPITATION_NONE.
     pub precipitation_kind: wk_precipitation_kind,
-    /// How precipitation falls. Default 0.
+    /// Properties of the precipitation. Default 0.
     pub precipitation_flags: wk_precipitation_flags,
     /// Precipitation rate, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls.
     pub precipitation_rate_mm_h: f64,

@@ -31,7 +31,7 @@ pub struct OccluderMap<'a> {
 /// View and time in which a map was taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taken {
-    /// From the host's world to clip space: parallel rays or perspective, from any direction.
+    /// Matrix from the host's world to clip space: parallel rays or perspective, from any direction.
     pub clip_from_world: DMat4,
     /// Whether depth 1 is near and 0 far.
     pub reversed: bool,
