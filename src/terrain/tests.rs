@@ -70,7 +70,7 @@ fn a_rectangle_changes_its_cells_alone_and_hashes_follow() {
     let mut terrain = four();
     let (before, copy) = (terrain.hash, terrain.clone());
     let key = TileKey::new(-1, 0);
-    // Rows of five, of which three count.
+    // Rows of five values, of which the first three lie in the rectangle.
     let (values, classes) = ([9.0f32; 10], [Some(SurfaceClass::Rock); 6]);
     let cells = TerrainCells {
         key,
@@ -208,7 +208,7 @@ fn heights_of_holes_are_not_read_and_no_data_make_holes() {
     let key = TileKey::new(0, 0);
     let mut heights = vec![2.0_f32; 1024];
     let mut classes = vec![Some(SurfaceClass::Unspecified); 1024];
-    // Whatever stands in a hole.
+    // The height of a hole may be any number.
     for (cell, height) in [(3, f32::NAN), (4, f32::INFINITY), (5, 1e30), (6, -9999.0), (7, 5.0)] {
         (heights[cell], classes[cell]) = (height, None);
     }
@@ -218,7 +218,8 @@ fn heights_of_holes_are_not_read_and_no_data_make_holes() {
     let tile = terrain.tile(terrain.slot(key).unwrap());
     assert!(tile.heights_m.iter().all(|h| h.is_finite()) && (3..8).all(|cell| !tile.has_ground(cell)));
     assert_eq!((tile.has_ground(2), tile.heights_m[3], tile.heights_m[7]), (true, 0.0, 5.0));
-    // Heights alone, where the holes are by now; beside them they must be heights.
+    // An update of heights alone keeps the holes and ignores their heights. A cell that becomes ground needs a valid
+    // height.
     terrain.update(&TerrainCells { classes: Rows::default(), ..all }).unwrap();
     let mut opened = classes.clone();
     opened[3] = Some(SurfaceClass::Unspecified);
@@ -236,7 +237,7 @@ fn heights_of_holes_are_not_read_and_no_data_make_holes() {
         let holes: Vec<_> = (0..1024).filter(|cell| !tile.has_ground(*cell)).collect();
         assert_eq!((holes, tile.heights_m[0]), (vec![0, 40], 0.0), "{none}");
         assert!(tile.heights_m[1..40].iter().all(|h| *h == 2.0));
-        // Without the name every number is a height, or is refused as none.
+        // Without `no_data_m` every number must be a valid height.
         terrain.remove(key).unwrap();
         let plain = terrain.clone().set_tile(&TerrainCells { no_data_m: None, ..of });
         assert_eq!(plain.is_ok(), none.abs() < 1e5, "{none}");

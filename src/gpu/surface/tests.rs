@@ -1,4 +1,4 @@
-//! Windows by their handles, without any.
+//! Tests of window handles and formats that need no window.
 
 use super::*;
 
