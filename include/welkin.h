@@ -2653,8 +2653,8 @@ wk_status wk_context_save(const wk_context *context,
  * geoid_height_m in place of the last two), seed and ground_model. A state of an earlier version without planet and
  * tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before
  * the call, set them as they were when the state was saved. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that
- * are no saved state, that were truncated or changed, or that have another format, which the message names (this
- * version reads format 2; save states of format 1 again, because they did not record their place);
+ * are no saved state, for a truncated or changed state, and for a state of another format, which the message names
+ * (this version reads format 2; save states of format 1 again, because they did not record their place);
  * WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
  */
 WK_API
@@ -4303,9 +4303,9 @@ wk_status wk_environment_init(wk_environment *out,
  * With a tolerance, a view gauges its own pictures. In every eighth frame it draws a grid of 64 x 36 of its pixels
  * with everything and without each part of the weather, and reads the differences back some frames later, without
  * waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again when they
- * matter. Under a budget of time, further parts fade out until the reported times fit, starting with those whose loss
- * is least visible for the time that it saves. They come back when there is time again. After a jump of camera, sun or
- * weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+ * matter. Under a budget of time, further parts fade out until the reported times fit, starting with the parts that
+ * save the most time for the least visible loss. They come back when there is time again. After a jump of camera, sun
+ * or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
  *
  * A part has a number (WK_PART_), a name and rungs, which are its levels of detail. Rung 0 draws all of it; the last
  * rung draws nothing, or the cheapest substitute. Later versions append parts: wk_plan.part_count has their number,
@@ -5144,7 +5144,7 @@ typedef uint32_t wk_wind_field_mode;
  */
 #define WK_WIND_FIELD_STEADY 0
 /**
- * The wind with gusts, with the eddies that it brings and those that obstacles shed, stepped all the time.
+ * The wind with its gusts and eddies, and with the eddies that obstacles shed, stepped all the time.
  * docs/wind-field.md has the sizes that a CPU core can keep up with.
  */
 #define WK_WIND_FIELD_RUNNING 1

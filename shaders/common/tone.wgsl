@@ -26,7 +26,7 @@ fn tone_filmic(x: Display) -> Display {
     return hable(min(x, vec3f(1e4)) * 2.0) / hable(vec3f(11.2));
 }
 
-// Whether `curve` is the curve that is `asked` for, of those that the pipeline can draw.
+// Whether `curve` equals `asked`. False for curves that the pipeline cannot draw.
 fn is_curve(curve: u32, asked: u32) -> bool {
     let bit = 1u << asked;
     return CURVES == bit || ((CURVES & bit) != 0u && curve == asked);

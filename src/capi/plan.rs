@@ -3,9 +3,9 @@
 //! With a tolerance, a view gauges its own pictures. In every eighth frame it draws a grid of 64 x 36 of its pixels
 //! with everything and without each part of the weather, and reads the differences back some frames later, without
 //! waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again when they
-//! matter. Under a budget of time, further parts fade out until the reported times fit, starting with those whose loss
-//! is least visible for the time that it saves. They come back when there is time again. After a jump of camera, sun or
-//! weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+//! matter. Under a budget of time, further parts fade out until the reported times fit, starting with the parts that
+//! save the most time for the least visible loss. They come back when there is time again. After a jump of camera, sun
+//! or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
 //!
 //! A part has a number (WK_PART_), a name and rungs, which are its levels of detail. Rung 0 draws all of it; the last
 //! rung draws nothing, or the cheapest substitute. Later versions append parts: wk_plan.part_count has their number,

@@ -242,8 +242,8 @@ pub unsafe extern "C" fn wk_context_save(
 /// geoid_height_m in place of the last two), seed and ground_model. A state of an earlier version without planet and
 /// tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before
 /// the call, set them as they were when the state was saved. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that
-/// are no saved state, that were truncated or changed, or that have another format, which the message names (this
-/// version reads format 2; save states of format 1 again, because they did not record their place);
+/// are no saved state, for a truncated or changed state, and for a state of another format, which the message names
+/// (this version reads format 2; save states of format 1 again, because they did not record their place);
 /// WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const c_void, size: usize) -> wk_status {

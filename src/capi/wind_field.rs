@@ -28,7 +28,7 @@ pub type wk_wind_field_mode = u32;
 /// The mean wind. It is solved for over the first moments after the wind or an obstacle has changed; after that it
 /// rests at no cost. The weather's gusts are scaled in proportion to the local mean wind.
 pub const WK_WIND_FIELD_STEADY: wk_wind_field_mode = 0;
-/// The wind with gusts, with the eddies that it brings and those that obstacles shed, stepped all the time.
+/// The wind with its gusts and eddies, and with the eddies that obstacles shed, stepped all the time.
 /// docs/wind-field.md has the sizes that a CPU core can keep up with.
 pub const WK_WIND_FIELD_RUNNING: wk_wind_field_mode = 1;
 

@@ -408,8 +408,8 @@ impl Device {
         Ok(made)
     }
 
-    /// Submits, one thread at a time, so that what a Vulkan host stages for a submission goes with that submission
-    /// only.
+    /// Submits one thread at a time: semaphores and barriers that a Vulkan host has staged then go with its own
+    /// submission.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) {
         let commands = encoder.finish();
         let _turn = self.turn();

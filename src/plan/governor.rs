@@ -25,8 +25,8 @@ pub enum GaveWay {
     Time,
 }
 
-/// Work of a picture, in pixels without any parts: those pixels, the work that each step saves, and the extra work of
-/// two parts that are drawn together.
+/// Work of a picture, in pixels without any parts: the pixels themselves, the work that each step saves, and the extra
+/// work of two parts drawn together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct WorkAmount {
     /// Number of pixels.

@@ -1,5 +1,5 @@
-//! Search for the steps to take: those that save the most work within a tolerance, or those whose loss is least within
-//! the time.
+//! Search for the steps to take: the set that saves the most work within a tolerance, or the set with the least loss
+//! within the time.
 //!
 //! If there are few sets of steps, all are tried. Otherwise a limited number of sets is tried in order of increasing
 //! work, and the first one that keeps the tolerance is the best. If none of these does, steps are added one at a time
@@ -135,8 +135,8 @@ impl Search {
         None
     }
 
-    /// Adds one step at a time to several sets at once: to those that save most, and to those that save most for their
-    /// strain. The strain may exceed 1 on the way, since the change by another part may compensate.
+    /// Adds one step at a time to several sets at once: to the sets that save most, and to the sets that save most
+    /// relative to their strain. The strain may exceed 1 on the way, since the change by another part may compensate.
     fn downwards(
         &mut self,
         free: Free<'_>,

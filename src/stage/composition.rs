@@ -152,8 +152,8 @@ enum Scope {
     Composition,
 }
 
-/// A constant with two values: `whole` for the pipeline that draws every part, `least` for the pipeline that draws only
-/// the parts that show now.
+/// A constant with two values: `whole` for the pipeline that draws every part, `least` for the pipeline without the
+/// parts whose drawn share is 0 now.
 #[derive(Clone, Copy)]
 struct ScopedConstant {
     /// Shaders that the constant is for.
@@ -171,7 +171,7 @@ const MOST_OF_ONE: usize = 12;
 pub(crate) struct Contribution<'a> {
     constants: [ScopedConstant; MOST_OF_ONE],
     count: usize,
-    /// Traits where every part is drawn, and where only the parts that show now are drawn.
+    /// Traits of the pipeline with every part, and of the pipeline without the parts whose drawn share is 0 now.
     traits: [Traits; 2],
     /// Fields that the effect writes into the frame's block.
     block: Option<FrameBlock<'a>>,
@@ -207,8 +207,8 @@ impl<'a> Contribution<'a> {
         }
     }
 
-    /// Adds a constant for every shader that applies air, cloud and fog. `whole` is its value where every part is
-    /// drawn, `least` where only the parts that show now are drawn.
+    /// Adds a constant for every shader that applies air, cloud and fog. `whole` is its value with every part, `least`
+    /// its value without the parts whose drawn share is 0 now.
     pub fn between(&mut self, name: &'static str, whole: f64, least: f64) {
         self.push(Scope::Between, name, whole, least);
     }
@@ -223,7 +223,7 @@ impl<'a> Contribution<'a> {
         self.push(Scope::Composition, name, whole, least);
     }
 
-    /// Sets the traits where every part is drawn (`whole`), and where only the parts that show now are drawn (`least`).
+    /// Sets the traits with every part (`whole`), and without the parts whose drawn share is 0 now (`least`).
     pub fn set_traits(&mut self, whole: Traits, least: Traits) {
         self.traits = [whole, least];
     }
@@ -357,8 +357,8 @@ impl Composition {
         self.least.between.push((name, value));
     }
 
-    /// Adds a constant of the frame itself for the composition: its value where every part is drawn, and where only the
-    /// parts that show now are drawn.
+    /// Adds a constant of the frame itself for the composition: its value with every part (`whole`), and without the
+    /// parts whose drawn share is 0 now (`least`).
     pub fn set_constant(&mut self, name: &'static str, whole: f64, least: f64) {
         self.whole.composed.push((name, whole));
         self.least.composed.push((name, least));

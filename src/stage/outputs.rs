@@ -76,8 +76,8 @@ impl Exchange {
     pub const NONE: Self = Self { needs: &[], gives: &[] };
 }
 
-/// Returns an order in which each effect comes after all that give what it needs. Otherwise the order of the list is
-/// kept.
+/// Returns an order of the effects in which each comes after the effects whose outputs it needs. Otherwise the order of
+/// the list is kept.
 ///
 /// # Errors
 /// [`crate::Status::Internal`] if the needs form a cycle, or if no effect gives one of them.

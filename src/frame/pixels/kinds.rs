@@ -21,9 +21,9 @@ pub(in crate::frame) fn draws_apart(all: &Variant) -> bool {
 /// Largest number of draws of a picture.
 pub(in crate::frame) const DRAWS: usize = 5;
 
-/// Returns the draws that together draw `all`, without those that would change nothing. There is a single draw if
-/// samples have depths of their own or rays are marched. With a `grid`, interpolated pixels have draws of their own. If
-/// `splits`, the others have a draw for each kind.
+/// Returns the draws that together make the picture of `all`; draws that would change nothing are left out. There is a
+/// single draw if samples have depths of their own or rays are marched. With a `grid`, interpolated pixels have draws
+/// of their own. If `splits`, the others have a draw for each kind.
 pub(in crate::frame) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];

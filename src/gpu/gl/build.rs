@@ -477,7 +477,7 @@ fn refused(side: TargetSide, internal: u32, verb: &str, answer: u32) -> Error {
     Error::about(Status::Unsupported, parameter, rest)
 }
 
-/// Returns the state in which wgpu first finds a texture, which must be one that the usage allows.
+/// Returns the state in which wgpu first finds a texture; the usage must allow this state.
 fn first_use(format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::TextureUses {
     if !usage.contains(ATTACH) {
         wgpu::TextureUses::RESOURCE

@@ -57,7 +57,7 @@ pub(super) struct Inner {
     pub(super) active: Vec<u64>,
     /// Number of the next target or use.
     pub(super) next_id: u64,
-    /// Error that occurred where none could be returned, for the next call that can.
+    /// Error that could not be returned when it occurred; the next call that can return it does.
     pub(super) fault: Option<Error>,
     /// Whether the device is gone.
     pub(super) closed: bool,
