@@ -408,8 +408,8 @@ impl Device {
         Ok(made)
     }
 
-    /// Submits one thread at a time: semaphores and barriers that a Vulkan host has staged then go with its own
-    /// submission.
+    /// Submits the commands. Threads take turns, so semaphores and barriers that a Vulkan host has staged go with its
+    /// own submission.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) {
         let commands = encoder.finish();
         let _turn = self.turn();

@@ -227,7 +227,7 @@ impl<'a> Recording<'a> {
         self.device.submit(std::mem::replace(self.encoder, next));
     }
 
-    /// Ends the work for `item`: its cost is the time since the last call of this function. A measured call submits the
+    /// Ends the work for `item`: its cost is the time since the end of the item before. A measured call submits the
     /// work and waits for it. If the item did not run (`ran` is false), its time is charged to no item.
     pub fn ends(&mut self, item: CostItem, ran: bool) -> Result<()> {
         let Some(watch) = &mut self.watch else { return Ok(()) };

@@ -231,8 +231,8 @@ pub(super) fn loader_finds_all(get: &dyn Fn(&CStr) -> *const c_void) -> Result<(
     }
 }
 
-/// Checks that the context is in no mode of the compatibility profile in which nothing is drawn, and has no state that
-/// could not be restored.
+/// Checks that the context can draw now: no display list is being compiled, the render mode is GL_RENDER, and the
+/// current program could be restored.
 ///
 /// # Errors
 /// [`Status::WrongOrder`] naming the mode.

@@ -144,7 +144,7 @@ mod tests {
             assert!(error.to_string().contains(part), "{}", error);
         }
         assert!(format(RGBA8, TargetSide::Depth).is_err() && format(DEPTH_COMPONENT16, TargetSide::Mask).is_err());
-        // Signed values need two halves or floats; a class is a byte.
+        // Normals need three channels; a surface class needs a byte, not a float.
         for (bad, side, name) in
             [(R8, TargetSide::Normals, "target.normals"), (RGBA16F, TargetSide::Classes, "target.surface_classes")]
         {
