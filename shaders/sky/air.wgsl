@@ -26,8 +26,8 @@ struct SkyAir {
     ground_albedo: vec3f,
     // Negated cosine of the zenith angle of the planet's edge, seen from the top of the air.
     top_dip: f32,
-    // For one triple of a set of wavelengths: columns of the matrix that converts its light to the three kept
-    // transfers, the index of the triple, and the number of triples.
+    // For one triple of wavelengths of a set: the columns of the matrix that converts the triple's light to the three
+    // values that tables keep (`parts` in src/planet/spectral.rs), the index of the triple, and the number of triples.
     part_a: vec3f,
     layer: f32,
     part_b: vec3f,
@@ -84,7 +84,7 @@ fn sky_decode(x: vec4f) -> vec3f {
     return x.rgb * x.rgb;
 }
 
-// Encoding of values that may be negative: the three transfers that stand for a set of wavelengths.
+// Encodes values that may be negative: the three values that tables keep of a set of wavelengths.
 fn sky_encode_signed(x: vec3f) -> vec4f {
     return vec4f(sign(x) * capped(sqrt(abs(x)), 65504.0), 1.0);
 }
@@ -93,7 +93,7 @@ fn sky_decode_signed(x: vec4f) -> vec3f {
     return x.rgb * abs(x.rgb);
 }
 
-// Contribution of a triple's light to the three kept transfers.
+// Contribution of a triple's light to the three values that tables keep.
 fn air_part(air: SkyAir, light: vec3f) -> vec3f {
     return air.part_a * light.x + air.part_b * light.y + air.part_c * light.z;
 }

@@ -216,8 +216,8 @@ fn light(in: FullscreenVarying) -> Sums {
     return Sums(vec4f(order, 1.0), vec4f(sum, 1.0));
 }
 
-// Light scattered twice, and the share of a field of light that is scattered back; both are taken as equal in all
-// directions (Hillaire 2020).
+// Light scattered twice, and the share of light from all sides that the air around a point scatters to this point again
+// (Hillaire 2020). Both are taken as equal in all directions.
 @fragment
 fn isotropic_gather(in: FullscreenVarying) -> Sums {
     let here = place_of(in.position);

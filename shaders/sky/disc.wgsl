@@ -9,7 +9,8 @@ fn refraction_deg(apparent_deg: f32) -> f32 {
     return max(cos(x) / max(sin(x), 1e-3), 0.0) / 60.0;
 }
 
-// Geometric direction of what is seen in `dir`. Refraction decreases with the density of the air at the observer.
+// Geometric direction of the point that is seen in `dir`. Refraction decreases with the density of the air at the
+// observer.
 fn unrefracted(dir: vec3f) -> vec3f {
     let density = exp(-max(sky_view.altitude, 0.0) / sky_view.air.rayleigh_scale_height_m);
     let elevation = SKY_PI * 0.5 - sky_acos(dir.z);

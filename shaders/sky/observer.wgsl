@@ -89,7 +89,8 @@ fn sky_texel(px: vec2u) -> vec2u {
     return px.yx - vec2u(dims.sky_y, dims.sky_x);
 }
 
-// Draws both sky and air with one entry point. The march that they share is most of what a software driver compiles.
+// Draws both sky and air with one entry point. Most of the time that a software driver takes to compile is for the
+// march, which both share.
 @fragment
 fn observed(in: FullscreenVarying) -> SkyTexel {
     let is_air = observer.is_air == 1u;

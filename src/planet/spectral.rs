@@ -2,9 +2,10 @@
 //! a linear Rec. 709 colour, from a set of many wavelengths or from three.
 //!
 //! A colour is a triple of linear Rec. 709 luminances: `0.2126 r + 0.7152 g + 0.0722 b` is the luminance in cd/m^2, or
-//! the illuminance in lux. A *transfer* is radiance over the sun's irradiance at the same wavelength (1/sr), or the
-//! share of irradiance that arrives (1): the effect of the air on sunlight. Transfers are smooth over wavelength, while
-//! the sun's spectrum is not. Conversions therefore take transfers and multiply by the sun's spectrum themselves.
+//! the illuminance in lux. A *transfer* is the ratio of a radiance to the sun's irradiance at the same wavelength
+//! (1/sr), or the share of the irradiance that arrives (dimensionless): the effect of the air on sunlight. Transfers
+//! are smooth over wavelength, while the sun's spectrum is not. Conversions therefore take transfers and multiply by
+//! the sun's spectrum themselves.
 
 use std::sync::LazyLock;
 

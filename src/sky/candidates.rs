@@ -5,15 +5,16 @@ use super::settings::{SkyModel, SkySettings};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Air and haze between the camera and what the host drew. The importance is that of "atmosphere on objects" in the
-/// experiment of the machinery trainer's thesis.
+/// Air and haze between the camera and what the host drew. The importance, 0.9, is that of "atmosphere on objects" in a
+/// thesis's experiment on a simulator for machine operators.
 pub const AIR: Part = Part { name: "air", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(0) };
 /// Clear sky above the horizon, behind clouds; a closed deck hides it.
 pub const SKY: Part = Part { name: "sky", rungs: &["all", "none"], importance: 0.2, worth: Worth::Composed(2) };
 
-/// Work of a pixel for air and for clear sky, with one lamp and for each further lamp. Measured on a software driver
-/// (`cargo bench -- parts`), in units of a pixel without any part.
+/// Work of the air in a pixel: with one lamp, and for each further lamp. Measured on a software driver (`cargo bench --
+/// parts`), in units of a pixel without any part.
 const AIR_WORK: (f64, f64) = (0.4, 0.2);
+/// Work of the clear sky in a pixel, as [`AIR_WORK`].
 const SKY_WORK: (f64, f64) = (0.07, 0.05);
 /// Share of the air's work that a pixel costs where the host drew nothing.
 const AIR_UNDRAWN: f64 = 0.6;
@@ -49,7 +50,7 @@ pub fn candidates() -> Vec<Listed<SkySettings>> {
     add("directional-half", half(Directional));
     add("directional", SkySettings::default());
     add("directional-double", double(Directional));
-    // These tell which half of the doubling helps: the planet's tables or the observer's.
+    // Only the planet's tables doubled, and only the observer's: they show which of the two improves the picture.
     add("directional-fine-planet", SkySettings { orders: 6, ..planet_sizes(double(Directional)) });
     add("directional-fine-view", SkySettings { orders: 5, ..view_sizes(double(Directional)) });
     add("isotropic-eighth", coarsest(IsotropicTables));

@@ -52,7 +52,8 @@ impl FollowedSky {
         Ok(())
     }
 
-    /// Forgets the tables of another body. With a cache, the tables of the first planet are loaded from it.
+    /// Drops the tables of a different body. If no tables are shown then and there is a cache, loads those of `planet`
+    /// from it.
     fn begin(&mut self, planet: &Planet) -> Result<()> {
         if self.tables.planet().is_some_and(|shown| !is_same_body(shown, planet)) {
             self.tables.forget();

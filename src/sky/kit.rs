@@ -221,7 +221,7 @@ impl Kit {
         Ok(Claim::Building(ticket))
     }
 
-    /// Takes back the scratch tables of builds that nobody claims any more.
+    /// Keeps the scratch tables of builds that nobody claims any more, for the next build.
     fn sweep(&self, work: &mut BuildQueue) {
         while let Some(i) = work.builds.iter().position(|b| b.ticket.strong_count() == 0) {
             let build = work.builds.swap_remove(i);

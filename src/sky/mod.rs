@@ -39,12 +39,13 @@
 //!
 //! # Wavelengths
 //! The default is three wavelengths, converted by [`spectral::Conversion`]. With more ([`SkySettings::wavelengths`])
-//! the build sums them into the three transfers that look the same ([`spectral`]), so that look-ups and pixels do not
-//! change. The cost of the tables is proportional to the number of wavelengths. The error of the worst channel relative
-//! to the luminance is 6 % with 3 wavelengths and 2.4 % with 9, against 15 wavelengths of the reference. It is the rms
-//! over the sky in Earth's air with ozone, with the sun at 30, 60, 85 and 90 degrees from the zenith
-//! (`cargo test --test sky_gpu spectral_set`; the long suite holds 15 wavelengths to 1 % against 40). Transmittance,
-//! and with it the disc and the direct light on the ground, always uses the three wavelengths.
+//! the build combines them into three values at the default wavelengths that give the same colour ([`spectral`]).
+//! Look-ups and pixels therefore do not change. The cost of the tables is proportional to the number of wavelengths.
+//! The error of the worst channel relative to the luminance is 6 % with 3 wavelengths and 2.4 % with 9, against 15
+//! wavelengths of the reference. The error is the root mean square over the sky in Earth's air with ozone, with the sun
+//! at 30, 60, 85 and 90 degrees from the zenith (`cargo test --test sky_gpu spectral_set`; the long suite holds 15
+//! wavelengths to 1 % against 40). Transmittance, and with it the disc and the direct light on the ground, always uses
+//! the three wavelengths.
 //!
 //! # Models
 //! [`SkyModel`] lists the models with their errors. Transmittance is a closed form (`columns_along` in

@@ -127,7 +127,7 @@ fn moon_mean(direction: &[f64; 3], lit_from: &[f64; 3]) -> f64 {
             }
         }
     }
-    // A new moon sends no light; the limit spreads what little is given over the whole disc.
+    // The mean of a new moon is 0. The lower limit keeps the division by it finite.
     (sum / (std::f64::consts::FRAC_PI_4 * f64::from(n * n))).max(1e-4)
 }
 

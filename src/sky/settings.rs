@@ -60,8 +60,8 @@ pub struct SkySettings {
     /// Model of the sky, default [`SkyModel::Directional`].
     pub model: SkyModel,
     /// Number of wavelengths that the tables are built for, a multiple of 3 in `[3, 15]`. The default, 3, are the
-    /// planet's own. More wavelengths are spread over the visible range, and summed to the three transfers at the
-    /// planet's wavelengths that look the same (models [`SkyModel::Directional`] and [`SkyModel::IsotropicTables`]).
+    /// planet's own. More wavelengths are spread over the visible range, and combined into three values at the planet's
+    /// wavelengths that give the same colour (models [`SkyModel::Directional`] and [`SkyModel::IsotropicTables`]).
     /// Colours are then right where three wavelengths are too few, but the build takes that many times as long. See
     /// [`crate::sky`] for errors and costs.
     pub wavelengths: u32,

@@ -27,7 +27,8 @@ enum State {
     Built(Arc<TableSet>),
 }
 
-/// Number of calls of which one leaves the build alone, so that observers can follow sun and altitude in it.
+/// Number of calls in which one does not continue the build. In that call observers draw their own tables for the sun
+/// and altitude of the moment.
 const REST: u32 = 8;
 /// Smallest step of a fade's share per call. A fade costs the same in each frame, however long it lasts.
 const FADE: f32 = 1.0 / 16.0;
@@ -361,7 +362,7 @@ impl SkyTables {
     }
 }
 
-/// Whether the tables of one planet are so wrong for the other that a draft is closer.
+/// Whether two planets differ so much that a draft for one has a smaller error than the whole tables of the other.
 fn is_far(a: &Planet, b: &Planet) -> bool {
     // Optical depth straight up of gas, haze and ozone at a wavelength.
     let depths = |p: &Planet, i: usize| {

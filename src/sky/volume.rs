@@ -49,7 +49,7 @@ impl Fade {
     }
 }
 
-/// Movement of the sun after which the tables follow it, rad; and the same in frames that already have work on other
+/// Movement of the sun after which the tables are drawn again, rad: normally, and in frames that already draw other
 /// tables.
 const SUN_STEP: (f64, f64) = (2e-5, 2e-4);
 

@@ -146,7 +146,7 @@ mod tests {
     use super::*;
     use crate::planet::Planet;
 
-    /// For gas alone the in-scattered share is exactly 1 - T.
+    /// Gas absorbs nothing, so the sum of the weights is exactly 1 - transmittance.
     #[test]
     fn weights_of_a_gas_sum_to_what_is_not_transmitted() {
         for thickness in [1e-3, 1.0, 30.0, 1e4] {

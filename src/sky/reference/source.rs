@@ -76,6 +76,7 @@ pub struct Source {
 
 /// Factors by which cubic interpolation refines the tables in altitude and sun angle, so that look-ups can be linear.
 const REFINE: (usize, usize) = (4, 8);
+/// As [`REFINE`], for the table of haze.
 const REFINE_HAZE: (usize, usize) = (2, 3);
 
 impl Source {
@@ -179,8 +180,8 @@ impl Source {
     }
 }
 
-/// Logarithm above a floor. In twilight light falls by e for each 0.7 degrees of the sun; a grid of such steps can
-/// represent its logarithm, but not the light itself.
+/// Logarithm above a floor. In twilight the light falls by a factor of e for each 0.7 degrees that the sun sinks. On a
+/// grid with steps of about that size, the logarithm can be interpolated, but not the light itself.
 fn to_log(v: f64, floor: f64) -> f64 {
     v.max(floor).max(f64::MIN_POSITIVE).ln()
 }
@@ -191,7 +192,7 @@ fn from_log(v: f64, floor: f64) -> f64 {
     if v > 2.0 * floor { v } else { 0.0 }
 }
 
-/// Moments as logarithms of the squares' moments, with the mixed moment as a share of its bound, sqrt(xx zz).
+/// Logarithms of the moments xx, yy and zz. The mixed moment xz becomes a share of its bound, xz / sqrt(xx zz).
 fn moments_to_logs(m: &Moments, floor: f64) -> Moments {
     std::array::from_fn(|k| {
         if k < 9 {
