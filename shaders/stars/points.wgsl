@@ -9,7 +9,7 @@ struct StarUniform {
     clip: mat4x4f,
     // Columns of the rotation from J2000.0 to (east, north, up).
     to_world: array<vec4f, 3>,
-    // The Earth's velocity over the speed of light, in J2000.0.
+    // The Earth's velocity divided by the speed of light, in J2000.0.
     velocity: vec3f,
     // Units of the target per cd/m^2.
     scale: f32,

@@ -5,7 +5,7 @@ use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
 /// Stars, planets and the glow between them. The rungs are all of it, or an even sky of the glow's mean luminance. The
-/// part is worth as much as the clear sky's own light together with it.
+/// gauge measures its worth together with that of the clear sky's own light (`Worth::Composed`).
 pub const STARS: Part = Part { name: "stars", rungs: &["all", "none"], importance: 0.3, worth: Worth::Composed(2) };
 
 /// Work of the layer for one pixel, in units of the work for a pixel without any part.

@@ -12,17 +12,20 @@ const COLUMN_LV_PC2: f64 = 24.3;
 const S10_PER_LV_PC2: f64 = 3.563;
 /// Distance from the sun to the galactic centre, kpc (GRAVITY Collaboration 2019).
 const CENTRE_KPC: f64 = 8.2;
-/// Scale lengths of the disc's stars and dust, kpc (Juric et al. 2008; Drimmel and Spergel 2001).
+/// Scale length of the disc's stars, kpc (Juric et al. 2008).
 const STARS_LENGTH_KPC: f64 = 2.6;
+/// Scale length of the disc's dust, kpc (Drimmel and Spergel 2001).
 const DUST_LENGTH_KPC: f64 = 2.3;
-/// Scale heights h of light and dust, kpc. Both follow sech^2(z / 2h), which falls by e over h far from the plane. The
-/// height of the light lies between those of young (0.1) and old stars (0.3).
+/// Scale height h of the stars' light, kpc: between that of young (0.1) and of old stars (0.3). The light follows
+/// sech^2(z / (2 h)), which far from the plane falls by a factor of e over each h.
 const STARS_HEIGHT_KPC: f64 = 0.13;
+/// Scale height of the dust, kpc, in the same law.
 const DUST_HEIGHT_KPC: f64 = 0.08;
 /// Absorption in the plane near the sun, optical depth a kiloparsec; it is 0.8 magnitudes.
 const DUST_PER_KPC: f64 = 0.8 / 1.0857;
-/// Length over which a line of sight is integrated, kpc, and the number of steps.
+/// Length over which a line of sight is integrated, kpc.
 const REACH_KPC: f64 = 15.0;
+/// Number of steps of that integral.
 const STEPS: u32 = 64;
 
 /// Rotation from the equator and equinox of J2000.0 to galactic axes: x to the galactic centre, z to the north galactic

@@ -19,19 +19,21 @@ pub const S10_CD_M2: f64 = MAGNITUDE_0_LUX * 1e-4 * SQUARE_DEGREES_PER_SR;
 /// Airglow at the zenith at night near the minimum of solar activity, S10. Benn and Ellison (1998, La Palma Technical
 /// Note 115) give 2.5 times the zodiacal light at the ecliptic's pole.
 const AIRGLOW_S10: f64 = 145.0;
-/// Height of the glowing layer, m, and the depth below its top over which the airglow fades for an eye that rises
-/// through it, m (Leinert et al. 1998, section 6).
+/// Height of the glowing layer, m.
 const AIRGLOW_HEIGHT_M: f64 = 9e4;
+/// Depth below the layer over which the airglow fades for an eye that rises towards it, m (Leinert et al. 1998, section
+/// 6).
 const AIRGLOW_DEPTH_M: f64 = 1e4;
 /// Mean radius of the Earth, m.
 const EARTH_RADIUS_M: f64 = 6.371e6;
 /// Number of directions that sample the dome of the sky.
 const DOME: u32 = 32;
-/// Colours as temperatures of black bodies, K. Airglow has the colour of the dark sky, B-V = 0.8 (Benn and Ellison
-/// 1998), zodiacal light that of the sun (Leinert et al. 1998, section 8), and faint stars that of their tables
-/// ([`super::starlight`]).
+/// Temperature of the black body with the airglow's colour, K: that of the dark sky, B-V = 0.8 (Benn and Ellison 1998).
 const AIRGLOW_K: f64 = 5280.0;
+/// Temperature of the black body with the colour of zodiacal light, which is the sun's (Leinert et al. 1998, section
+/// 8), K.
 const ZODIACAL_K: f64 = 5772.0;
+/// Temperature of the black body with the colour of faint stars, from their tables ([`super::starlight`]), K.
 pub(super) const STARLIGHT_K: f64 = 4900.0;
 
 /// Longitudes relative to the sun, and latitudes, of the table, degrees.

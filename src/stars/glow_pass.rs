@@ -39,14 +39,15 @@ const RINGS: [(f64, usize); 15] = [
     (78.0, 4),
     (90.0, 4),
 ];
-/// Rows of the sphere from the south galactic pole to the north one, and corners in a row. The last corner of a row has
-/// the same direction as the first.
+/// Number of rows of the sphere, from the south galactic pole to the north one.
 const ROWS: usize = 2 * RINGS.len() - 1;
+/// Number of corners in a row. The last one has the same direction as the first.
 const COLUMNS: usize = 49;
 /// Angle that the sun moves before the zodiacal light is computed again, rad: six hours.
 const STALE_RAD: f64 = 0.0044;
-/// Upper limit of the layer ratio, which keeps the shader from dividing by 0 for an eye in the layer, where the airglow
-/// has faded out.
+/// Upper limit of the layer ratio, which keeps the shader from dividing by 0 for an eye in the airglow layer. An eye
+/// reaches the limit 3.2 km below the layer, where 32 % of the airglow is left. Above that height the brightening
+/// towards the horizon stays as it is at the limit.
 const MOST_LAYER_RATIO2: f64 = 0.999;
 
 /// A corner of the sphere.
@@ -99,8 +100,8 @@ pub(super) struct GlowPass {
     written: Option<GlowUniform>,
 }
 
-/// The sphere's triangles that a picture may show. A software driver pays for every triangle that it gets, and most are
-/// outside the picture.
+/// The sphere's triangles that a picture may show. Most triangles are outside the picture, and a software driver spends
+/// time on each that it receives.
 struct VisibleTriangles {
     /// Directions of the sphere's corners, in J2000.0.
     directions: Vec<Vec3>,
@@ -119,7 +120,8 @@ impl VisibleTriangles {
         Self { directions, all, beyond, shown, count: 0 }
     }
 
-    /// Finds the triangles that a picture may show. A triangle whose corners all lie beyond one side is left out.
+    /// Finds the triangles that a picture may show. A triangle is left out if all its corners lie beyond the same side
+    /// of the picture.
     fn find(&mut self, view: &StarView<'_>) {
         let rows = [0, 1, 3].map(|i| (view.heavens.to_world.transpose() * view.clip.row(i).truncate()).as_vec3());
         for (beyond, direction) in self.beyond.iter_mut().zip(&self.directions) {
@@ -171,7 +173,7 @@ impl GlowPass {
         Ok(Self { block, corners, indices, group, pipeline, sun: None, triangles, written: None })
     }
 
-    /// Uploads what a draw of `sky` seen by `view` needs. Returns whether the draw differs from the last one.
+    /// Uploads the data to draw `sky` as `view` sees it. Returns whether the draw differs from the last one.
     pub fn prepare(&mut self, device: &Device, sky: &NightSky, view: &StarView<'_>, dusk: &Dusk) -> bool {
         let sun = view.heavens.sun;
         let is_stale = self.sun.is_none_or(|s| s.angle_between(sun) > STALE_RAD);
@@ -208,7 +210,7 @@ impl GlowPass {
         true
     }
 
-    /// Draws what was prepared and overwrites the target. Sets group 0, vertex buffer 0 and the index buffer.
+    /// Draws the prepared glow and overwrites the target. Sets group 0, vertex buffer 0 and the index buffer.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);

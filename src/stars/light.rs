@@ -37,11 +37,12 @@ fn integrated_color(temperature_k: f64) -> [f64; 3] {
     sum.map(|v| v / total)
 }
 
-/// Step of the table of colours, mired (1e6 over the temperature in kelvins).
+/// Step of the table of colours, mired: 1e6 divided by the temperature in kelvins.
 const MIRED_STEP: f64 = 10.0;
 
-/// Linear Rec. 709 colour, with luminance 1, of a black body of a temperature in [1000, 100000] K. It is read from a
-/// table in steps of 10 mired and is within 0.5 % of the sum over wavelengths. Any thread.
+/// Linear Rec. 709 colour, with luminance 1, of a black body. The temperature is clamped to 1000 to 1 000 000 K. The
+/// colour is read from a table in steps of 10 mired; up to 100 000 K it is within 0.5 % of the sum over wavelengths.
+/// Any thread.
 pub fn color_of_temperature(temperature_k: f64) -> [f64; 3] {
     static TABLE: OnceLock<[[f64; 3]; 101]> = OnceLock::new();
     let table = TABLE.get_or_init(|| std::array::from_fn(|i| integrated_color(1e6 / (MIRED_STEP * i as f64).max(1.0))));
@@ -54,8 +55,8 @@ pub fn color_of_temperature(temperature_k: f64) -> [f64; 3] {
 /// Temperature of the sun as a black body, K (IAU 2015 resolution B3).
 const SUN_K: f64 = 5772.0;
 
-/// Returns the colour of a black body, with luminance 1, for an eye that sees unscattered sunlight as white, as in all
-/// that is drawn (von Kries; `world::lights`).
+/// Returns the colour of a black body, with luminance 1, for an eye that is adapted to unscattered sunlight as white
+/// (von Kries; `world::lights`). Everything that is drawn uses this white.
 pub fn color_by_sunlight(temperature_k: f64) -> [f64; 3] {
     let (color, white) = (color_of_temperature(temperature_k), color_of_temperature(SUN_K));
     let adapted: [f64; 3] = std::array::from_fn(|k| color[k] / white[k]);

@@ -18,13 +18,13 @@
 //! most. One matrix ([`crate::almanac::celestial::celestial_to_world`]) turns J2000.0 to (east, north, up): precession
 //! (Lieske 1977), nutation (two terms) and sidereal time (Aoki et al. 1982), with UTC for UT1. Annual aberration,
 //! 0.0057 degrees, is a vector added to each direction; it follows from the Earth's velocity, the derivative of its
-//! orbit. Refraction lifts what is near the horizon (Saemundsson 1986). The planets follow the series of Simon et al.
+//! orbit. Refraction lifts stars near the horizon (Saemundsson 1986). The planets follow the series of Simon et al.
 //! 1994, with the magnitudes of Mallama and Hilton 2018.
 //!
 //! # Light
 //! Magnitude 0 is 2.54e-6 lux (Allen 1973). The colour is that of a black body, for an eye that sees sunlight as white
 //! ([`light`]). The air's transmittance is exp(-depth X) at each of the three wavelengths, with the air mass X by
-//! Kasten and Young 1989. A star's radiance is its illuminance over the solid angle of a pixel. A cubic B-spline
+//! Kasten and Young 1989. A star's radiance is its illuminance divided by the solid angle of a pixel. A cubic B-spline
 //! spreads it over 4 by 4 pixels. The spline's weights add up to 1 wherever the star stands ([`reference::spline`]), so
 //! that the light is the same at any resolution and does not flicker.
 //!

@@ -63,7 +63,8 @@ pub struct StarPass {
 }
 
 impl StarPass {
-    /// Creates what does not depend on the stars; the first [`StarPass::prepare`] creates the buffer.
+    /// Creates the resources that do not depend on the stars; the first [`StarPass::prepare`] creates the buffer of
+    /// stars.
     pub fn new(device: &Device) -> Self {
         let device = &device.device;
         let block = crate::gpu::bind::block(device, "stars", size_of::<StarUniform>());
@@ -133,7 +134,7 @@ impl StarPass {
         self.has_changed
     }
 
-    /// Draws what was prepared and adds it to the target. Sets group 0 and vertex buffer 0.
+    /// Draws the prepared stars and adds them to the target. Sets group 0 and vertex buffer 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         let (Some((kind, count)), Some(loaded), Some((_, group))) = (self.prepared, &self.loaded, &self.bound) else {
             return;

@@ -16,14 +16,15 @@ use crate::{
     scene::Place,
 };
 
-/// The heavens over a place at a time: one rotation for all stars, and what it does not contain.
+/// The heavens over a place at a time: one rotation for all stars, and the aberration, proper motion, sun and planets
+/// that the rotation does not contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heavens {
     /// Rotation from the equator and equinox of J2000.0 to (east, north, up): precession, nutation and the Earth's
     /// rotation, or the host's own matrix.
     pub to_world: DMat3,
-    /// The Earth's velocity over the speed of light, in the axes of J2000.0, for annual aberration. 0 with a host's own
-    /// matrix.
+    /// The Earth's velocity divided by the speed of light, in the axes of J2000.0, for annual aberration. 0 with a
+    /// host's own matrix.
     pub velocity: DVec3,
     /// Julian years since J2000.0, for proper motions; 0 with a host's own matrix.
     pub years: f64,

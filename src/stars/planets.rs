@@ -55,7 +55,7 @@ pub fn sun_direction(utc: Utc) -> DVec3 {
     -EARTH.heliocentric(millennia(utc)).normalize()
 }
 
-/// The Earth's orbital velocity over the speed of light, in the equator and equinox of J2000.0; it causes annual
+/// The Earth's orbital velocity divided by the speed of light, in the equator and equinox of J2000.0; it causes annual
 /// aberration. Its length is about 1e-4. The error is below 1e-7, because the sun's own motion and the moon's pull on
 /// the Earth are left out.
 pub fn earth_velocity(utc: Utc) -> DVec3 {

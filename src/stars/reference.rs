@@ -93,8 +93,8 @@ mod tests {
                 let sum = |k: usize| picture.iter().map(|p| p[k]).sum::<f64>();
                 assert!((sum(0) - 1.0).abs() < 1e-12 && (sum(2) - 4.0).abs() < 1e-12, "{pixel}");
                 let most = picture.iter().map(|p| p[0]).fold(0.0, f64::max);
-                // At worst it falls equally on four pixels. The brightest then has a little over half of what a pixel
-                // gets whose centre it hits.
+                // At worst it falls equally on four pixels. The brightest of them then gets a little over half of the
+                // light of a pixel whose centre the star hits.
                 assert!((0.229..=PEAK_WEIGHT + 1e-12).contains(&most), "{most}");
             }
         }

@@ -19,9 +19,10 @@ const DECLINATIONS_DEG: [f64; 25] = [
 ];
 /// Weight of the light at 640 nm in a linear interpolation to 550 nm, the peak of the eye's sensitivity.
 const RED_SHARE: f64 = 0.55;
-/// Widths of the kernels that average the ratio of measured to modelled light, rad: 5 degrees, half the tables' step;
-/// and a wide one for where the tables have no values (towards the sun as seen from the spacecraft).
+/// Width of the kernel that averages the ratio of measured to modelled light, rad: 5 degrees, half the tables' step.
 const NEAR_RAD: f64 = 0.0873;
+/// Width of a second kernel, rad, for directions in which the tables have no values (towards the sun as seen from the
+/// spacecraft).
 const FAR_RAD: f64 = 0.35;
 /// Weight of the wide kernel relative to the narrow one.
 const FAR_WEIGHT: f64 = 1e-3;
@@ -130,7 +131,7 @@ fn area(column: usize) -> f64 {
 pub struct Starlight(Vec<Measured>);
 
 impl Starlight {
-    /// Creates it from the tables.
+    /// Creates the starlight from the tables.
     pub fn measured() -> Self {
         let to_galactic = equator_to_galactic();
         let mut all = Vec::new();

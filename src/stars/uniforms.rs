@@ -1,4 +1,4 @@
-//! Inputs of a picture of the stars, and their conversion to what the shader reads.
+//! Inputs of a picture of the stars, and their conversion to the shader's uniforms.
 
 use glam::{DMat3, DMat4};
 

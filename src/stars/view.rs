@@ -55,7 +55,7 @@ pub(crate) struct StarsView {
     tonight: Option<Tonight>,
     passes: Option<Box<(StarPass, GlowPass)>>,
     layer: Option<(wgpu::Texture, wgpu::TextureView, wgpu::TextureView)>,
-    /// Whether the layer contains what was prepared last.
+    /// Whether the layer contains the night sky that was prepared last.
     is_layer_drawn: bool,
 }
 
