@@ -3,18 +3,19 @@
 //!include "clouds/field.wgsl"
 //!include "clouds/light.wgsl"
 
-// Ends of the intervals of the path to the sun, in distances from cloud to cloud. Edges are frayed in the first ones.
+// Ends of the intervals of the path to the sun, in distances from cloud to cloud. Only in the first `SUN_FRAYED`
+// intervals does solid noise fray the clouds' edges.
 const SUN_STEPS: u32 = 5u;
 const SUN_FRAYED: u32 = 3u;
 const SUN_WAY = array<f32, 5>(0.05, 0.15, 0.3, 0.8, 2.0);
-// Slope of the map per distance from cloud to cloud, and of the solid noise per side of it, by which rays skip clear
-// air. Steeper places are too small to matter.
+// Largest slopes that rays assume when they skip clear air: of the map, per distance from cloud to cloud (`MAP_SKIP`),
+// and of the solid noise, per side of its cube (`SOLID_SKIP`). Steeper places are too small to matter.
 const MAP_SKIP: f32 = 6.0;
 const SOLID_SKIP: f32 = 12.0;
 
 // A cloud at a place.
 struct CloudHere {
-    // Strength that is missing for cloud, without rounded base and fraying.
+    // Amount by which the map's strength falls short of cloud here, without the rounded base and fraying.
     gap: f32,
     // Excess over the threshold, with fraying.
     excess: f32,
@@ -100,16 +101,16 @@ fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f)
     return max(near, cloud_skip_by(layer, here, steep + here.slope * level));
 }
 
-// `cloud_skip` for a gap that falls by at most `steep` per metre, apart from what the noise adds.
+// `cloud_skip` for a gap that falls by at most `steep` per metre, apart from the change by the noise.
 fn cloud_skip_by(layer: CloudLayer, here: CloudHere, steep: f32) -> f32 {
     let by_map = (here.gap - MOST_FRAYED * layer.shape.z) / (steep + 1e-6);
     let by_noise = here.frayed_gap / (steep + SOLID_SKIP * layer.shape.z * layer.medium.w);
     return max(by_map, by_noise);
 }
 
-// Farthest distance that a ray is followed through a layer, and length over which clouds fade out before it, m. Without
-// it a cloud would end in a flat face.
+// Farthest distance up to which a ray is followed through a layer, m.
 const CLOUD_FARTHEST: f32 = 60.0e3;
+// Length over which clouds fade out before that distance, m. Without it a cloud would end in a flat face.
 const CLOUD_FADES: f32 = 15.0e3;
 
 // Share of clouds left at a distance within a layer, 0 to 1.

@@ -18,8 +18,8 @@ struct CloudLayer {
     above: vec4f,
     // Radiance of ground and lower clouds below it, cd/m^2 times exposure; scaled width of a cloud from side to side.
     below: vec4f,
-    // Index of the medium; scaled extinction over extinction; share of the layer that is drawn as a volume; 1/side of
-    // the solid noise, 1/m.
+    // Index of the medium; ratio of scaled extinction to extinction; share of the layer that is drawn as a volume;
+    // 1/side of the solid noise, 1/m.
     medium: vec4f,
     // Matrix to the pattern before its stretch along the wind: xx, xy and yy; growth of the domes of cumulus with the
     // excess.

@@ -10,8 +10,9 @@
 const MAP_CELLS: f32 = 16.0;
 const SECOND_PERIOD: f32 = 1.618034;
 const SECOND_TURN: vec2f = vec2f(0.62160997, 0.7833269);
-// Mean of the solid noise, and the reciprocal of the range that nearly all of it has.
+// Mean of the solid noise.
 const SOLID_MEAN: f32 = 0.47;
+// Reciprocal of the range that contains nearly all of the solid noise.
 const SOLID_GAIN: f32 = 2.2;
 // Largest amount that it adds to the excess, in units of the fraying's amplitude.
 const MOST_FRAYED: f32 = 0.8;
@@ -24,11 +25,13 @@ struct CloudPlace {
     height: f32,
 }
 
-// Height over which the edges of a base are round: as a share of the thickness, and at most in m.
+// Height over which the edges of a base are round, as a share of the layer's thickness.
 const EDGE_SHARE: f32 = 0.08;
+// Limit of that height, m: bases of deep layers are flatter.
 const EDGE_M: f32 = 40.0;
-// Heights between which an anvil is whole, and heights over which it fades out below and above.
+// Heights between which an anvil is whole, 0 at the layer's base to 1 at its top.
 const ANVIL: vec2f = vec2f(0.84, 0.95);
+// Heights over which an anvil fades out below that range and above it.
 const ANVIL_FACES: vec2f = vec2f(0.2, 0.05);
 // Share by which an anvil's edges fray less than its towers'.
 const ANVIL_SMOOTHER: f32 = 0.65;
@@ -43,17 +46,19 @@ struct CloudBlur {
 
 var<private> cloud_blur: CloudBlur;
 
-// Texels across a cell of the map, and across the solid noise; number of mip levels by which the second sheet is read
-// finer, as its cells are larger.
+// Texels across a cell of the map.
 const MAP_TEXELS: f32 = 16.0;
+// Texels across the solid noise.
 const SOLID_TEXELS: f32 = 64.0;
+// Number of mip levels by which the second sheet is read finer, because its cells are larger.
 const SECOND_LEVEL: f32 = 0.694;
-// A mean over a width w removes the share 1 - exp(-(w / x)^y) of the variance. (x, y) for the even and the cellular
-// sheets, w in cells, and for the solid noise, w in its sides; standard deviation of that noise. A test holds these
-// numbers (src/clouds/field/map.rs).
+// A mean over a width w removes the share 1 - exp(-(w / x)^y) of the variance. These constants hold (x, y): for the
+// even and the cellular sheets with w in cells, and for the solid noise with w in its sides. A test holds the numbers
+// (src/clouds/field/map.rs).
 const EVEN_BLUR: vec2f = vec2f(2.12, 1.25);
 const CELLULAR_BLUR: vec2f = vec2f(0.84, 1.9);
 const SOLID_BLUR: vec2f = vec2f(0.14, 1.7);
+// Standard deviation of the solid noise.
 const SOLID_DEVIATION: f32 = 0.107;
 
 // Width up to which clouds are not blurred, cells.

@@ -16,9 +16,10 @@ struct FollowedSquare {
     @location(2) back: vec4f,
 }
 
-// Deviation from a plane through neighbouring squares, over their range, up to which a picture counts as smooth, and
-// from which on it counts as structured.
+// Deviation from a plane through neighbouring squares, as a share of their range, up to which a picture counts as
+// smooth.
 const SMOOTH: f32 = 0.03;
+// Deviation from which on a picture counts as structured.
 const SHAPED: f32 = 0.1;
 
 // Share by which luminance (x) and transmittance (y) have no structure finer than these squares. Where it is 1, a

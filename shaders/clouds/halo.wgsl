@@ -2,11 +2,13 @@
 // the model.
 //!include "clouds/light.wgsl"
 
-// For red, green and blue: smallest deflection by a prism, rad, and the phase function there, 1/sr.
+// Smallest deflection by a prism for red, green and blue, rad.
 const HALO_FROM: vec3f = vec3f(0.37984, 0.38249, 0.38779);
+// Phase function at that deflection for red, green and blue, 1/sr.
 const HALO_MOST: vec3f = vec3f(5.1095, 5.0817, 5.0272);
-// Angle over which the halo falls to 1/e, and radius of the disc that blurs its step, rad.
+// Angle over which the halo falls to 1/e, rad.
 const HALO_FALL: f32 = 0.0716;
+// Radius of the disc that blurs the halo's step, rad.
 const HALO_DISC: f32 = 0.0047;
 // Share of the light scattered by ice.
 const HALO_SHARE: f32 = 0.039;

@@ -105,9 +105,9 @@ fn cloud_phase(medium: CloudMedium, versine: f32) -> f32 {
     return mix(lobe.x, draine, medium.lobes.w) / (4.0 * CLOUD_PI);
 }
 
-// Phase function of the first scattering, 1/sr. `gone` is the scaled depth of cloud on the whole path, with what is
-// between the place and the eye. Light that counts as straight on was partly scattered, and that part is added at its
-// angle.
+// Phase function of the first scattering, 1/sr. `gone` is the scaled depth of cloud on the whole path from the light to
+// the place and on to the eye. A part of the light that counts as going straight on was scattered in the forward peak;
+// this part is added at its angle.
 fn cloud_first_phase(medium: CloudMedium, versine: f32, gone: f32) -> f32 {
     let phase = cloud_phase(medium, versine);
     let forward = medium.rest.x * gone / (1.0 - medium.rest.x);

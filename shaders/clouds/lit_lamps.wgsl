@@ -3,15 +3,18 @@
 //!include "clouds/about.wgsl"
 //!include "clouds/lamps.wgsl"
 
-// Extrapolation length, and the depth from which light returns through the face that it fell on, over 1 / (1 - g').
+// Extrapolation length of the diffusion approximation (`DARK_AT`), and depth from which light returns through the face
+// that it fell on (`RETURNS_FROM`), both in units of 1 / (1 - g').
 const DARK_AT: f32 = 0.71;
 const RETURNS_FROM: f32 = 0.5;
-// Shares of the path to a lamp that lie in cloud, between which the lamp goes over from outside to inside.
+// Shares of the path to a lamp that lie in cloud: up to the first the lamp counts as outside, from the second on as
+// inside, and between them the two are mixed.
 const INSIDE: vec2f = vec2f(0.5, 1.0);
 // Number of places along an interval at which a beam is sampled.
 const BEAM_PLACES: u32 = 4u;
 
-// A lamp as seen from a place. Distances are scaled depths of the cloud around it.
+// A lamp as seen from a place. A distance is given as the scaled depth that it would have if all of it lay in cloud as
+// dense as that around the place.
 struct CloudShine {
     toward: vec3f,
     distance: f32,
@@ -28,7 +31,9 @@ fn cloud_shine(layer: CloudLayer, at: CloudPlace, lamp: CloudLamp, to: vec3f, sc
     return CloudShine(to / way, d, min(cloud_way(layer, at, to / way, way) * scaled, d));
 }
 
-// Distance from a lamp over that from its image behind a face, and the growth of this ratio along `direction`.
+// Ratio of a place's distance from a lamp to its distance from the lamp's image beyond a face, and the derivative of
+// this ratio along `direction`. `place` and `source` are the depths of place and lamp behind the plane where the light
+// is 0, `grows` is the derivative of `place` along the direction.
 fn cloud_mirrored(shine: CloudShine, direction: vec3f, place: f32, grows: f32, source: f32) -> vec2f {
     let d = shine.distance;
     let square = d * d + 4.0 * place * source;
@@ -37,14 +42,16 @@ fn cloud_mirrored(shine: CloudShine, direction: vec3f, place: f32, grows: f32, s
     return vec2f(d, toward - 2.0 * d * source * grows / square) * image;
 }
 
-// Light of a lamp inside the cloud that is scattered more than once, for 1 cd per unit of scaled depth squared.
-// `within` has the scaled depths of the layer's cloud above and below the lamp.
+// Light of a lamp inside the cloud that is scattered more than once, per steradian and unit of scaled depth. The lamp
+// has intensity 1 with distances in scaled depths: at a distance d its irradiance is 1 / d^2. `about` has the scaled
+// depths of cloud around the place. `within` has the scaled depths of the layer's cloud above and below the lamp.
 fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: CloudShine, direction: vec3f) -> f32 {
     let turning = medium.rest.z;
     let dark = DARK_AT / turning;
     let d = shine.distance;
     let level = length(shine.toward.xy) * d;
-    // Little is known of the sides: the eye looks at the nearer one, and the lamp lies beyond it in the same cloud.
+    // `about` does not say on which side eye and lamp are. Assumed: the eye looks at the nearer side, and the lamp lies
+    // beyond the place, deeper in the same cloud.
     let out = length(direction.xy);
     let half = 0.5 * max(about.z + about.w, d);
     let place = array<f32, 6>(about.x, about.y, about.z, max(about.w, level + half), half, half);
@@ -55,7 +62,8 @@ fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: Cloud
     var growing = dot(shine.toward, direction) / d;
     for (var i = 0u; i < 6u; i++) {
         let power = select(select(3.0, 2.0, i == (nearest ^ 1u)), 1.0, i == nearest);
-        // A cloud is round: where one face is near, the others are farther away.
+        // A cloud is round: where one face is near, the others are farther away, so that the place counts as no less
+        // deep behind them than the lamp.
         let depth = select(max(place[i], lamp[i]), place[i], i == nearest);
         let r = cloud_mirrored(shine, direction, depth + dark, grows[i], max(lamp[i], 0.0) + dark);
         let others = pow(r.x, power - 1.0);
@@ -90,7 +98,7 @@ fn cloud_in_beam(lamp: CloudLamp, to: vec3f, direction: vec3f, first: f32, last:
     if lamp.light.end <= 0.0 {
         return vec2f(first, last);
     }
-    // (axis . p)^2 = end^2 p^2, for p from the lamp to the ray.
+    // The beam's edge is the cone (axis . p)^2 = end^2 p^2, where p leads from the lamp to a point of the ray.
     let on = dot(direction, lamp.light.direction);
     let from_lamp = -dot(to, lamp.light.direction);
     let square = lamp.light.end * lamp.light.end;
@@ -131,13 +139,13 @@ fn cloud_once(medium: CloudMedium, lamp: CloudLamp, to: vec3f, stretch: CloudStr
         let beam = light_beam(lamp.light, dot(way, lamp.light.direction));
         let gone = d * dense;
         let phase = cloud_first_phase(medium, 1.0 + dot(stretch.direction, way), gone + stretch.to_eye);
-        // From ds = d^2 du / h.
+        // Since ds = d^2 du / h, the square of the distance d cancels in the first sum and remains in the second.
         sum += beam * vec2f(phase * exp(-gone), d * d);
     }
     return sum * vec2f(medium.rest.w, 1.0) * (whole / (h * f32(BEAM_PLACES) * stretch.length));
 }
 
-// Light of all lamps that a place scatters to the eye, cd/m^2 over exposure, per unit of scaled depth.
+// Light of all lamps that a place scatters to the eye, cd/m^2 times exposure, per unit of scaled depth.
 fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudStretch, halo: vec3f) -> vec3f {
     let local = cloud_local(layer, cloud_unleaned(layer, at)).layer;
     let about = cloud_box(local, at, here.excess);

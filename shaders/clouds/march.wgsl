@@ -4,11 +4,13 @@
 //!include "clouds/halo.wgsl"
 //!include "clouds/lit.wgsl"
 
-// Number of steps relative to the following values; largest number of steps in one layer; largest scaled depth of a
-// step in cloud; length of a step over its distance.
+// Number of steps relative to that given by the following values.
 override CLOUD_FINENESS: f32 = 1.0;
+// Largest number of steps in one layer.
 override CLOUD_STEPS: u32 = 96u;
+// Largest scaled depth of a step in cloud.
 override CLOUD_STEP_DEPTH: f32 = 0.4;
+// Largest ratio of a step's length to its distance from the eye.
 override CLOUD_STEP_ANGLE: f32 = 0.0035;
 // Largest share of a layer's thickness by which a step goes up or down.
 const CLOUD_STEP_RISE: f32 = 0.08;
@@ -18,7 +20,7 @@ const CLOUD_THICK_STEP: f32 = 0.7;
 override CLOUD_LEAST: f32 = 0.01;
 
 struct CloudSeen {
-    // Radiance, cd/m^2 over exposure; transmittance for the light behind, which includes light scattered straight on.
+    // Radiance, cd/m^2 times exposure; transmittance for the light behind, which includes light scattered straight on.
     light: vec3f,
     transmittance: f32,
     // Distances between which the visible cloud is nearly evenly spread, m.
@@ -63,23 +65,23 @@ const PIXEL_BLUR: f32 = 1.4;
 // Angle of a pixel, rad.
 var<private> cloud_pixel: f32 = 0.0;
 
-// Width of a pixel on a layer, m: the geometric mean of the widths across and along the ray. What the ray passes of the
-// layer itself is taken off the second.
+// Width of a pixel on a layer, m: the geometric mean of the widths across and along the ray. The width along the ray is
+// reduced by the thickness of the layer.
 fn cloud_pixel_width(layer: CloudLayer, t: f32, rise: f32) -> f32 {
     let across = PIXEL_BLUR * cloud_pixel * t / CLOUD_FINENESS;
     let along = max(across, (across - 1.0 / layer.size.y) / max(rise, 0.05));
     return sqrt(across * along);
 }
 
-// Transmittance of a ray in gaps (x) and in cloud (y), `cells` cells beyond a place with the share of cloud shares.x,
-// at a place with the share shares.y. On the way up or down, cloud stands over cloud; on a level path a ray meets new
-// clouds.
+// Splits the transmittance of a ray into the part in gaps (x) and the part in cloud (y). The share of cloud was
+// shares.x at the last place, where `open` held, and is shares.y at this place, `cells` cells farther on. On a steep
+// path cloud stands over cloud; on a level path the ray meets new clouds.
 fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     let grown = open.x * (shares.y - shares.x) / max(1.0 - shares.x, 1e-6);
     let shrunk = open.y * (shares.y / max(shares.x, 1e-6) - 1.0);
     let stacked = open.y + select(shrunk, grown, shares.y > shares.x);
     let all = open.x + open.y;
-    // Limited to the total: rounded up, it would leave gaps that take light away.
+    // Limited to the total: rounding above it would make the part in gaps negative.
     let cloudy = clamp(mix(shares.y * all, stacked, exp(-cells / CLOUD_CELL)), 0.0, all);
     return vec2f(all - cloudy, cloudy);
 }

@@ -11,8 +11,8 @@ struct CloudsPicture {
     // Matrix from a place relative to the camera (east, north, up), m, to the last frame's clip space, before clouds
     // and camera moved.
     before: mat4x4f,
-    // Movement of a cloud relative to the camera since the last frame, m; exposure of this frame over that of the last,
-    // 0 without history.
+    // Movement of a cloud relative to the camera since the last frame, m; ratio of this frame's exposure to the last
+    // one's, 0 without history.
     moved: vec3f,
     exposed: f32,
 }

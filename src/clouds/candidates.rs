@@ -7,14 +7,15 @@ use crate::plan::{
 };
 
 /// Clouds as a part of the plan, with two rungs: layers drawn as volumes, or the grey deck in their place. The
-/// importance of 0.4 is from the machinery trainer's experiment.
+/// importance, 0.4, comes from the experiment that `sky::candidates::AIR` names.
 pub const CLOUDS: Part =
     Part { name: "clouds", rungs: &["volume", "deck"], importance: 0.4, worth: Worth::Estimated(4) };
 
-/// Work of the volume in a pixel that looks towards clouds (`MARCHED`) and in any pixel (`LAID`). The unit is the work
-/// of a pixel with none of the parts. Measured on a software driver (`cargo bench --bench speed -- clouds`): the volume
-/// adds 34 copies to a clear sky, whose frame has 20.
+/// Work of the volume in a pixel that looks towards clouds. The unit is the work of a pixel with none of the parts.
+/// Measured on a software driver (`cargo bench --bench speed -- clouds`), in copies of the picture: a frame with a
+/// clear sky takes the time of 20 copies, and the volume adds 34.
 const MARCHED: f64 = 2.0;
+/// Work of the volume in any pixel: the finished clouds are laid over the sky.
 const LAID: f64 = 0.3;
 
 /// Returns the work of the step from the volume to the deck in a picture of `pixels` pixels. `share` is the share of

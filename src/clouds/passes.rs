@@ -76,7 +76,7 @@ pub(super) struct CloudFrame<'a> {
     /// Uniform block of the frame, and the sky's tables with their layout.
     pub frame: &'a BlockView,
     pub sky: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
-    /// Texture of what stands behind the sky's own light: the stars.
+    /// Texture of the light behind the sky's own light: stars and the glow between them.
     pub behind: Option<&'a wgpu::Texture>,
     pub shaded: Option<Shaded<'a>>,
     /// Whether the air in front of the surfaces is shaded too.
@@ -429,7 +429,7 @@ impl CloudPasses {
     }
 }
 
-/// Copies the texture of what stands behind the sky's own light into its layer.
+/// Copies the texture of stars and glow, which stand behind the sky's own light, into its layer.
 fn copy_layer(encoder: &mut wgpu::CommandEncoder, source: &wgpu::Texture, target: &wgpu::Texture) {
     let origin = wgpu::Origin3d { x: 0, y: 0, z: BEHIND };
     let size = wgpu::Extent3d { depth_or_array_layers: 1, ..source.size() };

@@ -1,9 +1,9 @@
 //! Light in clouds by tracing photons: the reference for the tables and shaders.
 //!
 //! Free paths through a cloud of any shape are sampled by null collisions (Woodcock et al. 1965). Step lengths are
-//! drawn for the largest extinction, and a step's end counts as a collision with the probability of the extinction
-//! there over the largest. Nothing is scaled or cut off. The standard error of a share p of n photons is sqrt(p (1 - p)
-//! / n).
+//! drawn for the largest extinction, and the end of a step counts as a collision with a probability equal to the ratio
+//! of the extinction there to the largest. Nothing is scaled or cut off. The standard error of a share p of n photons
+//! is sqrt(p (1 - p) / n).
 
 use std::f64::consts::PI;
 

@@ -29,8 +29,9 @@ use crate::{
     moment::Scene,
 };
 
-/// Largest scaled depth of a step in cloud, and its largest length over the distance from the eye.
+/// Largest scaled depth of a step in cloud.
 const STEP_DEPTH: f64 = 0.25;
+/// Largest ratio of a step's length to its distance from the eye.
 const STEP_ANGLE: f64 = 0.002;
 /// Largest share of a layer's thickness by which a step goes up or down.
 const STEP_RISE: f64 = 0.04;
@@ -40,12 +41,12 @@ const LEAST: f64 = 0.001;
 const FARTHEST_M: f64 = 60e3;
 /// Length over which clouds fade out before that distance, m. Without it a cloud would end in a flat face.
 const FADES_M: f64 = 15e3;
-/// Ends of the intervals of the path to the sun, in distances from cloud to cloud. Edges are frayed in the first ones
-/// (`SUN_FRAYED`).
+/// Ends of the intervals of the path to the sun, in distances from cloud to cloud. Only in the first `SUN_FRAYED`
+/// intervals does solid noise fray the clouds' edges.
 const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
 const SUN_FRAYED: usize = 3;
-/// Slope of the map per distance from cloud to cloud, and of the solid noise per side of it, by which rays skip clear
-/// air.
+/// Largest slopes that rays assume when they skip clear air: of the map, per distance from cloud to cloud (`MAP_SKIP`),
+/// and of the solid noise, per side of its cube (`SOLID_SKIP`).
 const MAP_SKIP: f64 = 6.0;
 const SOLID_SKIP: f64 = 12.0;
 

@@ -9,10 +9,10 @@ pub(crate) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(crate) const PAIR: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 /// Format of the depth that marks the pixels on which the host drew.
 pub(crate) const KINDS: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
-/// Layers of the whole picture: radiance and transmittance of the clouds, their reach, and what stands behind the sky's
-/// own light. The panorama has its place below the picture.
+/// Layers of the whole picture: radiance and transmittance of the clouds, their reach, and the stars and glow behind
+/// the sky's own light. The panorama has its place below the picture.
 pub(crate) const LAYERS: u32 = 3;
-/// Index of the layer for what stands behind the sky's own light.
+/// Index of the layer of stars and glow, which stand behind the sky's own light.
 pub(crate) const BEHIND: u32 = 2;
 
 /// Side of the panorama, texels. A texel is 1.5 degrees, as fine as a mirror of still water shows broken clouds.

@@ -8,9 +8,9 @@
 //! Nothing is absorbed. The layer is level and infinite.
 //!
 //! # Error
-//! Noise, whose standard error is in each answer. After a photon has been turned widely, the narrow lobe towards the
-//! sun is widened: otherwise rare photons would outshine all others. The reflectance of even slabs stays the same
-//! within the test's noise.
+//! Noise, whose standard error is in each answer. After a scattering through a wide angle, the narrow lobe of the phase
+//! function is widened where the sun is sampled. Otherwise a few rare photons would contribute most of the radiance.
+//! The reflectance of even slabs stays the same within the test's noise.
 
 use std::sync::Arc;
 
@@ -36,16 +36,16 @@ use crate::{
     weather::{CloudKind, CloudSlab},
 };
 
-/// Share of the distance in which the march finds no cloud that is skipped here.
+/// Share of the cloud-free distance that the march finds ([`skip`]) by which a photon advances.
 const SKIPPED: f64 = 0.5;
 /// Distance within which the threshold stays the same, m, and its slope beyond: the field has no local cover.
 const UNMAPPED: [f64; 2] = [f64::INFINITY, 0.0];
-/// Least amount by which the narrow lobe's asymmetry falls below 1 towards the sun, for each wide turn of the photon
-/// (`WIDER`), and the number of turns that count.
+/// Limit on the narrow lobe's asymmetry where the sun is sampled: after n scatterings through wide angles it is at most
+/// 1 - `WIDER` n. n counts no further than `WIDER_TURNS`.
 const WIDER: f64 = 0.03;
 const WIDER_TURNS: u32 = 3;
-/// Value of the phase function, over that of isotropic scattering, above which the sun is always sampled
-/// (`ASKED_FROM`), and the least probability of sampling it.
+/// Ratio of the phase function towards the sun to isotropic scattering above which the sun is always sampled
+/// (`ASKED_FROM`), and the smallest probability of sampling it (`ASKED_LEAST`).
 const ASKED_FROM: f64 = 2.0;
 const ASKED_LEAST: f64 = 0.1;
 
@@ -73,7 +73,7 @@ impl GivenLight {
 /// Light of sun, sky and ground along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// Radiance, with what is behind the cloud.
+    /// Radiance, including the light from behind the cloud.
     pub all: f64,
     /// Part of each source: sun, above, below.
     pub by: [f64; 3],
@@ -249,13 +249,15 @@ pub const CASES: [Case; 7] = {
     ]
 };
 
-/// Radiance of the sky over the sun's irradiance, and albedo of the ground.
+/// Ratio of the sky's radiance to the sun's irradiance, 1/sr.
 const SKY: f64 = 0.045;
+/// Albedo of the ground.
 const GROUND: f64 = 0.2;
 /// Seed of the field.
 const SEED: u64 = 3;
-/// Rays nearer to the sun than this (rad), or with a larger transmittance than this, are left out.
+/// Angle from the sun within which rays are left out, rad.
 const NEAR_SUN: f64 = 0.3;
+/// Transmittance above which rays are left out.
 const MOST_THROUGH: f64 = 0.7;
 
 /// Errors of the model against photons, over rays.
@@ -267,9 +269,9 @@ pub struct Compared {
     pub p95: f64,
     /// Relative error of the mean radiance.
     pub bias: f64,
-    /// Error of the mean radiance from each source (sun, above, below), over the whole mean radiance.
+    /// Error of the mean radiance from each source (sun, above, below), relative to the whole mean radiance.
     pub parts: [f64; 3],
-    /// Standard error of the photons over their radiance: for the median ray, and for the mean.
+    /// Standard error of the photons relative to their radiance: for the median ray, and for the mean.
     pub chance: [f64; 2],
     /// 95th percentile of the relative difference from 64 times as many steps: with the model's steps, with its steps
     /// by depth only, and with its steps by angle only.

@@ -6,9 +6,9 @@
 //! that of the weather's lowest layer from which rain may fall, if that is no higher than the top of the area's rain;
 //! otherwise it is the top of the area's rain. Under a closed layer there are no cells, because it hides the sky.
 //!
-//! A place has the light under a layer of the cells' cloud whose cover is the share of the sky that the cells take. A
-//! cell takes the view factor of a level disc of equal area from level ground (Hamilton and Morgan 1952). The disc lies
-//! off the zenith by as many radii as the cell lies off in half widths.
+//! The light at a place is that under one layer of the cells' cloud. The cover of this layer is the share of the sky
+//! that the cells take up. A cell takes up the view factor of a level disc of equal area from level ground (Hamilton
+//! and Morgan 1952). The horizontal offset of the disc, in its radii, equals that of the cell in half widths.
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};
 
@@ -32,10 +32,11 @@ const EDGE_SLOPE: f64 = 3.0;
 /// Position of the area's border in the edge, as a share of the edge's width from outside. One place in a hundred is
 /// open there.
 const BORDER: f64 = 0.85;
-/// Distance from cloud to cloud in a cell over the area's half width (`SPACING`), and its least value, m.
+/// Ratio of the distance from cloud to cloud in a cell to the area's half width.
 const SPACING: f64 = 0.4;
+/// Least distance from cloud to cloud in a cell, m.
 const LEAST_SPACING_M: f64 = 600.0;
-/// Largest thickness of a cell over the area's half width.
+/// Largest ratio of a cell's thickness to the area's half width.
 const DEEPEST: f64 = 2.0;
 /// Least thickness of a cell, m, unless its kind of cloud is thinner.
 const MOST_FLAT_M: f64 = 800.0;

@@ -87,8 +87,8 @@ pub fn field<'a>(slab: &CloudSlab, (map, solid): &'a (Map, Solid), threshold: f6
     Field { shape: Shape::still(slab, threshold), map, solid, placed: Default::default() }
 }
 
-/// Returns the mean cover that a kind is seen to have where `cover` is asked for, and its standard deviation over
-/// seeds.
+/// Returns the cover of a kind as seen from the ground when `cover` is requested: its mean and its standard deviation
+/// over seeds.
 ///
 /// # Errors
 /// As [`Solid::new`].

@@ -9,8 +9,9 @@ use super::{
     solid::Solid,
 };
 
-/// Mean of the solid noise, and the reciprocal of the range that nearly all of it has.
+/// Mean of the solid noise.
 const SOLID_MEAN: f64 = 0.47;
+/// Reciprocal of the range that contains nearly all of the solid noise.
 const SOLID_GAIN: f64 = 2.2;
 
 /// Largest amount that the solid noise adds to the excess, in units of `rough`; nearly all of the noise is below it.
@@ -62,7 +63,7 @@ impl Field<'_> {
         self.strength(self.upright(position_m)) - s.threshold
     }
 
-    /// Returns what the solid noise adds to the excess at a place.
+    /// Returns the amount that the solid noise adds to the excess at a place.
     pub(crate) fn frays(&self, position_m: DVec3) -> f64 {
         let s = &self.shape;
         let level = s.stretch * (self.upright(position_m) - s.drift_m);

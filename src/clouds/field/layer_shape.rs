@@ -23,7 +23,8 @@ const HIGHEST: f64 = 2.2;
 /// there.
 const HIGHEST_OF_TOWERS: f64 = 1.2;
 
-/// Cells of cloud along the side of the solid noise, for other clouds and for fibres.
+/// Side of the cube of solid noise, in distances from cloud to cloud: for fibrous clouds (`SOLID_CELLS_OF_FIBRES`), and
+/// for all others.
 const SOLID_CELLS: f64 = 1.5;
 const SOLID_CELLS_OF_FIBRES: f64 = 0.8;
 /// Distance from cloud to cloud up to which the heads (bulges of a cloud) are proportional to it, m.

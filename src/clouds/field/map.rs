@@ -13,15 +13,17 @@ pub const MAP_SIZE: usize = 256;
 pub const MAP_REACH: f64 = 4.0;
 /// Cells of cloud along the map's side.
 pub const MAP_CELLS: f64 = 16.0;
-/// Period of the second sheet over that of the first, the angle by which it is turned, and its offset in periods. The
-/// periods have no common multiple.
+/// Ratio of the second sheet's period to the first's. The periods have no common multiple.
 pub(crate) const SECOND_PERIOD: f64 = 1.618_033_988_749_895;
+/// Angle by which the second sheet is turned, rad.
 pub(crate) const SECOND_TURN_RAD: f64 = 0.9;
+/// Offset of the second sheet, in periods.
 pub(crate) const SECOND_OFFSET: DVec2 = DVec2::new(0.37, 0.71);
 /// Octaves of the even sheets. The first has half as many cells as the map, so that clouds stand in groups.
 const EVEN_OCTAVES: u32 = 4;
 /// Ratio of an octave's amplitude to that of the one before, in the even and in the cellular sheets.
 const PERSISTENCE: [f64; 2] = [0.55, 0.4];
+/// Number of octaves of the cellular sheets.
 const CELLULAR_OCTAVES: u32 = 3;
 
 /// Texels of the map: two sheets of gradient noise (the even sheets), and two of cellular noise.

@@ -22,12 +22,12 @@ use crate::{
     weather::{CloudMap, CloudSlab},
 };
 
-/// How much less excess the anvil of a cell over a rain area needs than that of a layer. Because of `EDGE_SLOPE` in the
-/// cells, the anvil then reaches this much over `EDGE_SLOPE`, in distances from cloud to cloud, farther out than the
-/// towers.
+/// How much less excess the anvil of a cell over a rain area needs than that of a layer. The excess falls by
+/// `EDGE_SLOPE` per distance from cloud to cloud across a cell's edge. The anvil therefore reaches `ANVIL_WIDER /
+/// EDGE_SLOPE` of these distances farther out than the towers.
 const ANVIL_WIDER: f64 = 2.2;
-/// Thickness of a cell over the distance from cloud to cloud above which its heads grow with its height (`HEADS`), and
-/// the largest `rough` (`MOST_ROUGH`). Shaped by the map alone, the sides would hang like curtains.
+/// Ratio of a cell's thickness to the distance from cloud to cloud above which its heads grow with its height
+/// (`HEADS`), and the largest `rough` (`MOST_ROUGH`). Shaped by the map alone, the sides would hang like curtains.
 const HEADS: f64 = 2.0;
 const MOST_ROUGH: f64 = 2.1;
 
@@ -91,7 +91,7 @@ impl CloudLayers {
         Ok(())
     }
 
-    /// Applies a map to the layers that it is for.
+    /// Applies a host's map of cover to the layers that it names.
     fn follow(&mut self, map: &Arc<CloudMap>, made: &mut LayerMaps) {
         let count = self.all().len();
         for i in 0..count {

@@ -86,7 +86,7 @@ pub fn dome(shape: &Shape, excess: f64, height: f64) -> f64 {
 }
 
 /// Slope of the map: change of its number across a cell. A place's distance from its cloud's edge, in cells, is taken
-/// as its excess over this slope.
+/// as its excess divided by this slope.
 const MAP_SLOPE: f64 = 4.0;
 
 /// Amount of cloud above, below and beside a place, as metres of cloud at full extinction.
@@ -100,8 +100,8 @@ pub struct About {
     pub edge_m: f64,
 }
 
-/// Returns how much cloud a column of this excess has below a height, as a height of full extinction: the integral of
-/// extinction over full extinction, in layer thicknesses.
+/// Returns how much cloud a column of this excess has below a height, in layer thicknesses: the integral of the ratio
+/// of the extinction to full extinction.
 pub(crate) fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
     let d = shape.dome_over(excess).max(1e-3);
     let reach = |e: f64| (e.max(0.0) / d).sqrt().min(1.0);

@@ -44,8 +44,8 @@ pub fn phase(index: f64, angle: f64) -> f64 {
     smooth(begun) * (-(angle - first).max(0.0) / FALL_RAD).exp() / all
 }
 
-/// Returns what the halo adds to the phase function of ice without its peak, 1/sr for each channel, at this cosine of
-/// the scattering angle. It is negative away from the halo.
+/// Returns the amount that the halo adds to the phase function of ice without its peak, 1/sr for each channel, at this
+/// cosine of the scattering angle. It is negative away from the halo.
 pub fn excess(scattering: &Scattering, cosine: f64) -> [f64; 3] {
     let angle = cosine.clamp(-1.0, 1.0).acos();
     let smooth = scattering.smooth_phase(1.0 - cosine);

@@ -16,9 +16,9 @@ const LAMPS: usize = 16;
 const ROWS: u32 = 96;
 /// Display value below which glow is invisible: a quarter of a step of 8 bits.
 const LEAST_SHOWN: f64 = 1e-3;
-/// Largest share of a lamp's light that a cloud reflects (`REFLECTS`). Distance at which a lamp inside a cloud is taken
-/// to light it, m (`NEAREST_M`).
+/// Largest share of a lamp's light that a cloud reflects.
 const REFLECTS: f64 = 0.7;
+/// Distance at which a lamp inside a cloud is taken to light it, m.
 const NEAREST_M: f64 = 5.0;
 
 /// A lamp or a flash.

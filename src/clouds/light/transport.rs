@@ -46,6 +46,7 @@ pub const DEPTHS: usize = 28;
 /// Number of ladders. Each has one rate at which light leaks through the sides, per scaled depth. The light falls off
 /// with the root of the rate; the roots are 0.03 (e^(k/4) - 1).
 pub const LEAKS: usize = 16;
+/// Factor of those roots.
 const LEAK_ROOT: f64 = 0.03;
 
 fn leak_of(k: usize) -> f64 {
@@ -151,8 +152,8 @@ impl Scattering {
     }
 }
 
-/// Returns the rate at which light leaks through the sides of a box of these scaled widths, per scaled depth, over the
-/// rate of scattering; see the module. `turning` is [`Scattering::turning`].
+/// Returns the rate at which light leaks through the sides of a box of these scaled widths, per scaled depth, divided
+/// by the rate of scattering; see the module. `turning` is [`Scattering::turning`].
 pub fn leak_rate(widths: [f64; 2], turning: f64) -> f64 {
     let one = |width: f64| (PI / (width + 1.42 / turning)).powi(2);
     (one(widths[0]) + one(widths[1])) / (3.0 * turning)
