@@ -9,7 +9,7 @@ struct ChannelUniform {
     // Matrix from camera-relative (east, north, up), m, to clip space.
     clip: mat4x4f,
     color: vec3f,
-    // Solid angle of a pixel over the cube of the clip w of a unit direction, sr; 0 for parallel rays.
+    // Solid angle of a pixel divided by the cube of the clip w of a unit direction, sr; 0 for parallel rays.
     pixel_sr: f32,
     // Size of the target, pixels.
     size: vec2f,
@@ -24,8 +24,9 @@ struct ChannelUniform {
 
 override HAS_DEPTH: bool = true;
 
-// Spread (standard deviation) across a line, pixels, and number of spreads up to which it is drawn.
+// Standard deviation of a line's light across the line, pixels.
 const SPREAD: f32 = 0.6;
+// Number of standard deviations up to which a line is drawn.
 const REACH: f32 = 3.5;
 // Smallest clip w at which a part is drawn.
 const NEAREST: f32 = 0.5;

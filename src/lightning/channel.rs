@@ -7,20 +7,21 @@
 //! branches leave, each at 20 to 50 degrees to the path, with 0.15 to 0.6 of the remaining path's length. A third of
 //! them branch again. They point down, and none reaches the ground.
 //!
-//! Tall objects attract a ground flash. The last leap of a leader with peak current I is 10 I^0.65 m long (Love 1973).
-//! The leader comes down until it is within that distance of the ground or of something tall, and strikes what it comes
-//! near first (Armstrong and Whitehead 1968, the electrogeometric model).
+//! Tall objects attract a ground flash. The last leap of a leader with peak current I, in kA, has the length L = 10
+//! I^0.65 m (Love 1973). The leader comes down until it is within that distance of the ground or of something tall, and
+//! strikes whichever it reaches first (Armstrong and Whitehead 1968, the electrogeometric model).
 
 use glam::{DVec2, DVec3};
 
 use super::flash::{Flash, FlashKind};
 use crate::chance::Chance;
 
-/// Standard deviation of the sideways move of an interval's middle, over the interval's length.
+/// Ratio of the standard deviation of the sideways move of an interval's middle to the interval's length.
 const WANDERING: f64 = 0.25;
-/// `WANDERING` for the first `FIRST` halvings. A channel wanders less on a large scale than on a small one, because the
-/// field that draws it down is even on a large scale.
+/// Value of [`WANDERING`] for the first [`FIRST`] halvings. The electric field that drives a channel is even on a large
+/// scale, so the channel wanders less there.
 const WANDERING_FIRST: f64 = 0.12;
+/// Number of halvings with [`WANDERING_FIRST`].
 const FIRST: u32 = 2;
 /// Number of halvings of a channel: 2^9 intervals of some 10 m.
 const HALVINGS: u32 = 9;
@@ -34,7 +35,7 @@ pub struct Mast {
     pub tip_m: DVec3,
 }
 
-/// Returns the speed of sound in air, m/s (331.3 + 0.606 T).
+/// Returns the speed of sound in air, c = 331.3 + 0.606 T, m/s, with T in degrees Celsius.
 pub fn sound_m_s(temperature_c: f64) -> f64 {
     331.3 + 0.606 * temperature_c
 }
@@ -184,7 +185,7 @@ fn wander(chance: &mut Chance, (start, end): (DVec3, DVec3), halvings: u32, lowe
 const BRANCHES: (f64, f64) = (8.0, 10.0);
 /// Range of their angles to the path that they leave, degrees.
 const LEAVES_DEG: (f64, f64) = (20.0, 50.0);
-/// Range of their lengths over the rest of the path.
+/// Range of the ratio of their lengths to the rest of the path.
 const LENGTHS: (f64, f64) = (0.15, 0.6);
 /// Share of branches that branch again.
 const AGAIN: f64 = 0.33;

@@ -13,28 +13,31 @@
 
 use super::flash::{Flash, FlashKind, Stroke};
 
-/// Peak power of a stroke with a current of [`OF_KA`], W/m, and that current, kA.
+/// Peak power of a stroke with a current of [`OF_KA`], W/m.
 const PEAK_W_M: f64 = 1e6;
+/// Current for which [`PEAK_W_M`] is given, kA.
 const OF_KA: f64 = 30.0;
 /// Luminous efficacy of the light, lm/W.
 pub(super) const LM_PER_W: f64 = 163.0;
 /// Shares of the peak, and the times in which they decay to 1/e, s.
 const FADES: [(f64, f64); 2] = [(0.85, 150e-6), (0.15, 5e-3)];
-/// Leaders of the first stroke and of later ones: light over that of the stroke, speed, m/s, and time for which a place
-/// shines after the tip has reached it, s.
+/// Leaders of the first stroke and of later ones: ratio of the light to that of the stroke, speed, m/s, and the time
+/// for which a point of the channel shines after the leader's tip has passed, s.
 const LEADERS: [(f64, f64, f64); 2] = [(0.02 / 50.0, 2e5, f64::INFINITY), (0.1, 1e7, 3.4e-6)];
 /// Speed of the stroke, m/s.
 const STROKE_M_S: f64 = 1e8;
-/// Light of a step of a flash in the cloud over that of a stroke with the same current. An assumption.
+/// Ratio of the light of a step of a flash in the cloud to that of a stroke with the same current. An assumption.
 const IN_CLOUD: f64 = 0.3;
 /// Time in which a flash drawn under the limit on flicker decays to 1/e, s.
 const SMOOTH_S: f64 = 0.15;
 /// Colour of a black body of 20 000 K in linear Rec. 709, with luminance 1.
 pub const COLOR: [f64; 3] = [0.75, 0.99, 1.84];
 
-/// Longest time before its first stroke in which a flash gives light (`BEFORE_S`), and after its last, s.
+/// Longest time before its first stroke for which a flash gives light, s.
 pub const BEFORE_S: f64 = 0.1;
+/// Longest time after its last stroke for which a flash gives light, s.
 const AFTER_S: f64 = 0.06;
+/// As [`AFTER_S`], for a flash drawn under the limit on flicker, s.
 const SMOOTH_AFTER_S: f64 = 1.5;
 /// Longest time from a flash's first stroke to its last, s. Longer ones hardly ever occur.
 pub const LONGEST_S: f64 = 4.0;
@@ -95,12 +98,12 @@ impl Course {
 /// Properties of a part of a channel on which its light depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// Position along the main channel, 0 at the upper end to 1. For a branch, the position that a leader reaches at
-    /// the same time.
+    /// Position along the main channel, 0 at the upper end to 1. For a branch: the position on the main channel that
+    /// the leader reaches at the same time.
     pub down: f64,
     /// Length of the main channel, m.
     pub length_m: f64,
-    /// Light over that of the main channel.
+    /// Ratio of the light to that of the main channel.
     pub strength: f64,
     /// Whether it is a branch, which later strokes do not take.
     pub is_branch: bool,

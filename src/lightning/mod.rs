@@ -7,8 +7,8 @@
 //! # Model
 //! * [`schedule`]: the flashes of a storm are a Poisson process, evenly spread in time. They are taken from a fixed
 //!   stream of sixty candidates a minute, each with a random number from 0 to 1. A candidate strikes if its number is
-//!   below the rate over sixty a minute. A changing rate therefore adds and removes flashes, but moves none. Each flash
-//!   stays in the cloud or goes to ground, and has strokes with pauses between them, each with a peak current.
+//!   below the rate divided by sixty a minute. A changing rate therefore adds and removes flashes, but moves none. Each
+//!   flash stays in the cloud or goes to ground, and has strokes with pauses between them, each with a peak current.
 //! * Storm cells: one in each square of 20 km where the weather has thunder, or the host's ([`LightningSettings`]). A
 //!   host may also trigger single flashes ([`FlashTrigger`]).
 //! * [`channel`]: the path of a flash, from its charge (where the air has -12 degrees Celsius) down to the ground or
@@ -16,11 +16,11 @@
 //!   nearest point.
 //! * [`light`]: the power of each metre over time, W, and the light in a frame: the mean from the frame before to the
 //!   frame's own time.
-//! * Picture: a line of light in front of the host's picture. What the host drew hides it, and air and fog dim it as
-//!   they dim the host's objects. It glows in air and rain (single scattering, Henyey-Greenstein, by equiangular
-//!   quadrature) and on the clouds' base. For a source of flux F in a cloud, d above its base, the base sends F s d /
-//!   (2 pi (r^2 + d^2)^(3/2)) at distance r on the plane, where s is the base's share of the light. The integral over
-//!   the plane is F s.
+//! * Picture: a line of light in front of the host's picture. The host's objects hide it, and air and fog dim it as
+//!   they dim these objects. It glows in air and rain (single scattering, Henyey-Greenstein, by equiangular quadrature)
+//!   and on the clouds' base. A source of flux F, lm, in a cloud at the height d above the base gives the base the
+//!   luminous exitance M(r) = s F d / (2 pi (r^2 + d^2)^(3/2)), lm/m^2, at the horizontal distance r. s is the share of
+//!   the light that leaves through the base; the integral of M over the plane is s F.
 //! * [`limit`]: fewer flashes for viewers whom flicker may harm.
 //!
 //! # Settings

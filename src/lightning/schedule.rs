@@ -17,9 +17,9 @@ pub const MOST_PER_MINUTE: f64 = 60.0;
 const WINDOW_S: f64 = 10.0;
 /// Share of flashes that strike the ground at middle latitudes: one in four (Prentice and Mackerras 1977).
 const TO_GROUND: f64 = 0.25;
-/// Share of ground flashes with one stroke (Rakov and Uman 2003, table 1.1); probability of another stroke after the
-/// second and each later one, chosen so that the mean is 3.5.
+/// Share of ground flashes with one stroke (Rakov and Uman 2003, table 1.1).
 const SINGLE: f64 = 0.2;
+/// Probability of another stroke after the second and each later one, chosen so that the mean number is 3.5.
 const ANOTHER: f64 = 0.68;
 /// Pause between strokes: geometric mean, s, and standard deviation of its logarithm (Rakov and Uman 2003, table 1.1).
 const PAUSE_S: (f64, f64) = (0.06, 0.55);

@@ -13,9 +13,9 @@ use crate::{
     world::World,
 };
 
-/// Temperature of the cloud's charge from which a flash starts, degrees Celsius (Krehbiel 1986: -10 to -25), and the
-/// lapse rate of the air, K/m.
+/// Temperature of the cloud's charge from which a flash starts, degrees Celsius (Krehbiel 1986: -10 to -25).
 const CHARGE_C: f64 = -12.0;
+/// Lapse rate of the air, K/m.
 const COOLS_K_M: f64 = 6.5e-3;
 /// Least height of that charge above the ground, m.
 const LEAST_M: f64 = 2500.0;
@@ -123,7 +123,8 @@ impl Strike {
         Self { flash, channel, clouds, temperature_c, length_m, anchor, anchor_m: ground_m, up }
     }
 
-    /// Returns its position in the host's world: what it struck, or the middle of its path.
+    /// Returns the flash's position in the host's world: that of the ground or object that it struck, or the middle of
+    /// its path in the cloud.
     pub fn position(&self) -> DVec3 {
         match self.flash.kind {
             FlashKind::ToGround => self.channel.end_m(),

@@ -30,14 +30,15 @@ use crate::{
 
 /// Exposure of a frame without a predecessor, s.
 const FRAME_S: f64 = 1.0 / 60.0;
-/// Longest time between two frames for which the second has the light of that time, s. After a longer one the host has
-/// jumped.
+/// Longest interval between two frames over which the second one averages the light, s. A longer interval counts as a
+/// jump of the host's time.
 const LONGEST_FRAME_S: f64 = 0.5;
-/// Illuminance at the eye below which a flash is not drawn: in lux, and as a share of all other light on the ground.
+/// Illuminance at the eye below which a flash is not drawn, lux.
 const FAINTEST_LUX: f64 = 1e-7;
+/// Limit of that illuminance, as a share of all other light on the ground.
 const FAINTEST_SHARE: f64 = 1e-5;
 
-/// Time whose light a frame has.
+/// Interval of time over which a frame averages the light of flashes.
 #[derive(Clone, Copy)]
 struct FrameTime {
     frame_id: u64,
@@ -82,8 +83,8 @@ pub(crate) struct LightningView {
     shown: FlashBlock,
 }
 
-/// Returns the time whose light a frame has: since the frame before, or a sixtieth of a second without a predecessor.
-/// While time stands still, frames keep the same time.
+/// Returns the interval over which a frame averages light: since the frame before, or a sixtieth of a second without a
+/// predecessor. While time stands still, frames keep the same interval.
 fn frame_time(last_frame: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: bool) -> FrameTime {
     let alone = Span { from_s: now_s - FRAME_S, until_s: now_s };
     let span = match last_frame {
