@@ -10,7 +10,7 @@ override CLEAR_SKY: bool = true;
 // Whether the deck hides all of the sky. Light of the clear sky is then left out above the horizon and in the air.
 override DECK_CLOSED: bool = false;
 
-// Light of the air, over its mean over places.
+// Ratio of the air's light here to its mean over all places.
 var<private> air_lit: vec3f = vec3f(1.0);
 
 // Light added on the way to the eye, and transmittance for the light from behind.

@@ -4,8 +4,9 @@
 // Whether any bow may be visible.
 override BOW: bool = false;
 
-// Number of entries in a table, and angle between two of them, rad.
+// Number of entries in a table.
 const BOW_ENTRIES: u32 = 160u;
+// Angle between two entries, rad.
 const BOW_STEP: f32 = 0.0069813170;
 // Indices of the two tables: for the weather's fog and rain, and for the columns under rain areas.
 const BOW_LOW_AIR: u32 = 0u;

@@ -18,8 +18,8 @@ fn flash_way(d: vec3f) -> f32 {
 }
 
 // Luminance of clouds where a ray meets their face. A source at distance h from the face gives k h / R^3 at a place at
-// distance R. For light that diffuses through the cloud, k is F s / (2 pi^2); for light that falls on the cloud, it is
-// the intensity I times the reflectance over pi.
+// distance R. For light that diffuses through the cloud, k = F s / (2 pi^2), with the flux F and the share s that
+// leaves by this face; for light that falls on the cloud, k = I rho / pi, with the intensity I and the reflectance rho.
 fn flash_on_clouds(d: vec3f, way: f32) -> vec3f {
     if way <= 0.0 || way > FLASH_FARTHEST {
         return vec3f(0.0);

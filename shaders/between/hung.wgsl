@@ -5,8 +5,8 @@
 //!include "between/glow.wgsl"
 //!include "common/octahedron.wgsl"
 
-// Layers of the sky. The last layer has what stands behind the sky's own light and replaces the night floor: stars and
-// the glow between them. With clouds there are two layers before it (clouds/). The first has their radiance times
+// Layers of the sky. The last layer has the stars and the glow between them, which stand behind the sky's own light and
+// replace the night floor. With clouds there are two layers before it (clouds/). The first has their radiance times
 // exposure and their transmittance. The second has log2 of the distances between which they stand, m, the share of
 // direct light that they let through to the surface that the host drew, and the difference of that share in the air in
 // front from the mean. Below the picture, the first layer has the panorama (clouds/round.wgsl) and the second the
@@ -20,6 +20,7 @@ override DECK_BEHIND: bool = false;
 override CLOUD_SHAFTS: bool = false;
 // Whether lamps or flashes light the clouds.
 override CLOUD_GLOW: bool = false;
+// Whether the last layer has stars and glow.
 override STARS: bool = false;
 
 // Rate at which a texel of the glow loses weight as the distance of its clouds differs from the pixel's, per octave.

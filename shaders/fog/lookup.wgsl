@@ -15,10 +15,13 @@
 // select. Software drivers execute them, so a pipeline with few features is several times as fast there.
 // Kinds of fog: bit k stands for kind k of FogUniform.
 override FOG_KINDS: u32 = 63u;
+// Whether layers may absorb.
 override FOG_ABSORBING: bool = true;
+// Whether layers may have patches.
 override FOG_PATCHES: bool = true;
 // Whether anything falls.
 override FOG_FALLING: bool = true;
+// Whether rain may have curtains.
 override FOG_CURTAINS: bool = true;
 // Whether all channels have one extinction and one albedo (water).
 override FOG_NEUTRAL: bool = false;
@@ -38,7 +41,7 @@ fn fog_can(kind: u32) -> bool {
     return (FOG_KINDS & (1u << kind)) != 0u;
 }
 
-// Whether there may be a layer besides what falls.
+// Whether there may be a layer besides precipitation.
 fn has_own_layer() -> bool {
     return (FOG_KINDS & 6u) != 0u;
 }
@@ -241,7 +244,8 @@ fn slab_ends(c: RayCourse, t: f32, reach: vec2f) -> vec2f {
     return vec2f(first, last);
 }
 
-// Returns the optical depth over the extinction for a part of a ray through what falls, which has no lower edge.
+// Returns the optical depth of a part of a ray through precipitation, which has no lower edge, divided by the
+// extinction, m.
 fn falling_part(u: FogUniform, bend: f32, top: vec2f, length: f32, low: f32, high: f32) -> f32 {
     let t = min(top, vec2f(length));
     let upper = flank(bend, t, u.falling.yz, u.falling.w, low, high);
@@ -491,7 +495,7 @@ fn fog_along(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: 
 }
 
 // Returns the effect of fog as fog_along does, where drops, flakes and stones are drawn one by one. `hidden` is their
-// optical depth, which is subtracted from that of what falls, down to 0.
+// optical depth, which is subtracted from that of the precipitation, down to 0.
 fn fog_beside_drops(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: f32, hidden: f32) -> Fog {
     var fog = Fog(vec3f(0.0), 0.0, vec3f(1.0), 1.0, vec3f(0.0));
     // A pipeline for a single kind of fog needs no branch.

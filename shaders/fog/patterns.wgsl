@@ -43,7 +43,7 @@ fn detour_lag(place: vec3f) -> vec2f {
     return mix(south, north, part.y) * (1.0 - smoothstep(0.0, 1.0, (place.z - low_air.detour_floor) * low_air.detour_fade));
 }
 
-// Returns what the lags along a ray add to the sum of the patches' waves.
+// Returns the change of the sum of the patches' waves by the lags along a ray.
 fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let at = low_air.detour_camera + origin.xy * low_air.detour_scale;
     let flat_way = direction.xy * low_air.detour_scale;
@@ -95,7 +95,8 @@ fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     return max(1.0 + low_air.fog.patch_amount * 0.5 * sum, 0.0);
 }
 
-// Returns what curtains add between two distances, relative to even rain, and the variance of this.
+// Returns the change of the optical depth by curtains between two distances, relative to that of even rain, and the
+// variance of this change.
 fn curtain_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
     let start = max(first, CURTAIN_START);
     let m = 0.5 * (start + last);

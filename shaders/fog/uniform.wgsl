@@ -53,7 +53,7 @@ struct FogUniform {
     patch_waves: array<vec4f, 6>,
     // Waves of the curtains of rain (src/fog/patterns.rs): wave vector, phase at the camera.
     curtain_waves: array<vec4f, 8>,
-    // What falls: extinction at 550 nm, 1/m; altitudes between which it decreases to 0, m; 1/their difference, 1/m.
+    // Precipitation: extinction at 550 nm, 1/m; altitudes between which it decreases to 0, m; 1/their difference, 1/m.
     falling: vec4f,
     // Share of the light above the layer that reaches the camera, by which the air inside the layer is lit.
     lit: f32,

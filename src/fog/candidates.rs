@@ -8,7 +8,7 @@ use super::{
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Fog, mist, dust and what falls, as one part. Its importance is that of the air (`sky::candidates::AIR`).
+/// Fog, mist, dust and precipitation, as one part. Its importance is that of the air (`sky::candidates::AIR`).
 pub const FOG: Part = Part { name: "fog", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(1) };
 
 /// Work of the layer in units of a pixel with none of the parts. Measured on a software driver (`cargo bench --

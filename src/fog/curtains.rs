@@ -13,7 +13,7 @@ pub const CURTAIN_WAVES: usize = 8;
 /// `shaders/fog/patterns.wgsl`.
 pub const CURTAIN_START_M: f64 = 30.0;
 
-/// Curtains of rain. The extinction of what falls is that of even rain times 1 + `amount` times the sum of the waves'
+/// Curtains of rain. The extinction is that of even precipitation, times 1 plus `amount` times the sum of the waves'
 /// cosines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curtains {
@@ -27,9 +27,9 @@ impl Curtains {
     /// Even rain, without curtains.
     pub const NONE: Self = Self { amount: 0.0, waves: [(DVec3::ZERO, 0.0); CURTAIN_WAVES] };
 
-    /// Returns two numbers for the ray between two distances: what the curtains add to the optical depth, relative to
-    /// that of even rain, and the variance of this over all places. Only the part beyond [`CURTAIN_START_M`] counts in
-    /// both.
+    /// Returns two numbers for the ray between two distances: the change of the optical depth by curtains, relative to
+    /// that of even rain, and the variance of this change over all places. Only the part beyond [`CURTAIN_START_M`]
+    /// counts in both.
     pub fn mean(&self, origin: DVec3, direction: DVec3, first: f64, last: f64) -> (f64, f64) {
         let start = first.max(CURTAIN_START_M);
         if last <= start {
@@ -45,9 +45,9 @@ impl Curtains {
         (part * sum, 0.5 * part * part * squares)
     }
 
-    /// Returns the optical depth with curtains where even rain has `depth`. The variance raises it so that the mean
-    /// transmittance over all places is that of even rain, and signs are seen equally far: for a normal x of variance
-    /// v, the mean of e^-x is e^(v/2) times e^-x of the mean.
+    /// Returns the optical depth with curtains where even rain has `depth`. The variance v raises it, so that the mean
+    /// transmittance over all places is that of even rain, and signs are seen equally far. For a normally distributed
+    /// depth x with the mean m, mean(exp(-x)) = exp(v / 2 - m).
     pub fn depth(&self, depth: f64, (added, variance): (f64, f64)) -> f64 {
         (depth * (1.0 + added)).max(0.0) + 0.5 * depth * depth * variance
     }

@@ -8,14 +8,14 @@
 //!
 //! * a **layer** near the ground: fog or mist between a base and a soft top ([`Profile::Slab`]), or a layer that thins
 //!   exponentially ([`Profile::Exponential`]);
-//! * what **falls** from the clouds, through the layer ([`FallingLayer`]).
+//! * **precipitation** ([`FallingLayer`]), which falls from the clouds through the layer.
 //!
 //! Methods:
 //!
 //! * The transmittance along a ray is a closed form: path lengths between the layer's altitudes on a sphere
 //!   ([`reference::layer_path`]), exact to f32.
-//! * The layer and what falls each have their own heights and optical depth. Near the camera a share of what falls is
-//!   drawn as drops, flakes or stones; that share is subtracted from its optical depth
+//! * The layer and the precipitation each have their own heights and optical depth. Near the camera a share of the
+//!   precipitation is drawn as drops, flakes or stones; that share is subtracted from its optical depth
 //!   ([`reference::fog_beside_drops`]).
 //! * The direct sun, the sky above and the ground below light the layer. Multiple scattering is the delta-Eddington
 //!   solution (Joseph, Wiscombe and Weinman 1976) of the layer, solved per channel in f64 once a frame ([`light`]). The
@@ -46,7 +46,7 @@
 //! # Axes
 //! Rays and directions are (east, north, up) at the camera, as in all of a frame.
 //!
-//! # What it needs of others
+//! # Inputs
 //! * [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo.
 //! * [`Viewpoint`]: altitude of the camera, planet and ground.
 //! * Extinctions at the station of air, of haze, and of each kind of precipitation.

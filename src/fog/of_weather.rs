@@ -1,4 +1,4 @@
-//! Fog of a scene: the weather's low layer and what falls, or a fog law of older simulators if the host has set one.
+//! Fog of a scene: the weather's low layer and precipitation, or a fog law of older simulators if the host has set one.
 
 use std::f64::consts::TAU;
 
@@ -25,8 +25,9 @@ use crate::{
 /// Smallest change of the optical depth of the longest curtain that is visible.
 const LEAST_SHOWN: f64 = 1e-3;
 
-/// Media of a weather in the air near the ground: its low layer of fog, mist or dust, and what falls outside rain
-/// areas. Each has its own extinction and heights. A reported visibility at the station is that through both.
+/// Media of a weather in the air near the ground: its low layer of fog, mist or dust, and the precipitation outside
+/// rain areas. Each has its own extinction and heights. A visibility reported at the station includes the extinction of
+/// both.
 pub(crate) struct LowAir {
     layer: Option<FogLayer>,
     falling: FallingLayer,
@@ -51,7 +52,7 @@ impl LowAir {
         Self { layer: air.layer.map(|layer| FogLayer { patches: None, ..layer }), ..air }
     }
 
-    /// Whether nothing in it extinguishes light.
+    /// Whether the low air has no extinction.
     pub fn is_clear(&self) -> bool {
         self.layer.is_none() && self.falling.extinction_per_m() <= 0.0
     }
@@ -92,8 +93,8 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
         share => Phase::Between { diameter_um, g, share },
     };
     let covered = (2.0 * (1.0 - f.coverage)).clamp(0.0, 1.0);
-    // The pattern's values are distributed exponentially around the mean of 1. Their densest share c, which is the part
-    // of the ground under fog, has the mean 1 - ln c. There the extinction must be the reported one.
+    // The pattern's values have an exponential distribution with the mean 1. The densest share c of them, the part of
+    // the ground under fog, has the mean 1 - ln c. The mean extinction over that part must be the reported one.
     let inside = 1.0 - covered * f.coverage.max(0.01).ln();
     // Gusts lift more dust in some places than in others. The report is their mean.
     let gusts = if f.lifted > 0.0 { f.lifted * lifting::unevenness(&c.wind) } else { 0.0 };
@@ -134,8 +135,8 @@ pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-/// Returns what is left of the light `lux` below the weather's low layer: of the sun, the moon, and all other light on
-/// level ground.
+/// Returns the light below the weather's low layer, lux, where the light above it is `lux`: of the sun, of the moon,
+/// and all other light on level ground.
 fn through_fog(
     c: &Conditions,
     place: &Place,

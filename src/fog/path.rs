@@ -2,11 +2,21 @@
 //! `shaders/fog/lookup.wgsl` (`reference.rs`).
 //!
 //! Let r0 be the distance of the ray's start from the planet's centre, mu the cosine of its angle with the vertical,
-//! and k = 1/r0. After t metres its altitude is h0 + q/(1 + sqrt(1 + k q)) with q = t (2 mu + k t). This is exact, and
-//! avoids the cancellation in sqrt(r^2) - R. From its lowest point (its start, its end, or where it is level) a ray
-//! only rises. It reaches an altitude d higher after c/(mu + sqrt(mu^2 + k c)), with c = d (2 + k d), which has only
-//! additions. The path through a slab with linear flanks is therefore three lengths. Each flank counts with its mean
-//! density, to which the path's curvature contributes.
+//! and k = 1/r0. After t metres its altitude is exactly
+//!
+//! ```text
+//! h(t) = h0 + q / (1 + sqrt(1 + k q)),  q = t (2 mu + k t),
+//! ```
+//!
+//! a form without the cancellation in r - R. From its lowest point (its start, its end, or where it is level) a ray
+//! only rises. It reaches the altitude h0 + d at the distance
+//!
+//! ```text
+//! t = c / (mu + sqrt(mu^2 + k c)),  c = d (2 + k d),
+//! ```
+//!
+//! which has only additions. The path through a slab with linear flanks therefore has three parts. A flank counts with
+//! its mean density along the path, which includes the path's curvature.
 
 use super::model::{FogKind, FogModel};
 
@@ -31,12 +41,12 @@ pub fn layer_rise(curvature: f64, mu: f64, t: f64) -> f64 {
     q / (1.0 + (1.0 + curvature * q).max(0.0).sqrt())
 }
 
-/// Returns the optical depth at 550 nm of the layer and of what falls, above the altitude `h`.
+/// Returns the optical depth at 550 nm of the layer and the precipitation above the altitude `h`.
 pub fn layer_depth_above(m: &FogModel, h: f64) -> f64 {
     own_depth_above(m, h) + falling_depth_above(m, h)
 }
 
-/// Returns the optical depth at 550 nm of what falls above the altitude `h`.
+/// Returns the optical depth at 550 nm of the precipitation above the altitude `h`.
 pub fn falling_depth_above(m: &FogModel, h: f64) -> f64 {
     let f = &m.falling;
     let in_top = f.top[1] - h.clamp(f.top[0], f.top[1]);
@@ -63,8 +73,8 @@ fn layer_reach(curvature: f64, mu: f64, lift: f64) -> f64 {
     c / (mu + (mu * mu + curvature * c).sqrt()).max(1e-20)
 }
 
-/// Returns the optical depth over the extinction for a part of a ray in a slab. The part rises from altitude `low` to
-/// `high` over `length` metres and passes the knots at the distances `reach`.
+/// Returns the optical depth of a part of a ray in a slab, divided by the slab's extinction, m. The part rises from
+/// altitude `low` to `high` over `length` metres and passes the knots at the distances `reach`.
 fn slab_part(m: &FogModel, bend: f64, reach: [f64; 4], length: f64, low: f64, high: f64) -> f64 {
     let r = reach.map(|x| x.min(length));
     let h = m.knots.map(|k| k.clamp(low, high));
@@ -131,7 +141,7 @@ fn slab_ends(c: &RayCourse, t: f64, reach: [f64; 2]) -> (f64, f64) {
     }
 }
 
-/// Returns the path of a ray from altitude `h0` with cosine `mu`, `t` metres long, through what falls.
+/// Returns the path of a ray from altitude `h0` with cosine `mu`, `t` metres long, through the precipitation.
 pub fn falling_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
     let c = ray_course(m, h0, mu, t);
     let f = &m.falling;
@@ -187,8 +197,8 @@ fn scaled_erfc(z: f64) -> f64 {
     t * C.iter().rev().fold(0.0, |a, c| a * t + c).exp()
 }
 
-/// Returns the optical depth, over the extinction at the start, of an upward path through an exponential layer. The
-/// altitude grows by `rise` from a point where the ray has cosine `mu` >= 0. This is the Chapman integral with a
+/// Returns the optical depth of an upward path through an exponential layer, divided by the extinction at its start, m.
+/// The altitude grows by `rise` from a point where the ray has cosine `mu` >= 0. This is the Chapman integral with a
 /// parabolic altitude.
 fn exponential_up(k: f64, scale: f64, mu: f64, rise: f64) -> f64 {
     let z = mu / (2.0 * k * scale).sqrt();

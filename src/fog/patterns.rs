@@ -28,7 +28,7 @@ pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, las
 /// `shaders/fog/patterns.wgsl`.
 const DETOUR_PARTS: usize = 8;
 
-/// Returns what the lags along a ray add to the sum of the waves' means.
+/// Returns the change of the sum of the waves' means by the lags along a ray.
 fn detoured(m: &FogModel, detour: &Detour, (origin, direction): (DVec3, DVec3), [first, last]: [f64; 2]) -> f64 {
     let [enters, leaves] = detour.over(origin, direction);
     let (from, to) = (enters.max(first), leaves.min(last));

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 
 use crate::light::phase::{PhaseLobes, lobes_phase};
 
-/// Returns the share of the delta-scaled beam that is really unscattered after the optical path `slant`: (1 - e^(-f s))
-/// / (f s). The rest has been scattered forward, which counts as not scattered; `forward` is the share f of such
-/// scattering. `fog_phase_after` has the derivation.
+/// Returns the share of the delta-scaled beam that is really unscattered after the optical path s = `slant`: (1 - e^(-f
+/// s)) / (f s). f = `forward` is the share of scattering that counts as going straight on; the rest of the scaled beam
+/// has been scattered in this way. `fog_phase_after` has the derivation.
 pub fn share_unscattered(forward: f64, slant: f64) -> f64 {
     let fs = (forward * slant).min(1e4);
     if fs < 1e-3 { 1.0 - 0.5 * fs } else { (1.0 - (-fs).exp()) / fs }
@@ -18,11 +18,11 @@ pub fn share_unscattered(forward: f64, slant: f64) -> f64 {
 /// delta-scaled solution.
 ///
 /// In a thin layer this is the phase function itself (the correction of Nakajima and Tanaka 1988 for truncated peaks).
-/// Along the path the forward share is scattered again. The scaled beam counts f s forward scatterings; (1 - e^(-f s))
-/// of these are first ones, and the others make the peak wider. The part of the phase function beyond the smooth,
-/// scaled one (Henyey-Greenstein of `smooth`) is therefore weighted by E = (1 - e^(-f s))/(f s) and taken of order
-/// 1/sqrt(E). The exponent is fitted to adding and doubling (`tests/fog/light.rs`), without bias from 4 to 40 degrees
-/// off the sun.
+/// In a thick layer light is scattered forward several times. The scaled beam counts f s forward scatterings, of which
+/// 1 - e^(-f s) are first ones; the others make the peak wider. The peak is the part of the phase function above the
+/// smooth one (Henyey-Greenstein of `smooth`). It is multiplied by E = (1 - e^(-f s)) / (f s) and widened: its order is
+/// 1 / sqrt(E). This exponent is fitted to adding and doubling (`tests/fog/light.rs`), without bias from 4 to 40
+/// degrees off the sun.
 pub fn fog_phase_after(lobes: &PhaseLobes, forward: f64, smooth: f64, slant: f64, versine: f64) -> [f64; 2] {
     let share = share_unscattered(forward, slant);
     let d = (1.0 - smooth) * (1.0 - smooth) + 2.0 * smooth * versine;

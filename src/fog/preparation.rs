@@ -20,11 +20,12 @@ use crate::{
     numerics::smoothstep,
 };
 
-/// Wavelengths of the channels, nm: those of the sky's three-channel tables. Green is Koschmieder's 550.
+/// Wavelengths of the channels, nm: those of the sky's three-channel tables. The green one is 550 nm, for which
+/// Koschmieder's law is stated.
 const WAVELENGTHS_NM: [f64; 3] = crate::light::EARTH_WAVELENGTHS_NM;
 
-/// Smallest cosine of the sun's zenith angle. A plane-parallel layer would let no light in at 0; the curved layer of
-/// the real planet admits a low sun at sqrt(2 thickness/radius), some thousandths.
+/// Smallest cosine of the sun's zenith angle. At 0 no light would enter a plane-parallel layer. On a curved planet the
+/// light of a sun at the horizon enters a layer at a cosine of sqrt(2 thickness / radius), which is some thousandths.
 const MIN_MU0: f64 = 0.01;
 
 /// Product of diffusion exponent and depth below which a channel's two exponentials are drawn as a straight line. The
@@ -47,8 +48,8 @@ impl FogScattering {
         Self { angstrom: layer.angstrom, albedo: layer.albedo, phase: layer.phase }
     }
 
-    /// Mixes in what falls, which has the share `share` of the optical depth. Phase functions are mixed while neither
-    /// medium has more than twice the depth of the other.
+    /// Mixes in the scattering of precipitation, which has the share `share` of the optical depth. Phase functions are
+    /// mixed while neither medium has more than twice the depth of the other.
     fn with_falling(&self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + (b - a) * share;
         let falling = Self::OF_FALLING;
@@ -144,7 +145,7 @@ impl FogModel {
         }
     }
 
-    /// Prepares the fog of a weather: its `layer`, if there is one, and what falls.
+    /// Prepares the fog of a weather: its `layer`, if there is one, and its precipitation.
     ///
     /// Each has its own heights and extinction. They are lit as one medium, whose optical depth is the sum of both and
     /// whose scattering is their mean.
@@ -236,8 +237,7 @@ impl FogModel {
                 sky: light.sky_irradiance[i],
                 ground: light.ground_albedo[i],
             };
-            // The terms for shaders, which add them in f32, keep farther away from the solution's pole than those for
-            // queries.
+            // Shaders add the terms in f32, so their solution is kept farther from the pole than that of queries.
             self.set_source(i, &slab.solve_beside(1e-4));
             self.first[i] = scattering.albedo[i] * light.sun_irradiance[i] / (1.0 - wf);
             slab.solve()

@@ -56,7 +56,7 @@ impl FogModel {
 }
 
 impl LowAir {
-    /// Returns the transmittance of fog and of what falls, as [`transmittance_between`] does for a layer, averaged over
+    /// Returns the transmittance of fog and precipitation, as [`transmittance_between`] does for a layer, averaged over
     /// the curtains of rain.
     ///
     /// # Errors

@@ -73,7 +73,7 @@ fn attenuated(rate: DVec3, first: DVec3, last: DVec3, path: DVec3) -> DVec3 {
     )
 }
 
-/// Mean of x over \[0, 1\] with the weight e^(-r x): an approximation of 1/r - 1/(e^r - 1) within 2 %.
+/// Mean of x over \[0, 1\] with the weight e^(-r x), which is 1/r - 1/(e^r - 1). The approximation is within 2 %.
 fn mean_place(r: f64) -> f64 {
     let size = r.abs().min(1e6);
     let p = 1.0 + size * (1.0 / 3.0 + size / 5.7);
@@ -143,9 +143,9 @@ fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64
     let mean = if depth > 1e-12 { ((ends[0] - ends[1]) / depth).clamp(-1.0, 1.0) } else { entry_mu };
     let slant = entry_mu + (mean - entry_mu) * 2.0 / (2.0 + depth);
     let level = DVec3::splat(slant);
-    // Optical path of sunlight from the top to the mean place where it is scattered, and on to the eye. For that mean,
-    // half of the forward scattering counts as extinction. If all of it counted, a seam would show where rays pass from
-    // ground to sky; if none did, the aureole in haze would be too bright.
+    // Optical path of sunlight from the top to the mean place where it is scattered, and on to the eye. Half of the
+    // forward scattering counts as extinction for this mean. With all of it, a seam would show between rays that end at
+    // the ground and rays to the sky. With none of it, the aureole in haze would be too bright.
     let way = depth * mean_place((1.0 - slant * m.inverse_mu0) * (1.0 - 0.5 * m.forward) * depth);
     let sunlight = ((above[0] - slant * way) * m.inverse_mu0 + way).max(0.0);
     let [even, peak] = fog_phase_after(&m.lobes, m.forward, m.smooth, sunlight, versine);
@@ -202,7 +202,7 @@ pub fn fog_along(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, plan
 }
 
 /// Returns the effect of fog as [`fog_along`] does, where drops, flakes and stones are drawn one by one. `hidden` is
-/// their optical depth, which is subtracted from that of what falls, down to 0.
+/// their optical depth, which is subtracted from that of the precipitation, down to 0.
 pub fn fog_beside_drops(
     m: &FogModel,
     origin: DVec3,
@@ -220,7 +220,7 @@ pub fn fog_beside_drops(
     }
 }
 
-/// Returns the effect of the layer and of what falls. Each has its own optical depth; both are lit as one medium.
+/// Returns the effect of the layer and the precipitation. Each has its own optical depth; both are lit as one medium.
 fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, hidden: f64) -> FogSample {
     let mu = direction.z.clamp(-1.0, 1.0);
     let lift = origin.z;
@@ -255,9 +255,9 @@ fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, hidden: 
     let entry_mu = (mu + m.curvature * path.first).clamp(-1.0, 1.0);
     let [radiance, once] = layer_radiance(m, mu, entry_mu, versine, ends, depth);
     let transmittance = exp3(-m.ratio * depth);
-    // Mean distance from which scattered light comes, as in an even medium between entry and exit. The air is drawn as
-    // if lit by an open sky. Only the share `lit` of that light reaches the air inside the layer, so only that share of
-    // the distance inside the layer counts.
+    // Mean distance from which scattered light comes, as in an even medium between entry and exit. The air in front of
+    // this distance is drawn as if lit by an open sky. Inside the layer only the share `lit` of that light arrives, so
+    // the distance inside the layer is multiplied by `lit`.
     let distance = path.first + (path.last - path.first) * mean_place(depth) * m.lit;
     let inside = if range >= RANGE_SKY_M { 0.0 } else { ((path.last - path.first) / range.max(1e-3)).min(1.0) };
     FogSample { radiance, transmittance, distance, shade: 1.0 - (1.0 - m.lit) * inside, once }
