@@ -88,7 +88,7 @@ fn column_share(i: u32, p: vec3f) -> f32 {
     return smoothstep(0.0, columns.list[i].rim, column_depth(i, column_plan(i, p)));
 }
 
-// Returns that share with the columns over it subtracted.
+// Returns the column's share of the rain at a place, less the shares of later columns that overlap it.
 fn column_left(i: u32, p: vec3f) -> f32 {
     var share = column_share(i, p);
     if OVERLAPS {

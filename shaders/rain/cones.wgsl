@@ -4,8 +4,9 @@
 //!include "rain/drops.wgsl"
 //!include "rain/cone_block.wgsl"
 
-// Number of streaks in each of the texture's channels, and in all.
+// Number of streaks in each of the texture's channels.
 const STREAKS: vec4f = vec4f(48.0, 192.0, 768.0, 3072.0);
+// Number of streaks in all channels.
 const ALL_STREAKS: f32 = 4080.0;
 // Width and height of the texture, texels.
 const CONE_SIDE: f32 = 256.0;
@@ -16,10 +17,11 @@ const CONE_SIDE: f32 = 256.0;
 @group(1) @binding(3) var open_parts: texture_2d_array<f32>;
 @group(1) @binding(4) var open_sampler: sampler;
 
-// Whether anything near keeps rain off, whether the innermost cone shows anything, and whether one set of streaks is
-// replacing another.
+// Whether anything near keeps rain off.
 override SHELTERED: bool = false;
+// Whether the innermost cone shows anything.
 override INNERMOST: bool = true;
+// Whether one set of streaks is replacing another.
 override GROWING: bool = true;
 
 // Direction in the cones' coordinates.
@@ -77,7 +79,8 @@ fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
     return Look(uv, along, max(level, 0.0), shape.z * at.square * 6.2831853 / (along * tiles));
 }
 
-// Returns a set's optical depth over its mean. `moved` has the set's motion, share and offset, as in `ConeUniform`.
+// Returns the ratio of a set's optical depth here to its mean. `moved` has the set's motion, share and offset, as in
+// `ConeUniform`.
 fn pattern(look: Look, moved: vec4f) -> f32 {
     let uv = look.uv + vec2f(moved.z, moved.x * look.along + moved.w);
     let seen = textureSampleLevel(streaks, streaks_sampler, uv, look.level);
@@ -150,7 +153,7 @@ fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
         hidden += select(vec3f(0.0), vec3f(more), vec3u(0u, 1u, 2u) == vec3u(cones.growing));
     }
     if !LAMPS {
-        // All cones have the same light. How much each covers of the next is of second order and does not matter here.
+        // All cones have the same light. The part of a cone that nearer cones cover is of second order and is left out.
         let clear = vec3f(cones.looks[0].x, cones.looks[1].x, cones.looks[2].x);
         return vec4f(day, 1.0) * (1.0 - exp(-dot(clear, hidden)));
     }

@@ -7,8 +7,8 @@ fn drop_phase(c: f32) -> f32 {
     return 0.93 * henyey(0.9, c) + 0.07 * henyey(-0.35, c);
 }
 
-// Returns the share of the light above the horizon in what a drop shows along a ray that rises with the sine `z`. Twin
-// of `sky_share` in src/rain/light.rs, which explains it.
+// Returns the share of light from above the horizon in a drop seen along a ray whose sine of elevation is `z`. Twin of
+// `sky_share` in src/rain/light.rs, which explains it.
 fn sky_share(z: f32) -> f32 {
     let level = 1.0 - min(abs(z), 1.0);
     return 0.5 + sign(z) * (0.4415 * (1.0 - level * level * sqrt(level)));

@@ -12,9 +12,9 @@ const PATTERN_AMOUNT: f32 = 0.2;
 const PATTERN_FIRST: f32 = 30.0;
 const PATTERN_FULL: f32 = 300.0;
 const BELOW: f32 = 1000.0;
-// Distance into a dense column from which most of its light comes, m, and the share of that light that varies with the
-// curtains there.
+// Distance into a dense column from which most of its light comes, m.
 const FRONT: f32 = 500.0;
+// Share of that light that varies with the curtains.
 const FRONT_SHARE: f32 = 0.3;
 
 struct ShaftUniform {
@@ -134,7 +134,8 @@ fn piece_mean(i: u32, origin: vec3f, d: vec3f, a: f32, b: f32) -> vec2f {
     return vec2f(dot(share, vec4f(1.0)), dot(share, begun));
 }
 
-// Returns what a ray meets of a column up to `range`; last <= first if nothing.
+// Returns the part of a ray inside a column up to `range`: the optical depth that the column adds there, and the ends
+// of the part; last <= first if there is none.
 fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let lean = columns.list[i].lean;
     let ground = columns.list[i].ground;

@@ -46,6 +46,7 @@ const ICE_ALBEDO: f32 = 0.75;
 const FIRST_REBOUND: vec2f = vec2f(0.1, 0.32);
 // Share of the speed that it keeps at each further bounce.
 const REBOUND: f32 = 0.45;
+// Number of bounces that are drawn.
 const HOPS: u32 = 3u;
 
 struct Stone {
@@ -147,7 +148,7 @@ fn sphere_phase(c: f32) -> f32 {
 }
 
 // Returns the radiance of a stone at `p` seen along `d`. Milky ice is matt and lit from the viewer's side; clear ice
-// shows what lies behind it.
+// shows the scene behind it.
 fn stone_light(p: vec3f, d: vec3f, clear: f32) -> vec3f {
     var beams = rain.sun * sphere_phase(-dot(d, rain.to_sun));
     for (var i = 0u; i < light_count(); i++) {

@@ -6,14 +6,15 @@ use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
 /// Streaks and splashes of rain, with three rungs: single drops near the camera; cones instead; neither, so that all
-/// rain is extinction in the fog's layer. The importance is that of particles in the experiment of the machinery
-/// trainer's thesis.
+/// rain is extinction in the fog's layer. The importance, 0.7, is that of particles in the experiment that
+/// `sky::candidates::AIR` names.
 pub const RAIN: Part =
     Part { name: "rain", rungs: &["drops", "cones", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work of the rain layer with its cones and splashes, per pixel, and of one drawn drop of the lattice, in units of a
-/// pixel with none of the parts. Measured on a software driver (`cargo bench -- parts`).
+/// Work per pixel of the rain layer with its cones and splashes, in units of a pixel with none of the parts. Measured
+/// on a software driver (`cargo bench -- parts`).
 const LAYER_OF_PIXEL: f64 = 0.3;
+/// Work of one drawn drop of the lattice, in the same units.
 const ONE_DROP: f64 = 1.4;
 
 /// Returns the work saved by the step from drops to cones, and by that from cones to a veil, for a picture of `pixels`

@@ -25,8 +25,8 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// Creates the classes of what falls at an altitude where drops fall `density_factor` times as fast as at sea level
-    /// ([`super::drops::factor_in`]), with at most `most` drops in all shells together.
+    /// Creates the classes of the precipitation at an altitude where drops fall `density_factor` times as fast as at
+    /// sea level ([`super::drops::factor_in`]), with at most `most` drops in all shells together.
     pub fn new(falling: &Falling, density_factor: f64, most: u32) -> Self {
         let (low, high) = DRAWN_MM;
         let step = (high / low).powf(1.0 / CLASSES as f64);

@@ -1,5 +1,5 @@
 //! Rain on cones on the GPU: the texture of streaks, the uniform block, and one full-screen draw. Where something near
-//! shelters the cones, a grid of open shares is drawn first.
+//! shelters the cones, the share of rain that reaches each cell of a coarse grid is drawn first ([`super::open_pass`]).
 
 use super::{
     cones::{ConeUniform, SIDE, STRETCHES, texture},
@@ -24,7 +24,7 @@ pub(super) struct ConePass {
     layout: wgpu::BindGroupLayout,
     streaks: wgpu::TextureView,
     samplers: [wgpu::Sampler; 2],
-    /// Bind group with the grid of open shares, or with a grid of one cell that is not read.
+    /// Bind group with the grid of the rain that passes shelters, or with a grid of one cell that is not read.
     group: wgpu::BindGroup,
     open: Option<OpenPass>,
     bytes: u64,
@@ -77,8 +77,8 @@ impl ConePass {
         self.pipelines.prepare(kind, |_| pipeline(device, &[frame, own, around], kind, counts))
     }
 
-    /// Draws the grid of open shares for a picture of this size. `maps` says whether there are occluder maps. `blocks`
-    /// begins with the rain's block; `layout` is that of the surroundings.
+    /// Draws the grid of the rain that passes shelters, for a picture of this size. `maps` says whether there are
+    /// occluder maps. `blocks` begins with the rain's block; `layout` is that of the surroundings.
     ///
     /// # Errors
     /// A missing shader file.

@@ -2,16 +2,16 @@
 //! as the drops do.
 //!
 //! Each cone stands for the drops in a band of distances; the far end of each outer band is 2.8 times its near end. Let
-//! a drop at distance r move with velocity V relative to the camera. Seen from there it keeps its azimuth about V and
-//! moves along Mercator's latitude s = ln tan(theta / 2), with theta measured from V, at the constant speed |V| / r.
-//! Its streak has the length |V| x exposure / r in s, at any theta. The texture is therefore mapped to (azimuth, s) and
-//! moves along s, and streaks converge at both ends of V as they should. Towards these ends the number of tiles around
-//! the azimuth is halved each time sin theta is halved, so streaks keep their width. Wang and Wade narrowed the cone to
-//! a tip, where all streaks met in a point.
+//! a drop at distance r move with velocity V relative to the camera, and let theta be its angle from V. Its azimuth
+//! about V stays the same. Its coordinate s = ln tan(theta / 2), the latitude of Mercator's projection, changes at the
+//! constant speed |V| / r. Its streak is |V| exposure / r long in s, for any theta. The texture is therefore mapped to
+//! (azimuth, s) and moves along s, and streaks converge at both ends of V as they should. Towards these ends the number
+//! of tiles around the azimuth is halved each time sin theta is halved, so streaks keep their width. Wang and Wade
+//! narrowed the cone to a tip, where all streaks met in a point.
 //!
-//! A cone shows as many streaks as there are drops in its band. The texture's four channels hold 1, 4, 16 and 64 parts
-//! of the streaks, and as many channels are summed as are needed. If a band has more drops than the texture has
-//! streaks, the contrast is reduced as that of the drops would be. The mean optical depth is that of the band's drops.
+//! A cone shows as many streaks as there are drops in its band. The texture's four channels hold streaks in the ratio
+//! 1:4:16:64, and as many channels are summed as are needed. If a band has more drops than the texture has streaks, the
+//! contrast is reduced to that of the drops. The mean optical depth is that of the band's drops.
 //!
 //! No state is carried from frame to frame. A cone shows a set of streaks at a random offset, moved by the wind, the
 //! fall and the camera's motion since the set's birth, at most a second ago. This is exact at any time, and the same on
@@ -83,8 +83,8 @@ struct Mean {
     /// Diameter, m, and fall speed, m/s, weighted by the area of the drops' discs.
     diameter_m: f64,
     fall_m_s: f64,
-    /// Time to fall one metre, s, weighted likewise. The distance that wind drives drops in under a roof is
-    /// proportional to it.
+    /// Time to fall one metre, s, weighted likewise. The distance that the wind drives drops in under a roof is
+    /// proportional to this time.
     fall_s_per_m: f64,
 }
 
@@ -239,8 +239,8 @@ fn streaks() -> Vec<Streak> {
     all
 }
 
-/// Returns the texture with all its mip levels: optical depth over the mean of all channels together. The mean of each
-/// channel is exactly its share of the streaks.
+/// Returns the texture with all its mip levels: the ratio of the optical depth to the mean of all channels together.
+/// The mean of each channel is exactly its share of the streaks.
 pub(crate) fn texture() -> Vec<Vec<[f16; 4]>> {
     let n = SIDE as i64;
     let mut level = vec![[0.0f64; 4]; (n * n) as usize];

@@ -1,12 +1,18 @@
-//! Contrast that the streaks of rain add to a picture, in closed form: for the plan, and for estimates of what drops
-//! are worth.
+//! Contrast that the streaks of rain add to a picture, in closed form: for the plan, which estimates from it how much
+//! the drops change a picture.
 //!
 //! Streaks lie at random places, so the variance of the covered share from pixel to pixel is the sum of their squared
-//! covers (Campbell 1909). A drop of diameter D at distance r is drawn L long and w wide, where w is its own width or a
-//! minimum in pixels. Its mean cover over this area is its disc over L w. Across the streak the cover follows the
-//! chords of a disc, whose mean square is 32 / (3 pi^2) = 1.08 times the square of their mean. With n drops a volume,
-//! those in r^2 dr add 1.08 n disc^2 / ((L + w) w) dr. With w = D near the eye and w = a r beyond, the integral has a
-//! closed form: each doubling of the distance adds as much as the one before.
+//! covers (Campbell 1909). A drop of diameter D at distance r moves by L during the exposure. It is drawn w wide, where
+//! w is D or a minimum width in pixels, and L + w long. Its mean cover over this area is c = (pi D^2 / 4) / ((L + w)
+//! w). Across the streak the cover follows the chords of a disc, whose mean square is 32 / (3 pi^2) = 1.08 times the
+//! square of their mean. For n drops a unit of volume the variance is therefore
+//!
+//! ```text
+//! integral of 1.08 n (pi D^2 / 4)^2 / ((L + w) w) dr.
+//! ```
+//!
+//! With w = D near the eye and w = a r beyond, for a pixel of the angle a, the integral has a closed form: each
+//! doubling of the distance adds as much as the one before.
 //!
 //! A contrast gain g raises a streak's cover from c to 1 - (1 - c)^g.
 

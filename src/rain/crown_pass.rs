@@ -1,6 +1,6 @@
 //! Splashes on devices with compute shaders. A list has the slots whose splash may be in the picture
-//! ([`crate::particles::listing`]). For each of them the place of its crown is searched for in the picture's depth,
-//! once. Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
+//! ([`crate::particles::listing`]). For each of them the place of its crown is found once in the picture's depth.
+//! Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
 
 use super::cull_pass::{ListedQuads, listed_pipeline};
 use crate::{

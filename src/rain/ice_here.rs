@@ -1,4 +1,4 @@
-//! Hail and ice pellets around a view's camera, recounted only when what falls changes.
+//! Hail and ice pellets around a view's camera, recounted only when the precipitation changes.
 
 use super::{
     settings::{RainModel, RainSettings},
@@ -14,12 +14,12 @@ use crate::{
 #[derive(Default)]
 pub(super) struct Ice {
     here: Option<Falling>,
-    /// Stones as last counted, preceded by what they were counted for: precipitation, speed factor, largest number.
+    /// Precipitation, speed factor and largest number of the last count, and the stones that it gave.
     counted: Option<(Falling, f64, u32, Stones)>,
 }
 
 impl Ice {
-    /// Reads what falls at the camera.
+    /// Reads the precipitation at the camera.
     pub fn gather(&mut self, now: &SceneMoment<'_>) {
         let falling = now.weather.falling_at(now.eye, now.time_s, now.scene.conditions).precipitation;
         self.here = (falling.ice_pellets_mm_h + falling.hail_mm_h > 0.0).then_some(falling);

@@ -1,5 +1,5 @@
-//! Stepped drops: the inputs of `particles::stepping`, which has the model, for the drops of the lattice in a wind that
-//! varies in space. `cull_pass` draws them.
+//! Inputs for stepping the drops of the lattice through a wind that varies in space (`particles::stepping` has the
+//! model). `cull_pass` draws them.
 
 use glam::DVec3;
 

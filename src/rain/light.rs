@@ -15,7 +15,7 @@ pub fn phase(c: f64) -> f64 {
     0.93 * lobe(0.9) + 0.07 * lobe(-0.35)
 }
 
-/// Returns the share of the light above the horizon in what a drop shows along a ray that rises with the sine `z`; the
+/// Returns the share of light from above the horizon in a drop seen along a ray whose sine of elevation is `z`. The
 /// rest is light from below the horizon.
 ///
 /// Most of a drop's disc shows the surroundings near the ray's own direction, upside down: half of the disc turns rays

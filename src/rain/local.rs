@@ -1,8 +1,8 @@
 //! Drops around a camera in or near the rim of rain areas: how many of each class fall at each place.
 //!
-//! The weather and each area have their own number of drops in every class. At each place these numbers are mixed by
-//! the areas' shares, and only the drops whose index is below the mixed number are drawn. A drop's index has nothing to
-//! do with its place, so this thins the rain evenly, and every channel keeps the same drops. A camera with no rim
+//! The weather and each area have their own number of drops in every class. At each place the mean of these numbers is
+//! taken, weighted by the areas' shares, and only the drops whose index is below it are drawn. A drop's index does not
+//! depend on its place, so the rain is thinned evenly, and every channel keeps the same drops. A camera with no rim
 //! nearby sees one rain and needs none of this.
 
 use std::ops::Range;

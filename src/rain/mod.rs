@@ -4,9 +4,9 @@
 //! *Drops*. [`drops`] has the physics of one drop in f64, [`sizes`] the size distribution, [`ice`] hail and pellets.
 //! [`lattice`] has the places of drops: a cell of air full of drops that repeats in all directions. Each drop is drawn
 //! at the copy nearest to the camera; no state is kept or updated. One quad draws a drop's streak. Its opacity is the
-//! area of the drop's disc over the area that the disc sweeps during the exposure. On devices with compute shaders only
-//! the drops in the picture are drawn, by a list. The streaks go into a layer of their own, which the composition puts
-//! in front of the picture.
+//! ratio of the area of the drop's disc to the area that the disc sweeps during the exposure. On devices with compute
+//! shaders only the drops in the picture are drawn, by a list. The streaks go into a layer of their own, which the
+//! composition puts in front of the picture.
 //!
 //! *Near and far*. [`cones`] show rain beyond the single drops. Rain that is too small or too far for either is
 //! extinction, drawn with the fog. A rain area ([`RainArea`]) is a column of rain. Near the camera its drops are

@@ -17,8 +17,9 @@ use crate::{
     },
 };
 
-/// Side of a cell, pixels, and smallest number of cells along each side of the picture.
+/// Side of a cell, pixels.
 const CELL: u32 = 10;
+/// Smallest number of cells along each side of the picture.
 const FEWEST: u32 = 40;
 /// Format with one channel for each quarter of a stretch.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

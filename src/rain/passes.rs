@@ -63,7 +63,7 @@ pub(crate) struct LayerDraw<'a> {
     pub stepped: Option<&'a Stepped<'a>>,
     /// View rays of the camera.
     pub rays: &'a ViewRays,
-    /// Surroundings: what keeps rain off, and lamps.
+    /// Surroundings: shelters, occluder maps and lamps.
     pub surroundings: &'a SurroundingsBlock,
     /// Whether the surroundings contain occluder maps, and lamps.
     pub maps: bool,

@@ -130,7 +130,8 @@ pub(crate) fn rain_on(world: &World, surface: &RainSurface, time_s: f64) -> Resu
     let to_world = world.frame.frame_at(surface.position).world_to_enu.transpose();
     let before = surface.position + to_world * (normal * BEFORE_M);
     let since_s = time_s - world.time_s;
-    // Boxes are stored as they stand at the world's time, so the point is moved back by each box's motion since then.
+    // Boxes are stored with their positions at the world's time, so the point is moved back by each box's motion since
+    // then.
     let comes = |falls_m_s: f64| {
         let velocity = to_world * (wind - DVec3::Z * falls_m_s);
         !world.set.shelters.iter().any(|b| sheltered(b, before - b.velocity_m_s * since_s, velocity))

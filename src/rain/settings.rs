@@ -6,7 +6,7 @@ use crate::{
     particles::stepping::StepPass,
 };
 
-/// Method by which a view draws rain. It does not change what falls.
+/// Method by which a view draws rain. It does not change the precipitation itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RainModel {
     /// Single drops to 1.9 m, and cones beyond, to 14.8 m. Under a budget ([`crate::plan`]) less is drawn where the
@@ -25,7 +25,8 @@ pub enum RainModel {
     Integrated,
 }
 
-/// Settings by which a view draws rain, hail and their splashes. They do not change what falls or where each drop is.
+/// Settings by which a view draws rain, hail and their splashes. They change neither the precipitation itself nor the
+/// place of any drop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainSettings {
     /// Exposure time of the picture, s, [1e-4, 0.1]. A longer exposure makes streaks longer and fainter. Default

@@ -16,7 +16,7 @@ pub const CLASSES: usize = 32;
 pub const SIDE_M: f64 = 4.0;
 /// Unit of fall speeds, m/s. Fall speeds are integer multiples of it.
 pub const SPEED_UNIT: f64 = 1.0 / 64.0;
-/// Sides of the shells' cells over that of the innermost: each is 2^(1/3) times the one before.
+/// Ratios of the sides of the shells' cells to that of the innermost: each is 2^(1/3) times the one before.
 const WIDER: [f64; SHELLS] = [1.0, 1.259_921_049_894_873_2, 1.587_401_051_968_199_4, 2.0];
 /// Distance from the camera beyond which no drop of the lattice is drawn, m.
 pub const REACH_M: f64 = 0.5 * SIDE_M * WIDER[SHELLS - 1];
@@ -68,7 +68,7 @@ impl Moment {
     }
 
     /// Returns the place of a camera at `position_m` (east, north, up of a point fixed to the world) in the cell that
-    /// moves with the air. A drop's start and its fall, less this place, is its position relative to the camera.
+    /// moves with the air. A drop's start, less its fall and this place, is its position relative to the camera.
     pub fn camera(&self, shell: usize, position_m: DVec3) -> [u32; 3] {
         let p = position_m.to_array().map(|x| fraction(x, side_m(shell)));
         [0, 1, 2].map(|i| p[i].wrapping_sub(self.air[i]))

@@ -14,8 +14,9 @@ use super::{
 };
 use crate::{falling::lattice::fraction, weather::Falling};
 
-/// Number of shells of the lattice, and the side of the innermost one's cell, m.
+/// Number of shells of the lattice.
 const SHELLS: usize = 4;
+/// Side of the innermost shell's cell, m.
 const SIDE_M: f64 = 4.0;
 /// Largest number of stones that one drawn stone may stand for.
 const MOST_WEIGHT: f64 = 16.0;
@@ -108,8 +109,8 @@ pub struct Stones {
 }
 
 impl Stones {
-    /// Creates the stones of what falls where drops fall `speed_factor` times as fast as at sea level. At most `most`
-    /// stones are drawn.
+    /// Creates the stones of the precipitation where drops fall `speed_factor` times as fast as at sea level. At most
+    /// `most` stones are drawn.
     pub fn new(falling: &Falling, speed_factor: f64, most: u32) -> Self {
         let sizes = StoneSizes::new(falling, speed_factor);
         let volume = SIDE_M.powi(3);
@@ -177,8 +178,8 @@ impl Stones {
         }
     }
 
-    /// Returns the optical depth of all drawn stones for what lies beyond them: that of their discs, which is half of
-    /// their extinction; the other half is diffraction.
+    /// Returns the optical depth of all drawn stones in front of objects beyond them: that of their discs, which is
+    /// half of their extinction; the other half is diffraction.
     pub fn hidden_depth(&self) -> f64 {
         let edge = 0.5 * (1.0 + FADE);
         self.reach.iter().map(|(reach, extinction)| 0.5 * extinction * edge * reach).sum()

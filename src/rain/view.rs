@@ -46,7 +46,8 @@ pub(crate) struct RainView {
     pub settings: RainSettings,
     /// Shares set by the plan: of all that falls, and of the near drops that are drawn as single drops.
     shares: [f32; 2],
-    /// Recently counted classes of drops, preceded by what they were counted for.
+    /// Recently counted classes of drops, each with the precipitation, speed factor and largest number for which they
+    /// were counted.
     counted: Vec<(Falling, f64, u32, Classes)>,
     /// The weather's own rain, reduced to the share that has left its cloud at the camera.
     own: Falling,
@@ -59,7 +60,7 @@ pub(crate) struct RainView {
     births: Remembered,
     /// Whether drops were stepped in the last frame.
     is_stepped: bool,
-    /// Number of the last drawn frame, and what was drawn in it.
+    /// Number of the last drawn frame, and the report of its rain.
     drawn: (u64, RainReport),
 }
 
@@ -97,7 +98,7 @@ impl RainView {
         }
     }
 
-    /// Returns the presence of what falls, as far as the settings draw it.
+    /// Returns the presence of rain and ice, as far as the settings draw them.
     fn presence(&self) -> RainPresence {
         RainPresence {
             drops: self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.has_drops(&self.field)),
@@ -195,11 +196,11 @@ impl RainView {
         }
     }
 
-    /// Returns the lowest fall speed of what is drawn, m/s, and its largest distance from the camera, m.
+    /// Returns the lowest fall speed of the drawn drops and stones, m/s, and their largest distance from the camera, m.
     fn shelter_reach(&mut self, device: &Device, scene: &Scene) -> ShelterReach {
         let stones = self.ice.stones(scene, &self.settings, self.settings.most_on(device)).map_or(0.0, |s| s.reach_m());
         let reach_m = BANDS_M.into_iter().fold(REACH_M.max(splash::REACH_M).max(stones), f64::max);
-        // The smallest stones fall a tenth slower than the smallest drops.
+        // The smallest stones fall a tenth more slowly than the smallest drops.
         ShelterReach { slowest_m_s: 0.9 * self.classes(device, scene, &{ self.own }).flux[0].1, reach_m }
     }
 
@@ -327,8 +328,8 @@ impl RainView {
         Some(Streaks::new((&classes, wind), &self.camera(context), light, now.has_lamps()))
     }
 
-    /// Draws what falls around the camera into the layer, which already contains columns if `over_columns`. Returns the
-    /// report.
+    /// Draws rain and ice around the camera into the layer, which already contains columns if `over_columns`. Returns
+    /// the report.
     fn draw_near(
         &mut self,
         context: &DrawContext<'_>,
@@ -458,7 +459,7 @@ impl DrawnEffect for RainView {
         Ok(to)
     }
 
-    /// Draws the layer in front of the picture: columns of rain areas, and what falls near the camera.
+    /// Draws the layer in front of the picture: columns of rain areas, and the rain and ice near the camera.
     fn draw(
         &mut self,
         context: &DrawContext<'_>,
