@@ -9,8 +9,9 @@
 //!include "surroundings/shelter.wgsl"
 //!include "snow/shape.wgsl"
 
-// Numbers of classes of diameter, and of shells of the lattice.
+// Number of classes of diameter.
 const CLASSES: u32 = 32u;
+// Number of shells of the lattice.
 const SHELLS: u32 = 4u;
 
 struct FlakesUniform {
@@ -181,8 +182,9 @@ fn flake_phase(c: f32) -> f32 {
     return henyey(0.54, c);
 }
 
-// Returns the share of the light above the horizon in what a flake sends along a ray that rises with the sine `z`: the
-// integral of flake_phase over a half space, by its first three Legendre terms, 1/2 + 3/4 g z - 7/16 g^3 P3(z).
+// Returns the share of light from above the horizon in what a flake scatters along a ray whose sine of elevation is
+// `z`: the integral of flake_phase over the upper hemisphere, by its first three Legendre terms, 1/2 + 3/4 g z - 7/16
+// g^3 P3(z).
 fn flake_sky_share(z: f32) -> f32 {
     return 0.5 + z * (0.50835 - 0.17222 * z * z);
 }

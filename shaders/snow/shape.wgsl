@@ -1,13 +1,15 @@
-// Shape of a flake: a clump of crystals, each different. A disc whose edge and inside are eroded by noise, as in older
-// systems (1 - exp(-5 W), W = noise - radius^2). src/snow/shape.rs has the same in f64; its tests hold the mean over
-// the disc to the flake's share of ice.
+// Shape of a flake: a clump of crystals, each different. A disc whose edge and inside are eroded by noise: 1 - exp(-5
+// W) with W = noise - radius^2. src/snow/shape.rs has the same in f64 and the source; its tests hold the mean over the
+// disc to the flake's share of ice.
 //!include "common/hash.wgsl"
 
 // Number of octaves of the noise; each is twice as fine and half as strong as the last.
 const SHAPE_OCTAVES: u32 = 4u;
-// Cells of the noise in a radius, constant added to the noise, and weight of the noise. The last two set the mean.
+// Cells of the noise in a radius.
 const SHAPE_CELLS: f32 = 2.2;
+// Constant added to the noise. It and the weight set the mean opacity of a flake.
 const SHAPE_OFFSET: f32 = 0.8563;
+// Weight of the noise.
 const SHAPE_NOISE: f32 = 2.0;
 
 // Returns a random number from -1 to 1 at a corner of the noise's cells.

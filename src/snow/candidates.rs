@@ -8,9 +8,10 @@ use crate::plan::{Listed, StepWork, Units, Work};
 /// The importance is that of rain.
 pub const SNOW: Part = Part { name: "snow", rungs: &["flakes", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work of the layer of falling things, per pixel, and of one flake of the lattice, in units of a pixel with none of
-/// the parts. Derived from the copies that `cargo bench --bench speed -- falling` prints.
+/// Work per pixel of the layer of falling things, in units of a pixel with none of the parts. Derived from the times
+/// that `cargo bench --bench speed -- falling` prints, in copies of the picture.
 const LAYER_OF_PIXEL: f64 = 0.1;
+/// Work of one flake of the lattice, in the same units.
 const ONE_FLAKE: f64 = 0.5;
 
 /// Returns the work saved by the step from flakes to a veil, for a picture of `pixels` pixels with `flakes` flakes.

@@ -1,10 +1,16 @@
 //! Contrast that flakes add to a picture, in closed form, for the plan.
 //!
 //! Flakes lie at random places, so the variance of the covered share from pixel to pixel is the sum of their squared
-//! covers (Campbell 1909). A flake that covers the area A is drawn L long and w wide at a distance r; its mean cover
-//! over this is A / ((L + w) w). With n / k drawn flakes a volume, each of which stands for k, those in dr add (n / k)
-//! (k A)^2 / ((L + w) w) dr. The mean square of a disc's chords is 32 / (3 pi^2) = 1.08 times the square of their mean.
-//! The sum over distances is numerical, unlike that of drops, because flakes of farther shells stand for more.
+//! covers (Campbell 1909). A flake that covers the area A at the distance r moves by L during the exposure. It is drawn
+//! w wide and L + w long; its mean cover is c = A / ((L + w) w). Across the streak the cover follows the chords of a
+//! disc, whose mean square is 32 / (3 pi^2) = 1.08 times the square of their mean. Of n flakes a unit of volume, n / k
+//! are drawn, and each stands for k. The variance is therefore
+//!
+//! ```text
+//! integral of 1.08 (n / k) (k A)^2 / ((L + w) w) dr.
+//! ```
+//!
+//! The integral is computed numerically, unlike that of drops, because k grows from shell to shell.
 
 use glam::{DVec2, DVec3};
 

@@ -18,9 +18,9 @@ pub fn flake_phase(c: f64) -> f64 {
     (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5)
 }
 
-/// Returns the share of the light above the horizon in what a flake sends along a ray that rises with the sine `z`: the
-/// integral of [`flake_phase`] over a half space. The Legendre series of both gives 1/2 + (3/4) g z - (7/16) g^3 P3(z),
-/// truncated there; within 0.02 of the integral.
+/// Returns the share of light from above the horizon in what a flake scatters along a ray whose sine of elevation is
+/// `z`: the integral of [`flake_phase`] over the upper hemisphere. Its Legendre series is `1/2 + (3/4) g z - (7/16) g^3
+/// P3(z) + ..`; these terms are within 0.02 of the integral.
 pub fn flake_sky_share(z: f64) -> f64 {
     0.5 + z * (0.50835 - 0.17222 * z * z)
 }

@@ -5,7 +5,7 @@ use crate::{
     gpu::Device,
 };
 
-/// Method by which a view draws snow. It does not change what falls.
+/// Method by which a view draws snow. It does not change the snowfall itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SnowModel {
     /// Flakes near the camera. Under a budget ([`crate::plan`]) there are none where the picture does not need them.
@@ -17,8 +17,8 @@ pub enum SnowModel {
     Flakes,
 }
 
-/// Settings by which a view draws falling snow. They do not change what falls or where each flake is, only how many
-/// flakes are drawn.
+/// Settings by which a view draws falling snow. They change only how many flakes are drawn: neither the snowfall itself
+/// nor the place of any flake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SnowSettings {
     /// Method by which snow is drawn.

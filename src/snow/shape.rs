@@ -1,10 +1,10 @@
 //! Shape of a flake, as `shaders/snow/shape.wgsl` draws it.
 //!
 //! A flake is a disc eroded by noise: value = max(1 - exp(-5 W), 0) with W = offset + strength n - r^2, where r is the
-//! distance from the middle in radii and n the flake's own noise. The formula is that of an older system's procedural
-//! flake, with n from -1 to 1 instead of a noise that may leave a hole instead of a flake. Offset and strength are such
-//! that the mean over discs is the share of ice in a flake's disc. Near flakes therefore cover as much as far ones,
-//! which are drawn as faint discs.
+//! distance from the middle in radii and n the flake's own noise. The formula is that of a procedural flake in an older
+//! system. Its noise could erode a flake completely; here n lies between -1 and 1. Offset and strength are such that
+//! the mean over discs is the share of ice in a flake's disc. Near flakes therefore cover as much as far ones, which
+//! are drawn as faint discs.
 
 use crate::{falling::random3, numerics::smooth};
 

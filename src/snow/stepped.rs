@@ -1,6 +1,5 @@
-//! Stepped flakes: the inputs of [`crate::particles::stepping`], which has the model, for the flakes of the lattice in
-//! a wind that varies in space. The step leaves out their helix, which is added around the stepped place when they are
-//! drawn.
+//! Inputs for stepping the flakes of the lattice through a wind that varies in space ([`crate::particles::stepping`]
+//! has the model). The step leaves out their helix, which is added around the stepped place when they are drawn.
 
 use glam::DVec3;
 

@@ -43,7 +43,7 @@ pub(crate) struct SnowView {
     /// Layer in front of the picture, shared by all that falls.
     layer: FallingTexture,
     pass: Option<Box<SnowPass>>,
-    /// Flakes as last counted, and what they were counted for.
+    /// Conditions of the last count, and the flakes that it gave.
     counted: Option<Box<(Counted, Flakes)>>,
     /// Whether flakes fall at the camera.
     is_there: bool,
